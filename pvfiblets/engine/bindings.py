@@ -34,6 +34,7 @@ __all__ = [
     "LAYER_COPY",
     "MASKS",
     "MEASURE_STORAGE",
+    "NEARER_PART",
     "PEELING",
     "REGIONS",
     "SAMPLED",
@@ -147,6 +148,14 @@ GATHERING = Scope(
 FIBLET_ROUNDS = Scope("rounds of two-phase culling", {"first_round": 12, "seen": 13, "owner": 14})
 BETWEEN_ROUNDS = Scope("the pass between rounds", {"depth_key": 13, "owner": 14, "depth": 15})
 LAYER_COPY = Scope("copies of layers", {"depth": 12, "ids": 13, "position": 14, "across": 15})
+NEARER_PART = Scope(
+    "the nearer of two parts",
+    {
+        f"{of}_{name}": 12 + 6 * number + index
+        for number, of in enumerate(("kept", "drawn"))
+        for index, name in enumerate(("depth", "owner", "ids", "position", "across", "edges"))
+    },
+)
 together(FIBLET_DATA, MASKS, SAMPLED, PEELING, GATHERING, REGIONS, CULLING, FIBLET_ROUNDS)
 
 # Tubes.

@@ -55,7 +55,7 @@ PIPELINES = (AUTO, *_NEEDS)
 """Values of ``pipeline``."""
 CULLINGS = ("auto", "none", "coverage", "two-phase")
 """Values of ``culling``; None means ``'none'``, and ``'auto'`` two-phase where that is measured to be faster."""
-FITS = (None, "sample")
+FITS = (None, "sample", "stream")
 """Values of ``fit``."""
 
 # Any of these sets lets a shader take the least of 64-bit words atomically.

@@ -62,6 +62,9 @@ class Drawable(ABC, Generic[AnyStyle]):
         OpenGL 3.3 or later.
     constants : mapping
         What the shaders' placeholders stand for.
+    lender : Drawable, optional
+        Another on the same context that lives longer, and lends its programs and targets: pictures of both go into the
+        same textures.
 
     Attributes
     ----------
@@ -77,13 +80,16 @@ class Drawable(ABC, Generic[AnyStyle]):
     pipeline: str
     share = 1.0
 
-    def __init__(self, ctx: moderngl.Context, constants: Mapping[str, Any]) -> None:
+    def __init__(
+        self, ctx: moderngl.Context, constants: Mapping[str, Any], lender: Drawable[Any] | None = None
+    ) -> None:
         self._ctx = ctx
         self._gl = GLExtras(ctx)
         self._passes = Passes(ctx)
-        self._programs = Programs(ctx, constants)
+        self._borrows = lender is not None
+        self._programs = Programs(ctx, constants) if lender is None else lender._programs
         self._kept_on_gpu: list[tuple[str, GpuResource]] = []
-        self._targets: dict[str, tuple[Hashable, Target]] = {}
+        self._targets: dict[str, tuple[Hashable, Target]] = {} if lender is None else lender._targets
         self._buffer: GBuffer | None = None
         self._made: tuple[View, Style] | None = None
         self._features: frozenset[str] = frozenset()
@@ -147,6 +153,10 @@ class Drawable(ABC, Generic[AnyStyle]):
             self._made = view, style
         return self._buffer
 
+    def forget_picture(self) -> None:
+        """Draw anew the next time, as somebody else draws into what holds the picture."""
+        self._buffer = self._made = None
+
     def _serves(self, outside: moderngl.Texture | None) -> bool:  # noqa: ARG002
         """Say whether a picture that was drawn without an outside serves where there is one."""
         return True
@@ -207,7 +217,9 @@ class Drawable(ABC, Generic[AnyStyle]):
     def _sizes(self) -> dict[str, int]:
         """Return bytes of everything on the GPU by name."""
         sizes: dict[str, int] = {}
-        parts = [*self._kept_on_gpu, *((name, target) for name, (_, target) in self._targets.items())]
+        parts: list[tuple[str, Any]] = list(self._kept_on_gpu)
+        if not self._borrows:
+            parts += [(name, target) for name, (_, target) in self._targets.items()]
         for name, kept in parts:
             for part, size in sizes_of(kept, name).items():
                 sizes[part] = sizes.get(part, 0) + size
@@ -240,9 +252,10 @@ class Drawable(ABC, Generic[AnyStyle]):
         for _, kept in self._kept_on_gpu:
             kept.release()
         self._kept_on_gpu.clear()
-        for name in list(self._targets):
-            self._drop_target(name)
-        self._programs.release()
+        if not self._borrows:
+            for name in list(self._targets):
+                self._drop_target(name)
+            self._programs.release()
         self._passes.release()
         self._buffer = self._made = None
 

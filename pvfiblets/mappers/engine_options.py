@@ -43,8 +43,8 @@ class EngineOptions(Options):
         `pvfiblets.engine.capabilities.pipelines`.
     culling : {'auto', 'two-phase', 'coverage', 'none', None}, default 'auto'
         How fiblets behind others are found out; ``'auto'`` is two-phase where that is measured to be faster.
-    fit : {None, 'sample'}
-        What to do where memory does not suffice: refuse, or draw a share of the streamlines.
+    fit : {None, 'sample', 'stream'}
+        What to do where memory does not suffice: refuse, draw a share of the streamlines, or all of them part by part.
 
     Raises
     ------
@@ -68,7 +68,11 @@ def engine_renderer(ctx: Any, fiblets: Any, **options: Any) -> Any:
     EngineError
         The window's OpenGL lacks the pipeline that is wanted; said before anything is copied to the GPU.
     """
+    options.setdefault("culling", EngineOptions.culling)  # the engine's own is the same in every picture
+    if options.get("fit") == "stream":
+        from pvfiblets.engine.fiblets.streamed_renderer import streamed_renderer
+
+        return streamed_renderer(ctx, fiblets, **{name: given for name, given in options.items() if name != "fit"})
     from pvfiblets.engine import FibletRenderer
 
-    options.setdefault("culling", EngineOptions.culling)  # the engine's own is the same in every picture
     return FibletRenderer(ctx, fiblets, **options)

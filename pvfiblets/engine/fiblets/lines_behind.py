@@ -30,14 +30,14 @@ class LinesBehind(Drawable[FibletStyle]):
 
     Parameters
     ----------
-    ctx, constants
+    ctx, constants, lender
         As of `Drawable`.
     """
 
     _shared: SharedBlocks
 
-    def __init__(self, ctx: moderngl.Context, constants: Any) -> None:
-        super().__init__(ctx, constants)
+    def __init__(self, ctx: moderngl.Context, constants: Any, lender: Drawable[Any] | None = None) -> None:
+        super().__init__(ctx, constants, lender)
         self._features_behind: frozenset[str] = frozenset()
         self._layers: Layers | None = None
         self._gatherer: Gatherer | None = None

@@ -48,7 +48,7 @@ SHARED_BYTES = 20_000
 RESERVE = 0.1
 """Share of the free memory that a sample leaves free."""
 
-_ADVICE = "draw fewer streamlines, or an even share of them by fit='sample'"
+_ADVICE = "draw fewer streamlines, an even share of them by fit='sample', or all of them part by part by fit='stream'"
 
 _MEMORY = Path("/proc/meminfo")
 _GROUP = Path("/sys/fs/cgroup")
@@ -179,6 +179,28 @@ class MemoryBudget:
         if self.host is not None:
             rooms.append((1.0 - RESERVE) * self.host / host)
         return min(max(min(rooms), 0.0), 1.0)
+
+    def needed(self, fiblets: FibletSet) -> int:
+        """Bytes of all buffers that a set needs."""
+        return self._buffers(fiblets, plan_chunks(fiblets, self.limits.buffer_bytes, self.limits.fiblets))
+
+    def fits(self, fiblets: FibletSet) -> bool:
+        """Say whether a set fits as a whole, as far as can be known beforehand.
+
+        Raises
+        ------
+        EngineError
+            If one page is too large.
+        """
+        return self._refusal(fiblets, plan_chunks(fiblets, self.limits.buffer_bytes, self.limits.fiblets)) is None
+
+    @property
+    def room(self) -> int | None:
+        """Bytes that buffers may take beside a picture, :data:`RESERVE` less than are free; None if nobody knows."""
+        rooms = [] if self.largest is None else [self.largest - SHARED_BYTES]
+        if self.video is not None:
+            rooms.append(int((1.0 - RESERVE) * self.video) - PICTURE_BYTES - SHARED_BYTES)
+        return min(rooms, default=None)
 
     def _buffers(self, fiblets: FibletSet, plans: list[ChunkPlan]) -> int:
         """Bytes of all buffers that a set needs."""

@@ -10,6 +10,7 @@ import moderngl
 from ..capabilities import check_choices, choose
 from ..culling import Occlusion, make_occlusion
 from ..culling.choice import FEW_FIBLETS, CullingChoice
+from ..drawable import Drawable
 from ..errors import EngineError
 from ..frame import local_frame
 from ..gbuffer import GBuffer
@@ -66,6 +67,10 @@ class FibletRenderer(LinesBehind):
         Show a progress bar while copying.
     max_buffer_bytes, max_groups, max_total_bytes : int, optional
         Limits below the driver's own: bytes of one buffer of records, work groups along one axis, bytes of all buffers.
+    lender : Drawable, optional
+        As of :class:`pvfiblets.engine.drawable.Drawable`.
+    whole : FibletSet, optional
+        What filters speak of, where `fiblets` are some of its streamlines (:mod:`pvfiblets.codec.restrict`).
 
     Attributes
     ----------
@@ -97,10 +102,14 @@ class FibletRenderer(LinesBehind):
         max_buffer_bytes: int | None = None,
         max_groups: int | None = None,
         max_total_bytes: int | None = None,
+        lender: Drawable[Any] | None = None,
+        whole: FibletSet | None = None,
     ) -> None:
         pipeline = choose(ctx, pipeline)
         check_choices(fit=fit)
-        super().__init__(ctx, CONSTANTS)
+        if fit == "stream":
+            raise ValueError("one renderer holds all that it draws; streamed_renderer() makes one that fetches parts")
+        super().__init__(ctx, CONSTANTS, lender)
         self.pipeline = pipeline
         self._fiblets = fiblets
         self._chunks: list[Chunk] = []
@@ -109,7 +118,7 @@ class FibletRenderer(LinesBehind):
         self._choice: CullingChoice | None = None
         self._limits = limits = Limits.of(ctx, self._gl, pipeline, max_buffer_bytes, max_groups)
         with self._making():
-            whole = fiblets
+            whole = fiblets if whole is None else whole
             room = MemoryBudget.of(ctx, self._gl, limits, max_total_bytes)
             fitted = upload_fitting(ctx, fiblets, room, fit, self._chunks, progress)
             self._fiblets = fiblets = fitted.kept()

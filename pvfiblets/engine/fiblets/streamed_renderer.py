@@ -1,0 +1,328 @@
+"""`StreamedRenderer`: a set larger than GPU memory, drawn part by part.
+
+Each part (:mod:`.parts`) has a renderer of its own while it is on the GPU, and each picture is put together of the
+parts' (:mod:`.part_pictures`). Parts outside the view are left out. Those that are there are drawn first, then the
+others come, each in the place of that which was not drawn for longest.
+
+=============  =======================================================================================================
+picture        what it shows
+=============  =======================================================================================================
+complete       every part in the view: bit by bit what a renderer of the whole set draws
+so far         after `patience` seconds: the parts that were drawn by then; the next picture of the view goes on
+hurried        an even share of all streamlines, always the same one, and the parts that are there: nothing is fetched
+=============  =======================================================================================================
+
+A software OpenGL has no memory of its own, and a part's records stand in memory twice: it gains nothing here.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import OrderedDict
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import moderngl
+
+from ..capabilities import choose
+from ..drawable import Drawable
+from ..errors import EngineError, GPUMemoryError
+from ..gbuffer import GBuffer
+from ..moderngl_extras import GLExtras
+from ..view import Style, View
+from .census import no_counts
+from .memory_fit import MemoryBudget
+from .part_pictures import PartPictures
+from .parts import Box, Parts, Stretches, in_view, reach_of
+from .pipelines import CONSTANTS, Limits
+from .renderer import FibletRenderer
+from .style import FibletStyle
+
+if TYPE_CHECKING:
+    from ...codec.fibletset import FibletSet
+    from .filter_textures import Filter
+    from .sampled_volume import VolumeSource
+
+__all__ = ["PARTS", "THINNED_SHARE", "StreamedRenderer", "streamed_renderer"]
+
+PARTS = 12
+"""How many parts that are not the even share fit into the memory: few are drawn in fewer calls, many fit it better."""
+
+THINNED_SHARE = 0.25
+"""Share of the memory for the streamlines that hurried pictures show."""
+
+THINNED = -1  # number of the even share among the parts
+
+_ONLY_NEAREST = (
+    "a set that is drawn part by part shows the nearest lines only: layers and sums of lines need all of it at once; "
+    "draw a share of it by fit='sample', or fewer streamlines"
+)
+
+
+class StreamedRenderer(Drawable[FibletStyle]):
+    """Draws a set of which a part at a time is on the GPU.
+
+    Parameters
+    ----------
+    ctx : moderngl.Context
+    parts : Parts
+    room : int
+        Bytes of GPU memory for all parts that are there at a time.
+    needed : callable
+        Returns the GPU bytes of a part.
+    pipeline : str
+        As of :class:`.FibletRenderer`.
+    clock : callable
+        Seconds.
+
+    Attributes
+    ----------
+    pipeline : str
+        The one in use.
+    share : float
+        How many of the parts in the view the last picture shows.
+    hurried : bool
+        Whether pictures are of what is there, at once.
+    patience : float or None
+        Seconds after which a picture is given back as it is; None for complete pictures only.
+
+    Raises
+    ------
+    EngineError
+        If OpenGL is older than the pipeline.
+    GPUMemoryError
+        If not even two parts fit.
+    """
+
+    STYLE = FibletStyle
+
+    def __init__(
+        self,
+        ctx: moderngl.Context,
+        parts: Parts,
+        room: int,
+        needed: Callable[[FibletSet], int],
+        *,
+        pipeline: str = "auto",
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        super().__init__(ctx, CONSTANTS)
+        self.pipeline = choose(ctx, pipeline)
+        self.hurried = False
+        self.patience: float | None = None
+        self._parts = parts
+        self._room = room
+        self._needed = needed
+        self._clock = clock
+        self._there: OrderedDict[int, FibletRenderer] = OrderedDict()  # the least lately drawn first
+        self._bytes: dict[int, int] = {}
+        self._boxes: dict[int, Box | None] = {}
+        self._filter: Filter | None = None
+        self._begun: tuple[View, FibletStyle] | None = None
+        self._left: list[int] = []
+        self._in_view: list[int] = []
+        self._fetched = 0
+        self._pictures = self._keep(PartPictures(ctx, self._gl, self._programs), "parts' pictures")
+
+    @property
+    def unfinished(self) -> bool:
+        """Whether the last picture lacks parts that another one of the same view would show."""
+        return self._begun is not None and bool(self._left)
+
+    def render(
+        self, view: View, style: FibletStyle | None = None, *, outside: moderngl.Texture | None = None
+    ) -> GBuffer:
+        """Draw, unless the last picture was of the same view and style and complete; see :meth:`.Drawable.render`.
+
+        Raises
+        ------
+        EngineError
+            As there, and if a part cannot be read.
+        """
+        found = super().render(view, style, outside=outside)
+        if self._left:
+            self._made = None  # the next call goes on
+        return found
+
+    def _draw(self, view: View, style: FibletStyle, outside: moderngl.Texture | None) -> GBuffer:
+        if self.hurried or self._begun != (view, style):
+            self._begin(view, style)
+        until = None if self.patience is None else self._clock() + self.patience
+        while self._left and not (self.hurried and self._left[0] not in self._there):
+            number = self._left[0]
+            self._add(number, number, view, style, outside)
+            self._left.pop(0)
+            if until is not None and self._clock() >= until:
+                break
+        if self.hurried and self._left:
+            # Its streamlines are some of those that are there already, of which they change no pixel.
+            self._add(THINNED, len(self._parts), view, style, outside)
+        self.share = 1.0 - len(self._left) / max(len(self._in_view), 1)
+        if self.hurried and self._left:
+            self._begun = None  # what comes next begins without the even share
+        return self._pictures.picture
+
+    def _begin(self, view: View, style: FibletStyle) -> None:
+        numbers = range(len(self._parts))
+        self._in_view = [number for number in numbers if in_view(view, style, self._box(number))]
+        self._left = sorted(self._in_view, key=lambda number: number not in self._there)
+        self._pictures.begin(view.size, style.relief, style.edges)
+        self._begun = view, style
+
+    def _box(self, number: int) -> Box | None:
+        return self._boxes[number] if number in self._boxes else self._parts.box(number)
+
+    def _add(
+        self, number: int, order: int, view: View, style: FibletStyle, outside: moderngl.Texture | None
+    ) -> None:
+        renderer = self._fetch(number)
+        drawn = renderer.render(view, style, outside=outside)
+        self._pictures.add(drawn, order, by_streamline=self._parts.by_streamline)
+        renderer.forget_picture()  # the next part draws into the same textures
+
+    def _fetch(self, number: int) -> FibletRenderer:
+        """Return the renderer of a part, brought to the GPU if need be."""
+        if number in self._there:
+            self._there.move_to_end(number)
+            return self._there[number]
+        thinned = number == THINNED
+        part = self._parts.thinned(int(THINNED_SHARE * self._room)) if thinned else self._parts.part(number)
+        if not thinned:
+            self._boxes[number] = reach_of(part)
+        size = self._needed(part)
+        while self._there and sum(self._bytes[n] for n in self._there) + size > self._room:
+            self._drop_oldest()
+        while True:
+            try:
+                made = FibletRenderer(
+                    self._ctx, part, pipeline=self.pipeline, culling=None, lender=self, whole=self._parts.whole
+                )
+                break
+            except GPUMemoryError as error:
+                if not self._there:
+                    raise GPUMemoryError(f"not even one part of the set fits into GPU memory: {error}") from error
+                self._drop_oldest()
+        self._there[number], self._bytes[number] = made, size
+        self._fetched += 1
+        made.filtering = self._filter
+        return made
+
+    def _drop_oldest(self) -> None:
+        # The even share stays as long as there is another: every movement of the camera asks for it.
+        number = next((one for one in self._there if one != THINNED), THINNED)
+        self._there.pop(number).release()
+        del self._bytes[number]
+
+    @property
+    def filtering(self) -> Filter | None:
+        """What is there to be drawn; see :attr:`.FibletRenderer.filtering`."""
+        self._check_alive()
+        return self._filter
+
+    @filtering.setter
+    def filtering(self, wanted: Filter | None) -> None:
+        self._check_alive()
+        if wanted is not None:
+            wanted.check(self._parts.whole)
+        self._made = self._begun = None
+        self._filter = wanted
+        for renderer in self._there.values():
+            renderer.filtering = wanted
+
+    def value_range(self, values: str | VolumeSource) -> tuple[float, float]:
+        """Return the least and the greatest of a per-point value; see :meth:`.FibletRenderer.value_range`.
+
+        What is measured is measured in every part, which takes as long as to fetch them all.
+        """
+        self._check_alive()
+        ranges = []
+        for number in range(len(self._parts)):
+            ranges.append(self._fetch(number).value_range(values))
+            if not (isinstance(values, str) and values in ("arc_length", "curvature")):
+                break
+        return min(low for low, _ in ranges), max(high for _, high in ranges)
+
+    # What needs all lines at once
+
+    def render_layers(self, view: View, style: Style | None = None, count: int = 4) -> Any:  # noqa: ARG002
+        """Raise: see the message."""
+        raise EngineError(_ONLY_NEAREST)
+
+    def gather(self, *_given: Any, **_named: Any) -> Any:
+        """Raise: see the message."""
+        raise EngineError(_ONLY_NEAREST)
+
+    def most_lines(self, *, wait: bool = True) -> float:  # noqa: ARG002
+        """Return 0: nothing is added up."""
+        return 0.0
+
+    def drop_layers(self) -> None:
+        """Do nothing: there are none."""
+
+    def drop_gathered(self) -> None:
+        """Do nothing: there is nothing."""
+
+    def _facts(self, *, counts: bool) -> dict[str, Any]:  # noqa: ARG002
+        total = int(self._parts.whole.n_fiblets)
+        parts = {
+            "total": len(self._parts),
+            "in_view": len(self._in_view),
+            "left": len(self._left),
+            "there": sum(number != THINNED for number in self._there),
+            "fetched": self._fetched,
+        }
+        return {"fiblets_total": total, "fiblets": no_counts(total), "share": self.share, "parts": parts}
+
+    def _sizes(self) -> dict[str, int]:
+        sizes = super()._sizes()
+        for renderer in self._there.values():
+            for name, size in renderer._sizes().items():
+                sizes[name] = sizes.get(name, 0) + size
+        return sizes
+
+    def release(self) -> None:
+        """Give back everything on the GPU; twice is harmless."""
+        for renderer in self._there.values():
+            renderer.release()
+        self._there.clear()
+        self._bytes.clear()
+        super().release()
+
+
+def streamed_renderer(
+    ctx: moderngl.Context,
+    fiblets: FibletSet,
+    *,
+    pipeline: str = "auto",
+    max_total_bytes: int | None = None,
+    **options: Any,
+) -> FibletRenderer | StreamedRenderer:
+    """Return a renderer of all of a set if it fits, else one that draws it part by part.
+
+    Parameters
+    ----------
+    ctx, fiblets, pipeline, max_total_bytes
+        As of :class:`.FibletRenderer`.
+    **options
+        Of a renderer of all.
+
+    Raises
+    ------
+    EngineError
+        As :class:`.FibletRenderer`, of what has nothing to do with memory.
+    """
+    gl, pipeline = GLExtras(ctx), choose(ctx, pipeline)
+    limits = Limits.of(ctx, gl, pipeline, options.get("max_buffer_bytes"), options.get("max_groups"))
+    budget = MemoryBudget.of(ctx, gl, limits, max_total_bytes)
+    room = budget.room
+    if room is None or budget.fits(fiblets):
+        try:
+            return FibletRenderer(ctx, fiblets, pipeline=pipeline, max_total_bytes=max_total_bytes, **options)
+        except GPUMemoryError:
+            if room is not None:
+                raise
+            # A driver that does not say how much memory is free has refused all; half of it may do.
+            room = budget.needed(fiblets) // 2
+    part_bytes = int((1.0 - THINNED_SHARE) * room / PARTS)
+    parts = Stretches(fiblets, budget.needed(fiblets), part_bytes)
+    return StreamedRenderer(ctx, parts, room, budget.needed, pipeline=pipeline)

@@ -1,0 +1,220 @@
+"""Sets larger than GPU memory, drawn part by part: held against a renderer of all of the set, bit by bit."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from pvfiblets import Streamlines, compress, regions
+from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View
+from pvfiblets.engine.fiblets.filter_textures import Filter
+from pvfiblets.engine.fiblets.parts import Stretches, in_view, reach_of
+from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
+from pvfiblets.engine.fiblets.streamed_renderer import StreamedRenderer, streamed_renderer
+from pvfiblets.synthetic import brain_streamlines
+
+from .pictures import SIZE, differences, read
+
+WHOLE_BRAIN = {"eye": (0, -300, 40), "target": (0, -10, 20), "far": 900.0}
+NEAR = {"eye": (60, -60, 90), "target": (20, 0, 40), "far": 900.0}
+
+
+@pytest.fixture(scope="module")
+def brain():
+    lines = brain_streamlines(3000, step=1.0, seed=2)
+    values = {"height": np.asarray(lines.points[:, 2])}
+    with_gaps = np.insert(np.asarray(lines.counts), [0, 100, 3000], 0)
+    offsets = np.concatenate([[0], np.cumsum(with_gaps)])
+    return compress(Streamlines(lines.points, offsets, per_point=values), per_point=["height"])
+
+
+@pytest.fixture
+def made(gl, brain):
+    """Renderers of all of the set, and of parts of it; the latter has memory for a third."""
+    renderers = []
+
+    def make(pipeline="auto", share=1 / 3, **options):
+        whole = FibletRenderer(gl, brain, pipeline=pipeline, culling=None)
+        needed = sum(b["bytes"] for b in whole.explain()["buffers"]) + 2 * brain.n_points
+        parts = streamed_renderer(gl, brain, pipeline=pipeline, max_total_bytes=int(share * needed), **options)
+        renderers.extend([whole, parts])
+        return whole, parts
+
+    yield make
+    for renderer in renderers:
+        renderer.release()
+
+
+def assert_alike(parts, whole):
+    """Every bit but for the owners, which are parts."""
+    assert {name for name in differences(parts, whole) if name != "owner"} == set()
+
+
+@pytest.mark.parametrize("pipeline", ["compute", "geometry", "tessellation"])
+def test_a_complete_picture_is_that_of_the_whole_set(made, camera, pipeline):
+    whole, parts = made(pipeline)
+    assert isinstance(parts, StreamedRenderer)
+    for place in (WHOLE_BRAIN, NEAR):
+        view = View(SIZE, camera(SIZE, **place))
+        for style in (FibletStyle(values="height"), FibletStyle(line_width=4.0, across=True, edges=True)):
+            assert_alike(read(parts.render(view, style)), read(whole.render(view, style)))
+            assert parts.share == 1.0
+            assert not parts.unfinished
+
+
+@pytest.mark.parametrize("style", [FibletStyle(radius=0.5, across=True), FibletStyle(tolerance=2.0),
+                                   FibletStyle(values="curvature"), FibletStyle(values="arc_length")])  # fmt: skip
+def test_styles_are_those_of_the_whole_set(made, camera, style):
+    whole, parts = made()
+    view = View(SIZE, camera(SIZE, **NEAR))
+    assert_alike(read(parts.render(view, style)), read(whole.render(view, style)))
+
+
+def test_cuts_and_filters_are_those_of_the_whole_set(made, camera, brain):
+    whole, parts = made()
+    rng = np.random.default_rng(0)
+    words = rng.integers(0, 2**32, -(-brain.n_points // 32), np.uint64).astype(np.uint32)
+    kept = Filter(rng.random(brain.n_streamlines) < 0.5, words)
+    for filtering in (None, kept):
+        whole.filtering = parts.filtering = filtering
+        for cut in ({}, {"clip_planes": [(1.0, 0.0, 0.0, 5.0)]}, {"region": regions.Sphere((0, 0, 20), 40.0)}):
+            view = View(SIZE, camera(SIZE, **WHOLE_BRAIN), **cut)
+            assert_alike(read(parts.render(view)), read(whole.render(view)))
+    with pytest.raises(ValueError, match="5 streamlines are kept or not; the set has 3003"):
+        parts.filtering = Filter(np.ones(5, bool))
+
+
+def test_memory_is_kept_to(made, camera):
+    _, parts = made()
+    parts.render(View(SIZE, camera(SIZE, **WHOLE_BRAIN)))
+    told = parts.explain()
+    counts = told["parts"]
+    assert counts["in_view"] == counts["total"] == counts["fetched"]
+    assert 1 < counts["there"] < counts["total"]
+    sizes = {one["name"]: one["bytes"] for one in told["buffers"]}
+    records = sum(size for name, size in sizes.items() if name not in ("gbuffer", "parts' pictures", "depth"))
+    assert records < parts._room
+
+
+def test_the_same_picture_fetches_nothing_and_one_near_by_little(made, camera):
+    _, parts = made()
+    view = View(SIZE, camera(SIZE, **WHOLE_BRAIN))
+    first = parts.render(view)
+    fetched = parts.explain()["parts"]["fetched"]
+    assert parts.render(view) is first
+    assert parts.explain()["parts"]["fetched"] == fetched
+    counts = parts.explain()["parts"]
+    parts.render(View(SIZE, camera(SIZE, **NEAR)))
+    # What is there is drawn first.
+    assert parts.explain()["parts"]["fetched"] - fetched <= counts["total"] - counts["there"]
+
+
+def test_parts_outside_the_view_are_left_out(made, camera):
+    whole, parts = made()
+    parts.render(View(SIZE, camera(SIZE, **WHOLE_BRAIN)))  # bounds are known from here on
+    fetched = parts.explain()["parts"]["fetched"]
+    away = View(SIZE, camera(SIZE, eye=(0, -300, 40), target=(0, -600, 40), far=900.0))
+    assert_alike(read(parts.render(away)), read(whole.render(away)))
+    counts = parts.explain()["parts"]
+    assert (counts["in_view"], counts["fetched"]) == (0, fetched)
+
+
+def test_hurried_pictures_fetch_no_part(made, camera):
+    whole, parts = made()
+    parts.hurried = True
+    view = View(SIZE, camera(SIZE, **WHOLE_BRAIN))
+    hurried = read(parts.render(view))
+    counts = parts.explain()["parts"]
+    assert counts["fetched"] == 1  # the even share
+    assert parts.share < 1.0
+    everything = read(whole.render(view))
+    assert 0.3 < hurried.drawn.sum() / everything.drawn.sum() < 1.0
+    assert (hurried.depth[hurried.drawn] >= everything.depth[hurried.drawn]).all()
+    parts.render(View(SIZE, camera(SIZE, **NEAR)))
+    assert parts.explain()["parts"]["fetched"] == 1
+    parts.hurried = False
+    assert_alike(read(parts.render(view)), everything)
+    parts.hurried = True  # what has been drawn is shown, whole as it is
+    assert_alike(read(parts.render(view)), everything)
+
+
+def test_a_picture_goes_on_where_it_was_left(gl, made, camera):
+    whole, parts = made()
+    ticks = iter(range(1000))
+    parts._clock = lambda: float(next(ticks))
+    parts.patience = 0.5  # each part takes longer
+    view = View(SIZE, camera(SIZE, **WHOLE_BRAIN))
+    seen = []
+    while not seen or parts.unfinished:
+        seen.append(read(parts.render(view)).drawn.sum())
+        assert (parts.share < 1.0) == parts.unfinished
+    assert len(seen) == parts.explain()["parts"]["total"]
+    assert (np.diff(seen) >= 0).all()
+    assert seen[0] < seen[-1]
+    assert_alike(read(parts.render(view)), read(whole.render(view)))
+
+
+def test_ranges_are_those_of_the_whole_set(made, brain):
+    whole, parts = made()
+    volume = VolumeSource(np.arange(8, dtype=np.float32).reshape(2, 2, 2), np.eye(4))
+    for values in ("height", "arc_length", "curvature", volume):
+        assert parts.value_range(values) == whole.value_range(values)
+    with pytest.raises(EngineError, match="no per-point array 'none'"):
+        parts.value_range("none")
+
+
+def test_what_needs_all_lines_says_so(made, camera):
+    _, parts = made()
+    view = View(SIZE, camera(SIZE, **WHOLE_BRAIN))
+    for call in (parts.render_layers, parts.gather):
+        with pytest.raises(EngineError, match="part by part shows the nearest lines only.*fit='sample'"):
+            call(view)
+
+
+def test_what_fits_is_drawn_by_a_renderer_of_all(gl, brain):
+    renderer = streamed_renderer(gl, brain)
+    assert isinstance(renderer, FibletRenderer)
+    renderer.release()
+
+
+def test_nothing_stays_behind(gl, made, camera):
+    _, parts = made()
+    parts.render(View(SIZE, camera(SIZE, **WHOLE_BRAIN)))
+    parts.release()
+    parts.release()
+    with pytest.raises(EngineError, match="released"):
+        parts.render(View(SIZE, camera(SIZE, **WHOLE_BRAIN)))
+
+
+def test_parts_hold_each_streamline_once_and_their_bounds_all_points(brain):
+    parts = Stretches(brain, 1000, 90)
+    found = []
+    for number in range(len(parts)):
+        part = parts.part(number)
+        found.append(part.rank_to_id)
+        box, points = reach_of(part), part.decompress(part.rank_to_id).points
+        assert (points >= box[0]).all()
+        assert (points <= box[1]).all()
+        assert (box[1] - box[0] < np.ptp(points, axis=0) + 8.0 * brain.largest_radius).all()
+    assert len(found) == 12
+    counts = np.diff(brain.offsets())
+    np.testing.assert_array_equal(np.sort(np.concatenate(found)), np.flatnonzero(counts))
+
+
+def test_a_box_in_view_is_never_left_out(camera):
+    rng = np.random.default_rng(3)
+    style = FibletStyle(line_width=5.0)
+    left_out = 0
+    for _ in range(200):
+        eye, target = rng.normal(0, 50, 3), rng.normal(0, 20, 3)
+        view = View(SIZE, camera(SIZE, eye=eye, target=target, near=1.0, far=150.0))
+        low = rng.normal(0, 80, 3)
+        box = np.array([low, low + rng.uniform(0, 30, 3)])
+        inside = rng.uniform(box[0], box[1], (500, 3))
+        x, y, z, w = view.model_view_projection @ np.column_stack([inside, np.ones(500)]).T
+        shows = (w > 0) & (np.abs(x) < w) & (np.abs(y) < w) & (np.abs(z) < w)
+        if in_view(view, style, box):
+            continue
+        left_out += 1
+        assert not shows.any()
+    assert left_out > 20
