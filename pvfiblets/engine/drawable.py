@@ -87,9 +87,9 @@ class Drawable(ABC, Generic[AnyStyle]):
         self._gl = GLExtras(ctx)
         self._passes = Passes(ctx)
         self._borrows = lender is not None
-        self._programs = Programs(ctx, constants) if lender is None else lender._programs
+        self._programs: Programs = Programs(ctx, constants) if lender is None else lender._programs  # noqa: SLF001
         self._kept_on_gpu: list[tuple[str, GpuResource]] = []
-        self._targets: dict[str, tuple[Hashable, Target]] = {} if lender is None else lender._targets
+        self._targets: dict[str, tuple[Hashable, Target]] = {} if lender is None else lender._targets  # noqa: SLF001
         self._buffer: GBuffer | None = None
         self._made: tuple[View, Style] | None = None
         self._features: frozenset[str] = frozenset()
@@ -209,6 +209,11 @@ class Drawable(ABC, Generic[AnyStyle]):
         """Give one thing back before the others."""
         self._kept_on_gpu = [(name, other) for name, other in self._kept_on_gpu if other is not kept]
         kept.release()
+
+    @property
+    def released(self) -> bool:
+        """Whether everything on the GPU has been given back."""
+        return self._released
 
     def _check_alive(self) -> None:
         if self._released:

@@ -1,18 +1,18 @@
-"""Windows whose pictures are refined: one frame more of all of them, or all that are left."""
+"""Windows whose pictures at rest want more frames, for samples or for parts of their sets: one frame more, or all."""
 
 from __future__ import annotations
 
 import weakref
 from typing import Any
 
-__all__ = ["finish", "refine", "shown_pictures"]
+__all__ = ["finish", "picture_of", "refine", "shown_pictures"]
 
 shown_pictures: weakref.WeakSet[Any] = weakref.WeakSet()
 """All `pvfiblets.mappers.picture.Picture` that there are."""
 
 
 def refine(window: Any) -> bool:
-    """Draw one more frame of the pictures of a window that want more samples; nothing if none does.
+    """Draw one more frame of the pictures of a window that want more samples or parts; nothing if none does.
 
     Parameters
     ----------
@@ -25,7 +25,7 @@ def refine(window: Any) -> bool:
     """
     wanting = _unfinished(window)
     for picture in wanting:
-        picture.refinement.due = True
+        picture.refinement.due = True  # also where parts are wanted: views that stay as they were are not drawn
     if wanting:
         window.Render()
     return bool(_unfinished(window))
@@ -41,3 +41,10 @@ def _unfinished(window: Any) -> list[Any]:
     address = window.GetAddressAsString("")
     found = [picture for picture in shown_pictures if picture.unfinished]
     return [picture for picture in found if picture.renderer.GetRenderWindow().GetAddressAsString("") == address]
+
+
+def picture_of(renderer: Any) -> Any:
+    """Return what is done to a renderer's picture; None if nothing is."""
+    address = renderer.GetAddressAsString("")
+    of = [(picture, picture.renderer) for picture in shown_pictures]
+    return next((one for one, its in of if its is not None and its.GetAddressAsString("") == address), None)

@@ -262,6 +262,10 @@ class EngineMapper(Attached, Readable, Connected, Questions, vtkOpenGLPolyDataMa
         slot = context.slot(self)
         with context.foreign():
             engine = self._engine(context, slot)
+            if hasattr(engine, "patience"):
+                from pvfiblets.mappers.streaming import pace
+
+                pace(engine, renderer)
             outside = None
             if engine.needs_outside(view, style):
                 outside = self._outside(context, slot, renderer, viewport)

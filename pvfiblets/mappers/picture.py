@@ -31,7 +31,7 @@ from pvfiblets.mappers.antialias_windows import finish, shown_pictures
 from pvfiblets.mappers.lens_focus import FOLLOWED, DepthOfField, Focusing, lens_of
 from pvfiblets.mappers.overlays import Overlay
 from pvfiblets.mappers.picture_prop import COLOUR, DEPTH, PictureProp, attachment
-from pvfiblets.mappers.scene import in_motion, lenses
+from pvfiblets.mappers.scene import in_motion, lenses, streamed
 from pvfiblets.mappers.scene_state import scene_state
 from pvfiblets.mappers.shifted_cameras import shifted
 from pvfiblets.mappers.tiles import Margin, margin_of
@@ -62,6 +62,8 @@ class Picture:
     ----------
     drawn : callable or None
         Called after each frame of a picture that is refined.
+    paced : callable
+        Says whether somebody asks for more frames of the picture while it rests.
     """
 
     def __init__(self, renderer: vtkRenderer) -> None:
@@ -81,6 +83,7 @@ class Picture:
         self._untextured = weak(None)  # the render pass that does not draw into textures
         self.focusing = Focusing()
         self.drawn: Callable[[], None] | None = None
+        self.paced: Callable[[], bool] = lambda: False
         shown_pictures.add(self)
 
     @property
@@ -122,11 +125,23 @@ class Picture:
 
     @property
     def unfinished(self) -> bool:
-        """Whether the scene is as it was drawn last, and its picture wants more samples."""
+        """Whether the scene is as it was drawn last, and its picture wants more samples, or parts of a set."""
         renderer = self.renderer
         if self._refinement is None or renderer is None or renderer.GetRenderWindow() is None:
             return False
+        if self._streamed:
+            return self.fetching
         return self._refinement.unfinished(self._state(renderer))
+
+    @property
+    def fetching(self) -> bool:
+        """Whether what it wants are parts of a set."""
+        return any(engine.unfinished for engine in self._streamed)
+
+    @property
+    def _streamed(self) -> list[Any]:
+        """Return the engines of the scene that have parts of their sets at a time."""
+        return [engine for engine in streamed.get(self._address, ()) if not engine.released]
 
     @property
     def antialias(self) -> str:
@@ -330,6 +345,8 @@ class Picture:
         if renderer.GetPass() is not None and renderer.GetPass() is self._untextured.Get():
             return None
         if not _refinable(renderer) or in_motion(renderer) or not self.focusing.settled:
+            return None
+        if self._streamed:  # each sample would fetch every part anew
             return None
         interactor = renderer.GetRenderWindow().GetInteractor()
         follows = self._depth_of_field is not None and self._depth_of_field.focal_distance == "cursor"

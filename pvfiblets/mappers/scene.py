@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
+from weakref import WeakSet
 
 import numpy as np
 import numpy.typing as npt
@@ -20,6 +21,10 @@ smoothers: dict[str, Any] = {}
 lenses: dict[str, dict[str, Any]] = {}
 """What hides nothing in a picture with depth of field (`pvfiblets.engine.effects.picture.SeenThrough`), by the address
 of its vtkRenderer, then by that of the mapper."""
+
+streamed: dict[str, WeakSet[Any]] = {}
+"""Engines that have parts of their sets at a time (`pvfiblets.mappers.streaming`), by the address of their
+vtkRenderer."""
 
 USUAL_DPI = 72
 """Dots per inch of a vtkRenderWindow that nobody has changed."""

@@ -57,6 +57,12 @@ class Pacer:
         window = None if interactor is None else interactor.GetRenderWindow()
         return bool(window is not None and not window.GetOffScreenRendering() and interactor.GetInitialized())
 
+    @property
+    def paces(self) -> bool:
+        """Whether more frames are asked for while the picture rests."""
+        interactor = self._interactor()
+        return self.by_hand or self.seen or (interactor is not None and not interactor.GetEnableRender())
+
     def frame_drawn(self) -> None:
         """Ask to be called again; a frame has been drawn, by ourselves or by others."""
         interactor = self._interactor()

@@ -359,7 +359,7 @@ def added_up(report: dict[str, Any]) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``passes``, ``features``, ``buffers``, ``gpu_bytes`` and ``fiblets``, as
+        ``passes``, ``features``, ``buffers``, ``gpu_bytes``, ``fiblets`` and ``parts``, as
         :meth:`FibletActor.explain` has them.
     """
     windows = report["windows"]
@@ -372,6 +372,7 @@ def added_up(report: dict[str, Any]) -> dict[str, Any]:
         "buffers": buffers,
         "gpu_bytes": sum(buffer["bytes"] for buffer in buffers),
         "fiblets": {count: _sum(windows, count) for count in COUNTS},
+        **next(({"parts": window["parts"]} for window in windows if "parts" in window), {}),
     }
 
 

@@ -119,7 +119,7 @@ class PictureComponent:
         return 1 if refinement is None else max(refinement.taken, 1)
 
     def refine(self) -> bool:
-        """Draw one more sample of the plotter's resting pictures.
+        """Draw one more sample of the plotter's resting pictures, or more parts of sets larger than GPU memory.
 
         Windows on a screen, notebooks and pages do it by themselves, screenshots draw all that are left. It is for
         event loops of other kinds, which call it while nothing happens.
@@ -131,6 +131,11 @@ class PictureComponent:
         """
         window = self._plotter.render_window
         return window is not None and refine(window)
+
+    @property
+    def fetching(self) -> bool:
+        """Whether a picture lacks parts of a set that does not fit into GPU memory; :meth:`refine` draws more of it."""
+        return any(picture.fetching for picture in self._pictures.values())
 
     def pace_by_hand(self) -> None:
         """Draw no samples by itself from now on: somebody calls :meth:`refine`."""
@@ -249,7 +254,7 @@ class PictureComponent:
                 wanted.seen = self._seen
             if wanted is not now:
                 picture.refinement = wanted
-        picture.drawn = self._drawn
+        picture.drawn, picture.paced = self._drawn, self._paced
         self._keep()
 
     @contextmanager
@@ -265,9 +270,10 @@ class PictureComponent:
                 picture.refinement = refinement
 
     def _unfinished(self) -> tuple[bool, int]:
-        """Say whether samples are wanted, and how many the picture has that has most."""
+        """Say whether samples or parts are wanted, and how many samples the picture has that has most."""
         pictures = [picture for picture in self._pictures.values() if picture.unfinished]
-        return bool(pictures), max((picture.refinement.taken for picture in pictures if picture.refinement), default=0)
+        taken = [picture.refinement.taken + picture.fetching for picture in pictures if picture.refinement]
+        return bool(pictures), max(taken, default=0)
 
     def _drawn(self) -> None:
         """Be told that a renderer has drawn a frame."""
@@ -275,6 +281,9 @@ class PictureComponent:
 
     def _seen(self) -> bool:
         return self._pacer.seen
+
+    def _paced(self) -> bool:
+        return self._pacer.paces
 
     def _set_tone(self, **changes: Any) -> None:
         picture = self._picture()

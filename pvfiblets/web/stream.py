@@ -36,6 +36,7 @@ PATIENCE = 10.0  # seconds that it does: of browsers that share a view, one may 
 SLOW = 0.1  # seconds a frame; if more, fewer pixels are drawn while the camera moves
 REDUCED = 0.5  # of the width and the height of these
 HEARD = 0.002  # seconds between samples, in which events are heard
+SO_FAR = 0.5  # seconds between pictures of what is there so far of a set whose parts are fetched
 BRISK = 0.25 * SLOW  # of a reduced frame; if less, all pixels can be drawn
 
 
@@ -295,14 +296,20 @@ class PictureStream:
             await self._refine()
 
     async def _refine(self) -> None:
-        """Draw the samples of the picture at rest and send it, unless something happens meanwhile."""
+        """Draw the samples of the picture at rest and send it, unless something happens meanwhile.
+
+        Where parts of a set are fetched, what is there so far is sent now and then.
+        """
         with contextlib.suppress(TimeoutError):
             await asyncio.wait_for(self._wanted.wait(), REST)
         picture = self._plotter.picture
-        before = picture.samples
+        before, fetching, sent = picture.samples, picture.fetching, time.monotonic()
         while not self._wanted.is_set() and picture.refine():
             await asyncio.sleep(HEARD)
-        if not self._wanted.is_set() and picture.samples != before:
+            if picture.fetching and time.monotonic() - sent > SO_FAR:
+                await self._send(self._read(), self.still_quality)
+                sent = time.monotonic()
+        if not self._wanted.is_set() and (picture.samples != before or fetching):
             await self._send(self._read(), self.still_quality)
 
     async def _rests(self) -> bool:

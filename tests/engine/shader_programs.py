@@ -306,6 +306,7 @@ def _others() -> dict[str, Kind]:
 
     screen("fiblets/gather/greatest", "fiblets/gather/slice_keys", "fiblets/hardware_raster/between", "screen/keys")
     screen("fiblets/layers/copy", needs={"TUBES": (("CROSS_LINE",),), "CROSS_LINE": ()})
+    screen("fiblets/parts/nearer", needs={"TUBES": (("CROSS_LINE",),), "CROSS_LINE": (), "EDGES": ()})
     screen("culling/coverage_dilate", "culling/pyramid_reduce")
     screen("regions/inspect", "regions/tally", always=("PEEL",))
     screen("culling/coverage_grid", vertex="culling/coverage_grid.vert")

@@ -7,6 +7,8 @@ import pytest
 
 from pvfiblets import Streamlines, compress, regions
 from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View
+from pvfiblets.engine.errors import GPUMemoryError
+from pvfiblets.engine.fiblets import streamed_renderer as streamed
 from pvfiblets.engine.fiblets.filter_textures import Filter
 from pvfiblets.engine.fiblets.parts import Stretches, in_view, reach_of
 from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
@@ -21,9 +23,9 @@ NEAR = {"eye": (60, -60, 90), "target": (20, 0, 40), "far": 900.0}
 
 @pytest.fixture(scope="module")
 def brain():
-    lines = brain_streamlines(3000, step=1.0, seed=2)
+    lines = brain_streamlines(1500, step=1.5, seed=2)
     values = {"height": np.asarray(lines.points[:, 2])}
-    with_gaps = np.insert(np.asarray(lines.counts), [0, 100, 3000], 0)
+    with_gaps = np.insert(np.asarray(lines.counts), [0, 100, 1500], 0)
     offsets = np.concatenate([[0], np.cumsum(with_gaps)])
     return compress(Streamlines(lines.points, offsets, per_point=values), per_point=["height"])
 
@@ -50,7 +52,9 @@ def assert_alike(parts, whole):
     assert {name for name in differences(parts, whole) if name != "owner"} == set()
 
 
-@pytest.mark.parametrize("pipeline", ["compute", "geometry", "tessellation"])
+@pytest.mark.parametrize(
+    "pipeline", ["compute", "geometry", pytest.param("tessellation", marks=pytest.mark.exhaustive)]
+)
 def test_a_complete_picture_is_that_of_the_whole_set(made, camera, pipeline):
     whole, parts = made(pipeline)
     assert isinstance(parts, StreamedRenderer)
@@ -80,7 +84,7 @@ def test_cuts_and_filters_are_those_of_the_whole_set(made, camera, brain):
         for cut in ({}, {"clip_planes": [(1.0, 0.0, 0.0, 5.0)]}, {"region": regions.Sphere((0, 0, 20), 40.0)}):
             view = View(SIZE, camera(SIZE, **WHOLE_BRAIN), **cut)
             assert_alike(read(parts.render(view)), read(whole.render(view)))
-    with pytest.raises(ValueError, match="5 streamlines are kept or not; the set has 3003"):
+    with pytest.raises(ValueError, match="5 streamlines are kept or not; the set has 1503"):
         parts.filtering = Filter(np.ones(5, bool))
 
 
@@ -218,3 +222,25 @@ def test_a_box_in_view_is_never_left_out(camera):
         left_out += 1
         assert not shows.any()
     assert left_out > 20
+
+
+def test_no_memory_at_all_is_said(gl, brain):
+    with pytest.raises(GPUMemoryError, match=r"0\.0 MB of GPU memory beside a picture are too .* 0\.1 are needed"):
+        streamed_renderer(gl, brain, max_total_bytes=100)
+
+
+def test_memory_that_runs_out_meanwhile_makes_room(gl, made, camera, monkeypatch):
+    whole, parts = made()
+    view = View(SIZE, camera(SIZE, **WHOLE_BRAIN))
+    parts._room *= 100  # as if nobody knew
+    honest, held = streamed.FibletRenderer, []
+
+    def refusing(*given, **named):
+        if sum(not one.released for one in held) >= 2:
+            raise GPUMemoryError("no memory")
+        held.append(honest(*given, **named))
+        return held[-1]
+
+    monkeypatch.setattr(streamed, "FibletRenderer", refusing)
+    assert_alike(read(parts.render(view)), read(whole.render(view)))
+    assert parts.explain()["parts"]["there"] == 2

@@ -44,7 +44,7 @@ def test_what_does_not_fit_is_refused_or_sampled(plotter, monkeypatch):
     fiblets = compress(brain_streamlines(3000, step=1.0))
     monkeypatch.setattr(memory_fit, "free_memory", lambda ctx, gl: memory_fit.PICTURE_BYTES + 400_000)
     actor = plotter.add_fiblets(fiblets)
-    with pytest.raises(EngineError, match=r"MB are available.*; draw fewer streamlines, or .* by fit='sample'"):
+    with pytest.raises(EngineError, match=r"MB are available.*; draw fewer .* by fit='sample', .* by fit='stream'"):
         plotter.show(auto_close=False)
     actor.fit = "sample"
     monkeypatch.setattr(memory_fit, "RESERVE", 0.0)
@@ -57,3 +57,68 @@ def test_what_does_not_fit_is_refused_or_sampled(plotter, monkeypatch):
     found = {hit[0] for x in range(0, 200, 8) for y in range(0, 200, 8) if (hit := actor.pick_at(x, y))}
     assert found
     assert found <= set(drawn.tolist()), "numbers are those of the whole set"
+
+
+@pytest.fixture
+def little_memory(monkeypatch):
+    """Graphics memory for a quarter of the set, which streaming may use all of."""
+    monkeypatch.setattr(memory_fit, "free_memory", lambda ctx, gl: memory_fit.PICTURE_BYTES + 160_000)
+    monkeypatch.setattr(memory_fit, "is_software", lambda ctx: False)
+    monkeypatch.setattr(memory_fit, "RESERVE", 0.0)
+
+
+@pytest.fixture(scope="module")
+def too_large():
+    return compress(brain_streamlines(3000, step=1.0))
+
+
+def test_what_does_not_fit_is_drawn_part_by_part_as_if_it_did(plotter, too_large, little_memory, monkeypatch):
+    plotter.picture.antialias = "refined"
+    actor = plotter.add_fiblets(too_large, fit="stream")
+    picture = shot(plotter)
+    told = actor.explain()
+    assert told["parts"]["total"] > told["parts"]["there"] > 0
+    assert actor.share == 1.0
+    places = [(x, y) for x in range(0, 200, 8) for y in range(0, 200, 8)]
+    hits = [actor.pick_at(*at) for at in places]
+    plotter.remove_actor(actor)
+    monkeypatch.undo()
+    actor = plotter.add_fiblets(too_large, reset_camera=False)
+    plotter.picture.antialias = "coverage"  # a set in parts is not drawn 16 times over
+    np.testing.assert_array_equal(picture, shot(plotter))
+    assert hits == [actor.pick_at(*at) for at in places]
+
+
+def test_a_moving_camera_fetches_nothing_and_a_resting_one_the_rest(plotter, too_large, little_memory):
+    plotter.picture.antialias = "refined"
+    actor = plotter.add_fiblets(too_large, fit="stream")
+    whole = shot(plotter)
+    interactor = plotter.iren.interactor
+    fetched = lambda: actor.explain()["parts"]["fetched"]  # noqa: E731
+    plotter.render_window.SetDesiredUpdateRate(interactor.GetDesiredUpdateRate())
+    before = fetched()
+    for _ in range(3):
+        plotter.camera.azimuth += 5.0
+        plotter.render()
+        assert fetched() == before + 1  # the even share
+    assert actor.share < 1.0
+    plotter.camera.azimuth -= 15.0
+    plotter.render_window.SetDesiredUpdateRate(interactor.GetStillUpdateRate())
+    # Somebody asks for more frames: each fetches a part.
+    plotter.picture.pace_by_hand()
+    actor._mapper._renderers()[0]._clock = iter(range(10_000)).__next__
+    plotter.render()
+    assert plotter.picture.fetching
+    frames = 1
+    while plotter.picture.refine():
+        frames += 1
+    assert frames > 3
+    assert not plotter.picture.fetching
+    assert actor.share == 1.0
+    np.testing.assert_array_equal(plotter.screenshot(None, return_img=True), whole)
+
+
+def test_what_parts_cannot_show_is_said_in_one_sentence(plotter, too_large, little_memory):
+    plotter.add_fiblets(too_large, fit="stream", opacity=0.3)
+    with pytest.raises(EngineError, match="part by part shows the nearest lines only"):
+        plotter.show(auto_close=False)

@@ -196,10 +196,14 @@ class MemoryBudget:
 
     @property
     def room(self) -> int | None:
-        """Bytes that buffers may take beside a picture, :data:`RESERVE` less than are free; None if nobody knows."""
+        """Bytes that buffers may take beside a picture, :data:`RESERVE` less than are free; None if nobody knows.
+
+        Half of that where both are the same memory: parts stand in it twice.
+        """
         rooms = [] if self.largest is None else [self.largest - SHARED_BYTES]
         if self.video is not None:
-            rooms.append(int((1.0 - RESERVE) * self.video) - PICTURE_BYTES - SHARED_BYTES)
+            free = (1.0 - RESERVE) * self.video - PICTURE_BYTES - SHARED_BYTES
+            rooms.append(int(free / 2.0 if self.shared else free))
         return min(rooms, default=None)
 
     def _buffers(self, fiblets: FibletSet, plans: list[ChunkPlan]) -> int:

@@ -98,7 +98,7 @@ class PartPictures:
                 if (sampler := f"{of}_{name}") in program:
                     texture.use(NEARER_PART[sampler])
                     program[sampler] = NEARER_PART[sampler]
-        program["order"], program["by_streamline"] = order, by_streamline
+        program["order"], program["by_streamline"] = order, int(by_streamline)
         with self._gl.framebuffers_kept():
             self._ctx.enable_only(moderngl.NOTHING)
             other.framebuffer.use()

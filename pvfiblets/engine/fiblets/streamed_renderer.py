@@ -51,6 +51,9 @@ PARTS = 12
 THINNED_SHARE = 0.25
 """Share of the memory for the streamlines that hurried pictures show."""
 
+LEAST_ROOM = 60_000
+"""Bytes of memory below which a part would not pay for what it takes beside its records."""
+
 THINNED = -1  # number of the even share among the parts
 
 _ONLY_NEAREST = (
@@ -127,7 +130,7 @@ class StreamedRenderer(Drawable[FibletStyle]):
     @property
     def unfinished(self) -> bool:
         """Whether the last picture lacks parts that another one of the same view would show."""
-        return self._begun is not None and bool(self._left)
+        return not self.released and self._begun is not None and bool(self._left)
 
     def render(
         self, view: View, style: FibletStyle | None = None, *, outside: moderngl.Texture | None = None
@@ -276,7 +279,7 @@ class StreamedRenderer(Drawable[FibletStyle]):
     def _sizes(self) -> dict[str, int]:
         sizes = super()._sizes()
         for renderer in self._there.values():
-            for name, size in renderer._sizes().items():
+            for name, size in renderer._sizes().items():  # noqa: SLF001
                 sizes[name] = sizes.get(name, 0) + size
         return sizes
 
@@ -308,6 +311,8 @@ def streamed_renderer(
 
     Raises
     ------
+    GPUMemoryError
+        If there is no memory for any part.
     EngineError
         As :class:`.FibletRenderer`, of what has nothing to do with memory.
     """
@@ -323,6 +328,11 @@ def streamed_renderer(
                 raise
             # A driver that does not say how much memory is free has refused all; half of it may do.
             room = budget.needed(fiblets) // 2
+    if room < LEAST_ROOM:
+        raise GPUMemoryError(
+            f"{max(room, 0) / 1e6:.1f} MB of GPU memory beside a picture are too little to draw anything part by part: "
+            f"{LEAST_ROOM / 1e6:.1f} are needed; close what takes the memory"
+        )
     part_bytes = int((1.0 - THINNED_SHARE) * room / PARTS)
     parts = Stretches(fiblets, budget.needed(fiblets), part_bytes)
     return StreamedRenderer(ctx, parts, room, budget.needed, pipeline=pipeline)

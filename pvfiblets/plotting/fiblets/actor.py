@@ -180,7 +180,9 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
             ``shown``; ``look``; ``colours``: of numbers their ``clim``, and the ``percentile`` of
             them that it ends at by default, ``None`` where it ends at the largest; ``criteria``,
             ``conditions``, ``clips``, ``groups_shown``; ``selection``: how many streamlines, and
-            what drawing them apart takes.
+            what drawing them apart takes; where a set is drawn part by part (``fit="stream"``),
+            ``parts``: how many there are in ``total``, ``in_view``, ``left`` to be drawn, ``there``
+            on the GPU, and how often one was ``fetched``.
         """
         return {
             **added_up(self._mapper.explain()),
@@ -272,7 +274,8 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
     def share(self) -> float | None:
         """How many of the streamlines are drawn: 1.0 for all; ``None`` before the first picture.
 
-        Less only where ``fit`` is ``"sample"`` and memory does not suffice for all.
+        Less only where memory does not suffice for all, and ``fit`` is ``"sample"``; or it is ``"stream"``, and parts
+        of what is in view have not been drawn yet: then of these.
         """
         return self._mapper.share
 

@@ -259,10 +259,11 @@ class FibletSettings(Settings):
     fit: Setting[str | None] = Setting(
         None,
         "Where the fiblets need more GPU memory than there is: ``None`` refuses, ``\"sample\"`` draws a share "
-        "of the streamlines.",
+        "of the streamlines, ``\"stream\"`` all of them, part by part: while the camera moves a share, and what is "
+        "there.",
         kind="str | None",
-        choices=(None, "sample"),
+        choices=(None, "sample", "stream"),
         where=OPTIONS,
         row=Row("Too large", "What to do where GPU memory does not suffice for all.", "Drawing",
-                choices=[(None, "say so"), ("sample", "draw a share")]),
+                choices=[(None, "say so"), ("sample", "draw a share"), ("stream", "draw part by part")]),
     )  # fmt: skip

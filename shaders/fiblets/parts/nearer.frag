@@ -17,7 +17,7 @@ uniform usampler2D drawn_ids;
 uniform sampler2D drawn_position;
 
 uniform uint order;
-uniform bool by_streamline;
+uniform int by_streamline;
 
 layout(location = 0) out uint nearer_depth;
 layout(location = 1) out uint nearer_owner;
@@ -52,7 +52,7 @@ void main() {
     uint before = texelFetch(kept_depth, at, 0).x, depth = texelFetch(drawn_depth, at, 0).x;
     uint owner = texelFetch(kept_owner, at, 0).x;
     uvec2 ids = texelFetch(drawn_ids, at, 0).xy;
-    uint mine = by_streamline ? ids.x : order;
+    uint mine = by_streamline != 0 ? ids.x : order;
     bool nearer = depth < before || (depth == before && depth != EMPTY && mine < owner);
     nearer_depth = nearer ? depth : before;
     nearer_owner = nearer ? mine : owner;

@@ -1,0 +1,34 @@
+"""How long engines that fetch parts of their sets may take for a frame, and which of them want another one.
+
+An engine of a set larger than GPU memory (`pvfiblets.engine.fiblets.streamed_renderer`) draws a complete picture as
+long as nobody waits for the next one. In a window that asks for more frames while it rests (`Picture.paced`) each frame
+takes `PATIENCE` at most, and the next goes on; while the camera moves, nothing is fetched.
+"""
+
+from __future__ import annotations
+
+import weakref
+from typing import Any
+
+from pvfiblets.mappers.antialias_windows import picture_of
+from pvfiblets.mappers.scene import in_motion, streamed
+
+__all__ = ["PATIENCE", "pace"]
+
+PATIENCE = 0.25
+"""Seconds of a frame in which parts are fetched: events of mouse and keys are heard as often."""
+
+
+def pace(engine: Any, renderer: Any) -> None:
+    """Tell an engine of parts that is about to draw how long it may take.
+
+    Parameters
+    ----------
+    engine : StreamedRenderer
+    renderer : vtkRenderer
+    """
+    picture = picture_of(renderer)
+    engine.hurried = in_motion(renderer)
+    paced = picture is not None and picture.refinement is not None and picture.paced()
+    engine.patience = PATIENCE if paced else None
+    streamed.setdefault(renderer.GetAddressAsString(""), weakref.WeakSet()).add(engine)
