@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 
 __all__ = ["as_region", "direction_of", "slab"]
 
+OTHERS = (".mif", ".mif.gz", ".mih", ".nrrd", ".nhdr", ".mhd", ".mha", ".vti")
+"""Suffixes of volumes that nibabel does not read."""
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
@@ -49,6 +51,11 @@ def as_region(what: Any) -> Region:
             f"a {type(dataset).__name__} is no region; give its surface: "
             "dataset.extract_surface().triangulate()"
         )
+    if isinstance(what, (str, Path)) and str(what).lower().endswith(OTHERS):
+        from pvfiblets.slices.image import as_slice_image
+
+        image = as_slice_image(what)
+        return regions.Labels(_whole_numbers(image.values.squeeze(-1)), image.affine)
     if isinstance(what, (str, Path)):
         import nibabel
 

@@ -16,6 +16,7 @@ from typing import Any
 from trame.app import TrameApp
 
 from pvfiblets.web import describe, layout
+from pvfiblets.web.atlas_tab import AtlasActions
 from pvfiblets.web.bundle_finding import FindingActions
 from pvfiblets.web.bundle_measures import MeasureActions
 from pvfiblets.web.bundles_tab import BundleActions
@@ -101,6 +102,7 @@ class Explorer(TrameApp):
         self.files = FileActions(self)
         self.slices = SliceActions(self)
         self.painting = PaintActions(self)
+        self.atlas = AtlasActions(self)
         self.bundles = BundleActions(self)
         self.finding = FindingActions(self)
         self.measuring = MeasureActions(self)
@@ -148,6 +150,7 @@ class Explorer(TrameApp):
             "set_layout": self.slices.set_layout,
             "step_slice": self.slices.step,
             "step_volume": self.slices.step_volume,
+            "ask_label": self.atlas.ask_at,
             "paint": self.painting.paint,
             "paint_end": self.painting.end,
             "release": self.sliders.release,
@@ -214,6 +217,7 @@ class Explorer(TrameApp):
             self.selecting.refresh()
             self.slices.refresh()
             self.painting.refresh()
+            self.atlas.refresh()
             self.bundles.refresh()
             self.finding.refresh()
             self.measuring.refresh()

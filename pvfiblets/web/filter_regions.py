@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from pvfiblets.plotting.fiblets.volume_sources import SUFFIXES as LABELS
+from pvfiblets.volumes.sources import SUFFIXES as LABELS
 from pvfiblets.web.actions import LineActions
 from pvfiblets.web.cameras import NEAR
 from pvfiblets.web.controls import controls, moved, typed_value

@@ -14,7 +14,7 @@ from pvfiblets.slices.image import SliceImage, as_slice_image
 from pvfiblets.slices.labels import LabelTable, as_label_table
 from pvfiblets.volumes.image_files import SUFFIXES
 
-__all__ = ["LabelledImage", "facts_of", "read_image", "table_beside", "with_table"]
+__all__ = ["LabelledImage", "facts_of", "read_image", "read_labels", "table_beside", "with_table"]
 
 LARGEST = 4 << 20  # bytes of a table
 BESIDE = (".tsv", ".ctab", ".label", ".lbl")
@@ -37,6 +37,22 @@ def read_image(place: Path) -> LabelledImage:
     """Read an image; errors as of :func:`.as_slice_image`."""
     found = as_slice_image(place)
     return LabelledImage(found.values, found.affine, found.name, found.is_labels, found.is_colours)
+
+
+@dataclass(frozen=True, eq=False)
+class LabelVolume:
+    """Labels ``(nx, ny, nz)`` and their ``(4, 4)`` affine, by the names that images of nibabel have for these."""
+
+    dataobj: Any
+    affine: Any
+
+
+def read_labels(place: Path) -> LabelVolume:
+    """Read a volume of labels of any format, for regions; errors as of :func:`.as_slice_image`."""
+    image = as_slice_image(place)
+    if image.n_volumes != 1:
+        raise ValueError(f"{place.name} has {image.n_volumes} numbers per voxel; labels are one")
+    return LabelVolume(image.values[..., 0], image.affine)
 
 
 def with_table(image: LabelledImage, place: Path) -> LabelledImage:

@@ -7,7 +7,7 @@ from typing import Any
 from trame.ui.vuetify3 import VAppLayout
 from trame.widgets import client, rca
 
-from pvfiblets.web import dialogs, painting_tab, panels, slices_tab, tabs
+from pvfiblets.web import atlas_tab, dialogs, painting_tab, panels, slices_tab, tabs
 from pvfiblets.web.elements import html, v3
 from pvfiblets.web.painting_tab import PAINTING
 
@@ -58,6 +58,7 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
 .pv-handle.pv-not { background: #ff7a7a }
 .pv-mark-name { position: absolute; transform: translate(12px, -130%); color: #fff; font: 600 14px Roboto, sans-serif;
   text-shadow: 0 0 3px #000, 0 0 3px #000; white-space: nowrap }
+.pv-label-row .v-btn__content { min-width: 0; overflow: hidden }
 .pv-dot { width: 10px; height: 10px; border-radius: 50%; flex: none }
 .pv-status { position: absolute; right: 8px; bottom: 6px; z-index: 2; font: 12px Roboto, sans-serif; color: #fff;
   opacity: .85; text-shadow: 0 0 3px #000, 0 0 2px #000; pointer-events: none }
@@ -271,9 +272,11 @@ def _view(app: Any) -> None:
                         title=("h.name === 'center' ? 'Move ' + m.name : 'Size of ' + m.name",),
                     )  # fmt: skip
         # Drawn by client/pvfiblets.js, which reads the tool from the attribute.
-        html.Div(v_if=f"tool !== 'rotate' && !{PAINTING}", classes="pv-over", id="pv-over", data_tool=("tool",))
+        drawn = f"!['rotate', 'ask'].includes(tool) && !{PAINTING}"
+        html.Div(v_if=drawn, classes="pv-over", id="pv-over", data_tool=("tool",))
         painting_tab.over(app)
         slices_tab.over()
+        atlas_tab.over()
         with html.Div(
             v_if="['3d', 'beside'].includes(slicing.layout)", style=(
                 "{ position: 'absolute', inset: 0, pointerEvents: 'none', "

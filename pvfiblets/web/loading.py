@@ -20,6 +20,7 @@ from pvfiblets.formats.gzipped import check_ratio
 from pvfiblets.formats.registry import UnknownFormatError, suffix_of, suffixes
 from pvfiblets.volumes.gifti_files import SUFFIXES as GIFTI
 from pvfiblets.volumes.gifti_files import VALUES as OF_VERTICES
+from pvfiblets.volumes.sources import NIBABEL
 from pvfiblets.volumes.sources import SUFFIXES as VOLUMES
 from pvfiblets.web.document import LINES, Source
 from pvfiblets.web.values import shown
@@ -263,6 +264,10 @@ class Files:
         if kind == "labels":
             from pvfiblets.volumes.nibabel_files import opened
 
+            if not name.lower().endswith(NIBABEL):
+                from pvfiblets.web.label_images import read_labels
+
+                return Loaded(kind, source, name, read_labels(place))
             with opened(place) as image:  # and read where it is used
                 return Loaded(kind, source, name, image)
         if kind == "colours":

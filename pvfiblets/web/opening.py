@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 
 from pvfiblets import memory
 from pvfiblets.formats.registry import suffixes
-from pvfiblets.plotting.fiblets.volume_sources import SUFFIXES as LABELS
 from pvfiblets.volumes.sources import SUFFIXES as VOLUMES
 from pvfiblets.web.actions import Actions
 from pvfiblets.web.confined import ConfinedError, TakenError
@@ -34,7 +33,7 @@ SESSION = ".json"
 PURPOSES = {
     "": (*suffixes(), *VOLUMES, *MESHES, *VALUES, SESSION),
     "clip": MESHES,
-    "region": (*MESHES, *LABELS),
+    "region": (*MESHES, *VOLUMES),
     "slices": VOLUMES,
     "labels": TABLES,
     "painted": VOLUMES,

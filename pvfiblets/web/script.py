@@ -32,8 +32,8 @@ _WIDEST = 110
 _LABELS = '''
 def labels_of(path, labels):
     """Return the region of some labels of a volume."""
-    image = nib.load(path)
-    return regions.Labels(np.rint(np.asanyarray(image.dataobj)).astype(np.int64), image.affine, labels=labels)
+    image = as_slice_image(path)
+    return regions.Labels(np.rint(image.values[..., 0]).astype(np.int64), image.affine, labels=labels)
 '''
 
 
@@ -339,7 +339,10 @@ class _Writer:
             if shape["kind"] == "mesh":
                 self._mesh(shape["path"])
         else:
-            self._imports |= {"import nibabel as nib", "import numpy as np", "from pvfiblets import regions"}
+            self._imports |= {
+                "import numpy as np", "from pvfiblets import regions",
+                "from pvfiblets.slices.image import as_slice_image",
+            }  # fmt: skip
             self._uses_labels = True
 
     def _measurements(self) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from pvfiblets.plotting.slices.settings import MEANING
-from pvfiblets.web import painting_tab
+from pvfiblets.web import atlas_tab, painting_tab
 from pvfiblets.web.actions import Actions
 from pvfiblets.web.charts import short
 from pvfiblets.web.describe import typed
@@ -67,9 +67,10 @@ class SliceActions(Actions):
 
     def _set(self, **changes: Any) -> None:
         self._app.scene.set_slices(**changes)
-        self._changed()
+        self.changed()
 
-    def _changed(self) -> None:
+    def changed(self) -> None:
+        """Show what has changed, in the tab and in the picture."""
         with self._app.state:
             self.refresh()
         self._app.stream.request()
@@ -155,7 +156,7 @@ class SliceActions(Actions):
             place = workspace.position
             place[axis] = value
             workspace.position = place
-        self._changed()
+        self.changed()
 
     def step_volume(self, by: Any) -> None:
         """Show the next volume of the chosen image, or of the first that has several; the one before by -1."""
@@ -174,7 +175,7 @@ class SliceActions(Actions):
         name = pane.name if pane is not None else next((one for one in NAMES if one in workspace.panes), "axial")
         steps = [round(number(part, -MOST_STEP, MOST_STEP)) for part in (right, up, toward)]
         workspace.step(name, *steps)
-        self._changed()
+        self.changed()
 
     def pane_at(self, x: Any, y: Any) -> Any:
         """Return the pane in a place of the picture; None if it is none's."""
@@ -262,7 +263,11 @@ def build(app: Any) -> None:
                     color=(f"slicing.layout === '{name}' ? 'primary' : undefined",),
                     click=(slices.set_layout, f"['{name}']"), data_layout_button=name,
                 )  # fmt: skip
-        html.Div("Cross-hair", classes="pv-head")
+        with html.Div(classes="pv-pair pr-2"):
+            html.Div("Cross-hair", classes="pv-head", style="flex: 1")
+            v3.VBtn("Image", size="x-small", variant="text", classes="text-none", prepend_icon="mdi-plus",
+                    click=(app.files.browse, "['', 'slices']"), data_action="open-slices",
+                    title="Lay another image over it")  # fmt: skip
         for kind, label in (("position", "mm"), ("voxel", "Voxel")):
             with html.Div(classes="pv-row", data_place=kind):
                 html.Label(label)
@@ -293,8 +298,20 @@ def build(app: Any) -> None:
                     change=(app.set_number, "[s.id, 'index', $event.target.value]"),
                 )  # fmt: skip
                 html.Span("of {{ s.last }}", classes="pv-small", style="white-space: nowrap")
+        atlas_tab.build(app)
         painting_tab.build(app)
-        html.Div("Panes", classes="pv-head")
+        _panes(app)
+
+
+def _panes(app: Any) -> None:
+    """Build how panes are looked at, folded."""
+    slices = app.slices
+    v3.VBtn(
+        "Panes", variant="text", size="x-small", block=True, classes="pv-fold text-none",
+        append_icon=("panes_open ? 'mdi-chevron-up' : 'mdi-chevron-down'",), data_action="panes",
+        click="panes_open = !panes_open", aria_expanded=("panes_open",),
+    )  # fmt: skip
+    with html.Div(v_if="panes_open", id="panes"):
         with html.Div(classes="pv-row"):
             html.Label("Left is", title="Whether the patient's right or left is on the left of a pane")
             with v3.VBtnToggle(

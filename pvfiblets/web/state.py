@@ -38,6 +38,9 @@ class Page:
     brush_deep: bool = False  # beyond the slice
     grow_share: float = 10.0  # per cent of the image's window
     painting_name: str = ""
+    atlas_open: bool = False
+    atlas_search: str = ""
+    panes_open: bool = False
     like_mm: str = "8"  # distances of the tab Bundles, as they were typed
     cluster_mm: str = "10"
     models_folder: str = ""
@@ -72,6 +75,7 @@ class Page:
         default_factory=lambda: {"open": False, "values": [], "value": "", "profile": {}, "table": {}}
     )
     painting: Record = field(default_factory=lambda: {"regions": [], "active": ""})
+    atlas: Record = field(default_factory=lambda: {"rows": [], "images": []})
     slicing: Record = field(
         default_factory=lambda: {"shown": False, "layout": "3d", "boxes": [], "volume": "", "series": []}
     )
@@ -113,6 +117,9 @@ WRITABLE: dict[str, type] = {
     "brush_deep": bool,
     "grow_share": float,
     "painting_name": str,
+    "atlas_open": bool,
+    "atlas_search": str,
+    "panes_open": bool,
     "like_mm": str,
     "cluster_mm": str,
     "models_folder": str,

@@ -58,6 +58,7 @@ def test_a_late_reply_leaves_what_is_typed(visit):
     here.rests()
     assert told() == at
     # A value that is refused is not left standing; nor is one that the server has already.
+    here.page.click("[data-action=panes]")
     radius = here.page.locator("input[aria-label='Slab, mm']")
     usual = radius.input_value()
     for text in ("-5", f" {usual} mm"):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 
 import numpy as np
 
@@ -212,3 +213,33 @@ def test_regions_are_outlined_grown_and_taken_from_a_file(visit):
     here.page.click("[data-action=open-labels]")
     here.page.click("#dialog-open .v-list-item:has-text('atlas.nii.gz')")
     here.wait(lambda: [row["name"] for row in rows()] == ["3", "5"], "the regions of the file")
+
+
+def test_labels_of_an_atlas_are_searched_and_clicked(visit):
+    here = visit("lines.fiblets")
+    shutil.copy(here.served.root / "atlas.nii.gz", here.served.root / "parts.nii.gz")
+    (here.served.root / "parts.tsv").write_text("index\tname\n3\tputamen\n5\t<b>insula</b>\n")
+    here.page.evaluate("window.trame.trigger('browse', ['', 'slices'])")
+    here.page.click("#dialog-open .v-list-item:has-text('parts.nii.gz')")
+    here.wait(lambda: len(here.state("atlas")["rows"]) == 2, "labels")
+    here.rests()
+    here.tab("slices")
+    here.page.click("[data-action=atlas]")
+    here.page.fill("[data-field=atlas-search]", "insula")
+    here.wait(lambda: here.page.locator("[data-label]").count() == 1, "the label that is searched for")
+    here.page.click("[data-label='5'] >> text=insula")
+    asked = lambda: here.state("atlas")["asked"]  # noqa: E731
+    here.wait(lambda: asked() == [5], "the label is asked for")
+    here.page.click("[data-atlas-how=ends_in]")
+    here.page.click("[data-action=ask-in-slice]")
+    click(here, "axial", 0.85, 0.5)  # the patient's left is on the right, where x is small
+    here.wait(lambda: asked() == [5, 3], "the label in the slice")
+    # Lines begin at 0 and end at 10 + i mm; the insula reaches from 14.3 to 30.3 mm.
+    told = here.page.locator("[data-value=atlas-asked]").inner_text()
+    assert "putamen – <b>insula</b>" in told
+    assert "16 of 60 streamlines" in told
+    here.page.reload()
+    here.ready()
+    here.wait(lambda: asked() == [5, 3], "what was asked")
+    here.press("Control+z")
+    here.wait(lambda: asked() == [5], "one label")

@@ -52,9 +52,13 @@
     event.stopPropagation();
   }, true);
 
+  document.addEventListener("click", (event) => {
+    if (event.target.closest?.("#pv-ask")) call("ask_label", ...place(event));
+  }, true);
+
   // A wheel over what lies over the picture goes through slices, too.
   document.addEventListener("wheel", (event) => {
-    if (!event.target.closest?.("#pv-paint") || !get("slicing")?.shown) return;
+    if (!event.target.closest?.("#pv-paint, #pv-ask") || !get("slicing")?.shown) return;
     event.preventDefault();
     at = place(event);
     step([0, 0, event.deltaY < 0 ? 1 : -1]);
