@@ -18,10 +18,13 @@ from pvfiblets.web.actors import split_cuts
 from pvfiblets.web.distance_label import LABELS, NEAREST
 from pvfiblets.web.distance_label import LINES as LINE_LOOKS
 from pvfiblets.web.document import LINES, Clip, Layer, Source, volumes_of
+from pvfiblets.web.glyph_layers import GLYPHS
+from pvfiblets.web.glyph_layers import arguments as glyph_arguments
 from pvfiblets.web.scalar_bars import bar_arguments, bar_calls, bars_of
 from pvfiblets.web.script_code import Python, code
 from pvfiblets.web.script_slices import bundle_lines, has_images, image_arguments, painting_lines, slicing_lines
 from pvfiblets.web.shapes import condition_code, mesh_code, planes_of, shape_code, shapes_in
+from pvfiblets.web.slicing import image_looks
 
 if TYPE_CHECKING:
     from pvfiblets.web.scene import Scene
@@ -126,10 +129,10 @@ class _Writer:
         self._lines += [""]
 
     def _layer(self, layer: Layer) -> None:
-        name, looks = self._names[layer.id], layers.looks(layer.kind, layer.settings)
         if layer.kind == "image":
-            self._image(layer, looks)
+            self._image(layer, image_looks(layer))
             return
+        name, looks = self._names[layer.id], layers.looks(layer.kind, layer.settings)
         unsaid = layers.USUAL[layer.kind]
         if isinstance(looks.get("scalars"), Source):
             looks["scalars"] = self._colours(looks["scalars"])
@@ -180,6 +183,9 @@ class _Writer:
             self._lines += [f"{name} = workspace.slices.layers[0]"]
         self._lines += [f"{name}.name = {layer.name!r}"]
         self._lines += [] if layer.visible else [f"{name}.visible = False"]
+        if layer.settings[GLYPHS] is not None and layer.visible:
+            shown = glyph_arguments(layer.settings)
+            self._call("workspace.slices.add_glyphs", f"{name}.image", shown)
         self._lines += [""]
 
     def _image_source(self, layer: Layer) -> str:

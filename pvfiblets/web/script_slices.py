@@ -10,6 +10,7 @@ import numpy as np
 from pvfiblets.web.document import LINES
 from pvfiblets.web.painting import runs_of
 from pvfiblets.web.script_code import Python
+from pvfiblets.web.slicing import normal_of
 
 if TYPE_CHECKING:
     from pvfiblets.web.document import Layer
@@ -39,6 +40,9 @@ def slicing_lines(scene: Scene) -> list[str]:
     found += [] if view.cross_hair else ["workspace.cross_hair = False"]
     if not view.planes:
         found += ["for plane in workspace.slices:", "    plane.visible = False"]
+    if view.oblique is not None:
+        normal = tuple(round(part, 9) for part in normal_of(view.oblique))
+        found += [f"plotter.slices.add_oblique(workspace.slices, {normal}, widget=False)"]
     return [*found, f"workspace.position = {view.position}", ""]
 
 

@@ -13,6 +13,7 @@ from pvfiblets.web.actions import Actions
 from pvfiblets.web.charts import short
 from pvfiblets.web.describe import typed
 from pvfiblets.web.elements import html, v3
+from pvfiblets.web.glyph_layers import covers
 from pvfiblets.web.rpc_allowlist import number
 from pvfiblets.web.slicing import LAYOUTS, NAMES
 
@@ -47,6 +48,7 @@ class SliceActions(Actions):
         values = workspace.slices.values()
         page.slicing = {
             "shown": True, "layout": view.layout, "convention": view.convention, "planes": view.planes,
+            "oblique": list(view.oblique or (30.0, 0.0)), "tilted": view.oblique is not None,
             "cross_hair": view.cross_hair, "thickness": short(view.thickness),
             "position": [f"{part:.1f}" for part in view.position or ()],
             "voxel": [str(part) for part in workspace.voxel or ()],
@@ -59,7 +61,7 @@ class SliceActions(Actions):
         scene, found = self._app.scene, []
         for layer in scene.layers:
             last = scene.data(layer).data.n_volumes - 1 if layer.kind == "image" else 0
-            if last and layer.settings[MEANING] in ("scalars", "labels"):
+            if last and layer.settings[MEANING] in ("scalars", "labels") and not covers(layer.settings):
                 found.append({"id": layer.id, "name": layer.name, "index": layer.settings["index"], "last": last})
         return found
 
@@ -131,8 +133,17 @@ class SliceActions(Actions):
         """Have the patient's right on the left, or on the right."""
         self._set(convention=convention)
 
+    def set_angle(self, which: int, text: Any) -> None:
+        """Tilt or turn the oblique slice, by degrees as they were typed or slid."""
+        angles = list(self._app.scene.slicing.view.oblique or (30.0, 0.0))
+        angles[1 if which == 1 else 0] = typed(str(text), "angle", optional=False)
+        self._set(oblique=angles)
+
     def set_switch(self, name: str, on: bool) -> None:
         """Show the cross-hair, or slices in the 3-D view, or do not."""
+        if name == "tilted":
+            self._set(oblique=[30.0, 0.0] if on is True else None)
+            return
         if name not in ("cross_hair", "planes"):
             raise ValueError(f"slices have no {str(name)[:40]!r}")
         self._set(**{name: on is True})
@@ -328,10 +339,30 @@ def _panes(app: Any) -> None:
                     change=(slices.set_thickness, "[$event.target.value]"),
                 )  # fmt: skip
                 html.Span("mm", classes="pv-small")
-        for name, label in (("cross_hair", "Cross-hair"), ("planes", "Slices in 3-D")):
+        for name, label in (
+            ("cross_hair", "Cross-hair"), ("planes", "Slices in 3-D"), ("tilted", "Oblique slice"),
+        ):  # fmt: skip
             with html.Div(classes="pv-row"):
                 html.Label(label)
                 v3.VSwitch(
                     model_value=(f"slicing.{name}",), density="compact", hide_details=True, color="primary",
                     update_modelValue=(slices.set_switch, f"['{name}', !!$event]"), aria_label=label,
                 )  # fmt: skip
+        with html.Div(v_if="slicing.tilted"):
+            for which, label in enumerate(("Tilt", "Turn")):
+                with html.Div(classes="pv-row"):
+                    html.Label(label, title="Degrees, about the cross-hair")
+                    with html.Div(classes="pv-pair"):
+                        v3.VSlider(
+                            model_value=(f"slicing.oblique[{which}]",), min=-90, max=90, step=1, density="compact",
+                            hide_details=True, color="primary", thumb_size=14, track_size=3, aria_label=label,
+                            end=(slices.set_angle, f"[{which}, $event]"),
+                            data_live=(f"JSON.stringify(['oblique', '', '{which}'])",),
+                        )  # fmt: skip
+                        held = f"held.at === 'oblique  {which}'"
+                        html.Input(
+                            classes="pv-num", style="width: 52px", inputmode="decimal", aria_label=f"{label}, degrees",
+                            value=(f"{held} ? held.shown[0] : slicing.oblique[{which}]",),
+                            change=(slices.set_angle, f"[{which}, $event.target.value]"),
+                        )  # fmt: skip
+                        html.Span("°", classes="pv-small")

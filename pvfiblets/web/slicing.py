@@ -7,12 +7,16 @@ keep it.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from pvfiblets.plotting.slices.settings import MEANING
 from pvfiblets.web.document import Layer, volume_in
+from pvfiblets.web.glyph_layers import GlyphLayers, covers
 from pvfiblets.web.layers import looks
 from pvfiblets.web.values import mapping, number, numbers, shown, truth
 
@@ -20,7 +24,9 @@ if TYPE_CHECKING:
     from pvfiblets.web.actors import Colours
     from pvfiblets.web.label_images import LabelledImage
 
-__all__ = ["CONVENTIONS", "LAYOUTS", "NAMES", "SliceView", "Slicing", "check_view", "ready_views"]
+__all__ = [
+    "CONVENTIONS", "LAYOUTS", "NAMES", "SliceView", "Slicing", "check_view", "image_looks", "normal_of", "ready_views",
+]  # fmt: skip
 
 LAYOUTS = {
     "3d": "3-D",
@@ -39,6 +45,7 @@ NAMES = ("axial", "coronal", "sagittal", "3d")
 WEIGHTS = "modulate"
 """The setting that names the image which a direction-coded one is as bright as."""
 
+OBLIQUE = "oblique"
 _THICKEST = 1000.0  # mm
 
 
@@ -59,6 +66,8 @@ class SliceView:
         Whether slices are shown in the 3-D view.
     position : tuple of 3 floats or None
         The cross-hair, mm; the middle of the first image until it is known.
+    oblique : tuple of 2 floats or None
+        Of one more slice in the 3-D view, through the cross-hair: how far it is tilted and turned, degrees.
     """
 
     layout: str = "beside"
@@ -67,10 +76,11 @@ class SliceView:
     cross_hair: bool = True
     planes: bool = True
     position: tuple[float, float, float] | None = None
+    oblique: tuple[float, float] | None = None
 
     def as_json(self) -> dict[str, Any]:
         """Return it in JSON's types."""
-        return {**asdict(self), "position": None if self.position is None else list(self.position)}
+        return {key: list(value) if isinstance(value, tuple) else value for key, value in asdict(self).items()}
 
 
 def check_view(value: Any) -> SliceView:
@@ -97,7 +107,30 @@ def check_view(value: Any) -> SliceView:
     if given.get("position") is not None:
         x, y, z = numbers(given["position"], "position", 3)
         found["position"] = x, y, z
+    if "oblique" in given:
+        angles = None if given["oblique"] is None else numbers(given["oblique"], "angles of the oblique slice", 2)
+        if angles is not None and not all(-180.0 <= angle <= 180.0 for angle in angles):
+            raise ValueError(f"angles of the oblique slice are {angles}; give degrees from -180 to 180")
+        found["oblique"] = None if angles is None else (angles[0], angles[1])
     return replace(usual, **found)
+
+
+def image_looks(layer: Layer) -> dict[str, Any]:
+    """Return what the settings of an image mean for its layer of the stack; under glyphs it is clear."""
+    found = looks(layer.kind, layer.settings)
+    return {**found, "opacity": 0.0} if covers(layer.settings) else found
+
+
+def normal_of(oblique: tuple[float, float]) -> tuple[float, float, float]:
+    """Return the normal of a slice that is tilted backwards out of the axial plane, and then turned to the left.
+
+    Parameters
+    ----------
+    oblique : tuple of 2 floats
+        Both angles in degrees.
+    """
+    tilt, turn = (math.radians(angle) for angle in oblique)
+    return -math.sin(tilt) * math.sin(turn), math.sin(tilt) * math.cos(turn), math.cos(tilt)
 
 
 def ready_views(plotter: Any) -> None:
@@ -127,6 +160,7 @@ class Slicing:
     def __init__(self, plotter: Any) -> None:
         self._plotter = plotter
         self._view = SliceView()
+        self._glyphs = GlyphLayers()
         self.workspace: Any = None
         self.painted: Any = None  # of the stack, above all others
 
@@ -148,11 +182,23 @@ class Slicing:
             return
         workspace.layout, workspace.convention = view.layout, view.convention
         workspace.thickness, workspace.cross_hair = view.thickness, view.cross_hair
+        self._tilt(view.oblique)
         for plane in workspace.slices:
-            if plane.visible != view.planes:
-                plane.visible = view.planes
+            wanted = view.planes if plane.name != OBLIQUE else view.oblique is not None
+            if plane.visible != wanted:
+                plane.visible = wanted
         if view.position is not None and tuple(workspace.position) != view.position:
             workspace.position = view.position
+
+    def _tilt(self, oblique: tuple[float, float] | None) -> None:
+        """Have the slice at an angle, which is made when it is first wanted."""
+        slices = self.workspace.slices
+        if oblique is None:
+            return
+        if OBLIQUE not in slices.planes:
+            self._plotter.slices.add_oblique(slices, normal_of(oblique), name=OBLIQUE, widget=False)
+        elif not np.allclose(slices[OBLIQUE].normal, normal_of(oblique)):
+            slices[OBLIQUE].normal = normal_of(oblique)
 
     def boxes(self) -> list[dict[str, Any]]:
         """Return where views are in the picture, as shares of it from its upper left, and how wide a pixel is, mm."""
@@ -194,7 +240,7 @@ class Slicing:
         weights = volume_in(layer.settings[WEIGHTS])
         if meaning == "direction" and weights is not None:
             made["modulate"] = colours(weights)
-        made |= looks(layer.kind, layer.settings)
+        made |= image_looks(layer)
         if self.workspace is None:
             self.workspace = self._plotter.slices.workspace(
                 image, layout="3d", reset_camera=False, render=False, name="slices", **made
@@ -205,7 +251,7 @@ class Slicing:
             self.view = self._view
         else:
             found = self.workspace.slices.add(image, **made)
-        self._call(found, layer)
+        self._call(found, layer, image)
         return found
 
     def look(self, image: Any, old: Layer, new: Layer, data: LabelledImage, colours: Colours) -> Any:
@@ -218,9 +264,10 @@ class Slicing:
         """
         if any(old.settings[name] != new.settings[name] for name in (MEANING, WEIGHTS)):
             found = self.add(new, data, colours)
+            self._glyphs.remove(self.workspace.slices, image)
             self.workspace.slices.remove_layer(image)
             return found
-        before, after = looks(old.kind, old.settings), looks(new.kind, new.settings)
+        before, after = image_looks(old), image_looks(new)
         try:
             for name, value in after.items():
                 if before[name] != value:
@@ -229,20 +276,22 @@ class Slicing:
             for name, value in before.items():
                 setattr(image, name, value)
             raise
-        self._call(image, new)
+        self._call(image, new, data)
         return image
 
-    def _call(self, image: Any, layer: Layer) -> None:
-        """Have the image shown or not, and named, as its layer is."""
+    def _call(self, image: Any, layer: Layer, data: LabelledImage) -> None:
+        """Have the image shown or not, named, and with glyphs, as its layer is."""
         if image.visible != layer.visible:
             image.visible = layer.visible
         if image.name != layer.name:
             image.name = layer.name
             self.workspace.slices.changed()
+        self._glyphs.become(self.workspace.slices, image, data, layer.settings, layer.visible)
 
     def remove(self, image: Any) -> None:
         """Take an image away; with the last one the panes go, too."""
         stack = self.workspace.slices
+        self._glyphs.remove(stack, image)
         stack.remove_layer(image)
         if all(one is self.painted for one in stack.layers):
             self.close()
@@ -267,6 +316,7 @@ class Slicing:
             self._view = self.view
             self.workspace.remove()
             self.workspace = self.painted = None
+            self._glyphs.forget()
             ready_views(self._plotter)
 
     def _smooth_alike(self) -> None:

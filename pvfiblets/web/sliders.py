@@ -32,6 +32,7 @@ class SlideActions(Actions):
             "region": lambda row, name, value: app.regions.set_value(row, name, value),
             "handle": lambda row, name, place: app.regions.drag(row, name, place),
             "criterion": lambda _, name, value: app.filtering.set_criterion(name, value),
+            "oblique": lambda _, which, value: app.slices.set_angle(int(which == "1"), value),
             "share": lambda _, __, value: app.filtering.set_share(value),
         }
 
@@ -40,7 +41,7 @@ class SlideActions(Actions):
 
         Parameters
         ----------
-        kind : {'property', 'clip', 'region', 'handle', 'criterion', 'share'}
+        kind : {'property', 'clip', 'region', 'handle', 'criterion', 'oblique', 'share'}
             What the slider is of; handles of regions in the picture are taken like sliders.
         owner : str or int
             The layer, cut or row that it belongs to.

@@ -220,3 +220,65 @@ def test_a_table_beside_labels_is_taken_and_other_tables_are_not(scene, folder):
     (folder / "atlas.tsv").write_text("subject\tage\n1\t40\n")
     scene.remove(atlas.id)
     assert scene.open("atlas.nii.gz", "image").settings["meaning"] == "scalars"
+
+
+def glyph_image(folder, n):
+    """Write an image of n numbers a voxel, which mean something as peaks, a tensor and harmonics alike."""
+    values = np.zeros((16, 16, 16, n), np.float32)
+    values[5:11, 5:11, 5:11, 0] = 1.0
+    values[5:11, 5:11, 5:11, 1] = 0.5
+    nibabel.save(nibabel.Nifti1Image(values, np.diag([4.0, 4.0, 4.0, 1.0])), folder / "glyphs.nii.gz")
+
+
+@pytest.mark.parametrize(("n", "kind"), [(3, "peaks"), (6, "tensor"), (15, "sh")])
+def test_glyphs_of_an_image_are_those_of_python(scene, folder, n, kind):
+    glyph_image(folder, n)
+    history = History(scene, together=0.0)
+    image = scene.open("glyphs.nii.gz")
+    choices = {one["name"]: one for one in scene.properties(image.id)}["glyphs"]["choices"]
+    assert {one["value"] for one in choices} == {3: {None, "peaks"}, 6: {None, "peaks", "tensor", "sh"},
+                                                  15: {None, "peaks", "sh"}}[n]  # fmt: skip
+    scene.set_slices(position=[30.0, 30.0, 30.0], cross_hair=False)
+    before = scene.screenshot()
+    scene.set(image.id, "glyphs", kind)
+    scene.set(image.id, "glyph_size", 0.9)
+    picture = scene.screenshot()
+    assert (abs(picture.astype(int) - before).max(axis=2) > 30).any()
+    assert (picture.max(axis=2) > 30).sum() < (before.max(axis=2) > 30).sum()  # lines and lobes, no faces of voxels
+    text = as_script(scene, "found.png").replace('FOLDER = Path(".")', f"FOLDER = Path({str(folder)!r})")
+    exec(compile(text.replace("'found.png'", repr(str(folder / "found.png"))), "script", "exec"), {})
+    found = np.asarray(pv.read(folder / "found.png").active_scalars).reshape(160, 240, -1)[::-1]
+    assert (abs(found[..., :3].astype(int) - picture).max(axis=-1) > 8).mean() < 0.002
+    kept = session.to_dict(scene)
+    scene.show(image.id, False)
+    hidden = scene.screenshot().astype(int)
+    assert (picture.astype(int)[..., 0] - picture[..., 1] > 60).any()
+    assert not (hidden[..., 0] - hidden[..., 1] > 60).any()  # letters are yellow
+    history.undo()
+    history.undo()
+    history.undo()
+    assert np.abs(scene.screenshot().astype(int) - before).max() <= 2
+    session.from_dict(scene, kept)
+    assert np.abs(scene.screenshot().astype(int) - picture).max() <= 2
+
+
+def test_an_oblique_slice_lies_as_its_angles_say(scene, folder):
+    scene.open("head.nii.gz", "image")
+    scene.set_slices(position=[30.0, 30.0, 30.0], oblique=[30.0, 90.0])
+    plane = scene.slicing.workspace.slices["oblique"]
+    np.testing.assert_allclose(plane.normal, [-0.5, 0.0, np.sqrt(0.75)], atol=1e-12)
+    np.testing.assert_allclose(plane.origin, [30.0, 30.0, 30.0])
+    scene.set_slices(planes=False, cross_hair=False)
+    assert [one.name for one in scene.slicing.workspace.slices if one.visible] == ["oblique"]
+    picture = scene.screenshot()
+    text = as_script(scene, "found.png").replace('FOLDER = Path(".")', f"FOLDER = Path({str(folder)!r})")
+    exec(compile(text.replace("'found.png'", repr(str(folder / "found.png"))), "script", "exec"), {})
+    found = np.asarray(pv.read(folder / "found.png").active_scalars).reshape(160, 240, -1)[::-1]
+    assert (abs(found[..., :3].astype(int) - picture).max(axis=-1) > 8).mean() < 0.002
+    kept = session.to_dict(scene)
+    scene.set_slices(oblique=None)
+    assert not plane.visible
+    session.from_dict(scene, kept)
+    assert scene.slicing.view.oblique == (30.0, 90.0)
+    with pytest.raises(ValueError, match="degrees from -180 to 180"):
+        scene.set_slices(oblique=[30.0, 200.0])

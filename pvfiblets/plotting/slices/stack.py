@@ -242,6 +242,12 @@ class SliceStack:
         self._glyphs.append(made)
         return made
 
+    def remove_glyphs(self, glyphs: GlyphSet) -> None:
+        """Take glyphs away that :meth:`add_glyphs` returned; twice is harmless."""
+        glyphs.remove()
+        if glyphs in self._glyphs:
+            self._glyphs.remove(glyphs)
+
     def show_glyphs_on(self, renderer: Any, place: Callable[[], tuple[Array, Array] | None]) -> None:
         """Have glyphs that are added from now on shown on a plane of another renderer, too."""
         self._views.append((renderer, place))
