@@ -1,4 +1,7 @@
-"""Points whose coordinates are no numbers (NaN, infinite): refused, left out, or places where lines end."""
+"""Points whose coordinates are no numbers (NaN, infinite): refused, left out, or places where lines end.
+
+And those so far away that float32, which is what graphics cards compute with, ends before.
+"""
 
 from __future__ import annotations
 
@@ -8,11 +11,31 @@ import numpy as np
 
 from .streamlines import Streamlines
 
-__all__ = ["Invalid", "valid_points"]
+__all__ = ["LARGEST", "Invalid", "refuse_beyond", "valid_points"]
 
 Invalid = Literal["error", "drop", "split"]
 
 COUNTED = "non-finite points"
+LARGEST = 1e35  # mm
+
+
+def refuse_beyond(reach: float) -> None:
+    """Refuse coordinates that float32 does not hold.
+
+    Parameters
+    ----------
+    reach : float
+        The largest magnitude of all finite coordinates, mm.
+
+    Raises
+    ------
+    ValueError
+        If it is beyond `LARGEST`.
+    """
+    if reach > LARGEST:
+        raise ValueError(
+            f"a coordinate of {reach:g} mm is beyond {LARGEST:g} mm, where float32 ends: check the units"
+        )
 
 
 def valid_points(streamlines: Streamlines, nan: Invalid) -> Streamlines:

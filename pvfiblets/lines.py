@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 import numpy.typing as npt
 
+from pvfiblets.invalid_points import refuse_beyond
 from pvfiblets.other_libraries import lines_of_grid, streamlines_of
 from pvfiblets.ragged import offsets_from_counts
 from pvfiblets.streamlines import Streamlines
@@ -57,6 +58,10 @@ class Lines:
     line_data: Mapping[str, npt.NDArray[Any]] = field(default_factory=dict)
     order: Ints | None = None
     tube_of: Ints | None = None
+
+    def __post_init__(self) -> None:
+        finite = self.points[np.isfinite(self.points)]
+        refuse_beyond(float(max(finite.max(), -finite.min())) if finite.size else 0.0)
 
     @property
     def counts(self) -> Ints:

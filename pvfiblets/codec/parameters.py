@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from ..formats.mapped import forget
 from ..formats.scratch import is_long, spans
+from ..invalid_points import refuse_beyond
 from ..ragged import blocks
 from ..streamlines import Streamlines
 from .layout import END_LEVELS, MAX_POINTS
@@ -36,7 +37,6 @@ COARSE = 1.0 / 20.0  # of the bounds' diagonal: errors of longer steps show, con
 CONSTANT_STEP = 1e-4  # relative spread of steps under which one step serves the whole file
 STEP_BAND = 0.06  # steps within this of the median can be coded by direction; others vary too much for it
 SAMPLE = 1_000_000  # segment lengths kept at most; a median needs no more
-LARGEST = 1e35  # mm
 BLOCK_POINTS = 2_000_000
 SAMPLED = 4_000_000  # points of which segments are sampled at a time
 EXACT_BELOW = 1_000_000  # bytes of points: nobody counts those of smaller sets, which keep every bit by default
@@ -111,11 +111,7 @@ class Survey:
                 f"point {bad} is {points[bad].tolist()}; finite coordinates in mm are needed: remove or repair it, "
                 "or give nan='drop' or nan='split'"
             )
-        if max(float(np.abs(lower).max()), float(np.abs(upper).max())) > LARGEST:
-            raise ValueError(
-                f"a coordinate of {max(-lower.min(), upper.max()):g} mm is beyond {LARGEST:g} mm, where float32 ends: "
-                "check the units"
-            )
+        refuse_beyond(max(float(np.abs(lower).max()), float(np.abs(upper).max())))
         self.lower, self.upper = np.minimum(self.lower, lower), np.maximum(self.upper, upper)
         self.longest = max(self.longest, longest)
         self.widest_end = max(self.widest_end, widest_end)

@@ -78,9 +78,14 @@ class Frame:
 
     @property
     def directions_to_view(self) -> Matrix:
-        """(3, 3), tangents in data coordinates to view coordinates, scaled to keep float32 in range."""
+        """(3, 3), tangents in data coordinates to view coordinates, scaled to keep float32 in range.
+
+        A camera whose position is its focal point, as far from the origin as both round to the same number, turns
+        nothing: all is zero. Nothing is seen by it, and the unit matrix is as good as another.
+        """
         linear = self.model_view[:3, :3]
-        scaled: Matrix = linear / np.abs(linear).max()
+        largest = np.abs(linear).max()
+        scaled: Matrix = linear / largest if largest > 0.0 else np.eye(3)
         return scaled
 
     def least_scale(self, bounds: Sequence[float]) -> float:

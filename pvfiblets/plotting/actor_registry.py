@@ -8,6 +8,7 @@ plotter closes.
 
 from __future__ import annotations
 
+import warnings
 import weakref
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -82,6 +83,22 @@ NAMES_FONT = 18
 """Size of the font of names beside a scalar bar that VTK chooses in a small window, about."""
 NAMES_SHARE = 0.42
 """Of the window's width, for names beside a scalar bar."""
+
+
+CAMERA_REACH = 2.0**53
+"""mm; PyVista's first camera looks from a mm beside the focal point, which is the same number beyond."""
+
+
+def _warn_of_distance(actor: Any) -> None:
+    """Tell those who see nothing, as with ``add_mesh``, that the scene is too large for PyVista's camera."""
+    reach = max(map(abs, actor.GetBounds() or (0.0,)))
+    if CAMERA_REACH <= reach < float("inf"):
+        warnings.warn(
+            f"coordinates reach {reach:.3g} mm: beyond {CAMERA_REACH:.1g} mm PyVista's first camera has no direction "
+            "and may show nothing; check the units, leave outliers out, or scale the points",
+            UserWarning,
+            stacklevel=7,
+        )
 
 
 @dataclass
@@ -212,6 +229,7 @@ class ActorRegistry(Generic[A]):
         )
         self._track(actor, renderer)
         self._meet_vtk()
+        _warn_of_distance(actor)
         if label is not None:
             self._set_label(actor, label, renderer)
         if actor.scalars_title is not None:
