@@ -45,6 +45,8 @@ class EngineOptions(Options):
         How fiblets behind others are found out; ``'auto'`` is two-phase where that is measured to be faster.
     fit : {None, 'sample', 'stream'}
         What to do where memory does not suffice: refuse, draw a share of the streamlines, or all of them part by part.
+    cluster : distributed.Client, optional
+        Has its workers draw, part by part where memory does not suffice.
 
     Raises
     ------
@@ -55,6 +57,7 @@ class EngineOptions(Options):
     pipeline: str = AUTO
     culling: str | None = AUTO
     fit: str | None = None
+    cluster: Any = None
 
     def _check(self) -> None:
         check_choices(pipeline=self.pipeline, culling=self.culling, fit=self.fit)
@@ -68,6 +71,10 @@ def engine_renderer(ctx: Any, fiblets: Any, **options: Any) -> Any:
     EngineError
         The window's OpenGL lacks the pipeline that is wanted; said before anything is copied to the GPU.
     """
+    if options.get("cluster") is not None:
+        from pvfiblets.engine.fiblets.cluster_renderer import ClusterRenderer
+
+        return ClusterRenderer(ctx, fiblets, options["cluster"], pipeline=options.get("pipeline", AUTO))
     options.setdefault("culling", EngineOptions.culling)  # the engine's own is the same in every picture
     if options.get("fit") == "stream":
         from pvfiblets.engine.fiblets.streamed_renderer import streamed_renderer

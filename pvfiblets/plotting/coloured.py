@@ -359,7 +359,8 @@ def added_up(report: dict[str, Any]) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``passes``, ``features``, ``buffers``, ``gpu_bytes``, ``fiblets`` and ``parts``, as
+        ``passes``, ``features``, ``buffers``, ``gpu_bytes``, ``fiblets``, ``parts`` and
+        ``cluster``, as
         :meth:`FibletActor.explain` has them.
     """
     windows = report["windows"]
@@ -372,7 +373,7 @@ def added_up(report: dict[str, Any]) -> dict[str, Any]:
         "buffers": buffers,
         "gpu_bytes": sum(buffer["bytes"] for buffer in buffers),
         "fiblets": {count: _sum(windows, count) for count in COUNTS},
-        **next(({"parts": window["parts"]} for window in windows if "parts" in window), {}),
+        **{key: window[key] for window in windows for key in ("parts", "cluster") if key in window},
     }
 
 

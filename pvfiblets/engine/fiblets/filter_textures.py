@@ -156,7 +156,9 @@ class FilterTextures:
             self._points = []
             return
         if self._drawn is not self._whole:
-            words = _of_part(words, self._whole, self._drawn)
+            part = self._drawn
+            ids = np.arange(part.n_streamlines) if part.rank_to_id is None else np.asarray(part.rank_to_id)
+            words = points_of_part(words, self._whole, ids)
         for index, chunk in enumerate(self._chunks):
             first, last = chunk.plan.points
             there = self._points[index] if index < len(self._points) else None
@@ -228,9 +230,17 @@ def _stretch(words: Words, first: int, last: int) -> Words:
     return moved
 
 
-def _of_part(words: Words, whole: FibletSet, part: FibletSet) -> Words:
-    """Bits of the points of some streamlines, in the order in which a part of the set holds them."""
-    ids = np.arange(part.n_streamlines) if part.rank_to_id is None else np.asarray(part.rank_to_id)
+def points_of_part(words: Words, whole: FibletSet, ids: npt.NDArray[np.int64]) -> Words:
+    """Return the bits of the points of some streamlines, one after another in that order.
+
+    Parameters
+    ----------
+    words : numpy.ndarray
+        Of all points, as :class:`Filter` has them.
+    whole : FibletSet
+    ids : numpy.ndarray
+        ``(n,)`` streamlines that have points.
+    """
     bits = np.unpackbits(words.view(np.uint8), bitorder="little")
     places = StreamlineRanges.of(whole).at(ids)
     ends = np.cumsum(places.points)

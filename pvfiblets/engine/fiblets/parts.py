@@ -68,6 +68,11 @@ class Stretches:
         self._share = min(part_bytes / max(gpu_bytes, 1), 1.0)
         self._gpu_bytes = gpu_bytes
 
+    @classmethod
+    def of_count(cls, fiblets: FibletSet, count: int) -> Stretches:
+        """Divide a set into a number of parts, or fewer where it has fewer streamlines."""
+        return cls(fiblets, count, 1)
+
     @cached_property
     def _ranks(self) -> Sequence[int]:
         """First rank of each part, and one past the last: parts have about as many bytes of codes."""
@@ -86,10 +91,14 @@ class Stretches:
         """Return None: bounds of a stretch are known from its records alone."""
         return None
 
+    def ids(self, number: int) -> npt.NDArray[np.int64]:
+        """Return the numbers of a part's streamlines."""
+        ranks = np.arange(*self._ranks[number : number + 2])
+        return ranks if self.whole.rank_to_id is None else np.asarray(self.whole.rank_to_id)[ranks]
+
     def part(self, number: int) -> FibletSet:
         """Copy a part into memory."""
-        ranks = np.arange(*self._ranks[number : number + 2])
-        ids = ranks if self.whole.rank_to_id is None else np.asarray(self.whole.rank_to_id)[ranks]
+        ids = self.ids(number)
         return _numbered(restrict(self.whole, ids), ids)
 
     def thinned(self, nbytes: int) -> FibletSet:

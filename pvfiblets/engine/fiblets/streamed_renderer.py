@@ -25,13 +25,13 @@ from typing import TYPE_CHECKING, Any
 import moderngl
 
 from ..capabilities import choose
-from ..drawable import Drawable
-from ..errors import EngineError, GPUMemoryError
+from ..errors import GPUMemoryError
 from ..gbuffer import GBuffer
 from ..moderngl_extras import GLExtras
-from ..view import Style, View
+from ..view import View
 from .census import no_counts
 from .memory_fit import MemoryBudget
+from .nearest_only import NearestOnly
 from .part_pictures import PartPictures
 from .parts import Box, Parts, Stretches, in_view, reach_of
 from .pipelines import CONSTANTS, Limits
@@ -56,13 +56,8 @@ LEAST_ROOM = 60_000
 
 THINNED = -1  # number of the even share among the parts
 
-_ONLY_NEAREST = (
-    "a set that is drawn part by part shows the nearest lines only: layers and sums of lines need all of it at once; "
-    "draw a share of it by fit='sample', or fewer streamlines"
-)
 
-
-class StreamedRenderer(Drawable[FibletStyle]):
+class StreamedRenderer(NearestOnly):
     """Draws a set of which a part at a time is on the GPU.
 
     Parameters
@@ -84,10 +79,6 @@ class StreamedRenderer(Drawable[FibletStyle]):
         The one in use.
     share : float
         How many of the parts in the view the last picture shows.
-    hurried : bool
-        Whether pictures are of what is there, at once.
-    patience : float or None
-        Seconds after which a picture is given back as it is; None for complete pictures only.
 
     Raises
     ------
@@ -96,8 +87,6 @@ class StreamedRenderer(Drawable[FibletStyle]):
     GPUMemoryError
         If not even two parts fit.
     """
-
-    STYLE = FibletStyle
 
     def __init__(
         self,
@@ -111,8 +100,6 @@ class StreamedRenderer(Drawable[FibletStyle]):
     ) -> None:
         super().__init__(ctx, CONSTANTS)
         self.pipeline = choose(ctx, pipeline)
-        self.hurried = False
-        self.patience: float | None = None
         self._parts = parts
         self._room = room
         self._needed = needed
@@ -120,7 +107,6 @@ class StreamedRenderer(Drawable[FibletStyle]):
         self._there: OrderedDict[int, FibletRenderer] = OrderedDict()  # the least lately drawn first
         self._bytes: dict[int, int] = {}
         self._boxes: dict[int, Box | None] = {}
-        self._filter: Filter | None = None
         self._begun: tuple[View, FibletStyle] | None = None
         self._left: list[int] = []
         self._in_view: list[int] = []
@@ -216,19 +202,10 @@ class StreamedRenderer(Drawable[FibletStyle]):
         self._there.pop(number).release()
         del self._bytes[number]
 
-    @property
-    def filtering(self) -> Filter | None:
-        """What is there to be drawn; see :attr:`.FibletRenderer.filtering`."""
-        self._check_alive()
-        return self._filter
-
-    @filtering.setter
-    def filtering(self, wanted: Filter | None) -> None:
-        self._check_alive()
+    def _take_filter(self, wanted: Filter | None) -> None:
         if wanted is not None:
             wanted.check(self._parts.whole)
-        self._made = self._begun = None
-        self._filter = wanted
+        self._begun = None
         for renderer in self._there.values():
             renderer.filtering = wanted
 
@@ -244,26 +221,6 @@ class StreamedRenderer(Drawable[FibletStyle]):
             if not (isinstance(values, str) and values in ("arc_length", "curvature")):
                 break
         return min(low for low, _ in ranges), max(high for _, high in ranges)
-
-    # What needs all lines at once
-
-    def render_layers(self, view: View, style: Style | None = None, count: int = 4) -> Any:  # noqa: ARG002
-        """Raise: see the message."""
-        raise EngineError(_ONLY_NEAREST)
-
-    def gather(self, *_given: Any, **_named: Any) -> Any:
-        """Raise: see the message."""
-        raise EngineError(_ONLY_NEAREST)
-
-    def most_lines(self, *, wait: bool = True) -> float:  # noqa: ARG002
-        """Return 0: nothing is added up."""
-        return 0.0
-
-    def drop_layers(self) -> None:
-        """Do nothing: there are none."""
-
-    def drop_gathered(self) -> None:
-        """Do nothing: there is nothing."""
 
     def _facts(self, *, counts: bool) -> dict[str, Any]:  # noqa: ARG002
         total = int(self._parts.whole.n_fiblets)

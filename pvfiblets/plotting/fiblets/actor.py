@@ -182,7 +182,9 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
             ``conditions``, ``clips``, ``groups_shown``; ``selection``: how many streamlines, and
             what drawing them apart takes; where a set is drawn part by part (``fit="stream"``),
             ``parts``: how many there are in ``total``, ``in_view``, ``left`` to be drawn, ``there``
-            on the GPU, and how often one was ``fetched``.
+            on the GPU, and how often one was ``fetched``; where workers draw, ``cluster``: ``parts``,
+            how many are ``left``, the milliseconds of each part and of putting them together,
+            and the bytes of these pictures.
         """
         return {
             **added_up(self._mapper.explain()),

@@ -267,3 +267,10 @@ class FibletSettings(Settings):
         row=Row("Too large", "What to do where GPU memory does not suffice for all.", "Drawing",
                 choices=[(None, "say so"), ("sample", "draw a share"), ("stream", "draw part by part")]),
     )  # fmt: skip
+    cluster: Setting[Any] = Setting(
+        None,
+        "A ``distributed.Client`` whose workers draw the fiblets, each a part of them, by their own graphics cards; "
+        "``None`` draws here. A set that is mapped from a ``.fiblets`` file is read by each worker under that name.",
+        kind="Any",
+        where=OPTIONS,
+    )

@@ -1,0 +1,285 @@
+"""`ClusterRenderer`: a set whose parts are drawn by the workers of a dask cluster, and put together here.
+
+Each worker holds one part, a stretch of the streamlines in the order in which they are coded, and draws it with its own
+OpenGL (:mod:`.worker_drawing`). Pictures are put together in pairs (Eilemann & Pajarola 2007; "binary tree"), each
+where one of the two is, so that workers send them to each other and this process gets one. Only pixels that show
+something are sent (:mod:`.sparse_picture`), so a picture of a part of the screen is small; binary swap and radix-k (as
+IceT has them) would halve what the last workers do, but every worker would talk to every other.
+
+A task whose worker has died is run again by dask, on another worker, which then fetches that part: the picture is late,
+not wrong. Where there is a limit to its time (``patience``), it is given back without that part, and the next one of
+the same view goes on.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from dataclasses import replace
+from functools import reduce
+from typing import TYPE_CHECKING, Any
+
+import moderngl
+
+from ..capabilities import AUTO, check_choices
+from ..errors import EngineError
+from ..gbuffer import EMPTY, GBuffer
+from ..view import View
+from .census import no_counts
+from .filter_textures import Filter, points_of_part
+from .nearest_only import NearestOnly
+from .parts import Stretches
+from .pipelines import CONSTANTS
+from .sampled_volume import VolumeSource
+from .sparse_picture import Cost, SparsePicture, nearer, write_picture
+from .style import FibletStyle
+from .worker_drawing import PartOfSet, Request, draw_part, merge_parts, source_of, value_range_of_part
+
+if TYPE_CHECKING:
+    from ...codec.fibletset import FibletSet
+
+__all__ = ["ClusterRenderer"]
+
+TICK = 0.5  # seconds from look to look whether there are workers left
+GRACE = 10.0  # seconds in which a cluster without workers may get some: those that die are started again
+
+
+class ClusterRenderer(NearestOnly):
+    """Draws a set by workers.
+
+    Parameters
+    ----------
+    ctx : moderngl.Context
+        Of this process; the workers make their own.
+    fiblets : FibletSet
+        Mapped from a file that all workers see under the same name, or in memory: then each worker is sent its part.
+    cluster : distributed.Client
+    count : int, optional
+        Parts; by default as many as there are workers now.
+    pipeline : str
+        Of the workers.
+
+    Attributes
+    ----------
+    share : float
+        How many of the parts the last picture shows.
+
+    Raises
+    ------
+    EngineError
+        If there are no workers.
+    TypeError
+        If the cluster is something else.
+    """
+
+    def __init__(
+        self,
+        ctx: moderngl.Context,
+        fiblets: FibletSet,
+        cluster: Any,
+        *,
+        count: int | None = None,
+        pipeline: str = AUTO,
+    ) -> None:
+        check_choices(pipeline=pipeline)
+        if not (hasattr(cluster, "submit") and hasattr(cluster, "scheduler_info")):
+            raise TypeError(
+                f"cluster is a {type(cluster).__name__}; give a distributed.Client, such as Client('tcp://host:8786')"
+            )
+        super().__init__(ctx, CONSTANTS)
+        self.pipeline = pipeline
+        self._cluster = cluster
+        self._whole = fiblets
+        self._stretches = Stretches.of_count(fiblets, count or len(self._workers()))
+        key, path = source_of(fiblets)
+        total = len(self._stretches)
+        self._parts = [PartOfSet(key, path, number, total) for number in range(total)]
+        # What a worker reads itself is not sent; dask keeps what is sent once for all frames.
+        self._sent = [None if path else self._send(self._stretches.part(one.number), one.number) for one in self._parts]
+        self._filters: list[Any] = [None] * total
+        self._filter_key = 0
+        self._volume: tuple[VolumeSource, Any] | None = None
+        self._asked: tuple[View, FibletStyle] | None = None
+        self._drawing: list[Any] = []
+        self._root: Any = None
+        self._costs: tuple[Cost, ...] = ()
+        self._left = 0
+
+    def _there(self) -> list[str]:
+        return sorted(self._cluster.scheduler_info(n_workers=-1)["workers"])
+
+    def _workers(self) -> list[str]:
+        """Return the addresses of the workers that there are; those that are being started again have time for it."""
+        until = time.monotonic() + GRACE
+        while not (found := self._there()):
+            if time.monotonic() >= until:
+                raise EngineError("the cluster has no workers; start some, or leave the cluster out to draw here")
+            time.sleep(TICK)
+        return found
+
+    def _worker(self, number: int) -> str:
+        there = self._workers()
+        return there[number % len(there)]
+
+    def _send(self, thing: Any, number: int) -> Any:
+        return self._cluster.scatter(thing, workers=[self._worker(number)], hash=False)
+
+    def _submit(self, act: Any, number: int, *given: Any) -> Any:
+        return self._cluster.submit(
+            act, *given, workers=[self._worker(number)], allow_other_workers=True, pure=False, priority=10
+        )
+
+    @property
+    def unfinished(self) -> bool:
+        """Whether the last picture lacks parts that another one of the same view would show."""
+        return not self.released and self._root is not None and bool(self._left)
+
+    def render(
+        self, view: View, style: FibletStyle | None = None, *, outside: moderngl.Texture | None = None
+    ) -> GBuffer:
+        """Draw, unless the last picture was of the same view and style and complete; see :meth:`.Drawable.render`.
+
+        Raises
+        ------
+        EngineError
+            As there, and what a worker says: if it finds no file, has no OpenGL, or no memory.
+        """
+        found = super().render(view, style, outside=outside)
+        if self._left:
+            self._made = None  # the next call goes on
+        return found
+
+    def _draw(self, view: View, style: FibletStyle, outside: moderngl.Texture | None) -> GBuffer:  # noqa: ARG002
+        if self._asked != (view, style):
+            self._ask(view, style)
+        with self._passes.timed("workers"):
+            found = self._answer()
+        target = self._fitting("gbuffer", view.size, lambda: GBuffer(self._ctx, view.size))
+        target.want_relief(self._ctx, style.relief)
+        target.want_edges(self._ctx, style.edges)
+        with self._passes.timed("copy"):
+            if found is None:
+                for texture in (target.depth, target.owner):
+                    texture.write(EMPTY.to_bytes(4, "little") * (view.size[0] * view.size[1]))
+            else:
+                write_picture(found, target)
+                self._costs = found.costs
+        return target
+
+    def _ask(self, view: View, style: FibletStyle) -> None:
+        """Have a picture begun, and what is left of the last one dropped."""
+        self._forget()
+        volume = self._volume_of(style)
+        plain = style if volume is None else replace(style, values=None)
+        request = Request(view, plain, self.pipeline, self._filter_key)
+        self._drawing = [
+            self._submit(draw_part, part.number, part, request, sent, kept, volume)
+            for part, sent, kept in zip(self._parts, self._sent, self._filters, strict=True)
+        ]
+        level = list(self._drawing)
+        while len(level) > 1:
+            pairs = [
+                self._cluster.submit(merge_parts, level[at], level[at + 1], pure=False, priority=20)
+                for at in range(0, len(level) - 1, 2)
+            ]
+            level = pairs + level[2 * len(pairs) :]
+        self._root = level[0]
+        self._asked = view, style
+
+    def _answer(self) -> SparsePicture | None:
+        """Wait for the picture, or for as long as patience lasts; None if nothing is there by then."""
+        until = None if self.patience is None else time.monotonic() + self.patience
+        while not self._root.done():
+            left = TICK if until is None else min(until - time.monotonic(), TICK)
+            if left <= 0.0:
+                break
+            self._wait(left)
+            if not self._root.done():
+                self._workers()  # raises where none is left
+        if self._root.done():
+            self._left = 0
+            found: SparsePicture = _told(self._root)
+            return found
+        done = [_told(one) for one in self._drawing if one.done()]
+        self._left = len(self._drawing) - len(done)
+        # All may be drawn and not yet put together: then it is this process that does it.
+        return reduce(nearer, done) if done else None
+
+    def _wait(self, seconds: float) -> None:
+        from distributed import TimeoutError as TooLong
+        from distributed import wait
+
+        with self._cluster.as_current(), contextlib.suppress(TooLong, TimeoutError):
+            wait([self._root], timeout=seconds)
+
+    def _forget(self) -> None:
+        for future in (*self._drawing, *([] if self._root is None else [self._root])):
+            future.cancel()
+        self._drawing, self._root, self._asked, self._left = [], None, None, 0
+
+    def _volume_of(self, style: FibletStyle) -> Any:
+        """Return where the volume of a style's values is, sent once."""
+        if not isinstance(style.values, VolumeSource):
+            self._volume = None
+            return None
+        if self._volume is None or self._volume[0] is not style.values:
+            self._volume = style.values, self._cluster.scatter(style.values, broadcast=True, hash=False)
+        return self._volume[1]
+
+    @property
+    def share(self) -> float:  # type: ignore[override]
+        """How many of the parts the last picture shows."""
+        return 1.0 - self._left / max(len(self._parts), 1)
+
+    def _take_filter(self, wanted: Filter | None) -> None:
+        if wanted is not None:
+            wanted.check(self._whole)
+        self._forget()
+        self._filter_key += 1
+        for number in range(len(self._parts)):
+            self._filters[number] = None if wanted is None else self._send(self._of_part(wanted, number), number)
+
+    def _of_part(self, wanted: Filter, number: int) -> Filter:
+        points = wanted.points
+        if points is not None:
+            points = points_of_part(points, self._whole, self._stretches.ids(number))
+        return Filter(wanted.streamlines, points)
+
+    def value_range(self, values: str | VolumeSource) -> tuple[float, float]:
+        """Return the least and the greatest of a per-point value; see :meth:`.FibletRenderer.value_range`."""
+        self._check_alive()
+        if isinstance(values, VolumeSource):
+            return values.range
+        asked = [
+            self._submit(value_range_of_part, part.number, part, values, self.pipeline, sent)
+            for part, sent in zip(self._parts, self._sent, strict=True)
+        ]
+        ranges = [_told(one) for one in asked]
+        return min(low for low, _ in ranges), max(high for _, high in ranges)
+
+    def _facts(self, *, counts: bool) -> dict[str, Any]:  # noqa: ARG002
+        total = int(self._whole.n_fiblets)
+        cluster = {
+            "parts": len(self._parts),
+            "left": self._left,
+            "draw_ms": [1e3 * cost.seconds for cost in self._costs if cost.step == "draw"],
+            "merge_ms": [1e3 * cost.seconds for cost in self._costs if cost.step == "merge"],
+            "bytes": sum(cost.bytes for cost in self._costs),
+        }
+        return {"fiblets_total": total, "fiblets": no_counts(total), "share": self.share, "cluster": cluster}
+
+    def release(self) -> None:
+        """Give back everything on the GPU, and what was sent to the workers; twice is harmless."""
+        self._forget()
+        self._sent, self._filters, self._volume = [], [], None
+        super().release()
+
+
+def _told(future: Any) -> Any:
+    """Return a result, or raise what a worker has raised, as an error of the engine where it is none of ours."""
+    try:
+        return future.result()
+    except (EngineError, ValueError, TypeError, OSError):
+        raise
+    except Exception as error:
+        raise EngineError(f"the cluster gave no picture: {type(error).__name__}: {error}") from error

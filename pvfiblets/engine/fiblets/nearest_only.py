@@ -1,0 +1,76 @@
+"""`NearestOnly`: what renderers share that put pictures of parts together: they know the nearest lines alone."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ..drawable import Drawable
+from ..errors import EngineError
+from .style import FibletStyle
+
+if TYPE_CHECKING:
+    from .filter_textures import Filter
+
+__all__ = ["NearestOnly"]
+
+_ONLY_NEAREST = (
+    "a set that is drawn part by part shows the nearest lines only: layers and sums of lines need all of it at once; "
+    "draw a share of it by fit='sample', or fewer streamlines"
+)
+
+
+class NearestOnly(Drawable[FibletStyle]):
+    """Draws a set of fiblets in parts.
+
+    Attributes
+    ----------
+    hurried : bool
+        Whether pictures are of what is there, at once.
+    patience : float or None
+        Seconds after which a picture is given back as it is; None for complete pictures only.
+    """
+
+    STYLE = FibletStyle
+
+    hurried = False
+    patience: float | None = None
+    _filter: Filter | None = None
+
+    @property
+    def unfinished(self) -> bool:
+        """Whether the last picture lacks parts that another one of the same view would show."""
+        raise NotImplementedError
+
+    @property
+    def filtering(self) -> Filter | None:
+        """What is there to be drawn; see :attr:`.FibletRenderer.filtering`."""
+        self._check_alive()
+        return self._filter
+
+    @filtering.setter
+    def filtering(self, wanted: Filter | None) -> None:
+        self._check_alive()
+        self._take_filter(wanted)
+        self._filter, self._made = wanted, None
+
+    def _take_filter(self, wanted: Filter | None) -> None:
+        """Check a filter and hand it on."""
+        raise NotImplementedError
+
+    def render_layers(self, *_given: Any, **_named: Any) -> Any:
+        """Raise: see the message."""
+        raise EngineError(_ONLY_NEAREST)
+
+    def gather(self, *_given: Any, **_named: Any) -> Any:
+        """Raise: see the message."""
+        raise EngineError(_ONLY_NEAREST)
+
+    def most_lines(self, *, wait: bool = True) -> float:  # noqa: ARG002
+        """Return 0: nothing is added up."""
+        return 0.0
+
+    def drop_layers(self) -> None:
+        """Do nothing: there are none."""
+
+    def drop_gathered(self) -> None:
+        """Do nothing: there is nothing."""
