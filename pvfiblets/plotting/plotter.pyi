@@ -40,10 +40,11 @@ class _AddFiblets(Protocol):
         annotations: dict[float, str] | None = None, flip_scalars: bool = False, categories: bool = False,
         opacity: float | str | Sequence[float] | np.ndarray | None = None, transparency: str | int | None = "all",
         line_width: float | None = None, style: Any = "surface", lighting: bool | None = None,
-        pipeline: str = "auto", culling: str | None = "auto", fit: str | None = None, name: str | None = None,
-        label: str | None = None, show_scalar_bar: bool | None = None, scalar_bar_args: dict[str, Any] | None = None,
-        pickable: bool = True, user_matrix: TransformLike | None = None, reset_camera: bool | None = None,
-        render: bool = True, **options: Any,
+        pipeline: str = "auto", culling: str | None = "auto", fit: str | None = None, cluster: Any = None,
+        name: str | None = None, label: str | None = None, show_scalar_bar: bool | None = None,
+        scalar_bar_args: dict[str, Any] | None = None, pickable: bool = True,
+        user_matrix: TransformLike | None = None, reset_camera: bool | None = None, render: bool = True,
+        **options: Any,
     ) -> FibletActor: ...
 
 class _FibletsComponent(FibletsComponent):
