@@ -206,7 +206,7 @@ def test_two_pictures_are_put_together_the_same_way_in_any_order():
         for number in order[1:]:
             found = nearer(found, many[number])
         np.testing.assert_array_equal(dense(found), expected)
-        assert (np.diff(found.pixels.astype(int)) > 0).all()
+        assert len(np.unique(found.pixels)) == len(found.pixels)
 
 
 def test_a_plotter_shows_what_workers_draw(client, brain):

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import contextlib
 import time
+from collections.abc import Iterable
 from dataclasses import replace
 from functools import reduce
 from typing import TYPE_CHECKING, Any
@@ -117,17 +118,19 @@ class ClusterRenderer(NearestOnly):
             time.sleep(TICK)
         return found
 
-    def _worker(self, number: int) -> str:
-        there = self._workers()
-        return there[number % len(there)]
-
     def _send(self, thing: Any, number: int) -> Any:
-        return self._cluster.scatter(thing, workers=[self._worker(number)], hash=False)
+        there = self._workers()
+        return self._cluster.scatter(thing, workers=[there[number % len(there)]], hash=False)
 
-    def _submit(self, act: Any, number: int, *given: Any) -> Any:
-        return self._cluster.submit(
-            act, *given, workers=[self._worker(number)], allow_other_workers=True, pure=False, priority=10
-        )
+    def _submit_each(self, act: Any, given: Iterable[tuple[Any, ...]]) -> list[Any]:
+        """Have something done for each part, by the worker that holds it; by another one if that is gone or late."""
+        there = self._workers()
+        return [
+            self._cluster.submit(
+                act, *arguments, workers=[there[number % len(there)]], allow_other_workers=True, pure=False, priority=10
+            )
+            for number, arguments in enumerate(given)
+        ]
 
     @property
     def unfinished(self) -> bool:
@@ -172,10 +175,8 @@ class ClusterRenderer(NearestOnly):
         volume = self._volume_of(style)
         plain = style if volume is None else replace(style, values=None)
         request = Request(view, plain, self.pipeline, self._filter_key)
-        self._drawing = [
-            self._submit(draw_part, part.number, part, request, sent, kept, volume)
-            for part, sent, kept in zip(self._parts, self._sent, self._filters, strict=True)
-        ]
+        each = zip(self._parts, self._sent, self._filters, strict=True)
+        self._drawing = self._submit_each(draw_part, ((part, request, sent, kept, volume) for part, sent, kept in each))
         level = list(self._drawing)
         while len(level) > 1:
             pairs = [
@@ -213,8 +214,7 @@ class ClusterRenderer(NearestOnly):
             wait([self._root], timeout=seconds)
 
     def _forget(self) -> None:
-        for future in (*self._drawing, *([] if self._root is None else [self._root])):
-            future.cancel()
+        # dask gives up what nobody holds any more; told to cancel, it would stop at tasks that have just ended.
         self._drawing, self._root, self._asked, self._left = [], None, None, 0
 
     def _volume_of(self, style: FibletStyle) -> Any:
@@ -250,10 +250,8 @@ class ClusterRenderer(NearestOnly):
         self._check_alive()
         if isinstance(values, VolumeSource):
             return values.range
-        asked = [
-            self._submit(value_range_of_part, part.number, part, values, self.pipeline, sent)
-            for part, sent in zip(self._parts, self._sent, strict=True)
-        ]
+        each = zip(self._parts, self._sent, strict=True)
+        asked = self._submit_each(value_range_of_part, ((part, values, self.pipeline, sent) for part, sent in each))
         ranges = [_told(one) for one in asked]
         return min(low for low, _ in ranges), max(high for _, high in ranges)
 

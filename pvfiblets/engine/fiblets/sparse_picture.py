@@ -48,7 +48,7 @@ class SparsePicture:
     order : int
         Of the part that it shows, the lowest where it shows several.
     pixels : numpy.ndarray
-        ``(n,)`` uint32: row times width plus column, rising.
+        ``(n,)`` uint32: row times width plus column, each once.
     textures : dict of str to numpy.ndarray
         ``(n,)`` or ``(n, 2)``: what the G-buffer's textures hold there, by their names. ``owner`` is the order of the
         part that a pixel is of.
@@ -107,25 +107,30 @@ def nearer(one: SparsePicture, other: SparsePicture) -> SparsePicture:
     Returns
     -------
     SparsePicture
-        The same whichever comes first.
+        The same whichever comes first, but for the order in which it has the pixels.
     """
-    both, mine, yours = np.intersect1d(one.pixels, other.pixels, assume_unique=True, return_indices=True)
-    a, b = (
-        (p.textures["depth"][at].astype(np.uint64) << np.uint64(32)) | p.textures["owner"][at]
-        for p, at in ((one, mine), (other, yours))
-    )
-    keep, take = np.ones(len(one.pixels), bool), np.ones(len(other.pixels), bool)
-    keep[mine[b < a]] = False
-    take[yours[b >= a]] = False
-    pixels = np.concatenate([one.pixels[keep], other.pixels[take]])
-    rising = np.argsort(pixels, kind="stable")
-    textures = {
-        name: np.concatenate([array[keep], other.textures[name][take]])[rising]
-        for name, array in one.textures.items()
-    }
-    del both
+    # Where the first picture has each pixel: sorting and searching would take ten times as long.
+    place = np.full(one.size[0] * one.size[1], -1, np.int32)
+    place[one.pixels] = np.arange(len(one.pixels), dtype=np.int32)
+    there = place[other.pixels]
+    fresh, shared = np.flatnonzero(there < 0), np.flatnonzero(there >= 0)
+    before, after = _keys(one)[there[shared]], _keys(other)[shared]
+    won = shared[after < before]
+    textures = {}
+    for name, array in one.textures.items():
+        theirs = other.textures[name]
+        whole = textures[name] = np.concatenate([array, theirs[fresh]])
+        whole[there[won]] = theirs[won]
+    pixels = np.concatenate([one.pixels, other.pixels[fresh]])
     order = min(one.order, other.order)
-    return SparsePicture(one.size, order, pixels[rising], textures, one.relief, one.costs + other.costs)
+    return SparsePicture(one.size, order, pixels, textures, one.relief, one.costs + other.costs)
+
+
+def _keys(picture: SparsePicture) -> npt.NDArray[np.uint64]:
+    """Depth, and below it the part: the least is in front."""
+    depth = picture.textures["depth"].astype(np.uint64)
+    keys: npt.NDArray[np.uint64] = (depth << np.uint64(32)) | picture.textures["owner"]
+    return keys
 
 
 def write_picture(found: SparsePicture, target: GBuffer) -> None:
