@@ -42,7 +42,14 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
 .pv-told { position: absolute; left: 8px; bottom: 6px; z-index: 2; max-width: 45%; font: 12px Roboto, sans-serif;
   color: #ffd040; text-shadow: 0 0 3px #000, 0 0 2px #000; pointer-events: none; font-variant-numeric: tabular-nums }
 .pv-tools { position: absolute; left: 8px; top: 8px; z-index: 3; display: flex; flex-direction: column; gap: 4px }
-@media (pointer: coarse) { .pv-tools .v-btn { width: 42px !important; height: 42px !important } }
+.pv-paint-tools { position: absolute; left: 60px; top: 8px; z-index: 4; display: flex; flex-wrap: wrap; gap: 2px;
+  max-width: calc(100% - 68px); padding: 2px; border-radius: 8px; background: #000b }
+.pv-paint-tools .pv-dot { align-self: center; width: 14px; height: 14px; margin: 0 4px }
+@media (pointer: coarse) {
+  .pv-tools .v-btn, [data-paint-tool] { width: 42px !important; height: 42px !important }
+  .pv-paint-tools .v-btn { width: 36px !important; height: 40px !important }
+  .pv-label-row .v-btn { min-height: 40px } .pv-num { font-size: 16px; padding: 6px }
+}
 .pv-over { position: absolute; inset: 0; z-index: 2; cursor: crosshair; touch-action: none }
 .pv-over svg { width: 100%; height: 100% }
 .pv-marks { position: absolute; inset: 0; z-index: 2; overflow: hidden; pointer-events: none }
@@ -279,8 +286,8 @@ def _view(app: Any) -> None:
         atlas_tab.over()
         with html.Div(
             v_if="['3d', 'beside'].includes(slicing.layout)", style=(
-                "{ position: 'absolute', inset: 0, pointerEvents: 'none', "
-                "right: slicing.layout === 'beside' ? '30%' : 0 }",),
+                "((b) => ({ position: 'absolute', pointerEvents: 'none', left: 0, top: 0, width: 100 * b.w + '%', "
+                "height: 100 * b.h + '%' }))(slicing.boxes.find((b) => b.name === '3d') || { w: 1, h: 1 })",),
         ):  # fmt: skip
             for edge, place in (
                 ("left", "left: 52px; top: 50%"),

@@ -237,13 +237,34 @@ class PaintActions(Actions):
 
 def over(app: Any) -> None:
     """Build what catches the pointer while a tool that paints is in hand: see client/painting.js."""
-    del app
+    _at_hand(app)
     html.Div(
         v_if=f"{PAINTING} && slicing.shown", id="pv-paint", classes="pv-over", data_tool=("tool",),
         data_radius=("brush",), data_color=(
             "tool === 'erase' ? '#ffffff' : (painting.regions.find((r) => r.name === painting.active) || {}).color",),
         data_boxes=("JSON.stringify(slicing.boxes)",),
     )  # fmt: skip
+
+
+def _at_hand(app: Any) -> None:
+    """Build the tools over the picture, for when the panel that has them is closed."""
+    del app
+    with html.Div(
+        v_if="slicing.shown && painting.regions.length && (!right_open || tab !== 'slices')", classes="pv-paint-tools",
+        id="paint-tools",
+    ):  # fmt: skip
+        html.Span(classes="pv-dot", title=("painting.active",), style=(
+            "{ background: (painting.regions.find((r) => r.name === painting.active) || {}).color }",))  # fmt: skip
+        for name, icon, hint in ICONS:
+            with v3.VBtn(
+                icon=True, size="x-small", aria_label=hint, variant=(f"tool === '{name}' ? 'flat' : 'text'",),
+                color=(f"tool === '{name}' ? 'primary' : 'white'",), data_paint_at_hand=name,
+                click=f"tool = tool === '{name}' ? 'rotate' : '{name}'",
+            ):  # fmt: skip
+                v3.VIcon(icon, size=18)
+        for step, icon, hint in ((1, "mdi-chevron-up", "Next slice"), (-1, "mdi-chevron-down", "Slice before")):
+            v3.VBtn(icon=icon, size="x-small", variant="text", color="white", aria_label=hint,
+                    data_slice_step=str(step))  # fmt: skip
 
 
 def build(app: Any) -> None:

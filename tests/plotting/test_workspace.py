@@ -321,3 +321,18 @@ def test_a_closed_plotter_leaves_no_workspace_alive():
     del plotter
     gc.collect()
     assert gone() is None
+
+
+def test_slices_lie_below_the_3d_view_in_a_window_that_is_higher_than_wide(four, workspace):
+    workspace.layout = "beside"
+    views = dict(zip(("axial", "coronal", "sagittal", "3d"), four.renderers, strict=True))
+    width, height = four.window_size
+    assert views["3d"].GetViewport() == pytest.approx((0.0, 0.0, 0.7, 1.0))
+    four.window_size = 200, 400
+    assert views["3d"].GetViewport() == pytest.approx((0.0, 0.2, 1.0, 1.0))
+    assert views["coronal"].GetViewport() == pytest.approx((1 / 3, 0.0, 2 / 3, 0.2))
+    four.window_size = width, height
+    assert views["3d"].GetViewport() == pytest.approx((0.0, 0.0, 0.7, 1.0))
+    workspace.remove()
+    four.window_size = 200, 400
+    assert views["3d"].GetViewport() == pytest.approx((0.0, 0.0, 0.7, 1.0))

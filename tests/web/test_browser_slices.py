@@ -243,3 +243,29 @@ def test_labels_of_an_atlas_are_searched_and_clicked(visit):
     here.wait(lambda: asked() == [5, 3], "what was asked")
     here.press("Control+z")
     here.wait(lambda: asked() == [5], "one label")
+
+
+def test_a_phone_has_slices_below_and_tools_that_paint_at_hand(visit):
+    here = visit("lines.fiblets", width=390, height=844, has_touch=True, is_mobile=True)
+    here.page.evaluate("window.trame.trigger('browse', ['', 'slices'])")
+    here.page.tap("#dialog-open .v-list-item:has-text('head.nii.gz')")
+    here.wait(lambda: len(here.state("slicing")["boxes"]) == 4, "four views")
+    here.rests()
+    box = {one["name"]: one for one in here.state("slicing")["boxes"]}
+    assert box["3d"]["w"] == 1.0
+    assert min(box[name]["y"] for name in ("axial", "coronal", "sagittal")) >= 0.6
+    here.page.evaluate("window.trame.state.update({right_open: true, tab: 'slices'})")
+    here.page.tap("[data-action=add-painted]")
+    here.page.wait_for_selector("#pv-paint[data-tool=brush]")
+    here.page.evaluate("window.trame.state.update({right_open: false})")
+    here.page.tap("[data-paint-at-hand=fill]")
+    here.page.wait_for_selector("#pv-paint[data-tool=fill]")
+    at = told(here)
+    view = here.page.locator("#pv-view").bounding_box()
+    middle = [view[side] + view[length] * (box["axial"][k] + 0.5 * box["axial"][n])
+              for side, length, k, n in (("x", "width", "x", "w"), ("y", "height", "y", "h"))]  # fmt: skip
+    here.page.wait_for_timeout(400)  # the panel slides away
+    here.page.touchscreen.tap(*middle)
+    here.wait(lambda: here.state("painting")["regions"][0]["voxels"] == "256", "the slice that is filled")
+    here.page.tap("[data-slice-step='1']")
+    here.wait(lambda: abs(told(here)[2] - at[2]) == 4.0, "the next slice")

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from pvfiblets.plotting.slices.stack import SliceStack
     from pvfiblets.slices.frames import PlaneGrid
 
-__all__ = ["SliceActor", "SlicePlane", "before_render", "prepare"]
+__all__ = ["SliceActor", "SlicePlane", "before_render", "on_events", "prepare"]
 
 Array = npt.NDArray[np.float64]
 
@@ -191,9 +191,15 @@ class SlicePlane:
 
 
 def before_render(renderer: Any, owner: Any, method: str) -> Any:
-    """Call an owner's method whenever a renderer begins to draw; neither keeps the other alive.
+    """Call an owner's method whenever a renderer begins to draw; returns and rules as of :func:`on_events`.
 
     :func:`prepare` calls it, too, for renderers that may have nothing to draw.
+    """
+    return on_events(renderer, ("StartEvent", _PREPARE), owner, method)
+
+
+def on_events(caller: Any, events: tuple[str, ...], owner: Any, method: str) -> Any:
+    """Call an owner's method at events of an object of VTK's; neither keeps the other alive.
 
     Returns
     -------
@@ -207,9 +213,9 @@ def before_render(renderer: Any, owner: Any, method: str) -> Any:
         if alive is not None:
             getattr(alive, method)()
 
-    tags = [renderer.AddObserver(event, started) for event in ("StartEvent", _PREPARE)]
+    tags = [caller.AddObserver(event, started) for event in events]
     kept = vtkWeakReference()
-    kept.Set(renderer)
+    kept.Set(caller)
 
     def end() -> None:
         there = kept.Get()

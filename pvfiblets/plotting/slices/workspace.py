@@ -17,7 +17,7 @@ from pvfiblets.plotting.slices.layer import SliceLayer
 from pvfiblets.plotting.slices.layouts import LAYOUTS, viewports
 from pvfiblets.plotting.slices.pane import Pane
 from pvfiblets.plotting.slices.pane_events import PaneEvents
-from pvfiblets.plotting.slices.plane import before_render, prepare
+from pvfiblets.plotting.slices.plane import before_render, on_events, prepare
 from pvfiblets.plotting.slices.stack import SliceStack
 from pvfiblets.slices.frames import ORIENTATIONS
 
@@ -99,6 +99,8 @@ class Workspace:
         self._removed = False
         self._told = True
         self._ends = [before_render(one, self, "sync") for one in renderers.values()]
+        if plotter.render_window is not None:
+            self._ends.append(on_events(plotter.render_window, ("WindowResizeEvent",), self, "_arrange"))
         self._kept: KeptViews | None = None
         if plotter.render_window is not None:
             self._kept = KeptViews(plotter.render_window, renderers.values(), _weakly(self._prepare))
@@ -176,19 +178,25 @@ class Workspace:
     def layout(self) -> str:
         """Which views are shown, and where.
 
-        ``"grid"``, ``"row"``, ``"beside"`` (the 3-D view and, small, three slices), or one of ``"3d"``, ``"axial"``,
+        ``"grid"``, ``"row"``, ``"beside"`` (the 3-D view and, small, three slices: below it in a window that is higher
+        than wide), or one of ``"3d"``, ``"axial"``,
         ``"coronal"`` and ``"sagittal"`` alone.
         """
         return self._layout
 
     @layout.setter
     def layout(self, layout: str) -> None:
-        places = viewports(_choice("layout", layout, LAYOUTS))
+        self._layout = _choice("layout", layout, LAYOUTS)
+        self._arrange()
+
+    def _arrange(self, *_: Any) -> None:
+        """Lay views out as it suits the window, which may have another shape now."""
+        width, height = self._plotter.window_size
+        places = viewports(self._layout, width / max(height, 1))
         for name, renderer in self._renderers.items():
             renderer.SetDraw(name in places)
             renderer.SetInteractive(name in places)
             renderer.SetViewport(*places.get(name, (0.0, 0.0, 0.001, 0.001)))
-        self._layout = layout
 
     @property
     def active(self) -> SliceLayer:

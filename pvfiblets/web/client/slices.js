@@ -13,9 +13,9 @@
   };
   const within = (share) => share >= 0 && share <= 1;
 
-  document.addEventListener("pointermove", (event) => {
+  for (const kind of ["pointermove", "pointerdown"]) document.addEventListener(kind, (event) => {
     const here = place(event);
-    if (here.every(within)) at = here;
+    if (here.every(within) && !event.target.closest?.("#paint-tools")) at = here;
   }, true);
 
   const STEPS = {
@@ -54,6 +54,8 @@
 
   document.addEventListener("click", (event) => {
     if (event.target.closest?.("#pv-ask")) call("ask_label", ...place(event));
+    const button = event.target.closest?.("[data-slice-step]");
+    if (button) step([0, 0, Number(button.dataset.sliceStep)]);
   }, true);
 
   // A wheel over what lies over the picture goes through slices, too.
