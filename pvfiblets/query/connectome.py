@@ -21,6 +21,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from ..codec.progress import Progress
+from ..progress_bar import progress_bar
 from .measures import measure
 from .parcels import read_atlas
 
@@ -36,6 +38,8 @@ SUFFIXES = (".csv", ".tsv", ".txt", ".npy")
 """Of files that a connectome is written to."""
 MOST_VOXELS = 1 << 20
 """Voxels that may be looked at about an end."""
+TOGETHER = 1 << 18
+"""Ends that are given their parcels together."""
 
 Ints = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]
@@ -191,6 +195,8 @@ def connectome(
     radius: float = 4.0,
     statistic: str | None = None,
     names: Mapping[int, str] | None = None,
+    ends: npt.ArrayLike | None = None,
+    progress: Progress = False,
 ) -> Connectome:
     """Put a number to every pair of parcels.
 
@@ -213,6 +219,11 @@ def connectome(
         part in sums and means.
     names : mapping of int to str, optional
         Of the parcels; those without one are called by their number.
+    ends : array_like, optional
+        ``(n_streamlines, 2)`` labels of the ends, as :func:`end_labels` gives them for these labels and this radius;
+        they are looked for by default.
+    progress : bool or callable
+        As of :func:`end_labels`.
 
     Returns
     -------
@@ -233,7 +244,7 @@ def connectome(
     source = _opened(data)
     volume, affine = read_atlas(labels)
     how = _statistic(statistic, counts=isinstance(contrast, str) and contrast == "count")
-    ends = end_labels(source, (volume, affine), radius)
+    ends = _given_ends(ends, source, (volume, affine), radius, progress)
     found = np.unique(volume)
     known = found[found != 0].astype(np.int64)
     if not len(known):
@@ -254,7 +265,7 @@ def connectome(
     )  # fmt: skip
 
 
-def end_labels(data: FibletSet | Streamlines, labels: Any, radius: float = 4.0) -> Ints:
+def end_labels(data: FibletSet | Streamlines, labels: Any, radius: float = 4.0, *, progress: Progress = False) -> Ints:
     """Return the parcel of each end of each streamline.
 
     Parameters
@@ -262,6 +273,9 @@ def end_labels(data: FibletSet | Streamlines, labels: Any, radius: float = 4.0) 
     data : FibletSet or Streamlines
     labels, radius
         As of :func:`connectome`.
+    progress : bool or callable
+        Show a progress bar; or call this with what is being done and which share of it is, from 0 to 1. What it raises
+        ends the work.
 
     Returns
     -------
@@ -282,13 +296,35 @@ def end_labels(data: FibletSet | Streamlines, labels: Any, radius: float = 4.0) 
     linear = np.ascontiguousarray(affine[:3, :3])
     slack = 0.5 * float(np.abs(linear).sum(axis=1) @ np.abs(linear).sum(axis=1)) ** 0.5  # of a voxel, at most
     offsets, distances = _offsets(linear, reach + slack if reach > 0.0 else 0.0)
+    if callable(progress):
+        progress("finding ends", 0.0)
     points = np.ascontiguousarray(_end_points(data).reshape(-1, 3))
-    found = np.zeros(len(points), np.int64)
-    nearest_labels(
-        points, np.ascontiguousarray(volume, np.int64), np.linalg.inv(affine), linear, offsets, distances, slack,
-        reach, found,
-    )  # fmt: skip
+    found, voxels, inverse = (
+        np.zeros(len(points), np.int64),
+        np.ascontiguousarray(volume, np.int64),
+        np.linalg.inv(affine),
+    )
+    with progress_bar(progress is True, total=len(points), desc="looking for parcels", unit="ends") as bar:
+        for first in range(0, len(points), TOGETHER):
+            if callable(progress):
+                progress("looking for parcels", first / len(points))
+            part = slice(first, first + TOGETHER)
+            nearest_labels(
+                points[part], voxels, inverse, linear, offsets, distances, slack, reach, found[part]
+            )  # fmt: skip
+            bar.update(len(points[part]))
     return found.reshape(-1, 2)
+
+
+def _given_ends(given: Any, source: Any, atlas: Any, radius: float, progress: Progress) -> Ints:
+    if given is None:
+        return end_labels(source, atlas, radius, progress=progress)
+    ends = np.asarray(given, np.int64)
+    if ends.shape != (len(source), 2):
+        raise ValueError(f"ends have the shape {ends.shape}; give two labels for each of {len(source):,} streamlines")
+    if not np.isin(ends[ends != 0], atlas[0]).all():
+        raise ValueError("ends hold labels that the volume does not hold; give those of end_labels() for it")
+    return ends
 
 
 def _offsets(linear: Floats, reach: float) -> tuple[Ints, Floats]:

@@ -21,10 +21,13 @@ if TYPE_CHECKING:
 
     Colours = Callable[[Source], Any]
     """From where a volume comes from to the volume that colours lines."""
+    Ends = Callable[[Any, str, float], Any]
+    """From fiblets, a label volume's path and mm to the parcels of ends."""
 
 __all__ = [
     "MOST_PLANES",
     "add_actor",
+    "connecting",
     "cut",
     "filter_as",
     "look_as",
@@ -37,7 +40,7 @@ __all__ = [
 MOST_PLANES = 6
 """That VTK cuts a mesh or tubes by."""
 
-_CONDITION = "regions"
+_CONDITION, _CONNECTION = "regions", "connection"
 
 
 def add_actor(plotter: Any, layer: Layer, loaded: Loaded, colours: Colours) -> Any:
@@ -129,8 +132,18 @@ def _selection_style(settings: Mapping[str, Any]) -> dict[str, Any]:
 # What is shown of lines -----------------------------------------------------------------------------
 
 
-def filter_as(actor: Any, old: Filters, new: Filters, load: Load) -> None:
+def filter_as(actor: Any, old: Filters, new: Filters, load: Load, ends: Ends) -> None:
     """Bring what is shown of a tractogram in step with filters that were checked.
+
+    Parameters
+    ----------
+    actor : FibletsActor
+    old, new : Filters
+        Those that are in force, and those wanted.
+    load : callable
+        Gives meshes and labels that regions are made of.
+    ends : callable
+        From fiblets, a label volume's path and a radius to the parcels in which streamlines end, ``(n, 2)``.
 
     Raises
     ------
@@ -152,6 +165,17 @@ def filter_as(actor: Any, old: Filters, new: Filters, load: Load) -> None:
             actor.include(make_predicate(new.regions, load), name=_CONDITION)
         elif _CONDITION in actor.conditions:
             actor.remove_condition(_CONDITION)
+    if old.connection != new.connection:
+        if new.connection is not None:
+            actor.include(connecting(ends, actor.fiblets, new.connection), name=_CONNECTION)
+        elif _CONNECTION in actor.conditions:
+            actor.remove_condition(_CONNECTION)
+
+
+def connecting(ends: Ends, fiblets: Any, connection: Mapping[str, Any]) -> np.ndarray:
+    """``(n,)`` bool: streamlines that connect the two parcels of a filter."""
+    found = np.sort(ends(fiblets, connection["labels"], connection["radius"]), axis=1)
+    return np.asarray((found == np.sort(connection["pair"])).all(axis=1))
 
 
 def select_as(actor: Any, selected: Ids | None) -> None:

@@ -91,7 +91,7 @@ class MeasureActions(LineActions):
         for layer in scene.layers:
             if layer.kind in ("volume", "image"):
                 data = scene.data(layer).data
-                if data.values.ndim == 3 and getattr(data, "affine", None) is not None:
+                if getattr(data, "affine", None) is not None and (data.values.ndim == 3 or data.values.shape[3] == 1):
                     found[layer.name] = (data.values, data.affine)
         return found
 

@@ -24,6 +24,7 @@ __all__ = [
     "Filters",
     "Ids",
     "Layer",
+    "Matrix",
     "Measurement",
     "Source",
     "State",
@@ -173,17 +174,22 @@ class Filters:
     regions : mapping or None
         An expression of :mod:`pvfiblets.web.shapes`: ``{"how": "passes", "region": {...}}``, joined by
         ``{"op": "and" | "or" | "not", "of": [...]}``.
+    connection : mapping or None
+        ``{"labels": path, "pair": [label, label], "radius": mm}``: those that connect two parcels of a label volume,
+        as :func:`pvfiblets.connectome` has it.
     """
 
     criteria: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     groups: tuple[str, ...] | None = None
     subset: Mapping[str, Any] | None = None
     regions: Mapping[str, Any] | None = None
+    connection: Mapping[str, Any] | None = None
 
     @property
     def active(self) -> bool:
         """Whether anything is left out."""
-        return bool(self.criteria) or any(part is not None for part in (self.groups, self.subset, self.regions))
+        others = (self.groups, self.subset, self.regions, self.connection)
+        return bool(self.criteria) or any(part is not None for part in others)
 
 
 @dataclass(frozen=True)
@@ -288,6 +294,31 @@ class Measurement:
 
 
 @dataclass(frozen=True)
+class Matrix:
+    """How strongly the parcels of a label volume are connected by a tractogram: what there is a matrix of.
+
+    Attributes
+    ----------
+    layer : str
+        Id of the tractogram.
+    labels : str
+        The volume's file.
+    names : str or None
+        A file with the labels' names.
+    weights, contrast, statistic, radius
+        As of :func:`pvfiblets.connectome`; weights and contrast are names of arrays.
+    """
+
+    layer: str
+    labels: str
+    names: str | None = None
+    weights: str | None = None
+    contrast: str = "count"
+    statistic: str | None = None
+    radius: float = 4.0
+
+
+@dataclass(frozen=True)
 class State:
     """A scene's document.
 
@@ -302,6 +333,8 @@ class State:
         Regions that are painted on slices.
     bundles : tuple of (Source, tuple of Bundle)
         Those of sources whose bundles were edited.
+    matrix : Matrix or None
+        That which is shown beside the picture.
     """
 
     layers: tuple[Layer, ...] = ()
@@ -310,6 +343,7 @@ class State:
     measurements: tuple[Measurement, ...] = ()
     painting: Painting | None = None
     bundles: tuple[tuple[Source, tuple[Bundle, ...]], ...] = ()
+    matrix: Matrix | None = None
 
     def bundles_of(self, source: Source) -> tuple[Bundle, ...] | None:
         """Return the bundles of a source, if they were edited; None for the groups of its file."""
@@ -330,7 +364,6 @@ class State:
         return named(self.clips, clip_id, "cut", by="id")
 
     def sources(self) -> set[tuple[str, Source]]:
-        """Kind and source of all layers, and of volumes that colour them as of the kind ``"colours"``."""
         coloured = {("colours", source) for layer in self.layers for source in volumes_of(layer.settings).values()}
         return coloured | {(layer.kind, layer.source) for layer in self.layers}
 

@@ -35,6 +35,7 @@ from pvfiblets.web.loading import Cancel, Files, Loaded, Progress
 from pvfiblets.web.scalar_bars import Bars
 from pvfiblets.web.scene_bundles import BundleSync, SceneBundles
 from pvfiblets.web.scene_filters import SceneFilters
+from pvfiblets.web.scene_matrix import SceneMatrix
 from pvfiblets.web.scene_measurements import SceneMeasurements
 from pvfiblets.web.scene_painting import ScenePainting
 from pvfiblets.web.scene_regions import SceneRegions
@@ -76,8 +77,8 @@ class _Drawn:
 
 
 class Scene(
-    SceneFilters, SceneRegions, SceneSelection, SceneSlices, ScenePainting, SceneBundles, SceneMeasurements,
-    LayerQueries, Cameras,
+    SceneFilters, SceneRegions, SceneSelection, SceneSlices, ScenePainting, SceneBundles, SceneMatrix,
+    SceneMeasurements, LayerQueries, Cameras,
 ):  # fmt: skip
     """What a session shows.
 
@@ -238,10 +239,10 @@ class Scene(
 
     def _filter(self, drawn: _Drawn, layer: Layer) -> None:
         try:
-            filter_as(drawn.actor, drawn.layer.filters, layer.filters, self.shape_data)
+            filter_as(drawn.actor, drawn.layer.filters, layer.filters, self.shape_data, self.store.end_labels)
         except BaseException:  # some of it may be in force already
             drawn.actor.show_all()
-            filter_as(drawn.actor, Filters(), drawn.layer.filters, self.shape_data)
+            filter_as(drawn.actor, Filters(), drawn.layer.filters, self.shape_data, self.store.end_labels)
             cut(drawn.actor, drawn.layer, drawn.clips, self.shape_data)
             raise
 
@@ -379,7 +380,9 @@ class Scene(
             else clip
             for clip in self._state.clips
         )
-        self.become(replace(self._state, layers=kept, clips=clips), f"remove {layer.name}")
+        matrix = self._state.matrix
+        matrix = None if matrix is not None and matrix.layer == layer_id else matrix
+        self.become(replace(self._state, layers=kept, clips=clips, matrix=matrix), f"remove {layer.name}")
 
     def duplicate(self, layer_id: str) -> Layer:
         """Add a layer like another, with the same settings and filters."""

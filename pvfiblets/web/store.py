@@ -4,13 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
+import numpy as np
+
 from pvfiblets.web.document import LINES, Layer, Source, State, volumes_of
-from pvfiblets.web.loading import Cancel, Files, Loaded, Progress
+from pvfiblets.web.loading import Cancel, Files, Loaded, Progress, Watch
 
 __all__ = ["Store"]
+
+KEPT = 3
+"""Tables of the parcels in which streamlines end: eight bytes a streamline."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Ends:
+    """Parcels of the ends of streamlines, by the volume's path and the radius."""
+
+    fiblets: Any
+    at: tuple[str, float]
+    labels: np.ndarray
 
 
 class Store:
@@ -26,17 +40,19 @@ class Store:
         self.files = files
         self.loaded: dict[tuple[str, Source], Loaded] = {}
         self.shapes: dict[tuple[str, str], Any] = {}
+        self.ends: list[_Ends] = []
 
     def fork(self) -> Store:
         """Return another that begins with the same; a thread may fill it while this one is in use."""
         twin = Store(self.files)
-        twin.loaded, twin.shapes = self.loaded.copy(), self.shapes.copy()
+        twin.loaded, twin.shapes, twin.ends = self.loaded.copy(), self.shapes.copy(), list(self.ends)
         return twin
 
     def take(self, other: Store) -> None:
         """Have all that another one has, too."""
         self.loaded = {**other.loaded, **self.loaded}
         self.shapes = {**other.shapes, **self.shapes}
+        self.ends = [*self.ends, *(one for one in other.ends if one not in self.ends)][-KEPT:]
 
     @contextmanager
     def with_new(self, loaded: Loaded) -> Iterator[None]:
@@ -91,6 +107,24 @@ class Store:
             self.shapes[kind, path] = as_region(data) if kind == "mesh" else data
         return self.shapes[kind, path]
 
+    def parcels(self, path: str) -> tuple[Any, Any]:
+        """Return the labels of a volume, ``(i, j, k)``, and the matrix that places them."""
+        volume = self.shape("labels", path)
+        return np.asanyarray(volume.dataobj), volume.affine
+
+    def end_labels(
+        self, fiblets: Any, path: str, radius: float, progress: Progress | None = None, cancel: Cancel | None = None
+    ) -> Any:
+        """Return the parcels in which streamlines end, ``(n, 2)``, as :func:`.end_labels`; the latest are kept."""
+        found = next((one for one in self.ends if one.fiblets is fiblets and one.at == (path, radius)), None)
+        if found is None:
+            from pvfiblets.query.connectome import end_labels
+
+            labels = end_labels(fiblets, self.parcels(path), radius, progress=Watch(progress, cancel))
+            found = _Ends(fiblets, (path, radius), labels.astype(np.int32))
+            self.ends = [*self.ends[1 - KEPT :], found]
+        return found.labels
+
     def keep(self, states: Iterable[State]) -> None:
         """Let go of data that none of some documents needs."""
         needed = set()
@@ -98,11 +132,14 @@ class Store:
             for kind, source in state.sources():
                 needed |= {(_family(kind), source), (_family(kind), source.bare)}
         self.loaded = {key: loaded for key, loaded in self.loaded.items() if key in needed}
+        alive = [loaded.data for loaded in self.loaded.values()]
+        self.ends = [one for one in self.ends if any(one.fiblets is data for data in alive)]
 
     def clear(self) -> None:
         """Let go of everything."""
         self.loaded.clear()
         self.shapes.clear()
+        self.ends.clear()
 
     def _read(self, kind: str, source: Source, progress: Progress | None, cancel: Cancel | None) -> Loaded:
         if (kind, source) not in self.loaded:

@@ -65,6 +65,24 @@ def test_ends_have_the_nearest_parcel(streamlines, atlas, radius):
     assert (found[-1] == 0).all()
 
 
+def test_progress_is_told_and_can_end_the_work(streamlines, atlas, monkeypatch):
+    from pvfiblets.query import connectome as module
+
+    whole, told = end_labels(streamlines, atlas, 3.0), []
+    monkeypatch.setattr(module, "TOGETHER", 100)
+    found = connectome(streamlines, atlas, radius=3.0, progress=lambda *said: told.append(said))
+    np.testing.assert_array_equal(found.ends, whole)
+    assert len(told) == 1 + -(-2 * len(streamlines) // 100)
+    assert [share for _, share in told] == sorted(share for _, share in told)
+
+    def stop(what, share):
+        if share > 0.3:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        end_labels(streamlines, atlas, 3.0, progress=stop)
+
+
 def by_hand(ends, labels, value, weight, how):
     """The matrix, pair by pair."""
     n = len(labels)
