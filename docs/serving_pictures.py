@@ -52,6 +52,7 @@ def make_root(root: Path) -> None:
         _made_up_head(root / "t1.nii.gz")
     else:
         shutil.copy(head, root / "t1.nii.gz")
+    _atlas(root / "atlas.nii.gz", tracts.points)
     import pyvista as pv
 
     pv.ParametricEllipsoid(9, 12, 8, center=(26, 4, 26)).save(root / "lesion.ply")
@@ -100,6 +101,23 @@ def _between_voxels(values: np.ndarray, places: np.ndarray) -> np.ndarray:
 def _head() -> Path | None:
     found = DATA / "nv_MNI152_2009_template.nii.gz"
     return found if found.is_file() else None
+
+
+def _atlas(path: Path, points: np.ndarray) -> None:
+    """Write made-up parcels, blocks of the brain, and what they are called."""
+    import nibabel
+
+    side = 4.0
+    low, high = points.min(axis=0) - side, points.max(axis=0) + side
+    shape = np.ceil((high - low) / side).astype(int)
+    block = [np.arange(n) * many // n for n, many in zip(shape, (2, 3, 2), strict=True)]
+    labels = 1 + block[0][:, None, None] + 2 * (block[1][:, None] + 3 * block[2])
+    affine = np.diag([side, side, side, 1.0])
+    affine[:3, 3] = low
+    nibabel.save(nibabel.Nifti1Image(labels.astype(np.int16), affine), path)
+    names = [f"{z} {y} {x}" for z in ("lower", "upper") for y in ("back", "middle", "front") for x in ("left", "right")]
+    rows = [f"{label}\t{name}" for label, name in enumerate(names, 1)]
+    path.with_name("atlas.tsv").write_text("\n".join(["index\tname", *rows]) + "\n")
 
 
 def _made_up_head(path: Path) -> None:
@@ -243,6 +261,39 @@ def bundles(studio: Studio) -> Visit:
     here.tab("bundles")
     here.page.click("[data-action=colour-by-bundle]")
     here.wait(lambda: here.state("bundles")["coloured"], "colours of bundles")
+    return here
+
+
+@state
+def measures(studio: Studio) -> Visit:
+    """Values along bundles, and a row for each."""
+    here = bundles(studio)
+    here.page.click("[data-action=measure-bundles]")
+    here.page.click("[data-action=profile-bundles]")
+    here.wait(lambda: here.state("measures")["profile"].get("rows"), "a profile")
+    here.page.click("[data-action=table-bundles]")
+    here.wait(lambda: here.state("measures")["table"].get("rows"), "a table")
+    here.page.locator("#bundle-table").scroll_into_view_if_needed()
+    return here
+
+
+@state
+def matrix(studio: Studio) -> Visit:
+    """A matrix, and the streamlines of one of its cells."""
+    here = studio.visit("brain.fiblets")
+    here.press("4")
+    here.press("[")
+    here.page.click("[data-action=matrix]")
+    here.page.click("[data-select=matrix-labels] .v-field")
+    here.page.click(".v-overlay--active .v-list-item:has-text('atlas.nii.gz')")
+    here.wait(lambda: here.state("matrix")["form"]["chosen"]["names"], "its names")
+    here.page.click("[data-action=make-matrix]")
+    here.page.wait_for_selector("#pv-cells")
+    cells = here.page.locator("#pv-cells")
+    box, n = cells.bounding_box(), int(cells.get_attribute("data-n"))
+    row, column = 7, 8
+    here.page.mouse.click(box["x"] + (column + 0.5) / n * box["width"], box["y"] + (row + 0.5) / n * box["height"])
+    here.wait(lambda: here.state("matrix")["cell"], "its streamlines")
     return here
 
 

@@ -31,6 +31,7 @@ from pvfiblets.web.filter_tab import FilterActions
 from pvfiblets.web.first_document import first_document
 from pvfiblets.web.history import History
 from pvfiblets.web.info_tables import tables
+from pvfiblets.web.matrix_panel import MatrixActions
 from pvfiblets.web.opening import FileActions
 from pvfiblets.web.options import Options
 from pvfiblets.web.painting_tab import PaintActions
@@ -48,7 +49,7 @@ logger = logging.getLogger("pvfiblets.web")
 
 CLIENT = Path(__file__).with_name("client")
 CLIENT_URL = "__pvfiblets"
-SCRIPTS = ("pvfiblets.js", "fields.js", "regions.js", "slices.js", "painting.js", "connection.js")
+SCRIPTS = ("pvfiblets.js", "fields.js", "regions.js", "slices.js", "painting.js", "matrix.js", "connection.js")
 
 
 class Explorer(TrameApp):
@@ -106,6 +107,7 @@ class Explorer(TrameApp):
         self.bundles = BundleActions(self)
         self.finding = FindingActions(self)
         self.measuring = MeasureActions(self)
+        self.matrix = MatrixActions(self)
         self.exports = ExportActions(self)
         self.sliders = SlideActions(self)
         self.page.export_to = "folder" if os.access(self.confined.root, os.W_OK) else "computer"
@@ -146,6 +148,9 @@ class Explorer(TrameApp):
             "selection_csv": lambda: selection_csv(self.scene),
             "profile_csv": self.selecting.profile_csv,
             "bundle_table": self.measuring.fetch,
+            "matrix_at": self.matrix.at,
+            "matrix_show": self.matrix.connect,
+            "matrix_file": self.matrix.fetch,
             "slide": self.sliders.slide,
             "set_layout": self.slices.set_layout,
             "step_slice": self.slices.step,
@@ -221,6 +226,7 @@ class Explorer(TrameApp):
             self.bundles.refresh()
             self.finding.refresh()
             self.measuring.refresh()
+            self.matrix.refresh()
         self.stream.request()
 
     def _show_info(self) -> None:

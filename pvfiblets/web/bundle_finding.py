@@ -26,8 +26,6 @@ LISTED = 50
 """Clusters that become bundles; the others are counted."""
 COMPARED = 1000
 """Streamlines that all others are compared with; of more, an even share."""
-FOLDERS, DEEPEST = 200, 3
-"""Folders that are looked through for models, and how deep they lie."""
 
 
 class FindingActions(LineActions):
@@ -150,17 +148,9 @@ class FindingActions(LineActions):
 
 def model_folders(confined: Any) -> list[str]:
     """Return the folders under the root that hold tractograms, at most some levels deep."""
-    found, waiting = [], [("", 0)]
-    for _ in range(FOLDERS):
-        if not waiting:
-            break
-        folder, depth = waiting.pop(0)
-        entries = confined.listing(folder)
-        if folder and any(_is_lines(entry) for entry in entries):
-            found.append(folder)
-        if depth < DEEPEST:
-            waiting += [(entry.path, depth + 1) for entry in entries if entry.folder]
-    return sorted(found)
+    return sorted(
+        folder for folder, entries in confined.walk() if folder and any(_is_lines(entry) for entry in entries)
+    )
 
 
 def read_models(files: Files, models: dict[str, str], watch: Watch) -> dict[str, Any]:

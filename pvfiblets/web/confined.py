@@ -123,6 +123,18 @@ class Confined:
         entries.sort(key=lambda entry: (not entry.folder, entry.name.lower()))
         return entries[:LISTED]
 
+    def walk(self, deepest: int = 3, most: int = 200) -> list[tuple[str, list[Entry]]]:
+        """Return folders, the root's own path ``""`` first, with their entries: some levels deep, and not too many."""
+        found: list[tuple[str, list[Entry]]] = []
+        waiting = [("", 0)]
+        while waiting and len(found) < most:
+            folder, depth = waiting.pop(0)
+            entries = self.listing(folder)
+            found.append((folder, entries))
+            if depth < deepest:
+                waiting += [(entry.path, depth + 1) for entry in entries if entry.folder]
+        return found
+
 
 def check_name(name: str) -> str:
     """Return the name of a file without a folder, if it is one that every system and page can show.

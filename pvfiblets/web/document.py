@@ -364,6 +364,7 @@ class State:
         return named(self.clips, clip_id, "cut", by="id")
 
     def sources(self) -> set[tuple[str, Source]]:
+        """Kind and source of all layers, and of volumes that colour them as of the kind ``"colours"``."""
         coloured = {("colours", source) for layer in self.layers for source in volumes_of(layer.settings).values()}
         return coloured | {(layer.kind, layer.source) for layer in self.layers}
 

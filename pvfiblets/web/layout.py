@@ -7,7 +7,7 @@ from typing import Any
 from trame.ui.vuetify3 import VAppLayout
 from trame.widgets import client, rca
 
-from pvfiblets.web import atlas_tab, dialogs, painting_tab, panels, slices_tab, tabs
+from pvfiblets.web import atlas_tab, dialogs, matrix_panel, painting_tab, panels, slices_tab, tabs
 from pvfiblets.web.elements import html, v3
 from pvfiblets.web.painting_tab import PAINTING
 
@@ -29,6 +29,19 @@ STYLE = """
 html, body { overflow: hidden !important; overscroll-behavior: none }
 .pv-view { position: absolute; top: var(--v-layout-top); bottom: 0; left: var(--v-layout-left);
   right: var(--v-layout-right); touch-action: none; background: #000 }
+.pv-view.pv-less { right: calc(var(--v-layout-right) + min(340px, 50%)) }
+.pv-matrix { position: absolute; top: var(--v-layout-top); bottom: 0; right: var(--v-layout-right);
+  width: min(340px, 50%); overflow: hidden auto; background: rgb(var(--v-theme-surface)); z-index: 2;
+  border-left: 1px solid rgba(128,128,128,.3) }
+@media (max-width: 759.9px) {
+  .pv-view.pv-less { right: var(--v-layout-right); bottom: 55% }
+  .pv-matrix { left: var(--v-layout-left); width: auto; top: auto; height: 55%;
+    border-top: 1px solid rgba(128,128,128,.3) }
+}
+.pv-cells { position: relative; aspect-ratio: 1; max-width: 460px; cursor: crosshair; touch-action: pan-y }
+.pv-cells img { width: 100%; height: 100%; display: block; image-rendering: pixelated; user-select: none }
+.pv-cross, .pv-chosen-cell { position: absolute; pointer-events: none; box-shadow: 0 0 0 1.5px #fff, 0 0 0 3px #000 }
+.pv-chosen-cell { box-shadow: 0 0 0 2px #3df, 0 0 0 3.5px #000 }
 .pv-view img { width: 100%; height: 100%; object-fit: contain; display: block;
   user-select: none; -webkit-user-drag: none }
 .pv-edge { position: absolute; color: #fff; font: 600 16px Roboto, sans-serif; pointer-events: none;
@@ -162,6 +175,7 @@ def build(app: Any) -> Any:
                 tabs.build(app)
             with v3.VMain(style="position: relative; height: 100%"):
                 _view(app)
+                matrix_panel.build(app)
             dialogs.build(app)
     return layout
 
@@ -206,6 +220,8 @@ def _wide(app: Any) -> None:
             type="color", classes="pv-colour", value=("background",), aria_label="Background",
             change=(app.camera.set_background, "[$event.target.value]"), style="width: 26px",
         )  # fmt: skip
+    _icon("mdi-grid", "Matrix of connections", name="matrix", click=(app.matrix.open, "[!matrix.open]"),
+          color=("matrix.open ? 'primary' : ''",))  # fmt: skip
     _icon("mdi-camera-outline", "Save the picture (C: as it is)", name="picture", click=app.camera.ask_picture)
     v3.VSpacer()
     _icon("mdi-language-python", "The same as a Python script", click=app.files.show_script, name="script")
@@ -221,6 +237,7 @@ def _folded(app: Any) -> None:
         ("The other side", "flip", app.camera.flip),
         ("Show everything", "reset", app.camera.reset),
         ("Parallel or perspective", "parallel", app.camera.toggle_parallel),
+        ("Matrix of connections", "matrix", (app.matrix.open, "[!matrix.open]")),
         ("Save the picture…", "picture", app.camera.ask_picture),
         ("The same as a Python script", "script", app.files.show_script),
         ("Keys and pointer", "help", "dialog = 'help'"),
@@ -260,7 +277,11 @@ def _icon(icon: str, hint: str, *, name: str | None = None, **rest: Any) -> None
 def _view(app: Any) -> None:
     # A bright background needs dark letters, whatever the theme of the panels is.
     bright = "[1, 3, 5].reduce((sum, k) => sum + parseInt(background.slice(k, k + 2), 16), 0) > 382"
-    with html.Div(classes="pv-view", id="pv-view", data_ground=(f"{bright} ? 'light' : 'dark'",)):
+    with html.Div(
+        classes=("['pv-view', matrix.open ? 'pv-less' : '']",),
+        id="pv-view",
+        data_ground=(f"{bright} ? 'light' : 'dark'",),
+    ):
         area = rca.RemoteControlledArea(
             name=VIEW,
             display="image",

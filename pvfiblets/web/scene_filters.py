@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from pvfiblets.plotting.viewpoints import visible_bounds
 from pvfiblets.web.document import Clip, Filters, Layer, State
+from pvfiblets.web.scene_matrix import check_connection
 from pvfiblets.web.shapes import CUTTING, check_condition, check_shape, make_region
 from pvfiblets.web.values import mapping, number, shown, text, truth, whole
 
@@ -269,8 +270,12 @@ def check_subset(value: Any) -> dict[str, Any]:
     return {"amount": amount, "seed": whole(value.get("seed", 0), "seed", 0, 2**31)}
 
 
-def check_filters(value: Any, data: Any, groups: Any = None) -> Filters:
+def check_filters(
+    value: Any, data: Any, groups: Any = None, place: Callable[[str], str] = lambda path: path
+) -> Filters:
     """Return filters of a session file that fit some fiblets; ``groups`` are names of these by another list.
+
+    ``place`` gives a path as documents hold it, of a file that is there.
 
     Raises
     ------
@@ -279,7 +284,7 @@ def check_filters(value: Any, data: Any, groups: Any = None) -> Filters:
     """
     from pvfiblets.web.layer_properties import value_names
 
-    mapping(value, "filters", (), ("criteria", "groups", "subset", "regions"))
+    mapping(value, "filters", (), ("criteria", "groups", "subset", "regions", "connection"))
     criteria = {}
     known = value_names(data)
     for name, limits in mapping(value.get("criteria") or {}, "criteria", (), known).items():
@@ -292,6 +297,7 @@ def check_filters(value: Any, data: Any, groups: Any = None) -> Filters:
         check_groups(value.get("groups"), data.groups if groups is None else groups),
         None if subset is None else check_subset(subset),
         None if regions is None else check_condition(regions),
+        None if value.get("connection") is None else check_connection(value["connection"], place),
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from pvfiblets.web.loading import Cancel, Files, Loaded, Progress
     from pvfiblets.web.store import Store
 
-__all__ = ["SceneMatrix", "check_connection", "check_matrix", "choices"]
+__all__ = ["SceneMatrix", "as_json", "check_connection", "check_matrix", "choices"]
 
 PARCELS = 1024
 """Of a matrix, at most."""
@@ -177,8 +177,3 @@ def as_json(matrix: Matrix, path_of: Callable[[str], str]) -> dict[str, Any]:
     """Return a matrix as sessions have it."""
     names = None if matrix.names is None else path_of(matrix.names)
     return {**asdict(matrix), "labels": path_of(matrix.labels), "names": names}
-
-
-def connection_as_json(connection: Mapping[str, Any], path_of: Callable[[str], str]) -> dict[str, Any]:
-    """Return a connection of filters as sessions have it."""
-    return {**connection, "labels": path_of(connection["labels"])}

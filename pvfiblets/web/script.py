@@ -17,7 +17,7 @@ from pvfiblets.web import layers
 from pvfiblets.web.actors import split_cuts
 from pvfiblets.web.distance_label import LABELS, NEAREST
 from pvfiblets.web.distance_label import LINES as LINE_LOOKS
-from pvfiblets.web.document import LINES, Clip, Layer, Source, volumes_of
+from pvfiblets.web.document import LINES, Clip, Layer, Matrix, Source, volumes_of
 from pvfiblets.web.glyph_layers import GLYPHS
 from pvfiblets.web.glyph_layers import arguments as glyph_arguments
 from pvfiblets.web.scalar_bars import bar_arguments, bar_calls, bars_of
@@ -68,6 +68,7 @@ class _Writer:
         self._imports: set[str] = {"import pyvista as pv"}
         self._names: dict[str, str] = {}
         self._wholes: dict[Source, str] = {}
+        self._volumes: dict[str, str] = {}  # of parcels, by path
         self._uses_folder = False
         self._uses_labels = False
         self._sliced = False
@@ -82,6 +83,7 @@ class _Writer:
         for clip in state.clips:
             self._clip(clip)
         self._measurements()
+        self._matrix()
         if state.painting is not None:
             self._imports |= {"import numpy as np", "from pvfiblets import regions"}
             self._lines += painting_lines(self._scene, self._names, self._ids)
@@ -282,6 +284,40 @@ class _Writer:
                 self._needs(shape)
             self._imports.add("from pvfiblets import regions")
             self._lines += [f"{name}.include({condition_code(filters.regions, self._file)})"]
+        if filters.connection is not None:
+            self._imports |= {"import numpy as np", "from pvfiblets.query.connectome import end_labels"}
+            parcels = self._parcels(filters.connection["labels"])
+            radius, pair = filters.connection["radius"], filters.connection["pair"]
+            self._lines += [
+                f"ends = np.sort(end_labels({name}.fiblets, {parcels}, {radius}), axis=1)",
+                f"{name}.include((ends == {pair}).all(axis=1))  # those that connect two parcels",
+            ]
+
+    def _parcels(self, path: str) -> str:
+        """Return Python of a label volume's numbers and where they lie."""
+        self._imports.add("from pvfiblets.slices.image import as_slice_image")
+        name = self._volumes.get(path)
+        if name is None:
+            name = self._volumes[path] = self._variable("parcels")
+            self._lines += [f"{name} = as_slice_image({self._file(path)})"]
+        return f"({name}.values[..., 0], {name}.affine)"
+
+    def _matrix(self) -> None:
+        matrix = self._scene.state.matrix
+        if matrix is None:
+            return
+        self._imports.add("import pvfiblets")
+        given: dict[str, Any] = {
+            name: getattr(matrix, name) for name in ("weights", "contrast", "statistic")
+            if getattr(matrix, name) != getattr(Matrix, name)
+        }  # fmt: skip
+        given["radius"] = matrix.radius
+        if matrix.names is not None:
+            self._imports.add("from pvfiblets.slices.labels import as_label_table")
+            given["names"] = Python(f"as_label_table({self._file(matrix.names)}).names")
+        parcels = self._parcels(matrix.labels)
+        self._call("matrix = pvfiblets.connectome", f"{self._names[matrix.layer]}.fiblets", parcels, given)
+        self._lines += ["print(matrix)  # matrix.matrix has the numbers; matrix.save writes them", ""]
 
     def _selection(self, name: str, layer: Layer) -> None:
         if layer.selected is None:
@@ -433,9 +469,13 @@ class _Writer:
             "painter",
             "bundle",
             "live",
+            "matrix",
+            "as_label_table",
+            "end_labels",
+            "as_slice_image",
         }
         reserved |= {"brain_like", "brain_streamlines", "labels_of", "slice", "list", "tuple", "path", "folder"}
-        taken = {*reserved, *self._names.values(), *self._wholes.values()}
+        taken = {*reserved, *self._names.values(), *self._wholes.values(), *self._volumes.values()}
         found, count = stem, 2
         while found in taken:
             found, count = f"{stem}_{count}", count + 1

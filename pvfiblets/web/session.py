@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pvfiblets.errors import FibletsError
-from pvfiblets.web import layers
+from pvfiblets.web import layers, scene_matrix
 from pvfiblets.web.actors import split_cuts
 from pvfiblets.web.cameras import check_camera
 from pvfiblets.web.document import (
@@ -30,6 +30,7 @@ from pvfiblets.web.document import (
     Filters,
     Ids,
     Layer,
+    Matrix,
     Source,
     State,
     as_volume_choice,
@@ -75,8 +76,8 @@ def to_dict(scene: Scene, folder: Path | None = None) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``version``, ``layers``, ``clips``, ``background``, ``camera``, and ``measurements``, ``slices`` and
-        ``painting`` where there are any; no numbers but finite ones.
+        ``version``, ``layers``, ``clips``, ``background``, ``camera``, and ``measurements``, ``slices``,
+        ``painting``, ``bundles`` and ``matrix`` where there are any; no numbers but finite ones.
     """
     state = scene.state
 
@@ -114,6 +115,7 @@ def to_dict(scene: Scene, folder: Path | None = None) -> dict[str, Any]:
         **measured,
         **_painting_to_dict(scene),
         **_bundles_to_dict(state, path_of),
+        **({} if state.matrix is None else {"matrix": scene_matrix.as_json(state.matrix, path_of)}),
     }
 
 
@@ -272,7 +274,15 @@ def _filters_to_dict(filters: Filters, shape_of: Any) -> dict[str, Any]:
         "groups": None if filters.groups is None else list(filters.groups),
         "subset": None if filters.subset is None else dict(filters.subset),
         "regions": None if filters.regions is None else condition_of(filters.regions),
+        **_connection(filters, shape_of),
     }
+
+
+def _connection(filters: Filters, shape_of: Any) -> dict[str, Any]:
+    if filters.connection is None:  # programs from before there were any refuse what they do not know
+        return {}
+    path = shape_of({"path": filters.connection["labels"]})["path"]
+    return {"connection": {**filters.connection, "labels": path}}
 
 
 # From JSON ------------------------------------------------------------------------------------------
@@ -289,7 +299,7 @@ def _checked(
     version = data.get("version")
     if isinstance(version, bool) or version != VERSION:
         raise ValueError(f"its version is {shown(version)}; this program reads version {VERSION}")
-    optional = ("clips", "background", "camera", "measurements", "slices", "painting", "bundles")
+    optional = ("clips", "background", "camera", "measurements", "slices", "painting", "bundles", "matrix")
     mapping(data, "session", ("program", "version", "layers"), optional)
     for name, most in (("layers", _MOST_LAYERS), ("clips", MOST_CLIPS)):
         if not isinstance(data.get(name, []), list) or len(data.get(name, [])) > most:
@@ -307,6 +317,7 @@ def _checked(
     painting = None if data.get("painting") is None else check_painting(data["painting"])
     state = State(tuple(found), tuple(clips), background, measurements, painting)
     state = replace(state, bundles=_bundles_from(reading, state))
+    state = replace(state, matrix=_matrix_from(data.get("matrix"), reading, state))
     _check_cuts(reading.store, state)
     camera = data.get("camera")
     slices = None if data.get("slices") is None else check_view(data["slices"])
@@ -391,7 +402,10 @@ def _layer_from_dict(value: Any, reading: _Reading) -> Layer:
     if value.get("filters") is not None:
         bundles = reading.bundles.get(source)
         groups = reading.own(source, data) if bundles is None else [str(one["name"]) for one in bundles]
-        filters = check_filters(value["filters"], data, groups)
+        filters = check_filters(value["filters"], data, groups, paths)
+        if filters.connection is not None:  # here, where nobody waits for a picture
+            path, radius = filters.connection["labels"], filters.connection["radius"]
+            store.end_labels(data, path, radius, reading.progress, reading.cancel)
         if filters.regions is not None:
             regions = paths.condition(filters.regions)
             make_predicate(regions, store.shape)
@@ -427,6 +441,16 @@ def _bundles_from(reading: _Reading, state: State) -> tuple[tuple[Source, tuple[
             raise ValueError("there are bundles of what no layer shows")
         found.append((source, check_bundles(rows, _ids, reading.store.data(layer).data.n_streamlines)))
     return tuple(found)
+
+
+def _matrix_from(value: Any, reading: _Reading, state: State) -> Matrix | None:
+    def data_of(layer_id: str) -> Any:
+        layer = state.layer(layer_id)
+        if layer.kind not in LINES:
+            raise ValueError(f"the matrix is of {layer.name!r}, which is of kind {layer.kind} and has no streamlines")
+        return reading.store.data(layer).data
+
+    return None if value is None else scene_matrix.check_matrix(value, data_of, reading.paths)
 
 
 def _source_from_dict(value: Any, paths: _Paths) -> Source:

@@ -74,6 +74,13 @@ class Page:
     measures: Record = field(
         default_factory=lambda: {"open": False, "values": [], "value": "", "profile": {}, "table": {}}
     )
+    matrix: Record = field(
+        default_factory=lambda: {
+            "open": False, "settings": True, "n": 0, "cell": "", "pair": [], "log": True,
+            "form": {"labels": [], "names": [], "weights": [], "contrasts": [], "chosen": {}},
+        }
+    )  # fmt: skip
+    matrix_image: str = ""  # the address of a PNG
     painting: Record = field(default_factory=lambda: {"regions": [], "active": ""})
     atlas: Record = field(default_factory=lambda: {"rows": [], "images": []})
     slicing: Record = field(

@@ -113,8 +113,9 @@ with open("FreeSurferColorLUT.txt", "w") as table:
 import nibabel, numpy as np
 pvfiblets.compress_file("brain.trx", "brain.fiblets")
 numbers = np.random.default_rng(0).random((24, 28, 20)).astype("f4")
-nibabel.save(nibabel.Nifti1Image(numbers, np.array([[8.0, 0, 0, -90], [0, 8, 0, -110], [0, 0, 8, -60], [0, 0, 0, 1]])),
-             "fa.nii.gz")
+affine = np.array([[8.0, 0, 0, -90], [0, 8, 0, -110], [0, 0, 8, -60], [0, 0, 0, 1]])
+nibabel.save(nibabel.Nifti1Image(numbers, affine), "fa.nii.gz")
+nibabel.save(nibabel.Nifti1Image((numbers * 6).astype("i2"), affine), "atlas.nii.gz")
 """,
     "docs/shards.md": "",
     "docs/from-vtk.md": "",

@@ -15,6 +15,7 @@ from pvfiblets.web.describe import Charts
 from pvfiblets.web.filter_regions import RegionActions
 from pvfiblets.web.filter_tab import FilterActions
 from pvfiblets.web.history import History
+from pvfiblets.web.matrix_panel import MatrixActions
 from pvfiblets.web.opening import FileActions
 from pvfiblets.web.options import Options
 from pvfiblets.web.scratch import Notes
@@ -43,6 +44,7 @@ class Desk:
         self.bundles = BundleActions(self)
         self.finding = FindingActions(self)
         self.measuring = MeasureActions(self)
+        self.matrix = MatrixActions(self)
         self.tasks = []
 
     def choose(self, layer):

@@ -76,3 +76,39 @@ def test_bundles_are_found_ordered_measured_and_fetched(visit, tmp_path):
     here.ready()
     assert names(here) == order
     assert here.state("bundles")["coloured"]
+
+
+def test_a_matrix_is_made_pointed_at_and_clicked(visit, tmp_path):
+    here = visit("lines.fiblets")
+    before = here.picture()
+    here.page.click("[data-action=matrix]")
+    here.page.click("[data-select=matrix-labels] .v-field")
+    here.page.click(".v-overlay--active .v-list-item:has-text('atlas.nii.gz')")
+    here.page.fill("[data-field=matrix-radius]", "0")
+    here.press("Tab")
+    here.wait(lambda: here.state("matrix")["form"]["chosen"]["radius"] == "0", "the radius")
+    here.page.click("[data-action=make-matrix]")
+    here.page.wait_for_selector("#pv-cells[data-n='2']")
+    picture = here.changed(before)
+    assert picture.shape[1] < before.shape[1]  # the brain has made room
+    cells = here.page.locator("#pv-cells").bounding_box()
+    at = (cells["x"] + 0.75 * cells["width"], cells["y"] + 0.25 * cells["height"])
+    here.page.mouse.move(*at)
+    # Lines begin in 3, and of those that end in 5 the lengths are 15 to 30 mm.
+    here.wait(lambda: here.page.locator("#pv-cell").inner_text() == "3 – 5: 16 streamlines", "what is told")
+    here.page.mouse.click(*at)
+    here.wait(lambda: here.state("matrix")["cell"] == "3 – 5", "its streamlines")
+    assert here.state("filters")["counted"] == "16 of 60 streamlines"
+    with here.page.expect_download() as download:
+        here.page.click("[data-fetch='matrix.npy']")
+    download.value.save_as(tmp_path / "matrix.npy")
+    matrix = np.load(tmp_path / "matrix.npy")
+    assert matrix.tolist() == [[5, 16], [16, 0]]
+    here.page.click("[data-action=fold-matrix]")
+    here.changed(picture)
+    here.press("Control+z")
+    here.wait(lambda: here.state("filters")["counted"] == "60 of 60 streamlines", "all of them")
+    here.press("Control+y")
+    here.page.reload()
+    here.ready()
+    here.wait(lambda: here.state("filters")["counted"] == "16 of 60 streamlines", "the same")
