@@ -97,6 +97,7 @@ def add_serve(commands: Any) -> None:
         metavar="ADDRESS",
         help="a proxy that is believed when it says (X-Forwarded-For) for whom it asks; may be given several times",
     )
+    add("--cluster", metavar="ADDRESS", help="dask's scheduler, or its file, whose workers draw fiblets")
     add("--connections", type=count, default=1000, metavar="N", help="connections at once (default: %(default)s)")
     add(
         "--connections-by-address",

@@ -31,6 +31,7 @@ def serve(
     codec: str,
     look: str | None,
     antialias: str | int | None,
+    cluster: str | None,
     rendering: str,
     origin: list[str],
     proxy: list[str],
@@ -63,6 +64,7 @@ def serve(
         codec=codec,
         look=look,
         antialias=antialias,
+        cluster=cluster if cluster is None or "://" in cluster else os.path.abspath(cluster),  # noqa: PTH100
         origins=origin,
         connections=connections,
         by_address=connections_by_address,
@@ -73,6 +75,11 @@ def serve(
         import trame_vuetify  # noqa: F401
     except ImportError as error:
         raise FibletsError(f"{error}; `pvfiblets serve` needs the web extra: pip install 'pvfiblets[web]'") from error
+    if cluster is not None:
+        from pvfiblets.cluster.connection import connected
+
+        with connected(cluster, 1, None):
+            pass  # whether anybody is there is said before a browser asks
     named = token_file or (f"the environment variable {VARIABLE}" if os.environ.get(VARIABLE) else None)
     return _run(options, named)
 

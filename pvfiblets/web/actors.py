@@ -43,7 +43,7 @@ MOST_PLANES = 6
 _CONDITION, _CONNECTION = "regions", "connection"
 
 
-def add_actor(plotter: Any, layer: Layer, loaded: Loaded, colours: Colours) -> Any:
+def add_actor(plotter: Any, layer: Layer, loaded: Loaded, colours: Colours, cluster: str | None = None) -> Any:
     """Add what a layer draws, with its settings; filters, cuts and selection are not applied yet."""
     common = {"name": layer.id, "show_scalar_bar": False, "reset_camera": False, "render": False}
     wanted = looks(layer.kind, layer.settings)
@@ -51,7 +51,8 @@ def add_actor(plotter: Any, layer: Layer, loaded: Loaded, colours: Colours) -> A
         actor = plotter.add_mesh(loaded.data, **common, **wanted)
     else:
         add = {"tubes": plotter.add_spline_tubes, "volume": plotter.add_raycast_volume}.get(layer.kind)
-        actor = (add or plotter.add_fiblets)(loaded.data, **common)
+        drawn_by = {} if add is not None or cluster is None else {"cluster": cluster}
+        actor = (add or plotter.add_fiblets)(loaded.data, **common, **drawn_by)
         try:
             _set(actor, wanted, loaded.data, colours)
         except Exception:

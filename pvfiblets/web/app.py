@@ -76,7 +76,10 @@ class Explorer(TrameApp):
         if options.antialias is not None:
             self.plotter.picture.antialias = options.antialias
         given = [*options.files, *options.volume, *options.mesh]
-        self.scene = Scene(self.plotter, self.confined.root, allowed=[Path(path) for path in given], look=options.look)
+        self.scene = Scene(
+            self.plotter, self.confined.root, allowed=[Path(path) for path in given], look=options.look,
+            cluster=options.cluster,
+        )  # fmt: skip
         self.history = History(self.scene)
         self.page = bind(self.state)
         self.page.shared = options.shared

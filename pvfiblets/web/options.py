@@ -48,6 +48,8 @@ class Options:
         That lines begin with, as of ``plotter.add_fiblets``.
     antialias : str, int or None
         As of ``plotter.picture``; None for the default.
+    cluster : str or None
+        Address of a dask scheduler, or path of its file, whose workers draw fiblets.
     memory : int or None
         Bytes that a session may have; ``None``: no limit.
     origins : list of str
@@ -73,6 +75,7 @@ class Options:
     codec: str = "jpeg"
     look: str | None = None
     antialias: str | int | None = None
+    cluster: str | None = None
     memory: int | None = None
     origins: list[str] = field(default_factory=list)
     connections: int = 1000

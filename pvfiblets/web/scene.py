@@ -94,11 +94,16 @@ class Scene(
         Files and folders outside of the root that may be opened all the same.
     look : str, optional
         That streamlines begin with (`pvfiblets.plotting.fiblets.looks`).
+    cluster : str, optional
+        Whose workers draw fiblets, as of ``plotter.add_fiblets``.
     """
 
-    def __init__(self, plotter: Any, root: Path | None = None, *, allowed: Any = (), look: str | None = None) -> None:
+    def __init__(
+        self, plotter: Any, root: Path | None = None, *, allowed: Any = (), look: str | None = None,
+        cluster: str | None = None,
+    ) -> None:  # fmt: skip
         self.plotter = plotter
-        self._look = look
+        self._look, self._cluster = look, cluster
         self.files = Files(root, allowed)
         self._state = State(background=plotter.background_color.hex_rgb)
         self._drawn: dict[str, _Drawn] = {}
@@ -210,7 +215,7 @@ class Scene(
             self._draw_image(layer, drawn)
             return
         if drawn is None:
-            actor = add_actor(self.plotter, layer, self.data(layer), self.store.colours)
+            actor = add_actor(self.plotter, layer, self.data(layer), self.store.colours, self._cluster)
             drawn = _Drawn(actor, replace(layer, filters=Filters(), selected=None), (), _whole(layer, actor))
         elif drawn.layer is layer and drawn.clips is clips:
             return

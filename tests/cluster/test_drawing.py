@@ -11,16 +11,20 @@ import pytest
 import pyvista as pv
 
 from pvfiblets import Streamlines, compress, regions
+from pvfiblets.cli import main
+from pvfiblets.cluster import connection
 from pvfiblets.cluster.connection import connected
 from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View
 from pvfiblets.engine.fiblets import cluster_renderer
-from pvfiblets.engine.fiblets.cluster_renderer import ClusterRenderer
+from pvfiblets.engine.fiblets.cluster_renderer import ClusterRenderer, _client_at
 from pvfiblets.engine.fiblets.filter_textures import Filter
 from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
 from pvfiblets.engine.fiblets.sparse_picture import SparsePicture, nearer
 from pvfiblets.report.stability.render_checks import camera
 from pvfiblets.synthetic import brain_streamlines
+from pvfiblets.web.scene import Scene
+from pvfiblets.web.slicing import ready_views
 from tests.engine.pictures import SIZE, differences, read
 
 VIEW = View(SIZE, camera(SIZE, eye=(0, -300, 40), target=(0, -10, 20), far=900.0))
@@ -168,8 +172,8 @@ def test_workers_that_all_go_away_are_told(make, brain, client, monkeypatch):
 
 def test_no_cluster_and_no_workers_are_told(gl, brain, monkeypatch):
     monkeypatch.setattr(cluster_renderer, "GRACE", 0.0)
-    with pytest.raises(TypeError, match=r"cluster is a str; give a distributed\.Client"):
-        ClusterRenderer(gl, brain, "tcp://nowhere")
+    with pytest.raises(TypeError, match=r"cluster is 3; give a distributed\.Client"):
+        ClusterRenderer(gl, brain, 3)
 
     class Deserted:
         def submit(self):
@@ -228,3 +232,33 @@ def test_a_plotter_shows_what_workers_draw(client, brain):
     assert hits == there
     assert any(hits)
     assert told["parts"] == 2
+
+
+def test_a_page_has_workers_draw(client, brain, tmp_path):
+    brain.save(tmp_path / "brain.fiblets")
+    pictures, told = [], []
+    for cluster in (client.scheduler.address, None):
+        plotter = pv.Plotter(off_screen=True, window_size=(120, 90), shape=(2, 2), border=False)
+        ready_views(plotter)
+        scene = Scene(plotter, tmp_path, cluster=cluster)
+        scene.open("brain.fiblets")
+        plotter.show(auto_close=False)
+        pictures.append(plotter.screenshot(None))
+        told.append(next(iter(plotter.actors.values())).explain().get("cluster"))
+        scene.close()
+        plotter.close()
+    assert pictures[0].std() > 1.0
+    np.testing.assert_array_equal(*pictures)
+    assert told[0]["parts"] == 2
+    assert told[1] is None
+    _client_at(client.scheduler.address).close()
+    _client_at.cache_clear()
+
+
+def test_an_address_where_nobody_answers_is_told(gl, brain, monkeypatch, capsys):
+    monkeypatch.setattr(cluster_renderer, "GRACE", 0.2)
+    with pytest.raises(EngineError, match=r"no scheduler of dask answers at tcp://127\.0\.0\.1:9 .* dask scheduler"):
+        ClusterRenderer(gl, brain, "tcp://127.0.0.1:9")
+    monkeypatch.setattr(connection, "ANSWER_WITHIN", 0.2)
+    assert main(["serve", "--port", "0", "--cluster", "tcp://127.0.0.1:9"]) == 1
+    assert "no scheduler of dask answers at tcp://127.0.0.1:9" in capsys.readouterr().err

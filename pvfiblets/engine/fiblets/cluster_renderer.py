@@ -17,7 +17,7 @@ import contextlib
 import time
 from collections.abc import Iterable
 from dataclasses import replace
-from functools import reduce
+from functools import cache, reduce
 from typing import TYPE_CHECKING, Any
 
 import moderngl
@@ -54,7 +54,8 @@ class ClusterRenderer(NearestOnly):
         Of this process; the workers make their own.
     fiblets : FibletSet
         Mapped from a file that all workers see under the same name, or in memory: then each worker is sent its part.
-    cluster : distributed.Client
+    cluster : distributed.Client or str
+        Or the address of its scheduler, or the path of the scheduler's file.
     count : int, optional
         Parts; by default as many as there are workers now.
     pipeline : str
@@ -83,13 +84,9 @@ class ClusterRenderer(NearestOnly):
         pipeline: str = AUTO,
     ) -> None:
         check_choices(pipeline=pipeline)
-        if not (hasattr(cluster, "submit") and hasattr(cluster, "scheduler_info")):
-            raise TypeError(
-                f"cluster is a {type(cluster).__name__}; give a distributed.Client, such as Client('tcp://host:8786')"
-            )
         super().__init__(ctx, CONSTANTS)
         self.pipeline = pipeline
-        self._cluster = cluster
+        self._cluster = client_of(cluster)
         self._whole = fiblets
         self._stretches = Stretches.of_count(fiblets, count or len(self._workers()))
         key, path = source_of(fiblets)
@@ -136,21 +133,6 @@ class ClusterRenderer(NearestOnly):
     def unfinished(self) -> bool:
         """Whether the last picture lacks parts that another one of the same view would show."""
         return not self.released and self._root is not None and bool(self._left)
-
-    def render(
-        self, view: View, style: FibletStyle | None = None, *, outside: moderngl.Texture | None = None
-    ) -> GBuffer:
-        """Draw, unless the last picture was of the same view and style and complete; see :meth:`.Drawable.render`.
-
-        Raises
-        ------
-        EngineError
-            As there, and what a worker says: if it finds no file, has no OpenGL, or no memory.
-        """
-        found = super().render(view, style, outside=outside)
-        if self._left:
-            self._made = None  # the next call goes on
-        return found
 
     def _draw(self, view: View, style: FibletStyle, outside: moderngl.Texture | None) -> GBuffer:  # noqa: ARG002
         if self._asked != (view, style):
@@ -271,6 +253,39 @@ class ClusterRenderer(NearestOnly):
         self._forget()
         self._sent, self._filters, self._volume = [], [], None
         super().release()
+
+
+@cache
+def _client_at(address: str) -> Any:
+    import distributed
+
+    where = {"scheduler_file": address} if address.endswith(".json") else {"address": address}
+    try:
+        return distributed.Client(**where, timeout=GRACE, set_as_default=False)
+    except (OSError, ValueError, TimeoutError) as error:
+        raise EngineError(f"no scheduler of dask answers at {address} ({error}); start one: dask scheduler") from error
+
+
+def client_of(cluster: Any) -> Any:
+    """Return the client of a cluster: what is given, or one for an address, the same for the same.
+
+    Raises
+    ------
+    EngineError
+        If nothing answers at the address, or dask is not installed.
+    TypeError
+        If it is something else.
+    """
+    if isinstance(cluster, str):
+        try:
+            return _client_at(cluster)
+        except ImportError as error:
+            raise EngineError(f"{error}; a cluster needs dask: pip install 'pvfiblets[cluster]'") from None
+    if not (hasattr(cluster, "submit") and hasattr(cluster, "scheduler_info")):
+        raise TypeError(
+            f"cluster is {cluster!r}; give a distributed.Client, or the address of a scheduler such as tcp://host:8786"
+        )
+    return cluster
 
 
 def _told(future: Any) -> Any:

@@ -9,6 +9,10 @@ from ..errors import EngineError
 from .style import FibletStyle
 
 if TYPE_CHECKING:
+    import moderngl
+
+    from ..gbuffer import GBuffer
+    from ..view import View
     from .filter_textures import Filter
 
 __all__ = ["NearestOnly"]
@@ -40,6 +44,21 @@ class NearestOnly(Drawable[FibletStyle]):
     def unfinished(self) -> bool:
         """Whether the last picture lacks parts that another one of the same view would show."""
         raise NotImplementedError
+
+    def render(
+        self, view: View, style: FibletStyle | None = None, *, outside: moderngl.Texture | None = None
+    ) -> GBuffer:
+        """Draw, unless the last picture was of the same view and style and complete; see :meth:`.Drawable.render`.
+
+        Raises
+        ------
+        EngineError
+            As there, and if a part cannot be had.
+        """
+        found = super().render(view, style, outside=outside)
+        if self.share < 1.0:
+            self._made = None  # the next call goes on
+        return found
 
     @property
     def filtering(self) -> Filter | None:

@@ -118,21 +118,6 @@ class StreamedRenderer(NearestOnly):
         """Whether the last picture lacks parts that another one of the same view would show."""
         return not self.released and self._begun is not None and bool(self._left)
 
-    def render(
-        self, view: View, style: FibletStyle | None = None, *, outside: moderngl.Texture | None = None
-    ) -> GBuffer:
-        """Draw, unless the last picture was of the same view and style and complete; see :meth:`.Drawable.render`.
-
-        Raises
-        ------
-        EngineError
-            As there, and if a part cannot be read.
-        """
-        found = super().render(view, style, outside=outside)
-        if self._left:
-            self._made = None  # the next call goes on
-        return found
-
     def _draw(self, view: View, style: FibletStyle, outside: moderngl.Texture | None) -> GBuffer:
         if self.hurried or self._begun != (view, style):
             self._begin(view, style)

@@ -269,8 +269,9 @@ class FibletSettings(Settings):
     )  # fmt: skip
     cluster: Setting[Any] = Setting(
         None,
-        "A ``distributed.Client`` whose workers draw the fiblets, each a part of them, by their own graphics cards; "
-        "``None`` draws here. A set that is mapped from a ``.fiblets`` file is read by each worker under that name.",
+        "A ``distributed.Client``, or the address of a scheduler, whose workers draw the fiblets, each a part of them, "
+        "by their own graphics cards; ``None`` draws here. A set that is mapped from a ``.fiblets`` file is read by "
+        "each worker under that name.",
         kind="Any",
         where=OPTIONS,
     )
