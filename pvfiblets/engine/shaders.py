@@ -188,6 +188,7 @@ def assemble(
     *,
     source: str | None = None,
     version: int = NEWEST,
+    replaced: Mapping[str, str] | None = None,
 ) -> str:
     """Compose a program's source.
 
@@ -205,6 +206,8 @@ def assemble(
         Of GLSL: sources are written for 4.30 and the later ones that they name. Below 4.20 bindings are left out, for
         the caller to make, and lines that end in a backslash are joined with the next; below 4.00
         ``shaders/fiblets/data/glsl330.glsl`` supplies what is missing.
+    replaced : mapping, optional
+        Files to be pasted in the place of others, by the names of these.
 
     Returns
     -------
@@ -222,10 +225,11 @@ def assemble(
     included: set[str] = {name}
 
     def include(match: re.Match[str]) -> str:
-        if match[1] in included or _left_out(match.string, match.start(), active):
+        file = (replaced or {}).get(match[1], match[1])
+        if file in included or _left_out(match.string, match.start(), active):
             return ""
-        included.add(match[1])
-        return _INCLUDE.sub(include, read_shader(match[1]))
+        included.add(file)
+        return _INCLUDE.sub(include, read_shader(file))
 
     text = _INCLUDE.sub(include, read_shader(name) if source is None else source)
 

@@ -1,0 +1,296 @@
+/**
+ * A set of fiblets: compressed in textures, decoded on the graphics card block by block, drawn as instanced rectangles.
+ *
+ * Blocks are decoded once as long as memory for points suffices (`budget`), and else each time they are drawn.
+ */
+
+import type { Archive, NpyArray } from "./archive";
+import { FileError } from "./archive";
+import type { Bounds, Mat, Vec } from "./camera";
+import { PAGE_BITS, field, rotationScales, rotations } from "./engine";
+import { GL, Program, UniformBlock, rows } from "./gl";
+
+const BLOCK = 4096, SHARE = 20, SLOT_BYTES = 12, ITEM_BYTES = SHARE * SLOT_BYTES;
+const KIND_DIRECTION = 0, KIND_WIDE = 3;
+
+interface Parameters {
+  origin: Vec;
+  anchor_scale: Vec;
+  anchor_bits: number;
+  step: number;
+  step_lo: number;
+  step_hi: number;
+  lattice: number;
+  largest_radius: number;
+}
+
+export interface Block {
+  firstItem: number;
+  items: number;      // that are drawn; one more is decoded where the set goes on
+  more: number;
+  bounds: Bounds;     // data coordinates
+  buffer: WebGLBuffer | null;
+  used: number;
+}
+
+export interface PointValues {
+  name: string;
+  texture: WebGLTexture;
+  code: Vec;          // value of code 0, per code, the code of NaN
+}
+
+function words(array: NpyArray | undefined, name: string, columns: number, n: number): Uint32Array {
+  if (!array || !(array.data instanceof Uint32Array) || array.data.length !== columns * n) {
+    throw new FileError(`The file's ${name} do not fit its header. Copy or make it again.`);
+  }
+  return array.data;
+}
+
+export class FibletSet {
+  readonly blocks: Block[] = [];
+  readonly streamlines: number;
+  readonly points: number;
+  readonly bounds: Bounds;
+  readonly reference: Vec;             // anchor integers of local 0
+  readonly toData: Mat;                // local mm to data mm
+  readonly coding: UniformBlock;
+  readonly items: WebGLTexture;
+  budget = 256 << 20;
+
+  private parameters: Parameters;
+  private decodeProgram: Program;
+  private rotationBlock: UniformBlock;
+  private frameForDecoding: UniformBlock;
+  private textures: Record<string, WebGLTexture> = {};
+  private itemBuffer: WebGLBuffer;
+  private feedback: WebGLTransformFeedback;
+  private scratch: WebGLBuffer | null = null;
+  private scratchBytes = 0;
+  private held = 0;
+  private clock = 0;
+  private fiblets: number;
+  private decodeArray: WebGLVertexArrayObject;
+
+  constructor(private gl: GL, private archive: Archive) {
+    const { header, arrays } = archive;
+    if (header.format !== "fiblets") throw new FileError("The file is no .fiblets file: its header says something else.");
+    if (header.version !== 2) throw new FileError(`The file is of version ${header.version}; this page reads version 2. Make the page again with a newer pvfiblets.`);
+    const p = (this.parameters = header.parameters), n = (this.fiblets = header.n_fiblets);
+    this.streamlines = header.n_streamlines;
+    this.points = header.n_points;
+    this.bounds = header.bounds;
+    const anchors = words(arrays.get("anchors.npy"), "anchors", 2, n), decoding = words(arrays.get("decoding.npy"), "records", 3, n);
+    const codes = arrays.get("codes.npy"), pages = arrays.get("pages.npy");
+    if (!codes || !(codes.data instanceof Uint8Array) || !pages || !(pages.data instanceof BigInt64Array)) throw new FileError("The file's codes or pages are missing. Copy or make it again.");
+    const table = Array.from(pages.data, Number), pageCount = Math.ceil(n / (1 << PAGE_BITS));
+    if (table.length !== 3 * (pageCount + 1) || table[3 * pageCount + 1] !== codes.data.length || table[3 * pageCount + 2] !== this.points) {
+      throw new FileError("The file's table of pages does not fit its records. Copy or make it again.");
+    }
+    const low = p.anchor_bits === 32 ? arrays.get("anchors_low.npy") : undefined;
+    if (p.anchor_bits === 32 && !(low?.data instanceof Uint16Array && low.data.length === 3 * n)) throw new FileError("The lower halves of the file's anchors are missing. Copy or make it again.");
+    const top = p.anchor_bits === 32 ? 4294967295 : 65535;
+    this.reference = [0, 1, 2].map((axis) => {
+      const middle = (this.bounds[2 * axis] + this.bounds[2 * axis + 1]) / 2, scale = p.anchor_scale[axis];
+      return scale > 0 && Number.isFinite(middle) ? Math.round(Math.min(Math.max((middle - p.origin[axis]) / scale, 0), top)) : 0;
+    }) as Vec;
+    this.toData = new Float64Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
+    for (let axis = 0; axis < 3; ++axis) this.toData[12 + axis] = p.origin[axis] + p.anchor_scale[axis] * this.reference[axis];
+
+    const kinds = this.makeItems(anchors, decoding, table, codes.data.length, low?.data as Uint16Array | undefined);
+    this.items = this.textures.items;
+    this.textures.anchor_texels = rows(gl, "rg32ui", anchors, "anchors");
+    this.textures.decoding_texels = rows(gl, "r32ui", decoding, "records");
+    const padded = codes.data.byteOffset % 4 === 0 ? codes.data : codes.data.slice();
+    const whole = padded.length >> 2, all = new Uint32Array(padded.buffer as ArrayBuffer, padded.byteOffset, whole);
+    this.textures.code_texels = this.codeTexture(all, padded.subarray(4 * whole));
+    const starts = new Uint32Array(4 * Math.max(pageCount, 1));
+    for (let i = 0; i < pageCount; ++i) for (let j = 0; j < 3; ++j) starts[4 * i + j] = table[3 * i + j];
+    this.textures.page_texels = rows(gl, "rgba32ui", starts, "pages");
+    const features = ["DIRECTION"];
+    if (low) {
+      features.push("ANCHORS_LOW");
+      const data = low.data as Uint16Array, pairs = new Uint32Array((data.length + 1) >> 1);
+      for (let i = 0; i < data.length; ++i) pairs[i >> 1] |= data[i] << (16 * (i & 1));
+      this.textures.anchor_low_texels = rows(gl, "r32ui", pairs, "anchors");
+    }
+    if (kinds.size > 1 || !kinds.has(KIND_DIRECTION)) features.push("LATTICE");
+    if (kinds.has(KIND_WIDE)) features.push("WIDE_LATTICE");
+    this.coding = new UniformBlock(gl, "Coding");
+    this.coding.write({
+      anchor_scale: p.anchor_scale, radius_scale: 0, step_low: p.step_lo, step_span: p.step_hi - p.step_lo, lattice_edge: p.lattice,
+      end_vector_scale: 0, rotation_scales: rotationScales,
+    });
+    this.rotationBlock = new UniformBlock(gl, "Rotations");
+    this.rotationBlock.fill(rotations);
+    this.frameForDecoding = new UniformBlock(gl, "Frame");
+    this.frameForDecoding.write({ reference: this.reference }, ["reference"]);
+    this.decodeProgram = new Program(gl, "page/decode.vert", "page/none.frag", features, Array.from({ length: 15 }, (_, i) => `o${i}`));
+    this.itemBuffer = this.itemBuffer!;
+    this.feedback = gl.createTransformFeedback()!;
+    this.decodeArray = gl.createVertexArray()!;
+    gl.bindVertexArray(this.decodeArray);
+    gl.enableVertexAttribArray(0);
+    gl.bindVertexArray(null);
+  }
+
+  /** The last word of the codes is filled up with zeros. */
+  private codeTexture(whole: Uint32Array, rest: Uint8Array): WebGLTexture {
+    if (!rest.length) return rows(this.gl, "r32ui", whole, "codes");
+    const all = new Uint32Array(whole.length + 1);
+    all.set(whole);
+    for (let i = 0; i < rest.length; ++i) all[whole.length] |= rest[i] << (8 * i);
+    return rows(this.gl, "r32ui", all, "codes");
+  }
+
+  private makeItems(anchors: Uint32Array, decoding: Uint32Array, table: number[], codeBytes: number, low: Uint16Array | undefined): Set<number> {
+    const gl = this.gl, n = this.fiblets, p = this.parameters, ids = this.archive.arrays.get("rank_to_id.npy")?.data as BigInt64Array | undefined;
+    const shares = new Uint8Array(n);
+    let total = 0;
+    for (let f = 0; f < n; ++f) {
+      const points = field("last", decoding[3 * f + 2]) + 1;
+      shares[f] = points % SHARE === 0 && !(anchors[2 * f + 1] >>> 31) ? points / SHARE : Math.ceil((points + 2) / SHARE);
+      total += shares[f];
+    }
+    const items = new Uint32Array(4 * Math.max(total, 1)), pairs = new Uint32Array(2 * Math.max(total, 1)), kinds = new Set<number>();
+    const margin = 2 * p.largest_radius;
+    let item = 0, before = 0, block: Block | null = null;
+    for (let f = 0; f < n; ++f) {
+      const page = 3 * (f >> PAGE_BITS), word = anchors[2 * f + 1], record = decoding[3 * f + 2];
+      const rank = field("rank", word) + table[page], points = field("last", record) + 1;
+      const id = ids ? Number(ids[rank]) : rank, begin = field("begin", word), end = field("end", word);
+      const code = field("code", decoding[3 * f + 1]) + table[page + 1], point = field("point", record) + table[page + 2];
+      if (points > 60 || !(id >= 0 && id < this.streamlines) || code > codeBytes || point + points > this.points) {
+        throw new FileError(`Record ${f} of the file is damaged. Copy or make it again.`);
+      }
+      kinds.add(field("kind", record));
+      if (f % BLOCK === 0) this.blocks.push((block = { firstItem: item, items: 0, more: 0, bounds: [Infinity, -Infinity, Infinity, -Infinity, Infinity, -Infinity], buffer: null, used: 0 }));
+      const grid = [anchors[2 * f] & 0xffff, anchors[2 * f] >>> 16, word & 0xffff];
+      for (let axis = 0; axis < 3; ++axis) {
+        const at = p.origin[axis] + p.anchor_scale[axis] * (low ? grid[axis] * 65536 + low[3 * f + axis] : grid[axis]);
+        block!.bounds[2 * axis] = Math.min(block!.bounds[2 * axis], at - margin);
+        block!.bounds[2 * axis + 1] = Math.max(block!.bounds[2 * axis + 1], at + margin);
+      }
+      if (begin) before = 0;
+      for (let share = 0; share < shares[f]; ++share, ++item) {
+        items[4 * item] = id;
+        items[4 * item + 1] = point;
+        items[4 * item + 2] = points | (begin << 6) | (end << 7) | (share << 8);
+        items[4 * item + 3] = before;
+        pairs[2 * item] = f;
+        pairs[2 * item + 1] = share;
+      }
+      before += points;
+      block!.items += shares[f];
+    }
+    for (const found of this.blocks) found.more = found.firstItem + found.items < total ? 1 : 0;
+    this.textures.items = rows(gl, "rgba32ui", items, "shares of fiblets");
+    this.itemBuffer = gl.createBuffer()!;
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.itemBuffer);
+    gl.bufferData(gl.ARRAY_BUFFER, pairs, gl.STATIC_DRAW);
+    return kinds;
+  }
+
+  /** A stored array of a value for each point. */
+  pointValues(name: string): PointValues {
+    const said = this.archive.header.per_point?.[name], array = said && this.archive.arrays.get(said.member);
+    if (!array || array.data.length !== this.points) throw new FileError(`The file has no values ${name} for its points.`);
+    const wide = array.data instanceof Uint16Array, top = wide ? 65535 : 255;
+    return { name, texture: rows(this.gl, wide ? "r16ui" : "r8ui", array.data as Uint8Array, "values of points"), code: [said.lo, (said.hi - said.lo) / (top - 1), top] };
+  }
+
+  /** Decode a block into a buffer: the slot before its first one is left free. */
+  private decode(block: Block, buffer: WebGLBuffer): void {
+    const gl = this.gl, n = block.items + block.more;
+    this.coding.bind();
+    this.rotationBlock.bind();
+    this.frameForDecoding.bind();
+    const { items: _, ...textures } = this.textures;
+    this.decodeProgram.use().textures(textures).uints({ chunk_fiblets: this.fiblets });
+    gl.bindVertexArray(this.decodeArray);
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.itemBuffer);
+    gl.vertexAttribIPointer(0, 2, gl.UNSIGNED_INT, 8, 8 * block.firstItem);
+    gl.bindBuffer(gl.ARRAY_BUFFER, null);
+    gl.enable(gl.RASTERIZER_DISCARD);
+    gl.bindTransformFeedback(gl.TRANSFORM_FEEDBACK, this.feedback);
+    gl.bindBufferRange(gl.TRANSFORM_FEEDBACK_BUFFER, 0, buffer, SLOT_BYTES, n * ITEM_BYTES);
+    gl.beginTransformFeedback(gl.POINTS);
+    gl.drawArrays(gl.POINTS, 0, n);
+    gl.endTransformFeedback();
+    gl.bindBufferBase(gl.TRANSFORM_FEEDBACK_BUFFER, 0, null);
+    gl.bindTransformFeedback(gl.TRANSFORM_FEEDBACK, null);
+    gl.disable(gl.RASTERIZER_DISCARD);
+    gl.bindVertexArray(null);
+  }
+
+  private size(block: Block): number {
+    return SLOT_BYTES + (block.items + block.more) * ITEM_BYTES + 3 * SLOT_BYTES;
+  }
+
+  private newBuffer(bytes: number): WebGLBuffer {
+    const gl = this.gl, buffer = gl.createBuffer()!;
+    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+    gl.bufferData(gl.ARRAY_BUFFER, bytes, gl.DYNAMIC_COPY);
+    gl.bindBuffer(gl.ARRAY_BUFFER, null);
+    return buffer;
+  }
+
+  /** The points of a block, decoded at the latest now. */
+  pointsOf(block: Block): WebGLBuffer {
+    block.used = ++this.clock;
+    if (block.buffer) return block.buffer;
+    const bytes = this.size(block);
+    if (this.held + bytes <= this.budget) {
+      this.held += bytes;
+      block.buffer = this.newBuffer(bytes);
+      this.decode(block, block.buffer);
+      return block.buffer;
+    }
+    if (this.scratchBytes < bytes) {
+      if (this.scratch) this.gl.deleteBuffer(this.scratch);
+      this.scratch = this.newBuffer((this.scratchBytes = bytes));
+    }
+    this.decode(block, this.scratch!);
+    return this.scratch!;
+  }
+
+  /** How many segments at most a block has. */
+  static instances(block: Block): number {
+    return block.items * SHARE;
+  }
+
+  /** Draw some of a block's first segments; the program is in use, all else is bound. */
+  draw(block: Block, program: Program, share: number): number {
+    const gl = this.gl, buffer = this.pointsOf(block);
+    program.use().ints({ first_item: block.firstItem });
+    gl.bindVertexArray(this.segmentArray());
+    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+    for (let i = 0; i < 4; ++i) gl.vertexAttribPointer(i, 3, gl.FLOAT, false, SLOT_BYTES, i * SLOT_BYTES);
+    const n = Math.max(1, Math.round(block.items * share)) * SHARE;
+    gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, n);
+    gl.bindVertexArray(null);
+    return n;
+  }
+
+  private segments: WebGLVertexArrayObject | null = null;
+
+  private segmentArray(): WebGLVertexArrayObject {
+    if (!this.segments) {
+      const gl = this.gl;
+      this.segments = gl.createVertexArray()!;
+      gl.bindVertexArray(this.segments);
+      for (let i = 0; i < 4; ++i) {
+        gl.enableVertexAttribArray(i);
+        gl.vertexAttribDivisor(i, 1);
+      }
+    }
+    return this.segments;
+  }
+
+  release(): void {
+    const gl = this.gl;
+    for (const block of this.blocks) if (block.buffer) gl.deleteBuffer(block.buffer);
+    for (const texture of Object.values(this.textures)) gl.deleteTexture(texture);
+    if (this.scratch) gl.deleteBuffer(this.scratch);
+    gl.deleteBuffer(this.itemBuffer);
+  }
+}

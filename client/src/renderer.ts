@@ -1,0 +1,464 @@
+/**
+ * A picture of the scene, made as the engine makes it: the nearest line of each pixel, then colours and light, then smooth edges.
+ *
+ * A picture is drawn in slices, each so long that the page stays responsive. While something moves one slice must do: it draws a
+ * share of every block. At rest slices follow each other until all is drawn.
+ */
+
+import { readArchive } from "./archive";
+import { Bounds, Camera, Mat, Vec, apply, identity, inverse, linear, product } from "./camera";
+import { fromBase64 } from "./engine";
+import { Block, FibletSet, PointValues } from "./fiblets";
+import { GL, GraphicsError, Program, UniformBlock, framebuffer, rows, target } from "./gl";
+import type { FibletLayer, Scene } from "./scene";
+import { Drawn, ImageSlice, Surface } from "./surfaces";
+
+const SLICE = 60;      // ms of drawing between looks at the user's hands
+const MOVING = 45;     // ms of a picture while something moves
+const REFRESH = 150;   // ms between pictures while slices come in
+const ALL_ONES = 0xffffffff;
+const MODES = { direction: 0, solid: 1, streamline: 2, value: 3 };
+const LIGHTS = { none: 0, line: 1, illuminated: 2 };
+
+/** Fiblets of the scene, with what colours and hides them. */
+export class Lines {
+  readonly set: FibletSet;
+  readonly model: Mat;
+  values: PointValues | null = null;      // that the G-buffer holds
+  colours: WebGLTexture | null = null;
+  table: WebGLTexture | null = null;
+  tableRange: number[] = [0, 1, 1, 1];
+  kept: WebGLTexture | null = null;
+  shownValues: [number, number] = [1, 0];
+  marked = ALL_ONES;
+
+  constructor(private gl: GL, readonly layer: FibletLayer, readonly index: number, data: Uint8Array[]) {
+    this.set = new FibletSet(gl, readArchive(data[layer.data]));
+    this.model = new Float64Array(layer.matrix ?? identity());
+    const { colours } = layer;
+    if (colours.values !== undefined) this.values = this.set.pointValues(colours.values);
+    if (colours.data !== undefined) this.colours = rows(gl, "rgba8", data[colours.data], "colours");
+    if (colours.table !== undefined) {
+      const table = fromBase64(colours.table), n = table.length / 4 - 3;
+      this.table = rows(gl, "rgba8", table, "colours");
+      const [low, high] = colours.log ? colours.clim!.map((end) => Math.log10(end)) : colours.clim!;
+      this.tableRange = [low, high, n / Math.max(high - low, 1e-30), n];
+    }
+    if (layer.kept !== undefined) this.keep(data[layer.kept]);
+  }
+
+  /** Draw those streamlines alone whose byte is not 0; null: all. */
+  keep(bytes: Uint8Array | null): void {
+    if (this.kept) this.gl.deleteTexture(this.kept);
+    this.kept = bytes && rows(this.gl, "r8ui", bytes, "streamlines");
+  }
+}
+
+interface Job {
+  lines: Lines;
+  block: Block;
+}
+
+interface Frame {
+  jobs: Job[];
+  next: number;
+  share: number;
+  drawn: number;
+  shownAt: number;
+  matrices: Drawn;
+  moving: boolean;
+}
+
+export class Renderer {
+  readonly camera: Camera;
+  readonly lines: Lines[] = [];
+  readonly surfaces: Surface[] = [];
+  readonly images: ImageSlice[] = [];
+  planes: number[][] = [];               // of the reader's own, in world coordinates
+  width = 0;
+  height = 0;
+  ratio = 1;
+  frames = 0;                            // finished pictures
+  failed: ((error: Error) => void) | null = null;
+  drawnOnce: (() => void) | null = null;
+
+  private gl: GL;
+  private programs = new Map<string, Program>();
+  private frameBlock!: UniformBlock;
+  private clipBlock!: UniformBlock;
+  private textures: Record<string, WebGLTexture> = {};
+  private buffers: Record<string, WebGLFramebuffer> = {};
+  private frame: Frame | null = null;
+  private sync: WebGLSync | null = null;
+  private sliceStarted = 0;
+  private sliceSize = 0;
+  private rate = 1000;                   // segments a ms, as measured
+  private dirty = true;
+  private moving = false;
+  private asked = 0;
+  private still = 0;
+  private waiting: (() => void)[] = [];
+
+  constructor(readonly canvas: HTMLCanvasElement, readonly scene: Scene, private data: Uint8Array[]) {
+    this.camera = new Camera(structuredClone(scene.camera));
+    const gl = canvas.getContext("webgl2", { alpha: false, antialias: false, depth: false, preserveDrawingBuffer: false, powerPreference: "high-performance" });
+    if (!gl) throw new GraphicsError("This browser has no WebGL 2, which the page draws with. Turn on graphics acceleration in its settings, or open the page in another browser.");
+    this.gl = gl;
+    canvas.addEventListener("webglcontextlost", (event) => {
+      event.preventDefault();
+      this.frame = null;
+      this.sync = null;
+    });
+    canvas.addEventListener("webglcontextrestored", () => this.guarded(() => this.begin()));
+    this.begin();
+  }
+
+  private guarded(what: () => void): void {
+    try {
+      what();
+    } catch (error) {
+      if (!this.gl.isContextLost()) this.failed?.(error as Error);
+    }
+  }
+
+  /** Make all that lies on the graphics card, at first and when a lost context comes back. */
+  private begin(): void {
+    const { gl, scene } = this, before = this.lines.splice(0);
+    this.programs.clear();
+    this.textures = {};
+    this.buffers = {};
+    this.width = this.height = 0;
+    this.surfaces.length = this.images.length = 0;
+    this.frameBlock = new UniformBlock(gl, "Frame");
+    this.clipBlock = new UniformBlock(gl, "ClipPlanes");
+    scene.layers.forEach((layer) => {
+      if (layer.kind === "surface") this.surfaces.push(new Surface(gl, layer, this.data));
+      else if (layer.kind === "image") this.images.push(new ImageSlice(gl, layer, this.data));
+      else this.lines.push(new Lines(gl, layer, this.lines.length, this.data));
+    });
+    const budget = Math.min(1024, 128 * ((navigator as { deviceMemory?: number }).deviceMemory ?? 4)) * 2 ** 20;
+    for (const lines of this.lines) lines.set.budget = budget / this.lines.length;
+    before.forEach((old, i) => {
+      const now = this.lines[i];
+      now.shownValues = old.shownValues;
+      now.marked = old.marked;
+    });
+    this.restored?.();
+    this.change();
+  }
+
+  /** Called when a lost context has come back, for what the reader has chosen since. */
+  restored: (() => void) | null = null;
+
+  program(vertex: string, fragment: string, features: string[] = []): Program {
+    const key = [vertex, fragment, ...features].join(" ");
+    let found = this.programs.get(key);
+    if (!found) this.programs.set(key, (found = new Program(this.gl, vertex, fragment, features)));
+    return found;
+  }
+
+  /** Something is to be seen that was not: draw again. */
+  change(moving = false): void {
+    this.dirty = true;
+    this.moving = moving;
+    window.clearTimeout(this.still);
+    if (moving) this.still = window.setTimeout(() => this.change(), 200);
+    this.schedule();
+  }
+
+  private schedule(): void {
+    if (!this.asked) this.asked = requestAnimationFrame(() => this.guarded(() => this.tick()));
+  }
+
+  /** Resolves when a picture at rest is finished. */
+  settled(): Promise<void> {
+    if (!this.dirty && !this.frame) return Promise.resolve();
+    return new Promise((resolve) => this.waiting.push(resolve));
+  }
+
+  private tick(): void {
+    this.asked = 0;
+    const { gl } = this;
+    if (gl.isContextLost()) return;
+    if (this.sync) {
+      if (gl.getSyncParameter(this.sync, gl.SYNC_STATUS) !== gl.SIGNALED) return this.schedule();
+      gl.deleteSync(this.sync);
+      this.sync = null;
+      const took = Math.max(performance.now() - this.sliceStarted, 0.5);
+      if (this.sliceSize > 2000) this.rate += 0.5 * (Math.min(this.sliceSize / took, 8 * this.rate) - this.rate);
+    }
+    this.fit();
+    if (this.dirty) this.start();
+    const frame = this.frame;
+    if (!frame) return;
+    const quota = this.rate * (frame.moving ? MOVING : SLICE);
+    this.sliceStarted = performance.now();
+    this.sliceSize = 0;
+    this.drawSlice(frame, frame.moving ? Infinity : quota);
+    const finished = frame.next >= frame.jobs.length;
+    if (finished || performance.now() - frame.shownAt > REFRESH) {
+      frame.shownAt = performance.now();
+      this.present(frame.matrices);
+    }
+    this.sync = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl.flush();
+    if (finished) {
+      this.frame = null;
+      ++this.frames;
+      if (this.drawnOnce) {
+        this.drawnOnce();
+        this.drawnOnce = null;
+      }
+      if (!frame.moving && !this.dirty) this.waiting.splice(0).forEach((resolve) => resolve());
+    }
+    this.schedule();
+  }
+
+  /** Have the canvas as large as it is shown. */
+  private fit(): void {
+    const { gl, canvas } = this, ratio = window.devicePixelRatio || 1, most = gl.getParameter(gl.MAX_TEXTURE_SIZE) - 2;
+    const width = Math.min(most, Math.max(1, Math.round(canvas.clientWidth * ratio))), height = Math.min(most, Math.max(1, Math.round(canvas.clientHeight * ratio)));
+    if (width === this.width && height === this.height) return;
+    canvas.width = this.width = width;
+    canvas.height = this.height = height;
+    this.ratio = ratio;
+    for (const texture of Object.values(this.textures)) gl.deleteTexture(texture);
+    for (const buffer of Object.values(this.buffers)) gl.deleteFramebuffer(buffer);
+    const t = (this.textures = {
+      texels: target(gl, gl.RGBA32UI, width, height),
+      depths: target(gl, gl.DEPTH_COMPONENT32F, width, height),
+      drawn: target(gl, gl.RGBA8, width, height),
+      shown: target(gl, gl.RGBA32UI, width + 2, height + 2),
+    });
+    this.buffers = {
+      texels: framebuffer(gl, t.texels, t.depths),
+      scene: framebuffer(gl, t.drawn, t.depths),
+      drawn: framebuffer(gl, t.drawn, null),
+      shown: framebuffer(gl, t.shown, null),
+    };
+    this.dirty = true;
+  }
+
+  /** Begin a picture: background, surfaces and slices that hide lines. */
+  private start(): void {
+    const { gl, camera, scene } = this, moving = this.moving;
+    this.dirty = false;
+    const view = camera.view(), projection = camera.projection(this.width / this.height, scene.bounds);
+    const drawn: Drawn = { view, projection, parallel: camera.state.parallel, lights: (program) => this.setLights(program, view), planes: this.planes };
+    const jobs: Job[] = [];
+    let total = 0;
+    for (const lines of this.lines) {
+      if (!lines.layer.visible) continue;
+      for (const block of lines.set.blocks) {
+        if (this.outside(product(projection, product(view, lines.model)), block.bounds)) continue;
+        jobs.push({ lines, block });
+        total += FibletSet.instances(block);
+      }
+    }
+    const share = moving ? Math.min(1, (this.rate * MOVING) / Math.max(total, 1)) : 1;
+    this.frame = { jobs, next: 0, share, drawn: 0, shownAt: performance.now(), matrices: drawn, moving };
+    if (!this.frames) this.frame.shownAt = 0;
+    gl.viewport(0, 0, this.width, this.height);
+    gl.disable(gl.BLEND);
+    gl.disable(gl.CULL_FACE);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.buffers.texels);
+    gl.clearBufferuiv(gl.COLOR, 0, [ALL_ONES, ALL_ONES, 0, 0]);
+    gl.depthMask(true);
+    gl.clearBufferfv(gl.DEPTH, 0, [1]);
+    this.drawBackdrop(drawn);
+  }
+
+  private drawBackdrop(drawn: Drawn): void {
+    const { gl, scene } = this;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.buffers.scene);
+    gl.disable(gl.DEPTH_TEST);
+    gl.bindVertexArray(null);
+    this.program("page/screen.vert", "page/background.frag").use().set({ bottom: scene.background[0], top: scene.background[1], height: this.height });
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    gl.enable(gl.DEPTH_TEST);
+    gl.depthFunc(gl.LEQUAL);
+    gl.depthMask(true);
+    const program = this.program("page/surface.vert", "page/surface.frag");
+    for (const surface of this.surfaces) if (surface.layer.visible && !surface.translucent) surface.draw(program, drawn);
+    const flat = this.program("page/image.vert", "page/image.frag");
+    for (const image of this.images) if (image.layer.visible && image.layer.opacity >= 1) image.draw(flat, drawn);
+  }
+
+  private outside(matrix: Mat, b: Bounds): boolean {
+    const counts = [0, 0, 0, 0, 0, 0];
+    for (let i = 0; i < 8; ++i) {
+      const [x, y, z, w] = apply(matrix, [b[i & 1], b[2 + ((i >> 1) & 1)], b[4 + (i >> 2)]]);
+      [x < -w, x > w, y < -w, y > w, z < -w, z > w].forEach((out, side) => (counts[side] += out ? 1 : 0));
+    }
+    return counts.some((count) => count === 8);
+  }
+
+  private setLights(program: Program, view: Mat): void {
+    const sum: Vec = [0, 0, 0];
+    let standing = 0;
+    this.scene.lights.slice(0, 8).forEach((light, i) => {
+      let place = [0, 0, 1, 0];
+      if (light.view) place = [...light.view, 0];
+      else if (light.world) {
+        standing = 1;
+        place = apply(view, light.world, light.positional ? 1 : 0);
+        place[3] = light.positional ? 1 : 0;
+      }
+      program.set({ [`light_colour[${i}]`]: light.colour, [`light_place[${i}]`]: place });
+      light.colour.forEach((part, channel) => (sum[channel] += part));
+    });
+    program.ints({ light_count: Math.min(this.scene.lights.length, 8) }).set({ light_sum: sum, light_standing: standing });
+  }
+
+  /** Local coordinates of lines to the window, and the planes in them; returns how wide lines are drawn. */
+  private aim(lines: Lines, drawn: Drawn): { wide: boolean; clipped: boolean } {
+    const width = lines.layer.line_width * this.ratio, wide = width > 1;
+    const local = product(drawn.view, product(lines.model, lines.set.toData)), clip = product(drawn.projection, local);
+    const largest = clip.reduce((most, value) => Math.max(most, Math.abs(value)), 0) || 1, window = new Float64Array(16);
+    for (let j = 0; j < 4; ++j) {
+      const [x, y, z, w] = [0, 1, 2, 3].map((i) => clip[i + 4 * j] / largest);
+      window.set([(this.width / 2) * (x + w), (this.height / 2) * (y + w), (z + w) / 2, w], 4 * j);
+    }
+    this.frameBlock.write({ window_from_local: window, reference: lines.set.reference, half_line_width: wide ? width / 2 : 0, viewport: [this.width, this.height] }, ["reference"]);
+    this.frameBlock.bind();
+    const planes = [...(lines.layer.planes ?? []), ...this.planes].slice(0, 8);
+    if (planes.length) {
+      const toWorld = product(lines.model, lines.set.toData), back = inverse(clip);
+      const place = new Float64Array(32), tilts = new Float64Array(32);
+      planes.forEach((plane, i) => {
+        const p = [0, 1, 2, 3].map((j) => plane[0] * toWorld[4 * j] + plane[1] * toWorld[4 * j + 1] + plane[2] * toWorld[4 * j + 2] + plane[3] * toWorld[4 * j + 3]);
+        const size = Math.hypot(p[0], p[1], p[2]) || 1;
+        p.forEach((value, j) => (place[4 * i + j] = value / size));
+        if (back) for (let j = 0; j < 2; ++j) {
+          const moved = [0, 1, 2, 3].reduce((sum, k) => sum + place[4 * i + k] * back[k + 4 * j], 0);
+          // The window's W is that of the matrix divided by its largest entry.
+          tilts[4 * i + j] = moved * largest * (2 / (j === 0 ? this.width : this.height));
+        }
+      });
+      this.clipBlock.write({ clip_planes: place, clip_tilts: tilts, clip_plane_count: 0, clip_rounding: 0 });
+      this.clipBlock.write({ clip_plane_count: planes.length }, ["clip_plane_count"]);
+      this.clipBlock.bind();
+    }
+    return { wide, clipped: planes.length > 0 };
+  }
+
+  private drawSlice(frame: Frame, quota: number): void {
+    const { gl } = this;
+    let aimed: Lines | null = null, program: Program | null = null;
+    while (frame.next < frame.jobs.length && this.sliceSize < quota) {
+      const { lines, block } = frame.jobs[frame.next++];
+      lines.set.pointsOf(block);
+      if (aimed !== lines) {
+        aimed = lines;
+        const { wide, clipped } = this.aim(lines, frame.matrices);
+        const features = ["CLIPPING", "CLIPPING_DEPTH", "EDGES"];
+        if (wide) features.push("WIDE_LINES");
+        if (clipped) features.push("CLIP_PLANES");
+        if (lines.values) features.push("VALUES_STORED");
+        if (lines.kept) features.push("STREAMLINE_MASK");
+        program = this.program("page/segment.vert", "page/segment.frag", features).use();
+        program.textures({ items: lines.set.items });
+        if (lines.kept) program.textures({ kept: lines.kept });
+        if (lines.values) program.textures({ value_texels: lines.values.texture }).set({ value_code: lines.values.code, shown_values: lines.shownValues });
+        program.uints({ layer: lines.index * 2 ** 28 });
+      }
+      gl.bindFramebuffer(gl.FRAMEBUFFER, this.buffers.texels);
+      gl.enable(gl.DEPTH_TEST);
+      gl.depthFunc(gl.LESS);
+      this.frameBlock.bind();
+      program!.use().textures({ items: lines.set.items, ...(lines.kept ? { kept: lines.kept } : {}), ...(lines.values ? { value_texels: lines.values.texture } : {}) });
+      this.sliceSize += lines.set.draw(block, program!, frame.share);
+    }
+  }
+
+  /** From the nearest lines to the canvas. */
+  private present(drawn: Drawn): void {
+    const { gl, textures: t, buffers: b } = this;
+    this.repaint(drawn);
+    gl.disable(gl.DEPTH_TEST);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, b.drawn);
+    gl.bindVertexArray(null);
+    const resolve = this.program("page/screen.vert", "page/resolve.frag").use(), back = inverse(drawn.projection) ?? identity();
+    let narrower = 0;
+    for (const lines of this.lines) {
+      if (!lines.layer.visible) continue;
+      const { layer } = lines, { colours } = layer, width = layer.line_width * this.ratio;
+      narrower = Math.max(narrower, 1 - Math.min(1, width));
+      resolve.textures({ texels: t.texels, depths: t.depths, colours: lines.colours, table: lines.table });
+      resolve.uints({ layer: lines.index * 2 ** 28, marked: lines.marked });
+      resolve.ints({ mode: MODES[colours.mode], logarithm: colours.log ? 1 : 0, light: LIGHTS[layer.light] });
+      resolve.set({
+        one_colour: colours.colour ?? [1, 1, 1], table_range: lines.tableRange, reflects: layer.reflects, sheen: layer.sheen,
+        data_to_view: linear(product(drawn.view, lines.model)), pixel_to_view: new Float32Array(back), picture: [this.width, this.height],
+      });
+      this.setLights(resolve, drawn.view);
+      gl.drawArrays(gl.TRIANGLES, 0, 3);
+    }
+    this.drawTranslucent(drawn);
+    gl.disable(gl.DEPTH_TEST);
+    gl.bindVertexArray(null);
+    if (this.scene.antialias && this.lines.length) {
+      gl.bindFramebuffer(gl.FRAMEBUFFER, b.shown);
+      gl.viewport(0, 0, this.width + 2, this.height + 2);
+      this.program("page/screen.vert", "page/visible_edges.frag").use().textures({ texels: t.texels, depths: t.depths, drawn: t.drawn }).set({ narrower });
+      gl.drawArrays(gl.TRIANGLES, 0, 3);
+      gl.viewport(0, 0, this.width, this.height);
+      gl.bindFramebuffer(gl.FRAMEBUFFER, b.drawn);
+      const smooth = this.program("page/screen.vert", "effects/picture/antialias_coverage.frag").use().textures({ shown: t.shown });
+      gl.uniform2i(smooth.at("shift"), 1, 1);
+      gl.drawArrays(gl.TRIANGLES, 0, 3);
+    }
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    this.program("page/screen.vert", "page/copy.frag").use().textures({ drawn: t.drawn });
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+  }
+
+  /** Edges were mixed into an earlier look at this picture: have what lies behind lines afresh. */
+  private repaint(drawn: Drawn): void {
+    if (this.frame && this.frame.drawn++ > 0) this.drawBackdrop(drawn);
+  }
+
+  private drawTranslucent(drawn: Drawn): void {
+    const { gl } = this, some = this.surfaces.filter((surface) => surface.layer.visible && surface.translucent);
+    const images = this.images.filter((image) => image.layer.visible && image.layer.opacity < 1);
+    if (!some.length && !images.length) return;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.buffers.scene);
+    gl.enable(gl.DEPTH_TEST);
+    gl.depthFunc(gl.LEQUAL);
+    gl.depthMask(false);
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+    const program = this.program("page/surface.vert", "page/surface.frag");
+    some.sort((a, b) => b.depth(drawn.view) - a.depth(drawn.view)).forEach((surface) => surface.draw(program, drawn));
+    const flat = this.program("page/image.vert", "page/image.frag");
+    images.forEach((image) => image.draw(flat, drawn));
+    gl.disable(gl.BLEND);
+    gl.depthMask(true);
+  }
+
+  /** What a pixel of the canvas shows, counted from its upper left corner in pixels of the page. */
+  pick(x: number, y: number): { lines: Lines; streamline: number; value: number | null } | null {
+    const { gl } = this, px = Math.floor(x * this.ratio), py = this.height - 1 - Math.floor(y * this.ratio), word = new Uint32Array(4);
+    const near: [number, number][] = [[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1], [2, 0], [-2, 0], [0, 2], [0, -2]];
+    for (const [dx, dy] of near) {
+      if (px + dx < 0 || py + dy < 0 || px + dx >= this.width || py + dy >= this.height) continue;
+      gl.bindFramebuffer(gl.FRAMEBUFFER, this.buffers.texels);
+      gl.readPixels(px + dx, py + dy, 1, 1, gl.RGBA_INTEGER, gl.UNSIGNED_INT, word);
+      if (word[0] === ALL_ONES && word[1] === ALL_ONES) continue;
+      const lines = this.lines[word[0] >>> 28];
+      if (!lines) continue;
+      const value = lines.values ? new Float32Array(new Uint32Array([word[3]]).buffer)[0] : null;
+      return { lines, streamline: word[0] & 0x0fffffff, value };
+    }
+    return null;
+  }
+
+  /** The picture as it is, rows from the top: RGBA. */
+  pixels(): Uint8Array {
+    const { gl, width, height } = this, all = new Uint8Array(4 * width * height), out = new Uint8Array(all.length);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.buffers.drawn);
+    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, all);
+    for (let row = 0; row < height; ++row) out.set(all.subarray(4 * width * row, 4 * width * (row + 1)), 4 * width * (height - 1 - row));
+    return out;
+  }
+}

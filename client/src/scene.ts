@@ -1,0 +1,96 @@
+/** What the page is told to show: the JSON that pvfiblets/page writes, whose counterpart is pvfiblets/page/scene.py. */
+
+import type { Bounds, CameraState, Vec } from "./camera";
+
+export interface Light {
+  colour: Vec;          // times intensity
+  view?: Vec;           // direction to a light that moves with the camera
+  world?: Vec;          // direction to a light of the scene, or its place
+  positional?: boolean;
+}
+
+export interface Colours {
+  mode: "direction" | "solid" | "streamline" | "value";
+  colour?: Vec;         // of "solid"
+  data?: number;        // of "streamline": RGBA for each
+  values?: string;      // of "value": a stored array of points
+  table?: string;       // base64, RGBA: entries, then below, above, NaN
+  clim?: [number, number];
+  log?: boolean;
+}
+
+export interface Bar {
+  title: string;
+  table: string;        // base64, RGBA
+  clim: [number, number];
+  log: boolean;
+  labels?: string[];    // of categories
+}
+
+export interface Control {
+  name: string;
+  values?: string;      // a stored array of points
+  data?: number;        // float32 for each streamline
+  range: [number, number];
+}
+
+interface Layer {
+  name: string;
+  visible: boolean;
+  matrix?: number[];    // 16, column by column: data to world
+  planes?: number[][];  // (a, b, c, d): kept where a x + b y + c z + d >= 0, in world coordinates
+}
+
+export interface FibletLayer extends Layer {
+  kind: "fiblets";
+  data: number;
+  colours: Colours;
+  line_width: number;
+  light: "none" | "line" | "illuminated";
+  reflects: [number, number, number, number];
+  sheen: Vec;
+  kept?: number;        // data: a byte for each streamline
+  groups?: { name: string; colour?: Vec; data: number }[];
+  controls?: Control[];
+}
+
+export interface SurfaceLayer extends Layer {
+  kind: "surface";
+  places: number;       // data: float32
+  triangles: number;    // data: uint32
+  normals?: number;     // data: float32
+  colours?: number;     // data: RGBA
+  colour: Vec;
+  opacity: number;
+  lighting: boolean;
+  reflects: [number, number, number, number];
+  sheen: Vec;
+  bounds: Bounds;
+}
+
+export interface ImageLayer extends Layer {
+  kind: "image";
+  corner: Vec;
+  across: Vec;
+  up: Vec;
+  size: [number, number];
+  pixels: number;       // data: RGBA
+  opacity: number;
+  bounds: Bounds;
+}
+
+export type AnyLayer = FibletLayer | SurfaceLayer | ImageLayer;
+
+export interface Scene {
+  title: string;
+  background: [Vec, Vec];
+  camera: CameraState;
+  bounds: Bounds;
+  lights: Light[];
+  layers: AnyLayer[];
+  bars: Bar[];
+  letters: boolean;     // of orientation
+  axes: boolean;
+  antialias: boolean;
+  data: { bytes: number; file?: string }[];
+}

@@ -1,0 +1,56 @@
+"""The bytes of a set of fiblets for a page: a ``.fiblets`` file with what the page draws, and nothing else."""
+
+from __future__ import annotations
+
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from pvfiblets.codec.archive import array_member, write_archive
+from pvfiblets.codec.fiblets_file import make_header
+
+if TYPE_CHECKING:
+    from pvfiblets.codec.fibletset import FibletSet
+
+__all__ = ["fiblet_bytes"]
+
+_CORE = ("anchors", "decoding", "codes", "pages")
+_OPTIONAL = ("anchors_low", "rank_to_id")
+
+
+def fiblet_bytes(fiblets: FibletSet, keep: tuple[str, ...] = ()) -> bytes:
+    """Return a set as a file of records, without what serves culling and without other data of streamlines.
+
+    Parameters
+    ----------
+    fiblets : FibletSet
+        Of an exact set the records that it is drawn by.
+    keep : tuple of str
+        Arrays of values per point that go along.
+
+    Raises
+    ------
+    KeyError
+        If there is no such array.
+    """
+    if missing := [name for name in keep if name not in fiblets.per_point]:
+        raise KeyError(f"there are no values per point {missing}; there are {sorted(fiblets.per_point)}")
+    bare = replace(
+        fiblets, per_point={name: fiblets.per_point[name] for name in keep}, per_streamline={}, groups={}, per_group={},
+        space={}, dropped={}, exact=None,
+    )  # fmt: skip
+    members = {f"{name}.npy": array_member(np.asarray(getattr(bare, name))) for name in _CORE}
+    members |= {
+        f"{name}.npy": array_member(np.asarray(getattr(bare, name)))
+        for name in _OPTIONAL
+        if getattr(bare, name) is not None
+    }
+    values = {name: array_member(np.asarray(points.codes)) for name, points in bare.per_point.items()}
+    header, more = make_header(bare, values)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "page.fiblets"
+        write_archive(path, header, members | more)
+        return path.read_bytes()

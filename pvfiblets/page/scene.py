@@ -1,0 +1,220 @@
+"""What a page shows, as plain data; ``client/src/scene.ts`` is the same for the page's script."""
+
+from __future__ import annotations
+
+import base64
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+if TYPE_CHECKING:
+    from pvfiblets.codec.fibletset import FibletSet
+
+__all__ = ["CameraPlace", "Light", "PageScene", "encoded", "fiblet_layer"]
+
+Vector = tuple[float, float, float]
+Bounds = tuple[float, float, float, float, float, float]
+
+
+@dataclass(frozen=True)
+class CameraPlace:
+    """A camera, as VTK has it: world mm and degrees."""
+
+    position: Vector
+    focal_point: Vector
+    up: Vector
+    view_angle: float = 30.0
+    parallel: bool = False
+    parallel_scale: float = 1.0
+
+    @classmethod
+    def along(cls, bounds: Bounds, direction: Vector = (1.0, 1.0, -1.0), up: Vector = (0.0, 0.0, 1.0)) -> CameraPlace:
+        """Look along a direction at all that lies within bounds."""
+        low, high = np.array(bounds[::2]), np.array(bounds[1::2])
+        middle, radius = (low + high) / 2.0, float(np.linalg.norm(high - low)) / 2.0 or 1.0
+        away = np.array(direction) / np.linalg.norm(direction) * radius / np.sin(np.radians(15.0))
+        place = middle - away
+        return cls(_vector(place), _vector(middle), up, 30.0, False, radius)
+
+
+@dataclass(frozen=True)
+class Light:
+    """A light.
+
+    Attributes
+    ----------
+    colour : tuple of 3 floats
+        RGB times intensity.
+    view, world : tuple of 3 floats, optional
+        Direction to the light, in view coordinates of one that moves with the camera, or in world coordinates.
+    positional : bool
+        Whether `world` is a place instead.
+    """
+
+    colour: Vector
+    view: Vector | None = None
+    world: Vector | None = None
+    positional: bool = False
+
+    def plain(self) -> dict[str, Any]:
+        """Return it as JSON has it."""
+        place = {"view": self.view} if self.world is None else {"world": self.world, "positional": self.positional}
+        return {"colour": self.colour, **place}
+
+
+@dataclass
+class PageScene:
+    """What a page shows.
+
+    Attributes
+    ----------
+    title : str
+        Of the page.
+    background : tuple of two colours
+        At the bottom and at the top, RGB from 0 to 1.
+    camera : CameraPlace, optional
+        None: an oblique view of everything.
+    lights : list of Light
+        A headlight where there is none.
+    layers, bars : list of dict
+        As ``client/src/scene.ts`` has them; `fiblet_layer` makes one.
+    blobs : list of bytes
+        What layers name by number.
+    bounds : tuple of 6 floats
+        Of everything, world mm.
+    letters : bool
+        Whether letters say where left, right, front, back, top and bottom are.
+    antialias : bool
+        Whether edges of lines are smooth.
+    """
+
+    title: str
+    background: tuple[Vector, Vector] = ((1.0, 1.0, 1.0), (1.0, 1.0, 1.0))
+    camera: CameraPlace | None = None
+    lights: list[Light] = field(default_factory=list)
+    layers: list[dict[str, Any]] = field(default_factory=list)
+    bars: list[dict[str, Any]] = field(default_factory=list)
+    blobs: list[bytes] = field(default_factory=list)
+    bounds: Bounds = (np.inf, -np.inf, np.inf, -np.inf, np.inf, -np.inf)
+    letters: bool = False
+    antialias: bool = True
+
+    def add_blob(self, data: bytes | npt.NDArray[Any]) -> int:
+        """Keep some bytes and return their number."""
+        self.blobs.append(data if isinstance(data, bytes) else np.ascontiguousarray(data).tobytes())
+        return len(self.blobs) - 1
+
+    def add_layer(self, layer: dict[str, Any], bounds: Bounds) -> None:
+        """Show something that lies within bounds."""
+        self.layers.append(layer)
+        low, high = np.minimum(self.bounds[::2], bounds[::2]), np.maximum(self.bounds[1::2], bounds[1::2])
+        x, y, z = zip(low.tolist(), high.tolist(), strict=True)
+        self.bounds = (*x, *y, *z)
+
+    def plain(self) -> dict[str, Any]:
+        """Return all but the blobs as JSON has it.
+
+        Raises
+        ------
+        ValueError
+            If it shows nothing.
+        """
+        if not self.layers or not np.isfinite(self.bounds).all():
+            raise ValueError("there is nothing that a page could show; add streamlines or surfaces first")
+        return {
+            "title": self.title,
+            "background": self.background,
+            "camera": (self.camera or CameraPlace.along(self.bounds)).__dict__,
+            "bounds": self.bounds,
+            "lights": [light.plain() for light in self.lights or [Light((1.0, 1.0, 1.0), view=(0.0, 0.0, 1.0))]],
+            "layers": self.layers,
+            "bars": self.bars,
+            "letters": self.letters,
+            "antialias": self.antialias,
+        }
+
+
+def fiblet_layer(
+    scene: PageScene,
+    fiblets: FibletSet,
+    *,
+    name: str = "streamlines",
+    colours: dict[str, Any] | None = None,
+    keep: tuple[str, ...] = (),
+    line_width: float = 1.0,
+    light: str = "line",
+    reflects: tuple[float, float, float, float] = (0.0, 1.0, 0.0, 1.0),
+    sheen: Vector = (1.0, 1.0, 1.0),
+    matrix: npt.NDArray[np.float64] | None = None,
+    **more: Any,
+) -> dict[str, Any]:
+    """Show a set of fiblets.
+
+    Parameters
+    ----------
+    scene : PageScene
+        To which the layer and its bytes are added.
+    fiblets : FibletSet
+        What to show; of exact sets the page draws the points to a few billionths of their extent, as the engine does.
+    name : str
+        For people.
+    colours : dict, optional
+        ``Colours`` of ``client/src/scene.ts``; by default directions.
+    keep : tuple of str
+        Arrays of values per point that the page has; the one that colours is among them.
+    line_width : float
+        Pixels.
+    light : {'line', 'illuminated', 'none'}
+        Which light falls on lines.
+    reflects : tuple of 4 floats
+        Ambient, diffuse, specular, and the specular power.
+    sheen : tuple of 3 floats
+        Colour of highlights.
+    matrix : numpy.ndarray, optional
+        (4, 4), data to world mm.
+    **more
+        Other keys of ``FibletLayer``.
+
+    Returns
+    -------
+    dict
+        The layer.
+    """
+    from .fiblet_bytes import fiblet_bytes
+
+    layer: dict[str, Any] = {
+        "kind": "fiblets",
+        "name": name,
+        "visible": True,
+        "data": scene.add_blob(fiblet_bytes(fiblets, keep)),
+        "colours": colours or {"mode": "direction"},
+        "line_width": float(line_width),
+        "light": light,
+        "reflects": reflects,
+        "sheen": sheen,
+        **more,
+    }
+    bounds = np.array(fiblets.bounds, float)
+    if matrix is not None:
+        layer["matrix"] = np.asarray(matrix, float).T.ravel().tolist()
+        corners = np.array([[x, y, z, 1.0] for x in bounds[:2] for y in bounds[2:4] for z in bounds[4:]]) @ matrix.T
+        bounds = np.column_stack([corners[:, :3].min(axis=0), corners[:, :3].max(axis=0)]).ravel()
+    scene.add_layer(layer, _bounds(bounds))
+    return layer
+
+
+def encoded(table: npt.NDArray[np.uint8]) -> str:
+    """Return a table of RGBA as JSON has it."""
+    return base64.b64encode(np.ascontiguousarray(table, np.uint8).tobytes()).decode()
+
+
+def _vector(values: npt.NDArray[Any]) -> Vector:
+    x, y, z = (float(v) for v in values)
+    return x, y, z
+
+
+def _bounds(values: npt.NDArray[Any]) -> Bounds:
+    a, b, c, d, e, f = (float(v) for v in values)
+    return a, b, c, d, e, f

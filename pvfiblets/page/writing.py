@@ -1,0 +1,130 @@
+"""Writes pages: one file with all its data, or above a size a folder whose data lie beside the page.
+
+A page runs its own script and nothing else: a content security policy names script and style by their hashes, allows no
+request to any other host, and no evaluation of text. Names are data of JSON and become text of the document, never HTML.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import html
+import json
+from functools import cache
+from importlib import resources
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from pvfiblets.whole_files import made_folder, replacing
+
+from .scene import PageScene
+
+__all__ = ["LARGEST_FILE", "write_page"]
+
+LARGEST_FILE = 64_000_000
+"""Bytes of data above which they lie beside the page: browsers keep the text of a page in memory, twice."""
+
+
+@cache
+def _resource(name: str) -> str:
+    return (resources.files(__package__) / name).read_text(encoding="utf-8")
+
+
+def write_page(scene: PageScene, path: str | PathLike[str], *, largest_file: int = LARGEST_FILE) -> list[Path]:
+    """Write a page.
+
+    Parameters
+    ----------
+    scene : PageScene
+        What it shows.
+    path : str or PathLike
+        A name ending in ``.html``, or in nothing for a folder with ``index.html``. With more data than `largest_file` the page of
+        a name ending in ``.html`` has a folder of its data beside it: ``figure.html`` and ``figure_data``.
+    largest_file : int
+        Bytes of data that a single file holds at most. A page with a folder needs a server (any that serves files will
+        do): browsers do not read other files for a page that they opened from a disk.
+
+    Returns
+    -------
+    list of pathlib.Path
+        What was written, the page first.
+
+    Raises
+    ------
+    ValueError
+        If the scene shows nothing, or the name has another ending.
+    OSError
+        If it cannot be written.
+    """
+    path = Path(path).expanduser()
+    if path.suffix.lower() not in ("", ".html", ".htm"):
+        raise ValueError(f"{path}: a page is written as .html, or into a folder whose name has no ending; name it so")
+    content = scene.plain()
+    apart = path.suffix == "" or sum(map(len, scene.blobs)) > largest_file
+    page = path if path.suffix else path / "index.html"
+    written = [page]
+    if apart:
+        folder = path if not path.suffix else path.with_name(f"{path.stem}_data")
+        made_folder(folder)
+        content["data"] = []
+        for number, blob in enumerate(scene.blobs):
+            name = folder / f"{number}.bin"
+            with replacing(name, len(blob)) as file:
+                file.write(blob)
+            written.append(name)
+            content["data"].append({"bytes": len(blob), "file": name.relative_to(page.parent).as_posix()})
+        blocks: list[bytes] = []
+    else:
+        content["data"] = [{"bytes": len(blob)} for blob in scene.blobs]
+        blocks = [_data_block(f"data-{number}", blob) for number, blob in enumerate(scene.blobs)]
+    text = page_text(content, apart=apart)
+    head, tail = text.split("<!-- data -->")
+    with replacing(page, len(text) + sum(map(len, blocks))) as file:
+        file.write(head.encode())
+        for block in blocks:
+            file.write(block)
+        file.write(tail.encode())
+    return written
+
+
+def page_text(content: dict[str, Any], *, apart: bool) -> str:
+    """Return the page without its data."""
+    script, style = _resource("page.js"), _resource("page.css")
+    policy = "; ".join(
+        (
+            "default-src 'none'",
+            f"script-src 'sha256-{_digest(script)}'",
+            f"style-src 'sha256-{_digest(style)}'",
+            "img-src data: blob:",
+            f"connect-src {chr(39)}self{chr(39)}" if apart else "connect-src 'none'",
+            "base-uri 'none'",
+            "form-action 'none'",
+        )
+    )
+    parts = {
+        "policy": html.escape(policy, quote=True).replace("&#x27;", "'"),
+        "title": html.escape(str(content["title"])),
+        "style": style,
+        "scene": _json(content),
+        "script": script,
+    }
+    pieces = _resource("page.html").split("{{")
+    made = [pieces[0]]
+    for piece in pieces[1:]:
+        name, _, rest = piece.partition("}}")
+        made += [parts[name.strip()], rest]
+    return "".join(made)
+
+
+def _digest(text: str) -> str:
+    return base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
+
+
+def _json(content: dict[str, Any]) -> str:
+    """Return JSON that cannot end the element that it stands in."""
+    return json.dumps(content, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
+
+
+def _data_block(name: str, blob: bytes) -> bytes:
+    return b'<script type="text/plain" id="' + name.encode() + b'">' + base64.b64encode(blob) + b"</script>\n"

@@ -1,0 +1,78 @@
+"""Write the shaders of pages (client/) as one JSON file: `python scripts/page_shaders.py FILE`.
+
+They are the engine's own pieces, assembled as for OpenGL 3.3 and turned into GLSL ES 3.00. Switches stay switches: the page sets the
+``#define FEATURE_`` lines itself. Beside them stand the offsets of uniform blocks, the rotations of direction codes, and their scales.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import re
+import sys
+from pathlib import Path
+from typing import Any
+
+from pvfiblets.codec import direction_codebook, layout
+from pvfiblets.engine.shaders import assemble
+from pvfiblets.engine.uniform_struct import find_struct
+
+DATA = {name: "page/data.glsl" for name in ("fiblets/data/culling.glsl", "fiblets/data/decoding.glsl")}
+ANY_FIBLETS = ("ANCHORS_LOW", "DIRECTION", "LATTICE", "WIDE_LATTICE")
+ANY_LINES = ("CLIPPING", "CLIPPING_DEPTH", "CLIP_PLANES", "EDGES", "WIDE_LINES", "VALUES_STORED", "STREAMLINE_MASK")
+STAGES: dict[str, tuple[str, ...]] = {
+    "page/decode.vert": ANY_FIBLETS,
+    "page/none.frag": (),
+    "page/segment.vert": ANY_LINES,
+    "page/segment.frag": ANY_LINES,
+    "page/screen.vert": (),
+    "page/resolve.frag": (),
+    "page/visible_edges.frag": (),
+    "effects/picture/antialias_coverage.frag": (),
+    "page/copy.frag": (),
+    "page/background.frag": (),
+    "page/surface.vert": (),
+    "page/surface.frag": (),
+    "page/image.vert": (),
+    "page/image.frag": (),
+}
+BLOCKS = ("Frame", "Coding", "Rotations", "ClipPlanes")
+PRECISION = "".join(f"precision highp {kind};\n" for kind in ("float", "int", "sampler2D", "usampler2D"))
+
+
+def page_shader(name: str, features: tuple[str, ...]) -> str:
+    """Return a stage in GLSL ES, without what is there for people."""
+    text = assemble(name, features, version=300, replaced=DATA)
+    text = re.sub(r"/\*.*?\*/", "", re.sub(r"//[^\n]*", "", text), flags=re.DOTALL)
+    head, _, body = text.partition("\n")
+    assert head == "#version 300", head
+    lines = [re.sub(r"[ \t]+", " ", line).strip() for line in body.splitlines()]
+    body = "\n".join(line for line in lines if line)
+    return f"#version 300 es\n{PRECISION}{body}\n"
+
+
+def everything() -> dict[str, Any]:
+    """Return all that a page needs of the package."""
+    blocks = {}
+    for name in BLOCKS:
+        struct = find_struct(name)
+        blocks[name] = {"bytes": struct.nbytes, "fields": {field: struct.offset(field) for field in struct.fields}}
+    return {
+        "shaders": {name: page_shader(name, features) for name, features in STAGES.items()},
+        "blocks": blocks,
+        "rotations": base64.b64encode(direction_codebook.packed().astype("<u4").tobytes()).decode(),
+        "rotation_scales": direction_codebook.packed_scales().tolist(),
+        "fields": {f.name: [f.word, f.shift, f.width] for f in layout.FIELDS.values()},
+        "page_bits": layout.PAGE_BITS,
+    }
+
+
+def main() -> None:
+    """Write the file that is named."""
+    path = Path(sys.argv[1])
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(json.dumps(everything(), sort_keys=True, indent=1) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,14 @@
+// The colours of a slice, which is not lit; where they are wholly translucent there is nothing.
+
+#version 430
+
+in vec2 at;
+uniform highp sampler2D pixels;
+uniform float opacity;
+layout(location = 0) out vec4 colour;
+
+void main() {
+    colour = texture(pixels, at);
+    if (colour.a == 0.0) discard;
+    colour.a *= opacity;
+}

@@ -1,0 +1,87 @@
+// What the nearest line of a pixel is: the page's G-buffer, one texel of four words a pixel, with the depth beside it.
+//
+//   streamline, the layer in the upper four bits | tangent (frame/tangent.glsl) | edges (frame/edges.glsl) | value, as a float's bits
+//
+// The pixels of thin lines: fiblets/segments/thin_line_rule.glsl. Those of wide lines: fiblets/hardware_raster/capsule.frag.
+
+#version 430
+
+#include "fiblets/segments/thin_line_rule.glsl"
+#include "fiblets/segments/clipped_segment.glsl"
+#include "fiblets/segments/edges.glsl"
+#include "fiblets/segments/joint.glsl"
+#include "fiblets/attributes/tangent.glsl"
+#define VARYING flat in
+#include "page/segment_varyings.glsl"
+
+layout(location = 0) out uvec4 out_texel;
+
+#if FEATURE_VALUES_STORED
+uniform vec2 shown_values;     // least and greatest that is drawn; the first above the second: all
+
+bool none(float value) { return (floatBitsToUint(value) & 0x7FFFFFFFu) > 0x7F800000u; }
+
+float value_between(float t) {
+    vec2 ends = seg_along.zw;
+    if (none(ends.x) || none(ends.y)) return t < 0.5 ? ends.x : ends.y;
+    return mix(ends.x, ends.y, t);
+}
+#endif
+
+void write(float s, uint edges) {
+    float ratio = seg_start.w / max(seg_end.w, 1e-30);
+    float t = mix(seg_along.x, seg_along.y, clamp(s * ratio / max(1.0 - s + s * ratio, 1e-30), 0.0, 1.0));
+    Tangents ends = unpacked_tangents(seg_ids.yz);
+    uint bits = 0u;
+#if FEATURE_VALUES_STORED
+    float value = value_between(t);
+    if (shown_values.x <= shown_values.y && !(value >= shown_values.x && value <= shown_values.y)) discard;
+    bits = floatBitsToUint(value);
+#endif
+    out_texel = uvec4(seg_ids.x, packed_tangent(tangent_between(ends, t), 0u), edges, bits);
+}
+
+#if FEATURE_WIDE_LINES
+#if FEATURE_CLIP_PLANES
+bool brush_kept(float s, vec2 away) {
+    for (int plane = 0; plane < clip_plane_count; ++plane) {
+        vec2 heights = vec2(clip_height_of(plane, seg_from), clip_height_of(plane, seg_to));
+        vec2 h = max(heights / max(vec2(seg_start.w, seg_end.w), vec2(1e-30)), vec2(0.0));
+        if (h.x + s * (h.y - h.x) + dot(clip_tilts[plane], away) < 0.0) return false;
+    }
+    return true;
+}
+#endif
+
+void main() {
+    vec2 run = seg_end.xy - seg_start.xy, centre = gl_FragCoord.xy - seg_start.xy;
+    float foot = dot(centre, run) / max(dot(run, run), 1e-12), s = clamp(foot, 0.0, 1.0);
+    vec2 away = centre - s * run;
+    if (foot < 0.0 && (seg_ids.w & 1u) == 0u || dot(away, away) > half_line_width * half_line_width) discard;
+    if (foot > 1.0 && beyond_joint(seg_onward, centre - run)) discard;
+#if FEATURE_CLIP_PLANES
+    if (!brush_kept(s, away)) discard;
+#endif
+    gl_FragDepth = clamp(seg_start.z + (seg_end.z - seg_start.z) * s, 0.0, 0.99999988);
+    write(s, capsule_edges(centre, run, half_line_width));
+}
+#else
+
+void main() {
+    vec2 first = pixel_of(seg_start), run = pixel_of(seg_end) - first, at = floor(gl_FragCoord.xy) - first;
+    Cells cells = cells_between(ivec2(first), ivec2(first + run));
+    bool start = (seg_ids.w & 1u) != 0u, cap = (seg_ids.w & 2u) != 0u, steep = abs(run.y) > abs(run.x);
+    float s = 1.0;
+    if (at == run) {
+        if (!cap) discard;
+    } else {
+        float major = steep ? at.y : at.x, way = steep ? run.y : run.x, steps = abs(major);
+        if (major * way < 0.0 || steps >= float(cells.count)) discard;
+        vec2 line = floor(0.5 + CELL_SHIFT + (steps - cells.shift) * cells.inverse * run);
+        if (steep ? line.x != at.x : line.y != at.y) discard;
+        s = dot(at - CELL_SHIFT, run) * cells.square;
+    }
+    vec4 ends = vec4(in_picture(seg_start), in_picture(seg_end)), parts = floor((ends - floor(ends)) * 256.0) / 256.0;
+    write(s, thin_edges(ivec2(first), ivec2(first + run), at, parts, start, cap));
+}
+#endif

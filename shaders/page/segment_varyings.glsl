@@ -1,0 +1,17 @@
+// What a segment's rectangle hands to its fragments; all corners alike.
+
+#ifndef VARYING
+#define VARYING flat out
+#endif
+
+VARYING uvec4 seg_ids;     // streamline and layer; tangent at the start; at the end; 1: the line starts here, 2: it ends here
+VARYING vec4 seg_start;    // of the part that is drawn: window x, y; depth; clip w
+VARYING vec4 seg_end;
+VARYING vec4 seg_along;    // t at both ends; values at the points
+#if FEATURE_WIDE_LINES
+VARYING vec2 seg_onward;   // fiblets/segments/joint.glsl
+#if FEATURE_CLIP_PLANES
+VARYING vec3 seg_from;
+VARYING vec3 seg_to;
+#endif
+#endif

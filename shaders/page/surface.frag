@@ -1,0 +1,29 @@
+// Light on a surface, as VTK has it: flat ones by the slope of their triangles.
+
+#version 430
+
+#include "page/lights.glsl"
+
+in vec3 view_place;
+in vec3 view_normal;
+in vec4 own_colour;
+in vec3 data_place;
+
+uniform int smooth_normals;
+uniform int lighting;
+uniform float parallel;
+uniform float opacity;
+uniform vec4 reflects;
+uniform vec3 sheen;
+uniform int plane_count;
+uniform vec4 planes[6];
+layout(location = 0) out vec4 colour;
+
+void main() {
+    for (int i = 0; i < plane_count; ++i) if (dot(planes[i].xyz, data_place) + planes[i].w < 0.0) discard;
+    vec3 normal = smooth_normals == 1 ? normalize(view_normal) : normalize(cross(dFdx(view_place), dFdy(view_place)));
+    vec3 sight = parallel == 1.0 ? vec3(0.0, 0.0, 1.0) : normalize(-view_place);
+    if (dot(normal, sight) < 0.0) normal = -normal;
+    vec3 lit = lighting == 1 ? light_on_surface(own_colour.rgb, normal, view_place, reflects, sheen) : own_colour.rgb;
+    colour = vec4(lit, own_colour.a * opacity);
+}

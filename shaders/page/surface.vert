@@ -1,0 +1,24 @@
+// Surfaces: triangles, each with three vertices of its own or with shared ones.
+
+#version 430
+
+layout(location = 0) in vec3 place;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec4 own;
+
+uniform mat4 clip_from_data;
+uniform mat4 view_from_data;
+uniform mat3 normal_to_view;
+
+out vec3 view_place;
+out vec3 view_normal;
+out vec4 own_colour;
+out vec3 data_place;
+
+void main() {
+    gl_Position = clip_from_data * vec4(place, 1.0);
+    view_place = (view_from_data * vec4(place, 1.0)).xyz;
+    view_normal = normal_to_view * normal;
+    own_colour = own;
+    data_place = place;
+}
