@@ -11,7 +11,7 @@ SHELL := /bin/bash
 # Compiled modules are kept, for the many processes that tests start.
 PYTEST := env -u PYTHONDONTWRITEBYTECODE $(BIN)/python -m pytest --numprocesses=auto --maxprocesses=8 --dist=loadfile --no-loadscope-reorder
 
-.PHONY: demo serve test test-all lint fuzz soak bench docs check-wheel drivers drivers-part wheel environment gl shaders browser display clean
+.PHONY: demo serve test test-all lint fuzz soak bench docs check-wheel drivers drivers-part wheel client environment gl shaders browser display clean
 
 demo: environment gl
 	$(BIN)/pvfiblets demo --output $(DEMO)
@@ -49,7 +49,11 @@ docs: environment gl
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
 	$(BIN)/python -m sphinx -W --keep-going -b html docs docs/_build/html
 
-check-wheel: environment gl
+check-# The script of pages, for which node is needed; what it makes is part of the repository.
+client: environment
+	$(BIN)/python scripts/page_client.py
+
+wheel: environment gl
 	@PYTHON=$(BIN)/python scripts/wheel_check.sh
 
 drivers: environment gl
@@ -57,6 +61,10 @@ drivers: environment gl
 
 drivers-part: environment
 	@scripts/drivers.sh --part
+
+# The script of pages, for which node is needed; what it makes is part of the repository.
+client: environment
+	$(BIN)/python scripts/page_client.py
 
 wheel: environment
 	$(BIN)/python -m pip wheel --no-deps --wheel-dir dist .

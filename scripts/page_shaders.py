@@ -1,25 +1,24 @@
-"""Write the shaders of pages (client/) as one JSON file: `python scripts/page_shaders.py FILE`.
+"""The shaders of pages (client/), and what else their script takes from the package; scripts/page_client.py builds it.
 
-They are the engine's own pieces, assembled as for OpenGL 3.3 and turned into GLSL ES 3.00. Switches stay switches: the page sets the
-``#define FEATURE_`` lines itself. Beside them stand the offsets of uniform blocks, the rotations of direction codes, and their scales.
+They are the engine's own pieces, assembled as for OpenGL 3.3 and turned into GLSL ES 3.00. Switches stay switches: the
+page sets the ``#define FEATURE_`` lines itself. Beside them stand the offsets of uniform blocks, the rotations of
+direction codes, and their scales.
 """
 
 from __future__ import annotations
 
 import base64
-import json
 import re
-import sys
-from pathlib import Path
 from typing import Any
 
 from pvfiblets.codec import direction_codebook, layout
 from pvfiblets.engine.shaders import assemble
 from pvfiblets.engine.uniform_struct import find_struct
 
-DATA = {name: "page/data.glsl" for name in ("fiblets/data/culling.glsl", "fiblets/data/decoding.glsl")}
+DATA = dict.fromkeys(("fiblets/data/culling.glsl", "fiblets/data/decoding.glsl"), "page/data.glsl")
 ANY_FIBLETS = ("ANCHORS_LOW", "DIRECTION", "LATTICE", "WIDE_LATTICE")
-ANY_LINES = ("CLIPPING", "CLIPPING_DEPTH", "CLIP_PLANES", "EDGES", "WIDE_LINES", "VALUES_STORED", "STREAMLINE_MASK")
+ANY_LINES = ("CLIPPING", "CLIPPING_DEPTH", "CLIP_PLANES", "EDGES", "WIDE_LINES", "VALUES_STORED", "VALUES_COLOUR",
+             "STREAMLINE_MASK")
 STAGES: dict[str, tuple[str, ...]] = {
     "page/decode.vert": ANY_FIBLETS,
     "page/none.frag": (),
@@ -47,8 +46,13 @@ def page_shader(name: str, features: tuple[str, ...]) -> str:
     head, _, body = text.partition("\n")
     assert head == "#version 300", head
     lines = [re.sub(r"[ \t]+", " ", line).strip() for line in body.splitlines()]
-    body = "\n".join(line for line in lines if line)
+    body = "\n".join(_tight(line) for line in lines if line)
     return f"#version 300 es\n{PRECISION}{body}\n"
+
+
+def _tight(line: str) -> str:
+    """Leave blanks out beside signs; a line of the preprocessor keeps its own."""
+    return line if line.startswith("#") else re.sub(r" ?([*/=<>{}();,?:&|!%^]) ?", r"\1", line)
 
 
 def everything() -> dict[str, Any]:
@@ -65,14 +69,3 @@ def everything() -> dict[str, Any]:
         "fields": {f.name: [f.word, f.shift, f.width] for f in layout.FIELDS.values()},
         "page_bits": layout.PAGE_BITS,
     }
-
-
-def main() -> None:
-    """Write the file that is named."""
-    path = Path(sys.argv[1])
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(json.dumps(everything(), sort_keys=True, indent=1) + "\n", encoding="utf-8")
-
-
-if __name__ == "__main__":
-    main()

@@ -62,7 +62,7 @@ export class FibletSet {
   private rotationBlock: UniformBlock;
   private frameForDecoding: UniformBlock;
   private textures: Record<string, WebGLTexture> = {};
-  private itemBuffer: WebGLBuffer;
+  private itemBuffer!: WebGLBuffer;
   private feedback: WebGLTransformFeedback;
   private scratch: WebGLBuffer | null = null;
   private scratchBytes = 0;
@@ -125,7 +125,6 @@ export class FibletSet {
     this.frameForDecoding = new UniformBlock(gl, "Frame");
     this.frameForDecoding.write({ reference: this.reference }, ["reference"]);
     this.decodeProgram = new Program(gl, "page/decode.vert", "page/none.frag", features, Array.from({ length: 15 }, (_, i) => `o${i}`));
-    this.itemBuffer = this.itemBuffer!;
     this.feedback = gl.createTransformFeedback()!;
     this.decodeArray = gl.createVertexArray()!;
     gl.bindVertexArray(this.decodeArray);

@@ -9,7 +9,7 @@ import { readArchive } from "./archive";
 import { Bounds, Camera, Mat, Vec, apply, identity, inverse, linear, product } from "./camera";
 import { fromBase64 } from "./engine";
 import { Block, FibletSet, PointValues } from "./fiblets";
-import { GL, GraphicsError, Program, UniformBlock, framebuffer, rows, target } from "./gl";
+import { GL, GraphicsError, Program, UniformBlock, framebuffer, lookUpTable, rows, target } from "./gl";
 import type { FibletLayer, Scene } from "./scene";
 import { Drawn, ImageSlice, Surface } from "./surfaces";
 
@@ -17,7 +17,7 @@ const SLICE = 60;      // ms of drawing between looks at the user's hands
 const MOVING = 45;     // ms of a picture while something moves
 const REFRESH = 150;   // ms between pictures while slices come in
 const ALL_ONES = 0xffffffff;
-const MODES = { direction: 0, solid: 1, streamline: 2, value: 3 };
+const MODES = { direction: 0, solid: 1, streamline: 2, value: 3, point: 4 };
 const LIGHTS = { none: 0, line: 1, illuminated: 2 };
 
 /** Fiblets of the scene, with what colours and hides them. */
@@ -25,7 +25,7 @@ export class Lines {
   readonly set: FibletSet;
   readonly model: Mat;
   values: PointValues | null = null;      // that the G-buffer holds
-  colours: WebGLTexture | null = null;
+  colours: WebGLTexture | null = null;   // by streamline, or by point
   table: WebGLTexture | null = null;
   tableRange: number[] = [0, 1, 1, 1];
   kept: WebGLTexture | null = null;
@@ -38,13 +38,12 @@ export class Lines {
     const { colours } = layer;
     if (colours.values !== undefined) this.values = this.set.pointValues(colours.values);
     if (colours.data !== undefined) this.colours = rows(gl, "rgba8", data[colours.data], "colours");
-    if (colours.table !== undefined) {
-      const table = fromBase64(colours.table), n = table.length / 4 - 3;
-      this.table = rows(gl, "rgba8", table, "colours");
-      const [low, high] = colours.log ? colours.clim!.map((end) => Math.log10(end)) : colours.clim!;
-      this.tableRange = [low, high, n / Math.max(high - low, 1e-30), n];
-    }
+    if (colours.table !== undefined) [this.table, this.tableRange] = lookUpTable(gl, fromBase64(colours.table), colours.clim!, !!colours.log);
     if (layer.kept !== undefined) this.keep(data[layer.kept]);
+  }
+
+  get byPoint(): boolean {
+    return this.layer.colours.mode === "point";
   }
 
   /** Draw those streamlines alone whose byte is not 0; null: all. */
@@ -355,18 +354,17 @@ export class Renderer {
         if (wide) features.push("WIDE_LINES");
         if (clipped) features.push("CLIP_PLANES");
         if (lines.values) features.push("VALUES_STORED");
+        if (lines.byPoint) features.push("VALUES_COLOUR");
         if (lines.kept) features.push("STREAMLINE_MASK");
         program = this.program("page/segment.vert", "page/segment.frag", features).use();
-        program.textures({ items: lines.set.items });
-        if (lines.kept) program.textures({ kept: lines.kept });
-        if (lines.values) program.textures({ value_texels: lines.values.texture }).set({ value_code: lines.values.code, shown_values: lines.shownValues });
+        if (lines.values) program.set({ value_code: lines.values.code, shown_values: lines.shownValues });
         program.uints({ layer: lines.index * 2 ** 28 });
       }
       gl.bindFramebuffer(gl.FRAMEBUFFER, this.buffers.texels);
       gl.enable(gl.DEPTH_TEST);
       gl.depthFunc(gl.LESS);
       this.frameBlock.bind();
-      program!.use().textures({ items: lines.set.items, ...(lines.kept ? { kept: lines.kept } : {}), ...(lines.values ? { value_texels: lines.values.texture } : {}) });
+      program!.use().textures({ items: lines.set.items, kept: lines.kept, value_texels: lines.values && lines.values.texture, point_colours: lines.byPoint ? lines.colours : null });
       this.sliceSize += lines.set.draw(block, program!, frame.share);
     }
   }
@@ -384,7 +382,7 @@ export class Renderer {
       if (!lines.layer.visible) continue;
       const { layer } = lines, { colours } = layer, width = layer.line_width * this.ratio;
       narrower = Math.max(narrower, 1 - Math.min(1, width));
-      resolve.textures({ texels: t.texels, depths: t.depths, colours: lines.colours, table: lines.table });
+      resolve.textures({ texels: t.texels, depths: t.depths, colours: lines.byPoint ? null : lines.colours, table: lines.table });
       resolve.uints({ layer: lines.index * 2 ** 28, marked: lines.marked });
       resolve.ints({ mode: MODES[colours.mode], logarithm: colours.log ? 1 : 0, light: LIGHTS[layer.light] });
       resolve.set({

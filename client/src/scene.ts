@@ -10,9 +10,9 @@ export interface Light {
 }
 
 export interface Colours {
-  mode: "direction" | "solid" | "streamline" | "value";
+  mode: "direction" | "solid" | "streamline" | "value" | "point";
   colour?: Vec;         // of "solid"
-  data?: number;        // of "streamline": RGBA for each
+  data?: number;        // of "streamline" and "point": RGBA for each
   values?: string;      // of "value": a stored array of points
   table?: string;       // base64, RGBA: entries, then below, above, NaN
   clim?: [number, number];
@@ -60,6 +60,10 @@ export interface SurfaceLayer extends Layer {
   triangles: number;    // data: uint32
   normals?: number;     // data: float32
   colours?: number;     // data: RGBA
+  values?: number;      // data: float32, through `table`
+  table?: string;       // base64, RGBA: entries, then below, above, NaN
+  clim?: [number, number];
+  log?: boolean;
   colour: Vec;
   opacity: number;
   lighting: boolean;

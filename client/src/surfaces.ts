@@ -1,7 +1,8 @@
 /** Surfaces with VTK's light, and slices of images. */
 
 import { Mat, Vec, floats, inverse, linear, product } from "./camera";
-import { GL, Program } from "./gl";
+import { fromBase64 } from "./engine";
+import { GL, Program, lookUpTable } from "./gl";
 import type { ImageLayer, SurfaceLayer } from "./scene";
 
 export interface Drawn {
@@ -11,8 +12,6 @@ export interface Drawn {
   lights: (program: Program) => void;
   planes: number[][];
 }
-
-const floatsOf = (bytes: Uint8Array): Float32Array => new Float32Array(bytes.slice().buffer);
 
 function planesOf(program: Program, planes: number[][], model: Mat): void {
   const local = planes.slice(0, 6).map((p) => [0, 1, 2, 3].map((j) => p[0] * model[4 * j] + p[1] * model[4 * j + 1] + p[2] * model[4 * j + 2] + p[3] * model[4 * j + 3]));
@@ -24,6 +23,8 @@ export class Surface {
   private array: WebGLVertexArrayObject;
   private buffers: WebGLBuffer[] = [];
   private count: number;
+  private table: WebGLTexture | null = null;
+  private tableRange = [0, 1, 1, 1];
   readonly model: Mat;
 
   constructor(private gl: GL, readonly layer: SurfaceLayer, data: Uint8Array[]) {
@@ -41,6 +42,10 @@ export class Surface {
     attribute(0, data[layer.places], 3, gl.FLOAT, false);
     if (layer.normals !== undefined) attribute(1, data[layer.normals], 3, gl.FLOAT, false);
     if (layer.colours !== undefined) attribute(2, data[layer.colours], 4, gl.UNSIGNED_BYTE, true);
+    if (layer.values !== undefined) {
+      attribute(3, data[layer.values], 1, gl.FLOAT, false);
+      [this.table, this.tableRange] = lookUpTable(gl, fromBase64(layer.table!), layer.clim!, !!layer.log);
+    }
     const index = gl.createBuffer()!;
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, index);
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, data[layer.triangles], gl.STATIC_DRAW);
@@ -61,7 +66,8 @@ export class Surface {
       clip_from_data: floats(product(drawn.projection, view)), view_from_data: floats(view), normal_to_view: normals,
       parallel: drawn.parallel ? 1 : 0, opacity: layer.opacity, reflects: layer.reflects, sheen: layer.sheen,
     });
-    program.ints({ smooth_normals: layer.normals === undefined ? 0 : 1, lighting: layer.lighting ? 1 : 0 });
+    program.ints({ smooth_normals: layer.normals === undefined ? 0 : 1, lighting: layer.lighting ? 1 : 0, by_value: this.table ? 1 : 0, logarithm: layer.log ? 1 : 0 });
+    program.textures({ table: this.table }).set({ table_range: this.tableRange });
     drawn.lights(program);
     planesOf(program, [...(layer.planes ?? []), ...drawn.planes], this.model);
     gl.bindVertexArray(this.array);
@@ -98,5 +104,3 @@ export class ImageSlice {
     this.gl.drawArrays(this.gl.TRIANGLE_STRIP, 0, 4);
   }
 }
-
-export { floatsOf };

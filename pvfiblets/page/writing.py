@@ -1,7 +1,8 @@
 """Writes pages: one file with all its data, or above a size a folder whose data lie beside the page.
 
-A page runs its own script and nothing else: a content security policy names script and style by their hashes, allows no
-request to any other host, and no evaluation of text. Names are data of JSON and become text of the document, never HTML.
+A page runs its own script and nothing else: a content security policy names script and style by their hashes, allows
+no request to any other host, and no evaluation of text. Names are data of JSON and become text of the document, never
+HTML.
 """
 
 from __future__ import annotations
@@ -39,8 +40,8 @@ def write_page(scene: PageScene, path: str | PathLike[str], *, largest_file: int
     scene : PageScene
         What it shows.
     path : str or PathLike
-        A name ending in ``.html``, or in nothing for a folder with ``index.html``. With more data than `largest_file` the page of
-        a name ending in ``.html`` has a folder of its data beside it: ``figure.html`` and ``figure_data``.
+        A name ending in ``.html``, or in nothing for a folder with ``index.html``. With more data than `largest_file`
+        the page of a name ending in ``.html`` has a folder of its data beside it: ``figure.html`` and ``figure_data``.
     largest_file : int
         Bytes of data that a single file holds at most. A page with a folder needs a server (any that serves files will
         do): browsers do not read other files for a page that they opened from a disk.

@@ -1,7 +1,7 @@
 // From the page's G-buffer to colours, of one layer: its colours, as shaders/resolve has them, and the light that falls on lines
 // (shaders/resolve/line_light.glsl, of which this is the same in one piece).
 //
-//   mode     0 direction, 1 one colour, 2 a colour for each streamline, 3 values of points through a table
+//   mode     0 direction, 1 one colour, 2 a colour for each streamline, 3 values of points through a table, 4 colours of points
 //   light    0 colours as they are, 1 the light on lines, 2 illuminated lines
 
 #version 430
@@ -10,16 +10,14 @@
 #include "frame/tangent.glsl"
 #include "fiblets/attributes/tangent.glsl"
 #include "page/lights.glsl"
+#include "page/table.glsl"
 
 uniform highp usampler2D texels;
 uniform highp sampler2D depths;
 uniform highp sampler2D colours;       // rgba8, by streamline
-uniform highp sampler2D table;         // rgba8: entries, then below, above, NaN
 uniform uint layer;
 uniform int mode;
 uniform vec3 one_colour;
-uniform vec4 table_range;              // low, high, entries per unit, entries
-uniform int logarithm;
 uniform int light;
 uniform vec4 reflects;                 // ambient, diffuse, specular, power
 uniform vec3 sheen;                    // colour of highlights
@@ -31,18 +29,6 @@ uniform vec2 picture;                  // its size
 
 layout(location = 0) out vec4 colour;
 
-vec4 of_value(float value) {
-    int n = int(table_range.w), entry;
-    if ((floatBitsToUint(value) & 0x7FFFFFFFu) > 0x7F800000u) entry = n + 2;
-    else {
-        if (logarithm == 1) value = value > 0.0 ? log(value) * 0.4342944819032518 : -3.0e38;
-        if (value < table_range.x) entry = n;
-        else if (value > table_range.y) entry = n + 1;
-        else entry = int(min((value - table_range.x) * table_range.z, float(n - 1)));
-    }
-    return texelFetch(table, ivec2(entry & 4095, entry >> 12), 0);
-}
-
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     uvec4 word = texelFetch(texels, pixel, 0);
@@ -53,6 +39,7 @@ void main() {
     if (mode == 0) own = vec4(abs(tangent), 1.0);
     else if (mode == 2) own = texelFetch(colours, ivec2(int(streamline & 4095u), int(streamline >> 12u)), 0);
     else if (mode == 3) own = of_value(uintBitsToFloat(word.w));
+    else if (mode == 4) own = unpackUnorm4x8(word.w);
     if (own.a == 0.0) discard;
     vec3 lit = own.rgb;
     if (light != 0) {

@@ -1,6 +1,6 @@
 // What the nearest line of a pixel is: the page's G-buffer, one texel of four words a pixel, with the depth beside it.
 //
-//   streamline, the layer in the upper four bits | tangent (frame/tangent.glsl) | edges (frame/edges.glsl) | value, as a float's bits
+//   streamline, the layer in the upper four bits | tangent (frame/tangent.glsl) | edges (frame/edges.glsl) | value, as a float's bits, or a colour
 //
 // The pixels of thin lines: fiblets/segments/thin_line_rule.glsl. Those of wide lines: fiblets/hardware_raster/capsule.frag.
 
@@ -37,6 +37,9 @@ void write(float s, uint edges) {
     float value = value_between(t);
     if (shown_values.x <= shown_values.y && !(value >= shown_values.x && value <= shown_values.y)) discard;
     bits = floatBitsToUint(value);
+#endif
+#if FEATURE_VALUES_COLOUR
+    bits = packUnorm4x8(mix(unpackUnorm4x8(seg_colours.x), unpackUnorm4x8(seg_colours.y), t));
 #endif
     out_texel = uvec4(seg_ids.x, packed_tangent(tangent_between(ends, t), 0u), edges, bits);
 }

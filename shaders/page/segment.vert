@@ -24,8 +24,10 @@ uniform uint layer;                    // in the upper four bits of the streamli
 #if FEATURE_STREAMLINE_MASK
 uniform highp usampler2D kept;         // r8ui, by streamline: not 0 where it is drawn
 #endif
-#if FEATURE_POINT_MASK
-uniform vec4 value_range;              // least and greatest value of points that are drawn; both 0: all
+#if FEATURE_VALUES_COLOUR
+uniform highp sampler2D point_colours; // rgba8, by point
+
+vec4 colour_of(uint point) { return texelFetch(point_colours, ivec2(int(point & 4095u), int(point >> 12u)), 0); }
 #endif
 #if FEATURE_VALUES_STORED
 uniform highp usampler2D value_texels; // r8ui or r16ui, by point
@@ -67,6 +69,9 @@ void main() {
     seg_start = piece.a;
     seg_end = piece.b;
     seg_along = vec4(piece.t0, piece.t1, values);
+#if FEATURE_VALUES_COLOUR
+    seg_colours = uvec2(packUnorm4x8(colour_of(item.y + k)), packUnorm4x8(colour_of(item.y + min(k + 1u, points - (ends ? 1u : 0u)))));
+#endif
 #if FEATURE_WIDE_LINES
     seg_onward = piece.cap ? vec2(0.0) : onward_at(piece.b, ahead);
 #if FEATURE_CLIP_PLANES

@@ -8,6 +8,9 @@ VARYING uvec4 seg_ids;     // streamline and layer; tangent at the start; at the
 VARYING vec4 seg_start;    // of the part that is drawn: window x, y; depth; clip w
 VARYING vec4 seg_end;
 VARYING vec4 seg_along;    // t at both ends; values at the points
+#if FEATURE_VALUES_COLOUR
+VARYING uvec2 seg_colours; // at the points
+#endif
 #if FEATURE_WIDE_LINES
 VARYING vec2 seg_onward;   // fiblets/segments/joint.glsl
 #if FEATURE_CLIP_PLANES

@@ -3,14 +3,17 @@
 #version 430
 
 #include "page/lights.glsl"
+#include "page/table.glsl"
 
 in vec3 view_place;
 in vec3 view_normal;
 in vec4 own_colour;
 in vec3 data_place;
+in float own_value;
 
 uniform int smooth_normals;
 uniform int lighting;
+uniform int by_value;
 uniform float parallel;
 uniform float opacity;
 uniform vec4 reflects;
@@ -24,6 +27,7 @@ void main() {
     vec3 normal = smooth_normals == 1 ? normalize(view_normal) : normalize(cross(dFdx(view_place), dFdy(view_place)));
     vec3 sight = parallel == 1.0 ? vec3(0.0, 0.0, 1.0) : normalize(-view_place);
     if (dot(normal, sight) < 0.0) normal = -normal;
-    vec3 lit = lighting == 1 ? light_on_surface(own_colour.rgb, normal, view_place, reflects, sheen) : own_colour.rgb;
-    colour = vec4(lit, own_colour.a * opacity);
+    vec4 own = by_value == 1 ? of_value(own_value) : own_colour;
+    vec3 lit = lighting == 1 ? light_on_surface(own.rgb, normal, view_place, reflects, sheen) : own.rgb;
+    colour = vec4(lit, own.a * opacity);
 }

@@ -5,6 +5,7 @@
 layout(location = 0) in vec3 place;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 own;
+layout(location = 3) in float value;
 
 uniform mat4 clip_from_data;
 uniform mat4 view_from_data;
@@ -14,6 +15,7 @@ out vec3 view_place;
 out vec3 view_normal;
 out vec4 own_colour;
 out vec3 data_place;
+out float own_value;
 
 void main() {
     gl_Position = clip_from_data * vec4(place, 1.0);
@@ -21,4 +23,5 @@ void main() {
     view_normal = normal_to_view * normal;
     own_colour = own;
     data_place = place;
+    own_value = value;
 }

@@ -24,6 +24,7 @@ from pvfiblets.plotting.settings import Given, Setting
 
 if TYPE_CHECKING:
     from os import PathLike
+    from pathlib import Path
 
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.engine.capabilities import PipelineTable
@@ -183,6 +184,54 @@ class FibletsComponent(ActorRegistry["FibletActor"], Picking, Widgets):
             raise RuntimeError("this plotter is closed and has no OpenGL; ask a new one")
         with borrowed_context(window) as ctx:
             return pipelines(ctx)
+
+    def export_page(
+        self, path: str | PathLike[str], *, title: str | None = None, largest_file: int | None = None
+    ) -> list[Path]:
+        """Write what the active renderer shows as a page that any browser draws by itself, without a server.
+
+        Streamlines stay compressed in it, 1.9 bytes a point, and the reader's graphics card decodes them: the picture
+        can be turned, zoomed, cut and picked in. Surfaces of ``add_mesh``, slices of images, colour bars and lights go
+        along.
+
+        Parameters
+        ----------
+        path : str or PathLike
+            A name ending in ``.html``, or without an ending: a folder with ``index.html``.
+        title : str, optional
+            Of the page; the plotter's by default.
+        largest_file : int, optional
+            Bytes of data above which they lie in a folder beside the page, which then needs a web server; 64 MB by
+            default.
+
+        Returns
+        -------
+        list of pathlib.Path
+            What was written, the page first.
+
+        Raises
+        ------
+        ValueError
+            If there is nothing to show, or the name has another ending.
+        OSError
+            If it cannot be written.
+
+        Warns
+        -----
+        UserWarning
+            Naming what a page cannot draw: tubes, halos, volumes, and effects on lines other than light.
+
+        Examples
+        --------
+        >>> import pyvista as pv
+        >>> from pvfiblets.synthetic import brain_streamlines
+        >>> pl = pv.Plotter(off_screen=True)
+        >>> _ = pl.add_fiblets(brain_streamlines(1000))
+        >>> pl.fiblets.export_page("figure.html")  # doctest: +SKIP
+        """
+        from pvfiblets.plotting.page_scene import export_page
+
+        return export_page(self._plotter, path, title=title, largest_file=largest_file)
 
     def __plotter_close__(self) -> None:
         """Release everything; PyVista calls this before the render window goes."""

@@ -1,0 +1,225 @@
+"""What a plotter shows as a page (`pvfiblets.page`): fiblets, surfaces, slices of images, lights, camera, colour bars.
+
+What a page cannot show is named in one warning, and left out.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+import pyvista as pv
+
+from pvfiblets.mappers.fiblets import FibletMapper
+from pvfiblets.mappers.line_light import LineLight
+from pvfiblets.mappers.scene import to_array, world_planes
+from pvfiblets.page.scene import CameraPlace, Light, PageScene, encoded, fiblet_layer
+from pvfiblets.plotting.page_surfaces import add_image, add_surface, reflects_of
+
+if TYPE_CHECKING:
+    from os import PathLike
+    from pathlib import Path
+
+    from pvfiblets.mappers.colouring import Colouring
+
+__all__ = ["export_page", "page_of"]
+
+_SHOWN_EFFECTS = {"light", "illuminated"}
+_SPARE_BITS = 28  # of a streamline's number: the page keeps the layer beside it
+MOST_FIBLET_LAYERS = 15
+
+
+def export_page(
+    plotter: Any, path: str | PathLike[str], *, title: str | None = None, largest_file: int | None = None
+) -> list[Path]:
+    """Write what a plotter's active renderer shows as a page; see `FibletsComponent.export_page`."""
+    from pvfiblets.page.writing import LARGEST_FILE, write_page
+
+    scene = page_of(plotter, title=title)
+    return write_page(scene, path, largest_file=LARGEST_FILE if largest_file is None else largest_file)
+
+
+def page_of(plotter: Any, *, title: str | None = None) -> PageScene:
+    """Return what a plotter's active renderer shows.
+
+    Parameters
+    ----------
+    plotter : pyvista.BasePlotter
+    title : str, optional
+        Of the page; the plotter's by default.
+
+    Returns
+    -------
+    PageScene
+
+    Raises
+    ------
+    ValueError
+        If it shows nothing that a page can show.
+    """
+    renderer = plotter.renderer
+    said = title or getattr(plotter, "title", None) or "Streamlines"
+    scene = PageScene(str(said), background=_background(renderer))
+    unable: list[str] = []
+    for name, actor in _actors(renderer):
+        _add_actor(scene, name, actor, unable)
+    if unable:
+        warnings.warn(f"the page leaves out {', '.join(dict.fromkeys(unable))}: it cannot draw them", stacklevel=3)
+    if scene.layers:
+        if not renderer.camera_set:
+            renderer.reset_camera(render=False)
+            renderer.camera_set = False
+        scene.camera = _camera(renderer.GetActiveCamera())
+    scene.lights = list(_lights(renderer))
+    picture = getattr(plotter, "picture", None)
+    scene.antialias = picture is None or picture.antialias != "off"
+    scene.plain()
+    return scene
+
+
+def _actors(renderer: Any) -> Iterator[tuple[str, Any]]:
+    for name, actor in renderer.actors.items():
+        if actor.GetVisibility():
+            yield name, actor
+
+
+def _add_actor(scene: PageScene, name: str, actor: Any, unable: list[str]) -> None:
+    mapper = actor.GetMapper() if hasattr(actor, "GetMapper") else None
+    if isinstance(mapper, FibletMapper):
+        _add_fiblets(scene, name, actor, mapper, unable)
+    elif getattr(actor, "pixels", None) is not None and hasattr(actor, "place"):
+        add_image(scene, name, actor)
+    elif isinstance(mapper, pv.mapper.DataSetMapper) or (mapper is not None and mapper.IsA("vtkPolyDataMapper")):
+        if mapper.GetNumberOfInputConnections(0) and not add_surface(scene, name, actor, mapper):
+            unable.append(f"{name!r}")
+    elif mapper is not None and hasattr(mapper, "GetInput"):
+        unable.append(f"{name!r}")
+
+
+def _add_fiblets(scene: PageScene, name: str, actor: Any, mapper: FibletMapper, unable: list[str]) -> None:
+    fiblets = mapper.fiblets
+    if fiblets is None or not fiblets.n_points:
+        return
+    if sum(layer["kind"] == "fiblets" for layer in scene.layers) >= MOST_FIBLET_LAYERS:
+        unable.append(f"{name!r}, one more than {MOST_FIBLET_LAYERS} sets of streamlines")
+        return
+    effects = mapper.effects
+    unable += [f"{effect} of {name!r}" for effect in effects if effect not in _SHOWN_EFFECTS]
+    if actor.GetProperty().GetOpacity() < 1.0:
+        unable.append(f"the opacity of {name!r}")
+    filtering = mapper.filtering
+    if filtering is not None and filtering.points is not None:
+        unable.append(f"the choice of points of {name!r}")
+    fiblets, colours, keep = _colours(scene, fiblets, mapper.colouring)
+    light = "none"
+    if actor.GetProperty().GetLighting():
+        light = "illuminated" if "illuminated" in effects else "line" if _is_lit(effects) else "none"
+    more: dict[str, Any] = {}
+    if filtering is not None and filtering.streamlines is not None:
+        more["kept"] = scene.add_blob(np.asarray(filtering.streamlines, np.uint8))
+    planes = world_planes(mapper)
+    if len(planes):
+        more["planes"] = planes.tolist()
+    reflects, sheen = reflects_of(actor.GetProperty())
+    place = to_array(actor.GetMatrix())
+    matrix = None if np.array_equal(place, np.eye(4)) else place
+    fiblet_layer(
+        scene, fiblets, name=_label(name, "streamlines"), colours=colours, keep=keep, line_width=mapper.line_width,
+        light=light, reflects=reflects, sheen=sheen, matrix=matrix, **more,
+    )  # fmt: skip
+    scalars = getattr(actor, "active_scalars", None)
+    if scalars is not None and scalars.mapped and getattr(mapper.colouring, "lut", None) is not None:
+        lut, clim = mapper.colouring.lut, mapper.colouring.clim
+        assert lut is not None
+        bar = {"title": scalars.title, "table": encoded(lut), "clim": clim, "log": mapper.colouring.log_scale}
+        scene.bars.append(bar)
+
+
+def _is_lit(effects: Any) -> bool:
+    return isinstance(effects.get("light"), LineLight)
+
+
+def _label(name: str, usual: str) -> str:
+    """Return a name that means something to people; PyVista's own names hold addresses."""
+    return usual if "Addr=" in name else name
+
+
+def _colours(scene: PageScene, fiblets: Any, colouring: Colouring) -> tuple[Any, dict[str, Any], tuple[str, ...]]:
+    """Return the set with what colours it, ``Colours`` of the page, and the arrays of points that it needs."""
+    mode = colouring.mode
+    if mode == "orientation":
+        return fiblets, {"mode": "direction"}, ()
+    if mode == "streamline_rgba":
+        return fiblets, {"mode": "streamline", "data": scene.add_blob(_rgba(np.asarray(colouring.values)))}, ()
+    if mode == "streamline_scalar":
+        table = colouring.table()
+        entries = table[_entries(np.asarray(colouring.values, float), colouring, len(table) - 3)]
+        return fiblets, {"mode": "streamline", "data": scene.add_blob(entries)}, ()
+    if mode == "point_scalar":
+        from pvfiblets.plotting.page_values import with_values
+
+        fiblets, name = with_values(fiblets, colouring.source)
+        said = {"mode": "value", "values": name, "table": encoded(colouring.table()), "clim": colouring.clim}
+        return fiblets, {**said, "log": colouring.log_scale}, (name,)
+    if mode == "point_packed":
+        from pvfiblets.plotting.page_values import colours
+
+        return fiblets, {"mode": "point", "data": scene.add_blob(colours(fiblets, str(colouring.source)))}, ()
+    return fiblets, {"mode": "solid", "colour": colouring.color}, ()
+
+
+def _rgba(values: npt.NDArray[Any]) -> npt.NDArray[np.uint8]:
+    full = np.full((len(values), 4), 255, np.uint8)
+    full[:, : values.shape[1]] = values
+    return full
+
+
+def _entries(values: npt.NDArray[np.float64], colouring: Colouring, n: int) -> npt.NDArray[np.int64]:
+    """Return rows of the table for values, by vtkLookupTable's rules (shaders/resolve/colour_point_scalar.glsl)."""
+    low, high, per_unit = colouring.scaled_range()
+    missing = np.isnan(values)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        scaled = np.where(values > 0.0, np.log10(values), -3e38) if colouring.log_scale else values
+        entries = np.clip(np.nan_to_num((scaled - low) * per_unit, nan=0.0), 0, n - 1).astype(np.int64)
+    entries[scaled < low] = n
+    entries[scaled > high] = n + 1
+    entries[missing] = n + 2
+    return entries
+
+
+def _background(renderer: Any) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+    bottom = tuple(renderer.GetBackground())
+    top = tuple(renderer.GetBackground2()) if renderer.GetGradientBackground() else bottom
+    return bottom, top
+
+
+def _camera(camera: Any) -> CameraPlace:
+    return CameraPlace(
+        tuple(camera.GetPosition()), tuple(camera.GetFocalPoint()), tuple(camera.GetViewUp()), camera.GetViewAngle(),
+        bool(camera.GetParallelProjection()), camera.GetParallelScale(),
+    )  # fmt: skip
+
+
+def _lights(renderer: Any) -> Iterator[Light]:
+    """Yield the lights that are on; those of the camera as they stand to it."""
+    turn = to_array(renderer.GetActiveCamera().GetViewTransformMatrix())[:3, :3]
+    lights = renderer.GetLights()
+    for light in (lights.GetItemAsObject(i) for i in range(lights.GetNumberOfItems())):
+        intensity = light.GetIntensity()
+        if not light.GetSwitch() or intensity <= 0.0:
+            continue
+        red, green, blue = (intensity * part for part in light.GetDiffuseColor())
+        place, aim = np.array(light.GetTransformedPosition()), np.array(light.GetTransformedFocalPoint())
+        towards = place - aim
+        towards = towards / (np.linalg.norm(towards) or 1.0)
+        if light.LightTypeIsHeadlight():
+            yield Light((red, green, blue), view=(0.0, 0.0, 1.0))
+        elif light.LightTypeIsCameraLight():
+            x, y, z = (float(v) for v in turn @ towards)
+            yield Light((red, green, blue), view=(x, y, z))
+        else:
+            x, y, z = (float(v) for v in (place if light.GetPositional() else towards))
+            yield Light((red, green, blue), world=(x, y, z), positional=bool(light.GetPositional()))

@@ -1,0 +1,111 @@
+"""Files of pages: what they hold, what they forbid, and the script in them."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import importlib.util
+import json
+import re
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import pvfiblets
+from pvfiblets.codec.archive import open_archive
+from pvfiblets.page.scene import PageScene, fiblet_layer
+from pvfiblets.page.writing import write_page
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture(scope="module")
+def fiblets():
+    lines = [np.cumsum(np.full((n, 3), 0.5), axis=0) for n in (1, 40, 200)]
+    return pvfiblets.compress(pvfiblets.Streamlines.from_list(lines))
+
+
+@pytest.fixture(scope="module")
+def client():
+    spec = importlib.util.spec_from_file_location("page_client", ROOT / "scripts" / "page_client.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_script_is_made_of_these_sources(client):
+    text = client.BUNDLE.read_text()
+    assert text.splitlines()[0] == client.first_line(), "run: make client"
+    assert len(text.encode()) <= client.LARGEST
+    assert "eval(" not in text
+    assert "new Function" not in text
+
+
+def test_script_is_what_node_makes_of_them(client):
+    if shutil.which("npm") is None or not (client.CLIENT / "node_modules").is_dir():
+        pytest.skip("the client's packages are not installed: make client")
+    assert client.BUNDLE.read_text() == client.build()
+
+
+def test_one_file_with_all_its_data(fiblets, tmp_path):
+    scene = PageScene("A title </script> & <b>")
+    fiblet_layer(scene, fiblets, name="</script><img src=x onerror=alert(1)>")
+    (path,) = write_page(scene, tmp_path / "figure.html")
+    text = path.read_text()
+    assert text.count("</script>") == text.count("<script") == 3
+    assert "<img" not in text
+    assert "<title>A title &lt;/script&gt; &amp; &lt;b&gt;</title>" in text
+    data = re.search(r'id="data-0">([^<]*)<', text)[1]
+    (tmp_path / "inside.fiblets").write_bytes(base64.b64decode(data))
+    header, arrays = open_archive(tmp_path / "inside.fiblets")
+    assert header["n_points"] == 241
+    np.testing.assert_array_equal(arrays["codes.npy"], fiblets.codes)
+    np.testing.assert_array_equal(arrays["decoding.npy"], fiblets.decoding)
+
+
+def test_policy_allows_its_own_script_and_style_alone(fiblets, tmp_path):
+    scene = PageScene("Lines")
+    fiblet_layer(scene, fiblets)
+    text = write_page(scene, tmp_path / "figure.html")[0].read_text()
+    policy = re.search(r'Content-Security-Policy" content="([^"]*)"', text)[1]
+    allowed = dict(part.strip().split(" ", 1) for part in policy.split(";"))
+    script = re.findall(r"<script>(.*?)</script>", text, re.DOTALL)[-1]
+    style = re.search(r"<style>(.*?)</style>", text, re.DOTALL)[1]
+    assert allowed["default-src"] == allowed["connect-src"] == "'none'"
+    for kind, body in (("script-src", script), ("style-src", style)):
+        digest = base64.b64encode(hashlib.sha256(body.encode()).digest()).decode()
+        assert allowed[kind] == f"'sha256-{digest}'"
+    assert not re.search(r"https?://(?!www\.w3\.org)", text)
+
+
+def test_much_data_lies_beside_the_page(fiblets, tmp_path):
+    scene = PageScene("Lines")
+    fiblet_layer(scene, fiblets)
+    page, data = write_page(scene, tmp_path / "figure.html", largest_file=100)
+    assert data == tmp_path / "figure_data" / "0.bin"
+    said = json.loads(re.search(r'id="scene">(.*?)</script>', page.read_text())[1])
+    assert said["data"] == [{"bytes": data.stat().st_size, "file": "figure_data/0.bin"}]
+    index, inside = write_page(scene, tmp_path / "folder")
+    assert (index, inside) == (tmp_path / "folder" / "index.html", tmp_path / "folder" / "0.bin")
+
+
+def test_nothing_to_show_and_wrong_names_are_errors(fiblets, tmp_path):
+    with pytest.raises(ValueError, match="nothing that a page could show"):
+        write_page(PageScene("Empty"), tmp_path / "figure.html")
+    scene = PageScene("Lines")
+    fiblet_layer(scene, fiblets)
+    with pytest.raises(ValueError, match=r"figure\.png: a page is written as \.html"):
+        write_page(scene, tmp_path / "figure.png")
+    assert not list(tmp_path.iterdir())
+
+
+def test_what_a_page_cannot_draw_is_named(fiblets, tmp_path):
+    plotter = pv.Plotter(off_screen=True, window_size=(100, 80))
+    actor = plotter.add_fiblets(fiblets, name="lines")
+    actor.tube_radius = 0.4
+    with pytest.warns(UserWarning, match="the page leaves out tubes of 'lines': it cannot draw them"):
+        plotter.fiblets.export_page(tmp_path / "figure.html")
+    plotter.close()

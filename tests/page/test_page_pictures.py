@@ -1,0 +1,100 @@
+"""What a page draws beside the engine's picture of the same scene."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import pyvista as pv
+from vtkmodules.vtkCommonDataModel import vtkPlane
+
+import pvfiblets
+from pvfiblets.synthetic import brain_streamlines
+from tests.page.pages import differing
+
+
+@pytest.fixture(scope="module")
+def fiblets():
+    """Return a set whose fiblets are of all kinds: even and uneven steps, and a single point."""
+    lines = list(brain_streamlines(150, seed=3))
+    rng = np.random.default_rng(5)
+    lines += [np.cumsum(rng.normal(size=(n, 3)) * 3.0, axis=0) for n in (1, 2, 3, 58, 59, 60, 61, 62, 100)]
+    values = np.concatenate([np.linspace(0.0, 1.0, len(line)) for line in lines])
+    values[:40] = np.nan
+    streamlines = pvfiblets.Streamlines.from_list(
+        lines, per_point={"share": values}, per_streamline={"number": np.arange(float(len(lines)))},
+        groups={"first": np.arange(80), "last": np.arange(80, len(lines))},
+    )  # fmt: skip
+    return pvfiblets.compress(streamlines, per_point=["share"])
+
+
+@pytest.fixture
+def plotter():
+    plotter = pv.Plotter(off_screen=True, window_size=(200, 160))
+    plotter.set_background("white")
+    yield plotter
+    plotter.close()
+
+
+CASES = {
+    "direction": {},
+    "wide": {"line_width": 5.0},
+    "thinner than a pixel": {"line_width": 0.4},
+    "one colour, without light": {"color": "red", "lighting": False, "line_width": 2.0},
+    "groups": {"scalars": "group", "show_scalar_bar": False},
+    "values of streamlines": {"scalars": "number", "cmap": "viridis", "n_colors": 7, "show_scalar_bar": False},
+    "values of points": {"scalars": "share", "cmap": "plasma", "clim": (0.2, 0.7), "show_scalar_bar": False},
+    "computed values": {"scalars": "curvature", "log_scale": True, "show_scalar_bar": False},
+    "illuminated": {"illuminated": True, "line_width": 3.0},
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_page_shows_what_the_engine_shows(case, plotter, fiblets, visit, tmp_path):
+    settings = dict(CASES[case])
+    illuminated = settings.pop("illuminated", False)
+    actor = plotter.add_fiblets(fiblets, **settings)
+    actor.illuminated = illuminated
+    plotter.picture.antialias = "coverage"
+    plotter.camera_position = "xz"
+    plotter.camera.azimuth, plotter.camera.elevation = 25.0, 20.0
+    plotter.camera.zoom(1.4)
+    expected = plotter.screenshot(return_img=True)
+    plotter.fiblets.export_page(tmp_path / "figure.html")
+    wrong, drawn = differing(visit(tmp_path / "figure.html").picture(), expected)
+    assert drawn > 0.2
+    assert wrong < 0.01
+
+
+def test_page_cuts_moves_and_leaves_out_as_the_actor_does(plotter, fiblets, visit, tmp_path):
+    actor = plotter.add_fiblets(fiblets, line_width=3.0)
+    actor.criterion("number", (20, 140))
+    plane = vtkPlane()
+    plane.SetNormal(1.0, 0.3, 0.0)
+    plane.SetOrigin(-5.0, 0.0, 0.0)
+    actor.mapper.AddClippingPlane(plane)
+    actor.user_matrix = np.array([[0, -2, 0, 9], [1, 0, 0, 0], [0, 0, 1, 5], [0, 0, 0, 1]], float)
+    plotter.enable_parallel_projection()
+    plotter.picture.antialias = "off"
+    plotter.view_xy()
+    expected = plotter.screenshot(return_img=True)
+    plotter.fiblets.export_page(tmp_path / "figure.html")
+    wrong, drawn = differing(visit(tmp_path / "figure.html").picture(), expected)
+    assert drawn > 0.1
+    assert wrong < 0.01
+
+
+def test_surfaces_hide_lines_and_are_hidden(plotter, fiblets, visit, tmp_path):
+    plotter.add_fiblets(fiblets)
+    plotter.add_mesh(pv.Sphere(radius=40.0), color="tan", smooth_shading=True, specular=0.5, specular_power=12.0)
+    cube = pv.Cube(center=(0.0, 60.0, 0.0), x_length=40.0, y_length=20.0, z_length=50.0).triangulate()
+    cube["height"] = cube.points[:, 2]
+    plotter.add_mesh(cube, scalars="height", cmap="coolwarm", show_scalar_bar=False)
+    plotter.picture.antialias = "off"
+    plotter.disable_anti_aliasing()
+    plotter.view_yz()
+    plotter.camera.zoom(1.5)
+    expected = plotter.screenshot(return_img=True)
+    plotter.fiblets.export_page(tmp_path / "figure.html")
+    wrong, drawn = differing(visit(tmp_path / "figure.html").picture(), expected)
+    assert drawn > 0.2
+    assert wrong < 0.02  # of which most are edges of surfaces
