@@ -8,6 +8,7 @@ the property and the shader property.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping
 from typing import Any, cast
 
@@ -165,11 +166,21 @@ def _follow_actor(mapper: Any) -> Callable[[Any, str], None]:
     return changed
 
 
-def _keep_surface(actor_property: Any, _event: str) -> None:
+def _keep_surface(actor_property: Any, event: str) -> None:
     """Undo wireframe, points, edges and culling of front faces, in which VTK would not fill the covering triangle."""
+    undone = []
     if actor_property.GetRepresentation() != VTK_SURFACE:
         actor_property.SetRepresentationToSurface()
+        undone.append("style")
     if actor_property.GetEdgeVisibility():
         actor_property.SetEdgeVisibility(False)
+        undone.append("show_edges")
     if actor_property.GetFrontfaceCulling():
         actor_property.SetFrontfaceCulling(False)
+        undone.append("culling")
+    if undone and event:  # not what a theme or a property brings with it
+        warnings.warn(
+            f"prop.{' and prop.'.join(undone)} changes nothing here: what is drawn has no facets",
+            UserWarning,
+            stacklevel=2,
+        )

@@ -142,7 +142,7 @@ class Connected:
         return self._property_color(), *state_of(self, data)
 
     def _property_color(self) -> tuple[float, float, float]:
-        return (1.0, 1.0, 1.0) if self.actor is None else self.actor.GetProperty().GetColor()
+        return (1.0, 1.0, 1.0) if self.actor is None else self.actor.GetProperty().GetDiffuseColor()
 
     def _made_of(self, data: Any) -> tuple[Any, Colouring]:
         """Return what to draw of the data that were connected, and its colours.

@@ -64,7 +64,7 @@ class Coloured(Settings, LinkedProperty, LinkedTable):
         """Attach the mapper to an actor that VTK has made, and set what needs both."""
         self._mapper = mapper  # VTK keeps the C++ half only
         mapper.attach(self)
-        self._property_color = self.prop.GetColor()
+        self._property_color = self.prop.GetDiffuseColor()  # GetColor() is mixed with that of highlights
         self._property_width = self.prop.GetLineWidth()
         with own_writes():
             for name, value in given.items():
@@ -193,7 +193,7 @@ class Coloured(Settings, LinkedProperty, LinkedTable):
         colour = pv.Color(self._settings.color, default_color=self._theme.color)
         with own_writes():
             self.prop.color = colour if scalars is None else "white"
-        self._property_color = self.prop.GetColor()
+        self._property_color = self.prop.GetDiffuseColor()  # GetColor() is mixed with that of highlights
 
     def take_table(self) -> None:
         """Take over what somebody else has written to the look-up table, before the next picture and other settings."""
@@ -238,7 +238,7 @@ class Coloured(Settings, LinkedProperty, LinkedTable):
         if self._WIDTH and width != self._property_width:
             self._property_width = width
             warnings.warn(f"prop.line_width changes nothing here: {self._WIDTH}", UserWarning, stacklevel=2)
-        color = self.prop.GetColor()
+        color = self.prop.GetDiffuseColor()  # GetColor() is mixed with that of highlights
         if color != self._property_color:
             self._property_color = color
             if self._hidden:

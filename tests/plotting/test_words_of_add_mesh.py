@@ -55,3 +55,23 @@ def test_the_colour_cycler_colours_tubes(plotter, three_lines):
     found = [plotter.add_spline_tubes(three_lines).prop.color.name for _ in range(2)]
     assert found == ["red", "lime"]
     assert plotter.add_spline_tubes(three_lines, color="white").prop.color.name == "white"
+
+
+@pytest.mark.parametrize("add", ["add_fiblets", "add_spline_tubes", "add_halo_lines"])
+def test_the_colour_of_highlights_leaves_lines_theirs(plotter, add):
+    """VTK's ``GetColor`` mixes the two once a property has highlights."""
+    line = np.linspace([0.0, 0.0, 0.0], [9.0, 5.0, 1.0], 20)
+    actor = getattr(plotter, add)(line, color="red")
+    actor.prop.specular_color = "blue"
+    actor.prop.specular = 1.0
+    assert actor.color == "red"
+    actor.prop.color = "green"
+    assert actor.color == "green"
+
+
+@pytest.mark.parametrize("add", ["add_fiblets", "add_spline_tubes", "add_halo_lines"])
+@pytest.mark.parametrize(("name", "value"), [("style", "wireframe"), ("show_edges", True), ("culling", "front")])
+def test_facets_are_none_of_lines(plotter, add, name, value):
+    actor = getattr(plotter, add)(np.linspace([0.0, 0.0, 0.0], [9.0, 5.0, 1.0], 20))
+    with pytest.warns(UserWarning, match=rf"prop\.{name} changes nothing here: what is drawn has no facets"):
+        setattr(actor.prop, name, value)

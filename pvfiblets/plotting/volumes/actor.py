@@ -15,10 +15,12 @@ from pvfiblets.mappers.volumes import VolumeMapper
 from pvfiblets.plotting.clipping import Clipping
 from pvfiblets.plotting.coloured import Plotted, added_up
 from pvfiblets.plotting.fiblets.scalars import Scalars
+from pvfiblets.plotting.linked_property import is_own_write, own_writes
 from pvfiblets.plotting.settings import Given
 from pvfiblets.plotting.shading import SurfaceShading
 from pvfiblets.plotting.volumes.casting import SURFACE, RaySettings
 from pvfiblets.plotting.volumes.opacity import is_number
+from pvfiblets.plotting.volumes.property_words import PropertyWords
 from pvfiblets.plotting.volumes.settings import VolumeSettings
 from pvfiblets.volumes import RaycastVolume, smoothed
 from pvfiblets.volumes.interactive_quality import InteractiveQuality
@@ -73,6 +75,8 @@ class VolumeActor(RaySettings, SurfaceShading, Clipping, pv.Actor):
     Source: Lesar, "Real-time ray casting of volumetric data" (2015).
     """
 
+    _words: PropertyWords | None = None
+
     def __init__(
         self,
         volume: RaycastVolume,
@@ -103,6 +107,7 @@ class VolumeActor(RaySettings, SurfaceShading, Clipping, pv.Actor):
         mapper.shaded = bool(chosen["shade"])
         self._look()
         self._take(chosen)
+        self._words = PropertyWords(self)
 
     def __repr__(self) -> str:
         size = " x ".join(map(str, self._volume.shape))
@@ -281,20 +286,28 @@ class VolumeActor(RaySettings, SurfaceShading, Clipping, pv.Actor):
             self._of_surfaces[name] = self._mapper.effects.get(name)
             self._look()
 
+    def _take_property(self) -> None:
+        if is_own_write() and self._words is not None:
+            self._words.note(self)
+        super()._take_property()
+
     def _property_changed(self) -> None:
-        """Leave the colour to the volume's settings."""
+        """Say what of the property means nothing to rays; the colour is left to the volume's settings."""
+        if self._words is not None:
+            self._words.look(self)
 
     def _look(self) -> None:
         """Surfaces alone are shaded, stand over each other, and are as opaque as one number says."""
         surface = self.mode == SURFACE and not self.casting.layered
         for name, effect in self._of_surfaces.items():
             self._mapper.set_effect(name, effect if surface else None)
-        self.prop.lighting = self._lit and surface
         self._mapper.lit_surfaces = self._lit
         opacity = float(self.opacity) if surface and is_number(self.opacity) else 1.0
-        if opacity != self._see_through:  # what was set of the property itself stays
-            self._see_through = self.prop.opacity = opacity
-        self.prop.color = "white" if self._settings.color is None else self._settings.color
+        with own_writes():
+            self.prop.lighting = self._lit and surface
+            if opacity != self._see_through:  # what was set of the property itself stays
+                self._see_through = self.prop.opacity = opacity
+            self.prop.color = "white" if self._settings.color is None else self._settings.color
 
 
 def _checked(volume: Any) -> RaycastVolume:

@@ -1,0 +1,94 @@
+"""What of a volume's ``prop`` changes its picture, by mode, and what to say of the rest.
+
+Actors of meshes and of ``add_volume`` have settings in their property that mean nothing to rays through values, or mean
+something in some modes only. Each is declared once here.
+"""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from pvfiblets.plotting.volumes.casting import SURFACE
+
+if TYPE_CHECKING:
+    from pvfiblets.plotting.volumes.actor import VolumeActor
+
+__all__ = ["PropertyWords"]
+
+_PEAKS = "what peaks and projections show is the colour of a value, which no lamp shines on"
+_RAYS = "rays through a volume have neither lines nor points"
+
+
+@dataclass(frozen=True)
+class _Word:
+    """A setting of the property: how VTK calls it, where it is used, and what to use elsewhere."""
+
+    vtk: str
+    used: tuple[str, ...]
+    instead: str
+    light: str = ""
+    """What to say where light could use it, and its ``shade`` is off; empty: light never uses it."""
+    reset: bool = False
+    """Whether it goes back to what it was, as VTK would do something else by it."""
+
+
+_SHADE = "set actor.shade = True to have light shaded"
+_WORDS = {
+    "color": _Word("DiffuseColor", (), "set actor.color for one colour, or actor.cmap"),
+    "ambient": _Word("Ambient", ("mip", "local-mip", "minimum", "average", SURFACE), "", _SHADE),
+    "diffuse": _Word("Diffuse", ("mip", "local-mip", "minimum", "average", SURFACE), "", _SHADE),
+    "specular": _Word("Specular", (SURFACE,), _PEAKS, _SHADE),
+    "specular_power": _Word("SpecularPower", (SURFACE,), _PEAKS, _SHADE),
+    "lighting": _Word("Lighting", (SURFACE,), f"{_PEAKS}; of light, set actor.shade", reset=True),
+    "interpolation": _Word(
+        "Interpolation", (SURFACE,), "actor.filter says how values between voxels are found; 'pbr' is of surfaces",
+        reset=True,
+    ),
+    "line_width": _Word("LineWidth", (), _RAYS),
+    "point_size": _Word("PointSize", (), _RAYS),
+    "render_lines_as_tubes": _Word("RenderLinesAsTubes", (), _RAYS),
+    "render_points_as_spheres": _Word("RenderPointsAsSpheres", (), _RAYS),
+}  # fmt: skip
+
+
+class PropertyWords:
+    """What an actor's property said last.
+
+    Parameters
+    ----------
+    actor : VolumeActor
+        Whole, with its property.
+    """
+
+    def __init__(self, actor: VolumeActor) -> None:
+        self.note(actor)
+
+    def note(self, actor: VolumeActor) -> None:
+        """Take what the property says as it is."""
+        self._prop, self._said = actor.prop, _read(actor.prop)
+
+    def look(self, actor: VolumeActor) -> None:
+        """Warn of what was changed and changes nothing; another property than before is taken as it is."""
+        prop, known, before = actor.prop, self._prop, self._said
+        self.note(actor)
+        if prop is not known:
+            return
+        for name, word in _WORDS.items():
+            if self._said[name] == before[name] or actor.mode in word.used:
+                continue
+            light = bool(word.light) and actor.mode == "composite"
+            if light and actor.shade:
+                continue
+            if word.reset:
+                getattr(prop, f"Set{word.vtk}")(before[name])
+                self._said[name] = before[name]
+            instead = word.light if light else word.instead
+            warnings.warn(
+                f"prop.{name} changes nothing in mode {actor.mode!r}: {instead}", UserWarning, stacklevel=2
+            )
+
+
+def _read(prop: Any) -> dict[str, Any]:
+    return {name: getattr(prop, f"Get{word.vtk}")() for name, word in _WORDS.items()}
