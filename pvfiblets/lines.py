@@ -18,7 +18,7 @@ from pvfiblets.streamlines import Streamlines
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
 
-__all__ = ["Lines", "flat", "gather", "joined", "numbers_or_colours", "with_values"]
+__all__ = ["Lines", "are_words", "flat", "gather", "joined", "numbers_or_colours", "refuse_words", "with_values"]
 
 Ints = npt.NDArray[np.int64]
 
@@ -196,9 +196,12 @@ def _from_vtk(mesh: Any, noun: str, keep_single: bool) -> Lines:
     n_points, first = mesh.GetNumberOfPoints(), mesh.GetVerts().GetNumberOfCells()
 
     def data(attributes: Any) -> dict[str, npt.NDArray[Any]]:
-        # Arrays of text are none of NumPy's: VTK gives None for them.
-        arrays = [attributes.GetArray(i) for i in range(attributes.GetNumberOfArrays())]
-        return {a.GetName(): np.array(vtk_to_numpy(a)) for a in arrays if a is not None and a.GetName()}
+        arrays = [attributes.GetAbstractArray(i) for i in range(attributes.GetNumberOfArrays())]
+        numbers = {a.GetName(): np.array(vtk_to_numpy(a)) for a in arrays if a.IsA("vtkDataArray") and a.GetName()}
+        words = [a for a in arrays if a.IsA("vtkStringArray") and a.GetName() and a.GetNumberOfComponents() == 1]
+        for a in words:
+            numbers[a.GetName()] = np.array([a.GetValue(k) for k in range(a.GetNumberOfValues())], str)
+        return numbers
 
     points = np.array(_floats(vtk_to_numpy(mesh.GetPoints().GetData()), keep_single))
     ids = vtk_to_numpy(cells.GetConnectivityArray()).astype(np.int64)
@@ -316,8 +319,27 @@ def told_lines(source: Any) -> Any:
     return source if found is None else found
 
 
-def flat(array: npt.NDArray[Any], what: str) -> npt.NDArray[Any]:
-    """The array with its one column as numbers, as tractograms store them."""
+def are_words(array: npt.NDArray[Any]) -> bool:
+    """Say whether an array is one of texts."""
+    return array.dtype.kind in "US" or (array.dtype.kind == "O" and all(isinstance(one, str) for one in array.flat))
+
+
+def refuse_words(array: npt.NDArray[Any], what: str, per_line: bool) -> None:
+    """Refuse texts that are not of whole lines.
+
+    Raises
+    ------
+    ValueError
+        For them.
+    """
+    if not per_line and are_words(array):
+        raise ValueError(f"{what} are words per point; words are taken per line, and numbers per point")
+
+
+def flat(array: npt.NDArray[Any], what: str, *, words: bool = False) -> npt.NDArray[Any]:
+    """The array with its one column as numbers, as tractograms store them; of words only where they are taken."""
+    if words and array.ndim == 1 and array.size and are_words(array):
+        return array
     if array.dtype.kind not in "fiub":
         raise ValueError(f"{what} has the type {array.dtype}, expected numbers")
     return array[:, 0] if array.ndim == 2 and array.shape[1] == 1 else array

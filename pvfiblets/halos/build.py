@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, cast
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.lines import Lines, flat, gather, joined, numbers_or_colours
+from pvfiblets.lines import Lines, are_words, flat, gather, joined, numbers_or_colours, refuse_words
 from pvfiblets.streamlines import Streamlines
 
 from .geometry import HaloLines, HaloPoints
@@ -174,13 +174,15 @@ class _Rows:
     line_data: Mapping[str, Array] = field(default_factory=dict)
     counts: Array | None = None
 
-    def find(self, given: Any, what: str, unnamed: str, elsewhere: str = "") -> tuple[str, Array, bool]:
+    def find(
+        self, given: Any, what: str, unnamed: str, elsewhere: str = "", *, words: bool = False
+    ) -> tuple[str, Array, bool]:
         """Return the name of what was given, the array, and whether it has a row for each line, not each point."""
         if isinstance(given, str):
             if given in self.point_data:
-                return given, flat(self.point_data[given], f"{what} {given!r}"), False
+                return given, flat(self.point_data[given], f"{what} {given!r}", words=words), False
             if given in self.line_data:
-                return given, flat(self.line_data[given], f"{what} {given!r}"), True
+                return given, flat(self.line_data[given], f"{what} {given!r}", words=words), True
             known = [
                 f"{title} {', '.join(map(repr, data))}"
                 for title, data in (("point data", self.point_data), ("line data", self.line_data))
@@ -190,7 +192,7 @@ class _Rows:
                 f"{what} is {given!r}, which the source does not have; it has {' and '.join(known) or 'no data'}"
                 + elsewhere
             )
-        array = flat(joined(given, (self.n_points, self.n_lines)), what)
+        array = flat(joined(given, (self.n_points, self.n_lines)), what, words=words)
         if array.ndim and len(array) == self.n_points:
             return unnamed, array, False
         if array.ndim and len(array) == self.n_lines:
@@ -219,8 +221,9 @@ class _Lines:
         values: dict[str, Array] = {}
         line_values: dict[str, Array] = {}
         if scalars is not None:
-            name, array, per_line = self.rows.find(scalars, "scalars", SCALARS)
-            array = _values(array, name, rgb)
+            name, array, per_line = self.rows.find(scalars, "scalars", SCALARS, words=True)
+            refuse_words(array, f"scalars {name!r}", per_line and not self.joined)
+            array = array if are_words(array) else _values(array, name, rgb)
             if per_line and not self.joined:
                 line_values[name] = array
             else:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..lines import Lines, flat, gather, joined, numbers_or_colours
+from ..lines import Lines, flat, gather, joined, numbers_or_colours, refuse_words
 from .spline_tubes import Doubles, NodeValues, SplineTubes, chord_lengths
 from .tangents import METHODS, Steps, derivatives
 
@@ -203,7 +203,8 @@ class _Builder:
             if slopes is not None:
                 raise ValueError("scalar_slopes of the radius are its own: give them as radius_slopes")
             return {}, tube_values
-        array, per_line = self._find(scalars, "scalars")
+        array, per_line = self._find(scalars, "scalars", words=True)
+        refuse_words(array, f"scalars {name!r}", per_line)
         array = numbers_or_colours(array, name, rgb)
         if per_line:
             if slopes is not None:
@@ -273,20 +274,20 @@ class _Builder:
     def _known(self, name: str) -> bool:
         return name in self.lines.point_data or name in self.lines.line_data
 
-    def _find(self, given: Any, what: str) -> tuple[npt.NDArray[Any], bool]:
+    def _find(self, given: Any, what: str, words: bool = False) -> tuple[npt.NDArray[Any], bool]:
         """Return the array given, by itself or by name, and whether it has a row for each line, not each point."""
         lines = self.lines
         n_points, n_lines = len(lines.points), lines.n_tubes
         if isinstance(given, str):
             if given in lines.point_data:
-                return flat(lines.point_data[given], f"{what} {given!r}"), False
+                return flat(lines.point_data[given], f"{what} {given!r}", words=words), False
             if given in lines.line_data:
-                return flat(lines.line_data[given], f"{what} {given!r}"), True
+                return flat(lines.line_data[given], f"{what} {given!r}", words=words), True
             known = [f"{title} {', '.join(map(repr, data))}" for title, data in (
                 ("point data", lines.point_data), ("line data", lines.line_data)) if data]
             has = " and ".join(known) or "no data"
             raise ValueError(f"{what} is {given!r}, which the source does not have; it has {has}")
-        array = flat(joined(given, (n_points, n_lines)), what)
+        array = flat(joined(given, (n_points, n_lines)), what, words=words)
         if array.ndim and len(array) == n_points:
             return array, False
         if array.ndim and len(array) == n_lines:

@@ -241,7 +241,7 @@ BROKEN[30, 1] = np.inf
         (PARTS, {"filter_by": "md"}, "filter_by is 'md', which the source does not have; it has no data"),
         (PARTS, {"scalars": np.zeros(5)}, "shape (5,), expected a row for each of 40 points or of 3 lines"),
         (PARTS, {"scalars": 1.0}, "scalars has the shape (), expected a row"),
-        (PARTS, {"scalars": ["a"] * 40}, "expected numbers"),
+        (PARTS, {"scalars": ["a"] * 40}, "words per point"),
         (PARTS, {"scalars": COLOURS[:, :2], "rgb": True}, "the shape (40, 2) and type float64, expected one number"),
         (PARTS, {"scalars": FA, "rgb": True}, "rgb=True asks for colours, but 'scalars' has one number in each row"),
         (PARTS, {"scalars": 2 * COLOURS, "rgb": True}, "colour 0 of 'scalars' is [2.0, 2.0, 2.0], expected 0 to 1"),

@@ -144,3 +144,35 @@ def test_vectors_and_colours_of_tubes_and_halos(plotter, add):
     assert actor.scalars_title is None
     with pytest.raises(ValueError, match="expected 0 to 1"):
         getattr(plotter, add)(mesh, scalars="h", rgb=True)
+
+
+def named_lines():
+    """Three lines with a word for each line and each point, as VTK keeps text."""
+    mesh = pv.PolyData()
+    mesh.points = np.concatenate([np.c_[np.linspace(0.0, 9.0, 5), np.zeros(5), np.full(5, float(k))] for k in range(3)])
+    mesh.lines = np.concatenate([[5, *range(5 * k, 5 * k + 5)] for k in range(3)])
+    mesh.cell_data["side"] = ["right", "left", "right"]
+    mesh.point_data["tissue"] = ["white", "grey", "white"] * 5
+    return mesh
+
+
+@pytest.mark.parametrize("scalars", ["side", ["right", "left", "right"], np.array(["right", "left", "right"])])
+@pytest.mark.parametrize("add", ["add_fiblets", "add_spline_tubes", "add_halo_lines"])
+def test_words_of_lines_are_categories_as_in_add_mesh(plotter, add, scalars):
+    table = plotter.add_mesh(named_lines(), scalars=scalars).mapper.lookup_table
+    wanted = [table.GetAnnotation(i) for i in range(table.GetNumberOfAnnotatedValues())]
+    actor = getattr(plotter, add)(named_lines(), scalars=scalars)
+    table = actor.lookup_table
+    assert [table.GetAnnotation(i) for i in range(table.GetNumberOfAnnotatedValues())] == wanted == ["left", "right"]
+    assert actor.scalars_title == ("side" if isinstance(scalars, str) else "Data")
+    actor.scalars = None
+    actor.scalars = np.array(["b", "c", "a"])
+    assert [actor.lookup_table.GetAnnotation(i) for i in range(3)] == ["a", "b", "c"]
+    plotter.show(auto_close=False)
+
+
+@pytest.mark.parametrize("scalars", ["tissue", ["white", "grey", "white"] * 5])
+@pytest.mark.parametrize("add", ["add_fiblets", "add_spline_tubes", "add_halo_lines"])
+def test_words_of_points_are_refused_in_one_sentence(plotter, add, scalars):
+    with pytest.raises(ValueError, match="words per point; words are taken per line, and numbers per point"):
+        getattr(plotter, add)(named_lines(), scalars=scalars)

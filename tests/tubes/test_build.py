@@ -221,7 +221,7 @@ def bad_points():
         (NAMED, {"scalars": "mean", "scalar_slopes": T}, "of whole lines, which have none"),
         (NAMED, {"scalar_slopes": T}, "scalar_slopes came without scalars"),
         (HELIX, {"scalars": "radius", "scalar_slopes": T}, "give them as radius_slopes"),
-        (NAMED, {"scalars": np.array(["a"] * 25)}, "expected numbers"),
+        (NAMED, {"scalars": np.array(["a"] * 25)}, "words per point"),
         (NAMED, {"method": "spline"}, "method is 'spline', expected one of 'finite'"),
         (NAMED, {"method": "catmull-rom", "scaled": True}, "give scaled=False or method='finite'"),
         (pv.Sphere(), {}, "the PolyData has no lines but 1680 other cells"),

@@ -18,6 +18,7 @@ from pvfiblets.codec.point_arrays import with_point_values as add_values
 from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
 from pvfiblets.formats.attachments import is_values_file, name_of, values_for
 from pvfiblets.invalid_points import valid_points
+from pvfiblets.lines import refuse_words
 from pvfiblets.other_libraries import EXPECTED, streamlines_of
 from pvfiblets.plotting.fiblets.scalars import UNNAMED, are_colours, magnitudes
 from pvfiblets.plotting.fiblets.volume_sources import as_volume
@@ -110,6 +111,7 @@ def as_fiblets(
         if scalars in streamlines.per_point:
             keep.append(scalars)
             vectors = np.asarray(streamlines.per_point[scalars])
+            refuse_words(vectors, f"scalars {scalars!r}", per_line=False)
             if are_colours(vectors, _by_name(scalars, rgb)):
                 keep = [name for name in keep if name != scalars] + _hold_colours(streamlines, scalars, vectors)
             elif vectors.ndim > 1:
@@ -242,8 +244,7 @@ def numbers_of_points(name: str, values: np.ndarray) -> np.ndarray:
     ValueError
         If they are words.
     """
-    if values.dtype.kind not in "buif":
-        raise ValueError(f"scalars {name!r} are words per point; fiblets take words per streamline, numbers per point")
+    refuse_words(values, f"scalars {name!r}", per_line=False)
     return values if values.ndim == 1 else magnitudes(values)
 
 

@@ -319,9 +319,9 @@ def _computed(source: Any, what: Any) -> bool:
 
 
 def _has(source: Any, name: str) -> bool:
-    """Whether a source has numbers of that name."""
+    """Whether a source has numbers or words of that name."""
     if hasattr(source, "GetPointData"):
-        return any(data.GetArray(name) is not None for data in (source.GetPointData(), source.GetCellData()))
+        return any(data.GetAbstractArray(name) is not None for data in (source.GetPointData(), source.GetCellData()))
     return any(name in getattr(source, where, ()) for where in ("per_point", "per_streamline"))
 
 

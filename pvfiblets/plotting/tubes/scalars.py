@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from pvfiblets.formats.attachments import is_values_file
-from pvfiblets.lines import told_lines, with_values
+from pvfiblets.lines import are_words, refuse_words, told_lines, with_values
 from pvfiblets.plotting.fiblets.scalars import ORIENTATION, UNNAMED, Scalars, are_colours, magnitudes, of_streamlines
 from pvfiblets.tubes.build import as_spline_tubes
 from pvfiblets.tubes.curves import controls, derivative
@@ -120,6 +120,9 @@ def with_node_values(tubes: SplineTubes, scalars: Any, *, rgb: bool | None = Non
     if scalars is None or isinstance(scalars, str):
         return tubes, scalars
     given = np.asarray(scalars)
+    if given.ndim == 1 and len(given) in (tubes.n_nodes, tubes.n_tubes) and are_words(given):
+        refuse_words(given, "scalars", len(given) == tubes.n_tubes)
+        return tubes, given
     if given.ndim == 0 or len(given) not in (tubes.n_nodes, tubes.n_tubes) or given.dtype.kind not in "buif":
         raise ValueError(
             f"scalars have the shape {given.shape} and type {given.dtype}; expected a row of numbers for each of "
@@ -285,10 +288,10 @@ def _read(source: Any) -> Any:
 
 
 def _names(source: Any) -> tuple[list[str], list[str]]:
-    """Names of a source's numbers per point, and per line."""
+    """Names of a source's data per point, and per line."""
     if hasattr(source, "GetPointData"):
         both = (source.GetPointData(), source.GetCellData())
-        arrays = [[data.GetArray(i) for i in range(data.GetNumberOfArrays())] for data in both]  # None for text
+        arrays = [[data.GetAbstractArray(i) for i in range(data.GetNumberOfArrays())] for data in both]
         per_point, per_line = ([a.GetName() for a in some if a is not None and a.GetName()] for some in arrays)
         return per_point, per_line
     return list(getattr(source, "per_point", ())), list(getattr(source, "per_streamline", ()))
