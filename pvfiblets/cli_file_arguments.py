@@ -7,10 +7,19 @@ from typing import Any
 
 from pvfiblets.cli_memory import add_memory_option, bytes_of_file
 from pvfiblets.cli_pipes import add_format_option
-from pvfiblets.cli_values import angle, positive
+from pvfiblets.cli_values import angle, count, positive
 from pvfiblets.codec.parameters import DEFAULT_ANGLE
 
-__all__ = ["add_connectome", "add_convert", "add_density", "add_info", "add_table", "add_verify", "json_option"]
+__all__ = [
+    "add_connectome",
+    "add_convert",
+    "add_density",
+    "add_info",
+    "add_profile",
+    "add_table",
+    "add_verify",
+    "json_option",
+]
 
 
 def add_convert(commands: Any) -> None:
@@ -185,16 +194,52 @@ def add_table(commands: Any) -> None:
     """``table``."""
     table = commands.add_parser(
         "table",
-        help="write a row for each streamline: length, ends, groups, values",
-        description="Write comma-separated values, a row for each streamline of IN: points, length, curvature, ends "
-        "(mm), groups, per-streamline values, and means of per-point values.",
+        help="write a row for each streamline, or each bundle: length, ends, groups, values",
+        description="Write a table, a row for each streamline of IN: points, length, curvature, ends (mm), groups, "
+        "per-streamline values, and means of per-point values. With --by bundle, a row for each group: count, lengths, "
+        "volume, and means of values and of images.",
     )
     table.add_argument("source", metavar="IN", help="a tractogram of any format, or -")
-    table.add_argument("target", metavar="OUT", nargs="?", default="-", help="a .csv file (default: standard output)")
-    table.add_argument("--group", metavar="NAME", help="only streamlines of this group")
+    table.add_argument(
+        "target", metavar="OUT", nargs="?", default="-", help="a .csv, .tsv or .parquet file (default: standard output)"
+    )
+    table.add_argument("--by", choices=("streamline", "bundle"), default="streamline",
+                       help="what has a row (default: %(default)s); a file without groups is one bundle")  # fmt: skip
+    table.add_argument(
+        "--group", action="append", default=[], metavar="NAME", help="only this group; may repeat by bundle"
+    )
+    table.add_argument("--image", action="append", default=[], metavar="[NAME=]IMAGE",
+                       help="by bundle: an image whose mean along the streamlines is told; may repeat")  # fmt: skip
     add_format_option(table, reads=["source"])
     add_memory_option(table)
     table.set_defaults(run="pvfiblets.cli_files:table")
+
+
+def add_profile(commands: Any) -> None:
+    """``profile``."""
+    parser = commands.add_parser(
+        "profile",
+        help="average values along bundles, from one end to the other",
+        description="Write a row for each place along each bundle: mean, standard deviation, and the band in which the "
+        "mean lies. Groups of the files are bundles; a file without groups is one. Streamlines near the core of a "
+        "bundle count more, as AFQ has it.",
+    )
+    parser.add_argument("sources", metavar="IN", nargs="+", help="tractograms of any format, or -")
+    parser.add_argument("-o", "--output", action="append", default=[], metavar="OUT",
+                        help="a .csv, .tsv or .parquet table, or a .png, .svg or .pdf plot; may repeat (default: the "
+                        "table, to standard output)")  # fmt: skip
+    parser.add_argument("--values", required=True, action="append", metavar="NAME|IMAGE",
+                        help="an array of points, curvature, arc_length, or an image that is sampled; may repeat",
+                        )  # fmt: skip
+    parser.add_argument("--positions", type=count, default=100, metavar="N", help="along it (default: %(default)s)")
+    parser.add_argument("--group", action="append", default=[], metavar="NAME", help="only this group; may repeat")
+    parser.add_argument("--weights", choices=("core", "equal"), default="core",
+                        help="whether streamlines near the core count more (default: %(default)s)")  # fmt: skip
+    parser.add_argument("--confidence", type=float, default=0.95, metavar="SHARE", help="of the band (default: 0.95)")
+    parser.add_argument("--quiet", action="store_true", help="no progress bar")
+    add_format_option(parser, reads=["sources"])
+    add_memory_option(parser)
+    parser.set_defaults(run="pvfiblets.cli_bundles:profile")
 
 
 def json_option(parser: argparse.ArgumentParser) -> None:
