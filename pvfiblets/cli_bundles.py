@@ -1,4 +1,4 @@
-"""What ``pvfiblets profile`` and ``pvfiblets table --by bundle`` do."""
+"""What ``pvfiblets profile`` and ``pvfiblets table`` do."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from pvfiblets.progress_bar import progress_bar
 from pvfiblets.query.bundles.tract_profile import TractProfile, Weights, profile_table, tract_profile
 from pvfiblets.query.table import Table, check_parquet
 
-__all__ = ["bundle_rows", "profile"]
+__all__ = ["bundle_rows", "profile", "table"]
 
 TABLES = (".csv", ".tsv", ".parquet", ".pq")
 PLOTS = (".png", ".svg", ".pdf")
@@ -46,6 +46,22 @@ def profile(
             _plot(profiles, target)
         else:
             profile_table(profiles).save(target)
+
+
+def table(source: str, target: str, *, by: str, group: list[str], image: list[str]) -> None:
+    """Write a row for each streamline, or for each bundle."""
+    check_parquet(target)  # before minutes of work, not after
+    if by == "bundle":
+        bundle_rows(source, group, image).save(target)
+        return
+    if image:
+        raise ValueError("--image is for a row by bundle; add --by bundle")
+    if len(group) > 1:
+        raise ValueError(f"--group is given {len(group)} times; give it once, or add --by bundle")
+    data = _opened(source)
+    if unknown := [name for name in group if name not in data.groups]:
+        raise ValueError(f"{source} has no group {unknown[0]!r}; it has: {', '.join(data.groups) or 'none'}")
+    data.table(data.groups[group[0]] if group else None).save(target)
 
 
 def bundle_rows(source: str, groups: Sequence[str], images: Sequence[str]) -> Table:

@@ -212,7 +212,7 @@ def add_table(commands: Any) -> None:
                        help="by bundle: an image whose mean along the streamlines is told; may repeat")  # fmt: skip
     add_format_option(table, reads=["source"])
     add_memory_option(table)
-    table.set_defaults(run="pvfiblets.cli_files:table")
+    table.set_defaults(run="pvfiblets.cli_bundles:table")
 
 
 def add_profile(commands: Any) -> None:

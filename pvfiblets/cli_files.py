@@ -100,28 +100,6 @@ def info(path: str, *, json: bool) -> None:
         print(f"{key:<16} {readable(value)}")
 
 
-def table(source: str, target: str, *, by: str, group: list[str], image: list[str]) -> None:
-    """Write a row for each streamline, or for each bundle."""
-    from pvfiblets.query.table import check_parquet
-
-    check_parquet(target)  # before minutes of work, not after
-    if by == "bundle":
-        from pvfiblets.cli_bundles import bundle_rows
-
-        bundle_rows(source, group, image).save(target)
-        return
-    if image:
-        raise ValueError("--image is for a row by bundle; add --by bundle")
-    if len(group) > 1:
-        raise ValueError(f"--group is given {len(group)} times; give it once, or add --by bundle")
-    from pvfiblets.codec.fibletset import FibletSet
-
-    data = FibletSet.open(source) if source.lower().endswith(".fiblets") else formats.read(source)
-    if unknown := [name for name in group if name not in data.groups]:
-        raise ValueError(f"{source} has no group {unknown[0]!r}; it has: {', '.join(data.groups) or 'none'}")
-    data.table(data.groups[group[0]] if group else None).save(target)
-
-
 def verify(path: str, original: str | None, *, max_angle: float | None, quiet: bool, json: bool) -> None:
     """Check a compressed file's checksums and, given the original, every point and direction."""
     from pvfiblets.codec.verify import refuse_broken_promise, verified

@@ -117,6 +117,21 @@ affine = np.array([[8.0, 0, 0, -90], [0, 8, 0, -110], [0, 0, 8, -60], [0, 0, 0, 
 nibabel.save(nibabel.Nifti1Image(numbers, affine), "fa.nii.gz")
 nibabel.save(nibabel.Nifti1Image((numbers * 6).astype("i2"), affine), "atlas.nii.gz")
 """,
+    "docs/from-mrview.md": BRAIN + """
+import nibabel, numpy as np
+from pvfiblets.formats.attachments import write_scalars
+pvfiblets.write("brain.tck", brain_streamlines(400, seed=1))
+write_scalars("brain_fa.tsf", brain_streamlines(400, seed=1, fa=True), "fa")
+np.savetxt("sift2.txt", np.linspace(0, 2, 400))
+rng = np.random.default_rng(0)
+affine = np.array([[12.0, 1, 0, -80], [-1, 12, 0, -90], [0, 0, 12, -50], [0, 0, 0, 1]])
+for name, numbers in {
+    "t1": rng.integers(0, 900, (12, 14, 10)).astype(np.int16), "fa": rng.random((12, 14, 10)).astype("f4"),
+    "parcels": rng.integers(0, 9, (12, 14, 10)).astype(np.int16),
+    "peaks": rng.normal(size=(12, 14, 10, 6)).astype("f4"), "fod": rng.normal(size=(12, 14, 10, 15)).astype("f4"),
+}.items():
+    nibabel.save(nibabel.Nifti1Image(numbers, affine), f"{name}.nii.gz")
+""",
     "docs/shards.md": "",
     "docs/from-vtk.md": "",
     "docs/tubes.md": "",
