@@ -53,6 +53,8 @@ def make_root(root: Path) -> None:
     else:
         shutil.copy(head, root / "t1.nii.gz")
     _atlas(root / "atlas.nii.gz", tracts.points)
+    _parcels(root / "parcels.nii.gz")
+    _peaks(tracts, root / "peaks.nii.gz")
     import pyvista as pv
 
     pv.ParametricEllipsoid(9, 12, 8, center=(26, 4, 26)).save(root / "lesion.ply")
@@ -118,6 +120,53 @@ def _atlas(path: Path, points: np.ndarray) -> None:
     names = [f"{z} {y} {x}" for z in ("lower", "upper") for y in ("back", "middle", "front") for x in ("left", "right")]
     rows = [f"{label}\t{name}" for label, name in enumerate(names, 1)]
     path.with_name("atlas.tsv").write_text("\n".join(["index\tname", *rows]) + "\n")
+
+
+BALLS = {
+    "left motor cortex": (-30, -22, 58), "right motor cortex": (30, -22, 58), "brain stem": (0, -30, -36),
+    "left frontal pole": (-22, 56, 4), "right frontal pole": (22, 56, 4), "left occipital pole": (-18, -88, 4),
+    "right occipital pole": (18, -88, 4), "left temporal pole": (-40, 12, -30), "right temporal pole": (40, 12, -30),
+}  # fmt: skip
+"""Middles of made-up parcels, mm."""
+
+
+def _parcels(path: Path) -> None:
+    """Write balls as labels, with their names beside them."""
+    import nibabel
+
+    from pvfiblets.slices.labels import distinct_colours
+
+    affine = np.diag([2.0, 2.0, 2.0, 1.0])
+    affine[:3, 3] = -90.0, -126.0, -72.0
+    places = np.stack(np.indices((91, 109, 91)), axis=-1) * 2.0 + affine[:3, 3]
+    labels = np.zeros(places.shape[:3], np.uint8)
+    rows = ["index\tname\tcolor"]
+    for label, (name, middle) in enumerate(BALLS.items(), 1):
+        labels[np.linalg.norm(places - middle, axis=-1) < 17.0] = label
+        red, green, blue, _ = distinct_colours(np.array([label]))[0].tolist()
+        rows.append(f"{label}\t{name}\t#{red:02x}{green:02x}{blue:02x}")
+    nibabel.save(nibabel.Nifti1Image(labels, affine), path)
+    path.with_name("parcels.tsv").write_text("\n".join(rows))
+
+
+def _peaks(tracts: Any, path: Path) -> None:
+    """Write the direction in which most streamlines run, voxel by voxel, as long as they agree."""
+    import nibabel
+
+    ends = np.delete(np.arange(len(tracts.points)), tracts.offsets[:-1])
+    steps = tracts.points[ends] - tracts.points[ends - 1]
+    low, side = tracts.points.min(axis=0), 4.0
+    at = ((0.5 * (tracts.points[ends] + tracts.points[ends - 1]) - low) // side).astype(np.int64)
+    shape = tuple(at.max(axis=0) + 1)
+    flat = np.ravel_multi_index(tuple(at.T), shape)
+    tensors = np.zeros((int(np.prod(shape)), 3, 3))
+    np.add.at(tensors, flat, steps[:, :, None] * steps[:, None, :])
+    own, vectors = np.linalg.eigh(tensors)
+    share = np.divide(own[:, 2] - own[:, 1], own.sum(axis=1), out=np.zeros(len(own)), where=own[:, 2] > 5.0)
+    affine = np.diag([side, side, side, 1.0])
+    affine[:3, 3] = low + 0.5 * side
+    peaks = (vectors[:, :, 2] * share[:, None]).reshape(*shape, 3).astype(np.float32)
+    nibabel.save(nibabel.Nifti1Image(peaks, affine), path)
 
 
 def _made_up_head(path: Path) -> None:
@@ -227,6 +276,12 @@ def selection(studio: Studio) -> Visit:
     return here
 
 
+def _in_pane(here: Visit, name: str, x: float, y: float) -> tuple[float, float]:
+    """Return a place in a pane as a place in the picture, both as shares from the upper left."""
+    box = next(one for one in here.state("slicing")["boxes"] if one["name"] == name)
+    return box["x"] + x * box["w"], box["y"] + y * box["h"]
+
+
 @state
 def slices(studio: Studio) -> Visit:
     """A painted region on slices, and what passes it."""
@@ -246,10 +301,69 @@ def slices(studio: Studio) -> Visit:
     here.page.click("[data-painted] [data-select=use] .v-field")
     here.page.click(".v-overlay--active .v-list-item:has-text('pass through')")
     here.rests()
-    here.trace([(0.89, 0.18), (0.90, 0.24)])
+    here.trace([_in_pane(here, "axial", *at) for at in ((0.63, 0.54), (0.67, 0.72))])
     here.wait(lambda: here.state("painting")["regions"][0]["voxels"] != "0", "what is painted")
     here.rests()
     here.press("Escape")
+    return here
+
+
+def _with_t1(studio: Studio, *files: str, **options: Any) -> Visit:
+    """Open tracts, the T1 as slices, and other images over it."""
+    here = studio.visit("brain.fiblets", **options)
+    for name in ("t1.nii.gz", *files):
+        count = here.layers()
+        here.page.evaluate("window.trame.trigger('browse', ['', 'slices'])")
+        here.page.click(f"[data-entry='{name}']")
+        here.wait(lambda count=count: here.layers() > count, name)
+    here.rests()
+    return here
+
+
+@state
+def atlas(studio: Studio) -> Visit:
+    """What connects two labels."""
+    here = _with_t1(studio, "parcels.nii.gz")
+    here.press("4")
+    here.tab("slices")
+    here.page.click("[data-action=atlas]")
+    for name in ("left motor cortex", "brain stem"):
+        here.page.click(f"[data-label] >> text={name}")
+        here.wait(lambda name=name: name in here.page.locator("[data-value=atlas-asked]").inner_text(), name)
+    here.page.click("[data-action=panes]")
+    here.page.click("input[aria-label='Slices in 3-D']")
+    here.page.click("[data-action=panes]")
+    here.page.click("[data-label] >> text=left motor cortex >> xpath=ancestor::div[1] >> [aria-label='Go there']")
+    here.rests()
+    return here
+
+
+@state
+def glyphs(studio: Studio) -> Visit:
+    """Peaks over a T1."""
+    here = _with_t1(studio, "peaks.nii.gz")
+    here.page.click("[data-layer] >> text=peaks.nii.gz")
+    here.page.wait_for_selector("[data-property=glyphs]")
+    here.choose("glyphs", "peaks")
+    here.tab("slices")
+    here.page.click("[data-layout-button=axial]")
+    here.rests()
+    return here
+
+
+@state
+def phone(studio: Studio) -> Visit:
+    """Slices on a phone, with a region that is painted."""
+    here = _with_t1(studio, width=390, height=760, has_touch=True, is_mobile=True)
+    here.page.evaluate("window.trame.state.update({right_open: true, tab: 'slices'})")
+    here.page.tap("[data-action=add-painted]")
+    here.page.wait_for_selector("#pv-paint[data-tool=brush]")
+    here.page.evaluate("window.trame.state.update({right_open: false})")
+    here.page.wait_for_timeout(500)
+    here.rests()
+    here.trace([_in_pane(here, "axial", *at) for at in ((0.36, 0.4), (0.4, 0.5))])
+    here.wait(lambda: here.state("painting")["regions"][0]["voxels"] != "0", "what is painted")
+    here.rests()
     return here
 
 

@@ -75,7 +75,10 @@ class RegionActions(LineActions):
         page.marks = marks
 
     def _sight(self) -> Sight:
-        return Sight(self._app.plotter.camera, *self._app.plotter.window_size)
+        """How the 3-D view is seen, which slices may leave a part of the picture to."""
+        plotter = self._app.plotter
+        (width, height), (left, bottom, right, top) = plotter.window_size, plotter.renderer.GetViewport()
+        return Sight(plotter.camera, round(width * (right - left)), round(height * (top - bottom)))
 
     # What is done
 

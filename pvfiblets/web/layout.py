@@ -60,7 +60,7 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
 .pv-paint-tools .pv-dot { align-self: center; width: 14px; height: 14px; margin: 0 4px }
 @media (pointer: coarse) {
   .pv-tools .v-btn, [data-paint-tool] { width: 42px !important; height: 42px !important }
-  .pv-paint-tools .v-btn { width: 36px !important; height: 40px !important }
+  .pv-paint-tools .v-btn { width: 34px !important; height: 40px !important }
   .pv-label-row .v-btn { min-height: 40px } .pv-num { font-size: 16px; padding: 6px }
 }
 .pv-over { position: absolute; inset: 0; z-index: 2; cursor: crosshair; touch-action: none }
@@ -143,6 +143,12 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
 .v-field__input { font-size: 13px !important; min-height: 30px !important; padding-top: 3px !important;
   padding-bottom: 3px !important }
 """
+
+OVER_3D = (
+    "((b) => ({ left: 100 * b.x + '%', top: 100 * b.y + '%', right: 'auto', bottom: 'auto', width: 100 * b.w + '%', "
+    "height: 100 * b.h + '%' }))(slicing.boxes.find((b) => b.name === '3d') || { x: 0, y: 0, w: 1, h: 1 })"
+)
+"""Where the 3-D view is in the picture, as CSS."""
 
 # Names are put in as text, by Vue.
 MARKS = """
@@ -290,7 +296,10 @@ def _view(app: Any) -> None:
             style="position: absolute; inset: 0; width: 100%; height: 100%",
         )
         area.add_view_handler(app.stream)
-        with html.Div(v_if="show_regions && marks.length", classes="pv-marks", id="pv-marks"):
+        with html.Div(  # over the 3-D view, wherever that is
+            v_if="show_regions && marks.length && slicing.boxes.every((b) => b.name !== '3d') === !slicing.shown",
+            classes="pv-marks", id="pv-marks", style=(f"({OVER_3D})",),
+        ):  # fmt: skip
             html.Div(MARKS)
             with html.Div(v_if="tool === 'rotate' && tab === 'filter'"):  # dragged by client/regions.js
                 with v3.Template(v_for="m in marks", key="m.row"):
@@ -307,8 +316,7 @@ def _view(app: Any) -> None:
         atlas_tab.over()
         with html.Div(
             v_if="['3d', 'beside'].includes(slicing.layout)", style=(
-                "((b) => ({ position: 'absolute', pointerEvents: 'none', left: 0, top: 0, width: 100 * b.w + '%', "
-                "height: 100 * b.h + '%' }))(slicing.boxes.find((b) => b.name === '3d') || { w: 1, h: 1 })",),
+                f"({{ position: 'absolute', pointerEvents: 'none', ...{OVER_3D} }})",),
         ):  # fmt: skip
             for edge, place in (
                 ("left", "left: 52px; top: 50%"),

@@ -84,11 +84,16 @@ class Visit:
         self.requests = []
         self.received = []
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
-        self.page.on("console", lambda said: self.errors.append(said.text) if said.type == "error" else None)
+        self.page.on("console", self._said)
         self.page.on("request", lambda request: self.requests.append(request.url))
         self.page.on(
             "websocket", lambda socket: socket.on("framereceived", lambda data: self.received.append(len(data)))
         )
+
+    def _said(self, said):
+        # An event that is on its way when a page is left is lost, of which its client complains.
+        if said.type == "error" and "trame.rca.event unsuccessful: connection not open" not in said.text:
+            self.errors.append(said.text)
 
     def open(self):
         """Open the page and wait for the first picture with something in it."""

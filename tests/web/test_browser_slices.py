@@ -269,3 +269,51 @@ def test_a_phone_has_slices_below_and_tools_that_paint_at_hand(visit):
     here.wait(lambda: here.state("painting")["regions"][0]["voxels"] == "256", "the slice that is filled")
     here.page.tap("[data-slice-step='1']")
     here.wait(lambda: abs(told(here)[2] - at[2]) == 4.0, "the next slice")
+
+
+def test_from_a_t1_and_labels_to_an_exported_connection(visit):
+    """A session as users have it: images, a point, a painted region, a label, a file, and all of it after a reload."""
+    here = visit("lines.fiblets")
+    shutil.copy(here.served.root / "atlas.nii.gz", here.served.root / "lobes.nii.gz")
+    (here.served.root / "lobes.tsv").write_text("index\tname\n3\tputamen\n5\tinsula\n")
+    sliced(here)
+    here.page.click("[data-action=open-slices]")
+    here.page.click("#dialog-open .v-list-item:has-text('lobes.nii.gz')")
+    here.wait(lambda: len(here.state("atlas")["rows"]) == 2, "labels")
+    for axis, text in enumerate(("20", "16", "20")):
+        here.page.fill(f"[data-place=position] input >> nth={axis}", text)
+        here.press("Tab")
+    here.wait(lambda: told(here) == [20.0, 16.0, 20.0], "the point")
+    assert here.page.locator("[data-under='lobes.nii.gz'] .pv-value").inner_text() == "insula (5)"
+    # Lines begin at 0, in the putamen, and end at 10 + i mm.
+    here.page.click("[data-action=atlas]")
+    here.page.click("[data-label='3'] >> text=putamen")
+    here.wait(lambda: here.state("atlas")["asked"] == [3], "the label")
+    here.page.click("[data-action=add-painted]")
+    here.page.wait_for_selector("#pv-paint[data-tool=brush]")
+    here.page.click("[data-painted] [data-select=use] .v-field")
+    here.page.click(".v-overlay--active .v-list-item:has-text('pass through')")
+    here.page.click("[data-paint-tool=fill]")
+    click(here, "sagittal", 0.5, 0.5)  # all of the slice at x = 20 mm, from 18 on, where one line ends
+    here.wait(lambda: here.state("painting")["regions"][0]["voxels"] == "256", "the slice")
+    counted = here.state("painting")["counted"]
+    left = int(counted.split()[0])
+    assert left in (51, 52)
+    here.press("Escape")
+    here.tab("selection")
+    here.page.click("[data-select=export_what] .v-field")
+    here.page.click(".v-overlay--active .v-list-item:has-text('all that filters leave')")
+    here.page.fill("[data-field=export-name]", "reaching")
+    here.press("Tab")
+    here.wait(lambda: here.state("export_name") == "reaching", "the name")
+    here.page.click("[data-action=export]")
+    here.page.click("[data-export='.tck']")
+    here.wait(lambda: here.state("download").get("file"), "the file")
+    import pvfiblets
+
+    assert len(pvfiblets.read(here.served.root / "reaching.tck")) == left
+    here.page.reload()
+    here.ready()
+    assert here.state("painting")["counted"] == counted
+    assert here.state("atlas")["asked"] == [3]
+    assert told(here) == [20.0, 16.0, 20.0]

@@ -148,3 +148,36 @@ def test_named_regions_are_in_sessions_and_scripts(desk, scene):
     kept["layers"][0]["filters"]["regions"]["of"][0]["region"]["name"] = "two\nlines"
     with pytest.raises(session.SessionError, match="printable"):
         session.from_dict(scene, kept)
+
+
+def test_marks_lie_in_the_3d_view_beside_slices(folder):
+    import pyvista as pv
+
+    from pvfiblets.web.scene import Scene
+    from pvfiblets.web.slicing import ready_views
+
+    plotter = pv.Plotter(off_screen=True, window_size=(240, 160), shape=(2, 2), border=False)
+    ready_views(plotter)
+    scene = Scene(plotter, folder)
+    try:
+        lines = scene.open("lines.fiblets")
+        scene.open("head.nii.gz", "image")
+        scene.set_slices(layout="beside")
+        scene.screenshot()
+        desk = Desk(scene, folder)
+        desk.page.chosen, desk.page.chosen_kind = lines.id, "tractogram"
+        sphere = {"kind": "sphere", "center": [30.0, 12.0, 8.0], "radius": 4.0, "name": "A"}
+        scene.set_regions(lines.id, {"op": "and", "of": [{"how": "passes", "region": sphere}]})
+        desk.regions.refresh_marks()
+        (mark,) = desk.page.marks
+        found = next(one for one in mark["handles"] if one["name"] == "center")
+        renderer = plotter.renderer
+        renderer.SetWorldPoint(*sphere["center"], 1.0)
+        renderer.WorldToDisplay()
+        x, y, _ = renderer.GetDisplayPoint()
+        # The 3-D view is the left 70 per cent of the picture; marks are shares of it, from its upper left.
+        assert found["x"] == pytest.approx(100.0 * x / (0.7 * 240), abs=0.5)
+        assert found["y"] == pytest.approx(100.0 * (1.0 - y / 160), abs=0.5)
+    finally:
+        scene.close()
+        plotter.close()

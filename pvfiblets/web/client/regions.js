@@ -34,7 +34,8 @@
   document.addEventListener("pointermove", (event) => {
     if (!held || event.pointerId !== held.id) return;
     event.stopPropagation();
-    const view = document.querySelector("#pv-view").getBoundingClientRect();
+    const view = document.querySelector("#pv-marks")?.getBoundingClientRect();
+    if (!view) return;
     const x = (event.clientX + held.off[0] - view.left) / view.width;
     const y = (event.clientY + held.off[1] - view.top) / view.height;
     held.place = [x, y].map((share) => Math.min(Math.max(share, -0.9), 1.9));
