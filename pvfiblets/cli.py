@@ -97,6 +97,7 @@ def make_parser() -> argparse.ArgumentParser:
     add_batch_options(batch, positive, angle, count)
     scenes.add_screenshot(commands)
     scenes.add_show(commands)
+    scenes.add_page(commands)
     scenes.add_serve(commands)
 
     gl = commands.add_parser(

@@ -45,6 +45,23 @@ def screenshot(paths: list[str], *, output: str, size: tuple[int, int], transpar
         plotter.close()
 
 
+def page(paths: list[str], *, output: str, title: str | None, **looks: Any) -> None:
+    """Write files as a page that draws them by itself."""
+    from pvfiblets.page.writing import check_name
+    from pvfiblets.plotting.page_scene import export_page
+
+    check_name(output)
+    plotter, scene = make_plotter(off_screen=True, size=None), None
+    try:
+        scene = fill(plotter, paths, **looks)
+        for path in export_page(plotter, output, title=title or path_of(paths[0]).name):
+            print(f"{path}: {path.stat().st_size:,} bytes")
+    finally:
+        if scene is not None:
+            scene.close()
+        plotter.close()
+
+
 def show(paths: list[str], **looks: Any) -> None:
     """Open a window with the files."""
     if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):

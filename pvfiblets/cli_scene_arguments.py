@@ -9,7 +9,7 @@ from pvfiblets.cli_pipes import add_format_option
 from pvfiblets.cli_scene import add_options
 from pvfiblets.cli_values import antialias, count, positive, size
 
-__all__ = ["LOOKS", "VIEWS", "add_screenshot", "add_serve", "add_show"]
+__all__ = ["LOOKS", "VIEWS", "add_page", "add_screenshot", "add_serve", "add_show"]
 
 # Those of pvfiblets.plotting.fiblets.looks, without loading it.
 LOOKS = ("plain", "illuminated", "tubes", "glass", "density", "ink", "studio")
@@ -41,6 +41,22 @@ def add_show(commands: Any) -> None:
     _scene(show)
     add_format_option(show, reads=["paths"])
     show.set_defaults(run="pvfiblets.cli_pictures:show")
+
+
+def add_page(commands: Any) -> None:
+    """``page``."""
+    page = commands.add_parser(
+        "page",
+        help="write files as a page that any browser draws by itself",
+        description="Write FILEs, as one scene, as an HTML page that draws them by itself: offline, without a server, "
+        "with the streamlines compressed in it. More than 64 MB of data lie in a folder beside it, which then needs a "
+        "web server.",
+    )
+    _scene(page)
+    page.add_argument("-o", "--output", required=True, metavar="HTML", help="the page to write, or a folder")
+    page.add_argument("--title", help="of the page (default: the name of the first FILE)")
+    add_format_option(page, reads=["paths"])
+    page.set_defaults(run="pvfiblets.cli_pictures:page")
 
 
 def add_serve(commands: Any) -> None:

@@ -63,6 +63,7 @@ export class FibletSet {
   private frameForDecoding: UniformBlock;
   private textures: Record<string, WebGLTexture> = {};
   private itemBuffer!: WebGLBuffer;
+  private toItems!: Uint32Array;
   private feedback: WebGLTransformFeedback;
   private scratch: WebGLBuffer | null = null;
   private scratchBytes = 0;
@@ -182,6 +183,7 @@ export class FibletSet {
       block!.items += shares[f];
     }
     for (const found of this.blocks) found.more = found.firstItem + found.items < total ? 1 : 0;
+    this.toItems = items;
     this.textures.items = rows(gl, "rgba32ui", items, "shares of fiblets");
     this.itemBuffer = gl.createBuffer()!;
     gl.bindBuffer(gl.ARRAY_BUFFER, this.itemBuffer);
@@ -283,6 +285,64 @@ export class FibletSet {
       }
     }
     return this.segments;
+  }
+
+  /** Go through decoded fiblets, from the graphics card: a streamline, and its points in local mm, three numbers each. */
+  private *decoded(wanted: (block: Block) => boolean): Generator<[number, Float32Array, boolean]> {
+    const gl = this.gl, a = this.toItems;
+    for (const block of this.blocks) {
+      if (!wanted(block)) continue;
+      const slots = new Float32Array((block.items + block.more) * SHARE * 3);
+      gl.bindBuffer(gl.ARRAY_BUFFER, this.pointsOf(block));
+      gl.getBufferSubData(gl.ARRAY_BUFFER, SLOT_BYTES, slots);
+      gl.bindBuffer(gl.ARRAY_BUFFER, null);
+      for (let item = block.firstItem; item < block.firstItem + block.items; ++item) {
+        if (a[4 * item + 2] >>> 8) continue;
+        const points = a[4 * item + 2] & 63, end = (a[4 * item + 2] & 128) !== 0, at = 3 * SHARE * (item - block.firstItem);
+        yield [a[4 * item], slots.subarray(at, at + 3 * (points + (end ? 0 : 1))), (a[4 * item + 2] & 64) !== 0];
+      }
+    }
+  }
+
+  private blocksOf(streamline: number): (block: Block) => boolean {
+    const a = this.toItems;
+    return (block) => {
+      for (let item = block.firstItem; item < block.firstItem + block.items; ++item) if (a[4 * item] === streamline) return true;
+      return false;
+    };
+  }
+
+  private world(local: Float32Array, i: number): Vec {
+    return [0, 1, 2].map((axis) => this.toData[12 + axis] + local[3 * i + axis]) as Vec;
+  }
+
+  /** The points of a streamline in data coordinates. */
+  pointsOfStreamline(streamline: number): Vec[] {
+    const found: Vec[] = [];
+    for (const [id, points] of this.decoded(this.blocksOf(streamline))) {
+      if (id === streamline) for (let i = 0; 3 * i < points.length; ++i) found.push(this.world(points, i));
+    }
+    return found;
+  }
+
+  /** Of each streamline 1 where some segment of it comes near to a place (data coordinates, mm), else 0. */
+  through(place: Vec, radius: number): Uint8Array {
+    const kept = new Uint8Array(this.streamlines), c = [0, 1, 2].map((axis) => place[axis] - this.toData[12 + axis]), square = radius * radius;
+    const near = (block: Block): boolean => [0, 1, 2].every((axis) => place[axis] + radius >= block.bounds[2 * axis] && place[axis] - radius <= block.bounds[2 * axis + 1]);
+    for (const [id, p] of this.decoded(near)) {
+      if (kept[id]) continue;
+      for (let i = 0; i < p.length; i += 3) {
+        const j = Math.min(i + 3, p.length - 3);
+        const dx = p[j] - p[i], dy = p[j + 1] - p[i + 1], dz = p[j + 2] - p[i + 2], ax = c[0] - p[i], ay = c[1] - p[i + 1], az = c[2] - p[i + 2];
+        const t = Math.min(1, Math.max(0, (ax * dx + ay * dy + az * dz) / (dx * dx + dy * dy + dz * dz || 1)));
+        const x = ax - t * dx, y = ay - t * dy, z = az - t * dz;
+        if (x * x + y * y + z * z <= square) {
+          kept[id] = 1;
+          break;
+        }
+      }
+    }
+    return kept;
   }
 
   release(): void {

@@ -1,6 +1,7 @@
 /** The page's start: what it is to show, its data, and the errors that stop it, each as one sentence on the page. */
 
 import { fromBase64 } from "./engine";
+import { Controls } from "./controls";
 import { attachMouse } from "./mouse";
 import { Renderer } from "./renderer";
 import type { Scene } from "./scene";
@@ -31,7 +32,8 @@ async function start(): Promise<void> {
   renderer.failed = fail;
   renderer.drawnOnce = () => { document.body.dataset.state = "drawn"; };
   new ResizeObserver(() => renderer.change()).observe(renderer.canvas);
-  attachMouse(renderer);
+  const controls = new Controls(renderer, data);
+  attachMouse(renderer, (x, y) => controls.pick(x, y));
   (window as unknown as { pvfiblets: unknown }).pvfiblets = renderer;
 }
 

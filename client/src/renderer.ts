@@ -80,6 +80,7 @@ export class Renderer {
   frames = 0;                            // finished pictures
   failed: ((error: Error) => void) | null = null;
   drawnOnce: (() => void) | null = null;
+  presented: (() => void) | null = null;
 
   private gl: GL;
   private programs = new Map<string, Program>();
@@ -409,6 +410,7 @@ export class Renderer {
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     this.program("page/screen.vert", "page/copy.frag").use().textures({ drawn: t.drawn });
     gl.drawArrays(gl.TRIANGLES, 0, 3);
+    this.presented?.();
   }
 
   /** Edges were mixed into an earlier look at this picture: have what lies behind lines afresh. */
@@ -449,6 +451,18 @@ export class Renderer {
       return { lines, streamline: word[0] & 0x0fffffff, value };
     }
     return null;
+  }
+
+  /** The point of a streamline that is shown nearest to a place of the page, in data coordinates. */
+  placeOf(lines: Lines, streamline: number, x: number, y: number): Vec {
+    const { camera, scene, canvas } = this, width = canvas.clientWidth, height = canvas.clientHeight;
+    const matrix = product(camera.projection(this.width / this.height, scene.bounds), product(camera.view(), lines.model));
+    let best: Vec = [0, 0, 0], least = Infinity;
+    for (const point of lines.set.pointsOfStreamline(streamline)) {
+      const [cx, cy, , w] = apply(matrix, point), away = Math.hypot((cx / w + 1) * width / 2 - x, (1 - cy / w) * height / 2 - y);
+      if (w > 0 && away < least) [best, least] = [point, away];
+    }
+    return best;
   }
 
   /** The picture as it is, rows from the top: RGBA. */

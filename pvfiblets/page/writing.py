@@ -21,7 +21,7 @@ from pvfiblets.whole_files import made_folder, replacing
 
 from .scene import PageScene
 
-__all__ = ["LARGEST_FILE", "write_page"]
+__all__ = ["LARGEST_FILE", "check_name", "write_page"]
 
 LARGEST_FILE = 64_000_000
 """Bytes of data above which they lie beside the page: browsers keep the text of a page in memory, twice."""
@@ -58,9 +58,7 @@ def write_page(scene: PageScene, path: str | PathLike[str], *, largest_file: int
     OSError
         If it cannot be written.
     """
-    path = Path(path).expanduser()
-    if path.suffix.lower() not in ("", ".html", ".htm"):
-        raise ValueError(f"{path}: a page is written as .html, or into a folder whose name has no ending; name it so")
+    path = check_name(path)
     content = scene.plain()
     apart = path.suffix == "" or sum(map(len, scene.blobs)) > largest_file
     page = path if path.suffix else path / "index.html"
@@ -89,6 +87,20 @@ def write_page(scene: PageScene, path: str | PathLike[str], *, largest_file: int
     return written
 
 
+def check_name(path: str | PathLike[str]) -> Path:
+    """Return a name that a page can have.
+
+    Raises
+    ------
+    ValueError
+        If its ending is that of something else.
+    """
+    path = Path(path).expanduser()
+    if path.suffix.lower() not in ("", ".html", ".htm"):
+        raise ValueError(f"{path}: a page is written as .html, or into a folder whose name has no ending; name it so")
+    return path
+
+
 def page_text(content: dict[str, Any], *, apart: bool) -> str:
     """Return the page without its data."""
     script, style = _resource("page.js"), _resource("page.css")
@@ -98,7 +110,7 @@ def page_text(content: dict[str, Any], *, apart: bool) -> str:
             f"script-src 'sha256-{_digest(script)}'",
             f"style-src 'sha256-{_digest(style)}'",
             "img-src data: blob:",
-            f"connect-src {chr(39)}self{chr(39)}" if apart else "connect-src 'none'",
+            "connect-src 'self'" if apart else "connect-src 'none'",
             "base-uri 'none'",
             "form-action 'none'",
         )

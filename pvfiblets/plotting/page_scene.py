@@ -5,8 +5,11 @@ What a page cannot show is named in one warning, and left out.
 
 from __future__ import annotations
 
+import html
+import tempfile
 import warnings
 from collections.abc import Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,14 +24,13 @@ from pvfiblets.plotting.page_surfaces import add_image, add_surface, reflects_of
 
 if TYPE_CHECKING:
     from os import PathLike
-    from pathlib import Path
 
     from pvfiblets.mappers.colouring import Colouring
 
-__all__ = ["export_page", "page_of"]
+__all__ = ["PageView", "export_page", "page_of"]
 
 _SHOWN_EFFECTS = {"light", "illuminated"}
-_SPARE_BITS = 28  # of a streamline's number: the page keeps the layer beside it
+_SOON = 5_000_000  # points
 MOST_FIBLET_LAYERS = 15
 
 
@@ -40,6 +42,46 @@ def export_page(
 
     scene = page_of(plotter, title=title)
     return write_page(scene, path, largest_file=LARGEST_FILE if largest_file is None else largest_file)
+
+
+class PageView:
+    """A page that a notebook shows, and keeps when it is saved.
+
+    Parameters
+    ----------
+    text : str
+        The page.
+    height : int
+        Pixels.
+    """
+
+    def __init__(self, text: str, height: int) -> None:
+        self.text, self.height = text, height
+
+    def _repr_html_(self) -> str:
+        # Without `allow-same-origin` the page reaches nothing of the notebook.
+        return (
+            f'<iframe sandbox="allow-scripts allow-downloads" width="100%" height="{self.height}" style="border:0" '
+            f'title="Streamlines" srcdoc="{html.escape(self.text, quote=True)}"></iframe>'
+        )
+
+
+def page_view(plotter: Any, *, title: str | None = None, height: int = 480) -> PageView:
+    """Return what a plotter's active renderer shows as a page in a notebook; see `FibletsComponent.page_view`."""
+    from pvfiblets.page.writing import LARGEST_FILE, write_page
+
+    if isinstance(height, bool) or int(height) != height or not 50 <= height <= 10_000:
+        raise ValueError(f"height is {height!r}; give a whole number of pixels from 50 to 10000")
+    scene = page_of(plotter, title=title)
+    size = sum(map(len, scene.blobs))
+    if size > LARGEST_FILE:
+        raise ValueError(
+            f"the page has {size} bytes of data, and a notebook should not keep more than {LARGEST_FILE}; use "
+            "export_page, or show fewer streamlines"
+        )
+    with tempfile.TemporaryDirectory() as folder:
+        (path,) = write_page(scene, Path(folder) / "page.html")
+        return PageView(path.read_text(encoding="utf-8"), int(height))
 
 
 def page_of(plotter: Any, *, title: str | None = None) -> PageScene:
@@ -74,6 +116,7 @@ def page_of(plotter: Any, *, title: str | None = None) -> PageScene:
             renderer.camera_set = False
         scene.camera = _camera(renderer.GetActiveCamera())
     scene.lights = list(_lights(renderer))
+    scene.letters = any(layer["kind"] == "fiblets" for layer in scene.layers)
     picture = getattr(plotter, "picture", None)
     scene.antialias = picture is None or picture.antialias != "off"
     scene.plain()
@@ -123,6 +166,7 @@ def _add_fiblets(scene: PageScene, name: str, actor: Any, mapper: FibletMapper, 
     planes = world_planes(mapper)
     if len(planes):
         more["planes"] = planes.tolist()
+    more["controls"] = _controls(scene, fiblets, actor, mapper.colouring)
     reflects, sheen = reflects_of(actor.GetProperty())
     place = to_array(actor.GetMatrix())
     matrix = None if np.array_equal(place, np.eye(4)) else place
@@ -136,6 +180,23 @@ def _add_fiblets(scene: PageScene, name: str, actor: Any, mapper: FibletMapper, 
         assert lut is not None
         bar = {"title": scalars.title, "table": encoded(lut), "clim": clim, "log": mapper.colouring.log_scale}
         scene.bars.append(bar)
+
+
+def _controls(scene: PageScene, fiblets: Any, actor: Any, colouring: Colouring) -> list[dict[str, Any]]:
+    """Return numbers of streamlines that a page can choose by: those that colour, and lengths where they come soon."""
+    found: dict[str, Any] = {}
+    if colouring.mode == "streamline_scalar":
+        scalars = getattr(actor, "active_scalars", None)
+        found[scalars.title if scalars is not None else "value"] = np.asarray(colouring.values, float)
+    if fiblets.n_points <= _SOON and "length [mm]" not in found:
+        found["length [mm]"] = fiblets.lengths()
+    controls = []
+    for name, values in found.items():
+        finite = values[np.isfinite(values)]
+        if finite.size and finite.min() < finite.max():
+            span = float(np.float32(finite.min())), float(np.float32(finite.max()))
+            controls.append({"name": name, "data": scene.add_blob(values.astype(np.float32)), "range": span})
+    return controls
 
 
 def _is_lit(effects: Any) -> bool:

@@ -102,3 +102,44 @@ def test_page_fills_small_and_large_windows(figure, visit):
         page = visit(figure, size=size)
         assert page.picture().shape == (size[1], size[0], 3)
         assert page.page.evaluate("document.documentElement.scrollWidth") == size[0]
+
+
+def test_click_tells_the_streamline_and_its_region(figure, visit):
+    page = visit(figure)
+    page.page.mouse.click(100, 80)
+    status = page.page.locator("#status")
+    status.wait_for(state="visible")
+    said = status.inner_text()
+    assert said.startswith("Streamline 0 of streamlines; at ")
+    place = [float(part) for part in re.search(r"at (.*) mm", said)[1].split(", ")]
+    np.testing.assert_allclose(place, (0.0, 0.0, 0.0), atol=0.6)
+    before = page.picture()
+    page.page.click("#panel summary")
+    page.page.get_by_role("button", name="Those through the picked place").click()
+    assert status.inner_text().startswith("1 streamlines pass within")
+    after = page.picture()
+    assert (before[20:60] != 255).any()
+    assert (after[20:60] == 255).all()
+    page.page.get_by_role("button", name="All", exact=True).click()
+    assert (page.picture()[20:60] != 255).any()
+
+
+def test_slab_view_and_width_are_set_by_named_controls(figure, visit):
+    page = visit(figure, size=(320, 400))
+    whole = (page.picture() != 255).any(axis=2).sum()
+    page.page.click("#panel summary")
+    page.page.get_by_label("Cut across").select_option("left to right")
+    cut = (page.picture() != 255).any(axis=2).sum()
+    assert 0.05 * whole < cut < 0.25 * whole  # an eighth of the lines
+    page.page.get_by_label("Cut across").select_option("nothing")
+    page.page.get_by_label("Line width").fill("8")
+    assert (page.picture() != 255).any(axis=2).sum() > 1.5 * whole
+    page.page.get_by_role("button", name="Top").click()
+    page.settled()
+    place = page.page.evaluate("pvfiblets.camera.state.position")
+    assert place[2] > 100.0
+    unnamed = page.page.evaluate(
+        "[...document.querySelectorAll('input, select, button')].filter((one) => "
+        "!(one.labels && one.labels.length) && !one.textContent && !one.ariaLabel).length"
+    )
+    assert unnamed == 0

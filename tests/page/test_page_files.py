@@ -9,12 +9,14 @@ import json
 import re
 import shutil
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 import pyvista as pv
 
 import pvfiblets
+from pvfiblets.cli import main
 from pvfiblets.codec.archive import open_archive
 from pvfiblets.page.scene import PageScene, fiblet_layer
 from pvfiblets.page.writing import write_page
@@ -105,3 +107,27 @@ def test_what_a_page_cannot_draw_is_named(fiblets, tmp_path):
     with pytest.warns(UserWarning, match="the page leaves out tubes of 'lines': it cannot draw them"):
         plotter.fiblets.export_page(tmp_path / "figure.html")
     plotter.close()
+
+
+def test_notebook_keeps_the_page(fiblets):
+    plotter = pv.Plotter(off_screen=True, window_size=(100, 80))
+    plotter.add_fiblets(fiblets)
+    shown = plotter.fiblets.page_view(height=300)._repr_html_()
+    with pytest.raises(ValueError, match="height is 0; give a whole number of pixels"):
+        plotter.fiblets.page_view(height=0)
+    plotter.close()
+    frame = ElementTree.fromstring(shown)
+    assert frame.attrib["sandbox"] == "allow-scripts allow-downloads"
+    assert frame.attrib["srcdoc"].startswith("<!DOCTYPE html>")
+    assert 'id="data-0"' in frame.attrib["srcdoc"]
+
+
+def test_command_writes_a_page(fiblets, tmp_path, capsys):
+    fiblets.save(tmp_path / "lines.fiblets")
+    assert main(["page", str(tmp_path / "lines.fiblets"), "-o", str(tmp_path / "figure.html"), "--color", "red"]) == 0
+    assert "figure.html: " in capsys.readouterr().out
+    said = json.loads(re.search(r'id="scene">(.*?)</script>', (tmp_path / "figure.html").read_text())[1])
+    assert said["title"] == "lines.fiblets"
+    assert said["layers"][0]["colours"] == {"mode": "solid", "colour": [1.0, 0.0, 0.0]}
+    assert main(["page", str(tmp_path / "lines.fiblets"), "-o", str(tmp_path / "figure.png")]) == 1
+    assert "a page is written as .html" in capsys.readouterr().err

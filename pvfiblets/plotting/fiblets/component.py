@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.engine.capabilities import PipelineTable
     from pvfiblets.plotting.fiblets.actor import FibletActor
+    from pvfiblets.plotting.page_scene import PageView
     from pvfiblets.streamlines import Streamlines
 
     Source: TypeAlias = str | PathLike[str] | FibletSet | Streamlines | pv.PolyData | list[Any]
@@ -232,6 +233,30 @@ class FibletsComponent(ActorRegistry["FibletActor"], Picking, Widgets):
         from pvfiblets.plotting.page_scene import export_page
 
         return export_page(self._plotter, path, title=title, largest_file=largest_file)
+
+    def page_view(self, *, title: str | None = None, height: int = 480) -> PageView:
+        """Return the page of `export_page` for a notebook's cell, which keeps it: it needs no kernel later.
+
+        Parameters
+        ----------
+        title : str, optional
+            Of the page.
+        height : int, default: 480
+            Pixels, 50 to 10,000.
+
+        Returns
+        -------
+        PageView
+            As the last expression of a cell it is shown.
+
+        Raises
+        ------
+        ValueError
+            If there is nothing to show, or more than 64 MB of data.
+        """
+        from pvfiblets.plotting.page_scene import page_view
+
+        return page_view(self._plotter, title=title, height=height)
 
     def __plotter_close__(self) -> None:
         """Release everything; PyVista calls this before the render window goes."""
