@@ -9,7 +9,7 @@ import json
 import re
 import shutil
 from pathlib import Path
-from xml.etree import ElementTree
+from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
@@ -116,7 +116,7 @@ def test_notebook_keeps_the_page(fiblets):
     with pytest.raises(ValueError, match="height is 0; give a whole number of pixels"):
         plotter.fiblets.page_view(height=0)
     plotter.close()
-    frame = ElementTree.fromstring(shown)
+    frame = ET.fromstring(shown)
     assert frame.attrib["sandbox"] == "allow-scripts allow-downloads"
     assert frame.attrib["srcdoc"].startswith("<!DOCTYPE html>")
     assert 'id="data-0"' in frame.attrib["srcdoc"]
