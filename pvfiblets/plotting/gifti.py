@@ -53,6 +53,8 @@ def read_surface(path: str | PathLike[str]) -> pv.PolyData:
     if corners.ndim != 2 or corners.shape[1] != 3 or triangles.ndim != 2 or triangles.shape[1] != 3:
         found = f"shapes {corners.shape} and {triangles.shape}"
         raise FormatError(place, None, found, "(n, 3) points and (m, 3) corners of triangles")
+    if not np.isfinite(corners).all():
+        raise FormatError(place, None, "points that are no numbers", "finite mm")
     reach = (int(triangles.min()), int(triangles.max())) if triangles.size else (0, -1)
     if triangles.dtype.kind not in "iu" or reach[0] < 0 or reach[1] >= len(corners):
         raise FormatError(place, None, "corners that are no numbers of points", f"0 to {len(corners) - 1}")

@@ -81,6 +81,6 @@ def named_files(path: Path) -> list[str]:
     with _open(path) as file:
         try:
             parser.ParseFile(file)
-        except (expat.ExpatError, OSError, EOFError, zlib.error) as error:
+        except (expat.ExpatError, LookupError, ValueError, OSError, EOFError, zlib.error) as error:  # of encodings, too
             raise FormatError(path, None, f"no whole GIFTI data ({error})", "a GIFTI file") from None
     return found

@@ -181,7 +181,13 @@ def test_what_is_wrong_with_gifti_is_said(tmp_path):
     whole = (tmp_path / "lh.pial.surf.gii").read_bytes()
     (tmp_path / "half.gii").write_bytes(whole[: len(whole) // 2])
     (tmp_path / "none.gii").write_bytes(b"<a/>")
-    for name in ("half.gii", "none.gii"):
+    (tmp_path / "words.gii").write_bytes(b'<?xml version="1.0" encoding="eTF-8"?><GIFTI/>')
+    points = GiftiDataArray(np.full((3, 3), np.nan, np.float32), "NIFTI_INTENT_POINTSET")
+    faces = GiftiDataArray(np.array([[0, 1, 2]], np.int32), "NIFTI_INTENT_TRIANGLE")
+    saved(tmp_path, "nan.gii", points, faces)
+    with pytest.raises(FormatError, match="finite mm"):
+        read_surface(tmp_path / "nan.gii")
+    for name in ("half.gii", "none.gii", "words.gii"):
         with pytest.raises(FormatError, match="GIFTI"):
             read_surface(tmp_path / name)
         with pytest.raises((FormatError, ValueError)):
