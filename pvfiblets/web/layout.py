@@ -40,6 +40,12 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
 }
 .pv-cells { position: relative; aspect-ratio: 1; max-width: 460px; cursor: crosshair; touch-action: pan-y }
 .pv-cells img { width: 100%; height: 100%; display: block; image-rendering: pixelated; user-select: none }
+@media (max-width: 759.9px) { .pv-cells { max-width: min(460px, 33vh) } } /* what it tells stays in view */
+@media (pointer: coarse) {
+  :is(#tab-bundles, #pv-matrix) .v-btn--size-x-small:not(.v-btn--icon) { height: 36px; padding-inline: 12px }
+  :is(#tab-bundles, #pv-matrix) .v-btn--size-x-small.v-btn--icon { width: 36px; height: 36px }
+  .pv-grip { display: none } /* fingers scroll: there are buttons */
+}
 .pv-cross, .pv-chosen-cell { position: absolute; pointer-events: none; box-shadow: 0 0 0 1.5px #fff, 0 0 0 3px #000 }
 .pv-chosen-cell { box-shadow: 0 0 0 2px #3df, 0 0 0 3.5px #000 }
 .pv-view img { width: 100%; height: 100%; object-fit: contain; display: block;

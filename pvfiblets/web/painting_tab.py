@@ -12,7 +12,7 @@ from pvfiblets.web.actions import Actions
 from pvfiblets.web.confined import check_name
 from pvfiblets.web.describe import typed
 from pvfiblets.web.document import LINES
-from pvfiblets.web.elements import html, v3
+from pvfiblets.web.elements import eye, html, v3
 from pvfiblets.web.painting import USES
 from pvfiblets.web.scene_painting import TOOLS
 
@@ -323,11 +323,7 @@ def build(app: Any) -> None:
                 html.Span("mm", classes="pv-small")
         with html.Div(v_for="r in painting.regions", key="r.name", data_painted=("r.name",), classes="pv-region"):
             with html.Div(classes="pv-pair px-3 pt-1"):
-                with v3.VBtn(
-                    icon=True, size="x-small", variant="text", click=(paint.set, "[r.name, 'visible', !r.visible]"),
-                    aria_label=("r.visible ? 'Hide' : 'Show'",),
-                ):  # fmt: skip
-                    v3.VIcon(icon=("r.visible ? 'mdi-eye' : 'mdi-eye-off'",), size=18)
+                eye("r.visible", click=(paint.set, "[r.name, 'visible', !r.visible]"))
                 html.Input(
                     type="color", classes="pv-colour", style="width: 26px", value=("r.color",),
                     aria_label="Colour", change=(paint.set, "[r.name, 'color', $event.target.value]"),
