@@ -11,6 +11,8 @@ from os import PathLike
 from pathlib import Path
 from typing import BinaryIO
 
+from .unfinished import locked, unfinished
+
 __all__ = ["made_folder", "naming_target", "replacing"]
 
 _FULL = (errno.ENOSPC, errno.EDQUOT) if hasattr(errno, "EDQUOT") else (errno.ENOSPC,)
@@ -35,10 +37,10 @@ def replacing(path: str | PathLike[str], needed: int | None = None) -> Iterator[
         If it cannot be written, as :func:`naming_target` says it.
     """
     target = Path(path)
-    temporary = target.with_name(f".{target.name}.{os.getpid()}.part")
+    temporary = unfinished(target)
     with naming_target(target, needed):
         try:
-            with temporary.open("wb") as file:
+            with temporary.open("wb") as file, locked(temporary):
                 yield file
             temporary.replace(target)
         except BaseException:

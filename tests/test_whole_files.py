@@ -6,6 +6,7 @@ import errno
 import os
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ import pvfiblets
 from pvfiblets.cli import main
 from pvfiblets.formats import tck
 from pvfiblets.streamlines import Streamlines
+from pvfiblets.unfinished import locked, remove_unfinished, unfinished
 from pvfiblets.whole_files import naming_target, replacing
 
 SUFFIXES = (".tck", ".trk", ".trx", ".vtk", ".vtp", ".fiblets")
@@ -192,7 +194,7 @@ def test_every_writer_says_what_was_needed_and_leaves_the_old_file(too_small, tm
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="no SIGKILL")
 @pytest.mark.parametrize("suffix", [".fiblets", ".trk"])
-def test_a_killed_conversion_leaves_source_and_old_file_whole(lines, tmp_path, suffix):
+def test_a_killed_conversion_leaves_source_and_old_file_whole(lines, tmp_path, suffix, capsys):
     """In the middle of writing, by a signal that nothing can catch; afterwards the same conversion goes through."""
     code = """
 import os, signal, sys
@@ -211,5 +213,36 @@ sys.exit(main(["convert", sys.argv[1], sys.argv[2], "--quiet"]))
     assert done.returncode == -9
     assert source.read_bytes() == whole
     assert target.read_bytes() == b"old"
-    assert main(["convert", str(source), str(target), "--quiet"]) == 0
+    left = [entry.name for entry in tmp_path.iterdir() if entry.name.startswith(".")]
+    assert left
+    with warnings.catch_warnings():
+        warnings.simplefilter("always")
+        assert main(["convert", str(source), str(target), "--quiet"]) == 0
+    said = capsys.readouterr().err
+    assert f"removed what a killed conversion left in {tmp_path}: " in said
+    assert all(name in said for name in left)
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == sorted([source.name, target.name])
     np.testing.assert_allclose(pvfiblets.read(target).points, lines.points, atol=1e-3)
+
+
+def test_what_is_being_written_is_never_removed(tmp_path):
+    """By this process, by another machine, by a process of that number, and by whoever holds the lock."""
+    target = tmp_path / "lines.fiblets"
+    ended = subprocess.run([sys.executable, "-c", "import os; print(os.getpid())"], capture_output=True, check=True)
+    name = unfinished(target).name
+    dead = name.replace(f"-{os.getpid()}.", f"-{int(ended.stdout)}.")
+    machine = name.split(".")[-2].split("-")[0]
+    other = dead.replace(machine, "0" * 8 if machine != "0" * 8 else "1" * 8)
+    for one in (name, dead, other, "mine.part", ".mine.part"):
+        (tmp_path / one).write_bytes(b"x")
+    folder = tmp_path / dead.replace(".part", ".scratch")
+    (folder / "inner").mkdir(parents=True)
+    with locked(tmp_path / dead):
+        with pytest.warns(UserWarning, match=f"removed what a killed conversion left in .*: {folder.name}"):
+            assert remove_unfinished(tmp_path) == [folder]
+        assert (tmp_path / dead).exists()
+    with pytest.warns(UserWarning, match="removed"):
+        assert remove_unfinished(tmp_path) == [tmp_path / dead]
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == sorted([name, other, "mine.part", ".mine.part"])
+    assert remove_unfinished(tmp_path) == []
+    assert remove_unfinished(tmp_path / "nowhere") == []

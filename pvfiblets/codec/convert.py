@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 import time
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import closing
@@ -18,6 +17,7 @@ from .. import formats
 from ..errors import FormatError
 from ..memory import fits
 from ..streamlines import Streamlines
+from ..unfinished import remove_unfinished, scratch_beside
 from ..whole_files import naming_target
 from . import parameters as limits
 from .archive import Member, write_archive
@@ -117,6 +117,7 @@ def compress_file(
     if verify not in ("all", "sample"):
         raise ValueError(f"verify is {verify!r}; 'all' or 'sample' is needed")
     check_exact(exact, step, order)
+    remove_unfinished(Path(target).resolve().parent)
     promise = None
     if step != "auto":
         from .resample import resample
@@ -154,12 +155,11 @@ def compress_file(
     else:
         parameters = Parameters.of_resampled(found, promise, step)
     encoder = Encoder(parameters, effort, max_angle)
-    folder = Path(target).resolve().parent
     spooled = [0]
     with (
         naming_target(target, lambda: 2 * spooled[0]),  # once in parts, once put together
-        tempfile.TemporaryDirectory(prefix=".fiblets-", dir=folder) as scratch,
-        closing(_Spool(Path(scratch), spooled)) as spool,  # before its folder goes, whatever happens
+        scratch_beside(Path(target)) as scratch,
+        closing(_Spool(scratch, spooled)) as spool,  # before its folder goes, whatever happens
     ):
         whole = _Whole(behind)
         for chunk in shown(chunks(), found.n_points, "compressing", progress):
@@ -250,7 +250,7 @@ def _keep_exactly(
         "error_steps": {**none, "p999": 0.0},
         "error_degrees": {**none, "p99": 0.0},
         "compared_every": 1,
-        "promise_mm": fiblets.promise,
+        "promise_mm": 0.0,
         "seconds": seconds,
         "points_per_second": whole.n_points / seconds,
         "seconds_to_measure": time.perf_counter() - started - seconds,

@@ -14,6 +14,7 @@ from ..streamlines import Streamlines
 from .decompress import iter_chunks
 from .fibletset import FibletSet
 from .layout import unpack
+from .parameters import LEAST
 from .streamline_ranges import coded_rows
 from .tangents import pixel
 
@@ -77,7 +78,7 @@ class ErrorTally:
         self._firsts = _FirstPoints(fiblets)
         self._by_streamline = by_streamline
         self._largest = 0.0
-        self._edge = max(fiblets.promise, np.finfo(float).tiny) * 1.25
+        self._edge = max(fiblets.promise, LEAST) * 1.25
         self._histogram = np.zeros(_BINS + 1, np.int64)
         self._sum = 0.0
         self._n = 0

@@ -61,7 +61,7 @@ def info(path: str | PathLike[str]) -> dict[str, Any]:
         "bytes": f.nbytes,
         "step_mm": f.step,
         "exact": f.exact is not None,
-        "promise_mm": f.promise,
+        "promise_mm": 0.0 if f.exact is not None else f.promise,
         "bounds_mm": list(f.bounds),
         "per_point": {k: {"min": v.lo, "max": v.hi, "max_error": v.max_error} for k, v in f.per_point.items()},
         "per_streamline": sorted(f.per_streamline),
@@ -76,15 +76,16 @@ def _info_of_shards(path: str | PathLike[str]) -> dict[str, Any]:
 
     whole = ShardedSet.open(path)
     manifest = whole.manifest
+    first = info(whole.place(0))
     return {
-        **info(whole.place(0)),
+        **first,
         "path": fspath(path),
         "streamlines": manifest.streamlines,
         "points": manifest.points,
         "fiblets": manifest.n_fiblets,
         "bytes": whole.nbytes,
         "shards": len(manifest.shards),
-        "promise_mm": manifest.promise_mm,
+        "promise_mm": 0.0 if first["exact"] else manifest.promise_mm,
         "bounds_mm": list(manifest.bounds),
         "groups": manifest.groups,
         "dropped": manifest.dropped,

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from ..addresses import is_url
 from ..streamlines import Streamlines
 from .layout import PAGE, PAGE_BITS, unpack
-from .parameters import Parameters
+from .parameters import LEAST, Parameters
 from .quantised import QuantisedPoints
 from .set_queries import SetQueries
 
@@ -172,9 +172,11 @@ class FibletSet(SetQueries):
     def promise(self) -> float:
         """No decoded point is farther than this from its original, mm; of an exact set, no drawn one.
 
-        Of a set that was resampled (``parameters.resampled``), no decoded line from its original.
+        Of a set that was resampled (``parameters.resampled``), no decoded line from its original. 0 where that is all
+        that a float64 can say: of points at the origin.
         """
-        return self.parameters.promise
+        promise = self.parameters.promise
+        return promise if promise > LEAST else 0.0
 
     @property
     def sizes(self) -> dict[str, int]:

@@ -35,6 +35,7 @@ DEFAULT_PROMISE_EXTENT = 1.0 / 4000.0  # of the bounds' diagonal: half a pixel o
 EVEN_SHARE = 0.9  # of the segments within STEP_BAND of the median: steps are constant, and directions code nearly all
 COARSE = 1.0 / 20.0  # of the bounds' diagonal: errors of longer steps show, constant or not
 CONSTANT_STEP = 1e-4  # relative spread of steps under which one step serves the whole file
+LEAST = float(np.finfo(np.float64).tiny) * 2.0**60  # mm, about 2.6e-290: what coding divides by stays normal
 STEP_BAND = 0.06  # steps within this of the median can be coded by direction; others vary too much for it
 SAMPLE = 1_000_000  # segment lengths kept at most; a median needs no more
 BLOCK_POINTS = 2_000_000
@@ -324,10 +325,10 @@ class Parameters:
 def _finest(found: Survey) -> float:
     """Least error that 32-bit anchors over the bounds can promise, mm."""
     if found.n_points == 0:
-        return float(np.finfo(np.float64).tiny) * 2.0**60
+        return LEAST
     extent = found.upper - found.lower
     finest = _anchor_error(extent, 32) * 2.0 + float(np.spacing(np.abs(found.lower) + extent).max()) * 4.0
-    return max(finest, float(np.finfo(np.float64).tiny) * 2.0**60)
+    return max(finest, LEAST)
 
 
 def _anchor_error(extent: Vector, bits: int) -> float:

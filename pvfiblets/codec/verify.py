@@ -65,7 +65,7 @@ def verified(
         "streamlines": fiblets.n_streamlines,
         "points": fiblets.n_points,
         "exact": fiblets.exact is not None,
-        "promise_mm": fiblets.promise,
+        "promise_mm": 0.0 if fiblets.exact is not None else fiblets.promise,
     }
     if original is not None:
         try:
@@ -75,7 +75,7 @@ def verified(
         except ValueError as mismatch:
             raise VerificationError(f"{path} was not made from {original} as it is: {mismatch}") from mismatch
         result.update(original=fspath(original), **error.summary())
-        result["kept"] = bool(error.max_mm <= fiblets.promise)
+        result["kept"] = bool(error.max_mm <= result["promise_mm"])
         # Files do not say which angle they were made for, so that this is told and fails nothing.
         result["directions_kept"] = max_angle is None or not error.max_degrees > max_angle
     return result

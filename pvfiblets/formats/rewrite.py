@@ -10,6 +10,7 @@ from typing import Any
 from pvfiblets import formats
 from pvfiblets.formats.spool import gathered
 from pvfiblets.streamlines import Streamlines
+from pvfiblets.unfinished import remove_unfinished
 from pvfiblets.whole_files import naming_target
 
 __all__ = ["rewrite"]
@@ -21,6 +22,7 @@ def rewrite(source: str, target: str, max_points: int = PIECE) -> dict[str, Any]
     """Write a tractogram in another format, holding `max_points` at a time; return the keys of ``convert --json``."""
     begin = time.perf_counter()
     folder = Path(target).resolve().parent
+    remove_unfinished(folder)
     gone = [0]
 
     def counted() -> Iterator[Streamlines]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from os import PathLike
@@ -13,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pvfiblets.streamlines import Streamlines
+from pvfiblets.unfinished import scratch_beside
 
 Array = NDArray[Any]
 
@@ -38,7 +38,7 @@ def gathered(chunks: Iterable[Streamlines], folder: str | PathLike[str]) -> Iter
     ValueError
         If a later piece has other columns than the first.
     """
-    with tempfile.TemporaryDirectory(prefix=".fiblets-", dir=folder) as scratch, ExitStack() as files_open:
+    with scratch_beside(Path(folder) / "lines") as scratch, ExitStack() as files_open:
         points = _Column(Path(scratch) / "points", files_open)
         columns: dict[str, dict[str, _Column]] = {}
         counts: list[Array] = []

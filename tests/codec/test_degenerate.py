@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from pathlib import Path
 
@@ -143,3 +144,23 @@ def test_a_set_of_nothing_goes_on_to_every_format(how: list[str], tmp_path: Path
         target = tmp_path / f"b{suffix}"
         assert main(["convert", str(between), str(target)]) == 0
         assert len(formats.read(target)) == 0
+
+
+@pytest.mark.parametrize("points", [np.zeros((1, 3)), np.zeros((4, 3))])
+def test_a_set_at_the_origin_promises_no_error_at_all(points):
+    """Not the smallest number that coding divides by, 2.6e-290 mm."""
+    whole = Streamlines(points, [0, len(points)])
+    fiblets = pf.compress(whole, exact=False)
+    assert fiblets.promise == 0.0
+    np.testing.assert_array_equal(fiblets.decompress().points, points)
+
+
+def test_data_about_exact_files_say_that_nothing_is_lost(tmp_path, capsys):
+    source, target = tmp_path / "a.tck", tmp_path / "a.fiblets"
+    formats.write(source, Streamlines(np.array([[1.0, 2.0, 3.0], [5.0, 4.0, 3.0]]), [0, 1, 2]))
+    for command, *files in (("convert", source, target, "--exact"), ("info", target), ("verify", target, source)):
+        capsys.readouterr()
+        assert main([command, *map(str, files), "--json"]) == 0
+        said = json.loads(capsys.readouterr().out)
+        assert said["exact"] is True
+        assert said["promise_mm"] == 0.0

@@ -147,3 +147,13 @@ def test_exports_and_selection_have_them(plotter):
     actor.select([0], as_tubes=True, radius=0.5)
     actor.selection_style(color=None)
     plotter.show(auto_close=False)
+
+
+def test_an_unknown_name_is_answered_with_all_that_the_source_has(plotter, three_lines):
+    """Before any of it is left behind by compression."""
+    three_lines.per_point["fa"] = np.arange(float(three_lines.n_points))
+    three_lines.per_streamline["w"] = np.arange(3.0)
+    there = "there is no array 'md'. Per point: 'height', 'fa'; per streamline: 'weight', 'w'; built in: "
+    with pytest.raises(KeyError, match=there) as said:
+        plotter.add_fiblets(three_lines, scalars="md")
+    assert "kept only when asked for" not in str(said.value)

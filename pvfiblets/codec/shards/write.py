@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import inspect
-import os
 import shutil
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -18,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 from tqdm import tqdm
 
+from ...unfinished import locked, remove_unfinished, scratch_beside, unfinished
 from ...whole_files import naming_target
 from ..extract import extract
 from ..progress import Progress
@@ -76,6 +75,7 @@ def compress_file_in_shards(
 
     target = Path(target).expanduser()
     _refuse(target, size)
+    remove_unfinished(target.resolve().parent)
     if Path(source).suffix.lower() == ".fiblets":
         usual = inspect.signature(compress_file).parameters
         given = sorted(name for name, value in options.items() if name not in usual or value != usual[name].default)
@@ -87,13 +87,13 @@ def compress_file_in_shards(
         whole = FibletSet.open(source)
         manifest = write_shards(whole, target, size, progress=progress)
         result: dict[str, Any] = {"exact": whole.exact is not None, "per_point": list(whole.per_point)}
-        result |= {"promise_mm": whole.promise, "dropped": dict(whole.dropped)}
+        result |= {"promise_mm": 0.0 if whole.exact is not None else whole.promise, "dropped": dict(whole.dropped)}
     else:
         with (
             naming_target(target),
-            tempfile.TemporaryDirectory(prefix=".fiblets-", dir=target.resolve().parent) as made,
+            scratch_beside(target) as made,
         ):
-            aside = Path(made) / "whole.fiblets"
+            aside = made / "whole.fiblets"
             result = compress_file(source, aside, progress=progress, **options)
             manifest = write_shards(FibletSet.open(aside), target, size, progress=progress)
     total = sum(file.stat().st_size for file in target.iterdir())
@@ -195,11 +195,11 @@ def _refuse(target: Path, size: int) -> None:
 @contextmanager
 def _appearing(target: Path) -> Iterator[Path]:
     """Make a folder that takes its name when all went well, in the place of an older set."""
-    folder = target.with_name(f".{target.name}.{os.getpid()}.part")
-    old = target.with_name(f".{target.name}.{os.getpid()}.old")
+    folder, old = unfinished(target), unfinished(target, "old")
     folder.mkdir()
     try:
-        yield folder
+        with locked(folder):
+            yield folder
         if target.exists():
             target.rename(old)
         folder.rename(target)

@@ -297,15 +297,31 @@ def without_outliers(scalars: Scalars) -> Scalars:
     return replace(scalars, range=(0.0, most), percentile=MOST) if most > 0.0 else scalars
 
 
-def missing_message(fiblets: FibletSet, name: str) -> str:
+def refuse_unknown(streamlines: Streamlines, name: str) -> None:
+    """Refuse a name that neither streamlines have, which are to be compressed, nor is built in.
+
+    Raises
+    ------
+    KeyError
+        The message lists what there is: all arrays of the source, as compression has not left any behind yet.
+    """
+    known = (streamlines.per_point, streamlines.per_streamline, BUILT_IN, ("coding_error",))
+    if not any(name in names for names in known) and not colour_columns(streamlines.per_point, name):
+        raise KeyError(missing_message(streamlines, name))
+
+
+def missing_message(fiblets: FibletSet | Streamlines, name: str) -> str:
     """Say that there is no array ``name``, which there are, and what to do."""
+    from pvfiblets.codec.fibletset import FibletSet
+
     def listed(names: Any) -> str:
         return ", ".join(repr(str(n)) for n in names) or "none"
 
+    coded = isinstance(fiblets, FibletSet)
     return (
         f"there is no array {name!r}. Per point: {listed(fiblets.per_point)}; "
-        f"per streamline: {listed(fiblets.per_streamline)}; built in: {listed(BUILT_IN)}. "
-        f"Per-point arrays of a file are kept only when asked for: per_point=[{name!r}]"
+        f"per streamline: {listed(fiblets.per_streamline)}; built in: {listed(BUILT_IN)}"
+        + (f". Per-point arrays of a file are kept only when asked for: per_point=[{name!r}]" if coded else "")
     )
 
 

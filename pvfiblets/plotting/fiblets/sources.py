@@ -20,7 +20,7 @@ from pvfiblets.formats.attachments import is_values_file, name_of, values_for
 from pvfiblets.invalid_points import valid_points
 from pvfiblets.lines import refuse_words
 from pvfiblets.other_libraries import EXPECTED, streamlines_of
-from pvfiblets.plotting.fiblets.scalars import UNNAMED, are_colours, magnitudes
+from pvfiblets.plotting.fiblets.scalars import UNNAMED, are_colours, magnitudes, refuse_unknown
 from pvfiblets.plotting.fiblets.volume_sources import as_volume
 from pvfiblets.query.measures import Distance, measure
 from pvfiblets.streamlines import Streamlines
@@ -103,6 +103,8 @@ def as_fiblets(
     if is_values_file(scalars, streamlines):
         formats.attach(streamlines, scalars)
         scalars = name_of(scalars)
+    if isinstance(scalars, str):
+        refuse_unknown(streamlines, scalars)
     names = per_point if isinstance(per_point, str) else tuple(per_point)
     keep = list(choose_per_point(streamlines, names, options.get("per_point_bits", 8)))
     if isinstance(opacity, str) and opacity in streamlines.per_point:
