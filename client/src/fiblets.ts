@@ -10,7 +10,9 @@ import type { Bounds, Mat, Vec } from "./camera";
 import { PAGE_BITS, field, rotationScales, rotations } from "./engine";
 import { GL, Program, UniformBlock, rows } from "./gl";
 
-const BLOCK = 4096, SHARE = 20, SLOT_BYTES = 12, ITEM_BYTES = SHARE * SLOT_BYTES;
+const BLOCK = 1024, SLOT_BYTES = 16;
+/** Slots of a share, of which a set takes the one that leaves fewest of them empty. */
+const SHARES = [4, 8, 11, 15];
 const KIND_DIRECTION = 0, KIND_WIDE = 3;
 
 interface Parameters {
@@ -67,6 +69,9 @@ export class FibletSet {
   private feedback: WebGLTransformFeedback;
   private scratch: WebGLBuffer | null = null;
   private scratchBytes = 0;
+  private share = 15;
+  private itemBytes = 15 * SLOT_BYTES;
+  private kinds!: Set<number>;
   private held = 0;
   private clock = 0;
   private fiblets: number;
@@ -97,7 +102,7 @@ export class FibletSet {
     this.toData = new Float64Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
     for (let axis = 0; axis < 3; ++axis) this.toData[12 + axis] = p.origin[axis] + p.anchor_scale[axis] * this.reference[axis];
 
-    const kinds = this.makeItems(anchors, decoding, table, codes.data.length, low?.data as Uint16Array | undefined);
+    const kinds = this.kinds = this.makeItems(anchors, decoding, table, codes.data.length, low?.data as Uint16Array | undefined);
     this.items = this.textures.items;
     this.textures.anchor_texels = rows(gl, "rg32ui", anchors, "anchors");
     this.textures.decoding_texels = rows(gl, "r32ui", decoding, "records");
@@ -125,7 +130,7 @@ export class FibletSet {
     this.rotationBlock.fill(rotations);
     this.frameForDecoding = new UniformBlock(gl, "Frame");
     this.frameForDecoding.write({ reference: this.reference }, ["reference"]);
-    this.decodeProgram = new Program(gl, "page/decode.vert", "page/none.frag", features, Array.from({ length: 15 }, (_, i) => `o${i}`));
+    this.decodeProgram = new Program(gl, "page/decode.vert", "page/none.frag", features, Array.from({ length: this.share }, (_, i) => `o${i}`));
     this.feedback = gl.createTransformFeedback()!;
     this.decodeArray = gl.createVertexArray()!;
     gl.bindVertexArray(this.decodeArray);
@@ -144,11 +149,19 @@ export class FibletSet {
 
   private makeItems(anchors: Uint32Array, decoding: Uint32Array, table: number[], codeBytes: number, low: Uint16Array | undefined): Set<number> {
     const gl = this.gl, n = this.fiblets, p = this.parameters, ids = this.archive.arrays.get("rank_to_id.npy")?.data as BigInt64Array | undefined;
-    const shares = new Uint8Array(n);
+    const shares = new Uint8Array(n), counts = new Float64Array(128);
+    for (let f = 0; f < n; ++f) ++counts[field("last", decoding[3 * f + 2]) + 1 + (anchors[2 * f + 1] >>> 31) * 64];
+    const sharesOf = (points: number, end: number, share: number): number => (points % share === 0 && !end ? points / share : Math.ceil((points + (end ? 1 : 2)) / share));
+    // A slot costs its drawing; an item its walk from the fiblet's anchor, on average half of it.
+    const cost = (share: number): number => counts.reduce((sum, count, i) => {
+      const k = sharesOf(i & 63, i >> 6, share);
+      return sum + count * k * share * (1 + 0.05 * k);
+    }, 0);
+    this.share = SHARES.reduce((best, share) => (cost(share) < cost(best) ? share : best));
+    this.itemBytes = this.share * SLOT_BYTES;
     let total = 0;
     for (let f = 0; f < n; ++f) {
-      const points = field("last", decoding[3 * f + 2]) + 1;
-      shares[f] = points % SHARE === 0 && !(anchors[2 * f + 1] >>> 31) ? points / SHARE : Math.ceil((points + 2) / SHARE);
+      shares[f] = sharesOf(field("last", decoding[3 * f + 2]) + 1, anchors[2 * f + 1] >>> 31, this.share);
       total += shares[f];
     }
     const items = new Uint32Array(4 * Math.max(total, 1)), pairs = new Uint32Array(2 * Math.max(total, 1)), kinds = new Set<number>();
@@ -199,21 +212,21 @@ export class FibletSet {
     return { name, texture: rows(this.gl, wide ? "r16ui" : "r8ui", array.data as Uint8Array, "values of points"), code: [said.lo, (said.hi - said.lo) / (top - 1), top] };
   }
 
-  /** Decode a block into a buffer: the slot before its first one is left free. */
+  /** Decode a block into a buffer. */
   private decode(block: Block, buffer: WebGLBuffer): void {
     const gl = this.gl, n = block.items + block.more;
     this.coding.bind();
     this.rotationBlock.bind();
     this.frameForDecoding.bind();
     const { items: _, ...textures } = this.textures;
-    this.decodeProgram.use().textures(textures).uints({ chunk_fiblets: this.fiblets });
+    this.decodeProgram.use().textures(textures).uints({ chunk_fiblets: this.fiblets, share_size: this.share });
     gl.bindVertexArray(this.decodeArray);
     gl.bindBuffer(gl.ARRAY_BUFFER, this.itemBuffer);
     gl.vertexAttribIPointer(0, 2, gl.UNSIGNED_INT, 8, 8 * block.firstItem);
     gl.bindBuffer(gl.ARRAY_BUFFER, null);
     gl.enable(gl.RASTERIZER_DISCARD);
     gl.bindTransformFeedback(gl.TRANSFORM_FEEDBACK, this.feedback);
-    gl.bindBufferRange(gl.TRANSFORM_FEEDBACK_BUFFER, 0, buffer, SLOT_BYTES, n * ITEM_BYTES);
+    gl.bindBufferRange(gl.TRANSFORM_FEEDBACK_BUFFER, 0, buffer, 0, n * this.itemBytes);
     gl.beginTransformFeedback(gl.POINTS);
     gl.drawArrays(gl.POINTS, 0, n);
     gl.endTransformFeedback();
@@ -224,7 +237,7 @@ export class FibletSet {
   }
 
   private size(block: Block): number {
-    return SLOT_BYTES + (block.items + block.more) * ITEM_BYTES + 3 * SLOT_BYTES;
+    return (block.items + block.more) * this.itemBytes + 2 * SLOT_BYTES;
   }
 
   private newBuffer(bytes: number): WebGLBuffer {
@@ -255,51 +268,57 @@ export class FibletSet {
   }
 
   /** How many segments at most a block has. */
-  static instances(block: Block): number {
-    return block.items * SHARE;
+  instances(block: Block): number {
+    return block.items * this.share;
+  }
+
+  /** The longest segment that there is, mm; infinite where only the codes tell. */
+  get longestStep(): number {
+    return this.kinds.size === 1 && this.kinds.has(KIND_DIRECTION) ? 2 * this.parameters.step_hi : Infinity;
   }
 
   /** Draw some of a block's first segments; the program is in use, all else is bound. */
-  draw(block: Block, program: Program, share: number): number {
+  draw(block: Block, program: Program, share: number, sprites: boolean): number {
     const gl = this.gl, buffer = this.pointsOf(block);
-    program.use().ints({ first_item: block.firstItem });
-    gl.bindVertexArray(this.segmentArray());
+    program.use().ints({ first_item: block.firstItem, share_size: this.share });
+    gl.bindVertexArray(this.segmentArray(sprites));
     gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-    for (let i = 0; i < 4; ++i) gl.vertexAttribPointer(i, 3, gl.FLOAT, false, SLOT_BYTES, i * SLOT_BYTES);
-    const n = Math.max(1, Math.round(block.items * share)) * SHARE;
-    gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, n);
+    for (let i = 0; i < 3; ++i) gl.vertexAttribIPointer(i, 4, gl.UNSIGNED_INT, SLOT_BYTES, i * SLOT_BYTES);
+    const n = Math.max(1, Math.round(block.items * share)) * this.share;
+    if (sprites) gl.drawArrays(gl.POINTS, 0, n);
+    else gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, n);
     gl.bindVertexArray(null);
     return n;
   }
 
-  private segments: WebGLVertexArrayObject | null = null;
+  private arrays: (WebGLVertexArrayObject | null)[] = [null, null];
 
-  private segmentArray(): WebGLVertexArrayObject {
-    if (!this.segments) {
+  private segmentArray(sprites: boolean): WebGLVertexArrayObject {
+    const which = sprites ? 1 : 0;
+    if (!this.arrays[which]) {
       const gl = this.gl;
-      this.segments = gl.createVertexArray()!;
-      gl.bindVertexArray(this.segments);
-      for (let i = 0; i < 4; ++i) {
+      gl.bindVertexArray((this.arrays[which] = gl.createVertexArray()!));
+      for (let i = 0; i < 3; ++i) {
         gl.enableVertexAttribArray(i);
-        gl.vertexAttribDivisor(i, 1);
+        gl.vertexAttribDivisor(i, sprites ? 0 : 1);
       }
     }
-    return this.segments;
+    return this.arrays[which]!;
   }
 
-  /** Go through decoded fiblets, from the graphics card: a streamline, and its points in local mm, three numbers each. */
+  /** Go through decoded fiblets, from the graphics card: a streamline, and its points in local mm, and a word, four numbers each. */
   private *decoded(wanted: (block: Block) => boolean): Generator<[number, Float32Array, boolean]> {
     const gl = this.gl, a = this.toItems;
     for (const block of this.blocks) {
       if (!wanted(block)) continue;
-      const slots = new Float32Array((block.items + block.more) * SHARE * 3);
+      const slots = new Float32Array((block.items + block.more) * this.share * 4);
       gl.bindBuffer(gl.ARRAY_BUFFER, this.pointsOf(block));
-      gl.getBufferSubData(gl.ARRAY_BUFFER, SLOT_BYTES, slots);
+      gl.getBufferSubData(gl.ARRAY_BUFFER, 0, slots);
       gl.bindBuffer(gl.ARRAY_BUFFER, null);
       for (let item = block.firstItem; item < block.firstItem + block.items; ++item) {
         if (a[4 * item + 2] >>> 8) continue;
-        const points = a[4 * item + 2] & 63, end = (a[4 * item + 2] & 128) !== 0, at = 3 * SHARE * (item - block.firstItem);
-        yield [a[4 * item], slots.subarray(at, at + 3 * (points + (end ? 0 : 1))), (a[4 * item + 2] & 64) !== 0];
+        const points = a[4 * item + 2] & 63, end = (a[4 * item + 2] & 128) !== 0, at = 4 * this.share * (item - block.firstItem);
+        yield [a[4 * item], slots.subarray(at, at + 4 * (points + (end ? 0 : 1))), (a[4 * item + 2] & 64) !== 0];
       }
     }
   }
@@ -313,14 +332,14 @@ export class FibletSet {
   }
 
   private world(local: Float32Array, i: number): Vec {
-    return [0, 1, 2].map((axis) => this.toData[12 + axis] + local[3 * i + axis]) as Vec;
+    return [0, 1, 2].map((axis) => this.toData[12 + axis] + local[4 * i + axis]) as Vec;
   }
 
   /** The points of a streamline in data coordinates. */
   pointsOfStreamline(streamline: number): Vec[] {
     const found: Vec[] = [];
     for (const [id, points] of this.decoded(this.blocksOf(streamline))) {
-      if (id === streamline) for (let i = 0; 3 * i < points.length; ++i) found.push(this.world(points, i));
+      if (id === streamline) for (let i = 0; 4 * i < points.length; ++i) found.push(this.world(points, i));
     }
     return found;
   }
@@ -331,8 +350,8 @@ export class FibletSet {
     const near = (block: Block): boolean => [0, 1, 2].every((axis) => place[axis] + radius >= block.bounds[2 * axis] && place[axis] - radius <= block.bounds[2 * axis + 1]);
     for (const [id, p] of this.decoded(near)) {
       if (kept[id]) continue;
-      for (let i = 0; i < p.length; i += 3) {
-        const j = Math.min(i + 3, p.length - 3);
+      for (let i = 0; i < p.length; i += 4) {
+        const j = Math.min(i + 4, p.length - 4);
         const dx = p[j] - p[i], dy = p[j + 1] - p[i + 1], dz = p[j + 2] - p[i + 2], ax = c[0] - p[i], ay = c[1] - p[i + 1], az = c[2] - p[i + 2];
         const t = Math.min(1, Math.max(0, (ax * dx + ay * dy + az * dz) / (dx * dx + dy * dy + dz * dz || 1)));
         const x = ax - t * dx, y = ay - t * dy, z = az - t * dz;

@@ -10,7 +10,8 @@ export class GraphicsError extends Error {}
 
 /** A stage with some of its switches on. */
 function stage(name: string, features: readonly string[]): string {
-  return shaders[name].replace(/#define FEATURE_(\w+) [01]/g, (_, feature) => `#define FEATURE_${feature} ${features.includes(feature) ? 1 : 0}`);
+  const text = features.includes("SPRITES") ? shaders[name].replace("const bool SPRITES=false", "const bool SPRITES=true") : shaders[name];
+  return text.replace(/#define FEATURE_(\w+) [01]/g, (_, feature) => `#define FEATURE_${feature} ${features.includes(feature) ? 1 : 0}`);
 }
 
 export class Program {

@@ -15,7 +15,8 @@ import { Drawn, ImageSlice, Surface } from "./surfaces";
 
 const SLICE = 60;      // ms of drawing between looks at the user's hands
 const MOVING = 45;     // ms of a picture while something moves
-const REFRESH = 150;   // ms between pictures while slices come in
+const REFRESH = 400;   // ms between pictures while slices come in
+const LONGEST_SPRITE = 40; // pixels; squares of more are not drawn by every device
 const ALL_ONES = 0xffffffff;
 const MODES = { direction: 0, solid: 1, streamline: 2, value: 3, point: 4 };
 const LIGHTS = { none: 0, line: 1, illuminated: 2 };
@@ -198,17 +199,17 @@ export class Renderer {
     const finished = frame.next >= frame.jobs.length;
     if (finished || performance.now() - frame.shownAt > REFRESH) {
       frame.shownAt = performance.now();
-      this.present(frame.matrices);
+      this.present(frame.matrices, finished);
+      if (this.drawnOnce) {
+        this.drawnOnce();
+        this.drawnOnce = null;
+      }
     }
     this.sync = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     gl.flush();
     if (finished) {
       this.frame = null;
       ++this.frames;
-      if (this.drawnOnce) {
-        this.drawnOnce();
-        this.drawnOnce = null;
-      }
       if (!frame.moving && !this.dirty) this.waiting.splice(0).forEach((resolve) => resolve());
     }
     this.schedule();
@@ -252,7 +253,7 @@ export class Renderer {
       for (const block of lines.set.blocks) {
         if (this.outside(product(projection, product(view, lines.model)), block.bounds)) continue;
         jobs.push({ lines, block });
-        total += FibletSet.instances(block);
+        total += lines.set.instances(block);
       }
     }
     const share = moving ? Math.min(1, (this.rate * MOVING) / Math.max(total, 1)) : 1;
@@ -342,9 +343,17 @@ export class Renderer {
     return { wide, clipped: planes.length > 0 };
   }
 
+  /** How many pixels a length (mm) takes at most. */
+  private pixelsOf(lines: Lines, drawn: Drawn, length: number): number {
+    const matrix = product(drawn.projection, product(drawn.view, lines.model)), b = lines.set.bounds, stretch = Math.hypot(...linear(lines.model));
+    let nearest = Infinity;
+    for (let i = 0; i < 8; ++i) nearest = Math.min(nearest, apply(matrix, [b[i & 1], b[2 + ((i >> 1) & 1)], b[4 + (i >> 2)]])[3]);
+    return nearest > 0 ? (length * stretch * (this.height / 2) * drawn.projection[5]) / nearest : Infinity;
+  }
+
   private drawSlice(frame: Frame, quota: number): void {
     const { gl } = this;
-    let aimed: Lines | null = null, program: Program | null = null;
+    let aimed: Lines | null = null, program: Program | null = null, sprites = false;
     while (frame.next < frame.jobs.length && this.sliceSize < quota) {
       const { lines, block } = frame.jobs[frame.next++];
       lines.set.pointsOf(block);
@@ -354,6 +363,8 @@ export class Renderer {
         const features = ["CLIPPING", "CLIPPING_DEPTH", "EDGES"];
         if (wide) features.push("WIDE_LINES");
         if (clipped) features.push("CLIP_PLANES");
+        sprites = !wide && this.pixelsOf(lines, frame.matrices, lines.set.longestStep) <= LONGEST_SPRITE;
+        if (sprites) features.push("SPRITES");
         if (lines.values) features.push("VALUES_STORED");
         if (lines.byPoint) features.push("VALUES_COLOUR");
         if (lines.kept) features.push("STREAMLINE_MASK");
@@ -366,12 +377,12 @@ export class Renderer {
       gl.depthFunc(gl.LESS);
       this.frameBlock.bind();
       program!.use().textures({ items: lines.set.items, kept: lines.kept, value_texels: lines.values && lines.values.texture, point_colours: lines.byPoint ? lines.colours : null });
-      this.sliceSize += lines.set.draw(block, program!, frame.share);
+      this.sliceSize += lines.set.draw(block, program!, frame.share, sprites);
     }
   }
 
   /** From the nearest lines to the canvas. */
-  private present(drawn: Drawn): void {
+  private present(drawn: Drawn, finished: boolean): void {
     const { gl, textures: t, buffers: b } = this;
     this.repaint(drawn);
     gl.disable(gl.DEPTH_TEST);
@@ -396,7 +407,7 @@ export class Renderer {
     this.drawTranslucent(drawn);
     gl.disable(gl.DEPTH_TEST);
     gl.bindVertexArray(null);
-    if (this.scene.antialias && this.lines.length) {
+    if (finished && this.scene.antialias && this.lines.length) {
       gl.bindFramebuffer(gl.FRAMEBUFFER, b.shown);
       gl.viewport(0, 0, this.width + 2, this.height + 2);
       this.program("page/screen.vert", "page/visible_edges.frag").use().textures({ texels: t.texels, depths: t.depths, drawn: t.drawn }).set({ narrower });

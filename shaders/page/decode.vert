@@ -1,55 +1,64 @@
-// Decodes a share of a fiblet, SHARE consecutive points, for transform feedback (paper: Schertzer et al. 2022, section 3.3.1). An
-// invocation walks from the fiblet's anchor: of a full fiblet's three shares that is twice the steps of one walk, for no state
-// that passes would have to hand on.
+// Decodes a share of a fiblet, up to SHARE consecutive points, for transform feedback (paper: Schertzer et al. 2022, section
+// 3.3.1): a point in local mm, and the line's tangent there. An invocation walks from the fiblet's anchor: of a full fiblet's
+// four shares that is 2.5 times the steps of one walk, for no state that passes would have to hand on.
 //
-// Slots behind the last point hold where the line goes on, for the joints and tangents at the fiblet's end:
+// Slots behind the last point hold where the line goes on, for the joints and the segment at the fiblet's end:
 //
 //   slot     0 .. last   last + 1                             last + 2
-//            points      the next fiblet's first point;       one segment further, if the streamline goes on;
-//                        of an end the last point again       of a single point the direction that it was reached by
+//            points      the next fiblet's first point;       one segment further, if the streamline goes on
+//                        of an end the last point again
 //
-// Of fiblets whose points fill their shares these are the next one's first slots (client/src/items.ts). 15 vectors are what every
-// device gives to a vertex's outputs: 20 points.
+// Of fiblets whose points fill their shares these are the next one's first slots (client/src/fiblets.ts). 15 vectors are what
+// every device gives to a vertex's outputs: 15 points.
 
 #version 430
 
 #include "fiblets/decode/sequential.glsl"
 #include "fiblets/attributes/neighbours.glsl"
-
-const uint SHARE = 20u;
+#include "fiblets/attributes/tangent.glsl"
 
 layout(location = 0) in uvec2 item;    // fiblet, share
+uniform uint share_size;
 
-out vec4 o0; out vec4 o1; out vec4 o2; out vec4 o3; out vec4 o4; out vec4 o5; out vec4 o6; out vec4 o7;
-out vec4 o8; out vec4 o9; out vec4 o10; out vec4 o11; out vec4 o12; out vec4 o13; out vec4 o14;
+flat out uvec4 o0; flat out uvec4 o1; flat out uvec4 o2; flat out uvec4 o3; flat out uvec4 o4; flat out uvec4 o5;
+flat out uvec4 o6; flat out uvec4 o7; flat out uvec4 o8; flat out uvec4 o9; flat out uvec4 o10; flat out uvec4 o11;
+flat out uvec4 o12; flat out uvec4 o13; flat out uvec4 o14;
 
-vec3 points[SHARE];
+uvec4 slots[15];
+
+uvec4 slot(vec3 point, vec3 tangent) { return uvec4(floatBitsToUint(point), packed_tangent(tangent, 0u)); }
 
 void main() {
-    uint f = item.x, first = item.y * SHARE, stop = first + SHARE;
+    uint f = item.x, first = item.y * share_size, stop = first + share_size;
+    bool end = ends(f);
     walk_begin(f);
     uint last = walk.last;
-    vec3 point = walk_point;
-    if (first == 0u) points[0] = point;
-    for (uint i = 1u; i <= min(last, stop - 1u); ++i) {
-        walk_next(i);
-        if (i >= first) points[i - first] = walk_point;
+    vec3 point = walk_point, next = end || f + 1u >= chunk_fiblets ? vec3(0.0) : anchor_local(f + 1u), before = vec3(0.0), tangent;
+    for (uint i = 0u; i <= min(last, stop - 1u); ++i) {
+        vec3 here = point, run;
+        if (i < last) {
+            walk_next(i + 1u);
+            run = walk_delta;
+            point = walk_point;
+        } else run = end ? vec3(0.0) : next - here;
+        vec3 along = unit_or_none(run);
+        tangent = i == 0u ? along : mean_direction(before, along);
+        if (i >= first) slots[i - first] = slot(here, tangent);
+        if (along != vec3(0.0)) before = along;
     }
     if (last + 1u < stop) {
-        bool end = ends(f);
-        vec3 next = end || f + 1u >= chunk_fiblets ? walk_point : anchor_local(f + 1u), after = next;
-        if (!end) after = next + direction_after(f, false);
-        else if (last == 0u && !begins(f) && f > 0u) {
+        vec3 beyond = vec3(0.0);
+        if (end) next = point;
+        else beyond = direction_after(f, false);
+        if (end && last == 0u && !begins(f) && f > 0u) {
             walk_begin(f - 1u);
             for (uint i = 1u; i <= walk.last; ++i) walk_next(i);
-            after = next + (next - walk_point);
-        }
-        for (uint i = max(last + 1u, first); i < stop; ++i) points[i - first] = i == last + 1u ? next : after;
+            tangent = unit_or_none(next - walk_point);
+            if (first == 0u) slots[0] = slot(next, tangent);
+        } else if (beyond != vec3(0.0)) tangent = unit_or_none(beyond);
+        for (uint i = max(last + 1u, first); i < stop; ++i) slots[i - first] = slot(i == last + 1u ? next : next + beyond, tangent);
     }
-    o0 = vec4(points[0], points[1].x);      o1 = vec4(points[1].yz, points[2].xy);    o2 = vec4(points[2].z, points[3]);
-    o3 = vec4(points[4], points[5].x);      o4 = vec4(points[5].yz, points[6].xy);    o5 = vec4(points[6].z, points[7]);
-    o6 = vec4(points[8], points[9].x);      o7 = vec4(points[9].yz, points[10].xy);   o8 = vec4(points[10].z, points[11]);
-    o9 = vec4(points[12], points[13].x);    o10 = vec4(points[13].yz, points[14].xy); o11 = vec4(points[14].z, points[15]);
-    o12 = vec4(points[16], points[17].x);   o13 = vec4(points[17].yz, points[18].xy); o14 = vec4(points[18].z, points[19]);
+    o0 = slots[0]; o1 = slots[1]; o2 = slots[2]; o3 = slots[3]; o4 = slots[4]; o5 = slots[5]; o6 = slots[6]; o7 = slots[7];
+    o8 = slots[8]; o9 = slots[9]; o10 = slots[10]; o11 = slots[11]; o12 = slots[12]; o13 = slots[13]; o14 = slots[14];
     gl_Position = vec4(0.0);
 }

@@ -14,6 +14,8 @@
 #define VARYING flat in
 #include "page/segment_varyings.glsl"
 
+const bool SPRITES = false;
+
 layout(location = 0) out uvec4 out_texel;
 
 #if FEATURE_VALUES_STORED
@@ -84,6 +86,7 @@ void main() {
         if (steep ? line.x != at.x : line.y != at.y) discard;
         s = dot(at - CELL_SHIFT, run) * cells.square;
     }
+    if (SPRITES) gl_FragDepth = clamp(mix(seg_start.z, seg_end.z, s), 0.0, 0.99999988);
     vec4 ends = vec4(in_picture(seg_start), in_picture(seg_end)), parts = floor((ends - floor(ends)) * 256.0) / 256.0;
     write(s, thin_edges(ivec2(first), ivec2(first + run), at, parts, start, cap));
 }

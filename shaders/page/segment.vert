@@ -1,7 +1,8 @@
-// A segment as a rectangle, four corners an instance, between points that decode.vert has left: before, from, to, after.
+// A segment as a rectangle, four corners an instance, between points that decode.vert has left; or, of thin lines whose segments
+// take few pixels, as a square of pixels, one vertex each (SPRITES).
 //
-// Clipping, joints and tangents are the engine's (fiblets/segments, fiblets/attributes/tangent.glsl). Thin lines take the pixels
-// of thin_line_rule.glsl, which segment.frag chooses from the rectangle; their depth is linear in the window and comes with it.
+// Clipping and joints are the engine's (fiblets/segments). Thin lines take the pixels of thin_line_rule.glsl, which segment.frag
+// chooses from the rectangle; their depth is linear in the window and comes with it.
 
 #version 430
 
@@ -11,13 +12,16 @@
 #include "fiblets/attributes/tangent.glsl"
 #include "page/segment_varyings.glsl"
 
-const int SHARE = 20, ROW_BITS = 12;
+const int ROW_BITS = 12;
+const bool SPRITES = false;
 
-layout(location = 0) in vec3 before;
-layout(location = 1) in vec3 from;
-layout(location = 2) in vec3 to;
-layout(location = 3) in vec3 after;
+layout(location = 0) in uvec4 slot_from;    // point, tangent
+layout(location = 1) in uvec4 slot_to;
+#if FEATURE_WIDE_LINES
+layout(location = 2) in uvec4 slot_after;
+#endif
 
+uniform int share_size;
 uniform highp usampler2D items;        // rgba32ui: streamline; first point; points, begin, end and share; points before
 uniform int first_item;
 uniform uint layer;                    // in the upper four bits of the streamline
@@ -40,12 +44,13 @@ float value_of(uint point) {
 #endif
 
 void main() {
-    int place = first_item + gl_InstanceID / SHARE;
+    int index = SPRITES ? gl_VertexID : gl_InstanceID, place = first_item + index / share_size;
     uvec4 item = texelFetch(items, ivec2(place & ((1 << ROW_BITS) - 1), place >> ROW_BITS), 0);
     uint points = item.z & 63u, share = item.z >> 8u;
     bool begins = (item.z & 64u) != 0u, ends = (item.z & 128u) != 0u;
-    uint k = share * uint(SHARE) + uint(gl_InstanceID % SHARE), count = points - (ends && points > 1u ? 1u : 0u);
+    uint k = share * uint(share_size) + uint(index % share_size), count = points - (ends && points > 1u ? 1u : 0u);
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+    gl_PointSize = 1.0;
     if (k >= count) return;
 #if FEATURE_STREAMLINE_MASK
     if (texelFetch(kept, ivec2(int(item.x & 4095u), int(item.x >> 12u)), 0).x == 0u) return;
@@ -55,17 +60,11 @@ void main() {
 #if FEATURE_VALUES_STORED
     values = vec2(value_of(item.y + k), value_of(item.y + min(k + 1u, points - (ends ? 1u : 0u))));
 #endif
+    vec3 from = uintBitsToFloat(slot_from.xyz), to = uintBitsToFloat(slot_to.xyz);
     ClippedSegment piece;
     if (!piece_of(from, to, start, cap, piece)) return;
 
-    vec3 ahead = after - to, u_here = unit_or_none(to - from), u_before = k == 0u ? vec3(0.0) : unit_or_none(from - before);
-    bool leads = k + 1u == count && !ends;
-    vec3 u_after = cap ? vec3(0.0) : unit_or_none(ahead);
-    Tangents tangents;
-    if (points == 1u && ends) tangents = Tangents(unit_or_none(ahead), unit_or_none(ahead));
-    else tangents = tangents_of(u_before, u_here, u_after, leads);
-    uvec2 packed_ends = packed_tangents(tangents);
-    seg_ids = uvec4(item.x | layer, packed_ends, (piece.start ? 1u : 0u) | (piece.cap ? 2u : 0u));
+    seg_ids = uvec4(item.x | layer, slot_from.w, slot_to.w, (piece.start ? 1u : 0u) | (piece.cap ? 2u : 0u));
     seg_start = piece.a;
     seg_end = piece.b;
     seg_along = vec4(piece.t0, piece.t1, values);
@@ -73,7 +72,7 @@ void main() {
     seg_colours = uvec2(packUnorm4x8(colour_of(item.y + k)), packUnorm4x8(colour_of(item.y + min(k + 1u, points - (ends ? 1u : 0u)))));
 #endif
 #if FEATURE_WIDE_LINES
-    seg_onward = piece.cap ? vec2(0.0) : onward_at(piece.b, ahead);
+    seg_onward = piece.cap ? vec2(0.0) : onward_at(piece.b, uintBitsToFloat(slot_after.xyz) - to);
 #if FEATURE_CLIP_PLANES
     seg_from = mix(from, to, piece.t0);
     seg_to = mix(from, to, piece.t1);
@@ -88,6 +87,12 @@ void main() {
     float square = dot(run, run), size = sqrt(square);
     vec2 along = size > 0.0 ? run / size : vec2(1.0, 0.0), across = vec2(-along.y, along.x);
     if (size == 0.0 && !piece.cap) return;
+    if (SPRITES) {
+        vec2 size = abs(run) + 1.0;
+        gl_PointSize = max(size.x, size.y);
+        gl_Position = vec4((p + q - 2.0 * CELL_SHIFT) / viewport - 1.0, 0.0, 1.0);
+        return;
+    }
     const float reach = 0.75;
     vec2 at = ((gl_VertexID & 2) == 0 ? p - reach * along : q + reach * along) + ((gl_VertexID & 1) == 0 ? -reach : reach) * across;
     float depth = square > 0.0 ? piece.a.z + dot(at - p, run) / square * (piece.b.z - piece.a.z) : piece.b.z;

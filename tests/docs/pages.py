@@ -93,6 +93,9 @@ np.savetxt("sift2.txt", np.linspace(0, 2, 400))
     "docs/seeing-inside.md": BRAIN + """
 pvfiblets.write("brain.trk", brain_streamlines(400, seed=1))
 """,
+    "docs/pages.md": BRAIN + """
+pvfiblets.write("brain.trk", brain_streamlines(400, seed=1))
+""",
     "docs/slices.md": BRAIN + """
 import nibabel, numpy as np
 pvfiblets.write("brain.trk", brain_streamlines(400, seed=1))
