@@ -11,7 +11,7 @@ from .direction_kernels import first_frame, turn
 from .jit import kernel, parallel_kernel
 from .layout import DIRECTION, PAGE_BITS, PLAIN_BYTES, STEP_LEVELS, WIDE, WIDE_HEADER
 
-__all__ = ["decode"]
+__all__ = ["decode", "decode_one"]
 
 BLOCK = 256  # fiblets a thread decodes in one go
 
@@ -90,6 +90,50 @@ def _decode_plain(a: Any, h: float, codes: Any, at: int, n: int, origin: Any, p:
         p[i, 2] = a[2] + h * k2 + origin[2]
 
 
+@kernel
+def decode_one(f: int, arrays: Any, low: Any, fine: Any, origin: Any, scale: Any, steps: Any, tables: Any,
+               out: Any, row: int) -> int:  # fmt: skip
+    """Decode fiblet `f` into ``out`` from `row` on, in the terms of :func:`decode`.
+
+    Returns the number of its points; 0, and nothing is written, if its record points beyond the arrays.
+    """
+    anchors, decoding, codes, code_base = arrays
+    lo, hi, lattice = steps
+    w0, w1 = anchors[f, 0], anchors[f, 1]
+    shape, w3, w4 = np.int64(decoding[f, 0]), np.int64(decoding[f, 1]), np.int64(decoding[f, 2])
+    q0, q1, q2 = float(w0 & 0xFFFF), float(w0 >> 16), float(w1 & 0xFFFF)
+    if fine:
+        q0 = q0 * 65536.0 + float(low[f, 0])
+        q1 = q1 * 65536.0 + float(low[f, 1])
+        q2 = q2 * 65536.0 + float(low[f, 2])
+    a = (scale[0] * q0, scale[1] * q1, scale[2] * q2)
+    n = (w4 >> 20 & 0x3F) + 1
+    step, cap, kind = w3 >> 22, w4 >> 26 & 0xF, w4 >> 30
+    at = code_base[f >> PAGE_BITS] + (w3 & 0x3FFFFF)
+    size, plain = n - 2, kind == WIDE and step & 7 == 0
+    if plain:
+        size = (n - 1) * PLAIN_BYTES
+    elif kind == WIDE:
+        size = WIDE_HEADER + (n - 1) * (step & 7)
+    elif kind != DIRECTION:
+        size = (n - 1) * kind
+    # A record read from a damaged file must not reach beyond the arrays.
+    if at < 0 or at + size > len(codes) or row < 0 or row + n > len(out):
+        return 0
+    p = out[row : row + n]
+    p[0, 0], p[0, 1], p[0, 2] = a[0] + origin[0], a[1] + origin[1], a[2] + origin[2]
+    if n == 1:
+        return 1
+    if kind == DIRECTION:
+        length = lo if hi <= lo else lo + step * (hi - lo) / STEP_LEVELS
+        _decode_direction(a, shape, length, tables[cap], codes, at, n, origin, p)
+    elif plain:
+        _decode_plain(a, lattice * 0.5**cap, codes, at, n, origin, p)
+    else:
+        _decode_lattice(a, kind, shape, step, lattice * 0.5**cap, codes, at, n, origin, p)
+    return n
+
+
 @parallel_kernel
 def decode(
     fiblets: Any,
@@ -124,45 +168,10 @@ def decode(
     out : (n_points, 3) float32 or float64
         Filled.
     """
-    anchors, decoding, codes, code_base = arrays
-    lo, hi, lattice = steps
     n_blocks = (len(fiblets) + BLOCK - 1) // BLOCK
     missed = np.zeros(n_blocks, np.int64)
     for block in numba.prange(n_blocks):
-        a = np.empty(3)
         for m in range(block * BLOCK, min((block + 1) * BLOCK, len(fiblets))):
-            f = fiblets[m]
-            w0, w1 = anchors[f, 0], anchors[f, 1]
-            shape, w3, w4 = np.int64(decoding[f, 0]), np.int64(decoding[f, 1]), np.int64(decoding[f, 2])
-            q0, q1, q2 = float(w0 & 0xFFFF), float(w0 >> 16), float(w1 & 0xFFFF)
-            if fine:
-                q0 = q0 * 65536.0 + float(low[f, 0])
-                q1 = q1 * 65536.0 + float(low[f, 1])
-                q2 = q2 * 65536.0 + float(low[f, 2])
-            a[0], a[1], a[2] = scale[0] * q0, scale[1] * q1, scale[2] * q2
-            n = (w4 >> 20 & 0x3F) + 1
-            step, cap, kind = w3 >> 22, w4 >> 26 & 0xF, w4 >> 30
-            at = code_base[f >> PAGE_BITS] + (w3 & 0x3FFFFF)
-            size, plain = n - 2, kind == WIDE and step & 7 == 0
-            if plain:
-                size = (n - 1) * PLAIN_BYTES
-            elif kind == WIDE:
-                size = WIDE_HEADER + (n - 1) * (step & 7)
-            elif kind != DIRECTION:
-                size = (n - 1) * kind
-            # A record read from a damaged file must not reach beyond the arrays.
-            if at < 0 or at + size > len(codes) or destination[m] < 0 or destination[m] + n > len(out):
-                missed[block] += 1
-                continue
-            p = out[destination[m] : destination[m] + n]
-            p[0, 0], p[0, 1], p[0, 2] = a[0] + origin[0], a[1] + origin[1], a[2] + origin[2]
-            if n == 1:
-                continue
-            if kind == DIRECTION:
-                length = lo if hi <= lo else lo + step * (hi - lo) / STEP_LEVELS
-                _decode_direction(a, shape, length, tables[cap], codes, at, n, origin, p)
-            elif plain:
-                _decode_plain(a, lattice * 0.5**cap, codes, at, n, origin, p)
-            else:
-                _decode_lattice(a, kind, shape, step, lattice * 0.5**cap, codes, at, n, origin, p)
+            done = decode_one(fiblets[m], arrays, low, fine, origin, scale, steps, tables, out, destination[m])
+            missed[block] += done == 0
     return int(missed.sum())

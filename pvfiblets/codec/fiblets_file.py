@@ -40,7 +40,7 @@ OF_CODES = 2
 
 INDEX = "_spatial_index"
 """Attribute of a set, no field of it: a set that is made of another has other fiblets."""
-INDEX_MEMBERS = ("spatial_index/order.npy", "spatial_index/capsules.npy")
+INDEX_MEMBERS = ("spatial_index/order.npy", "spatial_index/leaves.npy", "spatial_index/pieces.npy")
 
 _CORE = ("anchors", "decoding", "reach", "codes", "ends", "pages")
 _OPTIONAL = ("anchors_low", "rank_to_id")
@@ -85,7 +85,7 @@ def _index_members(fiblets: FibletSet) -> dict[str, Member]:
     held: Any = fiblets.__dict__.get(INDEX)
     if held is None:
         return {}
-    arrays = held if isinstance(held, tuple) else (held.order, held.capsules)
+    arrays = held if isinstance(held, tuple) else (held.order, held.leaves, held.pieces)
     return {name: array_member(np.asarray(array)) for name, array in zip(INDEX_MEMBERS, arrays, strict=True)}
 
 

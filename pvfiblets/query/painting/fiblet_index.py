@@ -1,101 +1,107 @@
-"""A spatial index over the fiblets of a set: leaves of fiblets that lie alike, each with a capsule that holds them.
+"""A spatial index over the fiblets of a set: leaves of fiblets that run alike, and each fiblet in a coarse form.
 
 Fiblets are sorted, four million at a time, by splitting them at the median of the widest of six numbers, the two ends
-of their chords, until 32 are left. That takes 4.9 bytes a fiblet, and is kept in the ``.fiblets`` file if it is there
-when the set is saved; programs that do not know it pass over it.
+of their chords, until 32 are left: a leaf. Each fiblet is kept as one, two or four chords between its own points, in
+bytes that count from the leaf's mean course, and as the distance of its points from these chords. That decides for most
+fiblets whether they pass a region (:mod:`.coarse_kernels`); the others are decoded.
+
+It takes 13 to 23 bytes a fiblet, and is kept in the ``.fiblets`` file if it is there when the set is saved; programs
+that do not know it pass over it.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import time
+from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
+from ...codec.direction_codebook import quaternions
 from ...codec.fiblets_file import INDEX as KEY
+from ...codec.layout import unpack
+from ...codec.small_sets import prefer_kernels
 from ...errors import FormatError
 
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
-    from ..voxel_grid import VoxelGrid
 
-__all__ = ["FibletIndex", "index_of"]
+__all__ = ["FibletIndex", "decoding_arrays", "fiblets_of_streamlines", "index_of"]
 
 Ints = npt.NDArray[np.int64]
 CHUNK = 1 << 22  # fiblets sorted together
 LEAF = 32  # fiblets of a leaf; also said where kernels are compiled
+NEAR = 0.25
+"""mm: as far as this, for three fiblets of four, points may lie from chords. Half a voxel would leave most to decode."""
 
 
 @dataclass(frozen=True, eq=False)
 class FibletIndex:
-    """See the module.
+    """See the module. With `P` parts a fiblet, `P` + 1 positions of it are kept.
 
     Attributes
     ----------
     order : numpy.ndarray
         ``(n_fiblets,)`` uint32: fiblets by leaf, 32 to each but the last of four million.
-    capsules : numpy.ndarray
-        ``(n_leaves, 7)`` float32 mm: both ends and the radius.
+    leaves : numpy.ndarray
+        ``(n_leaves, 4 P + 5)`` float32 mm: mean positions, x y z each; radius, for each part, of the capsule about the
+        mean chord in which all fiblets' parts lie; the unit of positions, and that of distances.
+    pieces : numpy.ndarray
+        ``(n_fiblets, 3 P + 4)`` uint8, in that order: positions less the leaf's mean ones, signed, and the distance
+        within which all points of the fiblet, and the next one's first, lie from its chords.
+    seconds : float
+        That it took to make; 0 if it came from a file.
     """
 
     order: npt.NDArray[np.uint32]
-    capsules: npt.NDArray[np.float32]
+    leaves: npt.NDArray[np.float32]
+    pieces: npt.NDArray[np.uint8]
+    seconds: float = field(default=0.0)
 
     @property
     def nbytes(self) -> int:
-        """Bytes that it takes."""
-        return int(self.order.nbytes + self.capsules.nbytes)
+        """Bytes that it takes in a file."""
+        return int(self.order.nbytes + self.leaves.nbytes + self.pieces.nbytes)
 
-    def near(self, fiblets: FibletSet, grid: VoxelGrid, boxes: npt.NDArray[np.float64]) -> Ints:
-        """Return the fiblets that may meet boxes of voxels, rising.
+    @property
+    def parts(self) -> int:
+        """Parts of each fiblet."""
+        return (self.pieces.shape[1] - 4) // 3
+
+    @cached_property
+    def boxes(self) -> npt.NDArray[np.float32]:
+        """``(n_leaves, 6)`` mm: lower and upper corners of boxes that hold the leaves."""
+        from .index_kernels import leaf_boxes
+
+        found = np.empty((len(self.leaves), 6), np.float32)
+        leaf_boxes(self.leaves, self.parts, found)
+        return found
+
+    def near(self, low: npt.ArrayLike, high: npt.ArrayLike) -> Ints:
+        """Return the leaves that may meet a box, rising.
 
         Parameters
         ----------
-        fiblets : FibletSet
-        grid : VoxelGrid
-        boxes : numpy.ndarray
-            ``(n, 6)``: lower and upper corners in voxels, whose faces are at whole numbers.
-
-        Returns
-        -------
-        numpy.ndarray
-            ``(m,)`` int64: all that do, and few that do not.
+        low, high : array_like
+            ``(3,)`` mm.
         """
-        from . import index_kernels as kernels
+        from .index_kernels import near_leaves
 
-        whole = np.concatenate([boxes[:, :3].min(axis=0), boxes[:, 3:].max(axis=0)])
-        boxes = np.concatenate([whole[None], boxes]) if len(boxes) > 1 else boxes
-        rows = np.linalg.norm(grid.linear, axis=1)
-        hit = np.zeros(len(self.capsules), np.bool_)
-        kernels.near_leaves(self.capsules, grid.linear, grid.corner, rows, boxes, hit)
-        leaf = np.flatnonzero(hit)
-        # Each stretch of CHUNK fiblets has leaves of its own, all full but its last.
-        per = CHUNK // kernels.LEAF
-        at = leaf // per * CHUNK + leaf % per * kernels.LEAF
-        stop = np.minimum(np.minimum(at + kernels.LEAF, (leaf // per + 1) * CHUNK), fiblets.n_fiblets)
-        count = stop - at
-        where = np.arange(int(count.sum())) + np.repeat(at - (np.cumsum(count) - count), count)
-        which = np.sort(self.order[where].astype(np.int64))
-        found = np.zeros(len(which), np.bool_)
-        kernels.near_fiblets(
-            which, *_arrays(fiblets)[:4], fiblets.reach, *_arrays(fiblets)[4:], _units(fiblets), grid.linear,
-            grid.corner, rows, boxes, found,
-        )  # fmt: skip
-        return which[found]
+        found = np.empty(len(self.leaves), np.bool_)
+        near_leaves(self.boxes, np.concatenate([np.asarray(low, float), np.asarray(high, float)]), found)
+        return np.flatnonzero(found)
 
 
-def _arrays(fiblets: FibletSet) -> tuple[Any, ...]:
-    low = fiblets.anchors_low
+def decoding_arrays(fiblets: FibletSet) -> tuple[Any, ...]:
+    """What :func:`.decode_kernels.decode_one` takes of a set, from ``arrays`` to ``tables``."""
+    p, low = fiblets.parameters, fiblets.anchors_low
     return (
-        fiblets.anchors, np.zeros((1, 3), np.uint16) if low is None else low, low is not None, fiblets.ends,
-        np.ascontiguousarray(fiblets.pages[:, 0]), fiblets.origin, fiblets.anchor_scale,
+        (fiblets.anchors, fiblets.decoding, fiblets.codes, np.ascontiguousarray(fiblets.pages[:, 1])),
+        np.zeros((1, 3), np.uint16) if low is None else low, low is not None, fiblets.origin, fiblets.anchor_scale,
+        (p.step_lo, p.step_hi, p.lattice), quaternions().astype(np.float64),
     )  # fmt: skip
-
-
-def _units(fiblets: FibletSet) -> tuple[float, float, float]:
-    top = np.abs(fiblets.origin) + fiblets.anchor_scale * 2.0**fiblets.parameters.anchor_bits
-    return fiblets.reach_scale, fiblets.end_scale, 16.0 * float(np.spacing(top.max()))
 
 
 def index_of(fiblets: FibletSet) -> FibletIndex:
@@ -104,7 +110,8 @@ def index_of(fiblets: FibletSet) -> FibletIndex:
     Parameters
     ----------
     fiblets : FibletSet
-        In memory or mapped. Of those in memory, 24 bytes for each of four million fiblets are taken meanwhile.
+        In memory or mapped. All of it is decoded, a leaf at a time; 32 bytes for each of four million fiblets are
+        taken meanwhile.
     """
     held = fiblets.__dict__.get(KEY)
     if held is None:
@@ -116,37 +123,66 @@ def index_of(fiblets: FibletSet) -> FibletIndex:
 
 def _checked(fiblets: FibletSet, index: FibletIndex) -> FibletIndex:
     """What a file holds, so that no kernel reads beyond its arrays."""
-    n = fiblets.n_fiblets
+    n, parts = fiblets.n_fiblets, index.parts if index.pieces.ndim == 2 else 0
     whole, rest = divmod(n, CHUNK)
-    leaves = whole * (CHUNK // LEAF) + -(-rest // LEAF)
-    fits = index.order.shape == (n,) and index.order.dtype == np.uint32
-    fits = fits and index.capsules.shape == (leaves, 7) and index.capsules.dtype == np.float32
+    n_leaves = whole * (CHUNK // LEAF) + -(-rest // LEAF)
+    fits = parts >= 1 and index.pieces.shape == (n, 3 * parts + 4) and index.pieces.dtype == np.uint8
+    fits = fits and index.leaves.shape == (n_leaves, 4 * parts + 5) and index.leaves.dtype == np.float32
+    fits = fits and index.order.shape == (n,) and index.order.dtype == np.uint32
     if not fits or (n and int(index.order.max()) >= n):
         raise FormatError("the set of fiblets", None, "a spatial index that is not of its fiblets",
                           "an undamaged file: make the set anew")  # fmt: skip
     return index
 
 
+def _parts(fiblets: FibletSet) -> int:
+    """Into how many parts fiblets are cut: as many as bring most points near their chords."""
+    every = max(fiblets.n_fiblets // 100_000, 1)
+    reach = np.asarray(fiblets.reach[::every]) * fiblets.reach_scale
+    bend = float(np.percentile(reach, 75)) if len(reach) else 0.0
+    # The sagitta of an arc falls by the square of its length.
+    return next((parts for parts in (1, 2) if bend / parts**2 <= NEAR), 4)
+
+
 def _built(fiblets: FibletSet) -> FibletIndex:
     from . import index_kernels as kernels
 
-    n = fiblets.n_fiblets
-    orders, held = [np.empty(0, np.uint32)], [np.empty((0, 7), np.float32)]
-    arrays, (unit, end_scale, slack) = _arrays(fiblets), _units(fiblets)
-    top = float(np.spacing(np.float32(np.abs(np.array(fiblets.bounds)).max(initial=0.0) + fiblets.largest_radius)))
+    begin = time.perf_counter()
+    prefer_kernels("decoding")
+    n, parts = fiblets.n_fiblets, _parts(fiblets)
+    arrays = decoding_arrays(fiblets)
+    low, fine, origin, scale = arrays[1:5]
+    bases, end_scale = np.ascontiguousarray(fiblets.pages[:, 0]), fiblets.end_scale
+    order, pieces = np.empty(n, np.uint32), np.empty((n, 3 * parts + 4), np.uint8)
+    held = [np.empty((0, 4 * parts + 5), np.float32)]
     for first in range(0, n, CHUNK):
         m = min(CHUNK, n - first)
-        keys, order = np.empty((m, 6), np.float32), np.arange(m)
-        kernels.capsules(first, *arrays, end_scale, keys)
-        parts = np.array([[0, m]])
+        keys, places = np.empty((m, 6), np.float32), np.arange(m)
+        kernels.chords(first, fiblets.anchors, low, fine, fiblets.ends, bases, origin, scale, end_scale, keys)
+        ranges = np.array([[0, m]])
         for _ in range(6):
-            middles = np.empty(len(parts), np.int64)
-            kernels.sort_once(keys, order, parts, middles)
-            parts = np.concatenate([np.stack([parts[:, 0], middles], 1), np.stack([middles, parts[:, 1]], 1)])
-            parts = parts[parts[:, 1] > parts[:, 0]]
-        kernels.sort_parts(keys, order, parts)
-        found = np.empty((-(-m // kernels.LEAF), 7), np.float32)
-        kernels.leaves(keys, order, fiblets.reach, first, unit, slack + 8.0 * top, found)
-        orders.append((order + first).astype(np.uint32))
+            middles = np.empty(len(ranges), np.int64)
+            kernels.sort_once(keys, places, ranges, middles)
+            ranges = np.concatenate([np.stack([ranges[:, 0], middles], 1), np.stack([middles, ranges[:, 1]], 1)])
+            ranges = ranges[ranges[:, 1] > ranges[:, 0]]
+        kernels.sort_parts(keys, places, ranges)
+        del keys
+        order[first : first + m] = places + first
+        found = np.zeros((-(-m // LEAF), 4 * parts + 5), np.float32)
+        damaged = np.zeros(len(found), np.bool_)
+        kernels.leaf_pieces(order[first : first + m], *arrays, parts, found, pieces[first : first + m], damaged)
+        if damaged.any():
+            raise FormatError("the set of fiblets", None, "records that point beyond its arrays", "an undamaged file")
         held.append(found)
-    return FibletIndex(np.concatenate(orders), np.concatenate(held))
+    return FibletIndex(order, np.concatenate(held), pieces, time.perf_counter() - begin)
+
+
+def fiblets_of_streamlines(fiblets: FibletSet) -> npt.NDArray[np.int32]:
+    """Return how many fiblets each streamline has, ``(n_streamlines,)``."""
+    begins = np.flatnonzero(unpack("begin", fiblets.anchors))
+    counts = np.diff(np.append(begins, fiblets.n_fiblets)).astype(np.int32)
+    if fiblets.rank_to_id is None:
+        return counts
+    out = np.zeros(fiblets.n_streamlines, np.int32)
+    out[fiblets.rank_to_id] = counts
+    return out

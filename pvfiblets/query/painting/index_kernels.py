@@ -1,7 +1,7 @@
 """Compiled kernels: a spatial index over fiblets; see :mod:`.fiblet_index`.
 
-A leaf is `LEAF` fiblets and one capsule that holds theirs: about the chord between the means of their chords' ends. By
-convexity, each chord lies within the larger of its two ends' distances from it.
+A leaf is `LEAF` fiblets that run alike. Each fiblet is kept as a few chords between some of its points, in bytes beside
+those of its leaf, and a radius: every point of the fiblet lies within that of the chord of its part.
 """
 
 from __future__ import annotations
@@ -13,13 +13,18 @@ import numba
 import numpy as np
 
 from ...codec.capsule_kernels import end_part
+from ...codec.decode_kernels import decode_one
 from ...codec.jit import kernel, parallel_kernel
 from ...codec.layout import PAGE_BITS
 
-__all__ = ["LEAF", "capsules", "leaves", "near_fiblets", "near_leaves", "sort_once", "sort_parts"]
+__all__ = ["LEAF", "chords", "leaf_boxes", "leaf_pieces", "near_leaves", "next_anchor", "sort_once", "sort_parts"]
 
 LEAF = 32
 BLOCK = 1024
+ROWS = 65
+"""Points that a record can name, and the next fiblet's first."""
+UP = 1.0 + 1e-6
+"""Rounds a length in float32 up."""
 
 
 @kernel
@@ -30,23 +35,17 @@ def _anchor(anchors: Any, low: Any, fine: bool, f: int, axis: int) -> float:
 
 
 @kernel
-def _capsule(
-    f: int, anchors: Any, low: Any, fine: bool, ends: Any, bases: Any, origin: Any, scale: Any, end_scale: float,
-    out: Any,
-) -> None:  # fmt: skip
-    """Ends of the chord of fiblet `f`, mm: ``out`` (6,)."""
-    rank = bases[f >> PAGE_BITS] + ((anchors[f, 1] >> 16) & 0x3FFF)
+def next_anchor(anchors: Any, low: Any, fine: bool, origin: Any, scale: Any, f: int, out: Any, row: int) -> int:
+    """Write the first point of the next fiblet, which this one leads to, into a row; how many that is: 0 or 1."""
+    if anchors[f, 1] >> 31 or f + 1 >= len(anchors):
+        return 0
     for axis in range(3):
-        a = scale[axis] * _anchor(anchors, low, fine, f, axis)
-        if anchors[f, 1] >> 31 or f + 1 >= len(anchors):
-            b = a + end_scale * (end_part(np.int64(ends[rank]), axis) if rank < len(ends) else 0)
-        else:
-            b = scale[axis] * _anchor(anchors, low, fine, f + 1, axis)
-        out[axis], out[3 + axis] = a + origin[axis], b + origin[axis]
+        out[row, axis] = scale[axis] * _anchor(anchors, low, fine, f + 1, axis) + origin[axis]
+    return 1
 
 
 @parallel_kernel
-def capsules(
+def chords(
     first: int, anchors: Any, low: Any, fine: bool, ends: Any, bases: Any, origin: Any, scale: Any, end_scale: float,
     out: Any,
 ) -> None:  # fmt: skip
@@ -54,11 +53,28 @@ def capsules(
     for block in numba.prange((len(out) + BLOCK - 1) // BLOCK):
         c = np.empty(6)
         for k in range(block * BLOCK, min((block + 1) * BLOCK, len(out))):
-            _capsule(first + k, anchors, low, fine, ends, bases, origin, scale, end_scale, c)
-            turned = (c[3] - c[0]) + 0.37 * (c[4] - c[1]) + 0.11 * (c[5] - c[2]) < 0.0
+            f = first + k
+            rank = bases[f >> PAGE_BITS] + ((anchors[f, 1] >> 16) & 0x3FFF)
+            for axis in range(3):
+                a = scale[axis] * _anchor(anchors, low, fine, f, axis)
+                if anchors[f, 1] >> 31 or f + 1 >= len(anchors):
+                    b = a + end_scale * (end_part(np.int64(ends[rank]), axis) if rank < len(ends) else 0)
+                else:
+                    b = scale[axis] * _anchor(anchors, low, fine, f + 1, axis)
+                c[axis], c[3 + axis] = a + origin[axis], b + origin[axis]
+            turned = _turned(c[3] - c[0], c[4] - c[1], c[5] - c[2])
             for axis in range(3):
                 a, b = c[axis], c[3 + axis]
                 out[k, axis], out[k, 3 + axis] = (b, a) if turned else (a, b)
+
+
+@kernel
+def _turned(x: float, y: float, z: float) -> bool:
+    """Whether a chord is taken from its end, so that those of one course and the other lie together."""
+    return x + 0.37 * y + 0.11 * z < 0.0
+
+
+# ----------------------------------------------------------------------------------------------------------- sorting
 
 
 @kernel
@@ -133,88 +149,116 @@ def sort_parts(keys: Any, order: Any, parts: Any) -> None:
             depth += 2
 
 
-@parallel_kernel
-def leaves(keys: Any, order: Any, reach: Any, first: int, unit: float, slack: float, out: Any) -> None:
-    """Capsule of each leaf: ``out (n_leaves, 7)`` float32, ends and radius, mm; ``reach`` is of the whole set."""
-    for k in numba.prange(len(out)):
-        lo, hi = k * LEAF, min((k + 1) * LEAF, len(keys))
-        for d in range(6):
-            total = 0.0
-            for i in range(lo, hi):
-                total += keys[i, d]
-            out[k, d] = total / (hi - lo)
-        radius = 0.0
-        for i in range(lo, hi):
-            a, b = 0.0, 0.0
-            for d in range(3):
-                a += (float(keys[i, d]) - out[k, d]) ** 2
-                b += (float(keys[i, 3 + d]) - out[k, 3 + d]) ** 2
-            radius = max(radius, math.sqrt(max(a, b)) + unit * reach[first + order[i]])
-        out[k, 6] = np.float32(radius * (1.0 + 1e-6) + slack)
+# ------------------------------------------------------------------------------------------------------------ pieces
 
 
 @kernel
-def _meets(c: Any, reach: Any, boxes: Any) -> bool:
-    """Whether a segment ``c (6,)`` in voxels, widened by ``reach (3,)``, meets one of the boxes ``(n, 6)``.
-
-    The first box holds all others.
-    """
-    for k in range(len(boxes)):
-        enter, leave = 0.0, 1.0
-        for axis in range(3):
-            low, high = boxes[k, axis] - reach[axis], boxes[k, 3 + axis] + reach[axis]
-            a, d = c[axis], c[3 + axis] - c[axis]
-            if d == 0.0:
-                if a < low or a > high:
-                    leave = -1.0
-                continue
-            s, t = (low - a) / d, (high - a) / d
-            enter, leave = max(enter, min(s, t)), min(leave, max(s, t))
-        if enter <= leave:
-            if k or len(boxes) == 1:
-                return True
-        elif k == 0:
-            return False
-    return False
+def _apart(p: Any, a: Any, b: Any) -> float:
+    """Distance of a point from a segment, each (3,)."""
+    dx, dy, dz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
+    x, y, z = p[0] - a[0], p[1] - a[1], p[2] - a[2]
+    square = dx * dx + dy * dy + dz * dz
+    t = min(max((x * dx + y * dy + z * dz) / square, 0.0), 1.0) if square > 0.0 else 0.0
+    x, y, z = x - t * dx, y - t * dy, z - t * dz
+    return math.sqrt(x * x + y * y + z * z)
 
 
 @kernel
-def _to_voxels(c: Any, radius: float, linear: Any, corner: Any, rows: Any, out: Any, reach: Any) -> None:
-    for axis in range(3):
-        a, b = 0.0, 0.0
-        for j in range(3):
-            a += linear[axis, j] * (c[j] - corner[j])
-            b += linear[axis, j] * (c[3 + j] - corner[j])
-        out[axis], out[3 + axis] = a, b
-        reach[axis] = radius * rows[axis] + 1e-9 * (1.0 + abs(a) + abs(b))
+def _node(k: int, parts: int, n: int, turned: bool) -> int:
+    """Number of the point of `n` at which part `k` begins."""
+    at = (k * (n - 1) + parts // 2) // parts
+    return n - 1 - at if turned else at
 
 
 @parallel_kernel
-def near_leaves(held: Any, linear: Any, corner: Any, rows: Any, boxes: Any, found: Any) -> None:
-    """Leaves whose capsules meet boxes of voxels: ``found (n_leaves,)`` bool.
-
-    ``linear (3, 3)`` and ``corner (3,)`` take mm to voxels whose faces are at whole numbers, ``rows (3,)`` are the
-    lengths of its rows.
-    """
-    for block in numba.prange((len(held) + BLOCK - 1) // BLOCK):
-        c, u, reach = np.empty(6), np.empty(6), np.empty(3)
-        for k in range(block * BLOCK, min((block + 1) * BLOCK, len(held))):
-            for d in range(6):
-                c[d] = held[k, d]
-            _to_voxels(c, float(held[k, 6]), linear, corner, rows, u, reach)
-            found[k] = _meets(u, reach, boxes)
-
-
-@parallel_kernel
-def near_fiblets(
-    which: Any, anchors: Any, low: Any, fine: bool, ends: Any, reach_of: Any, bases: Any, origin: Any, scale: Any,
-    units: Any, linear: Any, corner: Any, rows: Any, boxes: Any, found: Any,
+def leaf_pieces(
+    order: Any, arrays: Any, low: Any, fine: Any, origin: Any, scale: Any, steps: Any, tables: Any, parts: int,
+    leaves: Any, pieces: Any, damaged: Any,
 ) -> None:  # fmt: skip
-    """The same of some fiblets ``which (m,)`` by their own capsules; ``units``: ``reach_scale, end_scale, slack``."""
-    for block in numba.prange((len(which) + BLOCK - 1) // BLOCK):
-        c, u, reach = np.empty(6), np.empty(6), np.empty(3)
-        for k in range(block * BLOCK, min((block + 1) * BLOCK, len(which))):
-            f = which[k]
-            _capsule(f, anchors, low, fine, ends, bases, origin, scale, units[1], c)
-            _to_voxels(c, units[0] * reach_of[f] + units[2], linear, corner, rows, u, reach)
-            found[k] = _meets(u, reach, boxes)
+    """Decode all fiblets and keep them coarsely; see :class:`.FibletIndex` for what is filled.
+
+    ``order (n,)`` are the fiblets, the other arrays those of :func:`.decode_kernels.decode`.
+    """
+    nodes = parts + 1
+    for leaf in numba.prange(len(leaves)):
+        first, many = leaf * LEAF, min(LEAF, len(order) - leaf * LEAF)
+        points, counts = np.empty((LEAF, ROWS, 3)), np.empty(LEAF, np.int64)
+        turned = np.empty(LEAF, np.bool_)
+        mean = np.zeros((nodes, 3))
+        for j in range(many):
+            f, p = np.int64(order[first + j]), points[j]
+            n = decode_one(f, arrays, low, fine, origin, scale, steps, tables, p, 0)
+            if n == 0:
+                damaged[leaf] = True
+                p[0, 0], p[0, 1], p[0, 2], n = origin[0], origin[1], origin[2], 1
+            n += next_anchor(arrays[0], low, fine, origin, scale, f, p, n)
+            counts[j] = n
+            turned[j] = _turned(p[n - 1, 0] - p[0, 0], p[n - 1, 1] - p[0, 1], p[n - 1, 2] - p[0, 2])
+            for k in range(nodes):
+                at = _node(k, parts, n, turned[j])
+                for axis in range(3):
+                    mean[k, axis] += p[at, axis] / many
+        widest = 0.0
+        for k in range(nodes):
+            for axis in range(3):
+                leaves[leaf, 3 * k + axis] = mean[k, axis]
+                mean[k, axis] = leaves[leaf, 3 * k + axis]  # as it is read again
+                for j in range(many):
+                    widest = max(widest, abs(points[j, _node(k, parts, counts[j], turned[j]), axis] - mean[k, axis]))
+        leaves[leaf, 3 * nodes + parts] = max(widest / 127.0 * UP, 1e-30)
+        unit = float(leaves[leaf, 3 * nodes + parts])
+        radii, kept = np.zeros(LEAF), np.empty((LEAF, nodes, 3))
+        for j in range(many):
+            n, radius = counts[j], 0.0
+            for k in range(nodes):
+                at, square = _node(k, parts, n, turned[j]), 0.0
+                for axis in range(3):
+                    code = int(round((points[j, at, axis] - mean[k, axis]) / unit))
+                    pieces[first + j, 3 * k + axis] = code & 0xFF
+                    kept[j, k, axis] = mean[k, axis] + unit * code
+                    square += (kept[j, k, axis] - points[j, at, axis]) ** 2
+                radius = max(radius, math.sqrt(square))
+            for k in range(parts):
+                a, b = _node(k, parts, n, turned[j]), _node(k + 1, parts, n, turned[j])
+                for i in range(min(a, b), max(a, b) + 1):
+                    radius = max(radius, _apart(points[j, i], kept[j, k], kept[j, k + 1]))
+            radii[j] = radius
+        leaves[leaf, 3 * nodes + parts + 1] = max(radii.max() / 255.0 * UP, 1e-30)
+        step = float(leaves[leaf, 3 * nodes + parts + 1])
+        for j in range(many):
+            code = min(int(math.ceil(radii[j] / step)), 255)
+            pieces[first + j, 3 * nodes] = code
+            for k in range(parts):
+                reach = 0.0
+                for node in range(k, k + 2):
+                    x, y, z = kept[j, node, 0], kept[j, node, 1], kept[j, node, 2]
+                    x, y, z = x - mean[node, 0], y - mean[node, 1], z - mean[node, 2]
+                    reach = max(reach, math.sqrt(x * x + y * y + z * z))
+                reach = (reach + step * code) * UP
+                leaves[leaf, 3 * nodes + k] = max(float(leaves[leaf, 3 * nodes + k]), reach)
+
+
+@parallel_kernel
+def leaf_boxes(leaves: Any, parts: int, out: Any) -> None:
+    """Boxes along the axes that hold leaves, ``out (n, 6)`` float32 mm: lower and upper corners."""
+    for leaf in numba.prange(len(leaves)):
+        for axis in range(3):
+            low, high = np.inf, -np.inf
+            for k in range(parts):
+                reach = float(leaves[leaf, 3 * (parts + 1) + k])
+                a, b = float(leaves[leaf, 3 * k + axis]), float(leaves[leaf, 3 * k + 3 + axis])
+                low, high = min(low, min(a, b) - reach), max(high, max(a, b) + reach)
+            out[leaf, axis] = low - 1e-6 * abs(low)
+            out[leaf, 3 + axis] = high + 1e-6 * abs(high)
+
+
+@parallel_kernel
+def near_leaves(held: Any, box: Any, found: Any) -> None:
+    """Leaves whose boxes ``(n_leaves, 6)`` meet one ``(6,)``, mm: ``found (n_leaves,)`` bool."""
+    for block in numba.prange((len(held) + BLOCK - 1) // BLOCK):
+        for k in range(block * BLOCK, min((block + 1) * BLOCK, len(held))):
+            found[k] = (
+                held[k, 0] <= box[3] and held[k, 3] >= box[0]
+                and held[k, 1] <= box[4] and held[k, 4] >= box[1]
+                and held[k, 2] <= box[5] and held[k, 5] >= box[2]
+            )  # fmt: skip

@@ -1,29 +1,30 @@
 """Which streamlines pass painted regions, told again after each stroke from the fiblets near it alone.
 
-For each fiblet it is kept whether some position of it lies in the region and whether some does not, and for each
-streamline how many such fiblets it has. A stroke changes these only where a fiblet's capsule meets changed voxels; the
-index (:mod:`.fiblet_index`) finds those, and they are decoded and walked through the voxels exactly. A fiblet here is
-its points, the segments between them, and the one that joins it to the next.
+For each fiblet it is kept whether some position of it lies in the region, and for each streamline how many such fiblets
+it has. A stroke changes these only where a fiblet comes near changed voxels, and where they are added, only for those
+that did not pass before. The index (:mod:`.fiblet_index`) finds these and settles most; the others are decoded and
+walked through the voxels, so that the answer is exact. A fiblet here is its points, the segments between them, and the
+one that joins it to the next.
+
+Whether streamlines end in the region or never leave it is kept up only once it has been asked for.
 """
 
 from __future__ import annotations
 
 import time
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 
-from ...codec.decompress import decode_fiblets
-from ...codec.layout import PAGE_BITS, unpack
 from ...codec.small_sets import prefer_kernels
-from ..endpoints import anchor_points
+from ...errors import FormatError
 from ..point_flags import ALL
 from ..point_flags import ANY as PASSES
 from ..point_flags import FIRST as BEGINS
 from ..point_flags import LAST as ENDS
-from .fiblet_index import index_of
+from .fiblet_index import CHUNK, LEAF, decoding_arrays, fiblets_of_streamlines, index_of
 
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
@@ -34,37 +35,40 @@ __all__ = ["LiveRegion", "LiveRegions"]
 
 Ints = npt.NDArray[np.int64]
 Mask = npt.NDArray[np.bool_]
-BATCH = 1 << 13  # fiblets decoded together: 12 MB of points
-MOST_BOXES = 64
-"""Boxes of changed voxels that fiblets are compared with."""
 
 
 class LiveRegion:
     """Streamlines of one region of voxels, which changes.
 
-    Takes a byte for each fiblet and nine for each streamline.
+    Takes a byte for each fiblet and four for each streamline; nine once :meth:`flags` have been asked for.
 
     Parameters
     ----------
     fiblets : FibletSet
     grid : VoxelGrid
+
+    Attributes
+    ----------
+    seconds : float
+        That the last change took.
+    looked_at, decoded : int
+        Fiblets near what it changed, and those of them that had to be decoded.
     """
 
     def __init__(self, fiblets: FibletSet, grid: VoxelGrid) -> None:
-        from .walk_kernels import OUT
-
         self.fiblets, self.grid = fiblets, grid
         self.index = index_of(fiblets)
         self.mask = np.zeros(grid.n_voxels, np.uint8)
-        self._states = np.full(fiblets.n_fiblets, OUT, np.uint8)
-        self._any = np.zeros(fiblets.n_ranks, np.int32)
-        begins = np.flatnonzero(unpack("begin", fiblets.anchors))
-        self._out = np.diff(np.append(begins, fiblets.n_fiblets)).astype(np.int32)
-        self._ends = np.zeros(fiblets.n_ranks, np.uint8)
+        self._states = np.zeros(fiblets.n_fiblets, np.uint8)  # in the order of the index
+        self._any = np.zeros(fiblets.n_streamlines, np.int32)
+        self._out, self._ends = np.empty(0, np.int32), np.empty(0, np.uint8)  # of whom flags have been asked for
         self._bases = np.ascontiguousarray(fiblets.pages[:, 0])
+        ids = fiblets.rank_to_id
+        self._ids = np.empty(0, np.int64) if ids is None else np.array(ids, np.int64)
+        self._arrays = decoding_arrays(fiblets)
         self._passing = 0
         self.seconds = 0.0
-        self.looked_at = 0
+        self.looked_at = self.decoded = 0
 
     @property
     def count(self) -> int:
@@ -84,54 +88,103 @@ class LiveRegion:
         Returns
         -------
         int
-            Streamlines that pass the region now. ``seconds`` and ``looked_at`` (fiblets decoded) say what it took.
+            Streamlines that pass the region now.
         """
+        from . import coarse_kernels as coarse
+
         begin = time.perf_counter()
         changed = self.mask[voxels] != inside
-        voxels = voxels[changed]
-        self.looked_at = 0
-        if len(voxels):
-            self.mask[voxels] = inside[changed]
-            prefer_kernels("decoding")
-            which = self.index.near(self.fiblets, self.grid, _boxes(voxels, self.grid.shape))
-            self.looked_at = len(which)
-            for at in range(0, len(which), BATCH):
-                self._look(which[at : at + BATCH])
+        voxels, inside = voxels[changed], inside[changed]
+        self.looked_at = self.decoded = 0
+        if len(self._out):
+            self._take(voxels, inside, coarse.ALL_FLAGS)
+        else:
+            self._take(voxels[~inside], False, coarse.REMOVED)
+            self._take(voxels[inside], True, coarse.ADDED)
         self.seconds = time.perf_counter() - begin
         return self._passing
 
-    def _look(self, which: Ints) -> None:
+    def _take(self, voxels: Ints, inside: Any, asked: int) -> None:
+        from . import coarse_kernels as coarse
         from . import walk_kernels as kernels
 
-        fiblets = self.fiblets
-        words = np.asarray(fiblets.anchors[which])
-        begins, ends = unpack("begin", words) != 0, unpack("end", words) != 0
-        joined = ~ends
-        counts = unpack("last", np.asarray(fiblets.decoding[which])).astype(np.int64) + 1
-        starts = np.concatenate([[0], np.cumsum(counts + joined)])
-        points = np.empty((int(starts[-1]), 3))
-        decode_fiblets(fiblets, which, starts[:-1], points)
-        points[starts[1:][joined] - 1] = anchor_points(fiblets, which[joined] + 1)
-        found = np.empty(len(which), np.uint8)
-        grid = self.grid
-        kernels.look(points, starts, joined, grid.linear, grid.corner, self.mask, grid.shape, found)
-        ranks = unpack("rank", words).astype(np.int64) + self._bases[which >> PAGE_BITS]
-        borders = begins.astype(np.uint8) + 2 * ends.astype(np.uint8)
-        self._passing += kernels.apply(which, found, self._states, ranks, borders, self._any, self._out, self._ends)
+        if not len(voxels):
+            return
+        grid, mask, index = self.grid, self.mask, self.index
+        prefer_kernels("decoding")
+        mask[voxels] = np.where(inside, kernels.HERE, 0) | kernels.CHANGED
+        changed = _box(voxels, grid.shape)
+        whole = changed if asked == coarse.ADDED else _box(np.flatnonzero(mask & kernels.HERE), grid.shape)
+        near = index.near(*_in_mm(changed, grid))
+        found = np.empty((len(near), LEAF), np.uint8)
+        per = CHUNK // LEAF
+        rows = np.linalg.norm(grid.linear, axis=1)
+        coarse.settle(near, index.leaves, index.pieces, index.parts, per, CHUNK, self._states, asked, grid.linear,
+                      grid.corner, rows, mask, grid.shape, changed, whole, found)  # fmt: skip
+        leaf, of_leaf = np.nonzero(found)
+        places = near[leaf] // per * CHUNK + near[leaf] % per * LEAF + of_leaf
+        fates = found[leaf, of_leaf]
+        open_ = places[fates == coarse.OPEN]
+        self.looked_at += len(places)
+        self.decoded += len(open_)
+        flags = np.empty(len(open_), np.uint8)
+        if asked == coarse.ALL_FLAGS:
+            kernels.look(open_, index.order, *self._arrays, grid.linear, grid.corner, mask, grid.shape, flags)
+        else:
+            bit, box = (kernels.CHANGED, changed) if asked == coarse.ADDED else (kernels.HERE, whole)
+            kernels.passes(open_, index.order, *self._arrays, grid.linear, grid.corner, mask, bit, box, grid.shape,
+                           flags)  # fmt: skip
+        mask[voxels] &= kernels.HERE
+        if (flags == kernels.BAD).any():
+            raise _damaged()
+        if asked != coarse.ALL_FLAGS:
+            flipped = flags != self._states[open_]
+            settled = fates != coarse.OPEN
+            open_ = np.concatenate([open_[flipped], places[settled]])
+            flags = np.concatenate([flags[flipped], (fates[settled] == coarse.SURE).astype(np.uint8)])
+        self._apply(open_, flags)
+
+    def _apply(self, places: Ints, flags: npt.NDArray[np.uint8]) -> None:
+        from . import walk_kernels as kernels
+
+        more = kernels.apply(places, flags, self.index.order, self.fiblets.anchors, self._bases, self._ids,
+                             self._states, self._any, self._out, self._ends)  # fmt: skip
+        if more == kernels.DAMAGED:
+            raise _damaged()
+        self._passing += more
+
+    def passes(self) -> Mask:
+        """Return which streamlines pass the region, ``(n_streamlines,)`` bool."""
+        return self._any > 0
 
     def flags(self) -> npt.NDArray[np.uint8]:
-        """Return how each streamline lies to the region, as :func:`.passing.region_flags` does, between points too."""
+        """Return how each streamline lies to the region, as :func:`.passing.region_flags` does, between points too.
+
+        From the first time on, all of it is kept up after each change, which takes longer.
+        """
         from . import walk_kernels as kernels
 
-        ranked = np.where(self._any > 0, PASSES, 0).astype(np.uint8)
-        ranked[self._out == 0] |= ALL
-        ranked[self._ends & kernels.FIRST != 0] |= BEGINS
-        ranked[self._ends & kernels.LAST != 0] |= ENDS
-        if self.fiblets.rank_to_id is None:
-            return ranked
-        out = np.zeros(self.fiblets.n_streamlines, np.uint8)
-        out[self.fiblets.rank_to_id] = ranked
+        if not len(self._out):
+            self._know_all()
+        out = np.where(self._any > 0, PASSES, 0).astype(np.uint8)
+        out[self._out == 0] |= ALL
+        out[self._ends & kernels.FIRST != 0] |= BEGINS
+        out[self._ends & kernels.LAST != 0] |= ENDS
         return out
+
+    def _know_all(self) -> None:
+        """Begin to keep which fiblets leave the region, and where streamlines end."""
+        from . import coarse_kernels as coarse
+        from . import walk_kernels as kernels
+
+        counts = fiblets_of_streamlines(self.fiblets)
+        self._out = np.maximum(counts, 1)  # streamlines without points stay nowhere
+        self._ends = np.zeros(len(counts), np.uint8)
+        self._any[:] = 0
+        self._states[:] = kernels.OUT
+        self._passing = 0
+        there = np.flatnonzero(self.mask)
+        self._take(there, np.ones(len(there), bool), coarse.ALL_FLAGS)
 
 
 class LiveRegions:
@@ -207,9 +260,9 @@ class LiveRegions:
             raise ValueError(f"direction is {direction!r}; give 'either' or 'forward'")
         chosen = np.ones(self.fiblets.n_streamlines, bool)
         for name in {*include, *in_order}:
-            chosen &= self.region(name).flags() & PASSES != 0
+            chosen &= self.region(name).passes()
         for name in exclude:
-            chosen &= self.region(name).flags() & PASSES == 0
+            chosen &= ~self.region(name).passes()
         for name in ends_in:
             chosen &= self.region(name).flags() & (BEGINS | ENDS) != 0
         if stays_in is not None:
@@ -231,17 +284,22 @@ class LiveRegions:
             chosen[ids[first : first + len(chunk)][~found]] = False
 
 
-def _boxes(voxels: Ints, shape: tuple[int, int, int]) -> npt.NDArray[np.float64]:
-    """Boxes ``(n, 6)`` that hold voxels: few, and tight about each cell of them."""
-    at = np.stack(np.unravel_index(voxels, shape), axis=1)
-    size = 4
-    while True:
-        cells, inverse = np.unique(at // size, axis=0, return_inverse=True)
-        if len(cells) <= MOST_BOXES:
-            break
-        size *= 2
-    inverse = inverse.ravel()
-    low, high = np.full((len(cells), 3), 1 << 40), np.full((len(cells), 3), -1)
-    np.minimum.at(low, inverse, at)
-    np.maximum.at(high, inverse, at)
-    return np.concatenate([low, high + 1], axis=1).astype(np.float64)
+def _box(voxels: Ints, shape: tuple[int, int, int]) -> npt.NDArray[np.float64]:
+    """Box that holds voxels, ``(6,)``: lower and upper corner in voxels, whose faces are at whole numbers."""
+    if not len(voxels):
+        return np.array([np.inf] * 3 + [-np.inf] * 3)
+    at = np.unravel_index(voxels, shape)
+    return np.array([float(k.min()) for k in at] + [float(k.max() + 1) for k in at])
+
+
+def _in_mm(box: npt.NDArray[np.float64], grid: VoxelGrid) -> npt.NDArray[np.float64]:
+    """Lower and upper corner, ``(2, 3)`` mm, of what holds a box of voxels."""
+    ends = np.stack([box[:3], box[3:]])
+    corners = np.stack(np.meshgrid(*ends.T, indexing="ij"), axis=-1).reshape(-1, 3) - 0.5
+    mm = corners @ grid.affine[:3, :3].T + grid.affine[:3, 3]
+    slack = 1e-9 * (1.0 + np.abs(mm).max(axis=0))
+    return np.stack([mm.min(axis=0) - slack, mm.max(axis=0) + slack])
+
+
+def _damaged() -> FormatError:
+    return FormatError("the set of fiblets", None, "records that point beyond its arrays", "an undamaged file")

@@ -8,13 +8,19 @@ from typing import Any
 import numba
 import numpy as np
 
+from ...codec.decode_kernels import decode_one
 from ...codec.jit import kernel, parallel_kernel
+from ...codec.layout import PAGE_BITS
 from ..density_kernels import _clip, _ends, _faces, _within
+from .index_kernels import ROWS, next_anchor
 
-__all__ = ["ANY", "FIRST", "LAST", "OUT", "apply", "in_order", "look"]
+__all__ = ["ANY", "BAD", "CHANGED", "DAMAGED", "FIRST", "HERE", "LAST", "OUT", "apply", "in_order", "look", "passes"]
 
 ANY, OUT, FIRST, LAST = 1, 2, 4, 8
 """Of a fiblet: some position lies in the region, some does not, its first point does, its last point does."""
+BAD, DAMAGED = 255, -(1 << 62)
+HERE, CHANGED = 1, 2
+"""Of a voxel: it is in the region, and this stroke changed it."""
 BLOCK = 64
 
 
@@ -70,57 +76,108 @@ def _place(points: Any, a: int, b: int, linear: Any, corner: Any, u: Any) -> Non
 
 
 @parallel_kernel
-def look(points: Any, starts: Any, joined: Any, linear: Any, corner: Any, mask: Any, shape: Any, found: Any) -> None:
-    """Flags of fiblets: ``found (n,)`` uint8.
+def look(places: Any, order: Any, arrays: Any, low: Any, fine: Any, origin: Any, scale: Any, steps: Any, tables: Any,
+         linear: Any, corner: Any, mask: Any, shape: Any, found: Any) -> None:  # fmt: skip
+    """Flags of fiblets: ``found (m,)`` uint8; :data:`BAD` for a record that points beyond the arrays.
 
-    ``points`` of fiblet ``f`` are rows ``starts[f]`` to ``starts[f + 1]``, the last of them the next fiblet's first
-    where ``joined[f]``; ``mask`` is flat, in C order.
+    ``order[places]`` are the fiblets, the arrays up to ``tables`` those of :func:`.decode_kernels.decode`; ``mask`` is
+    flat, in C order, 1 in the region.
     """
     for block in numba.prange((len(found) + BLOCK - 1) // BLOCK):
-        u, on = np.empty((64, 3)), np.empty(shape[0] + shape[1] + shape[2] + 4, np.int64)
-        for f in range(block * BLOCK, min((block + 1) * BLOCK, len(found))):
-            a, b = starts[f], starts[f + 1]
-            _place(points, a, b, linear, corner, u)
-            first = _voxel_of(u, 0, shape)
-            last = _voxel_of(u, b - a - 1 - (1 if joined[f] else 0), shape)
-            flags = 0
-            if first >= 0 and mask[first]:
-                flags |= FIRST | ANY
-            else:
-                flags |= OUT
-            if last >= 0 and mask[last]:
+        p, u, on = np.empty((ROWS, 3)), np.empty((ROWS, 3)), np.empty(shape[0] + shape[1] + shape[2] + 4, np.int64)
+        for j in range(block * BLOCK, min((block + 1) * BLOCK, len(found))):
+            f = np.int64(order[places[j]])
+            n = decode_one(f, arrays, low, fine, origin, scale, steps, tables, p, 0)
+            if n == 0:
+                found[j] = BAD
+                continue
+            own = n
+            n += next_anchor(arrays[0], low, fine, origin, scale, f, p, n)
+            _place(p, 0, n, linear, corner, u)
+            first, last = _voxel_of(u, 0, shape), _voxel_of(u, own - 1, shape)
+            flags = FIRST | ANY if first >= 0 and mask[first] & HERE else OUT
+            if last >= 0 and mask[last] & HERE:
                 flags |= LAST
-            for i in range(b - a - 1):
+            for i in range(n - 1):
                 if flags & ANY and flags & OUT:
                     break
-                n, leaves = _voxels(u, i, shape, on)
+                many, leaves = _voxels(u, i, shape, on)
                 if leaves:
                     flags |= OUT
-                for k in range(n):
-                    flags |= ANY if mask[on[k]] else OUT
-            found[f] = flags
+                for k in range(many):
+                    flags |= ANY if mask[on[k]] & HERE else OUT
+            found[j] = flags
 
 
 @kernel
-def apply(which: Any, found: Any, states: Any, ranks: Any, borders: Any, n_any: Any, n_out: Any, ends: Any) -> int:
+def _apart_from(u: Any, i: int, box: Any) -> bool:
+    """Whether a segment lies beyond one face of a box of voxels, by more than one."""
+    for axis in range(3):
+        a, b = u[i, axis], u[i + 1, axis]
+        if (a < box[axis] - 1.0 and b < box[axis] - 1.0) or (a > box[3 + axis] + 1.0 and b > box[3 + axis] + 1.0):
+            return True
+    return False
+
+
+@parallel_kernel
+def passes(places: Any, order: Any, arrays: Any, low: Any, fine: Any, origin: Any, scale: Any, steps: Any, tables: Any,
+           linear: Any, corner: Any, mask: Any, bit: int, box: Any, shape: Any, found: Any) -> None:  # fmt: skip
+    """Whether fiblets meet voxels with a bit of ``mask``, all of which lie in ``box (6,)``; ``found (m,)`` uint8.
+
+    Other parameters, and what :data:`BAD` means, as for :func:`look`.
+    """
+    for block in numba.prange((len(found) + BLOCK - 1) // BLOCK):
+        p, u, on = np.empty((ROWS, 3)), np.empty((ROWS, 3)), np.empty(shape[0] + shape[1] + shape[2] + 4, np.int64)
+        for j in range(block * BLOCK, min((block + 1) * BLOCK, len(found))):
+            f = np.int64(order[places[j]])
+            n = decode_one(f, arrays, low, fine, origin, scale, steps, tables, p, 0)
+            found[j] = BAD if n == 0 else 0
+            n += next_anchor(arrays[0], low, fine, origin, scale, f, p, n) if n else 0
+            _place(p, 0, n, linear, corner, u)
+            at = _voxel_of(u, 0, shape) if n else -1
+            if at >= 0 and mask[at] & bit:
+                found[j] = ANY
+            for i in range(n - 1):
+                if found[j]:
+                    break
+                if _apart_from(u, i, box):
+                    continue
+                many, _ = _voxels(u, i, shape, on)
+                for k in range(many):
+                    if mask[on[k]] & bit:
+                        found[j] = ANY
+
+
+@kernel
+def apply(places: Any, found: Any, order: Any, anchors: Any, bases: Any, ids: Any, states: Any, n_any: Any, n_out: Any,
+          ends: Any) -> int:  # fmt: skip
     """Take new flags of fiblets over; returns by how many more streamlines the region is passed.
 
-    ``states (n_fiblets,)`` are the flags before, ``ranks (m,)`` streamlines, ``borders (m,)`` 1 for a streamline's
-    first fiblet, 2 for its last, 3 for both; ``n_any, n_out (n_ranks,)`` count fiblets, ``ends`` holds FIRST and LAST.
+    ``order[places]`` are the fiblets, ``states (n_fiblets,)`` the flags before, in that order; ``bases`` and ``ids``
+    lead to streamlines (``ids`` empty: ranks are streamlines), for which ``n_any, n_out`` count fiblets and ``ends``
+    holds FIRST and LAST. Where ``n_out`` is empty, only ANY is told.
     """
-    more = 0
-    for k in range(len(which)):
-        f, rank, new = which[k], ranks[k], found[k]
-        old = states[f]
-        before = n_any[rank] > 0
-        n_any[rank] += int(new & ANY != 0) - int(old & ANY != 0)
-        n_out[rank] += int(new & OUT != 0) - int(old & OUT != 0)
-        more += int(n_any[rank] > 0) - int(before)
-        if borders[k] & 1:
-            ends[rank] = ends[rank] & ~FIRST | new & FIRST
-        if borders[k] & 2:
-            ends[rank] = ends[rank] & ~LAST | new & LAST
-        states[f] = new
+    more, whole = 0, len(n_out) > 0
+    for k in range(len(places)):
+        f, new = np.int64(order[places[k]]), found[k]
+        word = anchors[f, 1]
+        rank = bases[f >> PAGE_BITS] + ((word >> 16) & 0x3FFF)
+        line = np.int64(rank)
+        if len(ids):
+            line = ids[rank] if rank < len(ids) else -1
+        if line < 0 or line >= len(n_any):  # of a damaged file
+            return DAMAGED
+        old = states[places[k]]
+        before = n_any[line] > 0
+        n_any[line] += int(new & ANY != 0) - int(old & ANY != 0)
+        more += int(n_any[line] > 0) - int(before)
+        if whole:
+            n_out[line] += int(new & OUT != 0) - int(old & OUT != 0)
+            if word >> 30 & 1:
+                ends[line] = ends[line] & ~FIRST | new & FIRST
+            if word >> 31:
+                ends[line] = ends[line] & ~LAST | new & LAST
+        states[places[k]] = new
     return more
 
 

@@ -145,13 +145,13 @@ def test_the_index_is_kept_in_files_that_older_programs_read(fiblets, tmp_path):
     fresh.save(plain)
     index = index_of(fresh)
     assert sorted(index.order.tolist()) == list(range(fresh.n_fiblets))
-    assert index.nbytes <= 5 * fresh.n_fiblets + 28
+    assert index.nbytes <= 23 * fresh.n_fiblets + 84
     fresh.save(indexed)
     back = FibletSet.open(indexed)
     assert "_spatial_index" in back.__dict__
     assert "_spatial_index" not in FibletSet.open(plain).__dict__
     assert np.array_equal(index_of(back).order, index.order)
-    assert np.array_equal(index_of(back).capsules, index.capsules)
+    assert np.array_equal(index_of(back).pieces, index.pieces)
     assert np.array_equal(back.decompress().points, FibletSet.open(plain).decompress().points)
     assert "_spatial_index" not in back[:10].__dict__  # numbers of fiblets are others there
     painter = regions.RegionPainter((SHAPE, AFFINE))
