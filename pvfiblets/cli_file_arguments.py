@@ -78,6 +78,12 @@ def add_convert(commands: Any) -> None:
         "each other; it is read like one file, or in parts",
     )
     convert.add_argument(
+        "--index",
+        action="store_true",
+        help="keep a spatial index in the .fiblets file, of a third of its size, by which painted regions tell their "
+        "streamlines at once (without it, it is made when a region is first painted); info says its size",
+    )
+    convert.add_argument(
         "--verify",
         choices=("all", "sample"),
         default="all",

@@ -33,6 +33,7 @@ def convert(
     per_point_bits: int,
     exact: bool | None,
     shards: int | None,
+    index: bool,
     verify: Literal["all", "sample"],
     quiet: bool,
     json: bool,
@@ -41,6 +42,11 @@ def convert(
     if Path(source).resolve() == Path(target).resolve():
         raise ValueError(f"{source} would be overwritten by itself; give another name")
     formats.registry.module_for(target, "write")  # before hours of work, not after
+    if index and (shards is not None or Path(target).suffix.lower() != COMPRESSED):
+        raise ValueError(
+            f"--index is for a {COMPRESSED} file; shards are put together when they are opened, and other formats have "
+            "no place for it: leave it out"
+        )
     if Path(target).suffix.lower() == COMPRESSED:
         if shards is None:
             from pvfiblets.codec.convert import compress_file as work
@@ -61,6 +67,8 @@ def convert(
             verify=verify,
             progress=show_progress(quiet, json),
         )
+        if index:
+            result |= add_index(target)
     else:
         own = (step, max_error, exact, shards) != (None,) * 4 or max_angle != DEFAULT_ANGLE or per_point
         if own or verify != "all":
@@ -73,6 +81,18 @@ def convert(
         print_json(result)
     else:
         print(summary(source, target, result))
+
+
+def add_index(path: str) -> dict[str, Any]:
+    """Put a spatial index into a finished file; what there is to say about it."""
+    from pvfiblets.codec.fibletset import FibletSet
+
+    data = FibletSet.open(path)
+    made = data.build_index()
+    if data.exact is None:
+        data.save(path)
+    size = made.nbytes if data.exact is None else 0
+    return {"bytes": bytes_of(path), "index_bytes": size, "index_seconds": made.seconds}
 
 
 def which_per_point(given: list[str]) -> PerPoint:
@@ -139,6 +159,10 @@ def summary(source: str, target: str, result: dict[str, Any]) -> str:
     if "seconds" in result:  # else the source was compressed before
         speed = result["points_per_second"] / 1e6
         lines.append(f"time     {result['seconds']:.1f} s, {speed:.1f} million points per second")
+    if result.get("index_bytes"):
+        lines.append(f"index    {result['index_bytes']:,} bytes, made in {result['index_seconds']:.1f} s")
+    elif "index_bytes" in result:
+        lines.append("index    none: an exact file's fiblets are made when it is opened, and their index with them")
     if result.get("per_point"):
         lines.append(f"values   {', '.join(result['per_point'])}")
     lines += [f"dropped  {number:,}: {reason}" for reason, number in result["dropped"].items()]

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from .query.classify import classify
     from .query.labels import Labels
     from .query.measures import Distance
-    from .query.painting.fiblet_index import FibletIndex
+    from .query.painting.fiblet_index import FibletIndex, index_of
     from .query.painting.live import LiveRegion, LiveRegions
     from .query.painting.painter import PaintedRegion, RegionPainter, Stroke
     from .query.predicates import Predicate, ends_in, passes, stays_in
@@ -53,6 +53,7 @@ __all__ = [
     "Surface",
     "classify",
     "ends_in",
+    "index_of",
     "passes",
     "stays_in",
 ]
@@ -76,6 +77,7 @@ _HOME = {
     "Surface": ".query.surfaces",
     "classify": ".query.classify",
     "ends_in": ".query.predicates",
+    "index_of": ".query.painting.fiblet_index",
     "passes": ".query.predicates",
     "stays_in": ".query.predicates",
 }

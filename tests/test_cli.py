@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from pvfiblets import formats, memory
+from pvfiblets import formats, memory, regions
 from pvfiblets.cli import main, make_parser
 from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.report.errors_and_times import direction_angles
@@ -404,3 +404,18 @@ def test_sets_without_extent_are_told_in_sensible_numbers(points, tmp_path, caps
     said = capsys.readouterr().out
     assert not re.search(r"\bnan\b|\binf\b|None|e-[0-9]{3}", said), said
     assert "less than 1e-30" in said or "promise_mm       0" in said or "e-" in said
+
+
+def test_convert_keeps_a_spatial_index_and_says_what_it_takes(tractogram, tmp_path, capsys):
+    source, target = tractogram[0], tmp_path / "a.fiblets"
+    assert main(["convert", str(source), str(target), "--no-exact", "--index", "--json"]) == 0
+    result = json.loads(capsys.readouterr().out)
+    data = FibletSet.open(target)
+    assert result["index_bytes"] == regions.index_of(data).nbytes > 0
+    assert result["index_seconds"] > 0.0 == regions.index_of(data).seconds
+    assert result["bytes"] == target.stat().st_size
+    assert main(["info", str(target), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["index_bytes"] == result["index_bytes"]
+    assert main(["convert", str(source), str(target), "--exact", "--index"]) == 0
+    assert "index    none" in capsys.readouterr().out
+    assert "leave it out" in fails(capsys, "convert", source, tmp_path / "a.tck", "--index")

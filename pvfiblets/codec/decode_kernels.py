@@ -107,7 +107,7 @@ def decode_one(f: int, arrays: Any, low: Any, fine: Any, origin: Any, scale: Any
         q1 = q1 * 65536.0 + float(low[f, 1])
         q2 = q2 * 65536.0 + float(low[f, 2])
     a = (scale[0] * q0, scale[1] * q1, scale[2] * q2)
-    n = (w4 >> 20 & 0x3F) + 1
+    n: Any = (w4 >> 20 & 0x3F) + 1
     step, cap, kind = w3 >> 22, w4 >> 26 & 0xF, w4 >> 30
     at = code_base[f >> PAGE_BITS] + (w3 & 0x3FFFFF)
     size, plain = n - 2, kind == WIDE and step & 7 == 0

@@ -32,7 +32,7 @@ from .quantised import QuantisedPoints
 if TYPE_CHECKING:
     from .fibletset import FibletSet
 
-__all__ = ["VERSION", "is_sharded", "make_header", "open_fiblets", "save"]
+__all__ = ["VERSION", "index_bytes", "is_sharded", "make_header", "open_fiblets", "save"]
 
 VERSION = 3
 OF_CODES = 2
@@ -82,11 +82,19 @@ def save(fiblets: FibletSet, path: str | PathLike[str]) -> None:
 
 def _index_members(fiblets: FibletSet) -> dict[str, Member]:
     """A spatial index over the fiblets, which the room of questions has put with the set; none is none."""
+    return {name: array_member(np.asarray(a)) for name, a in zip(INDEX_MEMBERS, _index_arrays(fiblets), strict=False)}
+
+
+def _index_arrays(fiblets: FibletSet) -> tuple[Any, ...]:
     held: Any = fiblets.__dict__.get(INDEX)
     if held is None:
-        return {}
-    arrays = held if isinstance(held, tuple) else (held.order, held.leaves, held.pieces)
-    return {name: array_member(np.asarray(array)) for name, array in zip(INDEX_MEMBERS, arrays, strict=True)}
+        return ()
+    return held if isinstance(held, tuple) else (held.order, held.leaves, held.pieces)
+
+
+def index_bytes(fiblets: FibletSet) -> int:
+    """Bytes that the spatial index of a set takes in its file; 0 if it has none."""
+    return sum(int(np.asarray(array).nbytes) for array in _index_arrays(fiblets))
 
 
 def _save_exact(fiblets: FibletSet, path: str | PathLike[str]) -> None:

@@ -10,7 +10,7 @@ from ..streamlines import Streamlines
 from .check import check_file
 from .compress import compress
 from .decompress import held_in_bounds
-from .fiblets_file import is_sharded
+from .fiblets_file import index_bytes, is_sharded
 from .fibletset import FibletSet
 
 __all__ = ["info", "iter_chunks", "read", "verify_file", "write"]
@@ -59,6 +59,7 @@ def info(path: str | PathLike[str]) -> dict[str, Any]:
         "points": f.n_points,
         "fiblets": f.n_fiblets,
         "bytes": f.nbytes,
+        "index_bytes": index_bytes(f) or None,
         "step_mm": f.step,
         "exact": f.exact is not None,
         "promise_mm": 0.0 if f.exact is not None else f.promise,

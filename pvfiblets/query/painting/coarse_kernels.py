@@ -17,12 +17,13 @@ from ...codec.jit import kernel, parallel_kernel
 from .index_kernels import LEAF
 from .walk_kernels import ANY, CHANGED, HERE
 
-__all__ = ["ADDED", "ALL_FLAGS", "GONE", "OPEN", "REMOVED", "SAME", "SURE", "settle"]
+__all__ = ["ADDED", "ALL_FLAGS", "GONE", "OPEN", "REMOVED", "SAME", "SURE", "close_parts", "settle"]
 
 ADDED, REMOVED, ALL_FLAGS = 0, 1, 2
 """What is asked: of voxels that came in, or that went, whether it is passed; of any, all flags."""
 SAME, SURE, GONE, OPEN = 0, 1, 2, 3
 """Nothing changes for a fiblet; it passes now; it does no more; it must be decoded."""
+BLOCK = 256
 STEP = 0.7  # voxels between discs, at most
 WIDEST = 2.0  # voxels: a larger radius settles nothing
 
@@ -35,12 +36,15 @@ def _kept(code: int) -> float:
 @kernel
 def _cut(u: Any, k: int, reach: Any, box: Any) -> Any:
     """From which to which share of part ``k`` it may be in a box of voxels; (1, 0) if nowhere."""
+    for axis in range(3):
+        a, b = u[k, axis], u[k + 1, axis]
+        low, high = box[axis] - reach[axis], box[3 + axis] + reach[axis]
+        if (a < low and b < low) or (a > high and b > high):
+            return 1.0, 0.0
     enter, leave = 0.0, 1.0
     for axis in range(3):
         a, d = u[k, axis], u[k + 1, axis] - u[k, axis]
         low, high = box[axis] - reach[axis] - a, box[3 + axis] + reach[axis] - a
-        if low > max(d, 0.0) or high < min(d, 0.0):
-            return 1.0, 0.0
         if d > 0.0:
             enter, leave = max(enter, low / d), min(leave, high / d)
         elif d < 0.0:
@@ -51,8 +55,8 @@ def _cut(u: Any, k: int, reach: Any, box: Any) -> Any:
 @kernel
 def _bits(mask: Any, shape: Any, low: Any, high: Any, bit: int, every: bool) -> bool:
     """Whether some voxel, or every one, that holds positions of a box has a bit of the mask."""
-    x0, y0, z0 = int(math.floor(low[0])), int(math.floor(low[1])), int(math.floor(low[2]))
-    x1, y1, z1 = int(math.floor(high[0])), int(math.floor(high[1])), int(math.floor(high[2]))
+    x0, y0, z0 = math.floor(low[0]), math.floor(low[1]), math.floor(low[2])
+    x1, y1, z1 = math.floor(high[0]), math.floor(high[1]), math.floor(high[2])
     if every:
         if x0 < 0 or y0 < 0 or z0 < 0 or x1 >= shape[0] or y1 >= shape[1] or z1 >= shape[2]:
             return False
@@ -69,21 +73,31 @@ def _bits(mask: Any, shape: Any, low: Any, high: Any, bit: int, every: bool) -> 
 
 
 @kernel
-def _part(u: Any, k: int, reach: Any, share: float, box: Any, mask: Any, shape: Any, touching: int, inside: int,
-          low: Any, high: Any) -> Any:  # fmt: skip
-    """Whether part ``k`` may meet voxels of the bit ``touching``, and surely meets those of the bit ``inside``.
+def _holds(u: Any, k: int, t: float, reach: Any, mask: Any, shape: Any, inside: int, low: Any, high: Any) -> bool:
+    """Whether every voxel that holds positions of the disc across part ``k`` at ``t`` has a bit."""
+    for axis in range(3):
+        at = u[k, axis] + t * (u[k + 1, axis] - u[k, axis])
+        low[axis], high[axis] = at - reach[axis], at + reach[axis]
+    return _bits(mask, shape, low, high, inside, True)
 
-    `share` of the part at either end may have no point of the fiblet across from it. ``inside`` 0: not asked.
-    """
-    enter, leave = _cut(u, k, reach, box)
-    if enter > leave:
-        return False, False
+
+@kernel
+def _along(u: Any, k: int, enter: float, leave: float, reach: Any, kept: Any, radius: float, mask: Any, shape: Any,
+           touching: int, inside: int, low: Any, high: Any) -> Any:  # fmt: skip
     if not (reach[0] <= WIDEST and reach[1] <= WIDEST and reach[2] <= WIDEST):
         return True, False
-    longest = 0.0
+    longest, square = 0.0, 0.0
     for axis in range(3):
         longest = max(longest, abs(u[k + 1, axis] - u[k, axis]))
-    pieces = max(int(math.ceil((leave - enter) * longest / STEP)), 1)
+        square += (kept[k + 1, axis] - kept[k, axis]) ** 2
+    # So much of the part, at either end, may have no point of the fiblet across from it.
+    share = radius / math.sqrt(square) * (1.0 + 1e-6) if square > 0.0 else np.inf
+    if inside:  # where it is deepest in a region, most often
+        for quarter in (2, 1, 3):
+            at = enter + 0.25 * quarter * (leave - enter)
+            if share <= at <= 1.0 - share and _holds(u, k, at, reach, mask, shape, inside, low, high):
+                return True, True
+    pieces = max(math.ceil((leave - enter) * longest / STEP), 1)
     touches = False
     for i in range(pieces):
         s = enter + (leave - enter) * i / pieces
@@ -96,22 +110,38 @@ def _part(u: Any, k: int, reach: Any, share: float, box: Any, mask: Any, shape: 
             if touches and not inside:
                 return True, False
         middle = 0.5 * (s + t)
-        if inside and share <= middle <= 1.0 - share:
-            for axis in range(3):
-                at = u[k, axis] + middle * (u[k + 1, axis] - u[k, axis])
-                low[axis], high[axis] = at - reach[axis], at + reach[axis]
-            if _bits(mask, shape, low, high, inside, True):
-                return True, True
+        across = inside and share <= middle <= 1.0 - share
+        if across and _holds(u, k, middle, reach, mask, shape, inside, low, high):
+            return True, True
     return touches, False
 
 
 @kernel
-def _fiblet(u: Any, parts: int, reach: Any, shares: Any, box: Any, mask: Any, shape: Any, touching: int, inside: int,
-            low: Any, high: Any) -> Any:  # fmt: skip
-    """The same of a whole fiblet."""
+def _part(u: Any, k: int, kept: Any, radius: float, rows: Any, slack: float, box: Any, mask: Any, shape: Any,
+          touching: int, inside: int, reach: Any, low: Any, high: Any) -> Any:  # fmt: skip
+    """Whether part ``k`` may meet voxels of the bit ``touching``, and surely meets those of the bit ``inside``.
+
+    ``inside`` 0: not asked.
+    """
+    for axis in range(3):
+        reach[axis] = radius * rows[axis] * (1.0 + 1e-9) + slack
+    enter, leave = _cut(u, k, reach, box)
+    if enter > leave:
+        return False, False
+    return _along(u, k, enter, leave, reach, kept, radius, mask, shape, touching, inside, low, high)
+
+
+@kernel
+def _fiblet(u: Any, parts: int, only: int, kept: Any, pieces: Any, row: int, unit: float, rows: Any, slack: float,
+            box: Any, mask: Any, shape: Any, touching: int, inside: int, reach: Any, low: Any,
+            high: Any) -> Any:  # fmt: skip
+    """The same of a whole fiblet, or those of its parts whose bits are in `only`."""
     touches = False
     for k in range(parts):
-        one, sure = _part(u, k, reach, shares[k], box, mask, shape, touching, inside, low, high)
+        if not only >> k & 1:
+            continue
+        radius = unit * pieces[row, 3 * parts + 3 + k]
+        one, sure = _part(u, k, kept, radius, rows, slack, box, mask, shape, touching, inside, reach, low, high)
         if sure:
             return True, True
         touches = touches or one
@@ -121,26 +151,60 @@ def _fiblet(u: Any, parts: int, reach: Any, shares: Any, box: Any, mask: Any, sh
 
 
 @kernel
-def _share(leaves: Any, leaf: int, p: Any, unit: float, k: int, mm: float) -> float:
-    """Radius as a share of the chord of part ``k``."""
-    square = 0.0
+def _place(k: int, pieces: Any, row: int, leaves: Any, leaf: int, unit: float, linear: Any, mean: Any, kept: Any,
+           u: Any) -> None:  # fmt: skip
+    """Position ``k`` of a fiblet in mm and in voxels."""
+    x = unit * _kept(pieces[row, 3 * k])
+    y = unit * _kept(pieces[row, 3 * k + 1])
+    z = unit * _kept(pieces[row, 3 * k + 2])
+    kept[k, 0], kept[k, 1] = leaves[leaf, 3 * k] + x, leaves[leaf, 3 * k + 1] + y
+    kept[k, 2] = leaves[leaf, 3 * k + 2] + z
     for axis in range(3):
-        a = float(leaves[leaf, 3 * k + axis]) + unit * _kept(p[3 * k + axis])
-        b = float(leaves[leaf, 3 * k + 3 + axis]) + unit * _kept(p[3 * k + 3 + axis])
-        square += (b - a) ** 2
-    return mm / math.sqrt(square) * (1.0 + 1e-9) if square > 0.0 else np.inf
+        u[k, axis] = mean[k, axis] + (linear[axis, 0] * x + linear[axis, 1] * y + linear[axis, 2] * z)
 
 
 @parallel_kernel
-def settle(near: Any, leaves: Any, pieces: Any, parts: int, per_stretch: int, stretch: int, states: Any, asked: int,
-           linear: Any, corner: Any, rows: Any, mask: Any, shape: Any, changed: Any, whole: Any,
+def close_parts(near: Any, leaves: Any, parts: int, linear: Any, corner: Any, rows: Any, box: Any,
+                found: Any) -> None:  # fmt: skip
+    """Bits of the parts of some leaves whose capsules come near a box of voxels, ``found (n,)`` uint8."""
+    nodes = parts + 1
+    for block in numba.prange((len(near) + BLOCK - 1) // BLOCK):
+        mean, reach = np.empty((nodes, 3)), np.empty(3)
+        for j in range(block * BLOCK, min((block + 1) * BLOCK, len(near))):
+            leaf = near[j]
+            slack = _mean(leaves, leaf, nodes, linear, corner, mean)
+            found[j] = 0
+            for k in range(parts):
+                for axis in range(3):
+                    reach[axis] = float(leaves[leaf, 3 * nodes + k]) * rows[axis] * (1.0 + 1e-9) + slack
+                enter, leave = _cut(mean, k, reach, box)
+                found[j] |= 0 if enter > leave else 1 << k
+
+
+@kernel
+def _mean(leaves: Any, leaf: int, nodes: int, linear: Any, corner: Any, mean: Any) -> float:
+    """Mean course of a leaf in voxels, and by how much rounding may be wrong."""
+    largest = 0.0
+    for k in range(nodes):
+        x = float(leaves[leaf, 3 * k]) - corner[0]
+        y = float(leaves[leaf, 3 * k + 1]) - corner[1]
+        z = float(leaves[leaf, 3 * k + 2]) - corner[2]
+        for axis in range(3):
+            mean[k, axis] = linear[axis, 0] * x + linear[axis, 1] * y + linear[axis, 2] * z
+            largest = max(largest, abs(mean[k, axis]))
+    return 1e-9 * (1.0 + largest)
+
+
+@parallel_kernel
+def settle(near: Any, bits: Any, leaves: Any, pieces: Any, parts: int, per_stretch: int, stretch: int, states: Any,
+           asked: int, linear: Any, corner: Any, rows: Any, mask: Any, shape: Any, changed: Any, whole: Any,
            found: Any) -> None:  # fmt: skip
     """What becomes of the fiblets of some leaves, ``found (n, LEAF)`` uint8: :data:`SAME` and so on.
 
     Parameters
     ----------
-    near : (n,) int64
-        Leaves.
+    near, bits : (n,) int64, (n,) uint8
+        Leaves, and which of their parts are close.
     leaves, pieces
         Of the index, of fiblets in so many `parts`.
     per_stretch, stretch : int
@@ -156,52 +220,34 @@ def settle(near: Any, leaves: Any, pieces: Any, parts: int, per_stretch: int, st
     changed, whole : (6,) float64
         Boxes of the changed voxels, and of the region's.
     """
-    nodes = parts + 1
+    nodes, every = parts + 1, (1 << parts) - 1
     for j in numba.prange(len(near)):
         leaf = near[j]
         at = leaf // per_stretch * stretch + leaf % per_stretch * LEAF
         many = min(LEAF, min((leaf // per_stretch + 1) * stretch, len(states)) - at)
-        mean, u = np.empty((nodes, 3)), np.empty((nodes, 3))
-        reach, shares, low, high = np.empty(3), np.empty(parts), np.empty(3), np.empty(3)
-        largest = 0.0
-        for k in range(nodes):
-            x = float(leaves[leaf, 3 * k]) - corner[0]
-            y = float(leaves[leaf, 3 * k + 1]) - corner[1]
-            z = float(leaves[leaf, 3 * k + 2]) - corner[2]
-            for axis in range(3):
-                mean[k, axis] = linear[axis, 0] * x + linear[axis, 1] * y + linear[axis, 2] * z
-                largest = max(largest, abs(mean[k, axis]))
+        mean, u, kept = np.empty((nodes, 3)), np.empty((nodes, 3)), np.empty((nodes, 3))
+        reach, low, high = np.empty(3), np.empty(3), np.empty(3)
+        slack = _mean(leaves, leaf, nodes, linear, corner, mean)
         unit, radius = float(leaves[leaf, 3 * nodes + parts]), float(leaves[leaf, 3 * nodes + parts + 1])
-        close = False  # a part of the leaf, at least
-        for k in range(parts):
-            for axis in range(3):
-                reach[axis] = float(leaves[leaf, 3 * nodes + k]) * rows[axis] * (1.0 + 1e-9) + 1e-9 * (1.0 + largest)
-            enter, leave = _cut(mean, k, reach, changed)
-            close = close or not enter > leave
+        close = np.int64(bits[j])
         for i in range(LEAF):
             found[j, i] = SAME
-            if i >= many or not close:
+            if i >= many:
                 continue
             passed = states[at + i] & ANY != 0
             if (asked == ADDED and passed) or (asked == REMOVED and not passed):
                 continue
-            p = pieces[at + i]
             for k in range(nodes):
-                x, y, z = unit * _kept(p[3 * k]), unit * _kept(p[3 * k + 1]), unit * _kept(p[3 * k + 2])
-                for axis in range(3):
-                    u[k, axis] = mean[k, axis] + (linear[axis, 0] * x + linear[axis, 1] * y + linear[axis, 2] * z)
-            mm = radius * p[3 * nodes]
-            for axis in range(3):
-                reach[axis] = mm * rows[axis] * (1.0 + 1e-9) + 1e-9 * (1.0 + largest)
-            for k in range(parts):
-                shares[k] = _share(leaves, leaf, p, unit, k, mm)
-            if asked == ADDED:
-                touches, sure = _fiblet(u, parts, reach, shares, changed, mask, shape, CHANGED, HERE, low, high)
-                found[j, i] = SURE if sure else OPEN if touches else SAME
-                continue
-            touches, _ = _fiblet(u, parts, reach, shares, changed, mask, shape, CHANGED, 0, low, high)
+                if (close | close << 1) >> k & 1:
+                    _place(k, pieces, at + i, leaves, leaf, unit, linear, mean, kept, u)
+            inside = HERE if asked == ADDED else 0
+            touches, sure = _fiblet(u, parts, close, kept, pieces, at + i, radius, rows, slack, changed, mask, shape,
+                                    CHANGED, inside, reach, low, high)  # fmt: skip
             if touches and asked == REMOVED:
-                touches, sure = _fiblet(u, parts, reach, shares, whole, mask, shape, HERE, HERE, low, high)
+                for k in range(nodes):
+                    _place(k, pieces, at + i, leaves, leaf, unit, linear, mean, kept, u)
+                touches, sure = _fiblet(u, parts, every, kept, pieces, at + i, radius, rows, slack, whole, mask, shape,
+                                        HERE, HERE, reach, low, high)  # fmt: skip
                 found[j, i] = SAME if sure else OPEN if touches else GONE
             elif touches:
-                found[j, i] = OPEN
+                found[j, i] = SURE if sure else OPEN

@@ -5,7 +5,7 @@ of their chords, until 32 are left: a leaf. Each fiblet is kept as one, two or f
 bytes that count from the leaf's mean course, and as the distance of its points from these chords. That decides for most
 fiblets whether they pass a region (:mod:`.coarse_kernels`); the others are decoded.
 
-It takes 13 to 23 bytes a fiblet, and is kept in the ``.fiblets`` file if it is there when the set is saved; programs
+It takes 11 to 26 bytes a fiblet, and is kept in the ``.fiblets`` file if it is there when the set is saved; programs
 that do not know it pass over it.
 """
 
@@ -34,7 +34,7 @@ Ints = npt.NDArray[np.int64]
 CHUNK = 1 << 22  # fiblets sorted together
 LEAF = 32  # fiblets of a leaf; also said where kernels are compiled
 NEAR = 0.25
-"""mm: as far as this, for three fiblets of four, points may lie from chords. Half a voxel would leave most to decode."""
+"""mm: three fiblets of four may have points as far as this from chords. Half a voxel would leave most to decode."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,8 +49,8 @@ class FibletIndex:
         ``(n_leaves, 4 P + 5)`` float32 mm: mean positions, x y z each; radius, for each part, of the capsule about the
         mean chord in which all fiblets' parts lie; the unit of positions, and that of distances.
     pieces : numpy.ndarray
-        ``(n_fiblets, 3 P + 4)`` uint8, in that order: positions less the leaf's mean ones, signed, and the distance
-        within which all points of the fiblet, and the next one's first, lie from its chords.
+        ``(n_fiblets, 4 P + 3)`` uint8, in that order: positions less the leaf's mean ones, signed, and the distance
+        within which all points of each part, the next fiblet's first with them, lie from its chord.
     seconds : float
         That it took to make; 0 if it came from a file.
     """
@@ -68,7 +68,7 @@ class FibletIndex:
     @property
     def parts(self) -> int:
         """Parts of each fiblet."""
-        return (self.pieces.shape[1] - 4) // 3
+        return (self.pieces.shape[1] - 3) // 4
 
     @cached_property
     def boxes(self) -> npt.NDArray[np.float32]:
@@ -98,10 +98,18 @@ def decoding_arrays(fiblets: FibletSet) -> tuple[Any, ...]:
     """What :func:`.decode_kernels.decode_one` takes of a set, from ``arrays`` to ``tables``."""
     p, low = fiblets.parameters, fiblets.anchors_low
     return (
-        (fiblets.anchors, fiblets.decoding, fiblets.codes, np.ascontiguousarray(fiblets.pages[:, 1])),
-        np.zeros((1, 3), np.uint16) if low is None else low, low is not None, fiblets.origin, fiblets.anchor_scale,
+        (_fixed(fiblets.anchors), _fixed(fiblets.decoding), _fixed(fiblets.codes), _fixed(fiblets.pages[:, 1])),
+        _fixed(np.zeros((1, 3), np.uint16) if low is None else low), low is not None,
+        fiblets.origin, fiblets.anchor_scale,
         (p.step_lo, p.step_hi, p.lattice), quaternions().astype(np.float64),
     )  # fmt: skip
+
+
+def _fixed(array: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    """An array that cannot be written to, as those of mapped sets cannot: kernels are compiled once for either."""
+    found = np.ascontiguousarray(array).view()
+    found.flags.writeable = False
+    return found
 
 
 def index_of(fiblets: FibletSet) -> FibletIndex:
@@ -117,7 +125,7 @@ def index_of(fiblets: FibletSet) -> FibletIndex:
     if held is None:
         held = fiblets.__dict__[KEY] = _built(fiblets)
     elif not isinstance(held, FibletIndex):
-        held = fiblets.__dict__[KEY] = _checked(fiblets, FibletIndex(*held))
+        held = fiblets.__dict__[KEY] = _checked(fiblets, FibletIndex(*map(_fixed, held)))
     return held
 
 
@@ -126,7 +134,7 @@ def _checked(fiblets: FibletSet, index: FibletIndex) -> FibletIndex:
     n, parts = fiblets.n_fiblets, index.parts if index.pieces.ndim == 2 else 0
     whole, rest = divmod(n, CHUNK)
     n_leaves = whole * (CHUNK // LEAF) + -(-rest // LEAF)
-    fits = parts >= 1 and index.pieces.shape == (n, 3 * parts + 4) and index.pieces.dtype == np.uint8
+    fits = parts >= 1 and index.pieces.shape == (n, 4 * parts + 3) and index.pieces.dtype == np.uint8
     fits = fits and index.leaves.shape == (n_leaves, 4 * parts + 5) and index.leaves.dtype == np.float32
     fits = fits and index.order.shape == (n,) and index.order.dtype == np.uint32
     if not fits or (n and int(index.order.max()) >= n):
@@ -152,13 +160,13 @@ def _built(fiblets: FibletSet) -> FibletIndex:
     n, parts = fiblets.n_fiblets, _parts(fiblets)
     arrays = decoding_arrays(fiblets)
     low, fine, origin, scale = arrays[1:5]
-    bases, end_scale = np.ascontiguousarray(fiblets.pages[:, 0]), fiblets.end_scale
-    order, pieces = np.empty(n, np.uint32), np.empty((n, 3 * parts + 4), np.uint8)
+    anchors, ends, bases, end_scale = arrays[0][0], _fixed(fiblets.ends), _fixed(fiblets.pages[:, 0]), fiblets.end_scale
+    order, pieces = np.empty(n, np.uint32), np.empty((n, 4 * parts + 3), np.uint8)
     held = [np.empty((0, 4 * parts + 5), np.float32)]
     for first in range(0, n, CHUNK):
         m = min(CHUNK, n - first)
         keys, places = np.empty((m, 6), np.float32), np.arange(m)
-        kernels.chords(first, fiblets.anchors, low, fine, fiblets.ends, bases, origin, scale, end_scale, keys)
+        kernels.chords(first, anchors, low, fine, ends, bases, origin, scale, end_scale, keys)
         ranges = np.array([[0, m]])
         for _ in range(6):
             middles = np.empty(len(ranges), np.int64)
@@ -170,11 +178,11 @@ def _built(fiblets: FibletSet) -> FibletIndex:
         order[first : first + m] = places + first
         found = np.zeros((-(-m // LEAF), 4 * parts + 5), np.float32)
         damaged = np.zeros(len(found), np.bool_)
-        kernels.leaf_pieces(order[first : first + m], *arrays, parts, found, pieces[first : first + m], damaged)
+        kernels.leaf_pieces(_fixed(order[first : first + m]), *arrays, parts, found, pieces[first : first + m], damaged)
         if damaged.any():
             raise FormatError("the set of fiblets", None, "records that point beyond its arrays", "an undamaged file")
         held.append(found)
-    return FibletIndex(order, np.concatenate(held), pieces, time.perf_counter() - begin)
+    return FibletIndex(_fixed(order), _fixed(np.concatenate(held)), _fixed(pieces), time.perf_counter() - begin)
 
 
 def fiblets_of_streamlines(fiblets: FibletSet) -> npt.NDArray[np.int32]:

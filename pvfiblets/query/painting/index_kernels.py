@@ -207,28 +207,28 @@ def leaf_pieces(
                     widest = max(widest, abs(points[j, _node(k, parts, counts[j], turned[j]), axis] - mean[k, axis]))
         leaves[leaf, 3 * nodes + parts] = max(widest / 127.0 * UP, 1e-30)
         unit = float(leaves[leaf, 3 * nodes + parts])
-        radii, kept = np.zeros(LEAF), np.empty((LEAF, nodes, 3))
+        radii, kept = np.zeros((LEAF, parts)), np.empty((LEAF, nodes, 3))
         for j in range(many):
-            n, radius = counts[j], 0.0
+            n = counts[j]
             for k in range(nodes):
                 at, square = _node(k, parts, n, turned[j]), 0.0
                 for axis in range(3):
-                    code = int(round((points[j, at, axis] - mean[k, axis]) / unit))
+                    code = round((points[j, at, axis] - mean[k, axis]) / unit)
                     pieces[first + j, 3 * k + axis] = code & 0xFF
                     kept[j, k, axis] = mean[k, axis] + unit * code
                     square += (kept[j, k, axis] - points[j, at, axis]) ** 2
-                radius = max(radius, math.sqrt(square))
+                for part in range(max(k - 1, 0), min(k + 1, parts)):
+                    radii[j, part] = max(radii[j, part], math.sqrt(square))
             for k in range(parts):
                 a, b = _node(k, parts, n, turned[j]), _node(k + 1, parts, n, turned[j])
                 for i in range(min(a, b), max(a, b) + 1):
-                    radius = max(radius, _apart(points[j, i], kept[j, k], kept[j, k + 1]))
-            radii[j] = radius
+                    radii[j, k] = max(radii[j, k], _apart(points[j, i], kept[j, k], kept[j, k + 1]))
         leaves[leaf, 3 * nodes + parts + 1] = max(radii.max() / 255.0 * UP, 1e-30)
         step = float(leaves[leaf, 3 * nodes + parts + 1])
         for j in range(many):
-            code = min(int(math.ceil(radii[j] / step)), 255)
-            pieces[first + j, 3 * nodes] = code
             for k in range(parts):
+                code = min(math.ceil(radii[j, k] / step), 255)
+                pieces[first + j, 3 * nodes + k] = code
                 reach = 0.0
                 for node in range(k, k + 2):
                     x, y, z = kept[j, node, 0], kept[j, node, 1], kept[j, node, 2]

@@ -114,16 +114,17 @@ class LiveRegion:
         prefer_kernels("decoding")
         mask[voxels] = np.where(inside, kernels.HERE, 0) | kernels.CHANGED
         changed = _box(voxels, grid.shape)
-        whole = changed if asked == coarse.ADDED else _box(np.flatnonzero(mask & kernels.HERE), grid.shape)
+        whole = changed if asked == coarse.ADDED else _box(np.flatnonzero(mask), grid.shape)
         near = index.near(*_in_mm(changed, grid))
+        per, rows, bits = CHUNK // LEAF, np.linalg.norm(grid.linear, axis=1), np.empty(len(near), np.uint8)
+        coarse.close_parts(near, index.leaves, index.parts, grid.linear, grid.corner, rows, changed, bits)
+        near, bits = near[bits > 0], bits[bits > 0]
         found = np.empty((len(near), LEAF), np.uint8)
-        per = CHUNK // LEAF
-        rows = np.linalg.norm(grid.linear, axis=1)
-        coarse.settle(near, index.leaves, index.pieces, index.parts, per, CHUNK, self._states, asked, grid.linear,
+        coarse.settle(near, bits, index.leaves, index.pieces, index.parts, per, CHUNK, self._states, asked, grid.linear,
                       grid.corner, rows, mask, grid.shape, changed, whole, found)  # fmt: skip
-        leaf, of_leaf = np.nonzero(found)
-        places = near[leaf] // per * CHUNK + near[leaf] % per * LEAF + of_leaf
-        fates = found[leaf, of_leaf]
+        which = np.flatnonzero(found)
+        fates, leaf = found.ravel()[which], near[which // LEAF]
+        places = leaf // per * CHUNK + leaf % per * LEAF + which % LEAF
         open_ = places[fates == coarse.OPEN]
         self.looked_at += len(places)
         self.decoded += len(open_)
@@ -147,7 +148,7 @@ class LiveRegion:
     def _apply(self, places: Ints, flags: npt.NDArray[np.uint8]) -> None:
         from . import walk_kernels as kernels
 
-        more = kernels.apply(places, flags, self.index.order, self.fiblets.anchors, self._bases, self._ids,
+        more = kernels.apply(places, flags, self.index.order, self._arrays[0][0], self._bases, self._ids,
                              self._states, self._any, self._out, self._ends)  # fmt: skip
         if more == kernels.DAMAGED:
             raise _damaged()

@@ -162,7 +162,7 @@ def apply(places: Any, found: Any, order: Any, anchors: Any, bases: Any, ids: An
         f, new = np.int64(order[places[k]]), found[k]
         word = anchors[f, 1]
         rank = bases[f >> PAGE_BITS] + ((word >> 16) & 0x3FFF)
-        line = np.int64(rank)
+        line: Any = np.int64(rank)
         if len(ids):
             line = ids[rank] if rank < len(ids) else -1
         if line < 0 or line >= len(n_any):  # of a damaged file
