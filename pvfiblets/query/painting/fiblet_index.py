@@ -125,8 +125,12 @@ def index_of(fiblets: FibletSet) -> FibletIndex:
     if held is None:
         held = fiblets.__dict__[KEY] = _built(fiblets)
     elif not isinstance(held, FibletIndex):
-        held = fiblets.__dict__[KEY] = _checked(fiblets, FibletIndex(*map(_fixed, held)))
+        held = fiblets.__dict__[KEY] = _checked(fiblets, _of_file(*held))
     return held
+
+
+def _of_file(order: Any, leaves: Any, pieces: Any) -> FibletIndex:
+    return FibletIndex(_fixed(order), _fixed(leaves), _fixed(pieces))
 
 
 def _checked(fiblets: FibletSet, index: FibletIndex) -> FibletIndex:
