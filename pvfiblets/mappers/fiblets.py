@@ -15,7 +15,7 @@ from pvfiblets.mappers.engine_mapper import CutMapper
 from pvfiblets.mappers.engine_options import EngineOptions, engine_renderer
 from pvfiblets.mappers.line_data import SIDES
 from pvfiblets.mappers.picking import nearest_pixel
-from pvfiblets.mappers.scene import Frame
+from pvfiblets.mappers.scene import Frame, slack
 from pvfiblets.mappers.windows import Slot, WindowContext, contexts_with
 
 
@@ -123,11 +123,11 @@ class FibletMapper(CutMapper[EngineOptions]):
         self._detail = float(pixels)
         self._actor_modified()
 
-    def _style(self, renderer: vtkRenderer, pixel_scale: float) -> FibletStyle:  # noqa: ARG002
+    def _style(self, renderer: vtkRenderer, pixel_scale: float) -> FibletStyle:
         return FibletStyle(
             line_width=self.line_width * pixel_scale,
             min_width=max(1.0, pixel_scale),
-            tolerance=self._detail * pixel_scale,
+            tolerance=max(self._detail * pixel_scale, slack(renderer)),
         )
 
     def _narrower(self, pixel_scale: float) -> float:

@@ -190,6 +190,29 @@ def samples_per_pixel(renderer: vtkRenderer, viewport: tuple[int, int, int, int]
     return drawn / shown if shown > 0 and drawn > shown + 1 else 1.0
 
 
+_slack: dict[str, float] = {}
+
+
+def hurry(window: Any, pixels: float) -> None:
+    """Let lines of a window be off by so many of the pixels that are drawn, for as long as it must be fast.
+
+    Parameters
+    ----------
+    window : vtkRenderWindow
+    pixels : float
+        0 ends it.
+    """
+    address = window.GetAddressAsString("")
+    _slack.pop(address, None)
+    if pixels > 0.0:
+        _slack[address] = pixels
+
+
+def slack(renderer: vtkRenderer) -> float:
+    """Return what :func:`hurry` allows in a renderer's window, drawn pixels; 0 where nobody is in a hurry."""
+    return _slack.get(renderer.GetRenderWindow().GetAddressAsString(""), 0.0) if _slack else 0.0
+
+
 def in_motion(renderer: vtkRenderer) -> bool:
     """Whether the window wants pictures at the rate of interaction.
 

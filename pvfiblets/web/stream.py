@@ -2,7 +2,8 @@
 
 Nothing is drawn and nothing is sent while nothing changes. While the pointer drags, frames are coded at a low quality,
 and the next is drawn only when the last one has left for the browser. Scenes that take long to draw are drawn with
-fewer pixels meanwhile, which the browser enlarges. As soon as the pointer rests, the whole picture comes at full
+fewer pixels meanwhile, which the browser enlarges, and with fewer points of their lines, which may be off by such a
+pixel; how few follows from the times of the last frames. As soon as the pointer rests, the whole picture comes at full
 quality; where it had all its pixels, without drawing again. If nothing happens then, the samples of the refined picture
 (``plotter.picture.antialias``) are drawn, one between any two events, and it is sent when it is finished.
 """
@@ -23,6 +24,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pvfiblets.mappers.scene import hurry
 from pvfiblets.web.rpc_allowlist import MOST_PIXELS
 from pvfiblets.web.touch import Fingers
 
@@ -34,10 +36,11 @@ FASTEST = 1.0 / 60.0  # seconds from frame to frame, at least
 UNSENT = 4  # messages that may wait for the network before drawing waits for them
 PATIENCE = 10.0  # seconds that it does: of browsers that share a view, one may have gone to sleep
 SLOW = 0.1  # seconds a frame; if more, fewer pixels are drawn while the camera moves
-REDUCED = 0.5  # of the width and the height of these
+HASTES = ((1.0, 0.0), (0.5, 1.0), (0.35, 2.0))
+"""Share of the width and the height that is drawn, and drawn pixels by which lines may be off: no haste to most."""
 HEARD = 0.002  # seconds between samples, in which events are heard
 SO_FAR = 0.5  # seconds between pictures of what is there so far of a set whose parts are fetched
-BRISK = 0.25 * SLOW  # of a reduced frame; if less, all pixels can be drawn
+BRISK = 0.25 * SLOW  # of a reduced frame; if less, more pixels can be drawn
 
 
 class PictureStream:
@@ -257,6 +260,7 @@ class PictureStream:
 
     async def close(self) -> None:
         """Stop."""
+        hurry(self._plotter.render_window, 0.0)
         if self._task is not None:
             self._task.cancel()
             await asyncio.gather(self._task, return_exceptions=True)
@@ -336,10 +340,13 @@ class PictureStream:
 
     def _next(self) -> float:
         """Return the share of the size at which the next frame of the moving camera is drawn."""
-        last = list(self.times)[-2:]
-        if self._drawn_at == 1.0:
-            return REDUCED if len(last) == 2 and min(last) > SLOW else 1.0
-        return 1.0 if len(last) == 2 and max(last) < BRISK else REDUCED
+        last, shares = list(self.times)[-2:], [share for share, _ in HASTES]
+        level = shares.index(self._drawn_at)
+        if len(last) == 2 and min(last) > SLOW:
+            level += 1
+        elif len(last) == 2 and max(last) < BRISK:
+            level -= 1
+        return shares[min(max(level, 0), len(shares) - 1)]
 
     def _resize(self, share: float) -> None:
         """Draw at a share of the size from now on, and let the pointer be where it was."""
@@ -351,6 +358,7 @@ class PictureStream:
         # Letters and lines keep their size on the page. Enlarged pixels have no use for samples.
         self._plotter.render_window.SetDPI(self._dpi)
         self._plotter.render_window.SetMultiSamples(self._sharp[0] if share == 1.0 else 0)
+        hurry(self._plotter.render_window, dict(HASTES)[share])
         interactor.UpdateSize(*self._pixels)
         for at in (last, place):  # an event moves the place before to the last
             interactor.SetEventPosition(

@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 import pyvista as pv
 from PIL import Image
+from scipy import ndimage
 
+from pvfiblets.mappers.scene import hurry, slack
 from pvfiblets.web.stream import REST, PictureStream, encode
 
 
@@ -324,3 +326,34 @@ def test_pictures_of_any_size_have_lines_and_bars_as_the_page_has_them(plotter):
     assert clear[120, 150, 3] == 255
     assert plotter.render_window.GetSize() == (200, 160)
     np.testing.assert_array_equal(np.asarray(Image.open(io.BytesIO(stream.picture())).convert("RGB")), page)
+
+
+def test_haste_follows_the_times_of_frames_and_ends_at_rest(plotter):
+    """Lines of reduced pictures may be off by a drawn pixel or two, no more, and by nothing at rest."""
+    rng = np.random.default_rng(3)
+    lines = [np.cumsum(rng.normal(size=(400, 3)) * 0.02 + rng.normal(size=3) * 0.05, axis=0) for _ in range(5)]
+    actor = plotter.add_fiblets(lines, color="black")
+    plotter.background_color = "white"
+    stream = PictureStream(plotter, "view")
+    stream.update_size("", {"w": 400, "h": 240, "p": 1.0})
+    whole = stream._draw()
+    shares = [1.0]
+    for seconds in (0.2, 0.2, 0.2, 0.09, 0.001, 0.001):
+        stream._draw(shares[-1])
+        stream.times.clear()
+        stream.times.extend([seconds, seconds])
+        shares.append(stream._next())
+    assert shares == [1.0, 0.5, 0.35, 0.35, 0.35, 0.5, 1.0]
+    for share, pixels in ((0.5, 1.0), (0.35, 2.0)):
+        hasty = (stream._draw(share) < 250).any(-1)
+        assert slack(plotter.renderer) == pixels
+        hurry(plotter.render_window, 0.0)
+        actor.mapper.Modified()
+        true = (stream._draw(share) < 250).any(-1)
+        reach = ndimage.generate_binary_structure(2, 2)
+        assert true.sum() > 100
+        for one, other in ((hasty, true), (true, hasty)):
+            assert not (one & ~ndimage.binary_dilation(other, reach, round(pixels) + 1)).any()
+        stream._resize(1.0)
+    assert slack(plotter.renderer) == 0.0
+    np.testing.assert_array_equal(stream._draw(), whole)
