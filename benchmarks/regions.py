@@ -46,8 +46,8 @@ def made(folder: Path, streamlines: int, step: float) -> Path:
 def indexed(path: Path) -> tuple[Path, dict[str, Any]]:
     """Return a file of the same set with its index, and what that takes."""
     data, target = FibletSet.open(path), path.with_suffix(".indexed.fiblets")
-    data[:100].build_index()  # compiles
-    cpu, index = time.process_time(), data.build_index()
+    regions.index_of(data[:100])  # compiles
+    cpu, index = time.process_time(), regions.index_of(data)
     facts = {"index_bytes": index.nbytes, "index_seconds": index.seconds, "index_cpu": time.process_time() - cpu}
     data.save(target)
     return target, facts | {"bytes": path.stat().st_size, "fiblets": data.n_fiblets}

@@ -86,9 +86,10 @@ def convert(
 def add_index(path: str) -> dict[str, Any]:
     """Put a spatial index into a finished file; what there is to say about it."""
     from pvfiblets.codec.fibletset import FibletSet
+    from pvfiblets.regions import index_of
 
     data = FibletSet.open(path)
-    made = data.build_index()
+    made = index_of(data)
     if data.exact is None:
         data.save(path)
     size = made.nbytes if data.exact is None else 0

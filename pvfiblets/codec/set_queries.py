@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from ..query.bundles.similar import Similar
     from ..query.connectome import Connectome
     from ..query.density_map import DensityMap
-    from ..query.painting.fiblet_index import FibletIndex
     from ..query.table import Table
     from .fibletset import FibletSet
 
@@ -152,21 +151,6 @@ class SetQueries:
         from .. import similar
 
         return similar(self, like, distance, **options)
-
-    def build_index(self: Any) -> FibletIndex:
-        """Make a spatial index over the fiblets, by which painted regions tell their streamlines at once.
-
-        :meth:`.FibletSet.save` keeps it in a ``.fiblets`` file, but for that of an exact set. Without it, it is made
-        when a region is first painted.
-
-        Returns
-        -------
-        FibletIndex
-            ``nbytes`` and ``seconds`` say what it takes; the set's own if it has one.
-        """
-        from ..regions import index_of
-
-        return index_of(self)
 
     def table(self: Any, ids: npt.ArrayLike | slice | None = None) -> Table:
         """Return a row for each streamline; see :func:`pvfiblets.table`.
