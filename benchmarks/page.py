@@ -109,7 +109,7 @@ def opened(browser: Any, url: str, turns: dict[str, str]) -> dict[str, float]:
     page.set_default_timeout(600_000)
     begun = time.perf_counter()
     page.goto(url)
-    page.wait_for_selector("body[data-state=drawn]")
+    page.wait_for_selector("body[data-state=drawn]", state="attached")
     found = {"first_s": time.perf_counter() - begun}
     if "whole" in turns:
         page.evaluate("pvfiblets.settled()")
@@ -128,16 +128,16 @@ def measure(points: float, browser: Any, folder: Path, base: str) -> list[dict[s
     scene = PageScene("Benchmark")
     fiblet_layer(scene, fiblets)
     written = write_page(scene, folder / "ours.html")
-    pvfiblets.write(folder / "lines.tck", lines)
+    pvfiblets.write(folder / "lines.trk", lines)
     html = "<!DOCTYPE html><body><canvas id='view' width='800' height='600'></canvas>"
     (folder / "niivue.html").write_text(f"{html}<script type='module' src='niivue.js'></script>")
-    data = (folder / "lines.tck").stat().st_size
+    data = (folder / "lines.trk").stat().st_size
     rows = [
         {"program": "pvfiblets", "bytes": sum(p.stat().st_size for p in written), "data_bytes": len(scene.blobs[0])},
         {"program": "niivue", "bytes": data + (folder / "niivue.js").stat().st_size, "data_bytes": data},
     ]
     rows[0] |= opened(browser, f"{base}/ours.html", OURS)
-    rows[1] |= opened(browser, f"{base}/niivue.html?file=lines.tck", {"turned": "(frames) => turn(frames)"})
+    rows[1] |= opened(browser, f"{base}/niivue.html?file=lines.trk", {"turned": "(frames) => turn(frames)"})
     for row in rows:
         row |= {"points": n, "data_bytes_per_point": round(row["data_bytes"] / n, 3)}
         print(row, flush=True)
