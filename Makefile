@@ -49,11 +49,7 @@ docs: environment gl
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
 	$(BIN)/python -m sphinx -W --keep-going -b html docs docs/_build/html
 
-check-# The script of pages, for which node is needed; what it makes is part of the repository.
-client: environment
-	$(BIN)/python scripts/page_client.py
-
-wheel: environment gl
+check-wheel: environment gl
 	@PYTHON=$(BIN)/python scripts/wheel_check.sh
 
 drivers: environment gl

@@ -65,3 +65,10 @@ def test_products_are_thinned_but_every_pair_is_there(tmp_path, arguments, fewes
     for i, j in combinations(range(3), 2):
         assert len({(row[i], row[j]) for row in rows}) == (3, 4, 2)[i] * (3, 4, 2)[j]
     assert (tmp_path / "other").exists() == bool(arguments)
+
+
+@pytest.mark.skipif(shutil.which("make") is None, reason="make is not installed")
+@pytest.mark.parametrize("goal", ["demo", "test", "test-all", "check-wheel", "drivers-part", "client", "docs"])
+def test_commands_of_the_makefile_can_be_read(goal):
+    read = subprocess.run(["make", "--dry-run", goal], cwd=CONFTEST.parents[1], capture_output=True, text=True)
+    assert read.returncode == 0, read.stderr

@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 import pyvista as pv
 
+from pvfiblets.engine.view import MAX_CLIP_PLANES
 from pvfiblets.mappers.fiblets import FibletMapper
 from pvfiblets.mappers.line_light import LineLight
 from pvfiblets.mappers.scene import to_array, world_planes
@@ -164,6 +165,13 @@ def _add_fiblets(scene: PageScene, name: str, actor: Any, mapper: FibletMapper, 
     if filtering is not None and filtering.streamlines is not None:
         more["kept"] = scene.add_blob(np.asarray(filtering.streamlines, np.uint8))
     planes = world_planes(mapper)
+    if mapper.region is not None:
+        from pvfiblets.engine.regions.clip_planes import planes_of
+
+        flat, rest = planes_of(mapper.region, max(MAX_CLIP_PLANES - len(planes), 0))
+        planes = np.concatenate([planes, flat])
+        if rest is not None:
+            unable.append(f"the cut of {name!r} by what is no plane")
     if len(planes):
         more["planes"] = planes.tolist()
     more["controls"] = _controls(scene, fiblets, actor, mapper.colouring)

@@ -16,10 +16,12 @@ import pytest
 import pyvista as pv
 
 import pvfiblets
+from pvfiblets import regions
 from pvfiblets.cli import main
 from pvfiblets.codec.archive import open_archive
 from pvfiblets.page.scene import PageScene, fiblet_layer
 from pvfiblets.page.writing import write_page
+from pvfiblets.plotting.page_scene import page_of
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -105,6 +107,18 @@ def test_what_a_page_cannot_draw_is_named(fiblets, tmp_path):
     actor = plotter.add_fiblets(fiblets, name="lines")
     actor.tube_radius = 0.4
     with pytest.warns(UserWarning, match="the page leaves out tubes of 'lines': it cannot draw them"):
+        plotter.fiblets.export_page(tmp_path / "figure.html")
+    plotter.close()
+
+
+def test_a_cut_by_planes_goes_along_and_any_other_is_named(fiblets, tmp_path):
+    plotter = pv.Plotter(off_screen=True, window_size=(100, 80))
+    actor = plotter.add_fiblets(fiblets, name="lines")
+    actor.clip(regions.Plane((0.0, 0.0, 1.0), (0.0, 0.0, 2.0)))
+    (layer,) = page_of(plotter).layers
+    np.testing.assert_allclose(layer["planes"], [[0.0, 0.0, 1.0, -2.0]])
+    actor.clip(regions.Sphere((0.0, 0.0, 0.0), 5.0))
+    with pytest.warns(UserWarning, match="leaves out the cut of 'lines' by what is no plane: it cannot draw them"):
         plotter.fiblets.export_page(tmp_path / "figure.html")
     plotter.close()
 

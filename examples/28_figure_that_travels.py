@@ -4,7 +4,7 @@ A figure that travels
 
 One HTML file with the streamlines in it, which any browser draws by itself: for reviewers, notebooks and phones.
 
-Run it as ``python examples/27_figure_that_travels.py [FOLDER]``.
+Run it as ``python examples/28_figure_that_travels.py [FOLDER]``.
 """
 
 import sys
