@@ -176,7 +176,7 @@ class FibletSet(SetQueries):
         that a float64 can say: of points at the origin.
         """
         promise = self.parameters.promise
-        return promise if promise > LEAST else 0.0
+        return promise if promise > LEAST or any(self.bounds) else 0.0
 
     @property
     def sizes(self) -> dict[str, int]:

@@ -156,7 +156,8 @@ def _sessions(app: Any) -> None:
             with html.Form(
                 classes="pv-pair", v_on_submit_prevent=(app.files.store_session, "[$event.target[0].value]")
             ):
-                html.Input(classes="pv-num", value="session.json", style="flex: 1; width: auto", aria_label="File name")
+                html.Input(classes="pv-num", value="session.json", style="flex: 1; width: auto", aria_label="File name",
+                           data_read_later=True)  # fmt: skip
                 v3.VBtn("Save there", type="submit", variant="tonal", classes="text-none", data_action="store-session")
 
 
@@ -173,13 +174,13 @@ def _picture(app: Any) -> None:
                 html.Label(label)
                 with html.Div(classes="pv-pair"):
                     html.Input(classes="pv-num", inputmode="numeric", value=(f"picture.{name}",), aria_label=label,
-                               id=f"picture-{name}")  # fmt: skip
+                               id=f"picture-{name}", data_read_later=True)  # fmt: skip
                     html.Span(unit, classes="pv-small")
         with html.Div(classes="pv-row"):
             html.Label("For print")
             with html.Div(classes="pv-pair"):
                 html.Input(classes="pv-num", inputmode="decimal", value="300", aria_label="Pixels per inch",
-                           id="picture-dpi")  # fmt: skip
+                           id="picture-dpi", data_read_later=True)  # fmt: skip
                 html.Span("dpi", classes="pv-small")
         with html.Label(classes="pv-row", style="cursor: pointer"):
             html.Span("Background", classes="pv-label")

@@ -43,6 +43,12 @@ def brain(tmp_path_factory):
     return FibletSet.open(path)
 
 
+@pytest.fixture(autouse=True)
+def usual_programs(monkeypatch):
+    """Draw here as workers do, whatever tests of the engine before have set for this process."""
+    monkeypatch.setattr("pvfiblets.engine.fiblets.pipelines.compute.FEW", 2048)
+
+
 @pytest.fixture
 def whole(gl, brain):
     made = FibletRenderer(gl, brain, culling=None)

@@ -50,7 +50,6 @@ def test_unknown_names_list_what_there_is():
     mesh = pv.MultipleLines(BARS[0])
     mesh.point_data["height"] = X
     mesh.cell_data["weight"] = [3.0]
-    mesh.point_data["fa"] = list("abcde")  # text colours nothing
     plotter = pv.Plotter(off_screen=True)
     for source, known in ((mesh, "'height'.*'weight'.*'arc_length'"), (BARS, "none.*none.*'arc_length'"),
                           (as_spline_tubes(BARS), "none.*none.*'arc_length'")):  # fmt: skip

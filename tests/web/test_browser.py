@@ -55,7 +55,8 @@ def test_properties_change_the_picture_and_are_undone(visit):
     here.page.fill("[data-property=line_width] input.pv-num", "a lot")
     here.press("Tab")
     here.wait(lambda: "not a number" in here.toast(), "a sentence on what was typed")
-    assert here.page.input_value("[data-property=line_width] input.pv-num") == "1"
+    width = "[data-property=line_width] input.pv-num"
+    here.wait(lambda: here.page.input_value(width) == "1", "the width that there is")
 
 
 def test_layers_are_hidden_renamed_duplicated_and_removed(visit):

@@ -91,7 +91,7 @@ class ClusterRenderer(NearestOnly):
         self._stretches = Stretches.of_count(fiblets, count or len(self._workers()))
         key, path = source_of(fiblets)
         total = len(self._stretches)
-        self._parts = [PartOfSet(key, path, number, total) for number in range(total)]
+        self._parts = [PartOfSet(key, path, number, total, int(fiblets.n_fiblets)) for number in range(total)]
         # What a worker reads itself is not sent; dask keeps what is sent once for all frames.
         self._sent = [None if path else self._send(self._stretches.part(one.number), one.number) for one in self._parts]
         self._filters: list[Any] = [None] * total

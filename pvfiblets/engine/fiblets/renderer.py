@@ -71,6 +71,8 @@ class FibletRenderer(LinesBehind):
         As of :class:`pvfiblets.engine.drawable.Drawable`.
     whole : FibletSet, optional
         What filters speak of, where `fiblets` are some of its streamlines (:mod:`pvfiblets.codec.restrict`).
+    alike : int, optional
+        Fiblets of a set whose pictures those of this part of it shall equal in every bit.
 
     Attributes
     ----------
@@ -104,6 +106,7 @@ class FibletRenderer(LinesBehind):
         max_total_bytes: int | None = None,
         lender: Drawable[Any] | None = None,
         whole: FibletSet | None = None,
+        alike: int | None = None,
     ) -> None:
         pipeline = choose(ctx, pipeline)
         check_choices(fit=fit)
@@ -111,6 +114,7 @@ class FibletRenderer(LinesBehind):
             raise ValueError("one renderer holds all that it draws; streamed_renderer() makes one that fetches parts")
         super().__init__(ctx, CONSTANTS, lender)
         self.pipeline = pipeline
+        self._alike = alike
         self._fiblets = fiblets
         self._chunks: list[Chunk] = []
         self._last: tuple[View, FibletStyle] | None = None
@@ -185,6 +189,7 @@ class FibletRenderer(LinesBehind):
             self._fiblets.n_fiblets,
             len(self._chunks),
             self._limits,
+            self._alike,
         )
 
     def _request(self, view: View, style: FibletStyle, target: GBuffer) -> DrawRequest:

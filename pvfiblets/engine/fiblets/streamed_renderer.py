@@ -70,6 +70,8 @@ class StreamedRenderer(NearestOnly):
         Returns the GPU bytes of a part.
     pipeline : str
         As of :class:`.FibletRenderer`.
+    alike : int, optional
+        As of :class:`.FibletRenderer`; the whole set's fiblets by default.
     clock : callable
         Seconds.
 
@@ -96,6 +98,7 @@ class StreamedRenderer(NearestOnly):
         needed: Callable[[FibletSet], int],
         *,
         pipeline: str = "auto",
+        alike: int | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         super().__init__(ctx, CONSTANTS)
@@ -104,6 +107,7 @@ class StreamedRenderer(NearestOnly):
         self._room = room
         self._needed = needed
         self._clock = clock
+        self._alike = parts.whole.n_fiblets if alike is None else alike
         self._there: OrderedDict[int, FibletRenderer] = OrderedDict()  # the least lately drawn first
         self._bytes: dict[int, int] = {}
         self._boxes: dict[int, Box | None] = {}
@@ -169,8 +173,9 @@ class StreamedRenderer(NearestOnly):
         while True:
             try:
                 made = FibletRenderer(
-                    self._ctx, part, pipeline=self.pipeline, culling=None, lender=self, whole=self._parts.whole
-                )
+                    self._ctx, part, pipeline=self.pipeline, culling=None, lender=self,
+                    whole=self._parts.whole, alike=self._alike,
+                )  # fmt: skip
                 break
             except GPUMemoryError as error:
                 if not self._there:
@@ -240,13 +245,14 @@ def streamed_renderer(
     *,
     pipeline: str = "auto",
     max_total_bytes: int | None = None,
+    alike: int | None = None,
     **options: Any,
 ) -> FibletRenderer | StreamedRenderer:
     """Return a renderer of all of a set if it fits, else one that draws it part by part.
 
     Parameters
     ----------
-    ctx, fiblets, pipeline, max_total_bytes
+    ctx, fiblets, pipeline, max_total_bytes, alike
         As of :class:`.FibletRenderer`.
     **options
         Of a renderer of all.
@@ -264,7 +270,9 @@ def streamed_renderer(
     room = budget.room
     if room is None or budget.fits(fiblets):
         try:
-            return FibletRenderer(ctx, fiblets, pipeline=pipeline, max_total_bytes=max_total_bytes, **options)
+            return FibletRenderer(
+                ctx, fiblets, pipeline=pipeline, max_total_bytes=max_total_bytes, alike=alike, **options
+            )
         except GPUMemoryError:
             if room is not None:
                 raise
@@ -277,4 +285,4 @@ def streamed_renderer(
         )
     part_bytes = int((1.0 - THINNED_SHARE) * room / PARTS)
     parts = Stretches(fiblets, budget.needed(fiblets), part_bytes)
-    return StreamedRenderer(ctx, parts, room, budget.needed, pipeline=pipeline)
+    return StreamedRenderer(ctx, parts, room, budget.needed, pipeline=pipeline, alike=alike)

@@ -42,12 +42,15 @@ class PartOfSet:
     path : str or None
         Its file, which all workers see under this name; None for a part that comes along.
     number, count : int
+    fiblets : int
+        Of the whole set.
     """
 
     key: str
     path: str | None
     number: int
     count: int
+    fiblets: int
 
 
 @dataclass(frozen=True)
@@ -98,7 +101,9 @@ class _Drawing:
             self._filters.pop(old, None)
             renderer.release()
         given = _part_of_file(part) if fiblets is None else fiblets
-        made = self._renderers[key] = streamed_renderer(self._ctx, given, pipeline=pipeline)
+        made = self._renderers[key] = streamed_renderer(
+            self._ctx, given, pipeline=pipeline, alike=part.fiblets
+        )
         return made
 
     def draw(

@@ -8,7 +8,8 @@
   const typed = new WeakMap(); // field: "typing", "sent" until the reply, "given back" by Escape
 
   const ours = (field) => field instanceof HTMLInputElement && "_value" in field && !OTHERS.includes(field.type)
-    && !field.closest(".v-input"); // Vuetify's own keep their text themselves
+    && !field.closest(".v-input") // Vuetify's own keep their text themselves
+    && !field.hasAttribute("data-read-later"); // nothing is sent when these are left: a button reads them
 
   const hold = (field) => Object.defineProperty(field, "value", {
     configurable: true,

@@ -20,9 +20,16 @@ __all__ = ["CONSTANTS", "ComputePipeline", "DrawRequest", "Limits", "Pipeline", 
 
 
 def make_pipeline(
-    name: str, ctx: moderngl.Context, gl: GLExtras, programs: Programs, n_fiblets: int, n_chunks: int, limits: Limits
+    name: str,
+    ctx: moderngl.Context,
+    gl: GLExtras,
+    programs: Programs,
+    n_fiblets: int,
+    n_chunks: int,
+    limits: Limits,
+    alike: int | None = None,
 ) -> Pipeline:
-    """Make a pipeline by its name, which the context must support."""
+    """Make a pipeline by its name, which the context must support; its programs are those of `alike` fiblets."""
     if name in ("mesh", "mesh-serial"):
         from .mesh import MeshPipeline
 
@@ -35,7 +42,7 @@ def make_pipeline(
         from .geometry import GeometryPipeline
 
         return GeometryPipeline(ctx, gl, programs, n_fiblets)
-    return ComputePipeline(ctx, programs, n_fiblets, n_chunks, limits.groups)
+    return ComputePipeline(ctx, programs, n_fiblets, n_chunks, limits.groups, alike)
 
 
 def make_measurer(name: str, ctx: moderngl.Context, gl: GLExtras, programs: Programs, limits: Limits) -> Measurer:

@@ -93,6 +93,9 @@ class ComputePipeline:
     n_chunks : int
     max_groups : int
         Work groups per axis of a dispatch.
+    alike : int, optional
+        Fiblets of a set whose pictures these shall equal in every bit, as this is a part of it: which programs draw
+        goes by their number, and rounding differs from program to program.
 
     Attributes
     ----------
@@ -103,7 +106,13 @@ class ComputePipeline:
     name = "compute"
 
     def __init__(
-        self, ctx: moderngl.Context, programs: Programs, n_fiblets: int, n_chunks: int, max_groups: int
+        self,
+        ctx: moderngl.Context,
+        programs: Programs,
+        n_fiblets: int,
+        n_chunks: int,
+        max_groups: int,
+        alike: int | None = None,
     ) -> None:
         self._ctx = ctx
         self._programs = programs
@@ -114,7 +123,7 @@ class ComputePipeline:
         self._shares = [(0, MAX_POINTS)]
         self._raster: GeometryPipeline | None = None
         self.planned = False
-        self._one_class = n_fiblets <= FEW
+        self._one_class = (n_fiblets if alike is None else alike) <= FEW
         self._words = -(-n_fiblets // 32)
         self._round_arguments = n_chunks * CLASSES
         self._list_base = self._words * VISIBILITY_WORDS
