@@ -180,11 +180,11 @@ class ClusterRenderer(NearestOnly):
             if not self._root.done():
                 self._workers()  # raises where none is left
         if self._root.done():
-            self._left = 0
+            self._lack(0)
             found: SparsePicture = _told(self._root)
             return found
         done = [_told(one) for one in self._drawing if one.done()]
-        self._left = len(self._drawing) - len(done)
+        self._lack(len(self._drawing) - len(done))
         # All may be drawn and not yet put together: then it is this process that does it.
         return reduce(nearer, done) if done else None
 
@@ -197,7 +197,12 @@ class ClusterRenderer(NearestOnly):
 
     def _forget(self) -> None:
         # dask gives up what nobody holds any more; told to cancel, it would stop at tasks that have just ended.
-        self._drawing, self._root, self._asked, self._left = [], None, None, 0
+        self._drawing, self._root, self._asked = [], None, None
+        self._lack(0)
+
+    def _lack(self, left: int) -> None:
+        self._left = left
+        self.share = 1.0 - left / len(self._parts)
 
     def _volume_of(self, style: FibletStyle) -> Any:
         """Return where the volume of a style's values is, sent once."""
@@ -207,11 +212,6 @@ class ClusterRenderer(NearestOnly):
         if self._volume is None or self._volume[0] is not style.values:
             self._volume = style.values, self._cluster.scatter(style.values, broadcast=True, hash=False)
         return self._volume[1]
-
-    @property
-    def share(self) -> float:  # type: ignore[override]
-        """How many of the parts the last picture shows."""
-        return 1.0 - self._left / max(len(self._parts), 1)
 
     def _take_filter(self, wanted: Filter | None) -> None:
         if wanted is not None:
@@ -294,5 +294,5 @@ def _told(future: Any) -> Any:
         return future.result()
     except (EngineError, ValueError, TypeError, OSError):
         raise
-    except Exception as error:
+    except Exception as error:  # of dask's own kinds, which have no base in common
         raise EngineError(f"the cluster gave no picture: {type(error).__name__}: {error}") from error

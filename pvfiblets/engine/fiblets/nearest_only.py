@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from typing import TYPE_CHECKING, Any
 
 from ..drawable import Drawable
@@ -41,9 +42,9 @@ class NearestOnly(Drawable[FibletStyle]):
     _filter: Filter | None = None
 
     @property
+    @abstractmethod
     def unfinished(self) -> bool:
         """Whether the last picture lacks parts that another one of the same view would show."""
-        raise NotImplementedError
 
     def render(
         self, view: View, style: FibletStyle | None = None, *, outside: moderngl.Texture | None = None
@@ -72,9 +73,9 @@ class NearestOnly(Drawable[FibletStyle]):
         self._take_filter(wanted)
         self._filter, self._made = wanted, None
 
+    @abstractmethod
     def _take_filter(self, wanted: Filter | None) -> None:
         """Check a filter and hand it on."""
-        raise NotImplementedError
 
     def render_layers(self, *_given: Any, **_named: Any) -> Any:
         """Raise: see the message."""
