@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from pvfiblets import formats
 from pvfiblets.cli_files import show_progress
+from pvfiblets.codec.open_lines import open_lines
 from pvfiblets.formats import registry
 from pvfiblets.progress_bar import progress_bar
 from pvfiblets.query.bundles.tract_profile import TractProfile, Weights, profile_table, tract_profile
@@ -58,7 +58,7 @@ def table(source: str, target: str, *, by: str, group: list[str], image: list[st
         raise ValueError("--image is for a row by bundle; add --by bundle")
     if len(group) > 1:
         raise ValueError(f"--group is given {len(group)} times; give it once, or add --by bundle")
-    data = _opened(source)
+    data = open_lines(source)
     if unknown := [name for name in group if name not in data.groups]:
         raise ValueError(f"{source} has no group {unknown[0]!r}; it has: {', '.join(data.groups) or 'none'}")
     data.table(data.groups[group[0]] if group else None).save(target)
@@ -99,7 +99,7 @@ def bundle_rows(source: str, groups: Sequence[str], images: Sequence[str]) -> Ta
 def _bundles(sources: Sequence[str], groups: Sequence[str]) -> Iterator[tuple[Any, Any, str]]:
     """Yield sets, streamlines and names: groups of files, and whole files that have none."""
     for source in sources:
-        data = _opened(source)
+        data = open_lines(source)
         if unknown := [name for name in groups if name not in data.groups]:
             raise ValueError(f"{source} has no group {unknown[0]!r}; it has: {', '.join(data.groups) or 'none'}")
         before = f"{_stem(source)}: " if len(sources) > 1 and data.groups else ""
@@ -107,12 +107,6 @@ def _bundles(sources: Sequence[str], groups: Sequence[str]) -> Iterator[tuple[An
             yield data, np.asarray(data.groups[name], np.int64), f"{before}{name}"
         if not data.groups:
             yield data, np.arange(len(data)), _stem(source)
-
-
-def _opened(source: str) -> Any:
-    from pvfiblets.codec.fibletset import FibletSet
-
-    return FibletSet.open(source) if source.lower().endswith(".fiblets") else formats.read(source)
 
 
 def _stem(path: str) -> str:

@@ -62,7 +62,7 @@ def info(path: str | PathLike[str]) -> dict[str, Any]:
         "index_bytes": index_bytes(f) or None,
         "step_mm": f.step,
         "exact": f.exact is not None,
-        "promise_mm": 0.0 if f.exact is not None else f.promise,
+        "promise_mm": f.points_promise,
         "bounds_mm": list(f.bounds),
         "per_point": {k: {"min": v.lo, "max": v.hi, "max_error": v.max_error} for k, v in f.per_point.items()},
         "per_streamline": sorted(f.per_streamline),

@@ -179,6 +179,11 @@ class FibletSet(SetQueries):
         return promise if promise > LEAST or any(self.bounds) else 0.0
 
     @property
+    def points_promise(self) -> float:
+        """No point that is given back is farther than this from its original, mm: 0 of an exact set."""
+        return 0.0 if self.exact is not None else self.promise
+
+    @property
     def sizes(self) -> dict[str, int]:
         """Bytes of every array; of an exact set's points, not of the records that are made of them."""
         arrays: dict[str, Any] = {

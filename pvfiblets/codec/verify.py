@@ -65,7 +65,7 @@ def verified(
         "streamlines": fiblets.n_streamlines,
         "points": fiblets.n_points,
         "exact": fiblets.exact is not None,
-        "promise_mm": 0.0 if fiblets.exact is not None else fiblets.promise,
+        "promise_mm": fiblets.points_promise,
     }
     if original is not None:
         try:

@@ -138,7 +138,7 @@ class LayerQueries:
         found["gpu_bytes"] = explained["gpu_bytes"]
         if layer.kind in LINES:
             fiblets = actor.fiblets
-            found["promise_mm"] = 0.0 if fiblets.exact is not None else fiblets.promise
+            found["promise_mm"] = fiblets.points_promise
             found |= loaded.error or {}
             found["points"] = fiblets.n_points
             found["bytes"] = fiblets.nbytes

@@ -87,7 +87,7 @@ def compress_file_in_shards(
         whole = FibletSet.open(source)
         manifest = write_shards(whole, target, size, progress=progress)
         result: dict[str, Any] = {"exact": whole.exact is not None, "per_point": list(whole.per_point)}
-        result |= {"promise_mm": 0.0 if whole.exact is not None else whole.promise, "dropped": dict(whole.dropped)}
+        result |= {"promise_mm": whole.points_promise, "dropped": dict(whole.dropped)}
     else:
         with (
             naming_target(target),

@@ -281,10 +281,9 @@ def _read(source: Any) -> Any:
     """Return the data of a file, or of an object of another library; anything else as it is."""
     if not isinstance(source, (str, os.PathLike)):
         return told_lines(source)
-    from pvfiblets import formats
-    from pvfiblets.codec.fibletset import FibletSet
+    from pvfiblets.codec.open_lines import open_lines
 
-    return FibletSet.open(source) if os.fspath(source).lower().endswith(".fiblets") else formats.read(source)
+    return open_lines(source)
 
 
 def _names(source: Any) -> tuple[list[str], list[str]]:
