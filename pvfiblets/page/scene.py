@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -106,7 +107,7 @@ class PageScene:
         self.blobs.append(data if isinstance(data, bytes) else np.ascontiguousarray(data).tobytes())
         return len(self.blobs) - 1
 
-    def add_layer(self, layer: dict[str, Any], bounds: Bounds) -> None:
+    def add_layer(self, layer: dict[str, Any], bounds: Sequence[float]) -> None:
         """Show something that lies within bounds."""
         self.layers.append(layer)
         low, high = np.minimum(self.bounds[::2], bounds[::2]), np.maximum(self.bounds[1::2], bounds[1::2])

@@ -83,7 +83,7 @@ def add_surface(scene: PageScene, name: str, actor: Any, mapper: Any) -> bool:
     planes = world_planes(mapper)
     if len(planes):
         layer["planes"] = planes.tolist()
-    scene.add_layer(layer, bounds)  # type: ignore[arg-type]
+    scene.add_layer(layer, bounds)
     return True
 
 
@@ -163,4 +163,4 @@ def add_image(scene: PageScene, name: str, actor: Any) -> None:
         "opacity": actor.GetProperty().GetOpacity(),
         "bounds": bounds,
     }
-    scene.add_layer(layer, bounds)  # type: ignore[arg-type]
+    scene.add_layer(layer, bounds)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from pvfiblets.web.document import LINES
+from pvfiblets.web.loading import Cancelled, Watch
 
 __all__ = ["Actions", "LineActions"]
 
@@ -32,3 +34,23 @@ class LineActions(Actions):
         if not page.chosen or page.chosen_kind not in LINES:
             raise ValueError("choose a tractogram first")
         return self._app.scene.layer(page.chosen)
+
+    async def _beside(
+        self, layer: Any, fiblets: Any, work: Callable[[Watch], Any], what: str, *, cancelled: str, again: str
+    ) -> Any:
+        """Do work on a layer's streamlines beside everything else; None if it was cancelled.
+
+        Raises
+        ------
+        ValueError
+            If the layer has other streamlines by then.
+        """
+        app = self._app
+        try:
+            found = await app.files.beside(layer.name, lambda progress, cancel: work(Watch(progress, cancel)), what)
+        except Cancelled:
+            app.say(f"{layer.name}: cancelled{cancelled}.")
+            return None
+        if app.scene.actor(layer.id).fiblets is not fiblets:
+            raise ValueError(f"{layer.name} has other streamlines now; {again} again")
+        return found

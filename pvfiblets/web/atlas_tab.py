@@ -11,8 +11,8 @@ from pvfiblets.plotting.slices.settings import MEANING
 from pvfiblets.query.bundles.colours import hex_colour
 from pvfiblets.slices.labels import LabelTable
 from pvfiblets.web.actions import Actions
-from pvfiblets.web.document import LINES
-from pvfiblets.web.elements import html, v3
+from pvfiblets.web.document import LINES, free_name
+from pvfiblets.web.elements import fold, html, v3
 from pvfiblets.web.filter_regions import condition, flat
 
 __all__ = ["AtlasActions", "build", "over"]
@@ -139,18 +139,14 @@ class AtlasActions(Actions):
             self._app.scene.set_regions(lines.id, condition(join, rows))
             return
         region = {"kind": "labels", "path": path, "labels": [label]}
-        region["name"] = self._free_name(f"{found['name']}"[:40].strip() or str(label))
+        region["name"] = free_name(
+            f"{found['name']}"[:40].strip() or str(label), set(self._app.scene.region_names()), kept=34
+        )
         rows.append({"not": False, "how": self._how, "region": region})
         wanted = condition("and" if not asked else join, rows)
         self._app.later(
             self._app.files.with_shape("labels", path, lambda: self._app.scene.set_regions(lines.id, wanted))
         )
-
-    def _free_name(self, name: str) -> str:
-        """Return a name that no other region has."""
-        taken = set(self._app.scene.region_names())
-        numbered = (f"{name[:34]} {k}" for k in range(2, len(taken) + 3))
-        return name if name not in taken else next(one for one in numbered if one not in taken)
 
     def clear(self) -> None:
         """Ask for no label of the image any more."""
@@ -211,11 +207,7 @@ FOUND = "atlas.rows.filter((r) => (r.name + ' ' + r.label).toLowerCase().include
 def build(app: Any) -> None:
     """Build the part of the tab Slices."""
     atlas = app.atlas
-    v3.VBtn(
-        "Labels of {{ atlas.name }}", v_if="atlas.images.length", variant="text", size="x-small", block=True,
-        classes="pv-fold text-none", append_icon=("atlas_open ? 'mdi-chevron-up' : 'mdi-chevron-down'",),
-        click="atlas_open = !atlas_open", aria_expanded=("atlas_open",), data_action="atlas",
-    )  # fmt: skip
+    fold("Labels of {{ atlas.name }}", "atlas_open", v_if="atlas.images.length", data_action="atlas")
     with html.Div(v_if="atlas.images.length && atlas_open", id="atlas"):
         with html.Div(v_if="atlas.images.length > 1", classes="px-3 pt-1"):
             v3.VSelect(

@@ -13,8 +13,8 @@ from pvfiblets.formats.registry import suffixes
 from pvfiblets.web.actions import LineActions
 from pvfiblets.web.describe import typed
 from pvfiblets.web.document import Ids
-from pvfiblets.web.elements import html, v3
-from pvfiblets.web.loading import Cancelled, Watch
+from pvfiblets.web.elements import fold, html, v3
+from pvfiblets.web.loading import Watch
 from pvfiblets.web.values import number
 
 if TYPE_CHECKING:
@@ -134,16 +134,7 @@ class FindingActions(LineActions):
     # Inside
 
     async def _found(self, layer: Any, fiblets: Any, work: Callable[[Watch], Any], what: str) -> Any:
-        """Do work beside everything else; None if it was cancelled."""
-        app = self._app
-        try:
-            found = await app.files.beside(layer.name, lambda progress, cancel: work(Watch(progress, cancel)), what)
-        except Cancelled:
-            app.say(f"{layer.name}: cancelled; all is as it was.")
-            return None
-        if app.scene.actor(layer.id).fiblets is not fiblets:
-            raise ValueError(f"{layer.name} has other streamlines now; ask again")
-        return found
+        return await self._beside(layer, fiblets, work, what, cancelled="; all is as it was", again="ask")
 
 
 def model_folders(confined: Any) -> list[str]:
@@ -155,8 +146,7 @@ def model_folders(confined: Any) -> list[str]:
 
 def read_models(files: Files, models: dict[str, str], watch: Watch) -> dict[str, Any]:
     """Read tractograms by the names of their files, with the checks of all that is opened."""
-    from pvfiblets import formats
-    from pvfiblets.codec.fibletset import FibletSet
+    from pvfiblets.codec.open_lines import open_lines
     from pvfiblets.formats.gzipped import check_ratio
 
     found: dict[str, Any] = {}
@@ -165,7 +155,7 @@ def read_models(files: Files, models: dict[str, str], watch: Watch) -> dict[str,
         place = files.resolve(path)
         check_ratio(place)
         suffix = next(one for one in sorted(suffixes(), key=len, reverse=True) if name.lower().endswith(one))
-        found[name[: -len(suffix)]] = FibletSet.open(place) if suffix == ".fiblets" else formats.read(place)
+        found[name[: -len(suffix)]] = open_lines(place)
     return found
 
 
@@ -183,11 +173,7 @@ def _length(text: str, name: str) -> float:
 def build(app: Any) -> None:
     """Build the section of the tab Bundles that finds streamlines."""
     finding = app.finding
-    v3.VBtn(
-        "Find", variant="text", size="small", block=True, classes="text-none pv-fold", data_action="find",
-        click=(finding.fold, "[!finding.open]"),
-        append_icon=("finding.open ? 'mdi-chevron-up' : 'mdi-chevron-down'",),
-    )  # fmt: skip
+    fold("Find", "finding.open", size="small", click=(finding.fold, "[!finding.open]"), data_action="find")
     with html.Div(v_if="finding.open", id="find"):
         for name, label, key, act, button, hint in (
             ("similar", "More like this", "like_mm", finding.similar, "Select",

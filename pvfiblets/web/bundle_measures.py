@@ -14,8 +14,8 @@ from pvfiblets.web.actions import LineActions
 from pvfiblets.web.charts import Band, profiles_chart, short
 from pvfiblets.web.csv_tables import table_text
 from pvfiblets.web.document import LINES
-from pvfiblets.web.elements import html, v3
-from pvfiblets.web.loading import Cancelled, Watch
+from pvfiblets.web.elements import fold, html, v3
+from pvfiblets.web.loading import Watch
 
 if TYPE_CHECKING:
     from pvfiblets.query.table import Table
@@ -164,19 +164,14 @@ class MeasureActions(LineActions):
         return found
 
     async def _measure(self, kind: str, layer: Any, fiblets: Any, work: Callable[[Watch], _Result]) -> None:
-        app = self._app
         try:
-            found = await app.files.beside(layer.name, lambda progress, cancel: work(Watch(progress, cancel)),
-                                           "measuring")  # fmt: skip
-        except Cancelled:
-            app.say(f"{layer.name}: cancelled.")
-            return
+            found = await self._beside(layer, fiblets, work, "measuring", cancelled="", again="measure")
         except KeyError as error:
             raise ValueError(str(error.args[0])) from error
-        if app.scene.actor(layer.id).fiblets is not fiblets:
-            raise ValueError(f"{layer.name} has other streamlines now; measure again")
+        if found is None:
+            return
         self._results[kind] = found
-        with app.state:
+        with self._app.state:
             self.refresh()
 
     def fetch(self, kind: str, suffix: str) -> str | bytes:
@@ -240,11 +235,8 @@ def _cell(value: Any) -> str:
 def build(app: Any) -> None:
     """Build the section of the tab Bundles that measures."""
     measuring = app.measuring
-    v3.VBtn(
-        "Measure", variant="text", size="small", block=True, classes="text-none pv-fold", data_action="measure-bundles",
-        click=(measuring.fold, "[!measures.open]"),
-        append_icon=("measures.open ? 'mdi-chevron-up' : 'mdi-chevron-down'",),
-    )  # fmt: skip
+    fold("Measure", "measures.open", size="small", click=(measuring.fold, "[!measures.open]"),
+         data_action="measure-bundles")  # fmt: skip
     with html.Div(v_if="measures.open", id="measures"):
         html.Div("Of the bundles chosen by boxes, or of all that are shown.", classes="pv-small px-3 pb-1")
         with html.Div(classes="pv-row"):

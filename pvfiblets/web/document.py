@@ -369,9 +369,9 @@ class State:
         return coloured | {(layer.kind, layer.source) for layer in self.layers}
 
 
-def free_name(name: str, taken: Collection[str]) -> str:
-    """Return a name, with a number behind it if that is taken."""
-    numbered = (f"{name} {k}" for k in range(2, len(taken) + 3))
+def free_name(name: str, taken: Collection[str], kept: int | None = None) -> str:
+    """Return a name, with a number behind it, or behind as many letters of it as are kept, if that is taken."""
+    numbered = (f"{name[:kept]} {k}" for k in range(2, len(taken) + 3))
     return name if name not in taken else next(found for found in numbered if found not in taken)
 
 

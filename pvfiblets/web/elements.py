@@ -62,6 +62,24 @@ html = Elements(_html)
 v3 = Elements(_vuetify)
 
 
+def fold(title: str, is_open: str, **attributes: Any) -> None:
+    """Build the line that opens and folds a section of a panel.
+
+    Parameters
+    ----------
+    title : str
+    is_open : str
+        Expression of the page: whether it is open. If nothing else is said, a variable that the line changes itself.
+    **attributes
+        Of the button.
+    """
+    v3.VBtn(
+        title, variant="text", block=True, classes="text-none pv-fold", aria_expanded=(is_open,),
+        append_icon=(f"{is_open} ? 'mdi-chevron-up' : 'mdi-chevron-down'",),
+        **{"size": "x-small", "click": f"{is_open} = !{is_open}", **attributes},
+    )  # fmt: skip
+
+
 def eye(shown: str, hide: str = "Hide", show: str = "Show", **attributes: Any) -> None:
     """Build the button that shows or hides something of a list.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from pvfiblets.web.elements import eye, html, v3
+from pvfiblets.web.elements import eye, fold, html, v3
 
 EXPERT = "Drawing"
 ICONS = {
@@ -83,11 +83,7 @@ def properties(app: Any) -> None:
         )
         with html.Div(v_for="group in groups", key="chosen + group.title"):
             html.Div("{{ group.title }}", classes="pv-head", v_if=f"group.title !== '{EXPERT}'")
-            v3.VBtn(  # folded: what experts set
-                EXPERT, v_else=True, variant="text", size="x-small", block=True, classes="pv-fold text-none",
-                append_icon=("expert_open ? 'mdi-chevron-up' : 'mdi-chevron-down'",), data_action="expert",
-                click="expert_open = !expert_open", aria_expanded=("expert_open",),
-            )  # fmt: skip
+            fold(EXPERT, "expert_open", v_else=True, data_action="expert")  # folded: what experts set
             with html.Div(
                 v_for="p in group.properties", key="p.name", data_property=("p.name",),
                 v_show=f"group.title !== '{EXPERT}' || expert_open",

@@ -12,7 +12,7 @@ from pvfiblets.web import atlas_tab, painting_tab
 from pvfiblets.web.actions import Actions
 from pvfiblets.web.charts import short
 from pvfiblets.web.describe import typed
-from pvfiblets.web.elements import html, v3
+from pvfiblets.web.elements import fold, html, v3
 from pvfiblets.web.glyph_layers import covers
 from pvfiblets.web.rpc_allowlist import number
 from pvfiblets.web.slicing import LAYOUTS, NAMES
@@ -317,11 +317,7 @@ def build(app: Any) -> None:
 def _panes(app: Any) -> None:
     """Build how panes are looked at, folded."""
     slices = app.slices
-    v3.VBtn(
-        "Panes", variant="text", size="x-small", block=True, classes="pv-fold text-none",
-        append_icon=("panes_open ? 'mdi-chevron-up' : 'mdi-chevron-down'",), data_action="panes",
-        click="panes_open = !panes_open", aria_expanded=("panes_open",),
-    )  # fmt: skip
+    fold("Panes", "panes_open", data_action="panes")
     with html.Div(v_if="panes_open", id="panes"):
         with html.Div(classes="pv-row"):
             html.Label("Left is", title="Whether the patient's right or left is on the left of a pane")

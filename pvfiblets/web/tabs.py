@@ -6,7 +6,7 @@ from typing import Any
 
 from pvfiblets.web import bundles_tab, slices_tab
 from pvfiblets.web.controls import NAMES
-from pvfiblets.web.elements import eye, html, v3
+from pvfiblets.web.elements import eye, fold, html, v3
 from pvfiblets.web.writing import EXPORTS
 
 TABS = (
@@ -341,9 +341,5 @@ def _info() -> None:
                             with html.Tr(v_for="(row, at) in t.rows", key="at"):
                                 html.Td("{{ cell }}", v_for="(cell, k) in row", key="k")
         if not folded:
-            v3.VBtn(
-                "Drawing", v_if="info.some((t) => t.folded)", variant="text", size="small", block=True,
-                classes="text-none pv-fold", click="expert_open = !expert_open", data_action="info-expert",
-                append_icon=("expert_open ? 'mdi-chevron-up' : 'mdi-chevron-down'",),
-            )  # fmt: skip
+            fold("Drawing", "expert_open", size="small", v_if="info.some((t) => t.folded)", data_action="info-expert")
     html.Div("Choose a layer.", v_if="!info.length", classes="pv-small pa-3")

@@ -65,6 +65,15 @@ class Desk:
         self.tasks.append(asyncio.get_running_loop().create_task(coroutine))
         return self.tasks[-1]
 
+    def run(self, act):
+        """Do something of the page, and wait for what runs beside."""
+
+        async def doing():
+            act()
+            await self.done()
+
+        asyncio.run(doing())
+
     async def done(self):
         """Wait for what runs beside; its errors are raised here."""
         while self.tasks:

@@ -22,16 +22,6 @@ def desk(scene, folder):
     return made
 
 
-def run(desk, act):
-    """Do something of the page, and wait for what runs beside."""
-
-    async def doing():
-        act()
-        await desk.done()
-
-    asyncio.run(doing())
-
-
 def names(desk):
     return [one.name for one in desk.scene.bundles(desk.page.chosen)]
 
@@ -56,31 +46,31 @@ def near(lines, like, distance):
 def test_more_like_this_selects_what_runs_near(desk, lines):
     layer = desk.page.chosen
     desk.scene.select(layer, [14])
-    run(desk, lambda: desk.finding.similar("6,5"))
+    desk.run(lambda: desk.finding.similar("6,5"))
     wanted = near(lines, [14], 6.5)
     assert 1 < len(wanted) < 20
     assert selected(desk) == wanted
     assert "within 6.5 mm of 1" in desk.said[-1][1]
     # Another distance asks about the same one, not about what was found.
-    run(desk, lambda: desk.finding.similar("9"))
+    desk.run(lambda: desk.finding.similar("9"))
     assert selected(desk) == near(lines, [14], 9.0)
     assert desk.history.undo() == "select"
     assert selected(desk) == wanted
     # What somebody else selected is asked about as it is.
     desk.scene.select(layer, [1, 50])
-    run(desk, lambda: desk.finding.similar("5"))
+    desk.run(lambda: desk.finding.similar("5"))
     assert selected(desk) == near(lines, [1, 50], 5.0)
     # Without a selection, chosen bundles are.
     desk.scene.deselect()
     desk.bundles.check("near", True)
-    run(desk, lambda: desk.finding.similar("4.5"))
+    desk.run(lambda: desk.finding.similar("4.5"))
     assert selected(desk) == near(lines, range(30), 4.5)
 
 
 def test_of_many_an_even_share_is_asked_about_and_said(desk, monkeypatch):
     monkeypatch.setattr(bundle_finding, "COMPARED", 3)
     desk.scene.select(desk.page.chosen, np.arange(21))
-    run(desk, lambda: desk.finding.similar("0.5"))
+    desk.run(lambda: desk.finding.similar("0.5"))
     assert selected(desk) == [0, 10, 20]
     assert "an even 3 of the 21" in desk.said[-1][1]
 
@@ -89,7 +79,7 @@ def test_clusters_become_bundles_in_one_step(desk, monkeypatch):
     monkeypatch.setattr(bundle_finding, "LISTED", 5)
     found = desk.scene.actor(desk.page.chosen).fiblets.clusters(threshold=9.0).by_size()
     assert len(found) > 5
-    run(desk, lambda: desk.finding.cluster("9 mm"))
+    desk.run(lambda: desk.finding.cluster("9 mm"))
     assert names(desk) == ["near", "far", *(f"cluster {k}" for k in range(1, 6))]
     bundles = desk.scene.bundles(desk.page.chosen)
     assert [one.ids.array().tolist() for one in bundles[2:]] == [found[k].ids.tolist() for k in range(5)]
@@ -157,7 +147,7 @@ def test_models_of_a_folder_are_recognised(desk, brain):
     desk.choose(desk.scene.open("brain.fiblets"))
     desk.finding.fold(True)
     assert desk.page.finding == {"open": True, "folders": ["atlas/models"], "dipy": True}
-    run(desk, lambda: desk.finding.recognise("atlas/models"))
+    desk.run(lambda: desk.finding.recognise("atlas/models"))
     found = {one.name: one.ids.array() for one in desk.scene.bundles(desk.page.chosen)}
     assert list(found) == ["one", "two"]
     for k, ids in enumerate(found.values()):

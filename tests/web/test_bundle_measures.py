@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import csv
 import io
 import xml.etree.ElementTree as ET
@@ -22,14 +21,6 @@ def desk(scene, folder):
     return made
 
 
-def run(desk, act):
-    async def doing():
-        act()
-        await desk.done()
-
-    asyncio.run(doing())
-
-
 def rows(text, between=","):
     head, *found = csv.reader(io.StringIO(text), delimiter=between)
     return [dict(zip(head, row, strict=True)) for row in found]
@@ -37,7 +28,7 @@ def rows(text, between=","):
 
 def test_a_profile_is_plotted_and_fetched(desk):
     assert [one["title"] for one in desk.page.measures["values"]] == ["fa", "curvature", "arc_length", "head.nii.gz"]
-    run(desk, desk.measuring.profile)
+    desk.run(desk.measuring.profile)
     shown = desk.page.measures["profile"]
     assert [one["name"] for one in shown["legend"]] == ["near", "far"]
     assert ET.fromstring(shown["chart"]).tag.endswith("svg")
@@ -54,7 +45,7 @@ def test_a_profile_is_plotted_and_fetched(desk):
 def test_a_profile_of_an_image_is_what_lies_there(desk):
     desk.measuring.set_value("image head.nii.gz")
     desk.bundles.check("near", True)
-    run(desk, desk.measuring.profile)
+    desk.run(desk.measuring.profile)
     found = rows(desk.measuring.fetch("profile", "csv"))
     assert {row["bundle"] for row in found} == {"near"}
     # At their beginnings, which voxel centres are, by the formula that made the image.
@@ -68,7 +59,7 @@ def test_a_profile_of_an_image_is_what_lies_there(desk):
 
 
 def test_statistics_are_a_row_for_each_bundle(desk):
-    run(desk, desk.measuring.statistics)
+    desk.run(desk.measuring.statistics)
     shown = desk.page.measures["table"]
     assert shown["columns"][:3] == ["bundle", "count", "mm"]
     near, far = rows(desk.measuring.fetch("table", "csv"))
@@ -85,7 +76,7 @@ def test_statistics_are_a_row_for_each_bundle(desk):
 def test_what_was_measured_goes_when_its_bundles_change(desk):
     layer = desk.page.chosen
     desk.scene.add_bundle(layer, [1, 2], "=cmd()")
-    run(desk, desk.measuring.statistics)
+    desk.run(desk.measuring.statistics)
     assert "'=cmd()" in desk.measuring.fetch("table", "csv")
     desk.scene.move_bundles(layer, ["far"], 0)
     desk.measuring.refresh()
@@ -100,7 +91,7 @@ def test_what_was_measured_goes_when_its_bundles_change(desk):
 def test_hidden_and_empty_bundles_are_left_out(desk):
     layer = desk.page.chosen
     desk.scene.set_bundle(layer, "near", visible=False)
-    run(desk, desk.measuring.statistics)
+    desk.run(desk.measuring.statistics)
     assert [row[0] for row in desk.page.measures["table"]["rows"]] == ["far"]
     desk.scene.set_bundle(layer, "far", visible=False)
     with pytest.raises(ValueError, match="no bundle"):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import base64
 import io
 
@@ -26,18 +25,10 @@ def desk(scene, folder):
     return made
 
 
-def run(desk, act):
-    async def doing():
-        act()
-        await desk.done()
-
-    asyncio.run(doing())
-
-
 def make(desk, **chosen):
     for name, value in {"labels": "atlas.nii.gz", "radius": "0", **chosen}.items():
         desk.matrix.set(name, value)
-    run(desk, desk.matrix.make)
+    desk.run(desk.matrix.make)
     return desk.page.matrix
 
 
@@ -126,7 +117,7 @@ def test_sessions_and_scripts_have_it(desk, folder):
     session.from_dict(desk.scene, state, folder)
     desk.choose(desk.scene.layers[0])
     assert shown(desk) == wanted
-    run(desk, desk.matrix.refresh)  # put together again, beside
+    desk.run(desk.matrix.refresh)  # put together again, beside
     assert desk.page.matrix["n"] == 2
     for wrong, said in (
         ({"labels": "none.nii.gz"}, "no such file"), ({"labels": "../x.nii"}, "outside"),
