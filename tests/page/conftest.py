@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.page.pages import Page
-from tests.web.browsing import FLAGS, chromium
+from tests.web.browsing import FLAGS, launched
 
 WEBGL = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist")
 
@@ -13,15 +13,8 @@ WEBGL = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu
 @pytest.fixture(scope="module")
 def browser():
     """Return Chromium with WebGL 2, or skip where there is none."""
-    playwright = pytest.importorskip("playwright.sync_api")
-    path = chromium()
-    if path is None:
-        pytest.skip("there is no Chromium on this machine: scripts/browser.sh installs it")
-    flags = [flag for flag in FLAGS if flag != "--disable-gpu"]
-    with playwright.sync_playwright() as driver:  # for one module: while it runs, asyncio.run() cannot
-        found = driver.chromium.launch(executable_path=path, args=[*flags, *WEBGL])
+    with launched([*(flag for flag in FLAGS if flag != "--disable-gpu"), *WEBGL]) as found:
         yield found
-        found.close()
 
 
 @pytest.fixture

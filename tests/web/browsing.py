@@ -7,6 +7,7 @@ error to its console.
 from __future__ import annotations
 
 import base64
+import contextlib
 import io
 import os
 import re
@@ -18,6 +19,7 @@ import time
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 FLAGS = (
     "--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-component-update", "--disable-sync",
@@ -32,6 +34,19 @@ def chromium() -> str | None:
     names = ("chromium", "chromium-browser", "google-chrome")
     given = os.environ.get("CHROMIUM")
     return given or next((found for name in names if (found := shutil.which(name))), None)
+
+
+@contextlib.contextmanager
+def launched(flags=FLAGS):
+    """Give Chromium, or skip where there is none. While it runs, ``asyncio.run()`` cannot: it is for one module."""
+    playwright = pytest.importorskip("playwright.sync_api")
+    path = chromium()
+    if path is None:
+        pytest.skip("there is no Chromium on this machine: scripts/browser.sh installs it")
+    with playwright.sync_playwright() as driver:
+        found = driver.chromium.launch(executable_path=path, args=list(flags))
+        yield found
+        found.close()
 
 
 class Served:

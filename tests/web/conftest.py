@@ -122,16 +122,10 @@ def ball(scene):
 @pytest.fixture(scope="module")
 def browser():
     """Return Chromium, or skip where there is none."""
-    playwright = pytest.importorskip("playwright.sync_api")
-    from tests.web.browsing import FLAGS, chromium
+    from tests.web.browsing import launched
 
-    path = chromium()
-    if path is None:
-        pytest.skip("there is no Chromium on this machine: scripts/browser.sh installs it")
-    with playwright.sync_playwright() as driver:  # for one module: while it runs, asyncio.run() cannot
-        found = driver.chromium.launch(executable_path=path, args=list(FLAGS))
+    with launched() as found:
         yield found
-        found.close()
 
 
 @pytest.fixture(scope="module")
