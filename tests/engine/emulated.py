@@ -237,7 +237,7 @@ def emulated_renderer(monkeypatch, gl, fiblets, *, serial=False, **options):
     from pvfiblets.engine import FibletRenderer
     from pvfiblets.engine.fiblets import renderer
 
-    def make(name, ctx, opengl, programs, n_fiblets, n_chunks, limits):
+    def make(name, ctx, opengl, programs, n_fiblets, n_chunks, limits, alike):
         return EmulatedMesh(ctx, opengl, programs, n_fiblets, serial=serial)
 
     with monkeypatch.context() as patch:
