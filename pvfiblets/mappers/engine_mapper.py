@@ -332,8 +332,7 @@ class EngineMapper(Attached, Readable, Connected, Questions, vtkOpenGLPolyDataMa
     ) -> Any:
         """Return the depth of what was drawn before, as keys; None where it may not be looked at."""
         actor = self.actor
-        summed = any(getattr(effect, "translucent", False) for effect in self._effects.values())
-        if self._layers == 1 and not summed and actor is not None and others_before(renderer, actor):
+        if not self._sums_up and actor is not None and others_before(renderer, actor):
             return slot.outside_depth(context.ctx).copy(viewport)
         return None
 
@@ -361,8 +360,17 @@ class EngineMapper(Attached, Readable, Connected, Questions, vtkOpenGLPolyDataMa
             slot.drop_renderer()
             slot.versions |= {"drawn": self._drawn, "options": options}
         if slot.renderer is None:
-            slot.renderer = self._factory(context.ctx, self._drawn, **options, **self._made_with)
+            slot.renderer = self._make(context.ctx)
         return slot.renderer
+
+    def _make(self, ctx: Any, **more: Any) -> Any:
+        """Return a renderer of the engine, made with all options, and more."""
+        return self._factory(ctx, self._drawn, **{**self._options.changed(), **self._made_with, **more})
+
+    @property
+    def _sums_up(self) -> bool:
+        """Whether a pixel shows more than the nearest of what is drawn."""
+        return self._layers > 1 or any(getattr(effect, "translucent", False) for effect in self._effects.values())
 
     # Memory
 

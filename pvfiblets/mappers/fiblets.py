@@ -15,7 +15,7 @@ from pvfiblets.mappers.engine_mapper import CutMapper
 from pvfiblets.mappers.engine_options import EngineOptions, engine_renderer
 from pvfiblets.mappers.line_data import SIDES
 from pvfiblets.mappers.picking import nearest_pixel
-from pvfiblets.mappers.scene import Frame, slack
+from pvfiblets.mappers.scene import Frame, slack, wanted_share
 from pvfiblets.mappers.windows import Slot, WindowContext, contexts_with
 
 
@@ -196,6 +196,10 @@ class FibletMapper(CutMapper[EngineOptions]):
             slot.versions.pop("filtering", None)
         if slot.versions.get("filtering") is not self._filtering:
             engine.filtering = slot.versions["filtering"] = self._filtering
+        if wanted_share(context.window) < 1.0 and not self._sums_up:
+            from pvfiblets.mappers.thinned import thinned_engine
+
+            return thinned_engine(context, slot, self._drawn, self._filtering, self._make)
         return engine
 
     def pick_at(

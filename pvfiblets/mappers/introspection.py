@@ -51,6 +51,9 @@ class Questions:
                 context.window.MakeCurrent()
                 with context.foreign():
                     windows.append(slot.renderer.explain())
+                    for share, thinned in slot.thinned.items():
+                        size = 0 if thinned is None else sum(one["bytes"] for one in thinned.explain()["buffers"])
+                        windows[-1]["buffers"].append({"name": f"{share:.3g} of the streamlines", "bytes": size})
                     for _, kept in slot.effects.values():
                         if hasattr(kept, "explain"):
                             costs = kept.explain()

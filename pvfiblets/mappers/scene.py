@@ -190,27 +190,34 @@ def samples_per_pixel(renderer: vtkRenderer, viewport: tuple[int, int, int, int]
     return drawn / shown if shown > 0 and drawn > shown + 1 else 1.0
 
 
-_slack: dict[str, float] = {}
+_hasty: dict[str, tuple[float, float]] = {}
 
 
-def hurry(window: Any, pixels: float) -> None:
-    """Let lines of a window be off by so many of the pixels that are drawn, for as long as it must be fast.
+def hurry(window: Any, pixels: float, share: float = 1.0) -> None:
+    """Let a window be coarse for as long as it must be fast.
 
     Parameters
     ----------
     window : vtkRenderWindow
     pixels : float
-        0 ends it.
+        Pixels of those that are drawn by which lines may be off. 0, with all streamlines, ends it.
+    share : float
+        Of the streamlines of large sets that are drawn.
     """
     address = window.GetAddressAsString("")
-    _slack.pop(address, None)
-    if pixels > 0.0:
-        _slack[address] = pixels
+    _hasty.pop(address, None)
+    if pixels > 0.0 or share < 1.0:
+        _hasty[address] = pixels, share
 
 
 def slack(renderer: vtkRenderer) -> float:
     """Return what :func:`hurry` allows in a renderer's window, drawn pixels; 0 where nobody is in a hurry."""
-    return _slack.get(renderer.GetRenderWindow().GetAddressAsString(""), 0.0) if _slack else 0.0
+    return _hasty.get(renderer.GetRenderWindow().GetAddressAsString(""), (0.0, 1.0))[0] if _hasty else 0.0
+
+
+def wanted_share(window: Any) -> float:
+    """Return the share of the streamlines that :func:`hurry` asks for in a window; 1 where nobody is in a hurry."""
+    return _hasty.get(window.GetAddressAsString(""), (0.0, 1.0))[1] if _hasty else 1.0
 
 
 def in_motion(renderer: vtkRenderer) -> bool:

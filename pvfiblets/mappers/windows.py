@@ -74,6 +74,8 @@ class Slot:
         Address of a vtkRenderer to what was last drawn for it (see ``FibletMapper.pick_at``).
     effects : dict
         Name of an effect to its class and what it keeps on the GPU (`pvfiblets.mappers.shader_effects`).
+    thinned : dict
+        Share of the streamlines to a renderer of these, for frames in a hurry (`pvfiblets.mappers.thinned`).
     """
 
     def __init__(self, mapper: Any) -> None:
@@ -83,6 +85,7 @@ class Slot:
         self.versions: dict[str, Any] = {}
         self.drawn: dict[str, Any] = {}
         self.effects: dict[str, tuple[type, Any]] = {}
+        self.thinned: dict[float, Any] = {}
         self._outside: OutsideDepth | None = None
 
     def drop_effect(self, name: str) -> None:
@@ -99,9 +102,7 @@ class Slot:
 
     def release(self) -> None:
         """Delete the GL objects. The window's context must be current."""
-        if self.renderer is not None:
-            self.renderer.release()
-            self.renderer = None
+        self.drop_renderer()
         if self._outside is not None:
             self._outside.release()
             self._outside = None
@@ -111,13 +112,14 @@ class Slot:
             texture.release()
         self.textures.clear()
         self.versions.clear()
-        self.drawn.clear()
 
     def drop_renderer(self) -> None:
-        """Delete the engine's renderer only. The window's context must be current."""
-        if self.renderer is not None:
-            self.renderer.release()
-            self.renderer = None
+        """Delete the engine's renderers only. The window's context must be current."""
+        for renderer in (self.renderer, *self.thinned.values()):
+            if renderer is not None:
+                renderer.release()
+        self.renderer = None
+        self.thinned.clear()
         self.drawn.clear()
 
     def list_texture(self, name: str, source: Any, pixels: Any, ctx: Any) -> Any:

@@ -2,10 +2,10 @@
 
 Nothing is drawn and nothing is sent while nothing changes. While the pointer drags, frames are coded at a low quality,
 and the next is drawn only when the last one has left for the browser. Scenes that take long to draw are drawn with
-fewer pixels meanwhile, which the browser enlarges, and with fewer points of their lines, which may be off by such a
-pixel; how few follows from the times of the last frames. As soon as the pointer rests, the whole picture comes at full
-quality; where it had all its pixels, without drawing again. If nothing happens then, the samples of the refined picture
-(``plotter.picture.antialias``) are drawn, one between any two events, and it is sent when it is finished.
+fewer pixels meanwhile, which the browser enlarges, with fewer points of their lines, which may be off by such a pixel,
+and large sets with fewer streamlines (:mod:`pvfiblets.web.pace`). As soon as the pointer rests, the whole picture comes
+at full quality; where it had all its pixels, without drawing again. If nothing happens then, the samples of the refined
+picture (``plotter.picture.antialias``) are drawn, one between any two events, and it is sent when it is finished.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pvfiblets.mappers.scene import hurry
+from pvfiblets.web.pace import LEVELS, Level, Pace
 from pvfiblets.web.rpc_allowlist import MOST_PIXELS
 from pvfiblets.web.touch import Fingers
 
@@ -35,12 +36,8 @@ REST = 0.25  # seconds without an event after which the camera is at rest
 FASTEST = 1.0 / 60.0  # seconds from frame to frame, at least
 UNSENT = 4  # messages that may wait for the network before drawing waits for them
 PATIENCE = 10.0  # seconds that it does: of browsers that share a view, one may have gone to sleep
-SLOW = 0.1  # seconds a frame; if more, fewer pixels are drawn while the camera moves
-HASTES = ((1.0, 0.0), (0.5, 1.0), (0.35, 2.0))
-"""Share of the width and the height that is drawn, and drawn pixels by which lines may be off: no haste to most."""
 HEARD = 0.002  # seconds between samples, in which events are heard
 SO_FAR = 0.5  # seconds between pictures of what is there so far of a set whose parts are fetched
-BRISK = 0.25 * SLOW  # of a reduced frame; if less, more pixels can be drawn
 
 
 class PictureStream:
@@ -98,8 +95,8 @@ class PictureStream:
         self._moved = 0.0
         self._size = (300, 300)  # of the whole picture
         self._scale = 1.0  # its pixels for one of the page
-        self._drawn_at = 1.0  # of that size
-        self._moving_at = 1.0
+        self._level = LEVELS[0]  # of what is drawn now
+        self._pace = Pace()
         self._sharp = (plotter.render_window.GetMultiSamples(), plotter.render_window.GetDPI())
         self._pressed: set[str] = set()
         self._fingers = Fingers(plotter, pane_at)
@@ -201,7 +198,7 @@ class PictureStream:
 
     def settle(self) -> tuple[int, int]:
         """Have the whole picture drawn, if fewer pixels were drawn last, and return its width and height."""
-        if self._drawn_at < 1.0:
+        if self._level is not LEVELS[0]:
             self._draw()
         return self._size
 
@@ -284,19 +281,18 @@ class PictureStream:
     async def _frame(self) -> None:
         """Draw and send a frame, and what follows it when the camera rests."""
         moving = self.moving
-        pixels = self._draw(self._moving_at if moving else 1.0)
+        pixels = self._draw(self._pace.choose() if moving else LEVELS[0])
         self._after()
         coarse = moving and self.codec != "png"
         await self._send(pixels, self.moving_quality if coarse else self.still_quality)
         await self._drained()
-        if moving and (coarse or self._drawn_at < 1.0) and await self._rests():
-            if self._drawn_at < 1.0:
-                self.request()
-            else:
+        whole = self._level is LEVELS[0]
+        if moving and (coarse or not whole) and await self._rests():
+            if whole:
                 await self._send(pixels, self.still_quality)
-        if moving:
-            self._moving_at = self._next()
-        if not self._wanted.is_set() and self._drawn_at == 1.0:
+            else:
+                self.request()
+        if not self._wanted.is_set() and whole:
             await self._refine()
 
     async def _refine(self) -> None:
@@ -306,6 +302,7 @@ class PictureStream:
         """
         with contextlib.suppress(TimeoutError):
             await asyncio.wait_for(self._wanted.wait(), REST)
+        await self._practise()
         picture = self._plotter.picture
         before, fetching, sent = picture.samples, picture.fetching, time.monotonic()
         while not self._wanted.is_set() and picture.refine():
@@ -315,6 +312,18 @@ class PictureStream:
                 sent = time.monotonic()
         if not self._wanted.is_set() and (picture.samples != before or fetching):
             await self._send(self._read(), self.still_quality)
+
+    async def _practise(self) -> None:
+        """Draw a frame of a moving camera that nobody sees, where it would be the first of its kind.
+
+        Programs are compiled and a share of a large set is copied to the GPU before somebody drags, not meanwhile.
+        """
+        if self._wanted.is_set() or not self._pace.untried:
+            return
+        self._show(self._pace.level)
+        await asyncio.sleep(HEARD)
+        if not self._wanted.is_set():
+            self._show(LEVELS[0])
 
     async def _rests(self) -> bool:
         """Wait until the camera is at rest; ``False`` as soon as another frame is wanted."""
@@ -331,49 +340,46 @@ class PictureStream:
     def _pixels(self) -> tuple[int, int]:
         """Width and height of what is drawn now."""
         width, height = self._size
-        return max(round(width * self._drawn_at), 16), max(round(height * self._drawn_at), 16)
+        return max(round(width * self._level.size), 16), max(round(height * self._level.size), 16)
 
     @property
     def _dpi(self) -> int:
         """Pixels to an inch of what is drawn now."""
-        return max(1, round(self._sharp[1] * self._scale * self._drawn_at))
+        return max(1, round(self._sharp[1] * self._scale * self._level.size))
 
-    def _next(self) -> float:
-        """Return the share of the size at which the next frame of the moving camera is drawn."""
-        last, shares = list(self.times)[-2:], [share for share, _ in HASTES]
-        level = shares.index(self._drawn_at)
-        if len(last) == 2 and min(last) > SLOW:
-            level += 1
-        elif len(last) == 2 and max(last) < BRISK:
-            level -= 1
-        return shares[min(max(level, 0), len(shares) - 1)]
-
-    def _resize(self, share: float) -> None:
-        """Draw at a share of the size from now on, and let the pointer be where it was."""
+    def _resize(self, level: Level) -> None:
+        """Draw as coarsely from now on, and let the pointer be where it was."""
         interactor = self._plotter.iren.interactor
         before, last, place = self._pixels, interactor.GetLastEventPosition(), interactor.GetEventPosition()
-        self._fingers.resize(share / self._drawn_at)
-        self._drawn_at = share
+        self._fingers.resize(level.size / self._level.size)
+        self._level = level
         self.times.clear()
         # Letters and lines keep their size on the page. Enlarged pixels have no use for samples.
         self._plotter.render_window.SetDPI(self._dpi)
-        self._plotter.render_window.SetMultiSamples(self._sharp[0] if share == 1.0 else 0)
-        hurry(self._plotter.render_window, dict(HASTES)[share])
+        self._plotter.render_window.SetMultiSamples(self._sharp[0] if level is LEVELS[0] else 0)
+        hurry(self._plotter.render_window, level.off, level.share)
         interactor.UpdateSize(*self._pixels)
         for at in (last, place):  # an event moves the place before to the last
             interactor.SetEventPosition(
                 *(int(k * now / then) for k, now, then in zip(at, self._pixels, before, strict=True))
             )
 
-    def _draw(self, share: float = 1.0) -> NDArray[np.uint8]:
-        if share != self._drawn_at:
-            self._resize(share)
+    def _draw(self, level: Level = LEVELS[0]) -> NDArray[np.uint8]:
+        pixels, seconds = self._show(level)
+        self.frames += 1
+        self.times.append(seconds)
+        return pixels
+
+    def _show(self, level: Level) -> tuple[NDArray[np.uint8], float]:
+        """Draw, and return the picture and the seconds that it took."""
+        if level is not self._level:
+            self._resize(level)
         started = time.perf_counter()
         self._plotter.render()
         pixels = self._read()
-        self.frames += 1
-        self.times.append(time.perf_counter() - started)
-        return pixels
+        seconds = time.perf_counter() - started
+        self._pace.took(level, seconds)
+        return pixels, seconds
 
     def _read(self) -> NDArray[np.uint8]:
         """Return the picture that has been drawn."""

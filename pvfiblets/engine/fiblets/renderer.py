@@ -73,6 +73,8 @@ class FibletRenderer(LinesBehind):
         What filters speak of, where `fiblets` are some of its streamlines (:mod:`pvfiblets.codec.restrict`).
     alike : int, optional
         Fiblets of a set whose pictures those of this part of it shall equal in every bit.
+    most : float
+        With ``fit='sample'``: draw no larger share of the streamlines, whatever would fit.
 
     Attributes
     ----------
@@ -107,6 +109,7 @@ class FibletRenderer(LinesBehind):
         lender: Drawable[Any] | None = None,
         whole: FibletSet | None = None,
         alike: int | None = None,
+        most: float = 1.0,
     ) -> None:
         pipeline = choose(ctx, pipeline)
         check_choices(fit=fit)
@@ -124,7 +127,7 @@ class FibletRenderer(LinesBehind):
         with self._making():
             whole = fiblets if whole is None else whole
             room = MemoryBudget.of(ctx, self._gl, limits, max_total_bytes)
-            fitted = upload_fitting(ctx, fiblets, room, fit, self._chunks, progress)
+            fitted = upload_fitting(ctx, fiblets, room, fit, self._chunks, progress, most)
             self._fiblets = fiblets = fitted.kept()
             self.share = fitted.share
             self._shared = self._keep(SharedBlocks(ctx, fiblets))

@@ -148,7 +148,13 @@ def upload_chunk(
 
 
 def upload_fitting(
-    ctx: moderngl.Context, fiblets: FibletSet, room: MemoryBudget, fit: str | None, chunks: list[Chunk], progress: bool
+    ctx: moderngl.Context,
+    fiblets: FibletSet,
+    room: MemoryBudget,
+    fit: str | None,
+    chunks: list[Chunk],
+    progress: bool,
+    most: float = 1.0,
 ) -> Fitted:
     """Copy what fits, and say what that is.
 
@@ -163,6 +169,8 @@ def upload_fitting(
         Gains what was copied, as it is copied.
     progress : bool
         Show a progress bar.
+    most : float
+        Copy no larger share of the streamlines, where a sample is asked for.
 
     Raises
     ------
@@ -171,7 +179,7 @@ def upload_fitting(
     EngineError
         As :func:`upload_chunk`.
     """
-    fitted = room.fitted(fiblets, fit)
+    fitted = room.fitted(fiblets, fit, most)
     while True:
         needed = sum(plan.nbytes for plan in fitted.plans)
         try:

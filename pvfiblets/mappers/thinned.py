@@ -1,0 +1,62 @@
+"""Some of a large set's streamlines, for frames of windows that are in a hurry (`pvfiblets.mappers.scene.hurry`).
+
+Where lines hide each other, most of a set is decoded and tested in vain, and fewer pixels do not help. An even share of
+the streamlines, always the same one, lies on the GPU beside the set from the first such frame on. What is filtered,
+coloured and cut goes by the numbers of the whole set's streamlines.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from pvfiblets.engine.errors import GPUMemoryError
+from pvfiblets.mappers.scene import wanted_share
+
+__all__ = ["LEAST_FIBLETS", "thinned_engine"]
+
+LEAST_FIBLETS = 20_000
+"""Fiblets of a set of which nothing is left out: it is drawn in no time, and each of its lines may count."""
+
+
+def thinned_engine(
+    context: Any, slot: Any, fiblets: Any, filtering: Any, make: Callable[..., Any], least: int | None = None
+) -> Any:
+    """Return the engine that draws as many streamlines as the window asks for.
+
+    Parameters
+    ----------
+    context : WindowContext
+    slot : Slot
+        Its renderer draws all; it keeps what is made here.
+    fiblets : FibletSet
+    filtering : Filter or None
+        What is there to be drawn.
+    make : callable
+        Takes a moderngl context and options of a renderer.
+    least : int, optional
+        As `LEAST_FIBLETS`.
+
+    Returns
+    -------
+    FibletRenderer
+        That of all streamlines where the set is small, is drawn in parts, which have an even share of their own, or
+        where memory does not suffice for two.
+    """
+    least = LEAST_FIBLETS if least is None else least
+    if fiblets.n_fiblets < least or hasattr(slot.renderer, "patience"):
+        return slot.renderer
+    wanted = wanted_share(context.window) * slot.renderer.share
+    share = max(wanted, min(least / fiblets.n_fiblets, slot.renderer.share))
+    if share not in slot.thinned:
+        try:
+            # Alike: the programs are those of all, which are compiled already.
+            slot.thinned[share] = make(context.ctx, fit="sample", most=share, alike=fiblets.n_fiblets)
+        except GPUMemoryError:
+            slot.thinned[share] = None
+    engine = slot.thinned[share]
+    if engine is None:
+        return slot.renderer
+    if engine.filtering is not filtering:
+        engine.filtering = filtering
+    return engine
