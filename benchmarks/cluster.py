@@ -4,10 +4,11 @@
 
 Each row is a cluster of processes on this machine. Its *model* is made of what one worker measures that draws the same
 number of parts one after another: the time of each part, of each pair of pictures that is put together, and what is
-left of a frame, which dask's messages take. Parts are given to whichever processor is free, pairs to one each; what
-is sent is sent at the rate that a copy between two workers was measured at. The second table uses the same parts for
-workers with one graphics card each: how fast that draws is given, and stands in the table's title; nothing here has
-measured it.
+left of a frame, which dask's messages take. Parts are given to whichever processor is free, pairs to one each; what is
+sent is sent at the rate that a copy between two workers was measured at. A software OpenGL draws by one thread in each
+worker, which stands for its card: by default one worker would take all processors already. The second table uses the
+same parts for workers with one graphics card each: how fast that draws is given, and stands in the table's title;
+nothing here has measured it.
 """
 
 from __future__ import annotations
@@ -138,6 +139,7 @@ def main() -> None:
     options = parser.parse_args()
     size, processors = tuple(options.size), len(os.sched_getaffinity(0))
     rows: list[dict[str, Any]] = []
+    os.environ.setdefault("LP_NUM_THREADS", "1")  # workers inherit it
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "brain.fiblets"
         pvfiblets.compress(brain_streamlines(options.streamlines, 0.5)).save(path)
