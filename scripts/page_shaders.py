@@ -1,24 +1,40 @@
 """The shaders of pages (client/), and what else their script takes from the package; scripts/page_client.py builds it.
 
-They are the engine's own pieces, assembled as for OpenGL 3.3 and turned into GLSL ES 3.00. Switches stay switches: the
-page sets the ``#define FEATURE_`` lines itself. Beside them stand the offsets of uniform blocks, the rotations of
-direction codes, and their scales.
+They are the engine's own pieces, assembled as for OpenGL 3.3, turned into GLSL ES 3.00 and shortened. Switches that the
+page sets stay switches: it sets the ``#define FEATURE_`` lines itself. Beside them stand the offsets of uniform blocks,
+the rotations of direction codes, and their scales.
 """
 
 from __future__ import annotations
 
 import base64
 import re
+import sys
+from pathlib import Path
 from typing import Any
 
 from pvfiblets.codec import direction_codebook, layout
-from pvfiblets.engine.shaders import assemble
+from pvfiblets.engine.shaders import FEATURES, assemble
 from pvfiblets.engine.uniform_struct import find_struct
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
+from shader_shrinking import pieces, shrunk
 
 DATA = dict.fromkeys(("fiblets/data/culling.glsl", "fiblets/data/decoding.glsl"), "page/data.glsl")
 ANY_FIBLETS = ("ANCHORS_LOW", "DIRECTION", "LATTICE", "WIDE_LATTICE")
-ANY_LINES = ("CLIPPING", "CLIPPING_DEPTH", "CLIP_PLANES", "EDGES", "WIDE_LINES", "VALUES_STORED", "VALUES_COLOUR",
-             "STREAMLINE_MASK")
+ANY_LINES = (
+    "CLIPPING",
+    "CLIPPING_DEPTH",
+    "CLIP_PLANES",
+    "EDGES",
+    "WIDE_LINES",
+    "VALUES_STORED",
+    "VALUES_COLOUR",
+    "STREAMLINE_MASK",
+)
+ALWAYS = ("CLIPPING", "CLIPPING_DEPTH", "DIRECTION", "EDGES")
+"""Switches that a page never has off, where a stage knows them."""
 STAGES: dict[str, tuple[str, ...]] = {
     "page/decode.vert": ANY_FIBLETS,
     "page/none.frag": (),
@@ -47,12 +63,16 @@ def page_shader(name: str, features: tuple[str, ...]) -> str:
     assert head == "#version 300", head
     lines = [re.sub(r"[ \t]+", " ", line).strip() for line in body.splitlines()]
     body = "\n".join(_tight(line) for line in lines if line)
-    return f"#version 300 es\n{PRECISION}{body}\n"
+    switches = {feature: feature in features for feature in FEATURES if feature in ALWAYS or feature not in features}
+    return shrunk(f"#version 300 es\n{PRECISION}{body}\n", switches)
 
 
 def _tight(line: str) -> str:
     """Leave blanks out beside signs; a line of the preprocessor keeps its own."""
-    return line if line.startswith("#") else re.sub(r" ?([*/=<>{}();,?:&|!%^]) ?", r"\1", line)
+    if line.startswith("#"):
+        return line
+    line = re.sub(r" ?([*/=<>{}();,?:&|!%^]) ?", r"\1", line)
+    return re.sub(r"(?<![+-]) ?([+-]) ?(?![+-])", r"\1", line)  # but not where it would make a `--`
 
 
 def everything() -> dict[str, Any]:
@@ -61,8 +81,10 @@ def everything() -> dict[str, Any]:
     for name in BLOCKS:
         struct = find_struct(name)
         blocks[name] = {"bytes": struct.nbytes, "fields": {field: struct.offset(field) for field in struct.fields}}
+    lines, shaders = pieces({name: page_shader(name, features) for name, features in STAGES.items()})
     return {
-        "shaders": {name: page_shader(name, features) for name, features in STAGES.items()},
+        "lines": "\n".join(lines),
+        "shaders": shaders,
         "blocks": blocks,
         "rotations": base64.b64encode(direction_codebook.packed().astype("<u4").tobytes()).decode(),
         "rotation_scales": direction_codebook.packed_scales().tolist(),

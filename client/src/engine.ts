@@ -7,7 +7,17 @@ interface Block {
   fields: Record<string, number>;
 }
 
-export const shaders: Record<string, string> = engine.shaders;
+const lines = engine.lines.split("\n");
+
+/** The text of a stage, from ranges of the lines that all stages share. */
+function put(ranges: number[]): string {
+  const text: string[] = [];
+  for (let i = 0; i < ranges.length; i += 2) text.push(...lines.slice(ranges[i], ranges[i + 1]));
+  return text.join("\n") + "\n";
+}
+
+export const shaders: Record<string, string> = {};
+for (const [name, ranges] of Object.entries(engine.shaders)) shaders[name] = put(ranges);
 export const blocks: Record<string, Block> = engine.blocks;
 export const rotationScales: number[] = engine.rotation_scales;
 export const PAGE_BITS: number = engine.page_bits;

@@ -1,0 +1,130 @@
+"""Shaders of pages, as they are shortened for the script: every choice of switches is still a program."""
+
+from __future__ import annotations
+
+import importlib.util
+import itertools
+import re
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.reference_compiler import complaints, link
+
+SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
+PAIRS = {
+    "page/decode.vert": "page/none.frag",
+    "page/segment.vert": "page/segment.frag",
+    "page/surface.vert": "page/surface.frag",
+    "page/image.vert": "page/image.frag",
+}
+
+
+def _script(name):
+    if name not in sys.modules:
+        spec = importlib.util.spec_from_file_location(name, SCRIPTS / f"{name}.py")
+        sys.modules[name] = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(sys.modules[name])
+    return sys.modules[name]
+
+
+@pytest.fixture(scope="module")
+def engine():
+    return _script("page_shaders").everything()
+
+
+@pytest.fixture(scope="module")
+def stages(engine):
+    """Return texts of stages, put together as client/src/engine.ts does."""
+    lines = engine["lines"].split("\n")
+    return {
+        name: "".join(f"{line}\n" for at in range(0, len(found), 2) for line in lines[found[at] : found[at + 1]])
+        for name, found in engine["shaders"].items()
+    }
+
+
+def _switched(text, on):
+    return re.sub(
+        r"#define FEATURE_(\w+) [01]", lambda found: f"#define FEATURE_{found[1]} {int(found[1] in on)}", text
+    )
+
+
+def _choices(*texts):
+    free = sorted(set(re.findall(r"#define FEATURE_(\w+)", "".join(texts))))
+    return [set(chosen) for n in range(len(free) + 1) for chosen in itertools.combinations(free, n)]
+
+
+def test_every_choice_of_switches_compiles(stages, tmp_path):
+    paths = []
+    for name, text in stages.items():
+        for sprites in ("false", "true") if "SPRITES" in text else ("false",):
+            for i, on in enumerate(_choices(text)):
+                path = tmp_path / f"{name.replace('/', '-').rpartition('.')[0]}-{i}-{sprites}.{name.rpartition('.')[2]}"
+                path.write_text(
+                    _switched(text, on).replace("const bool SPRITES=false", f"const bool SPRITES={sprites}")
+                )
+                paths.append(path)
+    assert len(paths) > 40
+    assert not complaints(paths)
+
+
+@pytest.mark.parametrize("vertex", PAIRS)
+def test_stages_link_with_all_switches_on_and_off(vertex, stages, tmp_path):
+    texts = stages[vertex], stages[PAIRS[vertex]]
+    for on in (_choices(*texts)[0], _choices(*texts)[-1]):
+        done = link(tmp_path, dict(zip(("vert", "frag"), (_switched(text, on) for text in texts), strict=True)))
+        assert done.returncode == 0, done.stdout
+
+
+def test_nothing_is_named_that_the_client_does_not_have(engine, stages):
+    client = SCRIPTS.parent / "client" / "src"
+    asked = set(re.findall(r'"((?:page|effects)/[\w/]+\.(?:vert|frag))"', (client / "renderer.ts").read_text()))
+    asked |= set(re.findall(r'"(page/[\w/]+\.(?:vert|frag))"', (client / "fiblets.ts").read_text()))
+    assert asked == set(stages)
+    free = set(re.findall(r"#define FEATURE_(\w+)", "".join(stages.values())))
+    text = (client / "renderer.ts").read_text() + (client / "fiblets.ts").read_text()
+    assert {name for name in free if f'"{name}"' not in text} == set()
+
+
+SHRUNK = {
+    "a branch that is never taken": ("#if FEATURE_OFF\nvoid f(){g();}\n#else\nint a;\n#endif\n", "int a;\n"),
+    "a branch that is always taken": ("#if FEATURE_ON && !FEATURE_OFF\nint a;\n#else\nint b;\n#endif\n", "int a;\n"),
+    "what the page decides": (
+        "#define FEATURE_FREE 1\n#if FEATURE_FREE\nint a;\n#else\nint b;\n#endif\n",
+        "#define FEATURE_FREE 1\n#if FEATURE_FREE\nint a;\n#else\nint b;\n#endif\n",
+    ),
+    "a chain whose first is known": (
+        "#define FEATURE_FREE 1\n#if FEATURE_OFF\nint a;\n#elif FEATURE_FREE\nint b;\n#else\nint c;\n#endif\n",
+        "#define FEATURE_FREE 1\n#if FEATURE_FREE\nint b;\n#else\nint c;\n#endif\n",
+    ),
+    "a chain whose last is known": (
+        "#define FEATURE_FREE 1\n#if FEATURE_FREE\nint a;\n#elif FEATURE_ON\nint b;\n#else\nint c;\n#endif\n",
+        "#define FEATURE_FREE 1\n#if FEATURE_FREE\nint a;\n#else\nint b;\n#endif\n",
+    ),
+    "a condition of which a part is known": (
+        "#define FEATURE_FREE 1\n#if FEATURE_OFF || !(FEATURE_OFF || FEATURE_FREE)\nint a;\n#endif\n",
+        "#define FEATURE_FREE 1\n#if !FEATURE_FREE\nint a;\n#endif\n",
+    ),
+    "a branch within one that is not taken": (
+        "#if FEATURE_OFF\n#if FEATURE_FREE\nint a;\n#else\nint b;\n#endif\n#endif\nint c;\n",
+        "int c;\n",
+    ),
+    "functions by turns": (
+        "const int N=3;\nint f(int x){\nreturn N;\n}\nint f(uint x){return f(int(x));}\nint g(){return f(1);}\n"
+        "void main(){}\n",
+        "void main(){}\n",
+    ),
+    "what a branch uses that may be taken": (
+        "#define FEATURE_FREE 1\nuniform int n;\nint f(){return n;}\nvoid main(){\n#if FEATURE_FREE\nf();\n#endif\n}\n",
+        "#define FEATURE_FREE 1\nuniform int n;\nint f(){return n;}\nvoid main(){\n#if FEATURE_FREE\nf();\n#endif\n}\n",
+    ),
+    "switches that nothing asks for": ("#define FEATURE_FREE 1\n#if FEATURE_FREE\n#endif\nint a;\n", "int a;\n"),
+}
+
+
+@pytest.mark.parametrize("case", SHRUNK)
+def test_what_is_left_out(case):
+    _script("page_shaders")  # puts its folder among the places of modules
+    text, expected = SHRUNK[case]
+    assert _script("shader_shrinking").shrunk(text, {"ON": True, "OFF": False}) == expected
