@@ -47,6 +47,9 @@ class HaloLines:
         object.__setattr__(self, "offsets", as_offsets(self.offsets, len(self.points)))
         object.__setattr__(self, "values", _checked_values(self.values, len(self.points)))
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.points, self.offsets, dict(self.values))  # a view of a dict cannot be pickled
+
     @property
     def n_lines(self) -> int:
         """Lines, those without points included."""
@@ -101,6 +104,9 @@ class HaloPoints:
     def __post_init__(self) -> None:
         object.__setattr__(self, "points", _checked_points(self.points, "points"))
         object.__setattr__(self, "values", _checked_values(self.values, len(self.points)))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.points, dict(self.values))
 
     @property
     def n_streamlines(self) -> int:

@@ -22,6 +22,12 @@ from pvfiblets.mappers.windows import weak
 
 VTK_SURFACE = 2
 
+_UNUSED = {
+    "backface_prop": ("GetBackfaceProperty", "what is drawn has no backs; prop says how it looks from all sides"),
+    "texture": ("GetTexture", "what is drawn has no texture coordinates; give colours as scalars"),
+}
+"""By PyVista's name: how VTK calls it, and what to say of it."""
+
 
 class Attached:
     """The part of `pvfiblets.mappers.engine_mapper.EngineMapper` that knows its actor."""
@@ -37,6 +43,7 @@ class Attached:
         self._installed: tuple[resolve.Replacement, ...] = ()
         self._found = False
         self._alone = ("", 0)
+        self._unused: frozenset[str] = frozenset()
 
     @property
     def actor(self) -> vtkActor | None:
@@ -97,6 +104,14 @@ class Attached:
             self._watch_property(actor)
         if actor.GetShaderProperty() is not self._shader_property.Get():
             self._install()
+        self._tell_unused(actor)
+
+    def _tell_unused(self, actor: vtkActor) -> None:
+        """Say once of what an actor was given that the covering triangle has no use for it."""
+        given = frozenset(name for name, (get, _) in _UNUSED.items() if getattr(actor, get)() is not None)
+        new, self._unused = given - self._unused, given
+        for name in sorted(new):
+            warnings.warn(f"actor.{name} changes nothing here: {_UNUSED[name][1]}", UserWarning, stacklevel=2)
 
     def _check_alone(self, renderer: Any) -> None:
         """Raise where actors share the mapper, as copies of an actor do: nobody says which of them is drawn."""

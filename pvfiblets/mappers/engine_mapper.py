@@ -260,6 +260,7 @@ class EngineMapper(Attached, Readable, Connected, Questions, vtkOpenGLPolyDataMa
             style = replace(style, edges=True, exact=smoother.sample)
             smoother.widened |= smoother.sample and self._widened(style, frame)
         slot = context.slot(self)
+        context.tell_lost(renderer)
         with context.foreign():
             engine = self._engine(context, slot)
             if hasattr(engine, "patience"):

@@ -12,6 +12,7 @@ forgotten and never deleted, because its names may belong to others in the next 
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -168,6 +169,7 @@ class WindowContext:
         self._window = weak(window)
         self.slots: dict[str, Slot] = {}
         self.ctx: Any = None
+        self._told_lost = False
         with self.foreign():
             self.ctx = _attach()
             self._witness = vtkTextureObject()
@@ -192,6 +194,22 @@ class WindowContext:
     def alive(self) -> bool:
         """Whether the GL context that the objects were made in still exists."""
         return self.window is not None and self._witness.GetHandle() != 0
+
+    def tell_lost(self, renderer: Any) -> None:
+        """Say once that VTK shows nothing translucent: where its peeling of depth failed, with an error left behind.
+
+        Some drivers refuse the copy of a multi-sampled depth that peeling begins with; meshes vanish as well.
+        """
+        if self._told_lost or not renderer.GetUseDepthPeeling() or self.window.GetMultiSamples() < 2:
+            return
+        if self.ctx.error != "GL_NO_ERROR":
+            self._told_lost = True
+            warnings.warn(
+                "VTK's depth peeling fails on this driver where the window is multi-sampled, so nothing translucent "
+                "shows; call plotter.disable_anti_aliasing(), or choose 'ssaa' or 'fxaa'",
+                RuntimeWarning,
+                stacklevel=2,
+            )
 
     def slot(self, mapper: Any) -> Slot:
         """Return the slot of a mapper, made when there is none."""

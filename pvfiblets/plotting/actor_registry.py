@@ -24,6 +24,7 @@ from pvfiblets.plotting.call_signature import document
 from pvfiblets.plotting.settings import Given, Settings
 from pvfiblets.plotting.settings import arguments as settings_of_call
 from pvfiblets.plotting.shared_settings import Common
+from pvfiblets.plotting.words_of_add_mesh import why_not
 
 
 class Registered(Protocol):
@@ -166,19 +167,10 @@ class ActorRegistry(Generic[A]):
         self._refuse([name for name in own if name not in self.OWN])
 
     def _refuse(self, unknown: Sequence[str]) -> None:
-        """Refuse arguments that are none; those of ``add_mesh`` that are the property's, with where they belong."""
-        if not unknown:
-            return
-        name = unknown[0]
-        if name in ("pbr", "smooth_shading"):
-            why = "set actor.prop.interpolation = 'pbr'" if name == "pbr" else "lines and tubes are smooth as they are"
-            raise TypeError(f"{self.ADD}() takes no {name}: {why}")
-        if name == "use_transparency":
-            instead = "give 1 - values as opacity, or 'linear_r' for 'linear'"
-            raise TypeError(f"{self.ADD}() takes no use_transparency: {instead}")
-        if isinstance(getattr(pv.Property, name, None), property):
-            raise TypeError(f"{self.ADD}() takes no {name}: set it on the actor it returns (actor.prop.{name} = ...)")
-        raise TypeError(f"{self.ADD}() got an unexpected keyword argument {name!r}")
+        """Refuse arguments that are none; those of ``add_mesh`` with what to do instead."""
+        if unknown:
+            name = unknown[0]
+            raise TypeError(why_not(self.ADD, name) or f"{self.ADD}() got an unexpected keyword argument {name!r}")
 
     def __iter__(self) -> Iterator[A]:
         return iter(tuple(self._actors))
@@ -232,7 +224,7 @@ class ActorRegistry(Generic[A]):
         _warn_of_distance(actor)
         if label is not None:
             self._set_label(actor, label, renderer)
-        if actor.scalars_title is not None:
+        if actor.scalars_title is not None or self._plotter.mapper is None:
             self._plotter.mapper = actor.mapper  # of which `add_scalar_bar` makes one, as after `add_mesh`
         self._bars[actor.memory_address] = _Bar(bool(show_scalar_bar), dict(scalar_bar_args or {}))
         try:

@@ -29,6 +29,9 @@ class Coloured(Settings, LinkedProperty, LinkedTable):
     # What to say of the property's line width, where it is not drawn.
     _WIDTH: ClassVar[str] = ""
 
+    # The property that holds what is drawn.
+    _DATA: ClassVar[str]
+
     _mapper: Any
     prop: Any
     scalars: Any
@@ -89,6 +92,12 @@ class Coloured(Settings, LinkedProperty, LinkedTable):
 
     def __deepcopy__(self, _known: dict[int, Any]) -> Any:
         return self.copy(deep=True)
+
+    def __reduce_ex__(self, _protocol: Any) -> Any:
+        raise TypeError(
+            f"a {type(self).__name__} cannot be pickled, as VTK's actors cannot; pickle what it draws "
+            f"(actor.{self._DATA}) and add that to a plotter where it is unpickled"
+        )
 
     # What a component asks ----------------------------------------------------------------------
 
@@ -290,7 +299,14 @@ class Plotted:
 
     @scalar_range.setter
     def scalar_range(self, clim: tuple[float, float]) -> None:
-        cast("Any", self._shown_by()).clim = clim
+        actor = cast("Any", self._shown_by())
+        actor.clim = clim
+        if actor._scalars is None and not actor._hidden:  # noqa: SLF001
+            warnings.warn(
+                f"the range {tuple(clim)} changes nothing yet: the actor has one colour and no scalars",
+                UserWarning,
+                stacklevel=3,
+            )
 
     def _shown_by(self) -> Coloured:
         return cast("Coloured", cast("Any", self).actor)

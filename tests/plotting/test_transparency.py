@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import warnings
 
 import numpy as np
 import pytest
+import pyvista as pv
 
 FLAT = {"lighting": False, "line_width": 6.0, "color": "white"}
 
@@ -104,3 +106,32 @@ def test_layers_of_a_volumes_values_by_this_opengl():
 @pytest.mark.parametrize(("version", "pipeline"), [("4.1", "tessellation"), ("4.1", "geometry"), ("3.3", "geometry")])
 def test_layers_of_a_volumes_values_by_older_opengl(older_opengl, version, pipeline):
     draws(older_opengl(version), pipeline)
+
+
+@pytest.mark.parametrize("samples", [0, 4])
+def test_depth_peeling_that_fails_under_multi_sampling_is_told_once(three_lines, colours_in, samples):
+    """The same window loses a translucent mesh."""
+    found = {}
+    for what in ("mesh", "fiblets"):
+        plotter = pv.Plotter(off_screen=True, window_size=(100, 100))
+        plotter.set_background("black")
+        if samples:
+            plotter.enable_anti_aliasing("msaa", multi_samples=samples)
+        else:
+            plotter.disable_anti_aliasing()
+        plotter.enable_depth_peeling()
+        if what == "mesh":
+            plotter.add_mesh(pv.Sphere(), opacity=0.5)
+        else:
+            plotter.add_fiblets(three_lines, opacity=0.5)
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            shown = colours_in(plotter.screenshot())
+            plotter.camera.azimuth += 30.0
+            plotter.render()
+        found[what] = bool(shown)
+        said = [str(one.message) for one in told if "depth peeling fails" in str(one.message)]
+        plotter.close()
+    assert found["mesh"] == found["fiblets"]
+    assert len(said) == int(not found["mesh"])
+    assert all("plotter.disable_anti_aliasing()" in one for one in said)

@@ -114,7 +114,8 @@ def test_all_integrators_shade(integrator):
 
 def test_it_is_a_live_setting():
     plotter = pv.Plotter(off_screen=True, window_size=(60, 60))
-    actor = plotter.add_raycast_volume(bulge(), ambient=0.1)
+    with pytest.warns(UserWarning, match=r"ambient=0\.1 changes nothing in mode 'composite': set actor\.shade"):
+        actor = plotter.add_raycast_volume(bulge(), ambient=0.1)
     assert not actor.shade
     before = np.array(plotter.screenshot(return_img=True)).astype(int)
     actor.shade = True

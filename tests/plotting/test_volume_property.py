@@ -90,3 +90,23 @@ def test_what_was_said_is_forgotten_with_the_mode(plotter, ball):
     actor.prop.specular = 0.7
     actor.copy()
     plotter.render()
+
+
+@pytest.mark.parametrize("made", MODES, ids=str)
+@pytest.mark.parametrize("light", [{"ambient": 0.6}, {"diffuse": 0.2}, {"specular": 0.9}, {"shade": True}], ids=str)
+def test_each_argument_of_light_changes_the_picture_or_says_why_not(plotter, ball, made, light):
+    pictures, told = [], []
+    for more in ({}, light):
+        plotter.clear_actors()
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            plotter.add_raycast_volume(ball, opacity=[0.2, 1.0], **{**made, **more})
+        pictures.append(picture(plotter))
+        told.append([str(one.message) for one in said])
+    same = np.array_equal(*pictures)
+    if more.items() <= made.items() or (light == {"shade": True} and made.get("mode") == "isosurface"):
+        assert same  # it was so before, or is so in any case
+        assert not any(told)
+    else:
+        assert told == [[], [one for one in told[1] if " changes nothing in mode " in one][: int(same)]]
+        assert len(told[1]) == int(same)

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import inspect
+import pickle
+
 import numpy as np
 import pytest
+import pyvista as pv
 
 ADDS = ("add_fiblets", "add_spline_tubes", "add_halo_lines")
 LIGHT = {"ambient": 0.5, "diffuse": 0.3, "specular": 1.0, "interpolation": "pbr", "metallic": 0.9, "roughness": 0.1}
@@ -75,3 +79,70 @@ def test_facets_are_none_of_lines(plotter, add, name, value):
     actor = getattr(plotter, add)(np.linspace([0.0, 0.0, 0.0], [9.0, 5.0, 1.0], 20))
     with pytest.warns(UserWarning, match=rf"prop\.{name} changes nothing here: what is drawn has no facets"):
         setattr(actor.prop, name, value)
+
+
+@pytest.fixture
+def add(request, plotter, three_lines):
+    """Return a function that adds the data that a method is for."""
+    image = pv.ImageData(dimensions=(4, 4, 4))
+    image["values"] = np.arange(64.0)
+    sources = {"add_raycast_volume": image, "add_halo_points": np.random.default_rng(1).random((20, 3))}
+    return lambda **more: getattr(plotter, request.param)(sources.get(request.param, three_lines), **more)
+
+
+EVERY = [*ADDS, "add_halo_points", "add_raycast_volume"]
+WORDS = sorted(set(inspect.signature(pv.Plotter.add_mesh).parameters) - {"self", "mesh", "kwargs"})
+
+
+@pytest.mark.parametrize("add", EVERY, indirect=True)
+def test_every_word_of_add_mesh_is_taken_or_explained(add, request):
+    name = request.node.callspec.params["add"]
+    known = inspect.signature(getattr(pv.Plotter(off_screen=True), name)).parameters
+    for word in set(WORDS) - set(known):
+        with pytest.raises((TypeError, ValueError), match=rf"takes no {word}: \w|{word} of add_volume \w") as told:
+            add(**{word: True})
+        if "actor.prop." in str(told.value):  # what it advises is no advice that warns
+            actor = add()
+            place = str(told.value).partition("actor.prop.")[2].partition(" ")[0]
+            setattr(actor.prop, place, {"interpolation": "pbr"}.get(place, getattr(actor.prop, place)))
+
+
+@pytest.mark.parametrize("add", EVERY, indirect=True)
+@pytest.mark.parametrize(("name", "value"), [("texture", pv.Texture), ("backface_prop", pv.Property)])
+def test_what_needs_surfaces_says_so_once(add, plotter, name, value):
+    actor = add()
+    plotter.render()
+    given = value(np.zeros((2, 2, 3), np.uint8)) if name == "texture" else value(color="red")
+    with pytest.warns(UserWarning, match=rf"actor\.{name} changes nothing here: what is drawn has no"):
+        setattr(actor, name, given)
+    actor.position = 1.0, 0.0, 0.0  # says no more of it
+    assert getattr(actor, name) is not None
+
+
+@pytest.mark.parametrize("add", EVERY, indirect=True)
+def test_pickling_says_what_to_pickle(add):
+    actor = add()
+    with pytest.raises(TypeError, match=r"cannot be pickled, .*pickle what it draws \(actor\.\w+\)") as told:
+        pickle.dumps(actor)
+    held = getattr(actor, str(told.value).partition("(actor.")[2].partition(")")[0])
+    twin = pickle.loads(pickle.dumps(held))
+    assert type(twin) is type(held)
+    np.testing.assert_array_equal(np.ravel(twin.bounds), np.ravel(held.bounds))
+
+
+@pytest.mark.parametrize("add", ADDS, indirect=True)
+def test_the_plotter_has_a_mapper_whose_range_can_be_set(add, plotter):
+    """Of one colour as well, as after ``add_mesh``."""
+    actor = add(color="red")
+    assert plotter.mapper is actor.mapper
+    with pytest.warns(UserWarning, match=r"the range \(2, 3\) changes nothing yet: .* one colour"):
+        plotter.update_scalar_bar_range([2, 3])
+    actor.scalars = np.arange(3.0)
+    assert actor.clim == (2.0, 3.0)
+
+
+@pytest.mark.parametrize("add", ["add_fiblets"], indirect=True)
+def test_nan_color_takes_the_opacity_of_nan(add, plotter, colours_in):
+    """As the error for ``nan_opacity`` advises."""
+    add(scalars=np.full(3, np.nan), nan_color=(1.0, 0.0, 0.0, 0.0), clim=(0.0, 1.0), show_scalar_bar=False)
+    assert not colours_in(plotter.screenshot())

@@ -75,6 +75,8 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
         Show a progress bar while copying to the GPU.
     """
 
+    _DATA = "fiblets"
+
     def __init__(
         self,
         fiblets: FibletSet,

@@ -21,6 +21,7 @@ from pvfiblets.plotting.fiblets.settings import FibletSettings
 from pvfiblets.plotting.fiblets.widgets import Widgets
 from pvfiblets.plotting.setting_places import OPTIONS
 from pvfiblets.plotting.settings import Given, Setting
+from pvfiblets.plotting.words_of_add_mesh import why_not
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -151,7 +152,7 @@ class FibletsComponent(ActorRegistry["FibletActor"], Picking, Widgets):
 
         unknown = sorted(options - set(inspect.signature(compress).parameters))
         live = [name for name in unknown if isinstance(getattr(FibletActor, name, None), (property, Setting))]
-        if live:
+        if live and why_not(self.ADD, unknown[0]) is None:
             sets = "; ".join(f"actor.{name} = ..." for name in live)
             raise TypeError(f"add_fiblets() takes no {', '.join(live)}: set it on the actor that it returns ({sets})")
         self._refuse(unknown)

@@ -303,6 +303,7 @@ class HaloLineActor(HaloLineSettings, HaloActor):
     Source: Everts, Bekker, Roerdink and Isenberg, "Depth-dependent halos" (2009).
     """
 
+    _DATA = "lines"
     _KIND = HaloLines
 
     @property
@@ -356,6 +357,7 @@ class HaloPointActor(HaloPointSettings, HaloActor):
     Source: Everts, Bekker, Roerdink and Isenberg, "Depth-dependent halos" (2009), section 3.5.
     """
 
+    _DATA = "points"
     _KIND = HaloPoints
 
     @property

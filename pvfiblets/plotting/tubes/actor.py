@@ -62,6 +62,7 @@ class TubeActor(TubeSettings, LineOpacities, Coloured, SurfaceShading, pv.Actor)
     Source: Russig, Gumhold and Salm, "GPU-based raycasting of Hermite spline tubes" (2020).
     """
 
+    _DATA = "tubes"
     _WIDTH = "tubes have a radius in mm, given as radius; actor.min_width is in pixels"
 
     def __init__(

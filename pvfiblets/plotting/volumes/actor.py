@@ -75,6 +75,7 @@ class VolumeActor(RaySettings, SurfaceShading, Clipping, pv.Actor):
     Source: Lesar, "Real-time ray casting of volumetric data" (2015).
     """
 
+    _DATA = "volume"
     _words: PropertyWords | None = None
 
     def __init__(

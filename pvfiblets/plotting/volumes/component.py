@@ -171,6 +171,7 @@ class RaycastVolumesComponent(ActorRegistry["VolumeActor"]):
         (0.4,)
         """
         from pvfiblets.plotting.volumes.actor import VolumeActor
+        from pvfiblets.plotting.volumes.property_words import tell_given
         from pvfiblets.volumes.raycast_options import MODES
         from pvfiblets.volumes.sources import as_raycast_volume
 
@@ -194,6 +195,7 @@ class RaycastVolumesComponent(ActorRegistry["VolumeActor"]):
             settings["n_colors"] = len(np.unique(volume.values)) if categories is True else int(categories)
         actor = VolumeActor(volume, settings=settings, given=(source, where), theme=self._plotter.theme)
         _warn_of_nothing(actor)
+        tell_given(actor, {name: settings[name] for name in settings.named})
         return actor
 
 

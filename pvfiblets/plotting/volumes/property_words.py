@@ -7,6 +7,7 @@ something in some modes only. Each is declared once here.
 from __future__ import annotations
 
 import warnings
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +16,7 @@ from pvfiblets.plotting.volumes.casting import SURFACE
 if TYPE_CHECKING:
     from pvfiblets.plotting.volumes.actor import VolumeActor
 
-__all__ = ["PropertyWords"]
+__all__ = ["PropertyWords", "tell_given"]
 
 _PEAKS = "what peaks and projections show is the colour of a value, which no lamp shines on"
 _RAYS = "rays through a volume have neither lines nor points"
@@ -34,11 +35,13 @@ class _Word:
     """Whether it goes back to what it was, as VTK would do something else by it."""
 
 
+_LIGHT = "composite"
+_PEAK_MODES = ("mip", "local-mip", "minimum", "average")
 _SHADE = "set actor.shade = True to have light shaded"
 _WORDS = {
     "color": _Word("DiffuseColor", (), "set actor.color for one colour, or actor.cmap"),
-    "ambient": _Word("Ambient", ("mip", "local-mip", "minimum", "average", SURFACE), "", _SHADE),
-    "diffuse": _Word("Diffuse", ("mip", "local-mip", "minimum", "average", SURFACE), "", _SHADE),
+    "ambient": _Word("Ambient", (*_PEAK_MODES, SURFACE), "", _SHADE),
+    "diffuse": _Word("Diffuse", (*_PEAK_MODES, SURFACE), "", _SHADE),
     "specular": _Word("Specular", (SURFACE,), _PEAKS, _SHADE),
     "specular_power": _Word("SpecularPower", (SURFACE,), _PEAKS, _SHADE),
     "lighting": _Word("Lighting", (SURFACE,), f"{_PEAKS}; of light, set actor.shade", reset=True),
@@ -76,18 +79,48 @@ class PropertyWords:
         if prop is not known:
             return
         for name, word in _WORDS.items():
-            if self._said[name] == before[name] or actor.mode in word.used:
-                continue
-            light = bool(word.light) and actor.mode == "composite"
-            if light and actor.shade:
+            if self._said[name] == before[name] or _used(word, actor):
                 continue
             if word.reset:
                 getattr(prop, f"Set{word.vtk}")(before[name])
                 self._said[name] = before[name]
-            instead = word.light if light else word.instead
+            instead = _instead(word, actor)
             warnings.warn(
                 f"prop.{name} changes nothing in mode {actor.mode!r}: {instead}", UserWarning, stacklevel=2
             )
+
+
+def tell_given(actor: VolumeActor, given: Mapping[str, Any]) -> None:
+    """Warn of arguments of light that change nothing in an actor's mode.
+
+    Parameters
+    ----------
+    actor : VolumeActor
+    given : mapping
+        By name, what was said when it was made; None says nothing.
+    """
+    unused = {
+        name: _instead(word, actor)
+        for name, word in _WORDS.items()
+        if word.light and given.get(name) is not None and not _used(word, actor)
+    }
+    if given.get("shade") is False and actor.mode == _LIGHT:
+        return  # whoever says so knows
+    if given.get("shade") and actor.mode in _PEAK_MODES:
+        unused["shade"] = _PEAKS
+    if unused:
+        names = " and ".join(f"{name}={given[name]!r}" for name in unused)
+        warnings.warn(
+            f"{names} changes nothing in mode {actor.mode!r}: {next(iter(unused.values()))}", UserWarning, stacklevel=6
+        )
+
+
+def _used(word: _Word, actor: VolumeActor) -> bool:
+    return actor.mode in word.used or (bool(word.light) and actor.mode == _LIGHT and actor.shade)
+
+
+def _instead(word: _Word, actor: VolumeActor) -> str:
+    return word.light if word.light and actor.mode == _LIGHT else word.instead
 
 
 def _read(prop: Any) -> dict[str, Any]:
