@@ -8,9 +8,16 @@ import type { Archive, NpyArray } from "./archive";
 import { FileError } from "./archive";
 import type { Bounds, Mat, Vec } from "./camera";
 import { PAGE_BITS, field, rotationScales, rotations } from "./engine";
-import { GL, Program, UniformBlock, rows } from "./gl";
+import { Format, GL, Program, UniformBlock, emptyRows, fillRows, rows } from "./gl";
 
 const BLOCK = 1024, SLOT_BYTES = 16;
+/** A texture that is filled as its array comes. */
+interface Growing {
+  texture: WebGLTexture;
+  format: Format;
+  data: Uint8Array | Uint16Array | Uint32Array;
+}
+
 /** Slots of a share, of which a set takes the one that leaves fewest of them empty. */
 const SHARES = [4, 8, 11, 15];
 const KIND_DIRECTION = 0, KIND_WIDE = 3;
@@ -48,19 +55,27 @@ function words(array: NpyArray | undefined, name: string, columns: number, n: nu
   return array.data;
 }
 
+/** An array as whole words of four bytes, of which the last may have something else behind it, which nothing reads. */
+function asWords(data: Uint8Array | Uint16Array): Uint32Array {
+  const n = Math.ceil(data.byteLength / 4);
+  if (data.byteOffset % 4 === 0 && data.byteOffset + 4 * n <= data.buffer.byteLength) return new Uint32Array(data.buffer as ArrayBuffer, data.byteOffset, n);
+  const all = new Uint8Array(4 * n);
+  all.set(new Uint8Array(data.buffer as ArrayBuffer, data.byteOffset, data.byteLength));
+  return new Uint32Array(all.buffer);
+}
+
 export class FibletSet {
-  readonly blocks: Block[] = [];
+  readonly blocks: Block[] = [];       // that can be drawn
   readonly streamlines: number;
   readonly points: number;
   readonly bounds: Bounds;
   readonly reference: Vec;             // anchor integers of local 0
   readonly toData: Mat;                // local mm to data mm
   readonly coding: UniformBlock;
-  readonly items: WebGLTexture;
   budget = 256 << 20;
 
   private parameters: Parameters;
-  private decodeProgram: Program;
+  private decodeProgram: Program | null = null;
   private rotationBlock: UniformBlock;
   private frameForDecoding: UniformBlock;
   private textures: Record<string, WebGLTexture> = {};
@@ -71,7 +86,14 @@ export class FibletSet {
   private scratchBytes = 0;
   private share = 15;
   private itemBytes = 15 * SLOT_BYTES;
-  private kinds!: Set<number>;
+  private kinds = new Set<number>();
+  private table: number[];
+  private done = 0;                    // fiblets that have come
+  private shares = 0;                  // of them
+  private before = 0;                  // points of the streamline before the next fiblet
+  private open: Block | null = null;   // that waits for the fiblet after it
+  private growing: Record<string, Growing> = {};
+  private values: Growing[] = [];
   private held = 0;
   private clock = 0;
   private fiblets: number;
@@ -88,7 +110,7 @@ export class FibletSet {
     const anchors = words(arrays.get("anchors.npy"), "anchors", 2, n), decoding = words(arrays.get("decoding.npy"), "records", 3, n);
     const codes = arrays.get("codes.npy"), pages = arrays.get("pages.npy");
     if (!codes || !(codes.data instanceof Uint8Array) || !pages || !(pages.data instanceof BigInt64Array)) throw new FileError("The file's codes or pages are missing. Copy or make it again.");
-    const table = Array.from(pages.data, Number), pageCount = Math.ceil(n / (1 << PAGE_BITS));
+    const table = this.table = Array.from(pages.data, Number), pageCount = Math.ceil(n / (1 << PAGE_BITS));
     if (table.length !== 3 * (pageCount + 1) || table[3 * pageCount + 1] !== codes.data.length || table[3 * pageCount + 2] !== this.points) {
       throw new FileError("The file's table of pages does not fit its records. Copy or make it again.");
     }
@@ -102,25 +124,13 @@ export class FibletSet {
     this.toData = new Float64Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
     for (let axis = 0; axis < 3; ++axis) this.toData[12 + axis] = p.origin[axis] + p.anchor_scale[axis] * this.reference[axis];
 
-    const kinds = this.kinds = this.makeItems(anchors, decoding, table, codes.data.length, low?.data as Uint16Array | undefined);
-    this.items = this.textures.items;
-    this.textures.anchor_texels = rows(gl, "rg32ui", anchors, "anchors");
-    this.textures.decoding_texels = rows(gl, "r32ui", decoding, "records");
-    const padded = codes.data.byteOffset % 4 === 0 ? codes.data : codes.data.slice();
-    const whole = padded.length >> 2, all = new Uint32Array(padded.buffer as ArrayBuffer, padded.byteOffset, whole);
-    this.textures.code_texels = this.codeTexture(all, padded.subarray(4 * whole));
+    this.grow("anchor_texels", "rg32ui", anchors, "anchors");
+    this.grow("decoding_texels", "r32ui", decoding, "records");
+    this.grow("code_texels", "r32ui", asWords(codes.data), "codes");
+    if (low) this.grow("anchor_low_texels", "r32ui", asWords(low.data as Uint16Array), "anchors");
     const starts = new Uint32Array(4 * Math.max(pageCount, 1));
     for (let i = 0; i < pageCount; ++i) for (let j = 0; j < 3; ++j) starts[4 * i + j] = table[3 * i + j];
     this.textures.page_texels = rows(gl, "rgba32ui", starts, "pages");
-    const features = ["DIRECTION"];
-    if (low) {
-      features.push("ANCHORS_LOW");
-      const data = low.data as Uint16Array, pairs = new Uint32Array((data.length + 1) >> 1);
-      for (let i = 0; i < data.length; ++i) pairs[i >> 1] |= data[i] << (16 * (i & 1));
-      this.textures.anchor_low_texels = rows(gl, "r32ui", pairs, "anchors");
-    }
-    if (kinds.size > 1 || !kinds.has(KIND_DIRECTION)) features.push("LATTICE");
-    if (kinds.has(KIND_WIDE)) features.push("WIDE_LATTICE");
     this.coding = new UniformBlock(gl, "Coding");
     this.coding.write({
       anchor_scale: p.anchor_scale, radius_scale: 0, step_low: p.step_lo, step_span: p.step_hi - p.step_lo, lattice_edge: p.lattice,
@@ -130,7 +140,6 @@ export class FibletSet {
     this.rotationBlock.fill(rotations);
     this.frameForDecoding = new UniformBlock(gl, "Frame");
     this.frameForDecoding.write({ reference: this.reference }, ["reference"]);
-    this.decodeProgram = new Program(gl, "page/decode.vert", "page/none.frag", features, Array.from({ length: this.share }, (_, i) => `o${i}`));
     this.feedback = gl.createTransformFeedback()!;
     this.decodeArray = gl.createVertexArray()!;
     gl.bindVertexArray(this.decodeArray);
@@ -138,78 +147,132 @@ export class FibletSet {
     gl.bindVertexArray(null);
   }
 
-  /** The last word of the codes is filled up with zeros. */
-  private codeTexture(whole: Uint32Array, rest: Uint8Array): WebGLTexture {
-    if (!rest.length) return rows(this.gl, "r32ui", whole, "codes");
-    const all = new Uint32Array(whole.length + 1);
-    all.set(whole);
-    for (let i = 0; i < rest.length; ++i) all[whole.length] |= rest[i] << (8 * i);
-    return rows(this.gl, "r32ui", all, "codes");
+  private grow(name: string, format: Format, data: Uint32Array, what: string): void {
+    const texture = (this.textures[name] = emptyRows(this.gl, format, format === "rg32ui" ? data.length / 2 : data.length, what));
+    this.growing[name] = { texture, format, data };
   }
 
-  private makeItems(anchors: Uint32Array, decoding: Uint32Array, table: number[], codeBytes: number, low: Uint16Array | undefined): Set<number> {
-    const gl = this.gl, n = this.fiblets, p = this.parameters, ids = this.archive.arrays.get("rank_to_id.npy")?.data as BigInt64Array | undefined;
-    const shares = new Uint8Array(n), counts = new Float64Array(128);
-    for (let f = 0; f < n; ++f) ++counts[field("last", decoding[3 * f + 2]) + 1 + (anchors[2 * f + 1] >>> 31) * 64];
-    const sharesOf = (points: number, end: number, share: number): number => (points % share === 0 && !end ? points / share : Math.ceil((points + (end ? 1 : 2)) / share));
-    // A slot costs its drawing; an item its walk from the fiblet's anchor, on average half of it.
-    const cost = (share: number): number => counts.reduce((sum, count, i) => {
-      const k = sharesOf(i & 63, i >> 6, share);
-      return sum + count * k * share * (1 + 0.05 * k);
-    }, 0);
-    this.share = SHARES.reduce((best, share) => (cost(share) < cost(best) ? share : best));
+  private fill(name: string, from: number, to: number): void {
+    const found = this.growing[name];
+    if (found) fillRows(this.gl, found.texture, found.format, found.data, from, to);
+  }
+
+  /** How many shares a fiblet has. */
+  private sharesOf(f: number, share = this.share): number {
+    const points = field("last", this.growing.decoding_texels.data[3 * f + 2]) + 1, end = this.growing.anchor_texels.data[2 * f + 1] >>> 31;
+    return points % share === 0 && !end ? points / share : Math.ceil((points + (end ? 1 : 2)) / share);
+  }
+
+  /** Choose the size of shares by the first fiblets, and have place for those of all. */
+  private begin(first: number): void {
+    const gl = this.gl, counts = SHARES.map((share) => {
+      // A slot costs its drawing; an item its walk from the fiblet's anchor, on average half of it.
+      let cost = 0, total = 0;
+      for (let f = 0; f < first; ++f) {
+        const k = this.sharesOf(f, share);
+        cost += k * share * (1 + 0.05 * k);
+        total += k;
+      }
+      return { share, cost, total };
+    });
+    const best = counts.reduce((a, b) => (b.cost < a.cost ? b : a)), left = this.fiblets - first;
+    this.share = best.share;
     this.itemBytes = this.share * SLOT_BYTES;
-    let total = 0;
-    for (let f = 0; f < n; ++f) {
-      shares[f] = sharesOf(field("last", decoding[3 * f + 2]) + 1, anchors[2 * f + 1] >>> 31, this.share);
-      total += shares[f];
-    }
-    const items = new Uint32Array(4 * Math.max(total, 1)), pairs = new Uint32Array(2 * Math.max(total, 1)), kinds = new Set<number>();
-    const margin = 2 * p.largest_radius;
-    let item = 0, before = 0, block: Block | null = null;
-    for (let f = 0; f < n; ++f) {
+    let points = this.points;
+    for (let f = 0; f < first; ++f) points -= field("last", this.growing.decoding_texels.data[3 * f + 2]) + 1;
+    const most = Math.max(best.total + Math.floor((Math.max(points, 0) + (this.share + 1) * left) / this.share), 1);
+    this.toItems = new Uint32Array(4 * most);
+    this.textures.items = emptyRows(gl, "rgba32ui", most, "shares of fiblets");
+    this.itemBuffer = gl.createBuffer()!;
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.itemBuffer);
+    gl.bufferData(gl.ARRAY_BUFFER, 8 * most, gl.STATIC_DRAW);
+  }
+
+  /** Take in the fiblets that have come: `upto` in all, whole pages or everything. */
+  advance(upto: number): void {
+    const gl = this.gl, from = this.done, n = Math.min(upto, this.fiblets), p = this.parameters, { table } = this;
+    if (n <= from && this.fiblets) return;
+    if (!from) this.begin(n);
+    const ids = this.archive.arrays.get("rank_to_id.npy")?.data as BigInt64Array | undefined, low = this.archive.arrays.get("anchors_low.npy")?.data as Uint16Array | undefined;
+    const anchors = this.growing.anchor_texels.data, decoding = this.growing.decoding_texels.data, items = this.toItems;
+    const codeBytes = table[table.length - 2], firstItem = this.shares, margin = 2 * p.largest_radius, kinds = this.kinds.size;
+    let item = firstItem, block = this.open, more = 0;
+    for (let f = from; f < n; ++f) more += this.sharesOf(f);
+    const pairs = new Uint32Array(2 * more);
+    const close = (): void => {
+      if (!block) return;
+      block.more = 1;
+      this.blocks.push(block);
+    };
+    for (let f = from; f < n; ++f) {
       const page = 3 * (f >> PAGE_BITS), word = anchors[2 * f + 1], record = decoding[3 * f + 2];
       const rank = field("rank", word) + table[page], points = field("last", record) + 1;
       const id = ids ? Number(ids[rank]) : rank, begin = field("begin", word), end = field("end", word);
       const code = field("code", decoding[3 * f + 1]) + table[page + 1], point = field("point", record) + table[page + 2];
-      if (points > 60 || !(id >= 0 && id < this.streamlines) || code > codeBytes || point + points > this.points) {
+      const shares = this.sharesOf(f);
+      if (points > 60 || 4 * (item + shares) > items.length || !(id >= 0 && id < this.streamlines) || code > codeBytes || point + points > this.points) {
         throw new FileError(`Record ${f} of the file is damaged. Copy or make it again.`);
       }
-      kinds.add(field("kind", record));
-      if (f % BLOCK === 0) this.blocks.push((block = { firstItem: item, items: 0, more: 0, bounds: [Infinity, -Infinity, Infinity, -Infinity, Infinity, -Infinity], buffer: null, used: 0 }));
+      this.kinds.add(field("kind", record));
+      if (f % BLOCK === 0) {
+        close();
+        block = { firstItem: item, items: 0, more: 0, bounds: [Infinity, -Infinity, Infinity, -Infinity, Infinity, -Infinity], buffer: null, used: 0 };
+      }
       const grid = [anchors[2 * f] & 0xffff, anchors[2 * f] >>> 16, word & 0xffff];
       for (let axis = 0; axis < 3; ++axis) {
         const at = p.origin[axis] + p.anchor_scale[axis] * (low ? grid[axis] * 65536 + low[3 * f + axis] : grid[axis]);
         block!.bounds[2 * axis] = Math.min(block!.bounds[2 * axis], at - margin);
         block!.bounds[2 * axis + 1] = Math.max(block!.bounds[2 * axis + 1], at + margin);
       }
-      if (begin) before = 0;
-      for (let share = 0; share < shares[f]; ++share, ++item) {
+      if (begin) this.before = 0;
+      for (let share = 0; share < shares; ++share, ++item) {
         items[4 * item] = id;
         items[4 * item + 1] = point;
         items[4 * item + 2] = points | (begin << 6) | (end << 7) | (share << 8);
-        items[4 * item + 3] = before;
-        pairs[2 * item] = f;
-        pairs[2 * item + 1] = share;
+        items[4 * item + 3] = this.before;
+        pairs[2 * (item - firstItem)] = f;
+        pairs[2 * (item - firstItem) + 1] = share;
       }
-      before += points;
-      block!.items += shares[f];
+      this.before += points;
+      block!.items += shares;
     }
-    for (const found of this.blocks) found.more = found.firstItem + found.items < total ? 1 : 0;
-    this.toItems = items;
-    this.textures.items = rows(gl, "rgba32ui", items, "shares of fiblets");
-    this.itemBuffer = gl.createBuffer()!;
+    this.open = block;
+    if (n === this.fiblets && block) this.blocks.push(block);
+    this.shares = item;
+    this.done = n;
+    if (this.kinds.size > kinds) this.decodeProgram = null;
+    fillRows(gl, this.textures.items, "rgba32ui", items, firstItem, item);
     gl.bindBuffer(gl.ARRAY_BUFFER, this.itemBuffer);
-    gl.bufferData(gl.ARRAY_BUFFER, pairs, gl.STATIC_DRAW);
-    return kinds;
+    gl.bufferSubData(gl.ARRAY_BUFFER, 8 * firstItem, pairs);
+    this.fill("anchor_texels", from, n);
+    this.fill("decoding_texels", 3 * from, 3 * n);
+    this.fill("anchor_low_texels", Math.floor(1.5 * from), Math.ceil(1.5 * n));
+    this.fill("code_texels", this.countBefore(from, 1) >> 2, (this.countBefore(n, 1) + 3) >> 2);
+    for (const { texture, format, data } of this.values) fillRows(gl, texture, format, data, this.countBefore(from, 2), this.countBefore(n, 2));
+  }
+
+  /** What a column of the table of pages counts before a fiblet, of whole pages or of all. */
+  private countBefore(f: number, column: number): number {
+    return this.table[3 * Math.ceil(f / (1 << PAGE_BITS)) + column];
   }
 
   /** A stored array of a value for each point. */
   pointValues(name: string): PointValues {
     const said = this.archive.header.per_point?.[name], array = said && this.archive.arrays.get(said.member);
     if (!array || array.data.length !== this.points) throw new FileError(`The file has no values ${name} for its points.`);
-    const wide = array.data instanceof Uint16Array, top = wide ? 65535 : 255;
-    return { name, texture: rows(this.gl, wide ? "r16ui" : "r8ui", array.data as Uint8Array, "values of points"), code: [said.lo, (said.hi - said.lo) / (top - 1), top] };
+    const wide = array.data instanceof Uint16Array, top = wide ? 65535 : 255, format = wide ? "r16ui" : "r8ui", data = array.data as Uint8Array;
+    const texture = emptyRows(this.gl, format, this.points, "values of points");
+    this.values.push({ texture, format, data });
+    fillRows(this.gl, texture, format, data, 0, this.countBefore(this.done, 2));
+    return { name, texture, code: [said.lo, (said.hi - said.lo) / (top - 1), top] };
+  }
+
+  private decoder(): Program {
+    const features = ["DIRECTION"];
+    if (this.textures.anchor_low_texels) features.push("ANCHORS_LOW");
+    if (this.kinds.size > 1 || !this.kinds.has(KIND_DIRECTION)) features.push("LATTICE");
+    if (this.kinds.has(KIND_WIDE)) features.push("WIDE_LATTICE");
+    return (this.decodeProgram ??= new Program(this.gl, "page/decode.vert", "page/none.frag", features, Array.from({ length: this.share }, (_, i) => `o${i}`)));
   }
 
   /** Decode a block into a buffer. */
@@ -219,7 +282,7 @@ export class FibletSet {
     this.rotationBlock.bind();
     this.frameForDecoding.bind();
     const { items: _, ...textures } = this.textures;
-    this.decodeProgram.use().textures(textures).uints({ chunk_fiblets: this.fiblets, share_size: this.share });
+    this.decoder().use().textures(textures).uints({ chunk_fiblets: this.fiblets, share_size: this.share });
     gl.bindVertexArray(this.decodeArray);
     gl.bindBuffer(gl.ARRAY_BUFFER, this.itemBuffer);
     gl.vertexAttribIPointer(0, 2, gl.UNSIGNED_INT, 8, 8 * block.firstItem);
@@ -265,6 +328,10 @@ export class FibletSet {
     }
     this.decode(block, this.scratch!);
     return this.scratch!;
+  }
+
+  get items(): WebGLTexture {
+    return this.textures.items;
   }
 
   /** How many segments at most a block has. */

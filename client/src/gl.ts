@@ -114,28 +114,38 @@ function plain(gl: GL): void {
   for (const name of ["TEXTURE_WRAP_S", "TEXTURE_WRAP_T"] as const) gl.texParameteri(gl.TEXTURE_2D, gl[name], gl.CLAMP_TO_EDGE);
 }
 
-/** A long array as rows of ROW texels. What does not fill the last row is copied; the rest is not. */
-export function rows(gl: GL, format: Format, data: Uint8Array | Uint16Array | Uint32Array, what: string): WebGLTexture {
-  const [internal, layout, type, components, Kind] = FORMATS[format];
-  const texels = Math.ceil(data.length / components), height = Math.max(1, Math.ceil(texels / ROW));
-  if (height > gl.getParameter(gl.MAX_TEXTURE_SIZE)) {
-    throw new GraphicsError(`The ${what} have ${texels} texels; this device's textures hold ${gl.getParameter(gl.MAX_TEXTURE_SIZE) * ROW}. Make a page of fewer streamlines.`);
-  }
+/** Place for a long array, as rows of ROW texels. */
+export function emptyRows(gl: GL, format: Format, texels: number, what: string): WebGLTexture {
+  const [internal] = FORMATS[format], height = Math.max(1, Math.ceil(texels / ROW)), most = gl.getParameter(gl.MAX_TEXTURE_SIZE);
+  if (height > most) throw new GraphicsError(`The ${what} have ${texels} texels; this device's textures hold ${most * ROW}. Make a page of fewer streamlines.`);
   const texture = gl.createTexture()!;
   gl.bindTexture(gl.TEXTURE_2D, texture);
   plain(gl);
-  gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
   gl.texStorage2D(gl.TEXTURE_2D, 1, gl[internal], ROW, height);
-  const whole = Math.floor(texels / ROW), step = ROW * components;
-  for (let row = 0; row < whole; row += 256) {
-    const n = Math.min(256, whole - row);
+  return texture;
+}
+
+/** Put texels of an array into such rows, and what else is in them. What does not fill the last row is copied; the rest is not. */
+export function fillRows(gl: GL, texture: WebGLTexture, format: Format, data: Uint8Array | Uint16Array | Uint32Array, from: number, to: number): void {
+  const [, layout, type, components, Kind] = FORMATS[format], step = ROW * components;
+  const whole = Math.floor(data.length / step), last = Math.ceil(to / ROW);
+  gl.bindTexture(gl.TEXTURE_2D, texture);
+  gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+  for (let row = Math.floor(from / ROW); row < Math.min(whole, last); row += 256) {
+    const n = Math.min(256, whole - row, last - row);
     gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, row, ROW, n, gl[layout], gl[type], data.subarray(row * step, (row + n) * step));
   }
-  if (whole < height) {
+  if (last > whole) {
     const rest = new Kind(step);
     rest.set(data.subarray(whole * step));
     gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, whole, ROW, 1, gl[layout], gl[type], rest);
   }
+}
+
+/** A long array as rows of ROW texels. */
+export function rows(gl: GL, format: Format, data: Uint8Array | Uint16Array | Uint32Array, what: string): WebGLTexture {
+  const texels = Math.ceil(data.length / FORMATS[format][3]), texture = emptyRows(gl, format, texels, what);
+  fillRows(gl, texture, format, data, 0, texels);
   return texture;
 }
 

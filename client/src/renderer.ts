@@ -5,7 +5,7 @@
  * share of every block. At rest slices follow each other until all is drawn.
  */
 
-import { readArchive } from "./archive";
+import type { Archive } from "./archive";
 import { Bounds, Camera, Mat, Vec, apply, identity, inverse, linear, product } from "./camera";
 import { fromBase64 } from "./engine";
 import { Block, FibletSet, PointValues } from "./fiblets";
@@ -33,8 +33,9 @@ export class Lines {
   shownValues: [number, number] = [1, 0];
   marked = ALL_ONES;
 
-  constructor(private gl: GL, readonly layer: FibletLayer, readonly index: number, data: Uint8Array[]) {
-    this.set = new FibletSet(gl, readArchive(data[layer.data]));
+  constructor(private gl: GL, readonly layer: FibletLayer, readonly index: number, data: Uint8Array[], archive: Archive) {
+    this.set = new FibletSet(gl, archive);
+    this.set.advance(archive.ready);
     this.model = new Float64Array(layer.matrix ?? identity());
     const { colours } = layer;
     if (colours.values !== undefined) this.values = this.set.pointValues(colours.values);
@@ -79,6 +80,7 @@ export class Renderer {
   height = 0;
   ratio = 1;
   frames = 0;                            // finished pictures
+  loading = false;                       // whether streamlines have yet to come
   failed: ((error: Error) => void) | null = null;
   drawnOnce: (() => void) | null = null;
   presented: (() => void) | null = null;
@@ -90,6 +92,7 @@ export class Renderer {
   private textures: Record<string, WebGLTexture> = {};
   private buffers: Record<string, WebGLFramebuffer> = {};
   private frame: Frame | null = null;
+  private rest: Frame | null = null;     // the finished picture, which streamlines that come are added to
   private sync: WebGLSync | null = null;
   private sliceStarted = 0;
   private sliceSize = 0;
@@ -100,14 +103,14 @@ export class Renderer {
   private still = 0;
   private waiting: (() => void)[] = [];
 
-  constructor(readonly canvas: HTMLCanvasElement, readonly scene: Scene, private data: Uint8Array[]) {
+  constructor(readonly canvas: HTMLCanvasElement, readonly scene: Scene, private data: Uint8Array[], private archives: Map<number, Archive>) {
     this.camera = new Camera(structuredClone(scene.camera));
     const gl = canvas.getContext("webgl2", { alpha: false, antialias: false, depth: false, preserveDrawingBuffer: false, powerPreference: "high-performance" });
     if (!gl) throw new GraphicsError("This browser has no WebGL 2, which the page draws with. Turn on graphics acceleration in its settings, or open the page in another browser.");
     this.gl = gl;
     canvas.addEventListener("webglcontextlost", (event) => {
       event.preventDefault();
-      this.frame = null;
+      this.frame = this.rest = null;
       this.sync = null;
     });
     canvas.addEventListener("webglcontextrestored", () => this.guarded(() => this.begin()));
@@ -126,6 +129,7 @@ export class Renderer {
   private begin(): void {
     const { gl, scene } = this, before = this.lines.splice(0);
     this.programs.clear();
+    this.rest = null;
     this.textures = {};
     this.buffers = {};
     this.width = this.height = 0;
@@ -135,7 +139,7 @@ export class Renderer {
     scene.layers.forEach((layer) => {
       if (layer.kind === "surface") this.surfaces.push(new Surface(gl, layer, this.data));
       else if (layer.kind === "image") this.images.push(new ImageSlice(gl, layer, this.data));
-      else this.lines.push(new Lines(gl, layer, this.lines.length, this.data));
+      else this.lines.push(new Lines(gl, layer, this.lines.length, this.data, this.archives.get(layer.data)!));
     });
     const budget = Math.min(1024, 128 * ((navigator as { deviceMemory?: number }).deviceMemory ?? 4)) * 2 ** 20;
     for (const lines of this.lines) lines.set.budget = budget / this.lines.length;
@@ -167,13 +171,33 @@ export class Renderer {
     this.schedule();
   }
 
+  /** More streamlines have come: add them to the picture. */
+  grow(): void {
+    this.guarded(() => {
+      const frame = this.frame ?? this.rest;
+      for (const lines of this.lines) {
+        const { set } = lines, before = set.blocks.length;
+        set.advance(this.archives.get(lines.layer.data)!.ready);
+        if (frame && lines.layer.visible) this.addJobs(frame, lines, set.blocks.slice(before));
+      }
+      if (!frame) this.change();
+      else if (!this.dirty) this.frame = frame;
+    });
+    this.schedule();
+  }
+
+  private addJobs(frame: Frame, lines: Lines, blocks: Block[]): void {
+    const matrix = product(frame.matrices.projection, product(frame.matrices.view, lines.model));
+    for (const block of blocks) if (!this.outside(matrix, block.bounds)) frame.jobs.push({ lines, block });
+  }
+
   private schedule(): void {
     if (!this.asked) this.asked = requestAnimationFrame(() => this.guarded(() => this.tick()));
   }
 
   /** Resolves when a picture at rest is finished. */
   settled(): Promise<void> {
-    if (!this.dirty && !this.frame) return Promise.resolve();
+    if (!this.dirty && !this.frame && !this.loading) return Promise.resolve();
     return new Promise((resolve) => this.waiting.push(resolve));
   }
 
@@ -200,7 +224,7 @@ export class Renderer {
     if (finished || performance.now() - frame.shownAt > REFRESH) {
       frame.shownAt = performance.now();
       this.present(frame.matrices, finished);
-      if (this.drawnOnce) {
+      if (this.drawnOnce && (frame.jobs.length || !this.loading)) {
         this.drawnOnce();
         this.drawnOnce = null;
       }
@@ -209,8 +233,9 @@ export class Renderer {
     gl.flush();
     if (finished) {
       this.frame = null;
+      this.rest = frame.moving ? null : frame;
       ++this.frames;
-      if (!frame.moving && !this.dirty) this.waiting.splice(0).forEach((resolve) => resolve());
+      if (!frame.moving && !this.dirty && !this.loading) this.waiting.splice(0).forEach((resolve) => resolve());
     }
     this.schedule();
   }
@@ -246,19 +271,12 @@ export class Renderer {
     this.dirty = false;
     const view = camera.view(), projection = camera.projection(this.width / this.height, scene.bounds);
     const drawn: Drawn = { view, projection, parallel: camera.state.parallel, lights: (program) => this.setLights(program, view), planes: this.planes };
-    const jobs: Job[] = [];
-    let total = 0;
-    for (const lines of this.lines) {
-      if (!lines.layer.visible) continue;
-      for (const block of lines.set.blocks) {
-        if (this.outside(product(projection, product(view, lines.model)), block.bounds)) continue;
-        jobs.push({ lines, block });
-        total += lines.set.instances(block);
-      }
-    }
-    const share = moving ? Math.min(1, (this.rate * MOVING) / Math.max(total, 1)) : 1;
-    this.frame = { jobs, next: 0, share, drawn: 0, shownAt: performance.now(), matrices: drawn, moving };
-    if (!this.frames) this.frame.shownAt = 0;
+    const frame: Frame = (this.frame = { jobs: [], next: 0, share: 1, drawn: 0, shownAt: performance.now(), matrices: drawn, moving });
+    this.rest = null;
+    for (const lines of this.lines) if (lines.layer.visible) this.addJobs(frame, lines, lines.set.blocks);
+    const total = frame.jobs.reduce((sum, { lines, block }) => sum + lines.set.instances(block), 0);
+    if (moving) frame.share = Math.min(1, (this.rate * MOVING) / Math.max(total, 1));
+    if (!this.frames) frame.shownAt = 0;
     gl.viewport(0, 0, this.width, this.height);
     gl.disable(gl.BLEND);
     gl.disable(gl.CULL_FACE);

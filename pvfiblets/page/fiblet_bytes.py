@@ -1,4 +1,4 @@
-"""The bytes of a set of fiblets for a page: a ``.fiblets`` file with what the page draws, and nothing else."""
+"""The bytes of a set of fiblets for a page: a ``.fiblets`` file without data that the page does not show."""
 
 from __future__ import annotations
 
@@ -17,12 +17,15 @@ if TYPE_CHECKING:
 
 __all__ = ["fiblet_bytes"]
 
-_CORE = ("anchors", "decoding", "codes", "pages")
-_OPTIONAL = ("anchors_low", "rank_to_id")
+_MEMBERS = ("pages", "rank_to_id", "anchors", "anchors_low", "decoding", "codes", "reach", "ends")
+"""In this order, after values of points: a page that gets the file from its beginning has all that the first codes need.
+
+The page reads none of the last two, by which pvfiblets opens the file.
+"""
 
 
 def fiblet_bytes(fiblets: FibletSet, keep: tuple[str, ...] = ()) -> bytes:
-    """Return a set as a file of records, without what serves culling and without other data of streamlines.
+    """Return a set as a file of records, without other data of streamlines.
 
     Parameters
     ----------
@@ -42,15 +45,11 @@ def fiblet_bytes(fiblets: FibletSet, keep: tuple[str, ...] = ()) -> bytes:
         fiblets, per_point={name: fiblets.per_point[name] for name in keep}, per_streamline={}, groups={}, per_group={},
         space={}, dropped={}, exact=None,
     )  # fmt: skip
-    members = {f"{name}.npy": array_member(np.asarray(getattr(bare, name))) for name in _CORE}
-    members |= {
-        f"{name}.npy": array_member(np.asarray(getattr(bare, name)))
-        for name in _OPTIONAL
-        if getattr(bare, name) is not None
-    }
+    arrays = {name: getattr(bare, name) for name in _MEMBERS}
+    members = {f"{name}.npy": array_member(np.asarray(array)) for name, array in arrays.items() if array is not None}
     values = {name: array_member(np.asarray(points.codes)) for name, points in bare.per_point.items()}
     header, more = make_header(bare, values)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "page.fiblets"
-        write_archive(path, header, members | more)
+        write_archive(path, header, more | members)
         return path.read_bytes()

@@ -44,7 +44,8 @@ def write_page(scene: PageScene, path: str | PathLike[str], *, largest_file: int
         the page of a name ending in ``.html`` has a folder of its data beside it: ``figure.html`` and ``figure_data``.
     largest_file : int
         Bytes of data that a single file holds at most. A page with a folder needs a server (any that serves files will
-        do): browsers do not read other files for a page that they opened from a disk.
+        do): browsers do not read other files for a page that they opened from a disk. In the folder are ``.fiblets``
+        files, which the page reads piece by piece where the server has ranges of bytes, and else as they come.
 
     Returns
     -------
@@ -67,8 +68,9 @@ def write_page(scene: PageScene, path: str | PathLike[str], *, largest_file: int
         folder = path if not path.suffix else path.with_name(f"{path.stem}_data")
         made_folder(folder)
         content["data"] = []
+        sets = {layer["data"] for layer in scene.layers if layer["kind"] == "fiblets"}
         for number, blob in enumerate(scene.blobs):
-            name = folder / f"{number}.bin"
+            name = folder / f"{number}.{'fiblets' if number in sets else 'bin'}"
             with replacing(name, len(blob)) as file:
                 file.write(blob)
             written.append(name)

@@ -85,11 +85,11 @@ def test_much_data_lies_beside_the_page(fiblets, tmp_path):
     scene = PageScene("Lines")
     fiblet_layer(scene, fiblets)
     page, data = write_page(scene, tmp_path / "figure.html", largest_file=100)
-    assert data == tmp_path / "figure_data" / "0.bin"
+    assert data == tmp_path / "figure_data" / "0.fiblets"
     said = json.loads(re.search(r'id="scene">(.*?)</script>', page.read_text())[1])
-    assert said["data"] == [{"bytes": data.stat().st_size, "file": "figure_data/0.bin"}]
+    assert said["data"] == [{"bytes": data.stat().st_size, "file": "figure_data/0.fiblets"}]
     index, inside = write_page(scene, tmp_path / "folder")
-    assert (index, inside) == (tmp_path / "folder" / "index.html", tmp_path / "folder" / "0.bin")
+    assert (index, inside) == (tmp_path / "folder" / "index.html", tmp_path / "folder" / "0.fiblets")
 
 
 def test_nothing_to_show_and_wrong_names_are_errors(fiblets, tmp_path):

@@ -1,0 +1,180 @@
+"""Pages whose data lie beside them, from servers with and without ranges of bytes."""
+
+from __future__ import annotations
+
+import re
+import threading
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+
+import numpy as np
+import pytest
+
+import pvfiblets
+from pvfiblets.page.scene import CameraPlace, PageScene, encoded, fiblet_layer
+from pvfiblets.page.writing import write_page
+from tests.page.pages import Page
+
+SHORT = 70_000  # more fiblets than a page asks for together
+PATIENCE = 60.0
+
+
+class Whole(SimpleHTTPRequestHandler):
+    """Python's own server, which knows no ranges."""
+
+    asked: list[str]
+    go_on: threading.Event
+
+    def log_message(self, *_):
+        pass
+
+    def do_GET(self):
+        self.asked.append(self.headers.get("Range", ""))
+        super().do_GET()
+
+
+class Slow(Whole):
+    """The same, which gives the last codes of a set, and what comes after them, only when it may."""
+
+    def copyfile(self, source, outputfile):
+        data = source.read()
+        most = data.index(b"reach.npy") - 1000 if self.path.endswith(".fiblets") else len(data)
+        outputfile.write(data[:most])
+        outputfile.flush()
+        assert most == len(data) or self.go_on.wait(PATIENCE)
+        outputfile.write(data[most:])
+
+
+class Ranged(Whole):
+    """One with ranges; of a set's codes it gives the last only when it may."""
+
+    def do_GET(self):
+        found = re.fullmatch(r"bytes=(\d+)-(\d+)", self.headers.get("Range", ""))
+        path = self.directory_path / self.path.lstrip("/")
+        if not found or not self.path.endswith(".fiblets") or not path.is_file():
+            super().do_GET()
+            return
+        self.asked.append(found[0])
+        data = path.read_bytes()
+        begin, end = int(found[1]), int(found[2]) + 1
+        if end - begin > 10_000 and sum("-" in range_ for range_ in self.asked) > 12:
+            assert self.go_on.wait(PATIENCE)
+        self.send_response(206)
+        self.send_header("Content-Range", f"bytes {begin}-{end - 1}/{len(data)}")
+        self.send_header("Content-Length", str(end - begin))
+        self.end_headers()
+        self.wfile.write(data[begin:end])
+
+
+@pytest.fixture(scope="module")
+def scene():
+    rng = np.random.default_rng(7)
+    starts = rng.uniform(-40.0, 40.0, (SHORT, 1, 3))
+    points = starts + np.array([[0.0, 0.0, 0.0], [0.4, 0.1, 0.0], [0.8, 0.0, 0.0]])
+    streamlines = pvfiblets.Streamlines(
+        points.reshape(-1, 3), np.arange(0, 3 * SHORT + 1, 3), per_point={"x": points[..., 0].ravel()}
+    )
+    scene = PageScene("Beside", camera=CameraPlace((0.0, 0.0, 200.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0)))
+    fiblets = pvfiblets.compress(streamlines, per_point=["x"])
+    assert fiblets.n_fiblets > 65_536
+    table = np.repeat(np.arange(256, dtype=np.uint8)[:, None], 4, axis=1)
+    table[:, 3] = 255
+    colours = {"mode": "value", "values": "x", "table": encoded(np.concatenate([table, table[:3]])), "clim": (-40, 40)}
+    fiblet_layer(scene, fiblets, colours={**colours, "log": False}, keep=("x",))
+    return scene
+
+
+@pytest.fixture(scope="module")
+def folder(scene, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("beside")
+    page, data = write_page(scene, folder / "figure.html", largest_file=1000)
+    assert data == folder / "figure_data" / "0.fiblets"
+    write_page(scene, folder / "one.html")
+    return folder
+
+
+@pytest.fixture
+def serve(folder):
+    """Return a function that serves the folder by a handler: the address, the handler."""
+    servers = []
+
+    def start(kind, *, wait=False):
+        handler = type(kind.__name__, (kind,), {"asked": [], "go_on": threading.Event(), "directory_path": folder})
+        if not wait:
+            handler.go_on.set()
+        server = ThreadingHTTPServer(("127.0.0.1", 0), partial(handler, directory=str(folder)))
+        thread = threading.Thread(target=server.serve_forever, daemon=True)
+        thread.start()
+        servers.append((server, thread, handler))
+        return f"http://127.0.0.1:{server.server_port}", handler
+
+    yield start
+    for server, thread, handler in servers:
+        handler.go_on.set()
+        server.shutdown()
+        server.server_close()
+        thread.join(PATIENCE)
+
+
+@pytest.fixture(scope="module")
+def expected(folder, browser):
+    page = Page(browser, folder / "one.html")
+    picture = page.picture()
+    page.context.close()
+    assert (picture != 255).any(axis=2).mean() > 0.2
+    return picture
+
+
+def test_data_beside_a_page_are_a_file_that_python_reads(folder, scene):
+    found = pvfiblets.FibletSet.open(folder / "figure_data" / "0.fiblets")
+    assert (found.n_streamlines, found.n_points) == (SHORT, 3 * SHORT)
+    assert len(scene.blobs) == 1
+
+
+@pytest.mark.parametrize("kind", [Whole, Ranged])
+def test_page_with_its_data_beside_it_is_the_page_of_one_file(kind, serve, visit, expected):
+    address, handler = serve(kind)
+    page = visit(f"{address}/figure.html")
+    np.testing.assert_array_equal(page.picture(), expected)
+    assert page.page.locator("progress").count() == 0
+    asked = [one for one in handler.asked if one]
+    assert len(asked) > 10 if kind is Ranged else len(asked) < 10
+
+
+@pytest.mark.parametrize("kind", [Slow, Ranged])
+def test_streamlines_are_shown_as_they_come(kind, serve, visit, expected):
+    address, handler = serve(kind, wait=True)
+    page = visit(f"{address}/figure.html")
+    page.page.wait_for_function("pvfiblets.lines[0].set.blocks.length > 0")
+    # 64 blocks have come, of which the last waits for the fiblet after it.
+    assert page.page.evaluate("[pvfiblets.lines[0].set.blocks.length, pvfiblets.loading]") == [63, True]
+    assert page.page.locator("progress").get_attribute("aria-label") == "Streamlines that have come"
+    page.page.focus("#view")
+    page.page.keyboard.press("ArrowUp")  # a picture that moves meanwhile
+    page.page.keyboard.press("ArrowDown")
+    handler.go_on.set()
+    picture = page.picture()
+    assert page.page.evaluate("[pvfiblets.lines[0].set.blocks.length, pvfiblets.loading]") == [-(-SHORT // 1024), False]
+    assert (np.abs(picture - expected).max(axis=2) > 8).mean() < 0.02  # the camera is where it was, but for rounding
+
+
+def test_what_is_wrong_with_data_beside_a_page_is_said(serve, visit, folder, tmp_path):
+    address, _ = serve(Ranged)
+    data = folder / "figure_data" / "0.fiblets"
+    whole = data.read_bytes()
+    try:
+        data.write_bytes(whole[:-100])
+        page = visit(f"{address}/figure.html")
+        page.page.wait_for_selector("body[data-state=failed]")
+        assert "Copy the page and its folder again" in page.message
+        data.unlink()
+        page = visit(f"{address}/figure.html")
+        page.page.wait_for_selector("body[data-state=failed]")
+        assert "cannot be read (404); it must lie beside this page" in page.message
+        page.errors.clear()  # the browser itself tells of that
+    finally:
+        data.write_bytes(whole)
+    page = visit(folder / "figure.html")
+    page.page.wait_for_selector("body[data-state=failed]")
+    assert 'Files beside a page need one; "python -m http.server" is enough' in page.message
+    page.errors.clear()
