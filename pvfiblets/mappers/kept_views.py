@@ -67,6 +67,12 @@ class KeptViews:
         self._put_back()
         self._shown.clear()
 
+    def follow(self, renderer: Any) -> None:
+        """Have one more view drawn only where it has changed."""
+        self._renderers.append(renderer)
+        self.frames[renderer.GetAddressAsString("")] = 0
+        self._shown.clear()
+
     def forget(self) -> None:
         """Have all views drawn in the next frame."""
         self._shown.clear()

@@ -40,7 +40,7 @@ from pvfiblets.web.scene import Scene
 from pvfiblets.web.scratch import Notes
 from pvfiblets.web.selection_tab import SelectionActions
 from pvfiblets.web.slices_tab import SliceActions
-from pvfiblets.web.slicing import ready_views
+from pvfiblets.web.slicing import VIEWS, ready_views
 from pvfiblets.web.sliders import SlideActions
 from pvfiblets.web.state import WRITABLE, bind
 from pvfiblets.web.stream import PictureStream
@@ -69,7 +69,7 @@ class Explorer(TrameApp):
 
         self.options, self.notes = options, notes
         self.confined = Confined(options.root)
-        self.plotter = pyvista.Plotter(off_screen=True, window_size=(960, 640), shape=(2, 2), border=False)
+        self.plotter = pyvista.Plotter(off_screen=True, window_size=(960, 640), shape=VIEWS, border=False)
         ready_views(self.plotter)
         self.plotter.set_background("black")
         self.plotter.enable_trackball_style()

@@ -335,6 +335,8 @@ class State:
         Those of sources whose bundles were edited.
     matrix : Matrix or None
         That which is shown beside the picture.
+    oblique : tuple of 2 floats or None
+        Tilt and turn of the oblique slice, degrees.
     """
 
     layers: tuple[Layer, ...] = ()
@@ -344,6 +346,7 @@ class State:
     painting: Painting | None = None
     bundles: tuple[tuple[Source, tuple[Bundle, ...]], ...] = ()
     matrix: Matrix | None = None
+    oblique: tuple[float, float] | None = None
 
     def bundles_of(self, source: Source) -> tuple[Bundle, ...] | None:
         """Return the bundles of a source, if they were edited; None for the groups of its file."""

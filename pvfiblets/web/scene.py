@@ -109,7 +109,7 @@ class Scene(
         self._drawn: dict[str, _Drawn] = {}
         self.store = Store(self.files)
         self.bars = Bars(plotter)
-        self.slicing = Slicing(plotter)
+        self.slicing = Slicing(plotter, lambda angles: self.set_slices(oblique=angles))
         self.canvas = Canvas(self.slicing)
         self._bundled = BundleSync()
         self._listeners: list[Callable[[Change], None]] = []
@@ -198,6 +198,7 @@ class Scene(
         actors = [(layer, self._drawn[layer.id].actor) for layer in state.layers]
         put_in_order(self.plotter.renderer, [actor for layer, actor in actors if layer.kind != "image"])
         self.slicing.put_in_order([actor for layer, actor in actors if layer.kind == "image"])
+        self.slicing.tilt(state.oblique)
         lines = [(layer, actor) for layer, actor in actors if layer.kind in LINES]
         self.canvas.become(state.painting, lines)
         self._bundled.show(state, lines, regrouped)

@@ -14,6 +14,7 @@ from pvfiblets.web.slicing import SliceView, check_view
 from pvfiblets.web.values import shown
 
 if TYPE_CHECKING:
+    from pvfiblets.web.document import State
     from pvfiblets.web.loading import Files, Loaded
     from pvfiblets.web.slicing import Slicing
     from pvfiblets.web.store import Store
@@ -29,6 +30,11 @@ class SceneSlices:
         store: Store
         slicing: Slicing
         layer: Callable[[str], Layer]
+        become: Callable[..., None]
+
+        @property
+        def state(self) -> State: ...  # noqa: D102 - of the scene
+
         _change: Callable[..., None]
 
     def with_names(self, loaded: Loaded) -> Loaded:
@@ -63,10 +69,17 @@ class SceneSlices:
         return changed
 
     def set_slices(self, **changes: Any) -> SliceView:
-        """Look at slices in another way, which is nothing to undo; arguments and errors as of :func:`.check_view`."""
+        """Look at slices in another way; arguments and errors as of :func:`.check_view`.
+
+        Only the angles of the oblique slice are part of the document, and can be undone.
+        """
         view = self.slicing.view
         known = view.as_json()
         if unknown := [name for name in changes if name not in known]:
             raise ValueError(f"slices have no {shown(unknown[0])}; they have {', '.join(known)}")
-        self.slicing.view = check_view({**known, **changes})
+        wanted = check_view({**known, **changes})
+        if "oblique" in changes:
+            said = "turn the oblique slice" if wanted.oblique is not None else "hide the oblique slice"
+            self.become(replace(self.state, oblique=wanted.oblique), said, ("oblique",))
+        self.slicing.view = wanted
         return self.slicing.view

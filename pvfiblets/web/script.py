@@ -111,9 +111,9 @@ class _Writer:
         width, height = self._plotter.window_size
         off = "off_screen=True, " if off_screen else ""
         sliced = has_images(self._scene)
-        views = ", shape=(2, 2), border=False" if sliced else ""
+        views = ", shape=(1, 5), border=False" if sliced else ""
         self._lines += [f"plotter = pv.Plotter({off}window_size=({width}, {height}){views})"]
-        self._lines += ["plotter.subplot(1, 1)  # the 3-D view"] if sliced else []
+        self._lines += ["plotter.subplot(0, 3)  # the 3-D view"] if sliced else []
         self._lines += [f"plotter.set_background({self._scene.state.background!r})"]
         window, renderer = self._plotter.render_window, self._plotter.renderer
         if (dpi := window.GetDPI()) != USUAL_DPI:

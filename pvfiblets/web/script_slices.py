@@ -35,14 +35,17 @@ def image_arguments(layer: Layer, meaning: str, file: Callable[[str], str]) -> d
 def slicing_lines(scene: Scene) -> list[str]:
     """Return lines that look at slices as the scene does."""
     view = scene.slicing.view
-    found = [f"workspace.{name} = {getattr(view, name)!r}" for name in ("layout", "convention", "thickness")]
+    found = []
+    if view.oblique is not None:
+        normal = tuple(round(part, 9) for part in normal_of(view.oblique))
+        found += [f"workspace.add_oblique({normal}, widget=False)"]
+    layout = "beside" if view.layout == "oblique" and view.oblique is None else view.layout
+    found += [f"workspace.layout = {layout!r}"]
+    found += [f"workspace.{name} = {getattr(view, name)!r}" for name in ("convention", "thickness")]
     found += ["workspace.told = False"]
     found += [] if view.cross_hair else ["workspace.cross_hair = False"]
     if not view.planes:
-        found += ["for plane in workspace.slices:", "    plane.visible = False"]
-    if view.oblique is not None:
-        normal = tuple(round(part, 9) for part in normal_of(view.oblique))
-        found += [f"plotter.slices.add_oblique(workspace.slices, {normal}, widget=False)"]
+        found += ["for plane in ('axial', 'coronal', 'sagittal'):", "    workspace.slices[plane].visible = False"]
     return [*found, f"workspace.position = {view.position}", ""]
 
 

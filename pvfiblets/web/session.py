@@ -315,12 +315,13 @@ def _checked(
     background = colour(data.get("background", "#000000"), "background")
     measurements = check_measurements(data.get("measurements", []))
     painting = None if data.get("painting") is None else check_painting(data["painting"])
-    state = State(tuple(found), tuple(clips), background, measurements, painting)
+    slices = None if data.get("slices") is None else check_view(data["slices"])
+    oblique = None if slices is None else slices.oblique
+    state = State(tuple(found), tuple(clips), background, measurements, painting, oblique=oblique)
     state = replace(state, bundles=_bundles_from(reading, state))
     state = replace(state, matrix=_matrix_from(data.get("matrix"), reading, state))
     _check_cuts(reading.store, state)
     camera = data.get("camera")
-    slices = None if data.get("slices") is None else check_view(data["slices"])
     return Prepared(state, None if camera is None else check_camera(camera), reading.store, slices)
 
 

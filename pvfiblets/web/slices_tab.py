@@ -26,7 +26,10 @@ ICONS = {
     "coronal": "mdi-square-outline",
     "sagittal": "mdi-square-outline",
     "grid": "mdi-view-grid-outline",
+    "oblique": "mdi-square-outline",
 }
+TILTED = [30.0, 0.0]
+"""Angles that an oblique slice begins with, degrees."""
 MOST_STEP = 100  # voxels at once
 
 
@@ -48,7 +51,7 @@ class SliceActions(Actions):
         values = workspace.slices.values()
         page.slicing = {
             "shown": True, "layout": view.layout, "convention": view.convention, "planes": view.planes,
-            "oblique": list(view.oblique or (30.0, 0.0)), "tilted": view.oblique is not None,
+            "oblique": list(view.oblique or TILTED), "tilted": view.oblique is not None,
             "cross_hair": view.cross_hair, "thickness": short(view.thickness),
             "position": [f"{part:.1f}" for part in view.position or ()],
             "voxel": [str(part) for part in workspace.voxel or ()],
@@ -83,7 +86,8 @@ class SliceActions(Actions):
         if layout not in LAYOUTS:
             raise ValueError(f"there is no layout {str(layout)[:40]!r}; choose one of {', '.join(LAYOUTS)}")
         if layout == "3d" or app.scene.slicing.workspace is not None:
-            self._set(layout=layout)
+            made = {"oblique": TILTED} if layout == "oblique" and app.scene.slicing.view.oblique is None else {}
+            self._set(layout=layout, **made)
             return
         app.scene.set_slices(layout=layout)
         volumes = [layer for layer in app.scene.layers if layer.kind == "volume"]
@@ -135,14 +139,14 @@ class SliceActions(Actions):
 
     def set_angle(self, which: int, text: Any) -> None:
         """Tilt or turn the oblique slice, by degrees as they were typed or slid."""
-        angles = list(self._app.scene.slicing.view.oblique or (30.0, 0.0))
+        angles = list(self._app.scene.slicing.view.oblique or TILTED)
         angles[1 if which == 1 else 0] = typed(str(text), "angle", optional=False)
         self._set(oblique=angles)
 
     def set_switch(self, name: str, on: bool) -> None:
         """Show the cross-hair, or slices in the 3-D view, or do not."""
         if name == "tilted":
-            self._set(oblique=[30.0, 0.0] if on is True else None)
+            self._set(oblique=TILTED if on is True else None)
             return
         if name not in ("cross_hair", "planes"):
             raise ValueError(f"slices have no {str(name)[:40]!r}")
@@ -347,7 +351,7 @@ def _panes(app: Any) -> None:
         with html.Div(v_if="slicing.tilted"):
             for which, label in enumerate(("Tilt", "Turn")):
                 with html.Div(classes="pv-row"):
-                    html.Label(label, title="Degrees, about the cross-hair")
+                    html.Label(label, title="Degrees, about the cross-hair; or drag a handle of its line in a pane")
                     with html.Div(classes="pv-pair"):
                         v3.VSlider(
                             model_value=(f"slicing.oblique[{which}]",), min=-90, max=90, step=1, density="compact",

@@ -8,7 +8,7 @@ keep it.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     from pvfiblets.web.label_images import LabelledImage
 
 __all__ = [
-    "CONVENTIONS", "LAYOUTS", "NAMES", "SliceView", "Slicing", "check_view", "image_looks", "normal_of", "ready_views",
+    "CONVENTIONS", "LAYOUTS", "NAMES", "VIEWS", "SliceView", "Slicing", "angles_of", "check_view", "image_looks",
+    "normal_of", "ready_views", "to_3d_view",
 ]  # fmt: skip
 
 LAYOUTS = {
@@ -34,13 +35,17 @@ LAYOUTS = {
     "axial": "Axial, large",
     "coronal": "Coronal, large",
     "sagittal": "Sagittal, large",
-    "grid": "Four alike",
+    "grid": "All alike",
+    "oblique": "Oblique, large",
 }
 """How views may be laid out, for people."""
 
 CONVENTIONS = ("radiological", "neurological")
-NAMES = ("axial", "coronal", "sagittal", "3d")
+NAMES = ("axial", "coronal", "sagittal", "3d", "oblique")
 """Views in the order of the plotter's renderers."""
+VIEWS = (1, len(NAMES))
+"""The ``shape`` of a plotter that has all of them."""
+_THREE_D = NAMES.index("3d")
 
 WEIGHTS = "modulate"
 """The setting that names the image which a direction-coded one is as bright as."""
@@ -67,7 +72,8 @@ class SliceView:
     position : tuple of 3 floats or None
         The cross-hair, mm; the middle of the first image until it is known.
     oblique : tuple of 2 floats or None
-        Of one more slice in the 3-D view, through the cross-hair: how far it is tilted and turned, degrees.
+        Of one more slice, through the cross-hair: how far it is tilted and turned, degrees. It is a part of the
+        document, so that it can be undone.
     """
 
     layout: str = "beside"
@@ -133,13 +139,29 @@ def normal_of(oblique: tuple[float, float]) -> tuple[float, float, float]:
     return -math.sin(tilt) * math.sin(turn), math.sin(tilt) * math.cos(turn), math.cos(tilt)
 
 
+def angles_of(normal: Any) -> tuple[float, float]:
+    """Return tilt, from -90 to 180, and turn, from -90 to 90 degrees, of a slice of a normal; see :func:`normal_of`."""
+    x, y, z = (float(part) for part in normal)
+    tilt = math.degrees(math.atan2(math.hypot(x, y), z))
+    turn = math.degrees(math.atan2(-x, y)) if math.hypot(x, y) > 1e-9 else 0.0
+    if abs(turn) > 90.0:
+        tilt, turn = -tilt, turn - math.copysign(180.0, turn)
+    return round(tilt, 2), round(turn, 2)
+
+
+def to_3d_view(plotter: Any) -> None:
+    """Make the 3-D view the active one."""
+    plotter.renderers.set_active_renderer(*plotter.renderers.index_to_loc(_THREE_D))
+
+
 def ready_views(plotter: Any) -> None:
-    """Have a plotter of four views begin with the 3-D view alone, which is the active one."""
-    for renderer in list(plotter.renderers)[:3]:
-        renderer.SetDraw(False)
-        renderer.SetInteractive(False)
-        renderer.SetViewport(0.0, 0.0, 0.001, 0.001)
-    plotter.subplot(1, 1)
+    """Have a plotter of all views begin with the 3-D view alone, which is the active one."""
+    for name, renderer in zip(NAMES, plotter.renderers, strict=False):
+        if name != "3d":
+            renderer.SetDraw(False)
+            renderer.SetInteractive(False)
+            renderer.SetViewport(0.0, 0.0, 0.001, 0.001)
+    to_3d_view(plotter)
     plotter.renderer.SetViewport(0.0, 0.0, 1.0, 1.0)
 
 
@@ -149,7 +171,9 @@ class Slicing:
     Parameters
     ----------
     plotter : pyvista.Plotter
-        Of four views, of which the last is the 3-D view, if there is to be an image.
+        Of the views `NAMES`, or of the first four, if there is to be an image.
+    turned : callable
+        Called with the angles of the oblique slice when a drag in a pane has turned it.
 
     Attributes
     ----------
@@ -157,8 +181,8 @@ class Slicing:
         None as long as there is no image.
     """
 
-    def __init__(self, plotter: Any) -> None:
-        self._plotter = plotter
+    def __init__(self, plotter: Any, turned: Callable[[tuple[float, float]], Any] = lambda _: None) -> None:
+        self._plotter, self._turned = plotter, turned
         self._view = SliceView()
         self._glyphs = GlyphLayers()
         self.workspace: Any = None
@@ -180,25 +204,39 @@ class Slicing:
         workspace = self.workspace
         if workspace is None:
             return
-        workspace.layout, workspace.convention = view.layout, view.convention
-        workspace.thickness, workspace.cross_hair = view.thickness, view.cross_hair
         self._tilt(view.oblique)
+        there = workspace.oblique is not None and workspace.oblique.pane is not None and workspace.oblique.visible
+        workspace.layout = view.layout if view.layout != OBLIQUE or there else "beside"
+        workspace.convention = view.convention
+        workspace.thickness, workspace.cross_hair = view.thickness, view.cross_hair
         for plane in workspace.slices:
-            wanted = view.planes if plane.name != OBLIQUE else view.oblique is not None
-            if plane.visible != wanted:
-                plane.visible = wanted
+            if plane.name != OBLIQUE and plane.visible != view.planes:
+                plane.visible = view.planes
         if view.position is not None and tuple(workspace.position) != view.position:
             workspace.position = view.position
 
+    def tilt(self, oblique: tuple[float, float] | None) -> None:
+        """Have the oblique slice at other angles, or none."""
+        if oblique != self._view.oblique:
+            self.view = replace(self.view, oblique=oblique)
+
     def _tilt(self, oblique: tuple[float, float] | None) -> None:
         """Have the slice at an angle, which is made when it is first wanted."""
-        slices = self.workspace.slices
-        if oblique is None:
-            return
-        if OBLIQUE not in slices.planes:
-            self._plotter.slices.add_oblique(slices, normal_of(oblique), name=OBLIQUE, widget=False)
-        elif not np.allclose(slices[OBLIQUE].normal, normal_of(oblique)):
-            slices[OBLIQUE].normal = normal_of(oblique)
+        workspace = self.workspace
+        if workspace.oblique is None:
+            if oblique is None:
+                return
+            workspace.add_oblique(normal_of(oblique), widget=False).on_turn(self._was_turned)
+            self._smooth_alike()
+        workspace.oblique.visible = oblique is not None
+        if oblique is not None and not np.allclose(workspace.oblique.normal, normal_of(oblique)):
+            workspace.oblique.normal = normal_of(oblique)
+
+    def _was_turned(self, normal: Any) -> None:
+        """Tell of a slice that is turned by hand, at whole hundredths of a degree."""
+        angles = angles_of(normal)
+        if self._view.oblique is None or not np.allclose(normal, normal_of(self._view.oblique), atol=1e-9):
+            self._turned(angles)
 
     def boxes(self) -> list[dict[str, Any]]:
         """Return where views are in the picture, as shares of it from its upper left, and how wide a pixel is, mm."""
@@ -323,7 +361,8 @@ class Slicing:
         """Have edges in panes as smooth as in the 3-D view."""
         plotter = self._plotter
         value = plotter.picture.antialias
-        for at in range(3):
-            plotter.subplot(*divmod(at, 2))
-            plotter.picture.antialias = value
-        plotter.subplot(1, 1)
+        for at in range(len(plotter.renderers)):
+            if at != _THREE_D:
+                plotter.renderers.set_active_renderer(*plotter.renderers.index_to_loc(at))
+                plotter.picture.antialias = value
+        to_3d_view(plotter)

@@ -11,13 +11,13 @@ from pvfiblets.web import session
 from pvfiblets.web.history import History
 from pvfiblets.web.scene import Scene
 from pvfiblets.web.script import as_script
-from pvfiblets.web.slicing import ready_views
+from pvfiblets.web.slicing import NAMES, VIEWS, angles_of, normal_of, ready_views
 from pvfiblets.web.touch import Fingers
 
 
 @pytest.fixture
 def scene(folder):
-    plotter = pv.Plotter(off_screen=True, window_size=(240, 160), shape=(2, 2), border=False)
+    plotter = pv.Plotter(off_screen=True, window_size=(240, 160), shape=VIEWS, border=False)
     plotter.set_background("black")
     plotter.disable_anti_aliasing()
     ready_views(plotter)
@@ -29,8 +29,7 @@ def scene(folder):
 
 def shown(scene):
     """Return which views are drawn."""
-    names = ("axial", "coronal", "sagittal", "3d")
-    return {name for name, one in zip(names, scene.plotter.renderers, strict=True) if one.GetDraw()}
+    return {name for name, one in zip(NAMES, scene.plotter.renderers, strict=True) if one.GetDraw()}
 
 
 def test_an_image_is_shown_as_slices_beside_the_3d_view(scene):
@@ -260,6 +259,40 @@ def test_glyphs_of_an_image_are_those_of_python(scene, folder, n, kind):
     assert np.abs(scene.screenshot().astype(int) - before).max() <= 2
     session.from_dict(scene, kept)
     assert np.abs(scene.screenshot().astype(int) - picture).max() <= 2
+
+
+@pytest.mark.parametrize(
+    "normal", [(0, 0, 1), (0.3, -0.5, 0.8), (-0.9, 0.1, 0.2), (1, 0, 0), (0.2, 0.4, -0.9), (0, -1, 0)]
+)
+def test_angles_of_a_normal_give_it_again(normal):
+    tilt, turn = angles_of(normal)
+    assert -90.0 <= turn <= 90.0
+    np.testing.assert_allclose(normal_of((tilt, turn)), np.array(normal) / np.linalg.norm(normal), atol=2e-4)
+
+
+def test_turning_an_oblique_slice_by_hand_is_undone_and_done_again(scene):
+    scene.open("head.nii.gz", "image")
+    history = History(scene, clock=lambda: 0.0)
+    scene.set_slices(oblique=[30.0, 0.0], layout="oblique")
+    workspace = scene.slicing.workspace
+    pane = workspace.panes["oblique"]
+    np.testing.assert_allclose(pane.toward, [0.0, -0.5, -np.sqrt(0.75)], atol=1e-12)  # mirrored: from below
+    assert [box["name"] for box in scene.slicing.boxes()] == ["oblique"]
+    scene.set_slices(layout="grid")
+    trace = workspace.oblique.traces["sagittal"]
+    start = trace.pane.pixel_of(workspace.position)
+    workspace.oblique.normal = trace.normal_towards(start[0] + 30, start[1] + 30, 1)  # as a drag does
+    angles = scene.state.oblique
+    assert angles != (30.0, 0.0)
+    np.testing.assert_allclose(workspace.oblique.normal, normal_of(angles), atol=1e-12)
+    assert scene.slicing.view.oblique == angles
+    history.undo()  # both at once: they are within a second
+    assert scene.state.oblique is None
+    assert not workspace.oblique.visible
+    assert "oblique" not in [box["name"] for box in scene.slicing.boxes()]
+    history.redo()
+    assert workspace.oblique.visible
+    history.close()
 
 
 def test_an_oblique_slice_lies_as_its_angles_say(scene, folder):

@@ -182,8 +182,9 @@ class SlicesComponent:
     ) -> Workspace:
         """Show axial, coronal and sagittal panes and the 3-D view, linked by a cross-hair.
 
-        The plotter must have four views, as ``pv.Plotter(shape=(2, 2))`` has: the first three become panes, the last
-        is the 3-D view, which later ``add_...`` calls add to. Streamlines of the 3-D view are shown in each pane as far
+        The plotter must have four views, as ``pv.Plotter(shape=(2, 2))`` has: the first three become panes, the fourth
+        is the 3-D view, which later ``add_...`` calls add to, and a fifth is for an oblique slice
+        (``workspace.add_oblique``). Streamlines of the 3-D view are shown in each pane as far
         as they lie in the slab about its slice; they are neither copied nor decoded for that.
 
         Parameters
@@ -227,6 +228,9 @@ class SlicesComponent:
         if len(views) < 4:
             raise ValueError(f"the plotter has {len(views)} view(s); make it by pv.Plotter(shape=(2, 2))")
         names = ("axial", "coronal", "sagittal", "3d")
+        for spare in views[4:5]:
+            spare.SetDraw(False)
+            spare.SetInteractive(False)
         self._plotter.renderers.set_active_renderer(*self._plotter.renderers.index_to_loc(3))
         render = bool(arguments.pop("render", True))
         stack = self.add(source, render=False, **arguments)
@@ -291,6 +295,7 @@ class SlicesComponent:
         plane = slices.new_plane(name, normal)
         self._plotter.add_actor(plane.actor, name=f"{slices.name} {name}", reset_camera=False, render=False)
         plane.enter(self._plotter.renderer)
+        slices.show_glyphs_on_plane(plane)
         if widget:
 
             def moved(normal: Any, origin: Any) -> None:

@@ -18,6 +18,7 @@ from pvfiblets.plotting.slices.plane import SliceActor, before_render
 from pvfiblets.slices.frames import PlaneGrid, covered, letters, plane_axes
 
 if TYPE_CHECKING:
+    from pvfiblets.plotting.slices.plane import SlicePlane
     from pvfiblets.plotting.slices.stack import SliceStack
 
 __all__ = ["Pane"]
@@ -52,10 +53,14 @@ class Pane:
     renderer : pyvista.Renderer
     color : color-like
         Of cross-hair and letters.
+    plane : SlicePlane, optional
+        Whose directions the pane has, however it is turned, in the place of those of an orientation.
     """
 
-    def __init__(self, stack: SliceStack, orientation: str, renderer: Any, color: Any) -> None:
-        self.stack, self.name, self.renderer = stack, orientation, renderer
+    def __init__(
+        self, stack: SliceStack, orientation: str, renderer: Any, color: Any, plane: SlicePlane | None = None
+    ) -> None:
+        self.stack, self.name, self.renderer, self.plane = stack, orientation, renderer, plane
         self.mirrored = False
         self.thickness = 3.0
         self._scale: float | None = None
@@ -85,7 +90,7 @@ class Pane:
     @property
     def axes(self) -> tuple[Array, Array]:
         """Unit directions to the right of the window and up, ``(3,)`` each."""
-        along, up = plane_axes(self.stack.frame, self.name)
+        along, up = plane_axes(self.stack.frame, self.name) if self.plane is None else self.plane.axes
         return (-along if self.mirrored else along), up
 
     @property
@@ -172,6 +177,11 @@ class Pane:
         """How far from the plane the slice and the cross-hair lie, mm: beyond the slab, and beyond glyphs of voxels."""
         voxel = max((float(one.image.voxel_size.max()) for one in self.stack.layers), default=0.0)
         return max(0.5 * self.thickness, voxel) + BEFORE
+
+    @property
+    def before(self) -> float:
+        """How far before the plane the cross-hair is drawn, mm: lines there hide behind nothing."""
+        return self._depth
 
     @property
     def planes(self) -> Array:

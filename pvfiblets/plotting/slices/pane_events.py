@@ -47,6 +47,7 @@ class PaneEvents:
         self._workspace = weakref.proxy(workspace)
         self._interactor = plotter.iren.interactor
         self._dragging: tuple[str, Pane, tuple[int, int]] | None = None
+        self._handle: int | None = None
         self._last = "axial"
         self._typed: str | None = None
         self._tags: list[int] = []
@@ -116,8 +117,23 @@ class PaneEvents:
             return False
         self._dragging = what, pane, self._pixel
         if what == "move":
-            self._go(pane)
+            self._handle = self._taken(pane)
+            if self._handle is None:
+                self._go(pane)
         return True
+
+    def _taken(self, pane: Pane) -> int | None:
+        """Return which handle of the oblique slice's line the mouse has taken hold of."""
+        oblique = self._workspace.oblique
+        trace = None if oblique is None else oblique.traces.get(pane.name)
+        return None if trace is None else trace.handle_at(*self._pixel)
+
+    def _turn(self, pane: Pane) -> None:
+        oblique = self._workspace.oblique
+        normal = oblique.traces[pane.name].normal_towards(*self._pixel, self._handle)
+        if normal is not None:
+            oblique.normal = normal
+            self._workspace.render()
 
     def _release(self) -> bool:
         dragging, self._dragging = self._dragging, None
@@ -131,7 +147,10 @@ class PaneEvents:
         right, up = x - before[0], y - before[1]
         self._dragging = what, pane, (x, y)
         if what == "move":
-            self._go(pane)
+            if self._handle is None:
+                self._go(pane)
+            else:
+                pv.try_callback(self._turn, pane)
             return True
         if what == "pan":
             pane.pan_by(right, up)

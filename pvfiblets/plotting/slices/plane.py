@@ -104,7 +104,7 @@ class SlicePlane:
 
     def __init__(self, stack: SliceStack, name: str, axes: tuple[Array, Array] | None = None) -> None:
         self._stack = weakref.proxy(stack)
-        self._axes = axes
+        self._base, self._axes = axes, axes
         self._grid: PlaneGrid | None = None
         self._stale = True
         self._visible = True
@@ -127,7 +127,8 @@ class SlicePlane:
 
     @normal.setter
     def normal(self, normal: Any) -> None:
-        self._axes = turned(self.axes, normal)
+        # From the same axes each time: how the slice lies in its plane depends on the normal alone.
+        self._axes = turned(plane_axes(self._stack.frame, self.name) if self._base is None else self._base, normal)
         self.update()
 
     @property
@@ -153,6 +154,12 @@ class SlicePlane:
     def visible(self, visible: bool) -> None:
         self._visible = bool(visible)
         self.update()
+
+    @property
+    def corners(self) -> Array:
+        """``(8, 3)`` mm: corners of the lowest image."""
+        corners: Array = self._stack.layers[0].image.corners
+        return corners
 
     @property
     def grid(self) -> PlaneGrid | None:

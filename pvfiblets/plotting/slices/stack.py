@@ -15,7 +15,7 @@ from pvfiblets.plotting.slices.layer import SliceLayer
 from pvfiblets.plotting.slices.plane import SlicePlane
 from pvfiblets.plotting.slices.settings import SliceSettings
 from pvfiblets.slices import colours
-from pvfiblets.slices.frames import ORIENTATIONS, PlaneGrid, checked_frame, checked_position, nearest_frame, turned
+from pvfiblets.slices.frames import ORIENTATIONS, PlaneGrid, checked_frame, checked_position, nearest_frame
 from pvfiblets.slices.image import as_slice_image
 
 if TYPE_CHECKING:
@@ -249,8 +249,15 @@ class SliceStack:
             self._glyphs.remove(glyphs)
 
     def show_glyphs_on(self, renderer: Any, place: Callable[[], tuple[Array, Array] | None]) -> None:
-        """Have glyphs that are added from now on shown on a plane of another renderer, too."""
+        """Have glyphs shown on a plane of another renderer, too, be they added later."""
         self._views.append((renderer, place))
+        for one in self._glyphs:
+            one.show_on(renderer, place)
+
+    def show_glyphs_on_plane(self, plane: SlicePlane) -> None:
+        """Have glyphs that are there shown on a plane of the stack that has just entered its renderer."""
+        for one in self._glyphs:
+            one.show_on(plane.renderer, plane.place)
 
     # Place --------------------------------------------------------------------------------------
 
@@ -319,10 +326,10 @@ class SliceStack:
 
     def new_plane(self, name: str, normal: Any) -> SlicePlane:
         """Return another plane, at any angle, through the position; it is in no renderer yet."""
-        plane = SlicePlane(self, name, turned((self._frame[:, 0], self._frame[:, 1]), normal))
+        plane = SlicePlane(self, name, (self._frame[:, 0], self._frame[:, 1]))
+        plane.normal = normal
         self._planes[name] = plane
         self._move(plane)
-        plane.update()
         return plane
 
     # Pictures and values ------------------------------------------------------------------------

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
@@ -13,11 +12,15 @@ import numpy.typing as npt
 import pyvista as pv
 
 from pvfiblets.mappers.kept_views import KeptViews
+from pvfiblets.plotting.slices.contours import PaneContours
 from pvfiblets.plotting.slices.layer import SliceLayer
 from pvfiblets.plotting.slices.layouts import LAYOUTS, viewports
+from pvfiblets.plotting.slices.oblique import NAME as OBLIQUE
+from pvfiblets.plotting.slices.oblique import ObliqueSlice, add_oblique_slice
 from pvfiblets.plotting.slices.pane import Pane
 from pvfiblets.plotting.slices.pane_events import PaneEvents
 from pvfiblets.plotting.slices.plane import before_render, on_events, prepare
+from pvfiblets.plotting.slices.point_values import PointValues, streamlines_near, words_of
 from pvfiblets.plotting.slices.stack import SliceStack
 from pvfiblets.slices.frames import ORIENTATIONS
 
@@ -26,28 +29,6 @@ __all__ = ["PointValues", "Workspace"]
 Array = npt.NDArray[np.float64]
 
 CONVENTIONS = ("radiological", "neurological")
-
-
-@dataclass(frozen=True)
-class PointValues:
-    """What is at a position.
-
-    Attributes
-    ----------
-    position : numpy.ndarray
-        ``(3,)`` mm.
-    voxel : tuple of int or None
-        Of the lowest image; None outside of it.
-    images : dict
-        By layer, as of `SliceStack.values`.
-    streamlines : dict
-        By actor: ids of streamlines of which a point lies within the radius.
-    """
-
-    position: Array
-    voxel: tuple[int, int, int] | None
-    images: dict[str, Any]
-    streamlines: dict[str, npt.NDArray[np.int64]]
 
 
 class Workspace:
@@ -59,13 +40,16 @@ class Workspace:
     of the `active` layer (sideways its width, up and down its level), the middle one moves the slice, and the wheel
     with Ctrl zooms. Arrow keys move the cross-hair by a voxel in the pane under the mouse, Page Up and Page Down go
     through its slices; G begins a position to be typed, in mm or, with a V before it, in voxels. A click on a slice of
-    the 3-D view moves the cross-hair there.
+    the 3-D view moves the cross-hair there. Where panes show the line of an oblique slice, a drag of its handles turns
+    it.
 
     Attributes
     ----------
     slices : SliceStack
         Images in layers, and their slices in the 3-D view.
     panes : mapping of str to Pane
+    oblique : ObliqueSlice or None
+        That of :meth:`add_oblique`.
     """
 
     def __init__(
@@ -90,8 +74,8 @@ class Workspace:
         self.panes: Mapping[str, Pane] = MappingProxyType(
             {name: Pane(slices, name, renderers[name], color) for name in ORIENTATIONS}
         )
-        self._meshes: dict[str, tuple[Any, Any, float]] = {}
-        self._contours_at: Array | None = None
+        self.oblique: ObliqueSlice | None = None
+        self._contours = PaneContours()
         self._tracts: list[Any] = []
         self._active: SliceLayer | None = None
         self._callbacks: list[Callable[[Array], None]] = []
@@ -100,7 +84,7 @@ class Workspace:
         self._told = True
         self._ends = [before_render(one, self, "sync") for one in renderers.values()]
         if plotter.render_window is not None:
-            self._ends.append(on_events(plotter.render_window, ("WindowResizeEvent",), self, "_arrange"))
+            self._ends.append(on_events(plotter.render_window, ("WindowResizeEvent",), self, "arrange"))
         self._kept: KeptViews | None = None
         if plotter.render_window is not None:
             self._kept = KeptViews(plotter.render_window, renderers.values(), _weakly(self._prepare))
@@ -172,7 +156,7 @@ class Workspace:
         found = _length(thickness)
         for pane in self.panes.values():
             pane.thickness = found
-        self._contours_at = None
+        self._contours.forget()
 
     @property
     def layout(self) -> str:
@@ -180,19 +164,33 @@ class Workspace:
 
         ``"grid"``, ``"row"``, ``"beside"`` (the 3-D view and, small, three slices: below it in a window that is higher
         than wide), or one of ``"3d"``, ``"axial"``,
-        ``"coronal"`` and ``"sagittal"`` alone.
+        ``"coronal"``, ``"sagittal"`` and, if it has a pane, ``"oblique"`` alone.
         """
         return self._layout
 
     @layout.setter
     def layout(self, layout: str) -> None:
-        self._layout = _choice("layout", layout, LAYOUTS)
-        self._arrange()
+        found = _choice("layout", layout, LAYOUTS)
+        if found == OBLIQUE and not self._has_oblique_pane:
+            raise ValueError('layout is "oblique", and there is no such pane; call workspace.add_oblique() first')
+        self._layout = found
+        self.arrange()
 
-    def _arrange(self, *_: Any) -> None:
-        """Lay views out as it suits the window, which may have another shape now."""
+    @property
+    def _has_oblique_pane(self) -> bool:
+        return self.oblique is not None and self.oblique.pane is not None and self.oblique.visible
+
+    @property
+    def _places(self) -> Mapping[str, tuple[float, float, float, float]]:
+        """Where views are that are shown; the layout of a pane that is not is ``"beside"``."""
         width, height = self._plotter.window_size
-        places = viewports(self._layout, width / max(height, 1))
+        there = self._has_oblique_pane
+        layout = "beside" if self._layout == OBLIQUE and not there else self._layout
+        return viewports(layout, width / max(height, 1), oblique=there)
+
+    def arrange(self, *_: Any) -> None:
+        """Lay views out as it suits the window, which may have another shape now."""
+        places = self._places
         for name, renderer in self._renderers.items():
             renderer.SetDraw(name in places)
             renderer.SetInteractive(name in places)
@@ -232,6 +230,57 @@ class Workspace:
         self._told = bool(told)
         self.say(None)
 
+    # Oblique slice ------------------------------------------------------------------------------
+
+    def add_oblique(
+        self, normal: Any = (0.0, -0.5, 1.0), *, widget: bool = True, color: Any = "#40d0ff", **widget_options: Any
+    ) -> ObliqueSlice:
+        """Add a slice at any angle through the cross-hair.
+
+        A widget turns it in the 3-D view, and a drag of the handles of its line in a pane turns it there. A plotter of
+        five views, as ``pv.Plotter(shape=(1, 5))`` is, shows it in a pane of its own, too.
+
+        Parameters
+        ----------
+        normal : (3,) array, default: (0, -0.5, 1)
+            Across the slice.
+        widget : bool, default: True
+            Whether there is a widget in the 3-D view.
+        color : color-like
+            Of its lines in the panes.
+        **widget_options
+            Of :meth:`pyvista.Plotter.add_plane_widget`.
+
+        Returns
+        -------
+        ObliqueSlice
+            ``normal`` and ``visible`` are live; ``on_turn`` calls back.
+
+        Raises
+        ------
+        ValueError
+            If there is one already, or the normal is no direction.
+        """
+        if self.oblique is not None:
+            raise ValueError("the workspace has an oblique slice already; set workspace.oblique.normal")
+        self.oblique = add_oblique_slice(self, self._plotter, normal, self._color, color)
+        if widget and self._plotter.iren is not None:
+            self.oblique.add_widget(self._plotter, self._renderers["3d"], **widget_options)
+        self._contours.forget()
+        self.arrange()
+        return self.oblique
+
+    def take(self, pane: Pane) -> None:
+        """Treat one more pane as those that were there from the beginning."""
+        pane.mirrored = self.convention == "radiological"
+        pane.thickness, pane.cross_hair = self.thickness, self.cross_hair
+        self.panes = MappingProxyType({**self.panes, pane.name: pane})
+        renderer = self._renderers[pane.name] = pane.renderer
+        self._ends.append(before_render(renderer, self, "sync"))
+        if self._kept is not None:
+            self._kept.follow(renderer)
+        self.slices.show_glyphs_on(renderer, pane.place)
+
     # Values -------------------------------------------------------------------------------------
 
     def values(self, radius: float = 2.0) -> PointValues:
@@ -252,22 +301,8 @@ class Workspace:
         ValueError
             If the radius is no length above 0.
         """
-        from pvfiblets.query.passing import region_flags
-        from pvfiblets.query.point_flags import ANY
-        from pvfiblets.regions import Sphere
-
-        position = self.position
-        ball = Sphere(position, radius)
-        found: dict[str, npt.NDArray[np.int64]] = {}
-        for actor in self._fiblets():
-            region: Any = ball
-            matrix = np.array(actor.user_matrix, np.float64)
-            if not np.array_equal(matrix, np.eye(4)):
-                region = ball.moved(np.linalg.inv(matrix))
-            sampling = float(radius) if actor.fiblets.step > radius else None
-            flags = region_flags(actor.fiblets, region, sampling, bits=ANY)
-            found[str(actor.name)] = np.flatnonzero((flags & ANY > 0) & actor.shown)
-        return PointValues(position, self.voxel, self.slices.values(), found)
+        found = streamlines_near(self._fiblets(), self.position, radius)
+        return PointValues(self.position, self.voxel, self.slices.values(), found)
 
     def on_move(self, callback: Callable[[Array], None]) -> None:
         """Call something with the position, ``(3,)`` mm, whenever the cross-hair moves."""
@@ -297,19 +332,11 @@ class Workspace:
         str
             The name, for `remove_contours`.
         """
-        if not isinstance(mesh, pv.DataSet):
-            raise TypeError(f"mesh is a {type(mesh).__name__}; give a pyvista mesh")
-        name = name or f"contours {len(self._meshes) + 1}"
-        self.remove_contours(name)
-        self._meshes[name] = mesh, pv.Color(color), float(line_width)
-        self._contours_at = None
-        return name
+        return self._contours.add(mesh, color, line_width, name, self.panes.values())
 
     def remove_contours(self, name: str) -> None:
         """Take contours away; names that are not there do no harm."""
-        if self._meshes.pop(name, None) is not None:
-            for pane in self.panes.values():
-                pane.set_contour(name, None)
+        self._contours.remove(name, self.panes.values())
 
     # Inside -------------------------------------------------------------------------------------
 
@@ -322,6 +349,8 @@ class Workspace:
     def _slices_changed(self) -> None:
         for pane in self.panes.values():
             pane.changed()
+        if self.oblique is not None:
+            self.oblique.changed()
         position = self.slices.position
         self.panes["axial"].say(self._words)
         if (position != self._where).any():
@@ -333,18 +362,7 @@ class Workspace:
     def _words(self) -> str:
         if not self._told:
             return ""
-        lines = ["{:.1f} {:.1f} {:.1f} mm".format(*self.position)]
-        if self.voxel is not None:
-            lines[0] += "   voxel {} {} {}".format(*self.voxel)
-        for name, value in self.slices.values().items():
-            if isinstance(value, float):
-                value = f"{value:.4g}"
-            elif isinstance(value, tuple):
-                value = f"{value[1]} ({value[0]})" if value[1] != str(value[0]) else str(value[0])
-            elif isinstance(value, np.ndarray):
-                value = " ".join(f"{part:.3g}" for part in value)
-            lines.append(f"{name}: {'-' if value is None else value}")
-        return "\n".join(lines)
+        return words_of(self.position, self.voxel, self.slices.values())
 
     def say(self, text: str | None) -> None:
         """Write into the axial pane's corner; None for position and values, as usual."""
@@ -362,12 +380,9 @@ class Workspace:
                 if not pane.renderer.HasViewProp(actor):
                     vars(self._plotter)["fiblets"].show_in(actor, pane.renderer)
                 actor.mapper.cut_in(pane.renderer, planes)
-        position = self.position
-        if self._contours_at is None or (position != self._contours_at).any():
-            self._contours_at = position
-            for name, (mesh, color, width) in self._meshes.items():
-                for pane in self.panes.values():
-                    pane.set_contour(name, mesh.slice(normal=pane.toward, origin=position), color, width)
+        if self.oblique is not None:
+            self.oblique.refresh()
+        self._contours.show(self.position, self.panes.values())
 
     def _prepare(self) -> None:
         """Bring all views that are shown up to date."""
@@ -419,7 +434,7 @@ class Workspace:
     def pane_at(self, x: float, y: float) -> Pane | None:
         """Return the pane of a pixel of the window; None if it is none's."""
         for name, pane in self.panes.items():
-            if name not in viewports(self._layout):
+            if name not in self._places:
                 continue
             left, bottom = pane.renderer.GetOrigin()
             width, height = pane.pixels
@@ -445,6 +460,8 @@ class Workspace:
         for actor in self._tracts:
             self._take_out(actor)
         self._tracts = []
+        if self.oblique is not None:
+            self.oblique.remove()
         for pane in self.panes.values():
             pane.remove()
         self.slices.remove()
