@@ -19,6 +19,7 @@ _HOME = {
     "ShardedSet": "codec.shards.sharded_set",
     "SplineTubes": "tubes.spline_tubes",
     "Streamlines": "streamlines",
+    "UnreadSet": "codec.shards.unread_set",
     "clusters": "query.bundles.clusters",
     "compress": "codec.compress",
     "compress_file": "codec.convert",
@@ -50,6 +51,7 @@ if TYPE_CHECKING:
     from .codec.error import CodingError, measure_error
     from .codec.fibletset import FibletSet as FibletSet
     from .codec.shards.sharded_set import ShardedSet as ShardedSet
+    from .codec.shards.unread_set import UnreadSet as UnreadSet
     from .errors import FormatError
     from .formats import iter_chunks, read, write
     from .plotting.plot import plot as plot

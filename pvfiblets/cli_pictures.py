@@ -5,11 +5,11 @@ from __future__ import annotations
 import os
 import sys
 import time
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import Any
 
 from pvfiblets import formats
-from pvfiblets.addresses import path_of
+from pvfiblets.addresses import is_url, path_of
 from pvfiblets.cli_files import print_json
 from pvfiblets.formats.registry import UnknownFormatError, suffix_of
 from pvfiblets.web.values import plain
@@ -54,7 +54,7 @@ def page(paths: list[str], *, output: str, title: str | None, **looks: Any) -> N
     plotter, scene = make_plotter(off_screen=True, size=None), None
     try:
         scene = fill(plotter, paths, **looks)
-        for path in export_page(plotter, output, title=title or path_of(paths[0]).name):
+        for path in export_page(plotter, output, title=title or PurePosixPath(paths[0]).name):
             print(f"{path}: {path.stat().st_size:,} bytes")
     finally:
         if scene is not None:
@@ -109,7 +109,8 @@ def fill(
     if antialias is not None:
         plotter.picture.antialias = antialias
     for path in paths:
-        if not path_of(path).exists():
+        of_shards = is_url(path) and path.lower().endswith(".fiblets")
+        if not of_shards and not path_of(path).exists():
             raise FileNotFoundError(2, "No such file or directory", path)
     if any(path.lower().endswith(".json") for path in paths):
         said = {"scalars": scalars, "color": color, "cmap": cmap, "clim": clim, "line_width": line_width,

@@ -30,6 +30,7 @@ __all__ = [
     "TooLargeError",
     "check_room",
     "fits",
+    "free_host_memory",
     "limit",
     "limited",
     "limited_to",
@@ -48,6 +49,8 @@ CAN_LIMIT = resource is not None and sys.platform.startswith("linux")
 ENVIRONMENT = {"MALLOC_ARENA_MAX": "1"}
 """For a process that :func:`limit` is for: when memory runs out, glibc tries its other arenas one by one, and keeps
 what each of them got, though all of it is free."""
+_MEMORY = Path("/proc/meminfo")
+_GROUP = Path("/sys/fs/cgroup")
 RESERVE = 48 * MEBIBYTE
 """What must be left after something was loaded, so that the rest of the program goes on."""
 _UNITS = {"K": 1 << 10, "M": 1 << 20, "G": 1 << 30, "T": 1 << 40}
@@ -94,6 +97,24 @@ def of_machine() -> int:
         if text.isdecimal() and int(text) > 0:
             found = min(found, int(text))
     return found
+
+
+def free_host_memory() -> int | None:
+    """Bytes of memory that a process can still take, where Linux tells: of the machine, and of its control group."""
+    if not _MEMORY.is_file():
+        return None
+    machine = re.search(r"^MemAvailable:\s+(\d+) kB", _MEMORY.read_text(encoding="ascii"), re.MULTILINE)
+    found = [] if machine is None else [1024 * int(machine[1])]
+    try:
+        limit = (_GROUP / "memory.max").read_text(encoding="ascii").strip()
+        if limit != "max":
+            used = int((_GROUP / "memory.current").read_text(encoding="ascii"))
+            # Files in memory count as used and are let go when memory is asked for.
+            files = re.search(r"^file (\d+)$", (_GROUP / "memory.stat").read_text(encoding="ascii"), re.MULTILINE)
+            found.append(max(int(limit) - used + (0 if files is None else int(files[1])), 0))
+    except (OSError, ValueError):
+        pass  # no such group, or an older kernel
+    return min(found, default=None)
 
 
 def parse(text: str, machine: int | None = None) -> int:

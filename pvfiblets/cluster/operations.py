@@ -232,13 +232,12 @@ def _sampled(fiblets: FibletSet, image: str) -> Any:
     """Values of an image at all points, in the order in which these are coded."""
     import nibabel
 
-    from pvfiblets.codec.decompress import iter_chunks
     from pvfiblets.query.image_samples import sample_image
-    from pvfiblets.query.measures import by_rank
+    from pvfiblets.query.measures import decoded_by_rank
 
     loaded = nibabel.load(image)
     volume, affine = np.asanyarray(loaded.dataobj), loaded.affine
-    parts = [sample_image(volume, affine, c.points) for c in iter_chunks(by_rank(fiblets), PIECE, np.float64)]
+    parts = [sample_image(volume, affine, c.points) for c in decoded_by_rank(fiblets, PIECE, np.float64)]
     return np.concatenate(parts) if parts else np.zeros(0)
 
 

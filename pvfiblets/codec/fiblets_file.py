@@ -154,7 +154,7 @@ def is_sharded(path: str | PathLike[str]) -> bool:
 
 
 def open_fiblets(path: str | PathLike[str], kind: type[FibletSet]) -> FibletSet:
-    """Map a ``.fiblets`` file; of a folder or an address, gather the shards (:mod:`.shards`) in memory.
+    """Map a ``.fiblets`` file; shards of a folder or an address (:mod:`.shards`) are read when they are asked for.
 
     Parameters
     ----------
@@ -176,9 +176,9 @@ def open_fiblets(path: str | PathLike[str], kind: type[FibletSet]) -> FibletSet:
         If there is no such file.
     """
     if is_sharded(path):
-        from .shards.sharded_set import ShardedSet  # few sets are in shards
+        from .. import UnreadSet  # by the package's own name for it: it is a set of this kind
 
-        return ShardedSet.open(path).gather()
+        return UnreadSet.open_shards(path)
     header, arrays = open_archive(path)
     if header.get("format") != "fiblets":
         raise FormatError(path, 0, f"format {header.get('format')!r} in header.json", "'fiblets'")

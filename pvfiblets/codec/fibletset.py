@@ -420,8 +420,8 @@ class FibletSet(SetQueries):
         Parameters
         ----------
         path : str or PathLike
-            A file; or a folder of shards or the address of one, which are gathered in memory
-            (:class:`pvfiblets.ShardedSet` reads parts).
+            A file; or a folder of shards or the address of one, which are read when something asks for them
+            (:mod:`pvfiblets.codec.shards.unread_set`).
 
         Raises
         ------

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .layout import PAGE, PAGE_BITS, unpack
+from .stored_parts import in_parts, stored_parts
 
 if TYPE_CHECKING:
     from .fibletset import FibletSet
@@ -37,6 +38,8 @@ class StreamlineRanges:
     @classmethod
     def of(cls, fiblets: FibletSet) -> StreamlineRanges:
         """Those of all streamlines."""
+        if in_parts(fiblets):
+            return cls._of_parts(fiblets)
         owners, n = fiblets.fiblet_streamlines(), fiblets.n_streamlines
         begins = np.flatnonzero(np.diff(owners, prepend=-1))
         first, point = np.zeros(n, np.int64), np.zeros(n, np.int64)
@@ -44,6 +47,20 @@ class StreamlineRanges:
         point[owners[begins]] = fiblets.fiblet_points()[begins]
         counts = np.bincount(owners, fiblets.fiblet_counts(), minlength=n).astype(np.int64)
         return cls(first, np.bincount(owners, minlength=n), point, counts)
+
+    @classmethod
+    def _of_parts(cls, fiblets: FibletSet) -> StreamlineRanges:
+        """Those of a set in shards, which are coded one behind the other."""
+        whole = cls(*(np.zeros(fiblets.n_streamlines, np.int64) for _ in range(4)))
+        fiblet = point = 0
+        for part, ids in stored_parts(fiblets):
+            own, there = cls.of(part), np.asarray(ids)
+            filled = there[own.fiblets > 0]
+            whole.fiblet[filled] = own.fiblet[own.fiblets > 0] + fiblet
+            whole.point[filled] = own.point[own.fiblets > 0] + point
+            whole.fiblets[there], whole.points[there] = own.fiblets, own.points
+            fiblet, point = fiblet + part.n_fiblets, point + part.n_points
+        return whole
 
     def at(self, chosen: Ints) -> StreamlineRanges:
         """Those of some of them."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import Any, ClassVar
 
+from pvfiblets.codec.stored_parts import in_parts
 from pvfiblets.engine.capabilities import AUTO, check_choices
 
 
@@ -75,6 +76,8 @@ def engine_renderer(ctx: Any, fiblets: Any, **options: Any) -> Any:
         from pvfiblets.engine.fiblets.cluster_renderer import ClusterRenderer
 
         return ClusterRenderer(ctx, fiblets, options["cluster"], pipeline=options.get("pipeline", AUTO))
+    if options.get("fit") is None and in_parts(fiblets):
+        options["fit"] = "stream"  # where all of it does not fit, or is not here yet
     options.setdefault("culling", EngineOptions.culling)  # the engine's own is the same in every picture
     if options.get("fit") == "stream":
         from pvfiblets.engine.fiblets.streamed_renderer import streamed_renderer

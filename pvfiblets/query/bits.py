@@ -19,7 +19,7 @@ from .measures import Values
 if TYPE_CHECKING:
     from ..codec.fibletset import FibletSet
 
-__all__ = ["Criterion", "as_criterion", "point_words", "rank_words", "streamline_mask"]
+__all__ = ["Criterion", "as_criterion", "point_words", "rank_words", "streamline_mask", "stretch"]
 
 Words = npt.NDArray[np.uint32]
 Mask = npt.NDArray[np.bool_]
@@ -164,6 +164,24 @@ def streamline_mask(fiblets: FibletSet, criteria: Iterable[Criterion | tuple[Any
             )
         mask &= _kept(number, criterion)
     return mask
+
+
+def stretch(words: Words, first: int, last: int) -> Words:
+    """Return bits first..last of a row as a row of their own; zeros stand for what is behind its end.
+
+    Parameters
+    ----------
+    words : numpy.ndarray
+        uint32, 32 bits each, the first in the lowest.
+    first, last : int
+    """
+    begin, shift = divmod(first, 32)
+    piece = np.asarray(words[begin : -(-last // 32) + 1], np.uint32)
+    if not shift:
+        return piece
+    following = np.append(piece[1:], np.uint32(0))
+    moved: Words = (piece >> np.uint32(shift)) | (following << np.uint32(32 - shift))
+    return moved
 
 
 def rank_words(fiblets: FibletSet, mask: npt.ArrayLike) -> Words:

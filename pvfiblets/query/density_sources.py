@@ -12,12 +12,13 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import formats
-from ..codec.decompress import decode_fiblets, iter_chunks
+from ..codec.decompress import decode_fiblets
 from ..codec.fibletset import FibletSet
 from ..codec.progress import Progress, shown
 from ..codec.quantised import QuantisedPoints
+from ..codec.stored_parts import stored_parts
 from ..streamlines import Streamlines
-from .measures import Distance, Values, by_rank, measure
+from .measures import Distance, Values, decoded_by_rank, measure
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -140,7 +141,7 @@ class _Compressed:
         if not fiblets.n_ranks:
             return
         ids = fiblets.rank_to_id
-        for chunk in shown(iter_chunks(by_rank(fiblets), CHUNK, np.float64), fiblets.n_points, "adding up", progress):
+        for chunk in shown(decoded_by_rank(fiblets, CHUNK, np.float64), fiblets.n_points, "adding up", progress):
             ranks, points = slice(rank, rank + len(chunk)), slice(point, point + chunk.n_points)
             yield Part(
                 chunk.points.astype(np.float64, copy=False),
@@ -169,7 +170,7 @@ class _Compressed:
     def compile(self) -> None:
         """Have the decoder compiled by decoding nothing."""
         none = np.empty(0, np.int64)
-        decode_fiblets(self._fiblets, none, none, np.empty((0, 3)))
+        decode_fiblets(next(stored_parts(self._fiblets))[0], none, none, np.empty((0, 3)))
 
 
 class _Plain:

@@ -10,6 +10,7 @@ import numpy.typing as npt
 from ..codec.archive import forget
 from ..codec.decompress import decode_fiblets, select_streamlines
 from ..codec.layout import PAGE, unpack
+from ..codec.stored_parts import in_parts, of_streamlines
 
 if TYPE_CHECKING:
     from ..codec.fibletset import FibletSet
@@ -62,6 +63,9 @@ def end_points(fiblets: FibletSet) -> Floats:
     FormatError
         If the file is damaged.
     """
+    if in_parts(fiblets):
+        ends: Floats = of_streamlines(fiblets, end_points, np.nan, (2, 3))
+        return ends
     ranked = np.full((fiblets.n_ranks, 2, 3), np.nan)
     try:
         for page in range(len(fiblets.pages) - 1):

@@ -31,13 +31,14 @@ import numpy as np
 import numpy.typing as npt
 
 from ..codec.quantised import QuantisedPoints
+from ..codec.stored_parts import stored_parts
 from .region import Region
 
 if TYPE_CHECKING:
     from ..codec.fibletset import FibletSet
     from ..streamlines import Streamlines
 
-__all__ = ["COMPUTED", "Distance", "Kind", "Values", "by_rank", "measure", "measure_names"]
+__all__ = ["COMPUTED", "Distance", "Kind", "Values", "by_rank", "decoded_by_rank", "measure", "measure_names"]
 
 Kind = Literal["streamline", "point"]
 Floats = npt.NDArray[np.float64]
@@ -225,14 +226,27 @@ def by_rank(fiblets: FibletSet) -> FibletSet:
     )
 
 
-def _coded_chunks(fiblets: FibletSet) -> Iterator[tuple[int, int, Streamlines]]:
-    """Yield first rank, first point and float64 streamlines, in coded order."""
+def decoded_by_rank(fiblets: FibletSet, most: int, dtype: npt.DTypeLike) -> Iterator[Streamlines]:
+    """Decode the streamlines that have points in the order in which they are coded, shard after shard.
+
+    Parameters
+    ----------
+    fiblets : FibletSet
+    most : int
+        Points of a chunk, as of :meth:`.FibletSet.iter_chunks`.
+    dtype : dtype
+    """
     from ..codec.decompress import iter_chunks
 
+    for part, _ in stored_parts(fiblets):
+        if part.n_ranks:
+            yield from iter_chunks(by_rank(part), most, dtype)
+
+
+def _coded_chunks(fiblets: FibletSet) -> Iterator[tuple[int, int, Streamlines]]:
+    """Yield first rank, first point and float64 streamlines, in coded order."""
     rank = point = 0
-    if not fiblets.n_ranks:
-        return
-    for chunk in iter_chunks(by_rank(fiblets), CHUNK, np.float64):
+    for chunk in decoded_by_rank(fiblets, CHUNK, np.float64):
         yield rank, point, chunk
         rank, point = rank + len(chunk), point + chunk.n_points
 

@@ -21,6 +21,7 @@ import numpy.typing as npt
 from ..codec.archive import forget
 from ..codec.decompress import decode_fiblets, select_streamlines
 from ..codec.layout import PAGE, unpack
+from ..codec.stored_parts import in_parts, stored_parts
 from . import passing_kernels as kernels
 from .classify import classify
 from .endpoints import anchor_points
@@ -103,6 +104,8 @@ def region_flags(
         If the file is damaged.
     """
     spacing = check_sampling(sampling)
+    if in_parts(fiblets):
+        return _flags_of_parts(fiblets, region, sampling, ids, bits)
     n = fiblets.n_ranks
     wanted = np.ones(n, bool) if ids is None else _wanted(fiblets, ids)
     flags = np.full(n, ALL, np.uint8)
@@ -128,6 +131,20 @@ def region_flags(
         return flags
     out = np.zeros(fiblets.n_streamlines, np.uint8)
     out[fiblets.rank_to_id] = flags
+    return out
+
+
+def _flags_of_parts(
+    fiblets: FibletSet, region: Region, sampling: float | None, ids: Any, bits: int
+) -> npt.NDArray[np.uint8]:
+    out = np.zeros(fiblets.n_streamlines, np.uint8)
+    asked = np.ones(len(out), bool)
+    if ids is not None:
+        asked[:] = False
+        asked[select_streamlines(len(out), ids)] = True
+    for part, numbers in stored_parts(fiblets):
+        if asked[numbers].any():
+            out[numbers] = region_flags(part, region, sampling, asked[numbers], bits=bits)
     return out
 
 

@@ -16,8 +16,10 @@ import numpy.typing as npt
 
 from ..codec.decompress import decode_fiblets
 from ..codec.layout import PAGE_BITS, unpack
+from ..codec.stored_parts import in_parts, stored_parts
 from ..codec.streamline_ranges import ranges_of
 from . import screen_kernels
+from .bits import stretch
 
 if TYPE_CHECKING:
     from ..codec.fibletset import FibletSet
@@ -147,6 +149,10 @@ def under_polygon(
         raise ValueError(f"streamlines has shape {streamlines.shape}; expected ({fiblets.n_streamlines},)")
     if points is not None and 32 * len(points) < fiblets.n_points:
         raise ValueError(f"points has {len(points)} words; {(fiblets.n_points + 31) // 32} are needed")
+    if in_parts(fiblets):
+        return _under_in_parts(
+            fiblets, transform, size, corners, tolerance, streamlines, points, planes=planes, region=region
+        )
     cuts = _cuts(transform, planes)
     screen = transform, cuts, np.array([width, height]), corners, float(tolerance)
     spaces = np.concatenate([_sides(transform, (width, height), corners, tolerance), cuts])
@@ -163,6 +169,33 @@ def under_polygon(
     except IndexError:
         fiblets.verify()  # a damaged file says so itself; whatever else is wrong is raised as it is
         raise
+
+
+def _under_in_parts(
+    fiblets: FibletSet,
+    matrix: Array,
+    size: tuple[float, float],
+    corners: Array,
+    tolerance: float,
+    streamlines: npt.NDArray[np.bool_] | None,
+    points: npt.NDArray[np.uint32] | None,
+    **cuts: Any,
+) -> Under:
+    """Find them shard after shard."""
+    found, point = [], 0
+    for part, ids in stored_parts(fiblets):
+        assert ids is not None
+        there = None if streamlines is None else streamlines[ids]
+        words = None if points is None else stretch(points, point, point + part.n_points)
+        one = under_polygon(part, matrix, size, corners, tolerance, streamlines=there, points=words, **cuts)
+        found.append(Under(ids[one.ids], one.places, one.depths))
+        point += part.n_points
+    if not found:
+        return Under(np.zeros(0, np.int64), np.zeros(0), np.zeros(0))
+    depths = np.concatenate([one.depths for one in found])
+    order = np.argsort(depths, kind="stable")
+    ids, places = (np.concatenate([getattr(one, name) for one in found]) for name in ("ids", "places"))
+    return Under(ids[order], places[order], depths[order])
 
 
 def _nearest(fiblets: FibletSet, ranks: Ints, depths: Array, places: Array) -> Under:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pickle
 import signal
 import time
 
@@ -101,6 +102,31 @@ def test_a_set_in_memory_is_sent_part_by_part(make, whole, brain):
     held = compress(brain.decompress(), per_point=["height"])
     other = FibletRenderer(whole._ctx, held, culling=None)
     assert_alike(read(make(held).render(VIEW)), read(other.render(VIEW)))
+    other.release()
+
+
+@pytest.fixture(scope="module")
+def shards(brain, tmp_path_factory):
+    """The same set in shards."""
+    place = tmp_path_factory.mktemp("shards") / "brain.fiblets"
+    brain.save(place, shards=brain.nbytes // 6)
+    return FibletSet.open(place)
+
+
+def test_workers_read_shards_themselves(make, gl, shards, monkeypatch):
+    together = shards.shards.gather()
+    monkeypatch.setattr("pvfiblets.ShardedSet.gather", lambda *_: pytest.fail("all shards were put together"))
+    other = FibletRenderer(gl, together, culling=None)
+    parts = make(shards, count=3)
+    style = FibletStyle(values="height")
+    rng = np.random.default_rng(0)
+    words = rng.integers(0, 2**32, -(-shards.n_points // 32), np.uint64).astype(np.uint32)
+    for filtering in (None, Filter(rng.random(shards.n_streamlines) < 0.5, words)):
+        other.filtering = parts.filtering = filtering
+        assert_alike(read(parts.render(VIEW, style)), read(other.render(VIEW, style)))
+    assert len(parts.explain()["cluster"]["draw_ms"]) == 3
+    assert parts.value_range("height") == other.value_range("height")
+    assert sum(len(pickle.dumps(parts._stretches.part(n))) for n in range(3)) < 30_000, "the manifest alone is sent"
     other.release()
 
 

@@ -10,7 +10,8 @@ from pvfiblets import Streamlines, compress
 from pvfiblets.codec.restrict import restrict
 from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View
 from pvfiblets.engine.errors import GPUMemoryError
-from pvfiblets.engine.fiblets.filter_textures import Filter, FilterTextures, _stretch
+from pvfiblets.engine.fiblets.filter_textures import Filter, FilterTextures
+from pvfiblets.query.bits import stretch
 from pvfiblets.synthetic import brain_streamlines
 from tests.drivers import MESH
 
@@ -233,6 +234,6 @@ def test_stretches_of_bits():
     bits = np.random.default_rng(3).random(1000) < 0.5
     words = packed(bits)
     for first, last in ((0, 1000), (1, 999), (31, 33), (32, 64), (63, 1002), (997, 1002), (500, 500)):
-        row = np.unpackbits(_stretch(words, first, last).view(np.uint8), bitorder="little")
+        row = np.unpackbits(stretch(words, first, last).view(np.uint8), bitorder="little")
         wanted = bits[first:last]
         np.testing.assert_array_equal(row[: len(wanted)], wanted)

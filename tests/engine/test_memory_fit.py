@@ -10,7 +10,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from pvfiblets import FibletSet, Streamlines, compress
+from pvfiblets import FibletSet, Streamlines, compress, memory
 from pvfiblets.codec.restrict import even_share, restrict
 from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View
 from pvfiblets.engine.errors import GPUMemoryError
@@ -239,18 +239,18 @@ def test_what_this_opengl_lacks_is_not_asked(gl):
 
 
 def test_memory_of_the_machine_and_of_its_group(tmp_path, monkeypatch):
-    monkeypatch.setattr(memory_fit, "_MEMORY", tmp_path / "meminfo")
-    monkeypatch.setattr(memory_fit, "_GROUP", tmp_path)
-    assert memory_fit.free_host_memory() is None
+    monkeypatch.setattr(memory, "_MEMORY", tmp_path / "meminfo")
+    monkeypatch.setattr(memory, "_GROUP", tmp_path)
+    assert memory.free_host_memory() is None
     (tmp_path / "meminfo").write_text("MemTotal:  2000 kB\nMemFree:  1 kB\nMemAvailable:    1000 kB\n")
-    assert memory_fit.free_host_memory() == 1_024_000
+    assert memory.free_host_memory() == 1_024_000
     (tmp_path / "memory.max").write_text("max\n")
-    assert memory_fit.free_host_memory() == 1_024_000
+    assert memory.free_host_memory() == 1_024_000
     (tmp_path / "memory.max").write_text("900000\n")
-    assert memory_fit.free_host_memory() == 1_024_000, "an unfinished answer is no answer"
+    assert memory.free_host_memory() == 1_024_000, "an unfinished answer is no answer"
     (tmp_path / "memory.current").write_text("600000\n")
     (tmp_path / "memory.stat").write_text("anon 1\nfile 50000\nfile_mapped 7\n")
-    assert memory_fit.free_host_memory() == 350_000
+    assert memory.free_host_memory() == 350_000
 
 
 # ---------------------------------------------------------------------------------------------------- upload

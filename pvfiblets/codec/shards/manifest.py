@@ -7,9 +7,12 @@
       000000.fiblets   000000.ids.npy
       000001.fiblets   000001.ids.npy
       ...
+      thinned.level    thinned.ids.npy
 
-``NUMBER.ids.npy`` holds the numbers that the shard's streamlines have in the whole set, rising. All checksums are
-SHA-256. A folder without a manifest is no set: it is written last.
+``NUMBER.ids.npy`` holds the numbers that the shard's streamlines have in the whole set, rising. ``thinned.level``
+is a ``.fiblets`` file too, under a name that patterns of shards leave out: an even share of all streamlines once more,
+for a first picture before shards are there. Sets of one shard, and older ones, have none. All checksums are SHA-256. A
+folder without a manifest is no set: it is written last.
 """
 
 from __future__ import annotations
@@ -89,6 +92,8 @@ class Manifest:
     dropped : dict of str to int
         What reading the source left out, by reason.
     shards : tuple of Shard
+    thinned : Shard or None
+        An even share of all streamlines.
     """
 
     streamlines: int
@@ -99,6 +104,7 @@ class Manifest:
     groups: dict[str, int]
     dropped: dict[str, int]
     shards: tuple[Shard, ...]
+    thinned: Shard | None = None
 
     def to_json(self) -> str:
         """Return the file's text."""
@@ -147,18 +153,8 @@ class Manifest:
             bounds=_bounds(found["bounds"]),
             groups={str(k): int(v) for k, v in found["groups"].items()},
             dropped={str(k): int(v) for k, v in found["dropped"].items()},
-            shards=tuple(
-                Shard(
-                    fiblets=_file(one["fiblets"]),
-                    ids=_file(one["ids"]),
-                    streamlines=int(one["streamlines"]),
-                    points=int(one["points"]),
-                    n_fiblets=int(one["n_fiblets"]),
-                    bounds=_bounds(one["bounds"]),
-                    length_mm={str(k): float(v) for k, v in one["length_mm"].items()},
-                )
-                for one in found["shards"]
-            ),
+            shards=tuple(map(_shard, found["shards"])),
+            thinned=None if found.get("thinned") is None else _shard(found["thinned"]),
         )
 
     def meeting(self, bounds: npt.ArrayLike) -> list[int]:
@@ -182,6 +178,18 @@ def _bounds(given: Any) -> Bounds:
     if len(b) != 6 or not np.isfinite(b).all():
         raise ValueError(f"bounds {b}")
     return (b[0], b[1], b[2], b[3], b[4], b[5])
+
+
+def _shard(given: Mapping[str, Any]) -> Shard:
+    return Shard(
+        fiblets=_file(given["fiblets"]),
+        ids=_file(given["ids"]),
+        streamlines=int(given["streamlines"]),
+        points=int(given["points"]),
+        n_fiblets=int(given["n_fiblets"]),
+        bounds=_bounds(given["bounds"]),
+        length_mm={str(k): float(v) for k, v in given["length_mm"].items()},
+    )
 
 
 def _file(given: Mapping[str, Any]) -> StoredFile:

@@ -100,7 +100,7 @@ class ShardedSet:
 
     @property
     def nbytes(self) -> int:
-        """Bytes of all shards' files."""
+        """Bytes of all shards' files, each streamline once."""
         return sum(shard.fiblets.bytes for shard in self.shards)
 
     def shard(self, number: int) -> FibletSet:
@@ -115,8 +115,36 @@ class ShardedSet:
         """
         from ... import FibletSet  # by the package's own name for it: that module gathers shards
 
+        return self._opened(self._shard(number), FibletSet)
+
+    def thinned(self) -> tuple[FibletSet, Ints] | None:
+        """Map the even share of all streamlines, if the set has one, with the numbers that they have in the whole."""
+        from ... import FibletSet
+
+        shard = self.manifest.thinned
+        return None if shard is None else (self._opened(shard, FibletSet), self._numbers(shard))
+
+    def is_here(self, number: int) -> bool:
+        """Whether a shard's files are on this machine."""
         shard = self._shard(number)
-        part = FibletSet.open(self.place(number))
+        return self._store.is_here(shard.fiblets) and self._store.is_here(shard.ids)
+
+    def fetch(self, number: int) -> None:
+        """Have a shard's files on this machine."""
+        shard = self._shard(number)
+        self._store.local(shard.fiblets)
+        self._store.local(shard.ids)
+
+    @property
+    def name(self) -> str:
+        """Its folder, or its address."""
+        return self._store.name
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_ids": {}}  # whoever is sent a set reads its own
+
+    def _opened(self, shard: Shard, kind: type[FibletSet]) -> FibletSet:
+        part = kind.open(self._store.local(shard.fiblets))
         if len(part) != shard.streamlines or part.n_points != shard.points:
             raise FormatError(
                 f"{self._store.name}/{shard.fiblets.name}",
@@ -132,18 +160,21 @@ class ShardedSet:
 
     def ids(self, number: int) -> Ints:
         """``(n,)`` int64: the numbers that a shard's streamlines have in the whole, rising."""
+        number = self._number(number)
         if number not in self._ids:
-            shard = self._shard(number)
-            path = self._store.local(shard.ids)
-            try:
-                found = np.load(path, allow_pickle=False)
-            except (ValueError, EOFError) as error:
-                raise FormatError(path, None, f"no array ({error})", f"{shard.streamlines} numbers") from error
-            good = found.shape == (shard.streamlines,) and found.dtype == np.int64 and bool((np.diff(found) > 0).all())
-            if not good or (len(found) and not 0 <= found[0] <= found[-1] < len(self)):
-                raise FormatError(path, None, f"{found.dtype}{found.shape}", f"{shard.streamlines} rising numbers")
-            self._ids[number] = found
+            self._ids[number] = self._numbers(self._shard(number))
         return self._ids[number]
+
+    def _numbers(self, shard: Shard) -> Ints:
+        path = self._store.local(shard.ids)
+        try:
+            found: Ints = np.load(path, allow_pickle=False)
+        except (ValueError, EOFError) as error:
+            raise FormatError(path, None, f"no array ({error})", f"{shard.streamlines} numbers") from error
+        good = found.shape == (shard.streamlines,) and found.dtype == np.int64 and bool((np.diff(found) > 0).all())
+        if not good or (len(found) and not 0 <= found[0] <= found[-1] < len(self)):
+            raise FormatError(path, None, f"{found.dtype}{found.shape}", f"{shard.streamlines} rising numbers")
+        return found
 
     def within(self, bounds: npt.ArrayLike) -> FibletSet:
         """Gather the shards that meet a box ``(xmin, xmax, ymin, ymax, zmin, zmax)``, mm; see :meth:`gather`.
@@ -220,6 +251,10 @@ class ShardedSet:
                 twice = int(ids[seen[ids]][0])
                 raise FormatError(self._store.name, None, f"streamline {twice} in two shards", "each in one")
             seen[ids] = True
+        if (thinned := self.manifest.thinned) is not None:
+            part = self._opened(thinned, type(self.shard(0)))
+            check_file(part, self._store.local(thinned.fiblets))
+            self._numbers(thinned)
 
     def _joined(self, parts: list[tuple[FibletSet, Ints]]) -> FibletSet:
         """Parts of the whole as one set, in the order of the numbers that their streamlines have."""

@@ -42,7 +42,11 @@ def store_at(place: str | PathLike[str], cache: Cache | None = None, **options: 
     **options
         Of the file system, as fsspec takes them, such as ``endpoint_url``.
     """
-    return Remote(os.fspath(place), cache or Cache(), **options) if is_url(place) else Folder(Path(place).expanduser())
+    return (
+        Remote(os.fspath(place), cache or Cache(), **options)
+        if is_url(place)
+        else Folder(Path(place).expanduser().resolve())
+    )
 
 
 class Folder:
@@ -60,6 +64,10 @@ class Folder:
     def read(self, name: str) -> bytes:
         """Return a small file's bytes."""
         return (self._path / name).read_bytes()
+
+    def is_here(self, file: StoredFile) -> bool:
+        """Whether a file need not be fetched."""
+        return (self._path / file.name).is_file()
 
     def local(self, file: StoredFile) -> Path:
         """Return the path of a file that is as long as it should be.
@@ -167,6 +175,10 @@ class Remote:
     def read(self, name: str) -> bytes:
         """Return a small file's bytes."""
         return bytes(self._again(f"{self._url}/{name}", lambda: self._system.cat_file(f"{self._url}/{name}")))
+
+    def is_here(self, file: StoredFile) -> bool:
+        """Whether a file need not be fetched."""
+        return self._cache.held(file) is not None
 
     def local(self, file: StoredFile) -> Path:
         """Return the path of a file, fetched if the cache lacks it.

@@ -20,6 +20,7 @@ from ...unfinished import locked, remove_unfinished, scratch_beside, unfinished
 from ...whole_files import naming_target
 from ..extract import extract
 from ..progress import Progress
+from ..restrict import even_share
 from .manifest import MANIFEST, Manifest, Shard, StoredFile
 from .places import shards_of
 
@@ -27,6 +28,9 @@ if TYPE_CHECKING:
     from ..fibletset import FibletSet
 
 __all__ = ["compress_file_in_shards", "write_shards"]
+
+THINNED = 1 / 16
+"""Share of the streamlines that stands in a file of its own for first pictures; no more bytes than a shard has."""
 
 Ints = npt.NDArray[np.int64]
 
@@ -134,24 +138,12 @@ def write_shards(fiblets: FibletSet, target: str | PathLike[str], size: int, *, 
             part = extract(fiblets, ids)
             if number:  # said once, as sums are taken of what all shards say
                 part = replace(part, dropped={})
-            name = f"{number:06}"
-            part.save(folder / f"{name}.fiblets")
-            np.save(folder / f"{name}.ids.npy", ids)
-            lengths = part.lengths()
-            shards.append(
-                Shard(
-                    fiblets=_described(folder / f"{name}.fiblets"),
-                    ids=_described(folder / f"{name}.ids.npy"),
-                    streamlines=len(part),
-                    points=part.n_points,
-                    n_fiblets=part.n_fiblets,
-                    bounds=part.bounds,
-                    length_mm={
-                        "mean": float(lengths.mean()) if len(lengths) else 0.0,
-                        "max": float(lengths.max(initial=0.0)),
-                    },
-                )
-            )
+            shards.append(_saved(part, ids, folder / f"{number:06}.fiblets"))
+        thinned = None
+        if len(shards) > 1:
+            share = min(THINNED, size / max(fiblets.nbytes, 1))
+            ids = np.sort(even_share(fiblets, share))
+            thinned = _saved(replace(extract(fiblets, ids), dropped={}), ids, folder / "thinned.level")
         manifest = Manifest(
             streamlines=fiblets.n_streamlines,
             points=fiblets.n_points,
@@ -161,9 +153,31 @@ def write_shards(fiblets: FibletSet, target: str | PathLike[str], size: int, *, 
             groups={k: len(v) for k, v in fiblets.groups.items()},
             dropped={k: int(v) for k, v in fiblets.dropped.items()},
             shards=tuple(shards),
+            thinned=thinned,
         )
         (folder / MANIFEST).write_text(manifest.to_json(), encoding="utf-8")
     return manifest
+
+
+def _saved(part: FibletSet, ids: Ints, path: Path) -> Shard:
+    made = path.with_suffix(".fiblets")
+    part.save(made)
+    made.rename(path)
+    numbers = path.with_suffix(".ids.npy")
+    np.save(numbers, ids)
+    lengths = part.lengths()
+    return Shard(
+        fiblets=_described(path),
+        ids=_described(numbers),
+        streamlines=len(part),
+        points=part.n_points,
+        n_fiblets=part.n_fiblets,
+        bounds=part.bounds,
+        length_mm={
+            "mean": float(lengths.mean()) if len(lengths) else 0.0,
+            "max": float(lengths.max(initial=0.0)),
+        },
+    )
 
 
 def _counted(places: list[Ints], progress: Progress) -> Iterator[Ints]:

@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Any
 
 import moderngl
 
+from ...codec.shards.unread_set import UnreadSet
 from ..capabilities import AUTO, check_choices
 from ..errors import EngineError
 from ..gbuffer import EMPTY, GBuffer
@@ -32,6 +33,7 @@ from .nearest_only import NearestOnly
 from .parts import Stretches
 from .pipelines import CONSTANTS
 from .sampled_volume import VolumeSource
+from .shard_parts import ShardGroups
 from .sparse_picture import Cost, SparsePicture, nearer, write_picture
 from .style import FibletStyle
 from .worker_drawing import PartOfSet, Request, draw_part, merge_parts, source_of, value_range_of_part
@@ -53,7 +55,8 @@ class ClusterRenderer(NearestOnly):
     ctx : moderngl.Context
         Of this process; the workers make their own.
     fiblets : FibletSet
-        Mapped from a file that all workers see under the same name, or in memory: then each worker is sent its part.
+        Mapped from a file, or in shards in a folder, that all workers see under the same name, or in shards at an
+        address: they read it themselves. Of one in memory each worker is sent its part.
     cluster : distributed.Client or str
         Or the address of its scheduler, or the path of the scheduler's file.
     count : int, optional
@@ -88,8 +91,13 @@ class ClusterRenderer(NearestOnly):
         self.pipeline = pipeline
         self._cluster = client_of(cluster)
         self._whole = fiblets
-        self._stretches = Stretches.of_count(fiblets, count or len(self._workers()))
+        count = count or len(self._workers())
         key, path = source_of(fiblets)
+        self._stretches: ShardGroups | Stretches
+        if isinstance(fiblets, UnreadSet):  # workers are sent the manifest, and read the shards
+            self._stretches = ShardGroups(fiblets, count)
+        else:
+            self._stretches = Stretches.of_count(fiblets, count)
         total = len(self._stretches)
         self._parts = [PartOfSet(key, path, number, total, int(fiblets.n_fiblets)) for number in range(total)]
         # What a worker reads itself is not sent; dask keeps what is sent once for all frames.

@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...codec.streamline_ranges import StreamlineRanges
-from ...query.bits import rank_words
+from ...query.bits import rank_words, stretch
 from ..bindings import MASKS
 from ..errors import EngineError, GPUMemoryError
 
@@ -163,7 +163,7 @@ class FilterTextures:
             first, last = chunk.plan.points
             there = self._points[index] if index < len(self._points) else None
             # Each is in its place as soon as it is made, so that all are given back if the next one fails.
-            self._points[index : index + 1] = [self._texture(there, _stretch(words, first, last + AHEAD))]
+            self._points[index : index + 1] = [self._texture(there, stretch(words, first, last + AHEAD))]
 
     def _texture(self, held: moderngl.Texture | None, words: Words) -> moderngl.Texture:
         """Words in rows, in the texture that is there if it is as large."""
@@ -217,17 +217,6 @@ def _packed(mask: npt.NDArray[np.bool_]) -> Words:
     """32 to a word, the first in the lowest bit."""
     data = np.packbits(mask, bitorder="little")
     return np.concatenate([data, np.zeros(-len(data) % 4, np.uint8)]).view("<u4")
-
-
-def _stretch(words: Words, first: int, last: int) -> Words:
-    """Bits first..last of a row as a row of their own; zeros stand for what is behind its end."""
-    begin, shift = divmod(first, 32)
-    piece = np.asarray(words[begin : -(-last // 32) + 1], np.uint32)
-    if not shift:
-        return piece
-    following = np.append(piece[1:], np.uint32(0))
-    moved: Words = (piece >> np.uint32(shift)) | (following << np.uint32(32 - shift))
-    return moved
 
 
 def points_of_part(words: Words, whole: FibletSet, ids: npt.NDArray[np.int64]) -> Words:

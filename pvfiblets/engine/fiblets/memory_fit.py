@@ -17,15 +17,14 @@ of :data:`PICTURE` pixels.
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import moderngl
 import numpy as np
 
 from ...codec.restrict import Restriction, even_share
+from ...memory import free_host_memory
 from ..errors import EngineError, GPUMemoryError
 from ..moderngl_extras import INTEGERS, GLExtras
 from ..passes import is_software
@@ -35,7 +34,7 @@ from .pipelines.limits import Limits
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
 
-__all__ = ["PICTURE", "RESERVE", "Fitted", "MemoryBudget", "free_host_memory", "free_memory"]
+__all__ = ["PICTURE", "RESERVE", "Fitted", "MemoryBudget", "free_memory"]
 
 PICTURE = 1920 * 1080
 """Pixels of the picture that is reckoned with; larger ones live on the reserve."""
@@ -50,8 +49,6 @@ RESERVE = 0.1
 
 _ADVICE = "draw fewer streamlines, an even share of them by fit='sample', or all of them part by part by fit='stream'"
 
-_MEMORY = Path("/proc/meminfo")
-_GROUP = Path("/sys/fs/cgroup")
 
 
 @dataclass(frozen=True)
@@ -248,21 +245,3 @@ def free_memory(ctx: moderngl.Context, gl: GLExtras) -> int | None:
         if INTEGERS[name][1] in ctx.extensions:
             return 1024 * gl.get_integer(name)
     return None
-
-
-def free_host_memory() -> int | None:
-    """Bytes of memory that a process can still take, where Linux tells: of the machine, and of its control group."""
-    if not _MEMORY.is_file():
-        return None
-    machine = re.search(r"^MemAvailable:\s+(\d+) kB", _MEMORY.read_text(encoding="ascii"), re.MULTILINE)
-    found = [] if machine is None else [1024 * int(machine[1])]
-    try:
-        limit = (_GROUP / "memory.max").read_text(encoding="ascii").strip()
-        if limit != "max":
-            used = int((_GROUP / "memory.current").read_text(encoding="ascii"))
-            # Files in memory count as used and are let go when memory is asked for.
-            files = re.search(r"^file (\d+)$", (_GROUP / "memory.stat").read_text(encoding="ascii"), re.MULTILINE)
-            found.append(max(int(limit) - used + (0 if files is None else int(files[1])), 0))
-    except (OSError, ValueError):
-        pass  # no such group, or an older kernel
-    return min(found, default=None)

@@ -40,8 +40,20 @@ class Parts(Protocol):
         """Return bounds of a part, None where they are not known before it is there."""
         ...
 
+    def ids(self, number: int) -> npt.NDArray[np.int64]:
+        """Return the numbers of the streamlines of a part, or of more, in any order."""
+        ...
+
+    def is_here(self, number: int) -> bool:
+        """Whether a part can be had at once; if not, it is being fetched from now on."""
+        ...
+
+    def wait(self, seconds: float) -> None:
+        """Wait until another part is here, no longer than that."""
+        ...
+
     def part(self, number: int) -> FibletSet:
-        """Return a part."""
+        """Return a part, fetched if need be."""
         ...
 
     def thinned(self, nbytes: int) -> FibletSet:
@@ -95,6 +107,13 @@ class Stretches:
         """Return the numbers of a part's streamlines."""
         ranks = np.arange(*self._ranks[number : number + 2])
         return ranks if self.whole.rank_to_id is None else np.asarray(self.whole.rank_to_id)[ranks]
+
+    def is_here(self, number: int) -> bool:  # noqa: ARG002
+        """Return True: all are."""
+        return True
+
+    def wait(self, seconds: float) -> None:
+        """Return at once."""
 
     def part(self, number: int) -> FibletSet:
         """Copy a part into memory."""

@@ -8,7 +8,8 @@ others come, each in the place of that which was not drawn for longest.
 picture        what it shows
 =============  =======================================================================================================
 complete       every part in the view: bit by bit what a renderer of the whole set draws
-so far         after `patience` seconds: the parts that were drawn by then; the next picture of the view goes on
+so far         after `patience` seconds: the parts that were drawn by then, and the even share while others are being
+               fetched; the next picture of the view goes on
 hurried        an even share of all streamlines, always the same one, and the parts that are there: nothing is fetched
 =============  =======================================================================================================
 
@@ -24,6 +25,8 @@ from typing import TYPE_CHECKING, Any
 
 import moderngl
 
+from ...codec.shards.unread_set import UnreadSet
+from ...memory import free_host_memory
 from ..capabilities import choose
 from ..errors import GPUMemoryError
 from ..gbuffer import GBuffer
@@ -33,9 +36,10 @@ from .census import no_counts
 from .memory_fit import MemoryBudget
 from .nearest_only import NearestOnly
 from .part_pictures import PartPictures
-from .parts import Box, Parts, Stretches, in_view, reach_of
+from .parts import Box, Parts, in_view, reach_of
 from .pipelines import CONSTANTS, Limits
 from .renderer import FibletRenderer
+from .shard_parts import gpu_bytes_of_shards, in_memory, parts_of
 from .style import FibletStyle
 
 if TYPE_CHECKING:
@@ -115,37 +119,67 @@ class StreamedRenderer(NearestOnly):
         self._left: list[int] = []
         self._in_view: list[int] = []
         self._fetched = 0
+        self._filtered: dict[int, bool] = {}
+        self._waiting = False
         self._pictures = self._keep(PartPictures(ctx, self._gl, self._programs), "parts' pictures")
 
     @property
     def unfinished(self) -> bool:
         """Whether the last picture lacks parts that another one of the same view would show."""
-        return not self.released and self._begun is not None and bool(self._left)
+        return not self.released and bool(self._left) and (self._begun is not None or self._waiting)
 
     def _draw(self, view: View, style: FibletStyle, outside: moderngl.Texture | None) -> GBuffer:
         if self.hurried or self._begun != (view, style):
             self._begin(view, style)
         until = None if self.patience is None else self._clock() + self.patience
-        while self._left and not (self.hurried and self._left[0] not in self._there):
-            number = self._left[0]
+        waiting = False
+        while self._left:
+            number = self._next(until)
+            if number is None:
+                waiting = True
+                break
             self._add(number, number, view, style, outside)
-            self._left.pop(0)
+            self._left.remove(number)
             if until is not None and self._clock() >= until:
                 break
-        if self.hurried and self._left:
+        if waiting:
             # Its streamlines are some of those that are there already, of which they change no pixel.
             self._add(THINNED, len(self._parts), view, style, outside)
-        self.share = 1.0 - len(self._left) / max(len(self._in_view), 1)
-        if self.hurried and self._left:
             self._begun = None  # what comes next begins without the even share
+        self.share = 1.0 - len(self._left) / max(len(self._in_view), 1)
+        self._waiting = waiting and not self.hurried
         return self._pictures.picture
+
+    def _next(self, until: float | None) -> int | None:
+        """Return the next part to draw; None if none is there in time."""
+        if self.hurried:
+            return self._left[0] if self._left[0] in self._there else None
+        if until is None:
+            return self._left[0]
+        while True:
+            for number in self._left:
+                if number in self._there or self._parts.is_here(number):
+                    return number
+            left = until - self._clock()
+            if left <= 0.0:
+                return None
+            self._parts.wait(left)
 
     def _begin(self, view: View, style: FibletStyle) -> None:
         numbers = range(len(self._parts))
-        self._in_view = [number for number in numbers if in_view(view, style, self._box(number))]
+        self._in_view = [n for n in numbers if in_view(view, style, self._box(n)) and not self._is_filtered(n)]
         self._left = sorted(self._in_view, key=lambda number: number not in self._there)
         self._pictures.begin(view.size, style.relief, style.edges)
         self._begun = view, style
+
+    def _is_filtered(self, number: int) -> bool:
+        """Whether the filter keeps no streamline of a part, which then need not come."""
+        mask = None if self._filter is None else self._filter.streamlines
+        if mask is None:
+            return False
+        if number not in self._filtered:
+            self._filtered[number] = not mask[self._parts.ids(number)].any()
+        return self._filtered[number]
 
     def _box(self, number: int) -> Box | None:
         return self._boxes[number] if number in self._boxes else self._parts.box(number)
@@ -196,6 +230,7 @@ class StreamedRenderer(NearestOnly):
         if wanted is not None:
             wanted.check(self._parts.whole)
         self._begun = None
+        self._filtered.clear()
         for renderer in self._there.values():
             renderer.filtering = wanted
 
@@ -268,21 +303,29 @@ def streamed_renderer(
     limits = Limits.of(ctx, gl, pipeline, options.get("max_buffer_bytes"), options.get("max_groups"))
     budget = MemoryBudget.of(ctx, gl, limits, max_total_bytes)
     room = budget.room
-    if room is None or budget.fits(fiblets):
+    if isinstance(fiblets, UnreadSet):
+        # Shards that lie elsewhere are fetched as they are looked at, also where all would fit.
+        needed = gpu_bytes_of_shards(fiblets)
+        free = free_host_memory()
+        fits = (room is None or needed <= room) and (free is None or needed <= free) and fiblets.is_here
+    else:
+        needed = budget.needed(fiblets)
+        fits = room is None or budget.fits(fiblets)
+    if fits:
         try:
             return FibletRenderer(
-                ctx, fiblets, pipeline=pipeline, max_total_bytes=max_total_bytes, alike=alike, **options
+                ctx, in_memory(fiblets), pipeline=pipeline, max_total_bytes=max_total_bytes, alike=alike, **options
             )
         except GPUMemoryError:
             if room is not None:
                 raise
-            # A driver that does not say how much memory is free has refused all; half of it may do.
-            room = budget.needed(fiblets) // 2
+    if room is None:
+        # A driver that does not say how much memory is free has refused all; half of it may do.
+        room = needed // 2
     if room < LEAST_ROOM:
         raise GPUMemoryError(
             f"{max(room, 0) / 1e6:.1f} MB of GPU memory beside a picture are too little to draw anything part by part: "
             f"{LEAST_ROOM / 1e6:.1f} are needed; close what takes the memory"
         )
-    part_bytes = int((1.0 - THINNED_SHARE) * room / PARTS)
-    parts = Stretches(fiblets, budget.needed(fiblets), part_bytes)
+    parts = parts_of(fiblets, needed, int((1.0 - THINNED_SHARE) * room / PARTS))
     return StreamedRenderer(ctx, parts, room, budget.needed, pipeline=pipeline, alike=alike)

@@ -6,6 +6,7 @@ of the last :data:`HELD` sets and parts are kept, with what they hold on the GPU
 
 from __future__ import annotations
 
+import hashlib
 import os
 import time
 from collections import OrderedDict
@@ -15,6 +16,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from ...codec.shards.unread_set import UnreadSet
 from ..errors import EngineError
 from ..view import View
 from .sparse_picture import Cost, SparsePicture, nearer, read_picture
@@ -144,7 +146,7 @@ def draw_part(
     part : PartOfSet
     request : Request
     fiblets : FibletSet, optional
-        The part, where it is not read from a file.
+        The part, where it is not read from a file; of a set in shards, which of them.
     filtering : Filter, optional
         For the part.
     volume : VolumeSource, optional
@@ -178,8 +180,12 @@ def value_range_of_part(
 def source_of(fiblets: FibletSet) -> tuple[str, str | None]:
     """Return key and path of a set: of the file that it is mapped from, if it is from one.
 
-    The key tells files apart by size and time of change, and sets in memory by where they are.
+    The key tells files apart by size and time of change, sets in shards by their manifests, and sets in memory by where
+    they are.
     """
+    if isinstance(fiblets, UnreadSet):
+        manifest = fiblets.shards.manifest.to_json().encode()
+        return f"{fiblets.shards.name} {hashlib.sha256(manifest).hexdigest()}", None
     name = getattr(fiblets.codes, "filename", None)
     if name is None:
         return f"memory {os.getpid()} {id(fiblets)}", None

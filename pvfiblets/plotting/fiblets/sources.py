@@ -6,12 +6,12 @@ import os
 import warnings
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
 from pvfiblets import formats
+from pvfiblets.addresses import path_of
 from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.codec.point_arrays import unit_colours, with_coded_values, with_point_colours
 from pvfiblets.codec.point_arrays import with_point_values as add_values
@@ -83,11 +83,10 @@ def as_fiblets(
     volume = as_volume(scalars)
     scalars = scalars if volume is None else volume
     if isinstance(source, (str, os.PathLike)):
-        path = Path(source).expanduser()
-        if path.suffix.lower() == ".fiblets":
-            source = FibletSet.open(path)
+        if os.fspath(source).lower().endswith(".fiblets"):
+            source = FibletSet.open(source)
         else:
-            source = formats.read(path, progress=progress)
+            source = formats.read(path_of(source), progress=progress)
     if isinstance(source, FibletSet):
         _warn_of_nothing(source)
         if max_error is not None or options:

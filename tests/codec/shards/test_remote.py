@@ -14,6 +14,7 @@ import pytest
 
 import pvfiblets as pf
 from pvfiblets.addresses import is_url
+from pvfiblets.cli import main
 from pvfiblets.codec.shards import store
 from pvfiblets.codec.shards.store import Cache, Remote
 from pvfiblets.codec.shards.write import write_shards
@@ -254,3 +255,25 @@ def test_what_is_an_address(place: str, address: bool) -> None:
 def test_other_formats_are_not_read_from_addresses(work) -> None:
     with pytest.raises(ValueError, match=r"https://example\.org/a\.tck is an address; .*fetch the file first"):
         work("https://example.org/a.tck")
+
+
+def test_plotters_and_commands_take_addresses(url: str, monkeypatch, tmp_path: Path, capsys) -> None:
+    import pyvista as pv
+
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "home"))
+    plotter = pv.Plotter(off_screen=True, window_size=(80, 60))
+    actor = plotter.add_fiblets(url)
+    plotter.show(auto_close=False)
+    picture = plotter.screenshot(None)
+    told = actor.explain()
+    assert told["share"] == 1.0
+    plotter.close()
+    plotter = pv.Plotter(off_screen=True, window_size=(80, 60))
+    plotter.add_fiblets(tmp_path / "at" / "a.fiblets")
+    np.testing.assert_array_equal(plotter.screenshot(None), picture)
+    assert np.ptp(picture) > 50
+    plotter.close()
+    main(["screenshot", url, "-o", str(tmp_path / "a.png"), "--size", "80x60"])
+    assert (tmp_path / "a.png").is_file()
+    assert main(["screenshot", url.replace(".fiblets", ".tck"), "-o", str(tmp_path / "b.png")]) == 1
+    assert "is an address" in capsys.readouterr().err
