@@ -6,6 +6,8 @@ import os
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
+from pvfiblets.codec.shards.manifest import is_set_in_shards
+
 LONGEST_PATH = 4096
 LONGEST_NAME = 255  # bytes, as file systems have it
 UNSUITABLE = frozenset('<>:"|?*&/\\')
@@ -28,7 +30,7 @@ class Entry:
 
     name: str
     path: str  # relative to the root, with slashes
-    folder: bool
+    folder: bool  # a set in shards is none: it opens like a file
     size: int
     time: float  # of the last change, seconds since 1970
 
@@ -78,7 +80,7 @@ class Confined:
     def existing(self, text: object) -> Path:
         """Return the path of a file that is there."""
         path = self.resolve(text)
-        if not path.is_file():
+        if not (path.is_file() or is_set_in_shards(path)):
             raise ConfinedError(f"there is no file {text!r} in the served folder")
         return path
 
@@ -116,8 +118,12 @@ class Confined:
                 if not (path.is_dir() or path.is_file()):
                     continue  # devices, sockets, links to nothing
                 status = path.stat()
-                size = 0 if path.is_dir() else status.st_size
-                entries.append(Entry(item.name, relative, path.is_dir(), size, status.st_mtime))
+                folder_too, size = path.is_dir(), status.st_size
+                if folder_too:
+                    shards = is_set_in_shards(path)
+                    size = sum(file.stat().st_size for file in os.scandir(path)) if shards else 0
+                    folder_too = not shards
+                entries.append(Entry(item.name, relative, folder_too, size, status.st_mtime))
             except (ConfinedError, OSError):
                 continue
         entries.sort(key=lambda entry: (not entry.folder, entry.name.lower()))

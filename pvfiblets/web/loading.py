@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from pvfiblets import formats
+from pvfiblets.codec.shards.manifest import MANIFEST, is_set_in_shards
 from pvfiblets.errors import FormatError
 from pvfiblets.formats import vtk_sizes
 from pvfiblets.formats.gzipped import check_ratio
@@ -161,7 +162,7 @@ class Files:
         )
         if not inside:
             raise PermissionError(f"{text}: outside of the folder that is open to you; give a path in it")
-        if not (found.parent.is_dir() if new else found.is_file()):
+        if not (found.parent.is_dir() if new else found.is_file() or is_set_in_shards(found)):
             raise FileNotFoundError(f"{text}: there is no such {'folder' if new else 'file'}")
         if self.root is not None and not new:
             from pvfiblets.web.references import check_references
@@ -181,7 +182,7 @@ class Files:
     @staticmethod
     def stamp(place: Path) -> Stamp:
         """Return what tells whether a file has changed."""
-        found = place.stat()
+        found = (place / MANIFEST if place.is_dir() else place).stat()
         return found.st_mtime_ns, found.st_size
 
     def remember(self, place: Path, fiblets: Any) -> None:

@@ -120,8 +120,13 @@ def _of_obj(place: Path) -> list[str]:
     return [name for line in lines if len(line) > 1 for name in (line[1].strip(), *line[1].split())]
 
 
+def _of_shards(place: Path) -> list[str]:
+    """Return every file of a folder of shards: its manifest may name any of them."""
+    return [f"{place.name}/{entry.name}" for entry in os.scandir(place)] if place.is_dir() else []
+
+
 _FINDERS: dict[str, Callable[[Path], list[str]]] = {
     ".nrrd": _of_nrrd, ".nhdr": _of_nrrd, ".mhd": _of_metaimage, ".mha": _of_metaimage, ".gltf": _of_gltf,
     ".glb": _of_gltf, ".obj": _of_obj, ".mif": mif.named_files, ".mif.gz": mif.named_files, ".mih": mif.named_files,
-    ".gii": gifti_files.named_files, ".gii.gz": gifti_files.named_files,
+    ".fiblets": _of_shards, ".gii": gifti_files.named_files, ".gii.gz": gifti_files.named_files,
 }  # fmt: skip

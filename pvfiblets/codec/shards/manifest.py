@@ -20,6 +20,8 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
+from os import PathLike
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -27,7 +29,7 @@ import numpy.typing as npt
 
 from ...errors import FormatError
 
-__all__ = ["MANIFEST", "Manifest", "Shard", "StoredFile"]
+__all__ = ["MANIFEST", "Manifest", "Shard", "StoredFile", "is_set_in_shards"]
 
 MANIFEST = "manifest.json"
 FORMAT, VERSION = "fiblets-shards", 1
@@ -171,6 +173,12 @@ class Manifest:
             if shard.points and (b[::2] <= box[1::2]).all() and (b[1::2] >= box[::2]).all():
                 found.append(number)
         return found
+
+
+def is_set_in_shards(path: str | PathLike[str]) -> bool:
+    """Whether a path is a folder that :func:`.write_shards` made."""
+    place = Path(path)
+    return place.suffix.lower() == ".fiblets" and (place / MANIFEST).is_file()
 
 
 def _bounds(given: Any) -> Bounds:
