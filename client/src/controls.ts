@@ -85,7 +85,15 @@ class Choice {
   }
 }
 
+/** A streamline of a layer, by their numbers, and where it was picked, world mm. */
+export interface Pick {
+  layer: number;
+  streamline: number;
+  place?: number[];
+}
+
 export class Controls {
+  told: ((picked: Pick | null) => void) | null = null;
   private status = document.getElementById("status")!;
   private axes: HTMLElement[] = [];
   private choices = new Map<number, Choice>();
@@ -244,22 +252,43 @@ export class Controls {
   /** Say what lies at a place of the page, and mark it. */
   pick(x: number, y: number): void {
     const { renderer } = this, found = renderer.pick(x, y);
-    for (const lines of renderer.lines) lines.marked = 0xffffffff;
-    this.picked = null;
+    this.unmark();
     if (found) {
-      const { lines, streamline, value } = found, place = renderer.placeOf(lines, streamline, x, y);
-      lines.marked = streamline;
+      const { lines, streamline, value } = found, place = renderer.placeOf(lines, streamline, x, y), world = apply(lines.model, place).slice(0, 3);
+      this.say(lines, streamline, value, world);
       this.picked = { lines, streamline, place };
-      const said = [`Streamline ${streamline} of ${lines.layer.name}`];
-      if (value !== null && lines.values) said.push(`${lines.values.name} ${number(value)}`);
-      for (const control of lines.layer.controls ?? []) {
-        if (control.data !== undefined) said.push(`${control.name} ${number(new Float32Array(this.data[control.data].slice().buffer)[streamline])}`);
-      }
-      const world = apply(lines.model, place);
-      said.push(`at ${world.slice(0, 3).map(number).join(", ")} mm`);
-      this.status.textContent = said.join("; ");
-    } else this.status.textContent = "";
+      this.told?.({ layer: renderer.scene.layers.indexOf(lines.layer), streamline, place: world });
+    } else this.told?.(null);
     renderer.change();
+  }
+
+  /** Mark a streamline that somebody else has chosen, or none. */
+  mark(picked: Pick | null): void {
+    this.unmark();
+    const lines = picked && this.renderer.lines.find(({ layer }) => layer === this.renderer.scene.layers[picked.layer]);
+    if (picked && lines && picked.streamline >= 0 && picked.streamline < lines.set.streamlines) {
+      const { streamline } = picked, points = lines.set.pointsOfStreamline(streamline), place = points[points.length >> 1];
+      this.say(lines, streamline, null, picked.place ?? []);
+      if (place) this.picked = { lines, streamline, place };
+    }
+    this.renderer.change();
+  }
+
+  private unmark(): void {
+    for (const lines of this.renderer.lines) lines.marked = 0xffffffff;
+    this.picked = null;
+    this.status.textContent = "";
+  }
+
+  private say(lines: Lines, streamline: number, value: number | null, world: number[]): void {
+    lines.marked = streamline;
+    const said = [`Streamline ${streamline} of ${lines.layer.name}`];
+    if (value !== null && lines.values) said.push(`${lines.values.name} ${number(value)}`);
+    for (const control of lines.layer.controls ?? []) {
+      if (control.data !== undefined) said.push(`${control.name} ${number(new Float32Array(this.data[control.data].slice().buffer)[streamline])}`);
+    }
+    if (world.length) said.push(`at ${world.map(number).join(", ")} mm`);
+    this.status.textContent = said.join("; ");
   }
 
   private orientation(): HTMLElement {

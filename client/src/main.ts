@@ -4,6 +4,7 @@ import { Archive, needPages, openParts, readArchive } from "./archive";
 import { PAGE_BITS, fromBase64 } from "./engine";
 import { Controls } from "./controls";
 import { attachMouse } from "./mouse";
+import { attachNotebook } from "./notebook";
 import { Remote } from "./remote";
 import { Renderer } from "./renderer";
 import type { Scene } from "./scene";
@@ -89,6 +90,7 @@ async function start(): Promise<void> {
   new ResizeObserver(() => renderer.change()).observe(renderer.canvas);
   const controls = new Controls(renderer, data);
   attachMouse(renderer, (x, y) => controls.pick(x, y));
+  attachNotebook(renderer, controls);
   (window as unknown as { pvfiblets: unknown }).pvfiblets = renderer;
   if (!loading.length) return;
   try {

@@ -84,6 +84,7 @@ export class Renderer {
   failed: ((error: Error) => void) | null = null;
   drawnOnce: (() => void) | null = null;
   presented: (() => void) | null = null;
+  finished: (() => void) | null = null;  // a picture at rest
 
   private gl: GL;
   private programs = new Map<string, Program>();
@@ -235,6 +236,7 @@ export class Renderer {
       this.frame = null;
       this.rest = frame.moving ? null : frame;
       ++this.frames;
+      if (!frame.moving) this.finished?.();
       if (!frame.moving && !this.dirty && !this.loading) this.waiting.splice(0).forEach((resolve) => resolve());
     }
     this.schedule();

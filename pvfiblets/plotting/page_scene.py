@@ -5,8 +5,6 @@ What a page cannot show is named in one warning, and left out.
 
 from __future__ import annotations
 
-import html
-import tempfile
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
@@ -28,7 +26,7 @@ if TYPE_CHECKING:
 
     from pvfiblets.mappers.colouring import Colouring
 
-__all__ = ["PageView", "export_page", "page_of"]
+__all__ = ["camera_place", "export_page", "page_and_actors", "page_of"]
 
 _SHOWN_EFFECTS = {"light", "illuminated"}
 _SOON = 5_000_000  # points
@@ -43,46 +41,6 @@ def export_page(
 
     scene = page_of(plotter, title=title)
     return write_page(scene, path, largest_file=LARGEST_FILE if largest_file is None else largest_file)
-
-
-class PageView:
-    """A page that a notebook shows, and keeps when it is saved.
-
-    Parameters
-    ----------
-    text : str
-        The page.
-    height : int
-        Pixels.
-    """
-
-    def __init__(self, text: str, height: int) -> None:
-        self.text, self.height = text, height
-
-    def _repr_html_(self) -> str:
-        # Without `allow-same-origin` the page reaches nothing of the notebook.
-        return (
-            f'<iframe sandbox="allow-scripts allow-downloads" width="100%" height="{self.height}" style="border:0" '
-            f'title="Streamlines" srcdoc="{html.escape(self.text, quote=True)}"></iframe>'
-        )
-
-
-def page_view(plotter: Any, *, title: str | None = None, height: int = 480) -> PageView:
-    """Return what a plotter's active renderer shows as a page in a notebook; see `FibletsComponent.page_view`."""
-    from pvfiblets.page.writing import LARGEST_FILE, write_page
-
-    if isinstance(height, bool) or int(height) != height or not 50 <= height <= 10_000:
-        raise ValueError(f"height is {height!r}; give a whole number of pixels from 50 to 10000")
-    scene = page_of(plotter, title=title)
-    size = sum(map(len, scene.blobs))
-    if size > LARGEST_FILE:
-        raise ValueError(
-            f"the page has {size} bytes of data, and a notebook should not keep more than {LARGEST_FILE}; use "
-            "export_page, or show fewer streamlines"
-        )
-    with tempfile.TemporaryDirectory() as folder:
-        (path,) = write_page(scene, Path(folder) / "page.html")
-        return PageView(path.read_text(encoding="utf-8"), int(height))
 
 
 def page_of(plotter: Any, *, title: str | None = None) -> PageScene:
@@ -103,25 +61,32 @@ def page_of(plotter: Any, *, title: str | None = None) -> PageScene:
     ValueError
         If it shows nothing that a page can show.
     """
+    return page_and_actors(plotter, title=title)[0]
+
+
+def page_and_actors(plotter: Any, *, title: str | None = None) -> tuple[PageScene, list[str]]:
+    """Return what `page_of` does, and the names of the actors that the layers are."""
     renderer = plotter.renderer
     said = title or getattr(plotter, "title", None) or "Streamlines"
     scene = PageScene(str(said), background=_background(renderer))
     unable: list[str] = []
+    names: list[str] = []
     for name, actor in _actors(renderer):
         _add_actor(scene, name, actor, unable)
+        names += [name] * (len(scene.layers) - len(names))
     if unable:
         warnings.warn(f"the page leaves out {', '.join(dict.fromkeys(unable))}: it cannot draw them", stacklevel=3)
     if scene.layers:
         if not renderer.camera_set:
             renderer.reset_camera(render=False)
             renderer.camera_set = False
-        scene.camera = _camera(renderer.GetActiveCamera())
+        scene.camera = camera_place(renderer.GetActiveCamera())
     scene.lights = list(_lights(renderer))
     scene.letters = any(layer["kind"] == "fiblets" for layer in scene.layers)
     picture = getattr(plotter, "picture", None)
     scene.antialias = picture is None or picture.antialias != "off"
     scene.plain()
-    return scene
+    return scene, names
 
 
 def _actors(renderer: Any) -> Iterator[tuple[str, Any]]:
@@ -265,7 +230,8 @@ def _background(renderer: Any) -> tuple[tuple[float, float, float], tuple[float,
     return bottom, top
 
 
-def _camera(camera: Any) -> CameraPlace:
+def camera_place(camera: Any) -> CameraPlace:
+    """Return where a vtkCamera stands."""
     return CameraPlace(
         tuple(camera.GetPosition()), tuple(camera.GetFocalPoint()), tuple(camera.GetViewUp()), camera.GetViewAngle(),
         bool(camera.GetParallelProjection()), camera.GetParallelScale(),

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.engine.capabilities import PipelineTable
     from pvfiblets.plotting.fiblets.actor import FibletActor
-    from pvfiblets.plotting.page_scene import PageView
+    from pvfiblets.plotting.notebook_view import PageView
     from pvfiblets.streamlines import Streamlines
 
     Source: TypeAlias = str | PathLike[str] | FibletSet | Streamlines | pv.PolyData | list[Any]
@@ -238,6 +238,9 @@ class FibletsComponent(ActorRegistry["FibletActor"], Picking, Widgets):
     def page_view(self, *, title: str | None = None, height: int = 480) -> PageView:
         """Return the page of `export_page` for a notebook's cell, which keeps it: it needs no kernel later.
 
+        ``plotter.show(jupyter_backend="fiblets")`` shows it, too. While there is a kernel, and anywidget is installed
+        (``pip install pvfiblets[notebook]``), page and plotter have one camera, and the view tells what was picked.
+
         Parameters
         ----------
         title : str, optional
@@ -255,7 +258,7 @@ class FibletsComponent(ActorRegistry["FibletActor"], Picking, Widgets):
         ValueError
             If there is nothing to show, or more than 64 MB of data.
         """
-        from pvfiblets.plotting.page_scene import page_view
+        from pvfiblets.plotting.notebook_view import page_view
 
         return page_view(self._plotter, title=title, height=height)
 
