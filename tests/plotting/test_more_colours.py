@@ -33,6 +33,9 @@ def test_groups_are_labels(streamlines):
         assert actor.lookup_table.n_values == 2
         table = actor.lookup_table
         assert [table.GetAnnotation(i) for i in range(table.GetNumberOfAnnotatedValues())] == ["front", "back"]
+        shown = [tuple(row) for row in np.asarray(table.values)[:, :3] / 255.0]
+        np.testing.assert_allclose(shown, [actor.bundles[name].color for name in ("front", "back")], atol=0.5 / 255.0)
+        assert len({tuple(np.rint(255 * np.array(one.color)).astype(int)) for one in actor.bundles}) == 2
         assert "group" in plotter.scalar_bars
         actor.scalars = "length"
         assert table.GetNumberOfAnnotatedValues() == 0
@@ -41,6 +44,22 @@ def test_groups_are_labels(streamlines):
         plotter.close()
     with pytest.raises(KeyError, match="no groups"):
         find_scalars(compress(Streamlines.from_list([np.zeros((3, 3))])), "group")
+
+
+def test_thirty_groups_have_thirty_colours_before_any_bundle_has_its_own(streamlines):
+    streamlines.groups = {f"group {k}": np.arange(4 * k, 4 * k + 4) for k in range(30)}
+    plotter = pv.Plotter(off_screen=True, window_size=(100, 100))
+    try:
+        actor = plotter.add_fiblets(streamlines, scalars="group", show_scalar_bar=False)
+        before = np.array(actor.lookup_table.values)
+        assert len(np.unique(before, axis=0)) == 30
+        actor.bundles["group 7"].color = "white"
+        after = np.array(actor.lookup_table.values)
+        assert np.flatnonzero((before != after).any(axis=1)).tolist() == [7]  # no other changes with it
+        actor.cmap = "viridis"  # what is asked for goes before
+        assert not np.array_equal(np.array(actor.lookup_table.values), after)
+    finally:
+        plotter.close()
 
 
 def test_measures_of_streamlines(streamlines):

@@ -81,6 +81,18 @@ def test_colours_are_those_of_the_list(scene, lines_layer):
     assert scene.layer(lines_layer).settings["scalars"] == "orientation"
 
 
+def test_groups_have_the_colours_of_the_list_from_the_beginning(scene, lines_layer):
+    scene.set(lines_layer, "scalars", "group")
+    scene.set(lines_layer, "lighting", False)
+    scene.set(lines_layer, "line_width", 3)
+    scene.view("coronal")
+    listed = {tuple(int(one.color[k : k + 2], 16) for k in (1, 3, 5)) for one in scene.bundles(lines_layer)}
+    assert len(listed) == 2
+    found = scene.screenshot().reshape(-1, 3)
+    lit = found[found.max(axis=1) > 0]
+    assert {tuple(one) for one in np.unique(lit, axis=0).tolist()} == listed
+
+
 def test_sessions_and_scripts_have_bundles(scene, lines_layer, folder):
     scene.remove_bundles(lines_layer, ["far"])
     scene.add_bundle(lines_layer, [3, 4, 5], "a")

@@ -16,7 +16,7 @@ import numpy as np
 from pvfiblets.codec.point_arrays import colour_columns
 from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
 from pvfiblets.mappers.colouring import Mode
-from pvfiblets.query.bundles.bundle_list import group_colours, hidden_groups, own_colour
+from pvfiblets.query.bundles.bundle_list import group_colours, hidden_groups
 from pvfiblets.query.bundles.colours import distinct_colours
 from pvfiblets.query.endpoints import anchor_points, end_points
 from pvfiblets.query.measures import COMPUTED, Distance, measure
@@ -267,7 +267,7 @@ def _end_directions(fiblets: FibletSet) -> np.ndarray:
 def by_group(fiblets: FibletSet) -> Scalars:
     """Number the streamlines by the first of the groups that they are in; NaN for those in none.
 
-    Groups that are hidden come last. A group whose data hold a colour has that one.
+    Groups that are hidden come last. Colours are those of the list of bundles: a group's own, or one by its place.
 
     Raises
     ------
@@ -283,10 +283,8 @@ def by_group(fiblets: FibletSet) -> Scalars:
         numbers[np.asarray(fiblets.groups[name])] = index
     found = per_streamline(GROUP, numbers, fiblets.n_streamlines)
     names = dict(enumerate(fiblets.groups))
-    own = None
-    if any(own_colour(fiblets.per_group.get(name, {})) for name in fiblets.groups):
-        own = tuple(group_colours(fiblets.groups, fiblets.per_group).values())
-    return replace(found, range=(-0.5, len(names) - 0.5), categories=names, category_colours=own)
+    palette = tuple(group_colours(fiblets.groups, fiblets.per_group).values())
+    return replace(found, range=(-0.5, len(names) - 0.5), categories=names, category_colours=palette)
 
 
 def without_outliers(scalars: Scalars) -> Scalars:
