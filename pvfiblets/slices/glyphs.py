@@ -1,4 +1,4 @@
-"""Glyphs of the voxels that a plane goes through: lines of peaks, ellipsoids of tensors, lobes of harmonics."""
+"""Glyphs of the voxels that a plane goes through: lines of peaks and fixels, ellipsoids, lobes of harmonics."""
 
 from __future__ import annotations
 
@@ -10,12 +10,17 @@ import numpy.typing as npt
 from pvfiblets.slices.image import SliceImage
 from pvfiblets.slices.spherical_harmonics import degrees, sh_matrix
 
-__all__ = ["KINDS", "TENSORS", "Glyphs", "check_glyphs", "ellipsoids", "lines_of_peaks", "lobes", "voxels_on_plane"]
+__all__ = [
+    "KINDS", "LINES", "TENSORS", "Glyphs", "check_glyphs", "ellipsoids", "lines_of_fixels", "lines_of_peaks", "lobes",
+    "voxels_on_plane",
+]  # fmt: skip
 
 Array = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
-KINDS = ("peaks", "tensor", "sh")
+KINDS = ("peaks", "tensor", "sh", "fixels")
+LINES = ("peaks", "fixels")
+"""Kinds that are drawn as lines."""
 
 TENSORS = {
     "mrtrix": (0, 3, 4, 3, 1, 5, 4, 5, 2), "dipy": (0, 1, 3, 1, 2, 4, 3, 4, 5), "fsl": (0, 1, 2, 1, 3, 4, 2, 4, 5),
@@ -44,6 +49,8 @@ def check_glyphs(image: SliceImage, kind: str, basis: str, full: bool, tensor: s
     n = image.n_volumes
     if kind not in KINDS:
         raise ValueError(f"kind is {kind!r}; choose one of {KINDS}")
+    if kind == "fixels" and image.fixels is None:
+        raise ValueError(f"{image.name} has no fixels; give a fixel directory of MRtrix, or one of its files")
     if kind == "peaks" and n % 3:
         raise ValueError(f"{image.name} has {n} numbers per voxel; peaks are three each")
     if kind == "tensor" and n != 6:
@@ -55,7 +62,10 @@ def check_glyphs(image: SliceImage, kind: str, basis: str, full: bool, tensor: s
 
 
 def voxels_on_plane(image: SliceImage, position: Array, normal: Array) -> Ints:
-    """Return ``(n, 3)`` the voxels nearest to a plane: along a grid's axis one layer, not all zero and all finite."""
+    """Return ``(n, 3)`` the voxels nearest to a plane: along a grid's axis one layer, not all zero and all finite.
+
+    Of fixels those that have any.
+    """
     step = image.affine[:3, :3].T @ normal
     start = float((image.affine[:3, 3] - position) @ normal)
     thick = float(abs(step).max())
@@ -64,6 +74,8 @@ def voxels_on_plane(image: SliceImage, position: Array, normal: Array) -> Ints:
     # The lower face belongs to a voxel and the upper one to the next; digits beyond the ninth decide nothing.
     share = np.round(away / thick, 9)
     at = np.argwhere((share > -0.5) & (share <= 0.5))
+    if image.fixels is not None:
+        return at[image.fixels.counts[tuple(at.T)] > 0]
     values = image.values[tuple(at.T)]
     return at[np.isfinite(values).all(axis=1) & (values != 0).any(axis=1)]
 
@@ -111,6 +123,38 @@ def lines_of_peaks(image: SliceImage, voxels: Ints, size: float, longest: float 
     middle = _centres(image, voxels[which])
     points = np.stack([middle - half, middle + half], axis=1)
     return Glyphs(points, np.repeat(_of_direction(vectors)[:, None], 2, axis=1))
+
+
+def lines_of_fixels(
+    image: SliceImage, voxels: Ints, size: float, lengths: npt.NDArray[np.float32] | None, longest: float
+) -> tuple[Glyphs, Ints]:
+    """Return two ends of each fixel of some voxels, coloured by direction, and the numbers ``(k,)`` of the fixels.
+
+    Parameters
+    ----------
+    image : SliceImage
+        With fixels.
+    voxels : numpy.ndarray
+        ``(n, 3)``.
+    size : float
+        Length of a line per the smallest side of a voxel.
+    lengths : numpy.ndarray, optional
+        ``(n_fixels,)``; lines are as long as these per the longest, and those of none are left out. All alike without.
+    longest : float
+        The length of a line of that size.
+    """
+    assert image.fixels is not None
+    fixels, which = image.fixels.of_voxels(voxels)
+    share = np.ones(len(fixels)) if lengths is None else lengths[fixels].astype(np.float64) / longest
+    directions = image.fixels.directions[fixels].astype(np.float64)
+    norm = np.linalg.norm(directions, axis=1, keepdims=True)
+    there = (share > 0.0) & np.isfinite(share) & (norm > 0.0).all(axis=1)
+    fixels, which, share, directions = fixels[there], which[there], share[there], directions[there]
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    half = directions * (size * _reach(image) * share)[:, None]
+    middle = _centres(image, voxels[which])
+    points = np.stack([middle - half, middle + half], axis=1)
+    return Glyphs(points, np.repeat(_of_direction(directions)[:, None], 2, axis=1)), fixels
 
 
 def ellipsoids(image: SliceImage, voxels: Ints, sphere: Array, size: float, each: bool, tensor: str) -> Glyphs:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from pvfiblets.slices.fixels import Fixels, read_fixels
 from pvfiblets.volumes.image_files import SUFFIXES, colour_fields, read_image, values_of_nibabel
 
 __all__ = ["KINDS", "SliceImage", "as_slice_image"]
@@ -45,6 +46,8 @@ class SliceImage:
         Whether the file says that its numbers are labels.
     is_colours : bool
         Whether they are bytes of red, green, blue and maybe opacity.
+    fixels : Fixels, optional
+        Directions in its voxels; numbers are then how many a voxel has, or the greatest of theirs.
     """
 
     values: npt.NDArray[Any]
@@ -52,6 +55,7 @@ class SliceImage:
     name: str = "image"
     is_labels: bool = False
     is_colours: bool = False
+    fixels: Fixels | None = None
     _percentiles: dict[tuple[float, float, int], tuple[float, float]] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
@@ -123,7 +127,8 @@ def as_slice_image(source: Any, name: str | None = None) -> SliceImage:
     Parameters
     ----------
     source : object
-        - The path of a NIfTI (1 and 2), MGH, MIF, NRRD, MetaImage or VTI file.
+        - The path of a NIfTI (1 and 2), MGH, MIF, NRRD, MetaImage or VTI file, or a fixel directory of MRtrix or one of
+          its files: its voxels have as many numbers as fixels, or the greatest of the file's.
         - An image of nibabel.
         - ``(nx, ny, nz)`` or ``(nx, ny, nz, n)`` numbers, whose voxels are 1 mm wide, or ``(array, affine)``.
         - :class:`pyvista.ImageData`: its active scalars; point data are centres of voxels, cell data voxels.
@@ -146,6 +151,9 @@ def as_slice_image(source: Any, name: str | None = None) -> SliceImage:
     own = "image"
     if isinstance(source, (str, os.PathLike)):
         path = Path(source).expanduser()
+        found = read_fixels(path)
+        if found is not None:
+            return _of_fixels(*found, name)
         values, affine, own, labels = read_image(path)
     elif hasattr(source, "IsA"):
         values, affine, own = _of_vtk(source)
@@ -173,6 +181,12 @@ def as_slice_image(source: Any, name: str | None = None) -> SliceImage:
         values = values.view(np.uint8)
     colours = colours or (values.dtype == np.uint8 and values.ndim == 4 and values.shape[3] in (3, 4))
     return SliceImage(values, np.asarray(affine, np.float64), name, labels, bool(colours))
+
+
+def _of_fixels(fixels: Fixels, affine: Array, own: str, name: str | None) -> SliceImage:
+    """Return fixels as an image: how many a voxel has, or the greatest of the numbers that they were opened for."""
+    values = fixels.of_grid(None if fixels.shown is None else fixels.numbers(fixels.shown))
+    return SliceImage(values[..., None], np.asarray(affine, np.float64), name or own, fixels=fixels)
 
 
 def _of_vtk(image: Any) -> tuple[npt.NDArray[Any], Array, str]:

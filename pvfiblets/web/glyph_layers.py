@@ -1,4 +1,4 @@
-"""Glyphs of an image of slices: peaks, tensors and spherical harmonics, as settings of its layer."""
+"""Glyphs of an image of slices: peaks, tensors, spherical harmonics and fixels, as settings of its layer."""
 
 from __future__ import annotations
 
@@ -13,16 +13,25 @@ __all__ = ["GLYPHS", "ROWS", "UNDER", "GlyphLayers", "arguments", "covers"]
 
 GLYPHS, UNDER = "glyphs", "image_under"
 _SIZE, _BASIS, _TENSOR = "glyph_size", "glyph_basis", "glyph_tensor"
+_BY_NUMBERS, _LONG = "glyph_colour", "glyph_length"
 
 
 def _kinds(image: Any) -> Choices:
     """Return which glyphs an image can be shown by: as many numbers as it has per voxel."""
     n = image.n_volumes
     found: list[tuple[Any, str]] = [(None, "none")]
+    if image.fixels is not None:
+        return [*found, ("fixels", "fixels, as lines")]
     found += [("peaks", "peaks, as lines")] if n % 3 == 0 else []
     found += [("tensor", "tensors, as ellipsoids")] if n == 6 else []
     even = {(degree + 1) * (degree + 2) // 2 for degree in range(2, 33, 2)}
     return [*found, ("sh", "spherical harmonics, as lobes")] if n in even else found
+
+
+def _numbers_of_fixels(image: Any) -> Choices:
+    """Return by what fixels can be coloured, or be as long as."""
+    named = None if image.fixels is None else image.fixels.shown
+    return [(None, "none")] if named is None else [(None, "none"), (named, named)]
 
 
 def _when(*kinds: str) -> Any:
@@ -37,6 +46,10 @@ ROWS = (
                  "mrtrix", choices=[(one, one.replace("_", ", ")) for one in BASES], matters=_when("sh")),
     Property.own(_TENSOR, "choice", "Order", "Of the six parts of a tensor, by program.", "Glyphs", "mrtrix",
                  choices=[(one, one) for one in TENSORS], matters=_when("tensor")),
+    Property.own(_BY_NUMBERS, "choice", "Coloured by", "Numbers of fixels; none: their direction.", "Glyphs",
+                 choices=_numbers_of_fixels, matters=_when("fixels")),
+    Property.own(_LONG, "choice", "As long as", "Numbers of fixels; none: all alike.", "Glyphs",
+                 choices=_numbers_of_fixels, matters=_when("fixels")),
     Property.own(UNDER, "bool", "Image too", "Show the numbers of the image under them.", "Glyphs", False,
                  matters=lambda settings: settings[GLYPHS] is not None),
 )  # fmt: skip
@@ -52,6 +65,11 @@ def arguments(settings: Mapping[str, Any]) -> dict[str, Any]:
     """Return arguments of ``slices.add_glyphs``."""
     found = {"kind": settings[GLYPHS], "size": settings[_SIZE]}
     own = {"sh": {"basis": settings[_BASIS]}, "tensor": {"tensor": settings[_TENSOR]}}
+    if settings[GLYPHS] == "fixels":
+        by, long = settings[_BY_NUMBERS], settings[_LONG]
+        own["fixels"] = {name: value for name, value in (("scalars", by), ("length", long)) if value is not None}
+        if by is not None:
+            own["fixels"] |= {"cmap": settings["cmap"], "clim": settings["clim"]}
     return found | own.get(settings[GLYPHS], {})
 
 

@@ -36,7 +36,7 @@ class LabelledImage(SliceImage):
 def read_image(place: Path) -> LabelledImage:
     """Read an image; errors as of :func:`.as_slice_image`."""
     found = as_slice_image(place)
-    return LabelledImage(found.values, found.affine, found.name, found.is_labels, found.is_colours)
+    return LabelledImage(found.values, found.affine, found.name, found.is_labels, found.is_colours, found.fixels)
 
 
 @dataclass(frozen=True, eq=False)

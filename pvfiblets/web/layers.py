@@ -18,6 +18,7 @@ from pvfiblets.plotting.slices.settings import MEANING, SliceSettings
 from pvfiblets.plotting.tubes.settings import TubeSettings
 from pvfiblets.plotting.volumes.settings import VolumeSettings
 from pvfiblets.web.document import KINDS, LINES, Layer, volume_in
+from pvfiblets.web.glyph_layers import GLYPHS
 from pvfiblets.web.layer_properties import IMAGE, MESH, TRACTOGRAM, TUBES, VOLUME
 from pvfiblets.web.properties import TYPES, Choices, Property
 from pvfiblets.web.values import shown
@@ -107,6 +108,7 @@ def beginning(kind: str, data: Any) -> dict[str, Any]:
     found = defaults(kind)
     if kind == "image":
         labels = data.is_labels or data.table is not None
+        found[GLYPHS] = "fixels" if data.fixels is not None else None
         found[MEANING] = "labels" if labels else "rgb" if data.is_colours else "scalars"
     if kind == "volume" and (window := _window(data)) is not None:
         found["clim"] = check(kind, "clim", list(window), data)

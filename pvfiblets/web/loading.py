@@ -235,6 +235,8 @@ class Files:
             return _demo(source, kind)
         place = self.resolve(source.path)
         asked, kind = kind, kind_of(place) if kind is None else kind
+        if asked is None and kind == "volume" and (fixels := _fixels(place)) is not None:
+            return Loaded("image", Source(self.name(place)), place.name, *fixels)
         source = Source(self.name(place))
         name = place.name
         if kind in (*LINES, "tubes"):
@@ -363,6 +365,15 @@ def _tubes(place: Path, source: Source, name: str, watch: Watch) -> Loaded:
     tubes, _ = as_tubes(place)
     watch("reading", 1.0)
     return Loaded("tubes", source, name, tubes, {"tubes": tubes.n_tubes, "segments": tubes.n_segments})
+
+
+def _fixels(place: Path) -> tuple[Any, dict[str, Any]] | None:
+    """Return the image of a file of a fixel directory of MRtrix's, and its facts; None of any other."""
+    from pvfiblets.slices.fixels import files_beside
+    from pvfiblets.web.label_images import facts_of, read_image
+
+    image = read_image(place) if files_beside(place) else None
+    return None if image is None or image.fixels is None else (image, facts_of(image))
 
 
 def _several(place: Path) -> tuple[Any, dict[str, Any]] | None:

@@ -19,6 +19,7 @@ from typing import Any
 from urllib.parse import unquote
 
 from pvfiblets.errors import FormatError
+from pvfiblets.slices import fixels
 from pvfiblets.volumes import gifti_files, metaimage, mif, nrrd
 
 __all__ = ["check_references"]
@@ -44,14 +45,21 @@ def check_references(place: Path, folders: list[Path]) -> None:
     FormatError
         If its header cannot be read.
     """
-    name = place.name.lower()
-    find = next((found for suffix, found in _FINDERS.items() if name.endswith(suffix)), None)
-    if find is None:
-        return
-    if not all(_inside(place.parent, named, folders) for named in find(place)):
+    beside = [one for one in fixels.files_beside(place) if one != place]
+    named = [one.name for one in beside] + _named(place)
+    for one in beside if all(_inside(place.parent, name, folders) for name in named) else ():
+        named += _named(one)
+    if not all(_inside(place.parent, name, folders) for name in named):
         raise PermissionError(
             f"{place.name}: it names a file that is not in the folder open to you; convert it to one file"
         )
+
+
+def _named(place: Path) -> list[str]:
+    """Return the files that a file names."""
+    name = place.name.lower()
+    find = next((found for suffix, found in _FINDERS.items() if name.endswith(suffix)), None)
+    return [] if find is None else find(place)
 
 
 def _inside(parent: Path, named: str, folders: list[Path]) -> bool:

@@ -25,6 +25,7 @@ MOST_POINTS = 1_500_000
 LINE_PERCENTILE = 99.0
 """Of the lengths of an image's peaks: as long as that is as long as a voxel."""
 SAMPLED = 200_000
+N_COLOURS = 256
 
 
 class GlyphSet:
@@ -33,8 +34,8 @@ class GlyphSet:
     Parameters
     ----------
     image : SliceImage
-    kind, size, normalize, line_width, basis, full, tensor
-        As of ``slices.add_glyphs``.
+    kind, size, normalize, line_width, basis, full, tensor, scalars, length, cmap, clim
+        As of ``slices.add_glyphs``; the last four of fixels.
     """
 
     def __init__(
@@ -48,14 +49,24 @@ class GlyphSet:
         basis: str,
         full: bool,
         tensor: str,
+        scalars: Any = None,
+        length: Any = None,
+        cmap: Any = None,
+        clim: Any = None,
     ) -> None:
         glyphs.check_glyphs(image, kind, basis, full, tensor)
+        if image.fixels is None and not (scalars is None and length is None):
+            raise ValueError(f"scalars and length are of fixels; {image.name} has {kind}")
         self.image, self.kind = image, kind
         self._basis, self._full, self._tensor = basis, bool(full), tensor
         self._normalize, self._width = bool(normalize), float(line_width)
         self._visible = True
         self._shown: list[_OnPlane] = []
         self._longest: float | None = None
+        fixels = image.fixels if kind == "fixels" else None
+        self._lengths = None if fixels is None or length is None else fixels.numbers(length)
+        self._numbers = None if fixels is None or scalars is None else fixels.numbers(scalars)
+        self._table = None if self._numbers is None else _table(self._numbers, cmap, clim)
         self.size = size
 
     def __repr__(self) -> str:
@@ -104,8 +115,8 @@ class GlyphSet:
         voxels = glyphs.voxels_on_plane(image, position, normal)
         if not len(voxels):
             return pv.PolyData(), 0
-        if self.kind == "peaks":
-            found = glyphs.lines_of_peaks(image, voxels, size, None if self._normalize else self._long())
+        if self.kind in glyphs.LINES:
+            found = self._line_glyphs(voxels)
             n = len(found.points)
             lines = np.column_stack([np.full(n, 2), 2 * np.arange(n), 2 * np.arange(n) + 1])
             mesh = pv.PolyData(found.points.reshape(-1, 3), lines=lines)
@@ -122,14 +133,51 @@ class GlyphSet:
         mesh.point_data["rgb"] = found.colours.reshape(-1, 3)
         return mesh, n
 
+    def _line_glyphs(self, voxels: npt.NDArray[np.int64]) -> glyphs.Glyphs:
+        """Return lines of peaks, or of fixels in the colours of their numbers."""
+        image, size = self.image, self._size
+        if self.kind == "peaks":
+            return glyphs.lines_of_peaks(image, voxels, size, None if self._normalize else self._long())
+        found, fixels = glyphs.lines_of_fixels(image, voxels, size, self._lengths, self._long())
+        if self._numbers is None or self._table is None:
+            return found
+        colours, low, high = self._table
+        share = (self._numbers[fixels] - low) / (high - low) * len(colours)
+        rows = np.clip(np.nan_to_num(share), 0, len(colours) - 1).astype(np.int64)
+        shown = np.where(np.isnan(share)[:, None], np.uint8(128), colours[rows])
+        return glyphs.Glyphs(found.points, np.repeat(shown[:, None], 2, axis=1))
+
     def _long(self) -> float:
+        if self._longest is None and self.kind == "fixels":
+            self._longest = 1.0 if self._lengths is None else _longest(self._lengths)
         if self._longest is None:
             values = self.image.values.reshape(-1, self.image.n_volumes)
             some = np.asarray(values[:: max(1, len(values) // SAMPLED)], np.float64).reshape(-1, 3)
-            length = np.linalg.norm(some, axis=1)
-            length = length[np.isfinite(length) & (length > 0.0)]
-            self._longest = float(np.percentile(length, LINE_PERCENTILE)) if len(length) else 1.0
+            self._longest = _longest(np.linalg.norm(some, axis=1))
         return self._longest
+
+
+def _longest(lengths: npt.NDArray[Any]) -> float:
+    """Return the length that is drawn as long as a voxel."""
+    there = lengths[np.isfinite(lengths) & (lengths > 0.0)]
+    return float(np.percentile(there, LINE_PERCENTILE)) if len(there) else 1.0
+
+
+def _table(
+    numbers: npt.NDArray[np.float32], cmap: Any, clim: Any
+) -> tuple[npt.NDArray[np.uint8], float, float]:
+    """Return colours ``(n, 3)`` of numbers of fixels, and those of the first and the last: all by default."""
+    finite = numbers[np.isfinite(numbers)]
+    given = (finite.min(initial=np.inf), finite.max(initial=-np.inf)) if clim is None else clim
+    try:
+        low, high = (float(end) for end in given)
+    except (TypeError, ValueError):
+        raise ValueError(f"clim is {clim!r}; give two numbers, the low one first") from None
+    if clim is not None and not (np.isfinite([low, high]).all() and low < high):
+        raise ValueError(f"clim is ({low:g}, {high:g}); give two finite numbers, the low one first")
+    low, high = (low, high) if low < high else (min(low, 0.0), max(low, 1.0)) if np.isfinite(low) else (0.0, 1.0)
+    table = pv.LookupTable(pv.global_theme.cmap if cmap is None else cmap, n_values=N_COLOURS)
+    return np.array(table.values, np.uint8).reshape(-1, 4)[:, :3], low, high
 
 
 def _sphere(n: int) -> pv.PolyData:
@@ -146,7 +194,7 @@ class _OnPlane:
         self._renderer, self._place = renderer, place
         self._state: tuple[Any, ...] | None = None
         self.n = 0
-        lines = owner.kind == "peaks"
+        lines = owner.kind in glyphs.LINES
         self._mesh = pv.PolyData()
         mapper = pv.DataSetMapper(self._mesh)
         mapper.SetScalarModeToUsePointFieldData()
@@ -175,7 +223,7 @@ class _OnPlane:
             return
         self._state = state
         mesh, self.n = self._owner.mesh(position, normal)
-        if self._owner.kind != "peaks" and mesh.n_points:
+        if self._owner.kind not in glyphs.LINES and mesh.n_points:
             mesh = mesh.compute_normals(cell_normals=False, split_vertices=False, consistent_normals=False)
         self._mesh.copy_from(mesh)
 

@@ -188,8 +188,12 @@ class SliceStack:
         basis: str = "mrtrix",
         full: bool = False,
         tensor: str = "mrtrix",
+        scalars: Any = None,
+        length: Any = None,
+        cmap: Any = None,
+        clim: Any = None,
     ) -> GlyphSet:
-        """Show peaks as lines, tensors as ellipsoids or spherical harmonics as lobes, on the slices.
+        """Show peaks and fixels as lines, tensors as ellipsoids or spherical harmonics as lobes, on the slices.
 
         Only those of the voxels that visible slices go through are made.
 
@@ -197,8 +201,9 @@ class SliceStack:
         ----------
         source : image
             Any of what ``plotter.add_slices`` takes, of four axes: three numbers of each peak, along right, front and
-            up; six of a tensor; or coefficients of harmonics.
-        kind : {"peaks", "tensor", "sh"}, default: "peaks"
+            up; six of a tensor; or coefficients of harmonics. Of fixels a fixel directory of MRtrix, or one
+            of its files.
+        kind : {"peaks", "tensor", "sh", "fixels"}, default: "peaks"
         size : float, default: 1.0
             Of the greatest, per the smallest side of a voxel.
         normalize : bool, optional
@@ -212,6 +217,11 @@ class SliceStack:
             Whether harmonics of odd degree are there, too.
         tensor : {"mrtrix", "dipy", "fsl"}, default: "mrtrix"
             Order of a tensor's parts: xx, yy, zz, xy, xz, yz; xx, xy, yy, xz, yz, zz; or xx, xy, xz, yy, yz, zz.
+        scalars, length : str or (n,) array, optional
+            Numbers of fixels that colour them, by default their direction does, and that lines are as long as, of which
+            the 99th percentile is as long as a voxel; names of files of the directory, without suffix.
+        cmap, clim : optional
+            Colour map of ``scalars``, and the numbers of its first and last colour.
 
         Returns
         -------
@@ -234,6 +244,10 @@ class SliceStack:
             basis=basis,
             full=full,
             tensor=tensor,
+            scalars=scalars,
+            length=length,
+            cmap=cmap,
+            clim=clim,
         )
         for plane in self:
             made.show_on(plane.renderer, plane.place)
@@ -241,6 +255,34 @@ class SliceStack:
             made.show_on(*view)
         self._glyphs.append(made)
         return made
+
+    def add_fixels(self, source: Any, scalars: Any = None, **options: Any) -> GlyphSet:
+        """Show the fixels of a directory of MRtrix's as lines; :meth:`add_glyphs` of the kind ``"fixels"``.
+
+        Parameters
+        ----------
+        source : path
+            Of the directory or one of its files.
+        scalars : str or (n,) array, optional
+            Numbers that colour them, such as ``"fd"`` of ``fd.mif``; by default their direction does.
+        **options
+            ``length``, ``size``, ``line_width``, ``cmap`` and ``clim`` of :meth:`add_glyphs`.
+
+        Returns
+        -------
+        GlyphSet
+
+        Raises
+        ------
+        ValueError
+            If the directory or its files do not fit each other, or there are no such numbers.
+
+        Examples
+        --------
+        >>> slices = plotter.add_slices("fa.nii.gz")  # doctest: +SKIP
+        >>> slices.add_fixels("fixels", "fd", length="fd", cmap="hot")  # doctest: +SKIP
+        """
+        return self.add_glyphs(source, "fixels", scalars=scalars, **options)
 
     def remove_glyphs(self, glyphs: GlyphSet) -> None:
         """Take glyphs away that :meth:`add_glyphs` returned; twice is harmless."""
