@@ -18,7 +18,9 @@ from pvfiblets.streamlines import Streamlines
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
 
-__all__ = ["Lines", "are_words", "flat", "gather", "joined", "numbers_or_colours", "refuse_words", "with_values"]
+__all__ = [
+    "Lines", "are_words", "flat", "gather", "joined", "numbers_or_colours", "refuse_words", "rows_of", "with_values"
+]  # fmt: skip
 
 Ints = npt.NDArray[np.int64]
 
@@ -188,6 +190,8 @@ def _from_vtk(mesh: Any, noun: str, keep_single: bool) -> Lines:
         )
     cells = mesh.GetLines()
     n = cells.GetNumberOfCells()
+    if mesh.GetNumberOfPoints() == 0:
+        return _from_arrays([], keep_single)
     if n == 0:
         raise ValueError(
             f"the PolyData has no lines but {mesh.GetNumberOfCells()} other cells (vertices, polygons); "
@@ -321,7 +325,13 @@ def told_lines(source: Any) -> Any:
 
 def are_words(array: npt.NDArray[Any]) -> bool:
     """Say whether an array is one of texts."""
-    return array.dtype.kind in "US" or (array.dtype.kind == "O" and all(isinstance(one, str) for one in array.flat))
+    return array.dtype.kind in "US" or (array.dtype.kind == "O" and _all_words(array))
+
+
+def _all_words(array: npt.NDArray[Any]) -> bool:
+    """Say whether things are texts, and some of them missing, as columns of tables have it."""
+    kinds = {type(one) for one in array.flat}
+    return kinds <= {str, np.str_, type(None)} and kinds != {type(None)}
 
 
 def refuse_words(array: npt.NDArray[Any], what: str, per_line: bool) -> None:
@@ -374,3 +384,14 @@ def joined(given: Any, counts: tuple[int, int | None]) -> npt.NDArray[Any]:
     if len(given) in counts and sizes in ({(3,)}, {(4,)}) and counts[0] != sum(len(part) for part in given):
         return np.asarray(given)
     return np.concatenate([np.asarray(part) for part in given if np.size(part)] or [np.zeros(0)])
+
+
+def rows_of(given: Any, counts: tuple[int, int]) -> npt.NDArray[Any]:
+    """The same of a list that may hold something else: vectors of lines, for instance, whose number is the second."""
+    rows = joined(given, counts)
+    if rows.shape[:1] in ((counts[0],), (counts[1],)):
+        return rows
+    try:
+        return np.asarray(given)
+    except ValueError:  # of arrays of other lengths than the lines
+        return rows

@@ -69,7 +69,8 @@ def streamlines_of(source: Any) -> Streamlines | None:
     if hasattr(source, "tractogram") and hasattr(source, "header"):  # nibabel's TrkFile, TckFile
         found = _of_tractogram(source.tractogram)
         header = source.header if isinstance(source.header, Mapping) else {}
-        if "dimensions" in header and "voxel_sizes" in header:
+        # Of a tck file they are words of whoever wrote it.
+        if not any(isinstance(header.get(name, ""), str) for name in ("dimensions", "voxel_sizes")):
             found.space = _space(header["dimensions"], header["voxel_sizes"], header.get("voxel_order", b""))
             found.affine = np.asarray(source.affine, np.float64)
         return found

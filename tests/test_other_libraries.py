@@ -194,6 +194,7 @@ def test_blocks_are_groups():
         (pv.Sphere(), ValueError, r"without lines, but with 1,680 other cells.*extract_all_edges"),
         (pv.MultiBlock([pv.ImageData(dimensions=(2, 2, 2))]), TypeError, "ImageData, which has no lines"),
         (7, TypeError, "source is a int; expected a path"),
+        ({"left": np.zeros((3, 3))}, TypeError, "source is a dict; give its values as a list"),
     ],
 )
 def test_what_holds_no_lines_is_told(source, error, message):
@@ -219,6 +220,33 @@ def test_nothing_at_all_is_a_warning(source, what):
     with pytest.warns(UserWarning, match=f"the source holds no {what}: nothing is drawn"):
         plotter.add_fiblets(source)
     plotter.close()
+
+
+@pytest.mark.parametrize("add", ["add_spline_tubes", "add_halo_lines"])
+@pytest.mark.parametrize("source", [[], pv.PolyData(), pv.UnstructuredGrid(), pv.MultiBlock()])
+def test_nothing_at_all_is_a_warning_for_tubes_and_halos(source, add):
+    plotter = pv.Plotter(off_screen=True)
+    with pytest.warns(UserWarning, match="the source holds no lines: nothing is drawn"):
+        getattr(plotter, add)(source)
+    plotter.close()
+
+
+@pytest.mark.parametrize("add", ["add_fiblets", "add_spline_tubes", "add_halo_lines"])
+def test_a_list_of_points_is_one_line(add):
+    plotter = pv.Plotter(off_screen=True)
+    line = np.linspace([0.0, 0.0, 0.0], [9.0, 5.0, 1.0], 20)
+    found = [getattr(plotter, add)(source) for source in (line, line.tolist(), list(line))]
+    assert len({actor.bounds for actor in found}) == 1
+    plotter.close()
+
+
+def test_a_tck_file_with_words_about_voxels(tmp_path):
+    """As some writers put them; a header of tck holds any words."""
+    given = Streamlines.from_list(lines())
+    pf.write(tmp_path / "a.tck", given)
+    file = nib.streamlines.load(tmp_path / "a.tck")
+    file.header.update(dimensions="(157, 189, 136)", voxel_sizes="(1.0, 1.0, 1.0)")
+    check(streamlines_of(file), list(given))
 
 
 def test_they_are_drawn(tractogram):

@@ -43,6 +43,14 @@ def test_a_folder_that_is_not_there_is_named(lines, tmp_path, suffix):
     assert caught.value.filename == str(path)
 
 
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_saving_a_set_names_that_folder_too(lines, tmp_path, suffix):
+    path = tmp_path / "nowhere" / f"lines{suffix}"
+    with pytest.raises(FileNotFoundError, match="there is no folder .*nowhere; make it first") as caught:
+        pvfiblets.compress(lines).save(path)
+    assert caught.value.filename == str(path)
+
+
 @pytest.mark.skipif(not Path("/proc/self").is_dir(), reason="/proc is a folder that nobody can write to")
 @pytest.mark.parametrize("suffix", SUFFIXES)
 def test_a_folder_that_cannot_be_written_is_named(lines, suffix):

@@ -243,9 +243,14 @@ def measure_error(streamlines: Streamlines, fiblets: FibletSet) -> CodingError:
 
     Raises
     ------
+    TypeError
+        If they are something else, such as the two in the other order.
     ValueError
         If the two do not have the same streamlines and points.
     """
+    if not isinstance(streamlines, Streamlines) or not hasattr(fiblets, "parameters"):
+        kinds = f"{type(streamlines).__name__} and {type(fiblets).__name__}"
+        raise TypeError(f"measure_error takes Streamlines and their FibletSet, in this order; got {kinds}")
     resampled = fiblets.parameters.resampled > 0.0
     if len(streamlines) != fiblets.n_streamlines or (streamlines.n_points != fiblets.n_points and not resampled):
         raise ValueError(

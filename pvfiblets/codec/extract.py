@@ -126,8 +126,9 @@ def save_as(fiblets: FibletSet, path: str | PathLike[str]) -> list[str]:
     """
     from ..formats import registry, write
     from ..formats.spool import gathered
+    from ..whole_files import naming_target
 
     registry.module_for(path, "write")  # before the decoding, not after
     chunks = fiblets.iter_chunks() if len(fiblets) else iter([fiblets.decompress()])
-    with gathered(held_in_bounds(fiblets, chunks), Path(path).resolve().parent) as streamlines:
+    with naming_target(path), gathered(held_in_bounds(fiblets, chunks), Path(path).resolve().parent) as streamlines:
         return write(path, streamlines)

@@ -39,6 +39,8 @@ def test_errors_are_those_of_a_plain_computation(monkeypatch: pytest.MonkeyPatch
 
 def test_errors_against_other_lines_are_refused() -> None:
     fiblets = pf.compress(smooth(5, 50))
+    with pytest.raises(TypeError, match="in this order; got FibletSet and Streamlines"):
+        pf.measure_error(fiblets, smooth(5, 50))  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="5 streamlines of 250 points, the original 4 of 200"):
         pf.measure_error(smooth(4, 50), fiblets)
     other = smooth(5, 50)

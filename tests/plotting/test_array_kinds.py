@@ -176,3 +176,30 @@ def test_words_of_lines_are_categories_as_in_add_mesh(plotter, add, scalars):
 def test_words_of_points_are_refused_in_one_sentence(plotter, add, scalars):
     with pytest.raises(ValueError, match="words per point; words are taken per line, and numbers per point"):
         getattr(plotter, add)(named_lines(), scalars=scalars)
+
+
+@pytest.mark.parametrize("add", ["add_fiblets", "add_spline_tubes", "add_halo_lines"])
+@pytest.mark.parametrize("later", [False, True])
+@pytest.mark.parametrize("ragged", [False, True])
+def test_a_list_of_arrays_is_of_points(plotter, add, later, ragged):
+    """One for each line, also where all are of one length, so that they look like vectors."""
+    lengths = [5, 7, 6] if ragged else [6, 6, 6]
+    lines = [np.linspace([0.0, 0.0, k], [9.0, 5.0, k], n) for k, n in enumerate(lengths)]
+    values = [10.0 * k + np.arange(n) for k, n in enumerate(lengths)]
+    if later:
+        actor = getattr(plotter, add)(lines)
+        actor.scalars = values
+    else:
+        actor = getattr(plotter, add)(lines, scalars=values)
+    assert actor.scalars_title == "Data"
+    assert actor.clim == pytest.approx((0.0, 20.0 + lengths[2] - 1.0))
+
+
+@pytest.mark.parametrize("add", ["add_fiblets", "add_spline_tubes", "add_halo_lines"])
+@pytest.mark.parametrize("words", [["a", None, "b"], np.array(["a", None, "b"], object)], ids=["list", "array"])
+def test_words_may_be_missing(plotter, three_lines, add, words):
+    actor = getattr(plotter, add)(three_lines, scalars=words)
+    assert actor.shows_labels
+    table = actor.lookup_table
+    assert {"a", "b"} < {table.GetAnnotation(k) for k in range(table.GetNumberOfAnnotatedValues())}
+    plotter.screenshot()

@@ -86,7 +86,7 @@ class Manifest:
     streamlines, points, n_fiblets : int
         Of all shards.
     promise_mm : float
-        As :attr:`.FibletSet.promise`.
+        As :attr:`.FibletSet.points_promise`: 0 where every bit of the points is kept.
     bounds : tuple of float
         Of the original points, mm.
     groups : dict of str to int

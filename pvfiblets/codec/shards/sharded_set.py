@@ -80,7 +80,7 @@ class ShardedSet:
         m = self.manifest
         return (
             f"ShardedSet({m.streamlines} streamlines, {m.points} points, {len(m.shards)} shards, "
-            f"promise {m.promise_mm:g} mm)"
+            f"{f'promise {m.promise_mm:g} mm' if m.promise_mm else 'exact'})"
         )
 
     @property

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -18,7 +18,7 @@ from pvfiblets.codec.point_arrays import with_point_values as add_values
 from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
 from pvfiblets.formats.attachments import is_values_file, name_of, values_for
 from pvfiblets.invalid_points import valid_points
-from pvfiblets.lines import refuse_words
+from pvfiblets.lines import refuse_words, rows_of
 from pvfiblets.other_libraries import EXPECTED, streamlines_of
 from pvfiblets.plotting.fiblets.scalars import UNNAMED, are_colours, magnitudes, refuse_unknown
 from pvfiblets.plotting.fiblets.volume_sources import as_volume
@@ -49,7 +49,7 @@ def as_fiblets(
     ----------
     source : path, FibletSet, Streamlines, PolyData of lines, (n, 3) array or list of such
         What to draw; also what :func:`pvfiblets.other_libraries.streamlines_of` takes.
-    scalars : str, path, array or volume, optional
+    scalars : str, path, array, list of an array for each streamline, or volume, optional
         If this names, or is, per-point data of ``source``, that is kept; so is what a file of values has for it
         (:mod:`pvfiblets.formats.attachments`). For volumes see
         :func:`~pvfiblets.plotting.fiblets.volume_sources.as_volume`.
@@ -121,8 +121,8 @@ def as_fiblets(
                 streamlines.per_point = {**streamlines.per_point, **columns, scalars: lengths}
                 keep += columns
     elif scalars is not None and volume is None and not isinstance(scalars, Distance):
-        values = np.asarray(scalars)
-        if len(values) == streamlines.n_points != len(streamlines):
+        scalars = values = rows_of(scalars, (streamlines.n_points, len(streamlines)))
+        if values.shape[:1] == (streamlines.n_points,) and streamlines.n_points != len(streamlines):
             if are_colours(values, rgb):
                 keep += _hold_colours(streamlines, UNNAMED, values)
             else:
@@ -188,7 +188,7 @@ def with_point_values(fiblets: FibletSet, scalars: Any, rgb: bool | None = None)
             return fiblets, scalars
         found = measure(fiblets, scalars)
         return with_coded_values(fiblets, found.name, found.array()), found.name
-    values = np.asarray(scalars)
+    values = rows_of(scalars, (fiblets.n_points, fiblets.n_streamlines))
     if values.shape[:1] != (fiblets.n_points,) or fiblets.n_points == fiblets.n_streamlines:
         return fiblets, values
     return _with_points(fiblets, UNNAMED, values, rgb), UNNAMED
@@ -270,8 +270,12 @@ def as_streamlines(source: Any) -> Streamlines:
         return found
     if isinstance(source, np.ndarray) and source.ndim == 2:
         source = [source]
+    if isinstance(source, Mapping):
+        raise TypeError(f"source is a {type(source).__name__}; give its values as a list, one line each")
     if isinstance(source, (Sequence, Iterable)) and not isinstance(source, (str, bytes)):
         arrays = [np.asarray(line) for line in source]
+        if arrays and all(line.shape == (3,) for line in arrays):  # the points of one line, as an array of them is
+            arrays = [np.stack(arrays)]
         for index, line in enumerate(arrays):
             if line.ndim != 2 or line.shape[1] != 3:
                 raise TypeError(f"item {index} of source has shape {line.shape}; expected (n, 3) points")

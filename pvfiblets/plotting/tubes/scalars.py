@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from pvfiblets.formats.attachments import is_values_file
-from pvfiblets.lines import are_words, refuse_words, told_lines, with_values
+from pvfiblets.lines import are_words, refuse_words, rows_of, told_lines, with_values
 from pvfiblets.plotting.fiblets.scalars import ORIENTATION, UNNAMED, Scalars, are_colours, magnitudes, of_streamlines
 from pvfiblets.tubes.build import as_spline_tubes
 from pvfiblets.tubes.curves import controls, derivative
@@ -119,7 +119,7 @@ def with_node_values(tubes: SplineTubes, scalars: Any, *, rgb: bool | None = Non
     """
     if scalars is None or isinstance(scalars, str):
         return tubes, scalars
-    given = np.asarray(scalars)
+    given = rows_of(scalars, (tubes.n_nodes, tubes.n_tubes))
     if given.ndim == 1 and len(given) in (tubes.n_nodes, tubes.n_tubes) and are_words(given):
         refuse_words(given, "scalars", len(given) == tubes.n_tubes)
         return tubes, given

@@ -147,6 +147,10 @@ def test_a_file_becomes_shards(tmp_path: Path, exact: bool | None) -> None:
     source = pf.read(tmp_path / "a.tck")
     errors = np.linalg.norm(np.asarray(back.points, float) - source.points, axis=1)
     assert errors.max() <= told["promise_mm"] + 1e-5
+    manifest = pf.ShardedSet.open(tmp_path / "b.fiblets").manifest
+    assert manifest.promise_mm == told["promise_mm"]
+    assert (manifest.promise_mm == 0.0) == told["exact"]
+    assert ("exact)" in repr(pf.ShardedSet.open(tmp_path / "b.fiblets"))) == told["exact"]
     if told["exact"]:
         np.testing.assert_array_equal(back.points, source.points)
     assert sorted(p.name for p in tmp_path.iterdir()) == ["a.tck", "b.fiblets"], "nothing else is left"
