@@ -21,6 +21,7 @@ from pvfiblets.plotting.slices.pane import Pane
 from pvfiblets.plotting.slices.pane_events import PaneEvents
 from pvfiblets.plotting.slices.plane import before_render, on_events, prepare
 from pvfiblets.plotting.slices.point_values import PointValues, streamlines_near, words_of
+from pvfiblets.plotting.slices.seams import show_seams
 from pvfiblets.plotting.slices.stack import SliceStack
 from pvfiblets.slices.frames import ORIENTATIONS
 
@@ -195,6 +196,7 @@ class Workspace:
             renderer.SetDraw(name in places)
             renderer.SetInteractive(name in places)
             renderer.SetViewport(*places.get(name, (0.0, 0.0, 0.001, 0.001)))
+        show_seams(self._plotter, places.values())
 
     @property
     def active(self) -> SliceLayer:
