@@ -61,9 +61,10 @@ def add_page(commands: Any) -> None:
 
 def add_serve(commands: Any) -> None:
     """``serve``."""
-    parser = commands.add_parser("serve", help="explore files in a browser; this machine draws")
+    parser = commands.add_parser("serve", help="explore files in a browser")
     parser.description = (
-        "Serve FILEs to browsers. This machine draws and sends pictures; browsers need nothing installed. By default "
+        "Serve FILEs to browsers. This machine draws and sends pictures, or the browser draws; browsers need nothing "
+        "installed. By default "
         "only this machine can connect, and must show a token that is printed to the terminal."
     )
     add = parser.add_argument
@@ -104,7 +105,13 @@ def add_serve(commands: Any) -> None:
     _look(parser)
     _antialias(parser)
     add("--codec", choices=("jpeg", "png", "webp"), default="jpeg", help="how pictures travel (default: %(default)s)")
-    add("--rendering", choices=("server", "client"), default="server", help="who draws: only the server can")
+    add(
+        "--draw",
+        choices=("auto", "here", "there"),
+        default="auto",
+        help="who draws: here this machine, there the browser where it can; auto: browsers with a graphics card, of "
+        "scenes that are sent within 64 MB (default: %(default)s)",
+    )
     add("--origin", action="append", default=[], metavar="URL", help="an address by which a proxy serves this server")
     add(
         "--proxy",

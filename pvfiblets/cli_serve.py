@@ -32,7 +32,7 @@ def serve(
     look: str | None,
     antialias: str | int | None,
     cluster: str | None,
-    rendering: str,
+    draw: str,
     origin: list[str],
     proxy: list[str],
     connections: int,
@@ -42,11 +42,6 @@ def serve(
     from pvfiblets.web.options import MEBIBYTE, Options, chosen_memory
     from pvfiblets.web.tokens import VARIABLE, chosen_token
 
-    if rendering != "server":
-        raise ValueError(
-            f"--rendering {rendering}: browsers cannot run the shaders that fiblets are drawn with and would leave "
-            "them out or distort them without a word, so the server draws; leave --rendering out"
-        )
     options = Options(
         files=[os.path.abspath(path) for path in paths],  # noqa: PTH100 - links are kept, for the names' sake
         volume=[os.path.abspath(path) for path in volume],  # noqa: PTH100
@@ -62,6 +57,7 @@ def serve(
         upload=upload * MEBIBYTE,
         memory=chosen_memory(memory, 1 if shared else limit),
         codec=codec,
+        draw=draw,
         look=look,
         antialias=antialias,
         cluster=cluster if cluster is None or "://" in cluster else os.path.abspath(cluster),  # noqa: PTH100

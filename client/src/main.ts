@@ -101,4 +101,6 @@ async function start(): Promise<void> {
   }
 }
 
-start().catch(fail);
+// The served page, which has no scene of its own, takes what it draws with from here (pvfiblets/web/client/there.js).
+(window as unknown as { pvfibletsPage: unknown }).pvfibletsPage = { Renderer, attachMouse, readArchive };
+if (document.getElementById("scene")) start().catch(fail);

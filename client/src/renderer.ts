@@ -30,11 +30,12 @@ export class Lines {
   table: WebGLTexture | null = null;
   tableRange: number[] = [0, 1, 1, 1];
   kept: WebGLTexture | null = null;
+  chosen: WebGLTexture | null = null;
   shownValues: [number, number] = [1, 0];
   marked = ALL_ONES;
 
-  constructor(private gl: GL, readonly layer: FibletLayer, readonly index: number, data: Uint8Array[], archive: Archive) {
-    this.set = new FibletSet(gl, archive);
+  constructor(private gl: GL, readonly layer: FibletLayer, readonly index: number, data: Uint8Array[], archive: Archive, set?: FibletSet) {
+    this.set = set ?? new FibletSet(gl, archive);
     this.set.advance(archive.ready);
     this.model = new Float64Array(layer.matrix ?? identity());
     const { colours } = layer;
@@ -42,6 +43,12 @@ export class Lines {
     if (colours.data !== undefined) this.colours = rows(gl, "rgba8", data[colours.data], "colours");
     if (colours.table !== undefined) [this.table, this.tableRange] = lookUpTable(gl, fromBase64(colours.table), colours.clim!, !!colours.log);
     if (layer.kept !== undefined) this.keep(data[layer.kept]);
+    if (layer.chosen) this.chosen = rows(gl, "r8ui", data[layer.chosen.data], "streamlines");
+  }
+
+  /** Give back all but the set. */
+  release(): void {
+    for (const texture of [this.values?.texture, this.colours, this.table, this.kept, this.chosen]) if (texture) this.gl.deleteTexture(texture);
   }
 
   get byPoint(): boolean {
@@ -104,7 +111,7 @@ export class Renderer {
   private still = 0;
   private waiting: (() => void)[] = [];
 
-  constructor(readonly canvas: HTMLCanvasElement, readonly scene: Scene, private data: Uint8Array[], private archives: Map<number, Archive>) {
+  constructor(readonly canvas: HTMLCanvasElement, public scene: Scene, private data: Uint8Array[], private archives: Map<number, Archive>) {
     this.camera = new Camera(structuredClone(scene.camera));
     const gl = canvas.getContext("webgl2", { alpha: false, antialias: false, depth: false, preserveDrawingBuffer: false, powerPreference: "high-performance" });
     if (!gl) throw new GraphicsError("This browser has no WebGL 2, which the page draws with. Turn on graphics acceleration in its settings, or open the page in another browser.");
@@ -128,7 +135,7 @@ export class Renderer {
 
   /** Make all that lies on the graphics card, at first and when a lost context comes back. */
   private begin(): void {
-    const { gl, scene } = this, before = this.lines.splice(0);
+    const { gl } = this, before = this.lines.splice(0);
     this.programs.clear();
     this.rest = null;
     this.textures = {};
@@ -137,19 +144,42 @@ export class Renderer {
     this.surfaces.length = this.images.length = 0;
     this.frameBlock = new UniformBlock(gl, "Frame");
     this.clipBlock = new UniformBlock(gl, "ClipPlanes");
-    scene.layers.forEach((layer) => {
-      if (layer.kind === "surface") this.surfaces.push(new Surface(gl, layer, this.data));
-      else if (layer.kind === "image") this.images.push(new ImageSlice(gl, layer, this.data));
-      else this.lines.push(new Lines(gl, layer, this.lines.length, this.data, this.archives.get(layer.data)!));
-    });
-    const budget = Math.min(1024, 128 * ((navigator as { deviceMemory?: number }).deviceMemory ?? 4)) * 2 ** 20;
-    for (const lines of this.lines) lines.set.budget = budget / this.lines.length;
+    this.fill(new Map(), new Map());
     before.forEach((old, i) => {
       const now = this.lines[i];
       now.shownValues = old.shownValues;
       now.marked = old.marked;
     });
     this.restored?.();
+    this.change();
+  }
+
+  private fill(sets: Map<Uint8Array, FibletSet>, surfaces: Map<string, Surface>): void {
+    const { gl, scene } = this;
+    scene.layers.forEach((layer) => {
+      if (layer.kind === "surface") this.surfaces.push(surfaces.get(JSON.stringify(layer)) ?? new Surface(gl, layer, this.data));
+      else if (layer.kind === "image") this.images.push(new ImageSlice(gl, layer, this.data));
+      else this.lines.push(new Lines(gl, layer, this.lines.length, this.data, this.archives.get(layer.data)!, sets.get(this.data[layer.data])));
+    });
+    const budget = Math.min(1024, 128 * ((navigator as { deviceMemory?: number }).deviceMemory ?? 4)) * 2 ** 20;
+    for (const lines of this.lines) lines.set.budget = budget / this.lines.length;
+  }
+
+  /** Show another scene from where the camera is; what has the same data stays on the graphics card. */
+  update(scene: Scene, data: Uint8Array[], archives: Map<number, Archive>): void {
+    if (this.gl.isContextLost()) return;
+    const { data: old } = this, lines = this.lines.splice(0), surfaces = this.surfaces.splice(0), images = this.images.splice(0);
+    const sets = new Map(lines.map((one) => [old[one.layer.data], one.set] as const));
+    const same = (one: Surface): boolean => [one.layer.places, one.layer.triangles, one.layer.normals, one.layer.colours, one.layer.values]
+      .every((at) => at === undefined || old[at] === data[at]);
+    this.frame = this.rest = null;
+    this.scene = scene;
+    this.data = data;
+    this.archives = archives;
+    this.fill(sets, new Map(surfaces.filter(same).map((one) => [JSON.stringify(one.layer), one] as const)));
+    for (const one of [...lines, ...images]) one.release();
+    for (const { set } of lines) if (!this.lines.some((one) => one.set === set)) set.release();
+    for (const one of surfaces) if (!this.surfaces.includes(one)) one.release();
     this.change();
   }
 
@@ -414,11 +444,12 @@ export class Renderer {
       if (!lines.layer.visible) continue;
       const { layer } = lines, { colours } = layer, width = layer.line_width * this.ratio;
       narrower = Math.max(narrower, 1 - Math.min(1, width));
-      resolve.textures({ texels: t.texels, depths: t.depths, colours: lines.byPoint ? null : lines.colours, table: lines.table });
+      resolve.textures({ texels: t.texels, depths: t.depths, colours: lines.byPoint ? null : lines.colours, table: lines.table, chosen: lines.chosen ?? t.texels });
       resolve.uints({ layer: lines.index * 2 ** 28, marked: lines.marked });
       resolve.ints({ mode: MODES[colours.mode], logarithm: colours.log ? 1 : 0, light: LIGHTS[layer.light] });
       resolve.set({
         one_colour: colours.colour ?? [1, 1, 1], table_range: lines.tableRange, reflects: layer.reflects, sheen: layer.sheen,
+        chosen_colour: layer.chosen?.colour ?? [0, 0, 0, 0], faded: layer.chosen?.faded ?? [0, 0, 0, 0],
         data_to_view: linear(product(drawn.view, lines.model)), pixel_to_view: new Float32Array(back), picture: [this.width, this.height],
       });
       this.setLights(resolve, drawn.view);

@@ -50,6 +50,7 @@ export interface FibletLayer extends Layer {
   reflects: [number, number, number, number];
   sheen: Vec;
   kept?: number;        // data: a byte for each streamline
+  chosen?: { data: number; colour: [number, number, number, number]; faded: [number, number, number, number] };  // a byte for each streamline; colours, and how much of them
   groups?: { name: string; colour?: Vec; data: number }[];
   controls?: Control[];
 }

@@ -77,6 +77,12 @@ export class Surface {
     gl.bindVertexArray(null);
   }
 
+  release(): void {
+    for (const buffer of this.buffers) this.gl.deleteBuffer(buffer);
+    this.gl.deleteVertexArray(this.array);
+    if (this.table) this.gl.deleteTexture(this.table);
+  }
+
   /** Distance of its middle along the view, for the order of translucent ones. */
   depth(view: Mat): number {
     const b = this.layer.bounds, middle: Vec = [(b[0] + b[1]) / 2, (b[2] + b[3]) / 2, (b[4] + b[5]) / 2];
@@ -94,6 +100,10 @@ export class ImageSlice {
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, width, height, 0, gl.RGBA, gl.UNSIGNED_BYTE, data[layer.pixels]);
     for (const name of ["TEXTURE_MIN_FILTER", "TEXTURE_MAG_FILTER"] as const) gl.texParameteri(gl.TEXTURE_2D, gl[name], gl.NEAREST);
     for (const name of ["TEXTURE_WRAP_S", "TEXTURE_WRAP_T"] as const) gl.texParameteri(gl.TEXTURE_2D, gl[name], gl.CLAMP_TO_EDGE);
+  }
+
+  release(): void {
+    this.gl.deleteTexture(this.texture);
   }
 
   draw(program: Program, drawn: Drawn): void {

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 __all__ = ["CameraPlace", "Light", "PageScene", "encoded", "fiblet_layer"]
 
+Made = TypeVar("Made")
 Vector = tuple[float, float, float]
 Bounds = tuple[float, float, float, float, float, float]
 
@@ -107,6 +108,10 @@ class PageScene:
         self.blobs.append(data if isinstance(data, bytes) else np.ascontiguousarray(data).tobytes())
         return len(self.blobs) - 1
 
+    def once(self, what: tuple[Any, ...], make: Callable[[], Made]) -> Made:  # noqa: ARG002 - for those that keep it
+        """Return what takes long to make of some things; scenes that are made again and again keep it."""
+        return make()
+
     def add_layer(self, layer: dict[str, Any], bounds: Sequence[float]) -> None:
         """Show something that lies within bounds."""
         self.layers.append(layer)
@@ -189,7 +194,7 @@ def fiblet_layer(
         "kind": "fiblets",
         "name": name,
         "visible": True,
-        "data": scene.add_blob(fiblet_bytes(fiblets, keep)),
+        "data": scene.add_blob(scene.once(("bytes", fiblets, keep), lambda: fiblet_bytes(fiblets, keep))),
         "colours": colours or {"mode": "direction"},
         "line_width": float(line_width),
         "light": light,

@@ -15,7 +15,9 @@ import numpy.typing as npt
 import pyvista as pv
 
 from pvfiblets.engine.view import MAX_CLIP_PLANES
+from pvfiblets.mappers.engine_mapper import EngineMapper
 from pvfiblets.mappers.fiblets import FibletMapper
+from pvfiblets.mappers.highlight import Highlight
 from pvfiblets.mappers.line_light import LineLight
 from pvfiblets.mappers.scene import to_array, world_planes
 from pvfiblets.page.scene import CameraPlace, Light, PageScene, encoded, fiblet_layer
@@ -28,7 +30,8 @@ if TYPE_CHECKING:
 
 __all__ = ["camera_place", "export_page", "page_and_actors", "page_of"]
 
-_SHOWN_EFFECTS = {"light", "illuminated"}
+_SHOWN_EFFECTS = {"light", "illuminated", "selection"}
+_OPACITY = "layers"
 _SOON = 5_000_000  # points
 MOST_FIBLET_LAYERS = 15
 
@@ -68,25 +71,49 @@ def page_and_actors(plotter: Any, *, title: str | None = None) -> tuple[PageScen
     """Return what `page_of` does, and the names of the actors that the layers are."""
     renderer = plotter.renderer
     said = title or getattr(plotter, "title", None) or "Streamlines"
-    scene = PageScene(str(said), background=_background(renderer))
-    unable: list[str] = []
-    names: list[str] = []
-    for name, actor in _actors(renderer):
-        _add_actor(scene, name, actor, unable)
-        names += [name] * (len(scene.layers) - len(names))
+    scene = PageScene(str(said))
+    unable, names = add_all(scene, plotter)
     if unable:
-        warnings.warn(f"the page leaves out {', '.join(dict.fromkeys(unable))}: it cannot draw them", stacklevel=3)
+        warnings.warn(f"the page leaves out {', '.join(unable)}: it cannot draw them", stacklevel=3)
     if scene.layers:
         if not renderer.camera_set:
             renderer.reset_camera(render=False)
             renderer.camera_set = False
         scene.camera = camera_place(renderer.GetActiveCamera())
+    scene.plain()
+    return scene, names
+
+
+def add_all(scene: PageScene, plotter: Any, *, controls: bool = True) -> tuple[list[str], list[str]]:
+    """Have a page show what a plotter's active renderer shows, but from where.
+
+    Parameters
+    ----------
+    scene : PageScene
+        Without layers.
+    plotter : pyvista.BasePlotter
+    controls : bool
+        Whether numbers go along that the page's reader may choose streamlines by.
+
+    Returns
+    -------
+    unable : list of str
+        What a page cannot show, and which actor has it.
+    names : list of str
+        Of the actors that the layers are.
+    """
+    renderer = plotter.renderer
+    scene.background = _background(renderer)
+    unable: list[str] = []
+    names: list[str] = []
+    for name, actor in _actors(renderer):
+        _add_actor(scene, name, actor, unable, controls=controls)
+        names += [name] * (len(scene.layers) - len(names))
     scene.lights = list(_lights(renderer))
     scene.letters = any(layer["kind"] == "fiblets" for layer in scene.layers)
     picture = getattr(plotter, "picture", None)
     scene.antialias = picture is None or picture.antialias != "off"
-    scene.plain()
-    return scene, names
+    return list(dict.fromkeys(unable)), names
 
 
 def _actors(renderer: Any) -> Iterator[tuple[str, Any]]:
@@ -95,10 +122,12 @@ def _actors(renderer: Any) -> Iterator[tuple[str, Any]]:
             yield name, actor
 
 
-def _add_actor(scene: PageScene, name: str, actor: Any, unable: list[str]) -> None:
+def _add_actor(scene: PageScene, name: str, actor: Any, unable: list[str], *, controls: bool) -> None:
     mapper = actor.GetMapper() if hasattr(actor, "GetMapper") else None
     if isinstance(mapper, FibletMapper):
-        _add_fiblets(scene, name, actor, mapper, unable)
+        _add_fiblets(scene, name, actor, mapper, unable, controls=controls)
+    elif isinstance(mapper, EngineMapper):  # its data are no triangles
+        unable.append(f"{name!r}")
     elif getattr(actor, "pixels", None) is not None and hasattr(actor, "place"):
         add_image(scene, name, actor)
     elif isinstance(mapper, pv.mapper.DataSetMapper) or (mapper is not None and mapper.IsA("vtkPolyDataMapper")):
@@ -108,7 +137,9 @@ def _add_actor(scene: PageScene, name: str, actor: Any, unable: list[str]) -> No
         unable.append(f"{name!r}")
 
 
-def _add_fiblets(scene: PageScene, name: str, actor: Any, mapper: FibletMapper, unable: list[str]) -> None:
+def _add_fiblets(
+    scene: PageScene, name: str, actor: Any, mapper: FibletMapper, unable: list[str], *, controls: bool
+) -> None:
     fiblets = mapper.fiblets
     if fiblets is None or not fiblets.n_points:
         return
@@ -116,9 +147,11 @@ def _add_fiblets(scene: PageScene, name: str, actor: Any, mapper: FibletMapper, 
         unable.append(f"{name!r}, one more than {MOST_FIBLET_LAYERS} sets of streamlines")
         return
     effects = mapper.effects
-    unable += [f"{effect} of {name!r}" for effect in effects if effect not in _SHOWN_EFFECTS]
-    if actor.GetProperty().GetOpacity() < 1.0:
+    unable += [f"{effect} of {name!r}" for effect in effects if effect not in (*_SHOWN_EFFECTS, _OPACITY)]
+    if actor.GetProperty().GetOpacity() < 1.0 or _OPACITY in effects:
         unable.append(f"the opacity of {name!r}")
+    if len(getattr(actor, "picking_layers", ())) > 1:
+        unable.append(f"the width or the tubes of what is selected of {name!r}")
     filtering = mapper.filtering
     if filtering is not None and filtering.points is not None:
         unable.append(f"the choice of points of {name!r}")
@@ -129,6 +162,13 @@ def _add_fiblets(scene: PageScene, name: str, actor: Any, mapper: FibletMapper, 
     more: dict[str, Any] = {}
     if filtering is not None and filtering.streamlines is not None:
         more["kept"] = scene.add_blob(np.asarray(filtering.streamlines, np.uint8))
+    highlight = effects.get("selection")
+    if isinstance(highlight, Highlight):
+        more["chosen"] = {
+            "data": scene.add_blob(highlight.selected.astype(np.uint8)),
+            "colour": (0.0, 0.0, 0.0, 0.0) if highlight.color is None else (*highlight.color[:3], 1.0),
+            "faded": (*(highlight.faded or scene.background[0])[:3], highlight.dim),
+        }
     planes = world_planes(mapper)
     if mapper.region is not None:
         from pvfiblets.engine.regions.clip_planes import planes_of
@@ -139,7 +179,8 @@ def _add_fiblets(scene: PageScene, name: str, actor: Any, mapper: FibletMapper, 
             unable.append(f"the cut of {name!r} by what is no plane")
     if len(planes):
         more["planes"] = planes.tolist()
-    more["controls"] = _controls(scene, fiblets, actor, mapper.colouring)
+    if controls:
+        more["controls"] = _controls(scene, fiblets, actor, mapper.colouring)
     reflects, sheen = reflects_of(actor.GetProperty())
     place = to_array(actor.GetMatrix())
     matrix = None if np.array_equal(place, np.eye(4)) else place
@@ -195,13 +236,18 @@ def _colours(scene: PageScene, fiblets: Any, colouring: Colouring) -> tuple[Any,
     if mode == "point_scalar":
         from pvfiblets.plotting.page_values import with_values
 
-        fiblets, name = with_values(fiblets, colouring.source)
+        bare = fiblets
+        fiblets, name = scene.once(
+            ("values", bare, colouring.source), lambda: with_values(bare, colouring.source)
+        )
         said = {"mode": "value", "values": name, "table": encoded(colouring.table()), "clim": colouring.clim}
         return fiblets, {**said, "log": colouring.log_scale}, (name,)
     if mode == "point_packed":
         from pvfiblets.plotting.page_values import colours
 
-        return fiblets, {"mode": "point", "data": scene.add_blob(colours(fiblets, str(colouring.source)))}, ()
+        source = str(colouring.source)
+        packed = scene.once(("colours", fiblets, source), lambda: colours(fiblets, source).tobytes())
+        return fiblets, {"mode": "point", "data": scene.add_blob(packed)}, ()
     return fiblets, {"mode": "solid", "colour": colouring.color}, ()
 
 
@@ -239,21 +285,23 @@ def camera_place(camera: Any) -> CameraPlace:
 
 
 def _lights(renderer: Any) -> Iterator[Light]:
-    """Yield the lights that are on; those of the camera as they stand to it."""
-    turn = to_array(renderer.GetActiveCamera().GetViewTransformMatrix())[:3, :3]
+    """Yield the lights that are on; those of the camera as they stand to it, which their own coordinates say."""
     lights = renderer.GetLights()
     for light in (lights.GetItemAsObject(i) for i in range(lights.GetNumberOfItems())):
         intensity = light.GetIntensity()
         if not light.GetSwitch() or intensity <= 0.0:
             continue
         red, green, blue = (intensity * part for part in light.GetDiffuseColor())
-        place, aim = np.array(light.GetTransformedPosition()), np.array(light.GetTransformedFocalPoint())
+        if light.LightTypeIsCameraLight():
+            place, aim = np.array(light.GetPosition()), np.array(light.GetFocalPoint())
+        else:
+            place, aim = np.array(light.GetTransformedPosition()), np.array(light.GetTransformedFocalPoint())
         towards = place - aim
         towards = towards / (np.linalg.norm(towards) or 1.0)
         if light.LightTypeIsHeadlight():
             yield Light((red, green, blue), view=(0.0, 0.0, 1.0))
         elif light.LightTypeIsCameraLight():
-            x, y, z = (float(v) for v in turn @ towards)
+            x, y, z = (float(v) for v in towards)
             yield Light((red, green, blue), view=(x, y, z))
         else:
             x, y, z = (float(v) for v in (place if light.GetPositional() else towards))

@@ -17,6 +17,7 @@ from trame.app import TrameApp
 
 from pvfiblets.web import describe, layout
 from pvfiblets.web.atlas_tab import AtlasActions
+from pvfiblets.web.browser_drawing import BrowserDrawing
 from pvfiblets.web.bundle_finding import FindingActions
 from pvfiblets.web.bundle_measures import MeasureActions
 from pvfiblets.web.bundles_tab import BundleActions
@@ -39,6 +40,7 @@ from pvfiblets.web.rpc_allowlist import EXPECTED, AllowedCalls, sentence
 from pvfiblets.web.scene import Scene
 from pvfiblets.web.scratch import Notes
 from pvfiblets.web.selection_tab import SelectionActions
+from pvfiblets.web.sent_scene import URL
 from pvfiblets.web.slices_tab import SliceActions
 from pvfiblets.web.slicing import VIEWS, ready_views
 from pvfiblets.web.sliders import SlideActions
@@ -49,7 +51,8 @@ logger = logging.getLogger("pvfiblets.web")
 
 CLIENT = Path(__file__).with_name("client")
 CLIENT_URL = "__pvfiblets"
-SCRIPTS = ("pvfiblets.js", "fields.js", "regions.js", "slices.js", "painting.js", "matrix.js", "connection.js")
+SCRIPTS = ("pvfiblets.js", "fields.js", "regions.js", "slices.js", "painting.js", "matrix.js", "connection.js",
+           "there.js")  # fmt: skip
 
 
 class Explorer(TrameApp):
@@ -95,8 +98,10 @@ class Explorer(TrameApp):
             pending=self._pending,
             failed=lambda error: self.complain(f"The picture could not be drawn: {error}"),
             drawn=self._drawn,
+            elsewhere=lambda: self.browser.draws(),
             pane_at=self.scene.slicing.pane_at,
         )
+        self.browser = BrowserDrawing(self)
         self._charts = describe.Charts(self.scene)
         self.camera = CameraActions(self)
         self.cuts = CutActions(self)
@@ -162,6 +167,8 @@ class Explorer(TrameApp):
             "paint": self.painting.paint,
             "paint_end": self.painting.end,
             "release": self.sliders.release,
+            "there_ready": self.browser.report,
+            "there_camera": self.browser.moved,
         }
         for name, function in named.items():
             self.server.controller.trigger(name)(function)
@@ -178,6 +185,8 @@ class Explorer(TrameApp):
         router.add_get("/index.html", index)
         router.add_post("/upload", self.files.receive)
         router.add_get("/download/{number}", self.exports.send)
+        router.add_get(f"{URL}/page.js", self.browser.send_script)
+        router.add_get(f"{URL}/{{name}}", self.browser.send)
 
     def close(self) -> None:
         """Let go of everything."""
@@ -352,7 +361,9 @@ class Explorer(TrameApp):
             left_out = self.scene.bars.left_out
             self.page.no_room = f"No room for the colours of {', '.join(left_out)}" if left_out else ""
             milliseconds = self.stream.milliseconds
-            if milliseconds is not None and not self.stream.moving:
+            if self.browser.on:
+                self.page.frame = "drawn by this browser"
+            elif milliseconds is not None and not self.stream.moving:
                 self.page.frame = f"{milliseconds:.0f} ms a frame"
                 self._show_info()
 

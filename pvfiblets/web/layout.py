@@ -50,6 +50,14 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
 .pv-chosen-cell { box-shadow: 0 0 0 2px #3df, 0 0 0 3.5px #000 }
 .pv-view img { width: 100%; height: 100%; object-fit: contain; display: block;
   user-select: none; -webkit-user-drag: none }
+#pv-there { position: absolute; inset: 0; width: 100%; height: 100%; display: block; touch-action: none; outline: none }
+#pv-there-bars { position: absolute; right: 16px; bottom: 32px; display: flex; gap: 14px; align-items: flex-end;
+  pointer-events: none; color: #fff; font: 12px/1.3 Roboto, sans-serif; font-variant-numeric: tabular-nums }
+.pv-view[data-ground=light] #pv-there-bars { color: #000 }
+.pv-there-bar div { display: flex; gap: 6px } .pv-there-bar { margin: 0 }
+.pv-there-bar canvas { width: 14px; height: min(220px, 30vh); border: .5px solid #8888; image-rendering: pixelated }
+.pv-there-bar ol { list-style: none; margin: 0; padding: 0; display: flex; flex-direction: column;
+  justify-content: space-between }
 .pv-edge { position: absolute; color: #fff; font: 600 16px Roboto, sans-serif; pointer-events: none;
   text-shadow: 0 0 3px #000, 0 0 3px #000 }
 .pv-view[data-ground=light] :is(.pv-edge, .pv-status, .pv-notes) { color: #000;
@@ -302,6 +310,11 @@ def _view(app: Any) -> None:
             style="position: absolute; inset: 0; width: 100%; height: 100%",
         )
         area.add_view_handler(app.stream)
+        html.Canvas(  # of client/there.js
+            id="pv-there", tabindex="0", role="img", style="visibility: hidden",
+            aria_label="The scene. Arrow keys turn it, plus and minus zoom, Shift with arrows moves it.",
+        )  # fmt: skip
+        html.Div(id="pv-there-bars")
         with html.Div(  # over the 3-D view, wherever that is
             v_if="show_regions && marks.length && slicing.boxes.every((b) => b.name !== '3d') === !slicing.shown",
             classes="pv-marks", id="pv-marks", style=(f"({OVER_3D})",),
@@ -341,7 +354,7 @@ def _view(app: Any) -> None:
                 ):  # fmt: skip
                     v3.VIcon(icon, size=20)
                     v3.VTooltip(hint, activator="parent", location="right")
-        html.Div("{{ frame }}", classes="pv-status")
+        html.Div("{{ frame }}", classes="pv-status", title=("drawing",))
         with html.Div(classes="pv-notes"):
             with html.Div(v_if="measured.length", classes="pv-measured"):
                 v3.VBtn(

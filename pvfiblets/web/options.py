@@ -17,6 +17,7 @@ SMALLEST_MEMORY = 640 * MEBIBYTE
 SHORTEST_TOKEN = 8  # characters of a token that a person chose
 FEWEST_CONNECTIONS = 8  # six at once for a page's files, its WebSocket, and one to spare
 CODECS = ("jpeg", "png", "webp")
+DRAW = ("auto", "here", "there")
 
 
 @dataclass(frozen=True)
@@ -45,6 +46,8 @@ class Options:
         The greatest size of an uploaded file, in bytes.
     codec : str
         How pictures travel: 'jpeg', 'png' or 'webp'.
+    draw : str
+        Who draws: 'here' this server, 'there' browsers where they can, 'auto' those of a graphics card.
     look : str or None
         That lines begin with, as of ``plotter.add_fiblets``.
     antialias : str, int or None
@@ -74,6 +77,7 @@ class Options:
     timeout: float = 300.0
     upload: int = 2048 * MEBIBYTE
     codec: str = "jpeg"
+    draw: str = "auto"
     look: str | None = None
     antialias: str | int | None = None
     cluster: str | None = None
@@ -121,6 +125,11 @@ class Options:
         check_look("--look", self.look)
         if self.codec not in CODECS:
             raise ValueError(f"--codec {self.codec!r} is none of {', '.join(CODECS)}")
+        if self.draw not in DRAW:
+            raise ValueError(f"--draw {self.draw!r} is none of {', '.join(DRAW)}")
+        for name, given in (("--shared", self.shared), ("--cluster", self.cluster is not None)):
+            if given and self.draw == "there":
+                raise ValueError(f"--draw there: with {name} the server draws; leave one of them out")
         if self.token is None and not self.on_loopback:
             raise ValueError(
                 f"--token none: {self.host} can be reached from other machines, so a token is needed; "

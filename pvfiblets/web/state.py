@@ -88,6 +88,9 @@ class Page:
     )
     info: list[Record] = field(default_factory=list)
     frame: str = ""
+    there: Record = field(default_factory=dict)  # the scene, where the browser draws it (client/there.js)
+    there_camera: Record = field(default_factory=dict)  # where from
+    drawing: str = ""  # why the server draws
 
     download: Record = field(default_factory=dict)  # the latest export
     job: Record = field(default_factory=dict)

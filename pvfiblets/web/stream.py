@@ -59,6 +59,8 @@ class PictureStream:
         Told of an error while drawing.
     drawn : callable
         Called after each frame.
+    elsewhere : callable
+        Asked before each frame: whether somebody else draws, so that no picture is needed.
     pane_at : callable
         From a pixel to the pane of slices that it is in, which two fingers move; None elsewhere.
     """
@@ -74,6 +76,7 @@ class PictureStream:
         pending: Callable[[], int] = lambda: 0,
         failed: Callable[[Exception], None] = lambda _: None,
         drawn: Callable[[], None] = lambda: None,
+        elsewhere: Callable[[], bool] = lambda: False,
         pane_at: Callable[[float, float], Any] = lambda _x, _y: None,
     ) -> None:
         from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
@@ -90,6 +93,8 @@ class PictureStream:
         self._pending = pending
         self._failed = failed
         self._after = drawn
+        self._elsewhere = elsewhere
+        self._stale = False  # whether something has changed that was not drawn
         self._streamer: Any = None
         self._wanted = asyncio.Event()
         self._moved = 0.0
@@ -197,10 +202,15 @@ class PictureStream:
                 self._failed(error)
 
     def settle(self) -> tuple[int, int]:
-        """Have the whole picture drawn, if fewer pixels were drawn last, and return its width and height."""
-        if self._level is not LEVELS[0]:
+        """Have the whole picture drawn, if it is not or fewer pixels were, and return its width and height."""
+        if self._stale or self._level is not LEVELS[0]:
             self._draw()
         return self._size
+
+    def leave(self) -> None:
+        """Take note of a change that somebody else draws."""
+        self._stale = True
+        self._after()
 
     @property
     def moving(self) -> bool:
@@ -271,7 +281,10 @@ class PictureStream:
             self._wanted.clear()
             started = time.monotonic()
             try:
-                await self._frame()
+                if self._elsewhere():
+                    self.leave()
+                else:
+                    await self._frame()
             except Exception as error:  # the next is drawn all the same
                 logger.exception("drawing failed")
                 self._failed(error)
@@ -376,6 +389,7 @@ class PictureStream:
             self._resize(level)
         started = time.perf_counter()
         self._plotter.render()
+        self._stale = False
         pixels = self._read()
         seconds = time.perf_counter() - started
         self._pace.took(level, seconds)

@@ -21,6 +21,9 @@ uniform vec3 one_colour;
 uniform int light;
 uniform vec4 reflects;                 // ambient, diffuse, specular, power
 uniform vec3 sheen;                    // colour of highlights
+uniform highp usampler2D chosen;       // by streamline: whether it is selected (shaders/resolve/highlight.glsl)
+uniform vec4 chosen_colour;            // of those selected, and how much of it
+uniform vec4 faded;                    // of all others
 uniform uint marked;                   // the streamline that was picked; all ones: none
 uniform mat3 data_to_view;
 uniform mat4 pixel_to_view;
@@ -41,6 +44,11 @@ void main() {
     else if (mode == 3) own = of_value(uintBitsToFloat(word.w));
     else if (mode == 4) own = unpackUnorm4x8(word.w);
     if (own.a == 0.0) discard;
+    if (chosen_colour.a + faded.a > 0.0) {
+        uint is_chosen = texelFetch(chosen, ivec2(int(streamline & 4095u), int(streamline >> 12u)), 0).r;
+        vec4 mark = is_chosen != 0u ? chosen_colour : faded;
+        own.rgb = mix(own.rgb, mark.rgb, mark.a);
+    }
     vec3 lit = own.rgb;
     if (light != 0) {
         vec2 ndc = 2.0 * (vec2(pixel) + 0.5) / picture - 1.0;

@@ -106,7 +106,10 @@ def test_what_a_page_cannot_draw_is_named(fiblets, tmp_path):
     plotter = pv.Plotter(off_screen=True, window_size=(100, 80))
     actor = plotter.add_fiblets(fiblets, name="lines")
     actor.tube_radius = 0.4
-    with pytest.warns(UserWarning, match="the page leaves out tubes of 'lines': it cannot draw them"):
+    vessel = pv.Spline([(0, -10, 0), (20, -14, 5), (40, -10, 0)], 9)
+    vessel["radius"] = np.linspace(1.0, 3.0, 9)
+    plotter.add_spline_tubes(vessel, name="vessel")
+    with pytest.warns(UserWarning, match="the page leaves out tubes of 'lines', 'vessel': it cannot draw them"):
         plotter.fiblets.export_page(tmp_path / "figure.html")
     plotter.close()
 

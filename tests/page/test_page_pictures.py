@@ -65,8 +65,10 @@ def test_page_shows_what_the_engine_shows(case, plotter, fiblets, visit, tmp_pat
     assert wrong < 0.01
 
 
-def test_page_cuts_moves_and_leaves_out_as_the_actor_does(plotter, fiblets, visit, tmp_path):
+def test_page_cuts_moves_selects_and_leaves_out_as_the_actor_does(plotter, fiblets, visit, tmp_path):
     actor = plotter.add_fiblets(fiblets, line_width=3.0)
+    actor.select(range(60))
+    actor.selection_style(color="gold", dim=0.6)
     actor.criterion("number", (20, 140))
     plane = vtkPlane()
     plane.SetNormal(1.0, 0.3, 0.0)

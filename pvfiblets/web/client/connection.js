@@ -22,6 +22,11 @@
     const copy = app.cloneNode(true);
     const typed = app.querySelectorAll("input");
     copy.querySelectorAll("input").forEach((input, k) => { input.value = typed[k].value; });
+    const here = window.pvfibletsThere, canvas = copy.querySelector("#pv-there");
+    if (here?.canvas.isConnected && canvas?.style.visibility === "visible") { // a copy of it is empty
+      Object.assign(canvas, { width: here.width, height: here.height });
+      canvas.getContext("2d").putImageData(new ImageData(new Uint8ClampedArray(here.pixels()), here.width), 0, 0);
+    }
     for (const one of [copy, ...copy.querySelectorAll("[id]")]) one.removeAttribute("id");
     copy.inert = true;
     copy.style.cssText = "position:absolute;inset:0;filter:brightness(.4) saturate(.5)";
@@ -114,7 +119,8 @@
     await window.trame.connect();
     const end = Date.now() + 20000;
     // The new page's picture takes the place of the old one's.
-    while (!document.querySelector("#app .pv-view img[src^=blob]") && Date.now() < end) await new Promise((done) => setTimeout(done, 50));
+    const shown = "#app .pv-view img[src^=blob], #app #pv-there[style*=visible]";
+    while (!document.querySelector(shown) && Date.now() < end) await new Promise((done) => setTimeout(done, 50));
     clearInterval(one.timer);
     one.parts.over.remove();
     lost = null;

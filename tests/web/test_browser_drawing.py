@@ -1,0 +1,213 @@
+"""Scenes that the browser draws (``serve --draw there``), in Chromium with WebGL 2 on the processor."""
+
+from __future__ import annotations
+
+import base64
+import io
+import json
+from urllib.parse import urlsplit
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from tests.page.conftest import WEBGL
+from tests.page.pages import differing
+from tests.web.browsing import FLAGS, Visit, launched
+from tests.web.cable import Cable
+
+
+class There(Visit):
+    """A page that draws by itself."""
+
+    def ready(self):
+        self.page.wait_for_selector("#pv-there", state="attached")
+        self.wait(self.draws, "a picture that the browser draws")
+        return self
+
+    def draws(self):
+        return self.page.evaluate(
+            "Boolean(window.pvfibletsThere?.frames && trame.state.get('there').on"
+            " && document.querySelector('#pv-there').style.visibility === 'visible')"
+        )
+
+    def drawn(self):
+        """Return what the browser has drawn, finished."""
+        self.page.wait_for_timeout(100)  # what the server says last is on its way
+        width, data = self.page.evaluate(
+            """async () => {
+                await pvfibletsThere.settled();
+                const bytes = pvfibletsThere.pixels();
+                let text = '';
+                for (let i = 0; i < bytes.length; i += 32768)
+                    text += String.fromCharCode(...bytes.subarray(i, i + 32768));
+                return [pvfibletsThere.width, btoa(text)];
+            }"""
+        )
+        return np.frombuffer(base64.b64decode(data), np.uint8).reshape(-1, width, 4)[..., :3].astype(np.int16)
+
+    def of_server(self):
+        """Return what the server draws of the same scene."""
+        data = self.page.evaluate(
+            """async () => {
+                const found = await trame.trigger('picture');
+                const bytes = new Uint8Array(found instanceof Blob ? await found.arrayBuffer() : found);
+                let text = '';
+                for (let i = 0; i < bytes.length; i += 32768)
+                    text += String.fromCharCode(...bytes.subarray(i, i + 32768));
+                return btoa(text);
+            }"""
+        )
+        return np.asarray(Image.open(io.BytesIO(base64.b64decode(data))).convert("RGB")).astype(np.int16)
+
+    def session(self):
+        return json.loads(self.page.evaluate("trame.trigger('save_session')"))
+
+    def sends(self, act):
+        """Return the bytes of the largest message that comes while something is done, and what is fetched."""
+        before, fetched = len(self.received), len(self.requests)
+        act()
+        self.drawn()
+        return max(self.received[before:], default=0), [url for url in self.requests[fetched:] if "/there/" in url]
+
+
+@pytest.fixture(scope="module")
+def browser():
+    """Return Chromium with WebGL 2, or skip where there is none."""
+    with launched([*(flag for flag in FLAGS if flag != "--disable-gpu"), *WEBGL]) as found:
+        yield found
+
+
+@pytest.fixture(scope="module")
+def server(served):
+    """Return the server of all tests here."""
+    return served("lines.fiblets", "--mesh", "ball.ply", "--draw", "there")
+
+
+@pytest.fixture(scope="module")
+def cable(server):
+    """Return the cable by which the page reaches it."""
+    cable = Cable(urlsplit(server.base).port)
+    yield cable
+    cable.close()
+
+
+@pytest.fixture(scope="module")
+def _page(browser, server, cable):
+    found = There(browser, server)
+    found.page.goto(server.url.replace(str(urlsplit(server.base).port), str(cable.port), 1))
+    yield found.ready().remember()
+    found.close()
+
+
+@pytest.fixture
+def here(_page):
+    """Return the page, which tests share; each finds it as the first one did."""
+    yield _page
+    errors, _page.errors[:] = list(_page.errors), []
+    assert not errors
+    _page.page.evaluate("(text) => trame.trigger('load_session', [text])", _page.begun)
+    _page.page.evaluate("trame.state.update({tool: 'rotate', dialog: ''})")
+
+
+def agrees(page):
+    """Whether the browser's picture is the server's, of something."""
+    wrong, drawn = differing(page.drawn(), page.of_server())
+    assert drawn > 0.01
+    return wrong < 0.02  # of which most are edges of the ball, which VTK has smooth
+
+
+def test_lines_and_surfaces_are_the_servers(here):
+    assert agrees(here)
+    assert here.state("frame") == "drawn by this browser"
+    assert not here.page.locator("#pv-view img[src^=blob]").count()  # of the server there is no picture
+
+
+def test_moving_sends_no_picture_and_the_session_knows_the_camera(here):
+    before, camera = here.drawn(), here.session()["camera"]
+    largest, fetched = here.sends(here.drag)
+    assert largest < 5000
+    assert not fetched
+    assert np.abs(here.drawn() - before).mean() > 1.0
+    now = here.session()["camera"]
+    assert now != camera
+    assert now["position"] == pytest.approx(here.page.evaluate("pvfibletsThere.camera.state.position"))
+    assert agrees(here)
+    here.press("1")  # the server moves it, too
+    here.wait(lambda: here.session()["camera"]["position"] != now["position"], "the view from above")
+    assert agrees(here)
+
+
+def test_filters_colours_and_selections_send_what_they_change(here):
+    layer = here.state("layers")[0]["id"]
+    here.page.click("[data-layer] >> nth=0")
+    _, fetched = here.sends(
+        lambda: here.page.evaluate("trame.trigger('slide', ['criterion', '', 'length', [40.5, 80]])")
+    )
+    here.page.evaluate("trame.trigger('release')")
+    assert len(fetched) <= 1  # a byte for each streamline
+    assert agrees(here)
+    here.press("b")
+    here.page.wait_for_selector("#pv-over[data-tool=box]")
+    here.drag((0.15, 0.02), (0.6, 0.98))
+    here.wait(lambda: here.state("selection")["count"] > 0, "a selection")
+    assert 0 < here.state("selection")["count"] < 29
+    assert agrees(here)
+    here.page.evaluate("(id) => trame.trigger('slide', ['property', id, 'selection_dim', 0.3])", layer)
+    assert agrees(here)
+    here.choose("scalars", "fa")
+    here.page.wait_for_selector("#pv-there-bars figcaption:has-text('fa')")
+
+
+def test_what_the_browser_cannot_draw_the_server_draws_and_says_so(here):
+    layer = here.state("layers")[0]["id"]
+    picture = here.page.locator("#pv-view img[src^=blob]")
+    here.page.evaluate("(id) => trame.trigger('slide', ['property', id, 'opacity', 0.5])", layer)
+    here.page.evaluate("trame.trigger('release')")
+    here.wait(lambda: not here.state("there")["on"], "the server to draw")
+    said = "The server draws: a browser cannot draw the opacity of 'lines.fiblets'."
+    assert here.toast() == here.state("drawing") == said
+    here.wait(lambda: picture.count() and here.picture().std() > 1.0, "the server's picture")
+    here.page.wait_for_function("document.querySelector('#pv-there').style.visibility === 'hidden'")
+    here.press("Control+z")
+    here.wait(here.draws, "the browser to draw again")
+    assert here.state("drawing") == ""
+    assert agrees(here)
+
+
+def test_a_page_that_loses_its_graphics_has_the_servers_pictures(here):
+    expected = here.of_server()
+    lose = "window.lost = pvfibletsThere.canvas.getContext('webgl2').getExtension('WEBGL_lose_context')"
+    here.page.evaluate(f"{lose}; lost.loseContext()")
+    here.wait(lambda: "lost its graphics" in here.state("drawing"), "why the server draws")
+    assert here.toast() == "The server draws: this browser lost its graphics."
+    assert not here.state("there")["on"]
+    assert (np.abs(here.rests() - expected).max(axis=2) > 60).mean() < 0.01
+    here.page.evaluate("lost.restoreContext()")
+    here.wait(here.draws, "the browser to draw again")
+    assert agrees(here)
+
+
+def test_a_page_that_was_reloaded_or_cut_off_draws_again(here, cable):
+    here.drag()
+    before = here.drawn()
+    here.page.reload()
+    here.ready()
+    assert np.array_equal(here.drawn(), before)
+    cable.cut()
+    lost = here.page.locator("#pv-lost")
+    lost.wait_for()
+    assert lost.locator("canvas").evaluate_all(
+        "all => all.some((one) => one.width > 300 && one.getContext('2d')?.getImageData(0, 0, one.width, one.height)"
+        ".data.some((part, k) => k % 4 < 3 && part > 60))"
+    )  # what was drawn is still seen
+    cable.mend()
+    lost.locator("button:has-text('Try now')").click()
+    here.wait(lambda: lost.count() == 0, "the page again")
+    here.ready()
+    assert np.array_equal(here.drawn(), before)
+    here.drag((0.6, 0.5), (0.4, 0.5))
+    assert np.abs(here.drawn() - before).mean() > 1.0
+    assert agrees(here)
+    assert all("ERR_" in error or "Bad Gateway" in error for error in here.errors), here.errors
+    here.errors.clear()  # Chromium logs what could not be reached

@@ -1,0 +1,145 @@
+"""What a browser is sent to draw, and whether it is to, without a browser."""
+
+from __future__ import annotations
+
+import asyncio
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from pvfiblets.web.browser_drawing import BrowserDrawing
+from pvfiblets.web.options import Options
+from pvfiblets.web.sent_scene import LARGEST, SentScene, SentScenes
+from tests.web.desk import Desk
+
+CARD = "ANGLE (NVIDIA GeForce RTX 3060)"
+
+
+def drawing(scene, folder, **options):
+    """Return who draws for a page, which has not said anything yet."""
+    desk = Desk(scene, folder, **options)
+    desk.stream.leave = lambda: None
+    desk.drawing = BrowserDrawing(desk)
+    return desk
+
+
+def test_a_filter_and_a_selection_send_a_byte_for_each_streamline(scene):
+    layer = scene.open("lines.fiblets")
+    scenes = SentScenes(scene)
+    first, again = scenes.make(), scenes.make()
+    assert isinstance(first, SentScene)
+    assert again.content == first.content
+    scene.set_filter(layer.id, "length", 40.5)
+    filtered = scenes.make()
+    (kept,) = filtered.blobs.keys() - first.blobs.keys()
+    assert np.array_equal(np.frombuffer(filtered.blobs[kept], np.uint8), np.arange(10, 70) > 40.5)
+    scene.select(layer.id, [3, 59])
+    selected = scenes.make()
+    (chosen,) = selected.blobs.keys() - filtered.blobs.keys()
+    assert np.flatnonzero(np.frombuffer(selected.blobs[chosen], np.uint8)).tolist() == [3, 59]
+
+
+def test_the_camera_is_no_part_of_the_scene(scene):
+    scene.open("lines.fiblets")
+    scenes = SentScenes(scene)
+    first = scenes.make()
+    scene.view("axial")
+    assert scenes.make().content == first.content
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        (lambda scene: scene.open("head.nii.gz", kind="volume"), "the volume 'head.nii.gz'"),
+        (lambda scene: scene.open("vessel.vtp", kind="tubes"), "the tubes 'vessel.vtp'"),
+        (lambda scene: scene.set(scene.layers[0].id, "opacity", 0.5), "the opacity of 'lines.fiblets'"),
+        (lambda scene: scene.add_measurement([0, 0, 0], [9, 0, 0]), "measured distances"),
+        (lambda scene: scene.remove(scene.layers[0].id), ""),
+    ],
+)
+def test_what_cannot_be_drawn_is_named(scene, change, why):
+    scene.open("lines.fiblets")
+    change(scene)
+    assert SentScenes(scene).make() == why
+
+
+@pytest.mark.parametrize(
+    ("asked", "webgl", "card", "on"),
+    [
+        ("auto", True, CARD, True),
+        ("auto", True, "ANGLE (Google, Vulkan 1.3.0 (SwiftShader Device (Subzero)))", False),
+        ("auto", True, "Mesa/X.org, llvmpipe (LLVM 15.0.7, 256 bits)", False),
+        ("auto", False, "", False),
+        ("there", True, "llvmpipe", True),
+        ("there", False, "", False),
+        ("here", True, CARD, False),
+    ],
+)
+def test_who_draws_follows_from_what_is_asked_and_what_the_browser_has(scene, folder, asked, webgl, card, on):
+    scene.open("lines.fiblets")
+    desk = drawing(scene, folder, draw=asked)
+    assert not desk.drawing.draws()  # until a browser has said what it has
+    desk.drawing.report(webgl, card)
+    assert desk.drawing.draws() is on
+    assert desk.page.there["on"] is on
+    told = [text for _, text in desk.said]
+    assert told == (["The server draws: this browser has no WebGL 2."] if asked == "there" and not webgl else [])
+
+
+def test_large_scenes_are_sent_only_if_that_is_asked(scene, folder, monkeypatch):
+    scene.open("lines.fiblets")
+    monkeypatch.setattr(SentScene, "bytes", LARGEST + 1_000_000)
+    for asked in ("auto", "there"):
+        desk = drawing(scene, folder, draw=asked)
+        desk.drawing.report(True, CARD)
+        assert desk.drawing.draws() is (asked == "there")
+        assert ("65 MB" in desk.page.drawing) is (asked == "auto")
+
+
+def test_the_camera_goes_both_ways_and_only_when_it_has_moved(scene, folder):
+    scene.open("lines.fiblets")
+    desk = drawing(scene, folder)
+    desk.drawing.report(True, CARD)
+    desk.drawing.draws()
+    assert desk.page.there_camera == {"camera": scene.camera(), "from": ""}
+    moved = {**scene.camera(), "position": [300.0, 20.0, 10.0]}
+    desk.drawing.moved(moved, "one page", False)
+    assert scene.camera()["position"] == [300.0, 20.0, 10.0]
+    desk.page.there_camera = {}
+    desk.drawing.draws()
+    assert desk.page.there_camera == {}  # the browser knows
+    desk.drawing.moved(moved, "one page", True)
+    assert desk.page.there_camera["from"] == "one page"  # others do not
+    scene.view("axial")
+    desk.drawing.draws()
+    assert desk.page.there_camera == {"camera": scene.camera(), "from": ""}
+    with pytest.raises(ValueError, match="position"):
+        desk.drawing.moved({**moved, "position": ["far", 0, 0]}, "one page", False)
+
+
+def test_only_data_of_the_scene_can_be_fetched(scene, folder):
+    from aiohttp import web
+
+    scene.open("lines.fiblets")
+    desk = drawing(scene, folder)
+    desk.drawing.report(True, CARD)
+    desk.drawing.draws()
+
+    def fetch(name):
+        return asyncio.run(desk.drawing.send(SimpleNamespace(match_info={"name": name})))
+
+    name = desk.page.there["scene"]["data"][0]["file"].rpartition("/")[2]
+    assert len(fetch(name).body) == desk.page.there["scene"]["data"][0]["bytes"]
+    with pytest.raises(web.HTTPNotFound):
+        fetch("0" * len(name))
+
+
+@pytest.mark.parametrize("other", [{"shared": True}, {"cluster": "tcp://127.0.0.1:8786"}])
+def test_views_that_others_draw_or_see_are_the_servers(other, scene, folder):
+    with pytest.raises(ValueError, match="--draw there"):
+        Options(root=str(folder), draw="there", **other).checked()
+    desk = drawing(scene, folder, **other)
+    scene.open("lines.fiblets")
+    desk.drawing.report(True, CARD)
+    assert not desk.drawing.draws()
