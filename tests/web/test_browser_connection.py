@@ -27,9 +27,9 @@ def cable(served):
 def test_a_cut_cable_leaves_the_dimmed_picture_and_a_countdown_until_it_is_mended(visit, cable):
     here = visit("lines.fiblets", opened=False)
     here.page.goto(here.served.url.replace(str(urlsplit(here.served.base).port), str(cable.port), 1))
-    here.ready()
+    first = here.ready().rests()
     here.choose("scalars", "length")
-    before = here.rests()
+    before = here.changed(first)
     cable.cut()
     lost = here.page.locator("#pv-lost")
     lost.wait_for()
@@ -56,9 +56,9 @@ def through(visit, cable):
     here.sockets = []
     here.page.on("websocket", lambda socket: here.sockets.append(socket.url) if socket.url.endswith("/ws") else None)
     here.page.goto(here.served.url.replace(str(urlsplit(here.served.base).port), str(cable.port), 1))
-    here.ready()
+    first = here.ready().rests()
     here.choose("scalars", "length")
-    return here, here.rests()
+    return here, here.changed(first)
 
 
 def comes_back(here, before):
