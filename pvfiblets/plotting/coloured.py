@@ -10,6 +10,7 @@ import pyvista as pv
 from pvfiblets.plotting.colours import ColourSettings, make_colouring, update_table
 from pvfiblets.plotting.linked_property import LinkedProperty, own_writes
 from pvfiblets.plotting.linked_table import LinkedTable
+from pvfiblets.plotting.mapper_words import LinesWords
 from pvfiblets.plotting.setting_places import COLOURS, PROPERTY
 from pvfiblets.plotting.settings import Given, Setting, Settings
 
@@ -58,6 +59,10 @@ class Coloured(Settings, LinkedProperty, LinkedTable):
     def _as_polydata(self) -> pv.PolyData:
         """Return what is drawn as lines."""
         raise NotImplementedError
+
+    def _draw_source(self, source: Any) -> None:  # noqa: ARG002 - of those that can
+        """Draw other data from the next picture on."""
+        raise AttributeError(f"this mapper's dataset is made of what is drawn; set actor.{self._DATA} to draw others")
 
     def _find(self, drawn: Any, choice: Any) -> Scalars | None:
         """Return the numbers or colours that a choice means for what is drawn; ``None`` for one colour."""
@@ -321,7 +326,7 @@ class Plotted:
         super()._begin()  # type: ignore[misc]  # of the mapper
 
 
-class PlottedLines(Plotted):
+class PlottedLines(LinesWords, Plotted):
     """The part of a mapper of lines or points that gives PyVista's scripts its data."""
 
     @property
@@ -330,6 +335,10 @@ class PlottedLines(Plotted):
         if cast("Any", self).is_readable:
             return cast("pv.PolyData", pv.wrap(cast("Any", self).GetDataSetInput()))
         return self._shown_by()._as_polydata()  # noqa: SLF001
+
+    @dataset.setter
+    def dataset(self, source: Any) -> None:
+        self._shown_by()._draw_source(source)  # noqa: SLF001
 
     @property
     def scalar_visibility(self) -> bool:

@@ -146,3 +146,55 @@ def test_nan_color_takes_the_opacity_of_nan(add, plotter, colours_in):
     """As the error for ``nan_opacity`` advises."""
     add(scalars=np.full(3, np.nan), nan_color=(1.0, 0.0, 0.0, 0.0), clim=(0.0, 1.0), show_scalar_bar=False)
     assert not colours_in(plotter.screenshot())
+
+
+def words_of(mapper):
+    """What PyVista adds to a mapper of VTK's, beside what it keeps to itself."""
+    vtks = set(dir(next(kind for kind in type(mapper).__mro__ if kind.__module__.startswith("vtkmodules"))))
+    return {name for name in dir(type(mapper)) if name[0].islower() and name not in vtks}
+
+
+@pytest.mark.parametrize("add", EVERY, indirect=True)
+def test_words_of_mappers_are_taken_or_explained(add, plotter, request):
+    """None is silent: a mapper of VTK's takes any attribute, and nobody would read it."""
+    volume = request.node.callspec.params["add"] == "add_raycast_volume"
+    image = pv.ImageData(dimensions=(3, 3, 3))
+    image["v"] = np.arange(27.0)
+    theirs = plotter.add_volume(image).mapper if volume else plotter.add_mesh(pv.Sphere()).mapper
+    ours = add().mapper
+    kept = {"bounds_size", "check_attribute", "resolve", "static"}  # of bounds, of Python, and of triangles
+    for name in words_of(theirs) - kept:
+        assert hasattr(type(ours), name), name
+        if hasattr(ours, name):
+            continue
+        with pytest.raises(AttributeError, match=rf"this mapper has no {name}: \w"):
+            getattr(ours, name)
+        with pytest.raises(AttributeError, match=rf"this mapper has no {name}: \w"):
+            setattr(ours, name, 1)
+
+
+@pytest.mark.parametrize("add", ["add_raycast_volume"], indirect=True)
+def test_blend_modes_of_a_mapper(add):
+    actor = add()
+    assert actor.mapper.blend_mode == "composite"
+    actor.mapper.blend_mode = "maximum"
+    assert (actor.mode, actor.mapper.blend_mode) == ("mip", "maximum")
+    with pytest.raises(ValueError, match="blending='additive' adds up"):
+        actor.mapper.blend_mode = "additive"
+    actor.mode = "isosurface"
+    assert actor.mapper.blend_mode == "isosurface"
+
+
+@pytest.mark.parametrize("add", ADDS, indirect=True)
+def test_the_array_and_the_data_of_a_mapper(add, request):
+    actor = add()
+    assert actor.mapper.array_name == ("orientation" if request.node.callspec.params["add"] == "add_fiblets" else "")
+    actor.mapper.array_name = "arc_length"
+    assert actor.scalars == actor.mapper.array_name == "arc_length"
+    other = pv.lines_from_points(np.linspace([0.0, 0.0, 0.0], [9.0, 5.0, 1.0], 20))
+    if hasattr(actor, "update"):
+        actor.mapper.dataset = other
+        assert actor.fiblets.n_streamlines == 19
+    else:
+        with pytest.raises(AttributeError, match=r"set actor\.\w+ to draw others"):
+            actor.mapper.dataset = other

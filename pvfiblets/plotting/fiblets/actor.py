@@ -234,6 +234,9 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
     def _as_polydata(self) -> pv.PolyData:
         return self._fiblets.decompress().to_polydata()
 
+    def _draw_source(self, source: Any) -> None:
+        self.update(source)
+
     def _mean_colour(self, scalars: Scalars) -> Any:
         return mean_direction(self._fiblets) if scalars.kind == "orientation" else super()._mean_colour(scalars)
 

@@ -16,6 +16,7 @@ from pvfiblets.plotting.clipping import Clipping
 from pvfiblets.plotting.coloured import Plotted, added_up
 from pvfiblets.plotting.fiblets.scalars import Scalars
 from pvfiblets.plotting.linked_property import is_own_write, own_writes
+from pvfiblets.plotting.mapper_words import VolumeWords
 from pvfiblets.plotting.settings import Given
 from pvfiblets.plotting.shading import SurfaceShading
 from pvfiblets.plotting.volumes.casting import SURFACE, RaySettings
@@ -35,7 +36,7 @@ OF_SURFACES = ("ambient_occlusion", "ray_occlusion")
 """Light and peaks have nothing that could stand over anything: they keep these for when a surface shows again."""
 
 
-class PlottedRaycast(Plotted, VolumeMapper):
+class PlottedRaycast(VolumeWords, Plotted, VolumeMapper):
     """A mapper of a volume that rays are cast through, with scalar bars.
 
     Parameters

@@ -240,6 +240,17 @@ def _mode_of(blending: str, settings: Given) -> str:
     """Return the mode of a word of ``add_volume``'s."""
     if "mode" in settings.named:
         raise ValueError("blending is add_volume's word for mode: give one of the two")
+    return mode_of_blending(blending)
+
+
+def mode_of_blending(blending: str) -> str:
+    """Return the mode of a word of ``add_volume``'s.
+
+    Raises
+    ------
+    ValueError
+        If there is none.
+    """
     if blending == "additive":
         raise ValueError(
             "blending='additive' adds up values times opacities, which depends on the step; mode 'average' does not"
