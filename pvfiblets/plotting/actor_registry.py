@@ -21,7 +21,7 @@ from vtkmodules.vtkRenderingCore import vtkPicker
 from pvfiblets.antialias import default_antialias
 from pvfiblets.plotting import exports, visible_picking  # noqa: F401 - of which plotters are to know
 from pvfiblets.plotting.call_signature import document
-from pvfiblets.plotting.settings import Given, Settings
+from pvfiblets.plotting.settings import Given, Setting, Settings
 from pvfiblets.plotting.settings import arguments as settings_of_call
 from pvfiblets.plotting.shared_settings import Common
 from pvfiblets.plotting.words_of_add_mesh import why_not
@@ -170,6 +170,8 @@ class ActorRegistry(Generic[A]):
         """Refuse arguments that are none; those of ``add_mesh`` with what to do instead."""
         if unknown:
             name = unknown[0]
+            if isinstance(getattr(self._SETTINGS, name, None), Setting):
+                raise TypeError(f"{self.ADD}() takes no {name}: set it on the actor it returns (actor.{name} = ...)")
             raise TypeError(why_not(self.ADD, name) or f"{self.ADD}() got an unexpected keyword argument {name!r}")
 
     def __iter__(self) -> Iterator[A]:

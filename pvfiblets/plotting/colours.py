@@ -92,6 +92,38 @@ def active_scalars(source: Any, color: Any, rgb: bool | None, *, points: bool = 
     return found
 
 
+def as_limits(clim: Any) -> tuple[float, float]:
+    """Return the two numbers that ``clim`` stands for.
+
+    Raises
+    ------
+    ValueError
+        If it is not one or two finite numbers, the low one first.
+    """
+    if isinstance(clim, (int, float, np.number)):
+        return as_limits((-clim, clim))
+    pair = isinstance(clim, (Sequence, np.ndarray)) and not isinstance(clim, str) and len(clim) == 2
+    if not pair or not all(isinstance(end, (int, float, np.number)) for end in clim):
+        raise ValueError(f"clim is {clim!r}; give one number or two, (low, high)")
+    low, high = float(clim[0]), float(clim[1])
+    if not (np.isfinite(low) and np.isfinite(high) and low <= high):
+        raise ValueError(f"clim is ({low:g}, {high:g}); give two finite numbers, the low one first")
+    return low, high
+
+
+def as_count(count: Any) -> int:
+    """Return the number of colours that ``n_colors`` stands for.
+
+    Raises
+    ------
+    ValueError
+        If it is no whole number, or no table has so many.
+    """
+    if not isinstance(count, (int, float, np.number)) or not 1 <= count <= MOST_COLOURS or int(count) != count:
+        raise ValueError(f"n_colors is {count!r}; give a whole number above zero, up to {MOST_COLOURS}")
+    return int(count)
+
+
 def limits(settings: ColourSettings, scalars: Scalars) -> tuple[float, float]:
     """Return the values of the first and the last colour.
 
@@ -108,14 +140,7 @@ def limits(settings: ColourSettings, scalars: Scalars) -> tuple[float, float]:
             low = min(scalars.positive, high) if high > 0.0 else 1e-6
             high = max(high, low)
         return float(low), float(high)
-    clim = settings.clim
-    if isinstance(clim, (int, float, np.number)):
-        clim = (-clim, clim)
-    if not isinstance(clim, (Sequence, np.ndarray)) or isinstance(clim, str) or len(clim) != 2:
-        raise ValueError(f"clim is {settings.clim!r}; give one number or two, (low, high)")
-    low, high = float(clim[0]), float(clim[1])
-    if not (np.isfinite(low) and np.isfinite(high) and low <= high):
-        raise ValueError(f"clim is ({low:g}, {high:g}); give two finite numbers, the low one first")
+    low, high = as_limits(settings.clim)
     if settings.log_scale and low <= 0.0:
         raise ValueError(f"clim begins at {low:g}; a logarithmic scale needs values above zero")
     return low, high
@@ -137,9 +162,7 @@ def update_table(
     ValueError
         If the colour map, a colour or ``n_colors`` is none.
     """
-    count = settings.n_colors
-    if not isinstance(count, (int, float, np.number)) or not 1 <= count <= MOST_COLOURS or int(count) != count:
-        raise ValueError(f"n_colors is {count!r}; give a whole number above zero, up to {MOST_COLOURS}")
+    count = as_count(settings.n_colors)
     low, high = limits(settings, scalars)
     labels = scalars.categories is not None
     usual = label_colours(len(scalars.categories)) if scalars.categories else theme.cmap
@@ -152,7 +175,6 @@ def update_table(
     if own:
         table.DeepCopy(cmap)
     else:
-        count = int(settings.n_colors)
         if (settings.categories or labels) and fiblets is not None:
             count = scalars.distinct(fiblets)
         table._opacity_parm = (None, False, "quadratic")  # noqa: SLF001 - PyVista would apply the opacity of before

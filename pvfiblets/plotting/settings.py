@@ -369,6 +369,14 @@ def number(name: str, value: Any, low: float | None, high: float | None, unit: s
     return found
 
 
-def truth(_name: str, value: Any) -> bool:
-    """Return whether something is true."""
+def truth(name: str, value: Any) -> bool:
+    """Return whether something is true.
+
+    Raises
+    ------
+    ValueError
+        If it is a word: that for "no" would be true as well.
+    """
+    if isinstance(value, str):
+        raise ValueError(f"{name} is {value!r}; give True or False")
     return bool(value)

@@ -6,6 +6,7 @@ from difflib import get_close_matches
 from numbers import Real
 from typing import Any
 
+from pvfiblets.plotting.colours import as_count, as_limits
 from pvfiblets.plotting.setting_places import COLOURS, LATER, OWN, PROPERTY, Effect
 from pvfiblets.plotting.settings import Argument, Row, Setting, Settings, number, truth
 
@@ -51,6 +52,25 @@ def _colour_map(name: str, value: Any) -> Any:
                 f"{name} is {value!r}, which is no colour map; give a name that matplotlib knows, such as {near}, a "
                 "list of colours, or a LookupTable"
             ) from error
+    return value
+
+
+def _limits(_name: str, value: Any) -> Any:
+    """Return a range as it is given, whether numbers colour now or later."""
+    if value is not None:
+        as_limits(value)
+    return value
+
+
+def _colour(name: str, value: Any) -> Any:
+    """Return a colour as it is given, if it is one."""
+    if value is not None:
+        from pyvista import Color
+
+        try:
+            Color(value)
+        except (TypeError, ValueError) as error:
+            raise ValueError(f"{name} is {value!r}; give a name, a hex string, or three or four numbers") from error
     return value
 
 
@@ -105,13 +125,15 @@ CLIM: Setting[tuple[float, float]] = Setting(
     kind=LIMITS,
     header="float or (float, float), optional",
     where=COLOURS,
+    check=_limits,
     read=lambda actor: tuple(actor.lookup_table.scalar_range),
     row=CLIM_ROW,
 )
 
 N_COLORS: Setting[int] = Setting(
-    256, "Entries of the look-up table.", argument="Number of colours in the map.", kind="int", where=COLOURS
-)
+    256, "Entries of the look-up table.", argument="Number of colours in the map.", kind="int", where=COLOURS,
+    check=lambda _name, value: as_count(value),
+)  # fmt: skip
 
 LOG_SCALE: Setting[bool] = Setting(
     False,
@@ -129,6 +151,7 @@ NAN_COLOR: Setting[Any] = Setting(
     kind=COLOR_LIKE,
     header="color-like, optional",
     where=COLOURS,
+    check=_colour,
     read=lambda actor: actor.lookup_table.nan_color,
     row=Row("Without a value", "Colour of what has no value.", type="colour", optional=True,
             read=lambda actor: actor.nan_color.hex_rgb, matters=by_numbers),
@@ -140,6 +163,7 @@ BELOW_COLOR: Setting[Any] = Setting(
     kind=COLOR_LIKE,
     header="color-like, optional",
     where=COLOURS,
+    check=_colour,
 )
 
 ABOVE_COLOR: Setting[Any] = Setting(
@@ -148,6 +172,7 @@ ABOVE_COLOR: Setting[Any] = Setting(
     kind=COLOR_LIKE,
     header="color-like, optional",
     where=COLOURS,
+    check=_colour,
 )
 
 ANNOTATIONS: Setting[dict[float, str] | None] = Setting(

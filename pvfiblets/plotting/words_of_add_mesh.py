@@ -30,7 +30,7 @@ _WORDS = {
     "render_points_as_spheres": _POINTS,
     "show_edges": _FACETS,
     "show_vertices": f"{_FACETS}, and no vertices",
-    "silhouette": "halos=True outlines fiblets, silhouette=True tubes; lines with halos have outlines",
+    "silhouette": "set actor.halos = True, which outlines lines",
     "smooth_shading": "lines and tubes are smooth as they are",
     "split_sharp_edges": _FACETS,
     "static": "nothing is uploaded again unless it changes",

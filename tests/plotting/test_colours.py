@@ -158,3 +158,37 @@ def test_no_streamlines_is_a_picture_of_nothing(plotter, colours_in):
     with pytest.warns(UserWarning, match="no streamlines"):
         plotter.add_fiblets(Streamlines(np.zeros((0, 3)), [0]), scalars="length", show_scalar_bar=False)
     assert not colours_in(plotter.screenshot(None))
+
+
+WRONG = {
+    "clim": ["x", [1.0], (2.0, 1.0), (0.0, np.nan), ("a", "b")],
+    "n_colors": [0, 2.5, "x", 1e9],
+    "nan_color": ["nope", 5],
+    "below_color": ["nope"],
+    "above_color": ["nope"],
+    "log_scale": ["off"],
+    "lighting": ["off"],
+}
+
+
+@pytest.mark.parametrize("add", ["add_fiblets", "add_spline_tubes", "add_halo_lines"])
+@pytest.mark.parametrize("name", WRONG)
+def test_wrong_settings_fail_at_once_though_one_colour_is_shown(plotter, three_lines, add, name):
+    """Else they would fail when numbers colour later, far from where they were given."""
+    actor = getattr(plotter, add)(three_lines, color="red")
+    for value in WRONG[name]:
+        before = getattr(actor, name)
+        with pytest.raises(ValueError, match=rf"{name} (is|begins)"):
+            setattr(actor, name, value)
+        assert getattr(actor, name) == before
+        with pytest.raises(ValueError, match=rf"{name} (is|begins)"):
+            getattr(plotter, add)(three_lines, color="red", **{name: value})
+    actor.scalars = np.arange(3.0)
+    plotter.screenshot()
+
+
+@pytest.mark.parametrize("name", ["line_width", "tube_radius"])
+def test_a_length_that_is_a_word_is_named(plotter, three_lines, name):
+    actor = plotter.add_fiblets(three_lines)
+    with pytest.raises(ValueError, match=rf"{name} is 'x'; give .* above 0"):
+        setattr(actor, name, "x")

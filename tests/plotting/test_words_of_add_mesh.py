@@ -148,6 +148,16 @@ def test_nan_color_takes_the_opacity_of_nan(add, plotter, colours_in):
     assert not colours_in(plotter.screenshot())
 
 
+@pytest.mark.parametrize(
+    ("add", "name"),
+    [("add_spline_tubes", "silhouette"), ("add_halo_lines", "n_tapered"), ("add_fiblets", "tube_radius")],
+)
+def test_what_is_set_of_actors_only_is_told(plotter, three_lines, add, name):
+    with pytest.raises(TypeError, match=rf"takes no {name}: set it on the actor .*actor\.{name} = "):
+        getattr(plotter, add)(three_lines, **{name: 1})
+    assert hasattr(getattr(plotter, add)(three_lines), name)
+
+
 def words_of(mapper):
     """What PyVista adds to a mapper of VTK's, beside what it keeps to itself."""
     vtks = set(dir(next(kind for kind in type(mapper).__mro__ if kind.__module__.startswith("vtkmodules"))))

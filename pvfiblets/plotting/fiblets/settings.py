@@ -35,9 +35,14 @@ THINNEST, WIDEST = 1e-3, 64.0
 
 
 def _line_width(name: str, width: Any) -> float:
-    if not 0.0 < float(width) <= WIDEST:
+    pixels = number(name, width, None, WIDEST, "pixels above 0 and")
+    if pixels <= 0.0:
         raise ValueError(f"{name} is {width!r}; give pixels above 0 and up to {WIDEST:g}")
-    return float(width)
+    return pixels
+
+
+def _tube_radius(name: str, radius: Any) -> float | None:
+    return None if radius is None else number(name, radius, None, None, "a number of millimetres above 0")
 
 
 class FibletSettings(Settings):
@@ -179,6 +184,7 @@ class FibletSettings(Settings):
         "each other and into meshes, and ends are round. Those thinner than a pixel are a pixel wide.",
         argument=False,
         where=LATER,
+        check=_tube_radius,
         row=Row("Tube radius", "mm; empty: lines.", "Lines", "number", optional=True, limits=_radii),
     )
     tube_shading: Setting[bool] = Setting(
