@@ -46,7 +46,7 @@ LONGEST = (
     "report/test_features_study.py", "report/test_tubes_study.py", "formats/test_fuzz.py",
     "engine/test_region_query.py", "engine/test_volume.py", "engine/test_volume_steep.py",
     "engine/test_filter_textures.py", "engine/test_line_tubes.py", "web/test_browser_connection.py",
-    "web/test_browser_touch.py",
+    "web/test_browser_touch.py", "web/test_browser_drawing.py",
 )  # fmt: skip
 """Files that take longest. They begin first, so that in the end no process works on while the others have nothing."""
 

@@ -14,7 +14,7 @@ from typing import Any
 
 from pvfiblets import page
 from pvfiblets.web.actions import Actions
-from pvfiblets.web.sent_scene import LARGEST, SentScene, SentScenes
+from pvfiblets.web.sent_scene import LARGEST, MOST, SentScene, SentScenes
 
 __all__ = ["BrowserDrawing"]
 
@@ -35,6 +35,7 @@ class BrowserDrawing(Actions):
         options = app.options
         alone = not options.shared and options.cluster is None
         self._asked: str = options.draw if alone else "here"
+        self._most = MOST if self._asked == "there" else LARGEST
         self._scenes = SentScenes(app.scene)
         self._sent: list[SentScene] = []
         self._able = False
@@ -42,6 +43,7 @@ class BrowserDrawing(Actions):
         self._camera: dict[str, Any] | None = None
         self._said = ""
         self.on = False
+        self.rests = True  # the camera, as far as the browser has said
         app.page.there = {"asked": self._asked, "on": False}
 
     # What browsers say
@@ -83,8 +85,9 @@ class BrowserDrawing(Actions):
         app = self._app
         app.scene.set_camera(camera)
         self._camera = app.scene.camera()
+        self.rests = rests is True
         app.stream.leave()
-        if rests is True:
+        if self.rests:
             with app.state:
                 app.page.there_camera = {"camera": self._camera, "from": str(origin)[:40]}
 
@@ -98,14 +101,15 @@ class BrowserDrawing(Actions):
         sent: SentScene | str = ""
         if self._able:
             try:
-                sent = self._scenes.make()
+                sent = self._scenes.make(self._most)
             except Exception as error:  # the server draws it all the same
                 logger.exception("a scene could not be made for a browser")
                 sent = f"this scene ({error})"
             if isinstance(sent, str):
                 why = sent and f"a browser cannot draw {sent}"
-            elif self._asked == "auto" and sent.bytes > LARGEST:
-                why = f"its data have {sent.bytes / 1e6:,.0f} MB, more than the {LARGEST / 1e6:.0f} that are sent"
+            elif sent.bytes > self._most:
+                limit = f"{self._most / 1e6:,.0f} MB"
+                why = f"the scene has {sent.bytes / 1e6:,.0f} MB, more than the {limit} that are sent"
                 sent = ""
         if not isinstance(sent, SentScene):
             self._leave(why)
@@ -124,7 +128,7 @@ class BrowserDrawing(Actions):
             if camera != self._camera:
                 self._camera = camera
                 app.page.there_camera = {"camera": camera, "from": ""}
-        self.on, self._said = True, ""
+        self.on, self.rests, self._said = True, True, ""
 
     def _leave(self, why: str) -> None:
         app, was = self._app, self.on

@@ -51,13 +51,15 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
 .pv-view img { width: 100%; height: 100%; object-fit: contain; display: block;
   user-select: none; -webkit-user-drag: none }
 #pv-there { position: absolute; inset: 0; width: 100%; height: 100%; display: block; touch-action: none; outline: none }
-#pv-there-bars { position: absolute; right: 16px; bottom: 32px; display: flex; gap: 14px; align-items: flex-end;
+#pv-there-bars { position: absolute; right: 16px; bottom: 32px; display: flex; flex-direction: row-reverse; gap: 14px;
+  align-items: flex-end;
   pointer-events: none; color: #fff; font: 12px/1.3 Roboto, sans-serif; font-variant-numeric: tabular-nums }
 .pv-view[data-ground=light] #pv-there-bars { color: #000 }
 .pv-there-bar div { display: flex; gap: 6px } .pv-there-bar { margin: 0 }
 .pv-there-bar canvas { width: 14px; height: min(220px, 30vh); border: .5px solid #8888; image-rendering: pixelated }
 .pv-there-bar ol { list-style: none; margin: 0; padding: 0; display: flex; flex-direction: column;
   justify-content: space-between }
+.pv-there-bar .pv-named { justify-content: space-around }
 .pv-edge { position: absolute; color: #fff; font: 600 16px Roboto, sans-serif; pointer-events: none;
   text-shadow: 0 0 3px #000, 0 0 3px #000 }
 .pv-view[data-ground=light] :is(.pv-edge, .pv-status, .pv-notes) { color: #000;

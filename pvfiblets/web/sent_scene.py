@@ -14,7 +14,9 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
+from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.page.scene import PageScene, encoded
+from pvfiblets.web.document import LINES
 from pvfiblets.web.scalar_bars import bars_of
 
 if TYPE_CHECKING:
@@ -24,6 +26,9 @@ __all__ = ["LARGEST", "URL", "SentScene", "SentScenes"]
 
 LARGEST = 64_000_000
 """Bytes of data up to which ``--draw auto`` lets browsers draw: pictures may never add up to more."""
+
+MOST = 1_000_000_000
+"""Bytes of data up to which ``--draw there`` does: browsers hold little more of one page's."""
 
 URL = "/there"
 
@@ -65,10 +70,16 @@ class SentScenes:
         self._made: dict[tuple[Any, ...], tuple[tuple[Any, ...], Any]] = {}
         self._names: dict[int, tuple[bytes, str]] = {}
 
-    def make(self) -> SentScene | str:
-        """Return the scene as it is now, or why a browser cannot draw it: what it would leave out, or ''."""
+    def make(self, most: int = MOST) -> SentScene | str:
+        """Return the scene as it is now, or what of it a browser cannot draw: '' where there is nothing to draw.
+
+        Parameters
+        ----------
+        most : int
+            Bytes of streamlines; of more nothing is made.
+        """
         scene = self._scene
-        if (found := _views(scene)) is not None:
+        if (found := _views(scene) or _too_large(scene, most)) is not None:
             return found
         page = _Remade("", before=self._made)
         unable = add_all(page, scene.plotter)
@@ -129,6 +140,18 @@ def _views(scene: Scene) -> str | None:
     return None
 
 
+def _too_large(scene: Scene, most: int) -> str | None:
+    """Return why streamlines are too many to be sent; None where they are not."""
+    shown = {id(set_): set_ for layer in scene.layers if layer.kind in LINES and layer.visible
+             for set_ in (scene.actor(layer.id).fiblets,)}  # fmt: skip
+    total = sum(set_.nbytes for set_ in shown.values())
+    if total > most:
+        return f"{total / 1e6:,.0f} MB of streamlines, more than the {most / 1e6:,.0f} MB that are sent to it"
+    if not all(isinstance(set_, FibletSet) for set_ in shown.values()):
+        return "sets in shards that are not put together"
+    return None
+
+
 def _readable(unable: str, scene: Scene) -> str:
     """Return what a page cannot show with the names of layers in the place of their ids."""
     layers = {layer.id: layer for layer in scene.layers}
@@ -156,6 +179,6 @@ def _bars(scene: Scene) -> list[dict[str, Any]]:
             count = table.GetNumberOfAnnotatedValues()
             values = [table.GetAnnotatedValue(k).ToDouble() for k in range(count)]
             bar["names"] = [str(table.GetAnnotation(k)) for k in range(count)]
-            bar["colours"] = [list(table.map_value(value))[:3] for value in values]
+            bar["colours"] = [[round(255 * part) for part in table.map_value(value)[:3]] for value in values]
         found.append(bar)
     return found

@@ -133,6 +133,8 @@ def test_moving_sends_no_picture_and_the_session_knows_the_camera(here):
     assert now != camera
     assert now["position"] == pytest.approx(here.page.evaluate("pvfibletsThere.camera.state.position"))
     assert agrees(here)
+    here.tab("info")
+    here.wait(lambda: here.state("info"), "the facts of the layer")
     here.press("1")  # the server moves it, too
     here.wait(lambda: here.session()["camera"]["position"] != now["position"], "the view from above")
     assert agrees(here)

@@ -40,6 +40,23 @@ def test_a_filter_and_a_selection_send_a_byte_for_each_streamline(scene):
     assert np.flatnonzero(np.frombuffer(selected.blobs[chosen], np.uint8)).tolist() == [3, 59]
 
 
+def test_bars_say_what_lines_are_coloured_by(scene):
+    layer = scene.open("lines.fiblets")
+    scene.set(layer.id, "scalars", "group")
+    sent = SentScenes(scene).make()
+    (bar,), (lines,) = sent.content["bars"], sent.content["layers"]
+    colours = list(sent.blobs.values())[lines["colours"]["data"]]
+    colours = np.frombuffer(colours, np.uint8).reshape(60, 4)[:, :3]
+    near, far = (bar["colours"][bar["names"].index(name)] for name in ("near", "far"))
+    assert np.array_equal(colours, [near] * 30 + [far] * 30)
+    scene.set(layer.id, "scalars", "length")
+    (bar,) = SentScenes(scene).make().content["bars"]
+    assert (bar["title"], bar["log"]) == ("length [mm]", False)
+    assert bar["clim"] == pytest.approx([10.0, 69.0], abs=0.01)
+    scene.set(layer.id, "show_bar", False)
+    assert SentScenes(scene).make().content["bars"] == []
+
+
 def test_the_camera_is_no_part_of_the_scene(scene):
     scene.open("lines.fiblets")
     scenes = SentScenes(scene)
@@ -94,7 +111,15 @@ def test_large_scenes_are_sent_only_if_that_is_asked(scene, folder, monkeypatch)
         desk = drawing(scene, folder, draw=asked)
         desk.drawing.report(True, CARD)
         assert desk.drawing.draws() is (asked == "there")
-        assert ("65 MB" in desk.page.drawing) is (asked == "auto")
+        assert ("65 MB, more than the 64 MB" in desk.page.drawing) is (asked == "auto")
+
+
+def test_nothing_is_made_of_sets_that_are_too_large(scene, monkeypatch):
+    layer = scene.open("lines.fiblets")
+    monkeypatch.setattr(type(scene.actor(layer.id).fiblets), "nbytes", 2_000_000_000)
+    monkeypatch.setattr("pvfiblets.page.fiblet_bytes.fiblet_bytes", lambda *_: pytest.fail("it was made"))
+    said = "2,000 MB of streamlines, more than the 1,000 MB that are sent to it"
+    assert SentScenes(scene).make() == said
 
 
 def test_the_camera_goes_both_ways_and_only_when_it_has_moved(scene, folder):

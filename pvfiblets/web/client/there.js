@@ -147,6 +147,7 @@
     const value = (share) => (log && clim[0] > 0 ? clim[0] * (clim[1] / clim[0]) ** share : clim[0] + share * (clim[1] - clim[0]));
     const texts = names ?? [0, 0.25, 0.5, 0.75, 1].map((share) => String(Number(value(share).toPrecision(3))));
     list.append(...[...texts].reverse().map((text) => part("li", text)));
+    if (names) list.className = "pv-named";
     row.append(strip, list);
     made.append(part("figcaption", title), row);
     return made;
