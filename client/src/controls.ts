@@ -1,9 +1,14 @@
 /** What lies over the picture: layers, views, cuts, ranges, colour bars, letters of orientation, and the word on what was picked. */
 
-import { Vec, apply, scaled } from "./camera";
+import { Vec, apply, product, scaled } from "./camera";
+import { Choice } from "./choice";
 import { fromBase64 } from "./engine";
+import { asWords } from "./fiblets";
+import { Region, outline } from "./regions";
 import type { Lines, Renderer } from "./renderer";
-import type { Bar, Control } from "./scene";
+import type { Bar } from "./scene";
+
+const SVG = "http://www.w3.org/2000/svg";
 
 type Child = Node | string;
 
@@ -27,6 +32,13 @@ function slider(label: string, low: number, high: number, value: number, changed
   return make("label", {}, make("span", {}, label), input, shown);
 }
 
+function check(label: string, on: boolean, changed: (on: boolean) => void): HTMLElement {
+  const box = make("input", { type: "checkbox" }) as HTMLInputElement;
+  box.checked = on;
+  box.addEventListener("change", () => changed(box.checked));
+  return make("label", {}, box, make("span", {}, label));
+}
+
 function button(text: string, pressed: () => void): HTMLElement {
   const made = make("button", { type: "button" }, text);
   made.addEventListener("click", pressed);
@@ -48,41 +60,17 @@ function drawBar(bar: Bar): HTMLElement {
   const context = canvas.getContext("2d")!, pixels = context.createImageData(n, 1);
   pixels.data.set(table);
   context.putImageData(pixels, 0, 0);
+  if (bar.labels) {
+    const names = bar.labels.map(({ name, colour }) => {
+      const swatch = make("i", { "aria-hidden": "true" });
+      swatch.style.background = `rgb(${colour.join(",")})`;
+      return make("li", {}, swatch, name);
+    });
+    return make("figure", { class: "bar" }, make("figcaption", {}, bar.title), make("ul", { tabindex: "0", "aria-label": bar.title }, ...names));
+  }
   const [low, high] = bar.clim, middle = bar.log ? Math.sqrt(low * high) : (low + high) / 2;
   return make("figure", { class: "bar" }, make("figcaption", {}, bar.title), canvas,
     make("div", { class: "ticks", "aria-hidden": "true" }, ...[low, middle, high].map((value) => make("span", {}, number(value)))));
-}
-
-/** Which streamlines are drawn: those of the figure, within all ranges that the reader has set. */
-class Choice {
-  private ranges = new Map<string, { values: Float32Array; low: number; high: number; whole: [number, number] }>();
-  readonly regions = new Map<string, Uint8Array>();
-
-  constructor(private lines: Lines, private base: Uint8Array | null) {}
-
-  set(control: Control, values: Float32Array, end: 0 | 1, value: number): void {
-    const found = this.ranges.get(control.name) ?? { values, low: control.range[0], high: control.range[1], whole: control.range };
-    if (end === 0) found.low = value;
-    else found.high = value;
-    this.ranges.set(control.name, found);
-    this.apply();
-  }
-
-  apply(): void {
-    const active = [...this.ranges.values()].filter((range) => range.low > range.whole[0] || range.high < range.whole[1]);
-    if (!active.length && !this.regions.size) return this.lines.keep(this.base);
-    const n = this.lines.set.streamlines, kept = new Uint8Array(n);
-    for (let i = 0; i < n; ++i) {
-      let keep = this.base === null || this.base[i] !== 0;
-      for (const range of active) {
-        const eps = 1e-6 * (range.whole[1] - range.whole[0]);
-        keep = keep && range.values[i] >= range.low - eps && range.values[i] <= range.high + eps;
-      }
-      for (const region of this.regions.values()) keep = keep && region[i] !== 0;
-      kept[i] = keep ? 1 : 0;
-    }
-    this.lines.keep(kept);
-  }
 }
 
 /** A streamline of a layer, by their numbers, and where it was picked, world mm. */
@@ -98,30 +86,28 @@ export class Controls {
   private axes: HTMLElement[] = [];
   private choices = new Map<number, Choice>();
   private picked: { lines: Lines; streamline: number; place: Vec } | null = null;
-  private radius = 5;
+  private regions: Region[] = [];
+  private outlines = document.createElementNS(SVG, "svg");
 
   constructor(private renderer: Renderer, private data: Uint8Array[]) {
     const over = document.getElementById("over")!, { scene } = renderer;
     const panel = make("details", { id: "panel" }, make("summary", {}, "Scene"));
-    panel.append(this.layers(), this.views(), this.cut(), ...this.ranges(), this.region());
-    over.append(panel);
+    panel.append(this.layers(), ...this.groups(), this.views(), this.cut(), ...this.ranges(), this.regionList());
+    over.append(this.outlines, panel);
     if (scene.bars.length) over.append(make("div", { id: "bars" }, ...scene.bars.map(drawBar)));
     over.append(this.orientation());
     renderer.restored = () => { for (const choice of this.choices.values()) choice.apply(); };
-    renderer.presented = () => this.turnAxes();
-    this.turnAxes();
+    renderer.presented = () => this.follow();
+    this.follow();
   }
 
   private layers(): HTMLElement {
     const { renderer } = this, rows: HTMLElement[] = [];
     renderer.scene.layers.forEach((layer) => {
-      const box = make("input", { type: "checkbox" }) as HTMLInputElement;
-      box.checked = layer.visible;
-      box.addEventListener("change", () => {
-        layer.visible = box.checked;
+      rows.push(check(layer.name, layer.visible, (on) => {
+        layer.visible = on;
         renderer.change();
-      });
-      rows.push(make("label", {}, box, make("span", {}, layer.name)));
+      }));
       if (layer.kind === "fiblets") {
         rows.push(slider("Line width", 0.5, 10, layer.line_width, (width) => {
           layer.line_width = width;
@@ -222,31 +208,78 @@ export class Controls {
     return made;
   }
 
-  /** Streamlines through a ball around the place that was picked. */
-  private region(): HTMLElement {
-    const { renderer } = this, b = renderer.scene.bounds, size = Math.hypot(b[1] - b[0], b[3] - b[2], b[5] - b[4]);
-    this.radius = size / 40;
-    const keep = (): void => {
-      if (!this.picked) {
-        this.status.textContent = "Click on a streamline first.";
-        return;
-      }
-      const { lines, place } = this.picked, through = lines.set.through(place, this.radius), choice = this.choiceOf(lines);
-      choice.regions.set("ball", through);
+  /** Groups of streamlines, on or off. */
+  private groups(): HTMLElement[] {
+    return this.renderer.lines.filter(({ layer }) => layer.groups?.length).map((lines) => {
+      const choice = this.choiceOf(lines), rows = lines.layer.groups!.map(({ name, data }) => {
+        const ids = asWords(this.data[data]);
+        choice.groups.push(ids);
+        return check(name, true, (on) => {
+          if (on) choice.hidden.delete(ids);
+          else choice.hidden.add(ids);
+          choice.apply();
+          this.renderer.change();
+        });
+      });
+      return group(`Groups of ${lines.layer.name}`, ...rows);
+    });
+  }
+
+  /** Balls and boxes: streamlines that pass through all that are on, or through none of those that are inverted. */
+  private regionList(): HTMLElement {
+    const list = make("div"), { renderer } = this, b = renderer.scene.bounds, size = Math.hypot(b[1] - b[0], b[3] - b[2], b[5] - b[4]);
+    const add = (ball: boolean) => (): void => {
+      const place = this.picked ? (apply(this.picked.lines.model, this.picked.place).slice(0, 3) as Vec) : ([0, 1, 2].map((axis) => (b[2 * axis] + b[2 * axis + 1]) / 2) as Vec);
+      const region: Region = { ball, at: place, size: [size / 40, size / 40, size / 40], on: true, inverted: false };
+      this.regions.push(region);
+      list.append(this.regionRow(region, size));
+      this.update(region);
+    };
+    return group("Regions", make("div", { class: "buttons" }, button("Add a ball", add(true)), button("Add a box", add(false))), list);
+  }
+
+  private regionRow(region: Region, most: number): HTMLElement {
+    const { renderer } = this, b = renderer.scene.bounds, name = `${region.ball ? "Ball" : "Box"} ${this.regions.length}`;
+    const later = (): void => {
+      window.clearTimeout(this.later);
+      this.later = window.setTimeout(() => this.update(region), 120);
+      this.drawOutlines();
+    };
+    const sized = (label: string, axes: number[]): HTMLElement => slider(label, most / 1000, most / 4, region.size[axes[0]], (value) => {
+      for (const axis of axes) region.size[axis] = value;
+      later();
+    });
+    const row = make("details", {}, make("summary", {}, name), check("On", true, (on) => { region.on = on; this.choose(); }),
+      check("Streamlines outside it", false, (inverted) => { region.inverted = inverted; this.choose(); }),
+      ...["x", "y", "z"].map((axis, i) => slider(`${axis}, mm`, b[2 * i], b[2 * i + 1], region.at[i], (value) => { region.at[i] = value; later(); })),
+      ...(region.ball ? [sized("Radius, mm", [0, 1, 2])] : ["x", "y", "z"].map((axis, i) => sized(`Half of ${axis}, mm`, [i]))),
+      make("div", { class: "buttons" }, button(`Remove ${name.toLowerCase()}`, () => {
+        row.remove();
+        this.regions.splice(this.regions.indexOf(region), 1);
+        for (const choice of this.choices.values()) choice.regions.delete(region);
+        this.choose();
+      })));
+    (row as HTMLDetailsElement).open = true;
+    return row;
+  }
+
+  private later = 0;
+
+  /** Find which streamlines pass through a region, where it is on and was not there before. */
+  private update(region: Region): void {
+    if (!this.regions.includes(region)) return;
+    for (const lines of this.renderer.lines) this.choiceOf(lines).regions.set(region, lines.set.through(region, lines.model));
+    this.choose();
+  }
+
+  private choose(): void {
+    let sum = 0;
+    for (const choice of this.choices.values()) {
       choice.apply();
-      renderer.change();
-      this.status.textContent = `${through.reduce((sum, one) => sum + one, 0)} streamlines pass within ${number(this.radius)} mm of the place`;
-    };
-    const all = (): void => {
-      for (const choice of this.choices.values()) {
-        choice.regions.clear();
-        choice.apply();
-      }
-      renderer.change();
-      this.status.textContent = "";
-    };
-    return group("Region", slider("Radius, mm", size / 1000, size / 5, this.radius, (value) => { this.radius = value; }),
-      make("div", { class: "buttons" }, button("Those through the picked place", keep), button("All", all)));
+      sum += choice.count;
+    }
+    this.status.textContent = this.regions.some((region) => region.on) ? `${sum} streamlines are shown` : "";
+    this.renderer.change();
   }
 
   /** Say what lies at a place of the page, and mark it. */
@@ -296,6 +329,32 @@ export class Controls {
     const names = letters.flat().map((letter, i) => make("span", { class: `axis a${i >> 1}` }, letter));
     this.axes = names;
     return make("div", { id: "axes", "aria-hidden": "true" }, ...names);
+  }
+
+  private follow(): void {
+    this.turnAxes();
+    this.drawOutlines();
+  }
+
+  /** Draw lines around regions over the picture. */
+  private drawOutlines(): void {
+    const { renderer, outlines } = this, { camera, canvas } = renderer, width = canvas.clientWidth, height = canvas.clientHeight;
+    if (!this.regions.length) return outlines.replaceChildren();
+    const matrix = product(camera.projection(width / height, renderer.scene.bounds), camera.view());
+    outlines.replaceChildren(...this.regions.map((region) => {
+      const path = document.createElementNS(SVG, "path"), parts: string[] = [];
+      for (const line of outline(region)) {
+        let pen = "M";
+        for (const place of line) {
+          const [x, y, , w] = apply(matrix, place);
+          if (w > 0) parts.push(`${pen}${(((x / w + 1) * width) / 2).toFixed(1)} ${(((1 - y / w) * height) / 2).toFixed(1)}`);
+          pen = w > 0 ? "L" : "M";
+        }
+      }
+      path.setAttribute("d", parts.join(""));
+      path.setAttribute("opacity", region.on ? "1" : ".3");
+      return path;
+    }));
   }
 
   private turnAxes(): void {

@@ -6,7 +6,8 @@
 
 import type { Archive, NpyArray } from "./archive";
 import { FileError } from "./archive";
-import type { Bounds, Mat, Vec } from "./camera";
+import { Bounds, Mat, Vec, apply } from "./camera";
+import { Region, meets, within } from "./regions";
 import { PAGE_BITS, field, rotationScales, rotations } from "./engine";
 import { Format, GL, Program, UniformBlock, emptyRows, fillRows, rows } from "./gl";
 
@@ -56,7 +57,7 @@ function words(array: NpyArray | undefined, name: string, columns: number, n: nu
 }
 
 /** An array as whole words of four bytes, of which the last may have something else behind it, which nothing reads. */
-function asWords(data: Uint8Array | Uint16Array): Uint32Array {
+export function asWords(data: Uint8Array | Uint16Array): Uint32Array {
   const n = Math.ceil(data.byteLength / 4);
   if (data.byteOffset % 4 === 0 && data.byteOffset + 4 * n <= data.buffer.byteLength) return new Uint32Array(data.buffer as ArrayBuffer, data.byteOffset, n);
   const all = new Uint8Array(4 * n);
@@ -411,21 +412,20 @@ export class FibletSet {
     return found;
   }
 
-  /** Of each streamline 1 where some segment of it comes near to a place (data coordinates, mm), else 0. */
-  through(place: Vec, radius: number): Uint8Array {
-    const kept = new Uint8Array(this.streamlines), c = [0, 1, 2].map((axis) => place[axis] - this.toData[12 + axis]), square = radius * radius;
-    const near = (block: Block): boolean => [0, 1, 2].every((axis) => place[axis] + radius >= block.bounds[2 * axis] && place[axis] - radius <= block.bounds[2 * axis + 1]);
+  /** Of each streamline 1 where some segment of it, moved by `model`, meets a region, else 0. */
+  through(region: Region, model: Mat): Uint8Array {
+    const kept = new Uint8Array(this.streamlines), { at, size } = region;
+    const near = ({ bounds: b }: Block): boolean => {
+      const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => apply(model, [b[i & 1], b[2 + ((i >> 1) & 1)], b[4 + (i >> 2)]]));
+      return [0, 1, 2].every((axis) => corners.some((c) => c[axis] >= at[axis] - size[axis]) && corners.some((c) => c[axis] <= at[axis] + size[axis]));
+    };
     for (const [id, p] of this.decoded(near)) {
       if (kept[id]) continue;
-      for (let i = 0; i < p.length; i += 4) {
-        const j = Math.min(i + 4, p.length - 4);
-        const dx = p[j] - p[i], dy = p[j + 1] - p[i + 1], dz = p[j + 2] - p[i + 2], ax = c[0] - p[i], ay = c[1] - p[i + 1], az = c[2] - p[i + 2];
-        const t = Math.min(1, Math.max(0, (ax * dx + ay * dy + az * dz) / (dx * dx + dy * dy + dz * dz || 1)));
-        const x = ax - t * dx, y = ay - t * dy, z = az - t * dz;
-        if (x * x + y * y + z * z <= square) {
-          kept[id] = 1;
-          break;
-        }
+      let from = within(region, apply(model, this.world(p, 0)));
+      for (let i = 0; i < p.length && !kept[id]; i += 4) {
+        const to = within(region, apply(model, this.world(p, Math.min(i + 4, p.length - 4) / 4)));
+        if (meets(region, from, to)) kept[id] = 1;
+        from = to;
       }
     }
     return kept;

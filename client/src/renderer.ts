@@ -8,7 +8,7 @@
 import type { Archive } from "./archive";
 import { Bounds, Camera, Mat, Vec, apply, identity, inverse, linear, product } from "./camera";
 import { fromBase64 } from "./engine";
-import { Block, FibletSet, PointValues } from "./fiblets";
+import { Block, FibletSet, PointValues, asWords } from "./fiblets";
 import { GL, GraphicsError, Program, UniformBlock, framebuffer, lookUpTable, rows, target } from "./gl";
 import type { FibletLayer, Scene } from "./scene";
 import { Drawn, ImageSlice, Surface } from "./surfaces";
@@ -31,6 +31,7 @@ export class Lines {
   tableRange: number[] = [0, 1, 1, 1];
   kept: WebGLTexture | null = null;
   chosen: WebGLTexture | null = null;
+  keptPoints: WebGLTexture | null = null;
   shownValues: [number, number] = [1, 0];
   marked = ALL_ONES;
 
@@ -44,11 +45,12 @@ export class Lines {
     if (colours.table !== undefined) [this.table, this.tableRange] = lookUpTable(gl, fromBase64(colours.table), colours.clim!, !!colours.log);
     if (layer.kept !== undefined) this.keep(data[layer.kept]);
     if (layer.chosen) this.chosen = rows(gl, "r8ui", data[layer.chosen.data], "streamlines");
+    if (layer.kept_points !== undefined) this.keptPoints = rows(gl, "r32ui", asWords(data[layer.kept_points]), "points");
   }
 
   /** Give back all but the set. */
   release(): void {
-    for (const texture of [this.values?.texture, this.colours, this.table, this.kept, this.chosen]) if (texture) this.gl.deleteTexture(texture);
+    for (const texture of [this.values?.texture, this.colours, this.table, this.kept, this.chosen, this.keptPoints]) if (texture) this.gl.deleteTexture(texture);
   }
 
   get byPoint(): boolean {
@@ -418,6 +420,7 @@ export class Renderer {
         if (lines.values) features.push("VALUES_STORED");
         if (lines.byPoint) features.push("VALUES_COLOUR");
         if (lines.kept) features.push("STREAMLINE_MASK");
+        if (lines.keptPoints) features.push("POINT_MASK");
         program = this.program("page/segment.vert", "page/segment.frag", features).use();
         if (lines.values) program.set({ value_code: lines.values.code, shown_values: lines.shownValues });
         program.uints({ layer: lines.index * 2 ** 28 });
@@ -426,7 +429,7 @@ export class Renderer {
       gl.enable(gl.DEPTH_TEST);
       gl.depthFunc(gl.LESS);
       this.frameBlock.bind();
-      program!.use().textures({ items: lines.set.items, kept: lines.kept, value_texels: lines.values && lines.values.texture, point_colours: lines.byPoint ? lines.colours : null });
+      program!.use().textures({ items: lines.set.items, kept: lines.kept, kept_points: lines.keptPoints, value_texels: lines.values && lines.values.texture, point_colours: lines.byPoint ? lines.colours : null });
       this.sliceSize += lines.set.draw(block, program!, frame.share, sprites);
     }
   }

@@ -24,7 +24,7 @@ export interface Bar {
   table: string;        // base64, RGBA
   clim: [number, number];
   log: boolean;
-  labels?: string[];    // of categories
+  labels?: { name: string; colour: Vec }[]; // of categories: a list of them instead of a scale
 }
 
 export interface Control {
@@ -51,7 +51,8 @@ export interface FibletLayer extends Layer {
   sheen: Vec;
   kept?: number;        // data: a byte for each streamline
   chosen?: { data: number; colour: [number, number, number, number]; faded: [number, number, number, number] };  // a byte for each streamline; colours, and how much of them
-  groups?: { name: string; colour?: Vec; data: number }[];
+  kept_points?: number; // data: a bit for each point
+  groups?: { name: string; data: number }[]; // data: uint32, streamlines
   controls?: Control[];
 }
 

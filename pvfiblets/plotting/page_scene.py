@@ -6,7 +6,7 @@ What a page cannot show is named in one warning, and left out.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -26,6 +26,7 @@ from pvfiblets.plotting.page_surfaces import add_image, add_surface, reflects_of
 if TYPE_CHECKING:
     from os import PathLike
 
+    from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.mappers.colouring import Colouring
 
 __all__ = ["camera_place", "export_page", "page_and_actors", "page_of"]
@@ -153,8 +154,6 @@ def _add_fiblets(
     if len(getattr(actor, "picking_layers", ())) > 1:
         unable.append(f"the width or the tubes of what is selected of {name!r}")
     filtering = mapper.filtering
-    if filtering is not None and filtering.points is not None:
-        unable.append(f"the choice of points of {name!r}")
     fiblets, colours, keep = _colours(scene, fiblets, mapper.colouring)
     light = "none"
     if actor.GetProperty().GetLighting():
@@ -169,6 +168,10 @@ def _add_fiblets(
             "colour": (0.0, 0.0, 0.0, 0.0) if highlight.color is None else (*highlight.color[:3], 1.0),
             "faded": (*(highlight.faded or scene.background[0])[:3], highlight.dim),
         }
+    if filtering is not None and filtering.points is not None:
+        more["kept_points"] = scene.add_blob(np.asarray(filtering.points, "<u4"))
+    if controls and fiblets.groups:
+        more["groups"] = _groups(scene, fiblets, None if filtering is None else filtering.streamlines)
     planes = world_planes(mapper)
     if mapper.region is not None:
         from pvfiblets.engine.regions.clip_planes import planes_of
@@ -193,7 +196,29 @@ def _add_fiblets(
         lut, clim = mapper.colouring.lut, mapper.colouring.clim
         assert lut is not None
         bar = {"title": scalars.title, "table": encoded(lut), "clim": clim, "log": mapper.colouring.log_scale}
+        if scalars.categories:
+            bar["labels"] = _names(scalars.categories, mapper.colouring)
         scene.bars.append(bar)
+
+
+def _groups(scene: PageScene, fiblets: FibletSet, shown: npt.NDArray[np.bool_] | None) -> list[dict[str, Any]]:
+    """Return the groups that have streamlines which are shown."""
+    groups = []
+    for name, ids in fiblets.groups.items():
+        members = np.unique(np.asarray(ids)).astype("<u4")
+        if len(members) and (shown is None or shown[members].any()):
+            groups.append({"name": str(name), "data": scene.add_blob(members)})
+    return groups
+
+
+def _names(categories: Mapping[int, str], colouring: Colouring) -> list[dict[str, Any]]:
+    """Return categories with their colours, as they are drawn."""
+    table = colouring.table()
+    colours = table[_entries(np.array(list(categories), float), colouring, len(table) - 3)][:, :3]
+    return [
+        {"name": str(name), "colour": colour}
+        for name, colour in zip(categories.values(), colours.tolist(), strict=True)
+    ]
 
 
 def _controls(scene: PageScene, fiblets: Any, actor: Any, colouring: Colouring) -> list[dict[str, Any]]:

@@ -28,6 +28,14 @@ uniform uint layer;                    // in the upper four bits of the streamli
 #if FEATURE_STREAMLINE_MASK
 uniform highp usampler2D kept;         // r8ui, by streamline: not 0 where it is drawn
 #endif
+#if FEATURE_POINT_MASK
+uniform highp usampler2D kept_points;  // r32ui, a bit for each point: 1 where it is kept (shaders/fiblets/data/point_mask.glsl)
+
+bool point_kept(uint point) {
+    uint word = point >> 5u;
+    return ((texelFetch(kept_points, ivec2(int(word & 4095u), int(word >> 12u)), 0).x >> (point & 31u)) & 1u) != 0u;
+}
+#endif
 #if FEATURE_VALUES_COLOUR
 uniform highp sampler2D point_colours; // rgba8, by point
 
@@ -56,9 +64,15 @@ void main() {
     if (texelFetch(kept, ivec2(int(item.x & 4095u), int(item.x >> 12u)), 0).x == 0u) return;
 #endif
     bool start = k == 0u && begins, cap = k + 1u == count && ends;
+    uint here = item.y + k, there = item.y + min(k + 1u, points - (ends ? 1u : 0u));
+#if FEATURE_POINT_MASK
+    if (!point_kept(here) || !point_kept(there)) return;
+    start = start || !point_kept(here - 1u);
+    cap = cap || !point_kept(there + 1u);
+#endif
     vec2 values = vec2(0.0);
 #if FEATURE_VALUES_STORED
-    values = vec2(value_of(item.y + k), value_of(item.y + min(k + 1u, points - (ends ? 1u : 0u))));
+    values = vec2(value_of(here), value_of(there));
 #endif
     vec3 from = uintBitsToFloat(slot_from.xyz), to = uintBitsToFloat(slot_to.xyz);
     ClippedSegment piece;
@@ -69,7 +83,7 @@ void main() {
     seg_end = piece.b;
     seg_along = vec4(piece.t0, piece.t1, values);
 #if FEATURE_VALUES_COLOUR
-    seg_colours = uvec2(packUnorm4x8(colour_of(item.y + k)), packUnorm4x8(colour_of(item.y + min(k + 1u, points - (ends ? 1u : 0u)))));
+    seg_colours = uvec2(packUnorm4x8(colour_of(here)), packUnorm4x8(colour_of(there)));
 #endif
 #if FEATURE_WIDE_LINES
     seg_onward = piece.cap ? vec2(0.0) : onward_at(piece.b, uintBitsToFloat(slot_after.xyz) - to);

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import time
 
 import numpy as np
 
@@ -44,6 +45,14 @@ class Page:
             }"""
         )
         return np.frombuffer(base64.b64decode(data), np.uint8).reshape(height, width, 4)[..., :3].astype(np.int16)
+
+
+def until(page, expression):
+    """Wait until something is so in a page or frame; its policy forbids the browser to try by itself."""
+    end = time.monotonic() + PATIENCE / 1000
+    while not page.evaluate(expression):
+        assert time.monotonic() < end, expression
+        page.wait_for_timeout(20)
 
 
 def differing(page, picture):

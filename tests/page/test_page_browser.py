@@ -7,10 +7,12 @@ import re
 
 import numpy as np
 import pytest
+import pyvista as pv
 
 import pvfiblets
 from pvfiblets.page.scene import CameraPlace, PageScene, fiblet_layer
 from pvfiblets.page.writing import write_page
+from tests.page.pages import until
 
 
 @pytest.fixture(scope="module")
@@ -113,15 +115,192 @@ def test_click_tells_the_streamline_and_its_region(figure, visit):
     assert said.startswith("Streamline 0 of streamlines; at ")
     place = [float(part) for part in re.search(r"at (.*) mm", said)[1].split(", ")]
     np.testing.assert_allclose(place, (0.0, 0.0, 0.0), atol=0.6)
-    before = page.picture()
+
+
+def _ink(page, rows):
+    return (page.picture()[rows] != 255).any(axis=2).sum()
+
+
+def test_balls_and_boxes_choose_streamlines_and_have_switches(figure, visit):
+    page = visit(figure)
+    above, middle = slice(20, 60), slice(70, 90)
+    page.page.mouse.click(100, 80)  # on the line through the middle
+    status = page.page.locator("#status")
+    status.wait_for(state="visible")
     page.page.click("#panel summary")
-    page.page.get_by_role("button", name="Those through the picked place").click()
-    assert status.inner_text().startswith("1 streamlines pass within")
-    after = page.picture()
-    assert (before[20:60] != 255).any()
-    assert (after[20:60] == 255).all()
-    page.page.get_by_role("button", name="All", exact=True).click()
-    assert (page.picture()[20:60] != 255).any()
+    page.page.get_by_role("button", name="Add a ball").click()
+    assert status.inner_text() == "1 streamlines are shown"
+    assert page.page.locator("#over > svg > path").count() == 1
+    assert _ink(page, above) == 0 < _ink(page, middle)
+    ball = page.page.locator("details", has=page.page.locator("summary", has_text=re.compile("^Ball 1$"))).last
+    ball.get_by_label("Streamlines outside it").check()
+    assert _ink(page, middle) == 0 < _ink(page, above)
+    ball.get_by_label("Streamlines outside it").uncheck()
+    ball.get_by_label("On").uncheck()
+    assert min(_ink(page, middle), _ink(page, above)) > 0
+    ball.get_by_label("On").check()
+    ball.get_by_label("y, mm").fill("20")
+    until(page.page, "document.getElementById('status').textContent.startsWith('1 ')")
+    page.page.wait_for_timeout(200)
+    assert _ink(page, middle) == 0 < _ink(page, above)
+
+    page.page.get_by_role("button", name="Add a box").click()  # around the picked place: no line passes through both
+    assert status.inner_text() == "0 streamlines are shown"
+    box = page.page.locator("details", has=page.page.locator("summary", has_text=re.compile("^Box 2$"))).last
+    box.get_by_label("Half of y, mm").fill("20.5")
+    until(page.page, "document.getElementById('status').textContent.startsWith('1 ')")
+    ball.get_by_role("button", name="Remove ball 1").click()
+    assert status.inner_text() == "2 streamlines are shown"
+    box.get_by_role("button", name="Remove box 2").click()
+    assert status.inner_text() == ""
+    assert page.page.locator("#over > svg > path").count() == 0
+    assert min(_ink(page, middle), _ink(page, above)) > 0
+
+
+@pytest.fixture(scope="module")
+def rich(tmp_path_factory):
+    """Return a page with groups by colour, an image's slice, lengths, and a scale of numbers."""
+    x = np.linspace(-40.0, 40.0, 161)
+    lines = [np.stack([x[:n], np.full(n, y), np.zeros(n)], axis=1) for n, y in ((161, 0.0), (161, 20.0), (81, 10.0))]
+    fiblets = pvfiblets.compress(
+        pvfiblets.Streamlines.from_list(lines, groups={"low </li>": np.array([0]), "both": np.array([0, 1])})
+    )
+    plotter = pv.Plotter(off_screen=True, window_size=(320, 260))
+    plotter.set_background("white")
+    plotter.add_fiblets(fiblets, scalars="group", line_width=4.0, name="tracts", lighting=False)
+    plotter.add_fiblets(fiblets, scalars="length", line_width=1.0, name="lengths", lighting=False)
+    plane = pv.Plane(center=(0.0, -20.0, 0.0), i_size=40.0, j_size=10.0).triangulate()
+    plotter.add_mesh(plane, color="black", name="plane", lighting=False)
+    plotter.camera_position = [(0.0, 0.0, 200.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0)]
+    path = plotter.fiblets.export_page(tmp_path_factory.mktemp("rich") / "rich.html")[0]
+    plotter.close()
+    return path
+
+
+def test_groups_have_switches_and_names_stand_by_their_colours(rich, visit):
+    page = visit(rich, size=(320, 260))
+    page.page.click("#panel summary")
+    page.page.get_by_label("lengths", exact=True).uncheck()
+    shown = "Array.from(pvfiblets.lines[0].set.blocks).length"
+    assert page.page.evaluate(shown) == 1
+    names = page.page.locator(".bar li").all_inner_texts()
+    assert names == ["low </li>", "both"]
+    whole = _ink(page, slice(None))
+    groups = page.page.locator("fieldset", has_text="Groups of tracts")
+    groups.get_by_label("both").uncheck()  # the upper line goes, the lower one is in another group that is on
+    upper = _ink(page, slice(None))
+    assert 0 < upper < whole
+    groups.get_by_label("low </li>").uncheck()  # what is in no group stays
+    assert 0 < _ink(page, slice(None)) < upper
+    groups.get_by_label("both").check()
+    groups.get_by_label("low </li>").check()
+    assert _ink(page, slice(None)) == whole
+
+
+def test_sliders_choose_by_numbers_and_fade_surfaces(rich, visit):
+    page = visit(rich, size=(320, 260))
+    page.page.click("#panel summary")
+    page.page.get_by_label("tracts", exact=True).uncheck()
+    whole = _ink(page, slice(None))
+    lengths = page.page.locator("fieldset", has=page.page.locator("legend", has_text=re.compile("^length"))).last
+    lengths.get_by_label("From").fill("60")
+    fewer = _ink(page, slice(None))
+    assert 0 < fewer < whole
+    assert float(lengths.locator("output").first.inner_text()) == pytest.approx(60.0, abs=0.5)
+    lengths.get_by_label("From").fill("0")
+    assert _ink(page, slice(None)) == whole
+    black = (page.picture() < 40).all(axis=2).sum()
+    assert black > 500
+    page.page.get_by_label("Opacity").fill("0.3")
+    assert (page.picture() < 40).all(axis=2).sum() < 0.1 * black
+
+
+def test_letters_turn_with_the_camera(rich, visit):
+    page = visit(rich, size=(320, 260))
+
+    def place(letter):
+        box = page.page.locator(".axis", has_text=re.compile(f"^{letter}$")).bounding_box()
+        return np.array([box["x"] + box["width"] / 2, box["y"] + box["height"] / 2])
+
+    assert place("R")[0] - place("L")[0] > 50  # from above: x to the right
+    assert place("P")[1] - place("A")[1] > 50
+    page.page.click("#panel summary")
+    page.page.get_by_role("button", name="Left").click()
+    page.settled()
+    assert place("I")[1] - place("S")[1] > 50
+    assert abs(place("R")[0] - place("L")[0]) < 1
+
+
+def test_fingers_turn_and_zoom(figure, visit):
+    page = visit(figure, has_touch=True)
+    touch = page.context.new_cdp_session(page.page)
+
+    def fingers(kind, *places):
+        points = [{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(places)]
+        touch.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+    fingers("touchStart", (100, 80))
+    fingers("touchMove", (100, 110))
+    fingers("touchEnd")
+    page.settled()
+    turned = np.array(page.page.evaluate("pvfiblets.camera.state.position"))
+    assert np.linalg.norm(turned) == pytest.approx(200.0)
+    assert abs(turned[1]) > 50.0
+    fingers("touchStart", (80, 80), (120, 80))
+    fingers("touchMove", (60, 80), (140, 80))
+    fingers("touchEnd")
+    page.settled()
+    state = page.page.evaluate("pvfiblets.camera.state")
+    assert np.linalg.norm(np.subtract(state["position"], state["focal_point"])) == pytest.approx(100.0, rel=0.05)
+
+
+def test_keys_reach_every_control_and_all_are_named(rich, visit):
+    page = visit(rich, size=(320, 260)).page
+    said = page.locator("body").aria_snapshot()
+    assert 'img "Interactive 3-D picture. Arrow keys turn it' in said
+    page.keyboard.press("Tab")
+    assert page.evaluate("document.activeElement.id") == "view"
+    page.keyboard.press("Tab")
+    assert page.evaluate("document.activeElement.tagName") == "SUMMARY"
+    page.keyboard.press("Enter")
+    reached = set()
+    for _ in range(80):
+        page.keyboard.press("Tab")
+        reached.add(page.evaluate("[...document.querySelectorAll('#panel *')].indexOf(document.activeElement)"))
+    controls = page.evaluate(
+        "[...document.querySelectorAll('#panel *')]"
+        ".flatMap((one, i) => one.matches('input, select, button') ? [i] : [])"
+    )
+    assert set(controls) <= reached
+    said = page.locator("#panel").aria_snapshot()
+    for name in (
+        'checkbox "tracts"',
+        'slider "Line width"',
+        'group "Regions"',
+        'button "Add a ball"',
+        'combobox "Cut across"',
+    ):
+        assert name in said
+    assert not re.search(r"^\s*- (checkbox|slider|button|combobox)(:|$| \[)", said, re.MULTILINE)
+
+
+def test_loads_leave_no_memory_behind(figure, visit):
+    page = visit(figure)
+    meter = page.context.new_cdp_session(page.page)
+
+    def used():
+        meter.send("HeapProfiler.collectGarbage")
+        return {one["name"]: one["value"] for one in meter.send("Performance.getMetrics")["metrics"]}
+
+    meter.send("Performance.enable")
+    found = []
+    for _ in range(5):
+        page.page.reload()
+        page.page.wait_for_selector("body[data-state=drawn]")
+        found.append(used())
+    assert found[-1]["JSHeapUsedSize"] < 1.1 * found[1]["JSHeapUsedSize"]
+    assert found[-1]["Nodes"] <= found[1]["Nodes"]
+    assert found[-1]["Documents"] <= found[1]["Documents"]
 
 
 def test_slab_view_and_width_are_set_by_named_controls(figure, visit):

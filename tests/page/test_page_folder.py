@@ -13,7 +13,7 @@ import pytest
 import pvfiblets
 from pvfiblets.page.scene import CameraPlace, PageScene, encoded, fiblet_layer
 from pvfiblets.page.writing import write_page
-from tests.page.pages import Page
+from tests.page.pages import Page, until
 
 SHORT = 70_000  # more fiblets than a page asks for together
 PATIENCE = 60.0
@@ -145,7 +145,7 @@ def test_page_with_its_data_beside_it_is_the_page_of_one_file(kind, serve, visit
 def test_streamlines_are_shown_as_they_come(kind, serve, visit, expected):
     address, handler = serve(kind, wait=True)
     page = visit(f"{address}/figure.html")
-    page.page.wait_for_function("pvfiblets.lines[0].set.blocks.length > 0")
+    until(page.page, "pvfiblets.lines[0].set.blocks.length > 0")
     # 64 blocks have come, of which the last waits for the fiblet after it.
     assert page.page.evaluate("[pvfiblets.lines[0].set.blocks.length, pvfiblets.loading]") == [63, True]
     assert page.page.locator("progress").get_attribute("aria-label") == "Streamlines that have come"

@@ -15,6 +15,7 @@ import pyvista as pv
 
 import pvfiblets
 from pvfiblets.plotting.notebook_view import Picked, page_view, show
+from tests.page.pages import until
 
 ROOT = Path(__file__).resolve().parents[2]
 SIZE = (200, 160)
@@ -135,14 +136,14 @@ def test_frame_and_model_of_a_notebook_talk(plotter, visit, tmp_path):
     canvas = frame.locator("#view")
     box = canvas.bounding_box()
     canvas.click(position={"x": box["width"] / 2, "y": box["height"] / 2})
-    page.wait_for_function("kernel.values.picked")
+    until(page, "kernel.values.picked")
     picked = page.evaluate("kernel.values.picked")
     view.state.set_state({"picked": picked})
     assert (view.picked.name, view.picked.streamline) == ("lines", 0)
     np.testing.assert_allclose(view.picked.place, (0.0, 0.0, 0.0), atol=0.6)
 
     canvas.press("ArrowRight")
-    page.wait_for_function("kernel.values.camera.position[0] !== 0")
+    until(page, "kernel.values.camera.position[0] !== 0")
     view.state.set_state({"camera": page.evaluate("kernel.values.camera")})
     assert np.linalg.norm(plotter.camera.position) == pytest.approx(200.0)
     assert plotter.camera.position[0] != 0.0
@@ -152,7 +153,7 @@ def test_frame_and_model_of_a_notebook_talk(plotter, visit, tmp_path):
     page.evaluate("(camera) => kernel.set('camera', camera)", view.state.camera)
     view.picked = Picked("lines", 1)
     page.evaluate("(picked) => kernel.set('picked', picked)", view.state.picked)
-    frame.wait_for_function("document.getElementById('status').textContent.startsWith('Streamline 1 of lines')")
+    until(frame, "document.getElementById('status').textContent.startsWith('Streamline 1 of lines')")
     frame.evaluate("pvfiblets.settled()")
     np.testing.assert_allclose(frame.evaluate("pvfiblets.camera.state.position"), plotter.camera.position)
     assert page.evaluate("kernel.saved") == saved  # nothing comes back

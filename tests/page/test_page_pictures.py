@@ -85,6 +85,20 @@ def test_page_cuts_moves_selects_and_leaves_out_as_the_actor_does(plotter, fible
     assert wrong < 0.01
 
 
+@pytest.mark.parametrize("width", [1.0, 4.0])
+def test_page_draws_the_points_that_are_chosen(width, plotter, fiblets, visit, tmp_path):
+    actor = plotter.add_fiblets(fiblets, line_width=width)
+    actor.criterion("share", (0.25, 0.6))
+    plotter.picture.antialias = "coverage"
+    plotter.camera_position = "xz"
+    plotter.camera.zoom(1.4)
+    expected = plotter.screenshot(return_img=True)
+    plotter.fiblets.export_page(tmp_path / "figure.html")
+    wrong, drawn = differing(visit(tmp_path / "figure.html").picture(), expected)
+    assert drawn > 0.1
+    assert wrong < 0.01
+
+
 def test_surfaces_hide_lines_and_are_hidden(plotter, fiblets, visit, tmp_path):
     plotter.add_fiblets(fiblets)
     plotter.add_mesh(pv.Sphere(radius=40.0), color="tan", smooth_shading=True, specular=0.5, specular_power=12.0)
