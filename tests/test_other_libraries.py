@@ -249,6 +249,12 @@ def test_a_tck_file_with_words_about_voxels(tmp_path):
     check(streamlines_of(file), list(given))
 
 
+def test_what_cannot_be_written_is_told(tmp_path):
+    with pytest.raises(TypeError, match=r"write takes a path and Streamlines, got list; Streamlines\.from_list"):
+        pf.write(tmp_path / "a.trk", lines())
+    assert not list(tmp_path.iterdir())
+
+
 def test_they_are_drawn(tractogram):
     plotter = pv.Plotter(off_screen=True, window_size=(80, 60))
     actor = plotter.add_fiblets(tractogram, scalars="weight", show_scalar_bar=False)

@@ -138,7 +138,7 @@ def compress(
     per_point = choose_per_point(streamlines, per_point, per_point_bits)
     check_order(order)
     plain = is_plain(step, max_error, max_angle, effort, order)
-    check_exact(exact, step, order)
+    check_exact(exact, step, order, max_error)
     if exact or (exact is None and plain and raw_bytes(streamlines) < limits.EXACT_BELOW):
         return _kept_exactly(streamlines, survey([streamlines], per_point), per_point, per_point_bits)
     promise = None
@@ -190,8 +190,12 @@ def is_plain(*choices: Any) -> bool:
     return choices == ("auto", None, DEFAULT_ANGLE, "fast", "input")
 
 
-def check_exact(exact: bool | None, step: float | str, order: str) -> None:
-    """Refuse what would change points that are to be kept as they are."""
+def check_exact(exact: bool | None, step: float | str, order: str, max_error: float | None) -> None:
+    """Refuse what would change points that are to be kept as they are, and a promise that means nothing of them."""
+    if not any(exact is known for known in (None, True, False)):
+        raise ValueError(f"exact is {exact!r}; True, False or None is needed")
+    if exact and max_error is not None:
+        raise ValueError(f"exact=True keeps every bit of the points; leave max_error={max_error!r} out, or exact")
     if exact and (step != "auto" or order != "input"):
         what = f"step={step!r}" if step != "auto" else f"order={order!r}"
         raise ValueError(f"exact=True keeps the points as they are, and {what} would change them or their order")

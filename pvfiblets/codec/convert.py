@@ -116,7 +116,7 @@ def compress_file(
 
     if verify not in ("all", "sample"):
         raise ValueError(f"verify is {verify!r}; 'all' or 'sample' is needed")
-    check_exact(exact, step, order)
+    check_exact(exact, step, order, max_error)
     remove_unfinished(Path(target).resolve().parent)
     promise = None
     if step != "auto":

@@ -135,11 +135,18 @@ def write(path: str | PathLike[str], streamlines: Streamlines) -> list[str]:
     ------
     UnknownFormatError
         If no format has this suffix, or it cannot be written.
+    TypeError
+        If there are no Streamlines to be written.
     ValueError
         If a name or value does not fit the format, with the fix.
     """
     path = path_of(path)
     module = module_for(path, "write")
+    if not isinstance(streamlines, Streamlines):
+        raise TypeError(
+            f"write takes a path and Streamlines, got {type(streamlines).__name__}; Streamlines.from_list(arrays) "
+            "makes some, and a FibletSet has save(path)"
+        )
     module.write(path, streamlines)
     holds = getattr(module, "HOLDS", None)
     parts = ("per_point", "per_streamline", "groups", "per_group")

@@ -51,6 +51,8 @@ def as_region(what: Any) -> Region:
             f"a {type(dataset).__name__} is no region; give its surface: "
             "dataset.extract_surface().triangulate()"
         )
+    if isinstance(what, str) and what.lstrip("+-").lower() in AXES:
+        raise ValueError(f"{what!r} is an axis, and no region; give the plane as ({what!r}, origin)")
     if isinstance(what, (str, Path)) and str(what).lower().endswith(OTHERS):
         from pvfiblets.slices.image import as_slice_image
 

@@ -270,3 +270,14 @@ def test_no_compiler_is_loaded_for_small_sets(tmp_path):
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
+
+
+def test_a_promise_about_exact_points_is_refused(tmp_path):
+    lines = Streamlines.from_list([np.cumsum(np.full((40, 3), 0.5), axis=0)])
+    with pytest.raises(ValueError, match=r"keeps every bit of the points; leave max_error=0\.1 out"):
+        pf.compress(lines, exact=True, max_error=0.1)
+    with pytest.raises(ValueError, match="exact is 'yes'; True, False or None is needed"):
+        pf.compress(lines, exact="yes")
+    pf.write(tmp_path / "a.tck", lines)
+    with pytest.raises(ValueError, match="leave max_error=0"):
+        pf.compress_file(tmp_path / "a.tck", tmp_path / "a.fiblets", exact=True, max_error=0.1)

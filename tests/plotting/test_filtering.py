@@ -195,6 +195,8 @@ def test_refused_choices_leave_all_as_it_was(shown):
         actor.remove_criterion("fa")
     with pytest.raises(KeyError, match="there is no cut 'a'; there are: none"):
         actor.unclip("a")
+    with pytest.raises(ValueError, match=r"'x' is an axis, and no region; give the plane as \('x', origin\)"):
+        actor.clip("x")  # as of PyVista's filter of this name
     with pytest.raises(TypeError, match="is no region"):
         actor.clip(3.0)
     np.testing.assert_array_equal(actor.shown, before)
