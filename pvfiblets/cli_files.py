@@ -17,6 +17,8 @@ from pvfiblets.web.values import plain
 
 if TYPE_CHECKING:
     from pvfiblets.codec.compress import PerPoint
+    from pvfiblets.codec.fibletset import FibletSet
+    from pvfiblets.query.painting.fiblet_index import FibletIndex
 
 COMPRESSED = ".fiblets"
 
@@ -48,8 +50,11 @@ def convert(
             "no place for it: leave it out"
         )
     if Path(target).suffix.lower() == COMPRESSED:
+        indexed: list[FibletIndex] = []
         if shards is None:
-            from pvfiblets.codec.convert import compress_file as work
+            from pvfiblets.codec.convert import compress_file
+
+            work = partial(compress_file, prepare=partial(_index, indexed) if index else None)
         else:
             from pvfiblets.codec.shards.write import compress_file_in_shards
 
@@ -68,7 +73,9 @@ def convert(
             progress=show_progress(quiet, json),
         )
         if index:
-            result |= add_index(target)
+            made = next(iter(indexed), None)
+            result["index_bytes"] = 0 if made is None else made.nbytes
+            result["index_seconds"] = 0.0 if made is None else made.seconds
     else:
         own = (step, max_error, exact, shards) != (None,) * 4 or max_angle != DEFAULT_ANGLE or per_point
         if own or verify != "all":
@@ -83,17 +90,11 @@ def convert(
         print(summary(source, target, result))
 
 
-def add_index(path: str) -> dict[str, Any]:
-    """Put a spatial index into a finished file; what there is to say about it."""
-    from pvfiblets.codec.fibletset import FibletSet
+def _index(made: list[FibletIndex], fiblets: FibletSet) -> None:
+    """Make the spatial index of a set that is about to be written, and note it."""
     from pvfiblets.regions import index_of
 
-    data = FibletSet.open(path)
-    made = index_of(data)
-    if data.exact is None:
-        data.save(path)
-    size = made.nbytes if data.exact is None else 0
-    return {"bytes": bytes_of(path), "index_bytes": size, "index_seconds": made.seconds}
+    made.append(index_of(fiblets))
 
 
 def which_per_point(given: list[str]) -> PerPoint:

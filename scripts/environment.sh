@@ -30,5 +30,5 @@ if [ ! -x "$VENV/bin/python" ] || ! "$VENV/bin/python" -m pip --version >/dev/nu
 fi
 echo "Installing pvfiblets and what it needs into $VENV ..."
 "$VENV/bin/python" -m pip install --quiet --disable-pip-version-check --editable '.[web,dev]'
-echo "Compiling what codes streamlines ..."
-"$VENV/bin/python" -m pvfiblets.codec.precompile
+echo "Compiling what codes streamlines and tells those of painted regions ..."
+"$VENV/bin/python" -m pvfiblets.precompile

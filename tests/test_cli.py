@@ -406,14 +406,24 @@ def test_sets_without_extent_are_told_in_sensible_numbers(points, tmp_path, caps
     assert "less than 1e-30" in said or "promise_mm       0" in said or "e-" in said
 
 
-def test_convert_keeps_a_spatial_index_and_says_what_it_takes(tractogram, tmp_path, capsys):
+def test_convert_keeps_a_spatial_index_and_says_what_it_takes(tractogram, tmp_path, capsys, monkeypatch):
+    from pvfiblets.codec import convert
+
     source, target = tractogram[0], tmp_path / "a.fiblets"
+    plain, written, write = tmp_path / "plain.fiblets", [], convert.write_archive
+    assert main(["convert", str(source), str(plain), "--no-exact"]) == 0
+    capsys.readouterr()
+    monkeypatch.setattr(convert, "write_archive", lambda path, *more: written.append(path) or write(path, *more))
     assert main(["convert", str(source), str(target), "--no-exact", "--index", "--json"]) == 0
     result = json.loads(capsys.readouterr().out)
     data = FibletSet.open(target)
     assert result["index_bytes"] == regions.index_of(data).nbytes > 0
     assert result["index_seconds"] > 0.0 == regions.index_of(data).seconds
     assert result["bytes"] == target.stat().st_size
+    assert len(written) == 1  # with its index at once
+    other, data = regions.index_of(FibletSet.open(plain)), regions.index_of(data)
+    for name in ("order", "leaves", "pieces"):
+        np.testing.assert_array_equal(getattr(data, name), getattr(other, name))
     assert main(["info", str(target), "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["index_bytes"] == result["index_bytes"]
     assert main(["convert", str(source), str(target), "--exact", "--index"]) == 0

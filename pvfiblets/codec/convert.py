@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import closing
 from dataclasses import replace
 from os import PathLike
@@ -33,7 +34,7 @@ from .compress import (
     quantise_chosen,
 )
 from .exact import raw_bytes
-from .fiblets_file import make_header
+from .fiblets_file import CORE, OPTIONAL, index_members, make_header
 from .fibletset import FibletSet
 from .file_error import compare_file
 from .layout import WORDS
@@ -64,6 +65,7 @@ def compress_file(
     per_point_bits: int = 8,
     exact: bool | None = None,
     verify: Literal["all", "sample"] = "all",
+    prepare: Callable[[FibletSet], object] | None = None,
     progress: Progress = False,
 ) -> dict[str, Any]:
     """Compress a tractogram file into a ``.fiblets`` file.
@@ -87,6 +89,9 @@ def compress_file(
     verify : {'all', 'sample'}
         Compare all of the finished file with the source, or every so many-th streamline, about a million points in all.
         That the promise is kept is seen to while coding, in either case.
+    prepare : callable, optional
+        Called with the coded set before it is written, unless it keeps every bit: what it keeps with the set, as
+        :func:`pvfiblets.regions.index_of` does, is in the file.
     progress : bool or callable
         Show a progress bar; or call this with what is being done and which share of it is, from 0 to 1 (0 while that
         cannot be told). What it raises stops the work.
@@ -202,6 +207,10 @@ def compress_file(
         )
         members = spool.members()
         header, more = make_header(header_set, {k: members.pop(k) for k in whole.per_point})
+        if prepare is not None:
+            mapped = spool.mapped(header_set)
+            prepare(mapped)
+            members |= index_members(mapped)
         write_archive(target, header, members | more)
     seconds = time.perf_counter() - started
     originals = chunks() if promise is None else formats.iter_chunks(source, CHUNK_POINTS)
@@ -336,6 +345,16 @@ class _Spool:
 
     def members(self) -> dict[str, Member]:
         return {name: self._member(name) for name in self._paths}
+
+    def mapped(self, header_set: FibletSet) -> FibletSet:
+        """Return a set whose arrays are those on disk, without values of points."""
+        there = (name for name in (*CORE, *OPTIONAL) if f"{name}.npy" in self._shapes)
+        arrays: dict[str, Any] = {name: self._map(f"{name}.npy") for name in there}
+        return replace(header_set, **arrays | {"per_point": {}})
+
+    def _map(self, name: str) -> npt.NDArray[Any]:
+        dtype, shape = self._shapes[name]
+        return np.memmap(self._paths[name], dtype, "r", 0, shape) if math.prod(shape) else np.empty(shape, dtype)
 
     def _member(self, name: str) -> Member:
         dtype, shape = self._shapes[name]

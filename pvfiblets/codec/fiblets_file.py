@@ -32,7 +32,9 @@ from .quantised import QuantisedPoints
 if TYPE_CHECKING:
     from .fibletset import FibletSet
 
-__all__ = ["VERSION", "index_bytes", "is_sharded", "make_header", "open_fiblets", "save"]
+__all__ = [
+    "CORE", "OPTIONAL", "VERSION", "index_bytes", "index_members", "is_sharded", "make_header", "open_fiblets", "save",
+]  # fmt: skip
 
 VERSION = 3
 OF_CODES = 2
@@ -42,8 +44,8 @@ INDEX = "_spatial_index"
 """Attribute of a set, no field of it: a set that is made of another has other fiblets."""
 INDEX_MEMBERS = ("spatial_index/order.npy", "spatial_index/leaves.npy", "spatial_index/pieces.npy")
 
-_CORE = ("anchors", "decoding", "reach", "codes", "ends", "pages")
-_OPTIONAL = ("anchors_low", "rank_to_id")
+CORE = ("anchors", "decoding", "reach", "codes", "ends", "pages")
+OPTIONAL = ("anchors_low", "rank_to_id")
 _SHAPES: dict[str, tuple[str, int]] = {
     "anchors": ("<u4", WORDS["anchors"]),
     "decoding": ("<u4", WORDS["decoding"]),
@@ -72,15 +74,15 @@ def save(fiblets: FibletSet, path: str | PathLike[str]) -> None:
     if fiblets.exact is not None:
         _save_exact(fiblets, path)
         return
-    members = {f"{name}.npy": array_member(np.asarray(getattr(fiblets, name))) for name in _CORE}
-    for name in _OPTIONAL:
+    members = {f"{name}.npy": array_member(np.asarray(getattr(fiblets, name))) for name in CORE}
+    for name in OPTIONAL:
         if getattr(fiblets, name) is not None:
             members[f"{name}.npy"] = array_member(np.asarray(getattr(fiblets, name)))
     header, more = make_header(fiblets, {k: array_member(np.asarray(v.codes)) for k, v in fiblets.per_point.items()})
-    write_archive(path, header, members | more | _index_members(fiblets))
+    write_archive(path, header, members | more | index_members(fiblets))
 
 
-def _index_members(fiblets: FibletSet) -> dict[str, Member]:
+def index_members(fiblets: FibletSet) -> dict[str, Member]:
     """A spatial index over the fiblets, which the room of questions has put with the set; none is none."""
     return {name: array_member(np.asarray(a)) for name, a in zip(INDEX_MEMBERS, _index_arrays(fiblets), strict=False)}
 
@@ -253,8 +255,8 @@ def _assemble(kind: type[FibletSet], header: dict[str, Any], arrays: dict[str, n
     if not (parameters.end_scale > 0.0 and parameters.largest_radius >= 0.0):
         raise ValueError(f"end_scale {parameters.end_scale}, largest_radius {parameters.largest_radius}")
     b = [float(v) for v in header["bounds"]]
-    plain: dict[str, Any] = {name: arrays[f"{name}.npy"] for name in _CORE}
-    plain |= {name: arrays.get(f"{name}.npy") for name in _OPTIONAL}
+    plain: dict[str, Any] = {name: arrays[f"{name}.npy"] for name in CORE}
+    plain |= {name: arrays.get(f"{name}.npy") for name in OPTIONAL}
     made = kind(
         parameters=parameters,
         bounds=(b[0], b[1], b[2], b[3], b[4], b[5]),

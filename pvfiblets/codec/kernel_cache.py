@@ -41,24 +41,24 @@ def kept_folder(digest: str) -> Path:
     return folder
 
 
-def _mark(work: str) -> Path:
-    digest = sources_digest()
+def _mark(work: str, folder: Path) -> Path:
+    digest = sources_digest(folder)
     chosen = os.environ.get("NUMBA_CACHE_DIR")  # the user's own choice
     return Path(chosen) / f"pvfiblets-{digest[:16]}-{work}" if chosen else kept_folder(digest) / work
 
 
-def is_filled(work: str) -> bool:
-    """Whether the kernels of some work were compiled here before, from the same sources."""
+def is_filled(work: str, folder: Path = HOME) -> bool:
+    """Whether the kernels of some work were compiled here before, from the same sources of the codec and a folder."""
     try:
-        return _mark(work).exists()
+        return _mark(work, folder).exists()
     except OSError:
         return False
 
 
-def mark_filled(work: str) -> None:
+def mark_filled(work: str, folder: Path = HOME) -> None:
     """Remember that they are; a folder that nobody may write to is no error."""
     try:
-        mark = _mark(work)
+        mark = _mark(work, folder)
         mark.parent.mkdir(parents=True, exist_ok=True)
         mark.touch()
     except OSError:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from pvfiblets.query.painting import kernels
 from pvfiblets.web.actions import Actions
 from pvfiblets.web.confined import check_name
 from pvfiblets.web.describe import typed
@@ -101,6 +102,13 @@ class PaintActions(Actions):
         if app.page.tool not in TOOLS:
             app.page.tool = "brush"
         app.refresh()
+        if self._fiblets() is not None and not kernels.are_compiled():
+            app.later(self._compile())
+
+    async def _compile(self) -> None:
+        """Compile what tells streamlines of regions before the first stroke asks, and say so."""
+        work = lambda *_: kernels.compile_all()  # noqa: E731
+        await self._app.files.beside("regions", work, "compiling, once", cancellable=False)
 
     def choose(self, name: str) -> None:
         """Paint this one from now on."""

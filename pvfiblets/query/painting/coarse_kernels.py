@@ -163,6 +163,19 @@ def _place(k: int, pieces: Any, row: int, leaves: Any, leaf: int, unit: float, l
         u[k, axis] = mean[k, axis] + (linear[axis, 0] * x + linear[axis, 1] * y + linear[axis, 2] * z)
 
 
+@kernel
+def _apart(pieces: Any, row: int, k: int, parts: int, centre: Any, box: Any, unit: float, radius: float) -> bool:
+    """Whether part ``k`` of a fiblet lies beyond one face of a box along the axes of mm: told without its voxels."""
+    reach = radius * pieces[row, 3 * parts + 3 + k] * (1.0 + 1e-9)
+    for axis in range(3):
+        a = centre[k, axis] + unit * _kept(pieces[row, 3 * k + axis])
+        b = centre[k + 1, axis] + unit * _kept(pieces[row, 3 * k + 3 + axis])
+        low, high = box[0, axis] - reach, box[1, axis] + reach
+        if (a < low and b < low) or (a > high and b > high):
+            return True
+    return False
+
+
 @parallel_kernel
 def close_parts(near: Any, leaves: Any, parts: int, linear: Any, corner: Any, rows: Any, box: Any,
                 found: Any) -> None:  # fmt: skip
@@ -198,7 +211,7 @@ def _mean(leaves: Any, leaf: int, nodes: int, linear: Any, corner: Any, mean: An
 @parallel_kernel
 def settle(near: Any, bits: Any, leaves: Any, pieces: Any, parts: int, per_stretch: int, stretch: int, states: Any,
            asked: int, linear: Any, corner: Any, rows: Any, mask: Any, shape: Any, changed: Any, whole: Any,
-           found: Any) -> None:  # fmt: skip
+           in_mm: Any, found: Any) -> None:  # fmt: skip
     """What becomes of the fiblets of some leaves, ``found (n, LEAF)`` uint8: :data:`SAME` and so on.
 
     Parameters
@@ -219,6 +232,8 @@ def settle(near: Any, bits: Any, leaves: Any, pieces: Any, parts: int, per_stret
         :data:`HERE` and :data:`CHANGED`.
     changed, whole : (6,) float64
         Boxes of the changed voxels, and of the region's.
+    in_mm : (2, 3) float64
+        Lower and upper corner, mm, of a box along the axes that holds that of the changed voxels.
     """
     nodes, every = parts + 1, (1 << parts) - 1
     for j in numba.prange(len(near)):
@@ -226,10 +241,13 @@ def settle(near: Any, bits: Any, leaves: Any, pieces: Any, parts: int, per_stret
         at = leaf // per_stretch * stretch + leaf % per_stretch * LEAF
         many = min(LEAF, min((leaf // per_stretch + 1) * stretch, len(states)) - at)
         mean, u, kept = np.empty((nodes, 3)), np.empty((nodes, 3)), np.empty((nodes, 3))
-        reach, low, high = np.empty(3), np.empty(3), np.empty(3)
+        reach, low, high, centre = np.empty(3), np.empty(3), np.empty(3), np.empty((nodes, 3))
         slack = _mean(leaves, leaf, nodes, linear, corner, mean)
         unit, radius = float(leaves[leaf, 3 * nodes + parts]), float(leaves[leaf, 3 * nodes + parts + 1])
         close = np.int64(bits[j])
+        for k in range(nodes):
+            for axis in range(3):
+                centre[k, axis] = float(leaves[leaf, 3 * k + axis])
         for i in range(LEAF):
             found[j, i] = SAME
             if i >= many:
@@ -237,11 +255,17 @@ def settle(near: Any, bits: Any, leaves: Any, pieces: Any, parts: int, per_stret
             passed = states[at + i] & ANY != 0
             if (asked == ADDED and passed) or (asked == REMOVED and not passed):
                 continue
+            only = np.int64(0)
+            for k in range(parts):
+                if close >> k & 1 and not _apart(pieces, at + i, k, parts, centre, in_mm, unit, radius):
+                    only |= 1 << k
+            if only == 0:
+                continue
             for k in range(nodes):
-                if (close | close << 1) >> k & 1:
+                if (only | only << 1) >> k & 1:
                     _place(k, pieces, at + i, leaves, leaf, unit, linear, mean, kept, u)
             inside = HERE if asked == ADDED else 0
-            touches, sure = _fiblet(u, parts, close, kept, pieces, at + i, radius, rows, slack, changed, mask, shape,
+            touches, sure = _fiblet(u, parts, only, kept, pieces, at + i, radius, rows, slack, changed, mask, shape,
                                     CHANGED, inside, reach, low, high)  # fmt: skip
             if touches and asked == REMOVED:
                 for k in range(nodes):

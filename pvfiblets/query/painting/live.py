@@ -115,13 +115,14 @@ class LiveRegion:
         mask[voxels] = np.where(inside, kernels.HERE, 0) | kernels.CHANGED
         changed = _box(voxels, grid.shape)
         whole = changed if asked == coarse.ADDED else _box(np.flatnonzero(mask), grid.shape)
-        near = index.near(*_in_mm(changed, grid))
+        in_mm = _in_mm(changed, grid)
+        near = index.near(*in_mm)
         per, rows, bits = CHUNK // LEAF, np.linalg.norm(grid.linear, axis=1), np.empty(len(near), np.uint8)
         coarse.close_parts(near, index.leaves, index.parts, grid.linear, grid.corner, rows, changed, bits)
         near, bits = near[bits > 0], bits[bits > 0]
         found = np.empty((len(near), LEAF), np.uint8)
         coarse.settle(near, bits, index.leaves, index.pieces, index.parts, per, CHUNK, self._states, asked, grid.linear,
-                      grid.corner, rows, mask, grid.shape, changed, whole, found)  # fmt: skip
+                      grid.corner, rows, mask, grid.shape, changed, whole, in_mm, found)  # fmt: skip
         which = np.flatnonzero(found)
         fates, leaf = found.ravel()[which], near[which // LEAF]
         places = leaf // per * CHUNK + leaf % per * LEAF + which % LEAF
