@@ -16,17 +16,20 @@ from typing import TYPE_CHECKING, Any, cast, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pvfiblets.line_cells import field_of, parts_of_cells, parts_of_polydata, polydata_of
 from pvfiblets.ragged import (
     Array,
     Floats,
     Ints,
     as_affine,
     as_columns,
+    as_ids,
     as_members,
     as_offsets,
     as_points,
     blocks,
     join,
+    lengths,
     offsets_from_counts,
 )
 
@@ -38,15 +41,6 @@ if TYPE_CHECKING:
     from pvfiblets.query.table import Table
 
 __all__ = ["Streamlines", "blocks", "from_cells", "offsets_from_counts"]
-
-_BLOCK_POINTS = 1 << 18
-"""Points handled at a time by reductions: about 6 MB of float64, which stays in cache."""
-
-_GROUP = "groups/"
-_PER_GROUP = "per_group/"
-_GROUPS_OF = "groups_of"
-_EXTRACTED = "vtkOriginalCellIds"
-_SPACE = "space/"
 
 
 class Streamlines:
@@ -199,25 +193,7 @@ class Streamlines:
             if step == 1:
                 return self._span(start, max(start, stop))
             return self._gather(np.arange(start, stop, step, dtype=np.int64))
-        return self._gather(self._as_ids(index))
-
-    def _as_ids(self, index: Any) -> Ints:
-        ids = np.asarray(index)
-        if ids.ndim != 1:
-            raise IndexError(f"an index array must have one dimension, not {ids.ndim}")
-        if ids.dtype == bool:
-            if len(ids) != len(self):
-                raise IndexError(f"a mask of {len(ids)} values cannot select among {len(self)} streamlines")
-            return np.flatnonzero(ids).astype(np.int64)
-        if len(ids) == 0:
-            return np.zeros(0, np.int64)
-        if ids.dtype.kind not in "iu":
-            raise IndexError(f"streamlines are chosen by integers or a mask, not by {ids.dtype}")
-        if ids.min() < -len(self) or ids.max() >= len(self):
-            raise IndexError(
-                f"streamline indices run from {ids.min()} to {ids.max()}, but there are {len(self)} streamlines"
-            )
-        return np.where(ids < 0, ids + len(self), ids).astype(np.int64)
+        return self._gather(as_ids(index, len(self)))
 
     def _span(self, start: int, stop: int) -> Streamlines:
         first, last = int(self.offsets[start]), int(self.offsets[stop])
@@ -259,19 +235,7 @@ class Streamlines:
 
     def lengths(self) -> NDArray[np.float64]:
         """(n_streamlines,) float64: length of each streamline in mm, summed in float64."""
-        result = np.zeros(len(self))
-        for start, stop in self.blocks(_BLOCK_POINTS):
-            first, last = self.offsets[start], self.offsets[stop]
-            if last - first < 2:
-                continue
-            points = self.points[first:last].astype(np.float64)
-            segments = np.sqrt(np.einsum("ij,ij->i", d := np.diff(points, axis=0), d))
-            # The segment that leads from one streamline to the next belongs to neither.
-            inner = self.offsets[start + 1 : stop] - first
-            segments[inner[(inner > 0) & (inner < last - first)] - 1] = 0.0
-            owner = np.repeat(np.arange(stop - start), self.counts[start:stop])[:-1]
-            result[start:stop] = np.bincount(owner, segments, minlength=stop - start)
-        return result
+        return lengths(self.points, self.offsets)
 
     @property
     def bounds(self) -> tuple[float, float, float, float, float, float]:
@@ -387,30 +351,7 @@ class Streamlines:
             ``dropped["points of no line"]`` points that no line uses; ``dropped["groups of other lines"]`` groups that
             a filter has passed on with fewer lines.
         """
-        import pyvista
-
-        mesh = pyvista.wrap(polydata)
-        if not isinstance(mesh, pyvista.PolyData):
-            raise ValueError(
-                f"expected a PolyData, got {type(polydata).__name__}: use its "
-                "extract_surface() or extract_feature_edges() first"
-            )
-        lines = mesh.GetLines()
-        n = lines.GetNumberOfCells()
-        offsets = np.array(pyvista.convert_array(lines.GetOffsetsArray()), np.int64)
-        if len(offsets) == 0:
-            offsets = np.zeros(1, np.int64)
-        ids = np.asarray(pyvista.convert_array(lines.GetConnectivityArray()), np.int64)
-        first_line = mesh.GetVerts().GetNumberOfCells()
-        return from_cells(
-            np.array(mesh.points),
-            offsets,
-            ids,
-            {k: np.array(v) for k, v in mesh.point_data.items()},
-            {k: np.array(v)[first_line : first_line + n] for k, v in mesh.cell_data.items()},
-            other_cells=mesh.GetNumberOfCells() - n,
-            field={k: np.array(v) for k, v in mesh.field_data.items()},
-        )
+        return cls(**parts_of_polydata(polydata))
 
     def to_polydata(self) -> pyvista.PolyData:
         """PolyData with one polyline per streamline, in order, and all data.
@@ -420,39 +361,11 @@ class Streamlines:
         is not the identity (``affine``) and the rest of the header (``space/KEY``; text as its UTF-8 bytes, since
         VTK loses arrays of text in some of its formats) are kept as field data.
         """
-        import pyvista
-
-        mesh = pyvista.PolyData()
-        mesh.points = np.ascontiguousarray(self.points)
-        cells = pyvista.CellArray.from_arrays(self.offsets, np.arange(self.n_points, dtype=np.int64), deep=True)
-        mesh.SetLines(cells)
-        for data, columns in (
-            (mesh.point_data, self.per_point),
-            (mesh.cell_data, self.per_streamline),
-        ):
-            for name, values in columns.items():
-                if values.size:  # PyVista has no arrays without rows
-                    data[name] = np.ascontiguousarray(_vtk_values(values))
-        for name, array in self.field_data().items():
-            mesh.field_data[name] = array
-        return mesh
+        return polydata_of(self)
 
     def field_data(self) -> dict[str, Array]:
         """Return groups, group data, affine and space as flat named arrays (see :meth:`to_polydata`)."""
-        field: dict[str, Array] = {_GROUP + k: v for k, v in self.groups.items()}
-        if field:
-            field[_GROUPS_OF] = np.array([len(self)])
-        for group, values in self.per_group.items():
-            for name, value in values.items():
-                field[f"{_PER_GROUP}{group}/{name}"] = np.atleast_1d(_vtk_values(value))
-        if not np.array_equal(self.affine, np.eye(4)):
-            field["affine"] = self.affine
-        for name, value in self.space.items():
-            text = np.frombuffer(value.encode(), np.uint8) if isinstance(value, str) else None
-            array = np.atleast_1d(np.asarray(value)) if text is None else text
-            if array.size and array.dtype.kind in "fiub":
-                field[_SPACE + name] = array.astype(np.int64) if array.dtype == bool else array
-        return field
+        return field_of(self)
 
 
 def from_cells(
@@ -481,53 +394,6 @@ def from_cells(
     field : mapping of str to array, optional
         Field data in the naming of :meth:`Streamlines.field_data`; other names are ignored.
     """
-    dropped: dict[str, int] = {}
-    if other_cells:
-        dropped["cells that are not lines"] = other_cells
-    n = len(points)
-    if len(connectivity) != n or not np.array_equal(connectivity, np.arange(n)):
-        used = np.zeros(n, bool)
-        used[connectivity] = True
-        if unused := n - int(used.sum()):
-            dropped["points of no line"] = unused
-        points = points[connectivity]
-        point_data = {k: v[connectivity] for k, v in point_data.items()}
-    groups: dict[str, Array] = {}
-    per_group: dict[str, dict[str, Array]] = {}
-    affine = None
-    space: dict[str, Any] = {}
-    for name, array in (field or {}).items():
-        if name.startswith(_GROUP):
-            groups[name[len(_GROUP) :]] = array
-        elif name.startswith(_PER_GROUP) and name.count("/") >= 2:
-            group, key = name[len(_PER_GROUP) :].split("/", 1)
-            per_group.setdefault(group, {})[key] = array
-        elif name == "affine" and array.size == 16:
-            affine = array.reshape(4, 4)
-        elif name.startswith(_SPACE) and array.size:
-            space[name[len(_SPACE) :]] = _space_value(array)
-    if groups and _are_of_others(len(offsets) - 1, field or {}, cell_data):
-        dropped["groups of other lines"] = len(groups)
-        groups, per_group = {}, {}
-    return Streamlines(points, offsets, point_data, cell_data, groups, per_group, affine, space, dropped)
-
-
-def _are_of_others(n_lines: int, field: Mapping[str, Array], cell_data: Mapping[str, Array]) -> bool:
-    """Whether groups number the lines of what a filter took these lines from: filters pass field data on as it is."""
-    of = field.get(_GROUPS_OF)
-    return _EXTRACTED in cell_data if of is None or not of.size else int(of.flat[0]) != n_lines
-
-
-def _space_value(array: Array) -> Any:
-    """Return the value that :meth:`Streamlines.field_data` made an array of."""
-    if array.dtype == np.uint8:
-        return array.tobytes().decode("utf-8", "replace")
-    values = tuple(array.ravel().tolist())
-    return values[0] if len(values) == 1 else values
-
-
-def _vtk_values(values: Array) -> Array:
-    """VTK has no half precision and no boolean type of one byte that it writes to files."""
-    if values.dtype == np.float16:
-        return values.astype(np.float32)
-    return values.astype(np.uint8) if values.dtype == bool else values
+    return Streamlines(
+        **parts_of_cells(points, offsets, connectivity, point_data, cell_data, other_cells=other_cells, field=field)
+    )
