@@ -4,11 +4,11 @@
 
 Each row is a cluster of processes on this machine. Its *model* is made of what one worker measures that draws the same
 number of parts one after another: the time of each part, of each pair of pictures that is put together, and what is
-left of a frame, which dask's messages take. Parts are given to whichever processor is free, pairs to one each; what is
-sent is sent at the rate that a copy between two workers was measured at. A software OpenGL draws by one thread in each
-worker, which stands for its card: by default one worker would take all processors already. The second table uses the
-same parts for workers with one graphics card each: how fast that draws is given, and stands in the table's title;
-nothing here has measured it.
+left of a frame (*rest*), which dask's messages take. Parts are given to whichever processor is free, pairs to one each;
+what is sent is sent at the rate that a copy between two workers was measured at. A software OpenGL draws by one thread
+in each worker, which stands for its card: by default one worker would take all processors already. The second table
+uses the same parts for workers with one graphics card each: how fast that draws is given, and stands in the table's
+title; nothing here has measured it.
 """
 
 from __future__ import annotations
@@ -160,7 +160,7 @@ def main() -> None:
             rows.append({"alone": asdict(alone), "found": asdict(found), "model": model})
             print(
                 f"| {workers} | {1e3 * found.frame:.0f} | {1e3 * model:.0f} | {100 * (model / found.frame - 1):+.0f} | "
-                f"{1e3 * max(found.draws):.0f} | {1e3 * sum(found.merges):.0f} | {1e3 * found.rest:.0f} | "
+                f"{1e3 * max(found.draws):.0f} | {1e3 * sum(found.merges):.0f} | {1e3 * alone.rest:.0f} | "
                 f"{found.bytes / 1e6:.1f} |",
                 flush=True,
             )
@@ -173,8 +173,7 @@ def main() -> None:
     print("| workers | drawing, ms | merging, ms | sending, ms | dask, ms | frame, ms | memory of a card, GB |")
     print("|---|---|---|---|---|---|---|")
     more = [
-        far(1e11, n, options.card_rate, pixels, merge, rest_of(rests), options.network)
-        for n in (16, 32, 64, 128, 256)
+        far(1e11, n, options.card_rate, pixels, merge, rest_of(rests), options.network) for n in (16, 32, 64, 128, 256)
     ]
     for one in more:
         parts = [1e3 * one[name] for name in ("draw", "merge", "send", "rest")]
