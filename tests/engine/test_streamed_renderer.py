@@ -10,6 +10,7 @@ from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View
 from pvfiblets.engine.errors import GPUMemoryError
 from pvfiblets.engine.fiblets import streamed_renderer as streamed
 from pvfiblets.engine.fiblets.filter_textures import Filter
+from pvfiblets.engine.fiblets.paint import Paint
 from pvfiblets.engine.fiblets.parts import Stretches, in_view, reach_of
 from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
 from pvfiblets.engine.fiblets.streamed_renderer import StreamedRenderer, streamed_renderer
@@ -170,9 +171,44 @@ def test_ranges_are_those_of_the_whole_set(made, brain):
 def test_what_needs_all_lines_says_so(made, camera):
     _, parts = made()
     view = View(SIZE, camera(SIZE, **WHOLE_BRAIN))
-    for call in (parts.render_layers, parts.gather):
-        with pytest.raises(EngineError, match="part by part shows the nearest lines only.*fit='sample'"):
-            call(view)
+    with pytest.raises(EngineError, match="drawn part by part has no layers of lines.*fit='sample'"):
+        parts.render_layers(view)
+
+
+@pytest.mark.parametrize("sliced", [False, True])
+@pytest.mark.parametrize(
+    "pipeline", ["compute", "geometry", pytest.param("tessellation", marks=pytest.mark.exhaustive)]
+)
+def test_sums_are_those_of_the_whole_set(made, camera, brain, pipeline, sliced):
+    whole, parts = made(pipeline)
+    view = View(SIZE, camera(SIZE, **WHOLE_BRAIN))
+    for paint in (None, Paint("direction")):
+        for style in (FibletStyle(), FibletStyle(line_width=3.0)):
+            found = parts.gather(view, style, paint, sliced=sliced)
+            wanted = whole.gather(view, style, paint, sliced=sliced)
+            assert wanted.read()[..., 3].max() > 3
+            np.testing.assert_array_equal(found.read(), wanted.read())
+            assert parts.most_lines() == whole.most_lines()
+    fetched = parts.explain()["parts"]["fetched"]
+    assert parts.gather(view, FibletStyle(line_width=3.0), paint, sliced=sliced) is found
+    assert parts.explain()["parts"]["fetched"] <= fetched + 1
+    kept = Filter(np.arange(brain.n_streamlines) % 3 == 0, None)
+    whole.filtering = parts.filtering = kept
+    found, wanted = (one.gather(view, sliced=sliced) for one in (parts, whole))
+    np.testing.assert_array_equal(found.read(), wanted.read())
+    parts.drop_gathered()
+    assert parts.most_lines() == 0.0
+
+
+def test_sums_of_hurried_pictures_fetch_no_part(made, camera):
+    whole, parts = made()
+    parts.hurried = True
+    view = View(SIZE, camera(SIZE, **WHOLE_BRAIN))
+    found = parts.gather(view).read()
+    assert parts.explain()["parts"]["fetched"] == 1  # the even share
+    assert 0.05 < found.sum() / whole.gather(view).read().sum() < 0.95
+    parts.hurried = False
+    np.testing.assert_array_equal(parts.gather(view).read(), whole.gather(view).read())
 
 
 def test_what_fits_is_drawn_by_a_renderer_of_all(gl, brain):

@@ -119,6 +119,18 @@ def test_a_moving_camera_fetches_nothing_and_a_resting_one_the_rest(plotter, too
 
 
 def test_what_parts_cannot_show_is_said_in_one_sentence(plotter, too_large, little_memory):
-    plotter.add_fiblets(too_large, fit="stream", opacity=0.3)
-    with pytest.raises(EngineError, match="part by part shows the nearest lines only"):
+    plotter.add_fiblets(too_large, fit="stream", opacity=0.3, transparency="layers")
+    with pytest.raises(EngineError, match="drawn part by part has no layers of lines"):
         plotter.show(auto_close=False)
+
+
+@pytest.mark.parametrize("look", [{"opacity": 0.2}, {"style": "density"}, {"opacity": "linear", "scalars": "length"}])
+def test_what_all_lines_add_up_to_is_that_of_the_whole_set(plotter, too_large, monkeypatch, request, look):
+    plotter.picture.antialias = "coverage"
+    actor = plotter.add_fiblets(too_large, **look)
+    whole = shot(plotter)
+    plotter.remove_actor(actor)
+    request.getfixturevalue("little_memory")
+    actor = plotter.add_fiblets(too_large, fit="stream", reset_camera=False, **look)
+    np.testing.assert_array_equal(shot(plotter), whole)
+    assert actor.explain()["parts"]["total"] > 3

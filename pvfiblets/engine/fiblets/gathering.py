@@ -21,8 +21,7 @@ array of float32, which holds whole numbers up to 2^24 exactly. One pass over al
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import moderngl
@@ -30,19 +29,16 @@ import numpy as np
 import numpy.typing as npt
 
 from ..bindings import GATHERING, SUM_IMAGES
-from ..delayed_read import DelayedRead
 from ..errors import GPUMemoryError
 from .paint import Paint, set_uniforms
-from .pipelines.constants import GREATEST_SIDE
 
 if TYPE_CHECKING:
     from ..gbuffer import GBuffer
     from ..moderngl_extras import GLExtras
     from ..shaders import Programs
     from ..view import View
-    from .pipelines import DrawRequest, Pipeline
 
-__all__ = ["SLICES", "Gather", "Gathered", "Gatherer", "SliceDistances", "slice_edges"]
+__all__ = ["SLICES", "Gather", "Gathered", "SliceDistances", "slice_edges"]
 
 SLICES = 4
 """Sums of a pixel behind its nearest line; the shaders' three edges between them say so too."""
@@ -234,12 +230,21 @@ class Gather:
         The picture, which slices begin behind.
     outside : moderngl.Texture, optional
         Depth keys of what hides lines, r32ui of the picture's size.
+    own : GBuffer, optional
+        Picture of the part that adds its lines to sums of all: whose fiblets its ``owner`` numbers. The sums do not
+        begin at 0 then.
     """
 
     target: Gathered
     paint: Paint
     nearest: GBuffer
     outside: moderngl.Texture | None = None
+    own: GBuffer | None = None
+
+    @property
+    def owners(self) -> moderngl.Texture:
+        """Which fiblet is the nearest of those that add."""
+        return (self.nearest if self.own is None else self.own).owner
 
     @property
     def features(self) -> tuple[str, ...]:
@@ -252,8 +257,8 @@ class Gather:
         """Bind what programs look at, and tell them where."""
         self.paint.bind(program)
         set_uniforms(program, word_shape=self.target.shape)
-        sources = {f"nearest_{name}": getattr(self.nearest, name) for name in ("depth", "owner", "ids", "position")}
-        sources |= {"slice_keys": self.target.keys, "outside_depth": self.outside}
+        sources = {f"nearest_{name}": getattr(self.nearest, name) for name in ("depth", "ids", "position")}
+        sources |= {"nearest_owner": self.owners, "slice_keys": self.target.keys, "outside_depth": self.outside}
         for name, texture in sources.items():
             if texture is not None and name in program:
                 texture.use(GATHERING[name])
@@ -264,153 +269,4 @@ class Gather:
         self.target.texture.bind_to_image(SUM_IMAGES["gathered"], read=True, write=True)
         if self.target.keys is not None:
             self.target.keys.bind_to_image(SUM_IMAGES["slice_keys"], read=True, write=False)
-            self.nearest.owner.bind_to_image(SUM_IMAGES["nearest_owner"], read=True, write=False)
-
-
-class Gatherer:
-    """Adds up what all lines show, and keeps it until something changes.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    gl : GLExtras
-    programs : Programs
-    make : callable
-        Makes a pipeline, which keeps its own record of fiblets.
-    """
-
-    def __init__(
-        self, ctx: moderngl.Context, gl: GLExtras, programs: Programs, make: Callable[[], Pipeline]
-    ) -> None:
-        self._ctx = ctx
-        self._gl = gl
-        self._programs = programs
-        self._pipeline = make()
-        self._held: Gathered | None = None
-        self._made: Any = None
-        self._squares: tuple[moderngl.Texture, moderngl.Framebuffer] | None = None
-        self._greatest: tuple[Any, float] | None = None
-        self._asked: Any = None
-        self._later = DelayedRead(ctx, gl)
-
-    def of(
-        self,
-        nearest: GBuffer,
-        paint: Paint,
-        slices: int,
-        distances: SliceDistances,
-        make_job: Callable[[], DrawRequest],
-        outside: Callable[[], moderngl.Texture | None] | None = None,
-        state: Any = None,
-    ) -> Gathered:
-        """Return the sums of a picture, made unless they are there.
-
-        Parameters
-        ----------
-        nearest : GBuffer
-            The picture.
-        paint : Paint
-        slices : int
-            1 or :data:`SLICES`.
-        distances : SliceDistances
-        make_job : callable
-            Returns the request that the picture was drawn by, with everything bound.
-        outside : callable, optional
-            Returns the depth keys of what hides lines, r32ui of the picture's size, or None.
-        state : object
-            Another one where that depth may be another.
-
-        Raises
-        ------
-        EngineError
-            If memory does not suffice, or a program does not compile.
-        """
-        key = nearest.generation, nearest.size, paint, slices, distances, state
-        if self._held is not None and self._made == key:
-            return self._held
-        self._made = None
-        hides = None if outside is None else outside()
-        request = make_job()
-        held = self._resize(nearest.size, slices, bool(paint.features), self._pipeline.gathers_words(request))
-        with self._gl.framebuffers_kept():
-            held.find_keys(self._ctx, self._programs, nearest, distances)
-        gather = Gather(held, paint, nearest, hides)
-        self._pipeline.gather(replace(request, occlusion=None, gather=gather, across=(), edges=()))
-        self._made = key
-        return held
-
-    def _resize(self, size: tuple[int, int], slices: int, painted: bool, words: bool) -> Gathered:
-        held = self._held
-        if held is None or (held.size, held.slices, held.painted, held.words) != (size, slices, painted, words):
-            if held is not None:
-                held.release()
-                self._held = None
-            self._held = held = Gathered(self._ctx, self._gl, size, slices, painted, words)
-        return held
-
-    def greatest(self, *, wait: bool = True) -> float:
-        """Return the greatest weight of a pixel in the first slice of what was made last.
-
-        Parameters
-        ----------
-        wait : bool
-            Whether to wait for the GPU; if not, what is returned may be that of some pictures earlier, of which it is
-            known.
-        """
-        if (came := self._later.arrived()) is not None:
-            self._greatest = came[0], float(came[1].max())
-        known = self._greatest
-        if known is not None and (known[0] == self._made or (not wait and self._asked == self._made)):
-            return known[1]
-        framebuffer = self._reduce()
-        area = (0, 0, *framebuffer.size)
-        with self._gl.framebuffers_kept():
-            if known is not None and not wait:
-                self._asked = self._made if self._later.start(framebuffer, area, 1, self._made) else None
-                return known[1]
-            found = float(np.frombuffer(framebuffer.read(area, 1, dtype="f4", alignment=1), "<f4").max())
-        self._later.forget()
-        self._greatest = self._made, found
-        return found
-
-    def _reduce(self) -> moderngl.Framebuffer:
-        """Draw the greatest weight of each square of pixels."""
-        held = self._held
-        assert held is not None
-        width, height = (-(-side // GREATEST_SIDE) for side in held.size)
-        if self._squares is None or self._squares[0].size != (width, height):
-            self._drop_squares()
-            texture = self._ctx.texture((width, height), 1, dtype="f4")
-            self._squares = texture, self._ctx.framebuffer([texture])
-        texture, framebuffer = self._squares
-        features = [*(["GATHER_WORDS"] if held.words else []), *(["PAINTED"] if held.painted else [])]
-        program, array = self._programs.screen("fiblets/gather/greatest.frag", features)
-        held.texture.use(GATHERING["gathered"])
-        set_uniforms(program, gathered=GATHERING["gathered"], size=held.size, word_shape=held.shape)
-        with self._gl.framebuffers_kept():
-            self._ctx.enable_only(moderngl.NOTHING)
-            framebuffer.use()
-            array.render(moderngl.TRIANGLES, vertices=3)
-        return framebuffer
-
-    def _drop_squares(self) -> None:
-        if self._squares is not None:
-            for thing in self._squares[::-1]:
-                thing.release()
-        self._squares = None
-
-    @property
-    def nbytes(self) -> int:
-        """Bytes of GPU memory."""
-        own = sum(buffer.size for buffer in self._pipeline.buffers.values())
-        squares = 0 if self._squares is None else 4 * math.prod(self._squares[0].size)
-        return own + squares + self._later.nbytes + (0 if self._held is None else self._held.nbytes)
-
-    def release(self) -> None:
-        """Give everything on the GPU back; twice is harmless."""
-        self._pipeline.release()
-        self._later.release()
-        self._drop_squares()
-        if self._held is not None:
-            self._held.release()
-        self._held = self._made = self._greatest = None
+            self.owners.bind_to_image(SUM_IMAGES["nearest_owner"], read=True, write=False)

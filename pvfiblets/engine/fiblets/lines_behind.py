@@ -17,7 +17,8 @@ from .style import FibletStyle
 if TYPE_CHECKING:
     from ..culling import Occlusion
     from ..gbuffer import GBuffer
-    from .gathering import Gathered, Gatherer
+    from .gatherer import Gatherer
+    from .gathering import Gathered, SliceDistances
     from .paint import Paint
     from .pipelines import DrawRequest, Pipeline
     from .uniform_blocks import SharedBlocks
@@ -124,26 +125,68 @@ class LinesBehind(Drawable[FibletStyle]):
         EngineError
             As :meth:`render`.
         """
-        from .gathering import SLICES, Gatherer, SliceDistances
+        from .gathering import SLICES
         from .paint import Paint
 
         style = style or FibletStyle()
         nearest = self.render(view, style)
-        if self._gatherer is None:
-            maker = Gatherer(self._ctx, self._gl, self._programs, self._make_pipeline)
-            self._gatherer = self._keep(maker, "gathered")
-        origin, scale, top = self._shared.place
-        distances = SliceDistances.of(view, origin, origin + top * scale)
+        gatherer = self._with_gatherer()
         with self._noting():
-            return self._gatherer.of(
+            return gatherer.of(
                 nearest,
                 paint or Paint(),
                 SLICES if sliced else 1,
-                distances,
+                self.slice_distances(view),
                 lambda: self._request(view, style, nearest),
                 outside,
                 state,
             )
+
+    def slice_distances(self, view: View) -> SliceDistances:
+        """Return how slices of a view's depth lie, the same for all parts of a set."""
+        from .gathering import SliceDistances
+
+        origin, scale, top = self._shared.place
+        return SliceDistances.of(view, origin, origin + top * scale)
+
+    def gathers_words(self, view: View, style: FibletStyle, nearest: GBuffer) -> bool:
+        """Say whether sums of such a picture are words, not floats."""
+        return self._with_gatherer().gathers_words(self._request(view, style, nearest))
+
+    def gather_into(
+        self,
+        held: Gathered,
+        view: View,
+        style: FibletStyle,
+        paint: Paint,
+        nearest: GBuffer,
+        hides: moderngl.Texture | None,
+    ) -> None:
+        """Add what all lines show to sums of a set of which this is a part.
+
+        Parameters
+        ----------
+        held : Gathered
+        view, style, paint
+            As of :meth:`gather`.
+        nearest : GBuffer
+            The picture of all parts. Where there are slices, a line of the part's own picture that is as near is left
+            out.
+        hides : moderngl.Texture, optional
+            Depth keys of what hides lines.
+        """
+        picture = self.render(view, style) if held.slices > 1 else nearest
+        gatherer = self._with_gatherer()
+        with self._noting():
+            gatherer.add_to(held, paint, nearest, picture, self._request(view, style, picture), hides)
+
+    def _with_gatherer(self) -> Gatherer:
+        from .gatherer import Gatherer
+
+        if self._gatherer is None:
+            maker = Gatherer(self._ctx, self._gl, self._programs, self._make_pipeline)
+            self._gatherer = self._keep(maker, "gathered")
+        return self._gatherer
 
     def most_lines(self, *, wait: bool = True) -> float:
         """Return the greatest weight of a pixel in what :meth:`gather` made last: lines, where it was not sliced.

@@ -1,4 +1,4 @@
-"""`NearestOnly`: what renderers share that put pictures of parts together: they know the nearest lines alone."""
+"""`NearestOnly`: what renderers share that put pictures of parts together: they have no layers of lines."""
 
 from __future__ import annotations
 
@@ -18,9 +18,13 @@ if TYPE_CHECKING:
 
 __all__ = ["NearestOnly"]
 
-_ONLY_NEAREST = (
-    "a set that is drawn part by part shows the nearest lines only: layers and sums of lines need all of it at once; "
-    "draw a share of it by fit='sample', or fewer streamlines"
+_NO_LAYERS = (
+    "a set that is drawn part by part has no layers of lines, which need all of it at once; let lines be added up "
+    "(actor.layers = None), draw a share of it by fit='sample', or fewer streamlines"
+)
+_NO_SUMS = (
+    "workers of a cluster draw the nearest lines only: what all lines add up to is not sent; leave opacity at 1 and "
+    "the style at lines, or draw a share of the set here by fit='sample'"
 )
 
 
@@ -79,11 +83,11 @@ class NearestOnly(Drawable[FibletStyle]):
 
     def render_layers(self, *_given: Any, **_named: Any) -> Any:
         """Raise: see the message."""
-        raise EngineError(_ONLY_NEAREST)
+        raise EngineError(_NO_LAYERS)
 
     def gather(self, *_given: Any, **_named: Any) -> Any:
         """Raise: see the message."""
-        raise EngineError(_ONLY_NEAREST)
+        raise EngineError(_NO_SUMS)
 
     def most_lines(self, *, wait: bool = True) -> float:  # noqa: ARG002
         """Return 0: nothing is added up."""

@@ -45,6 +45,9 @@ from .style import FibletStyle
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
     from .filter_textures import Filter
+    from .gatherer import Gatherer
+    from .gathering import Gathered
+    from .paint import Paint
     from .sampled_volume import VolumeSource
 
 __all__ = ["PARTS", "THINNED_SHARE", "StreamedRenderer", "streamed_renderer"]
@@ -121,6 +124,7 @@ class StreamedRenderer(NearestOnly):
         self._fetched = 0
         self._filtered: dict[int, bool] = {}
         self._waiting = False
+        self._gatherer: Gatherer | None = None
         self._pictures = self._keep(PartPictures(ctx, self._gl, self._programs), "parts' pictures")
 
     @property
@@ -234,6 +238,58 @@ class StreamedRenderer(NearestOnly):
         for renderer in self._there.values():
             renderer.filtering = wanted
 
+    def gather(
+        self,
+        view: View,
+        style: FibletStyle | None = None,
+        paint: Paint | None = None,
+        *,
+        sliced: bool = False,
+        outside: Callable[[], moderngl.Texture | None] | None = None,
+        state: Any = None,
+    ) -> Gathered:
+        """Add up what all lines show, part by part; see :meth:`.LinesBehind.gather`.
+
+        While the picture is not complete, the sums are of the parts that are there, or of the even share.
+        """
+        from .gatherer import Gatherer
+        from .gathering import SLICES
+        from .paint import Paint
+
+        style = style or FibletStyle()
+        nearest = self.render(view, style)
+        if self._gatherer is None:
+            self._gatherer = self._keep(Gatherer(self._ctx, self._gl, self._programs), "gathered")
+        whole = self.share == 1.0
+        drawn = [number for number in self._in_view if number not in self._left]
+        there = [number for number in drawn if number in self._there]
+        numbers = [*there, *(number for number in drawn if number not in there)] if whole else there or [THINNED]
+        first = self._fetch(numbers[0] if numbers else THINNED)
+        asked, hides = paint or Paint(), None if outside is None else outside()
+
+        def add(held: Gathered) -> None:
+            for number in numbers:
+                part = self._fetch(number)
+                part.gather_into(held, view, style, asked, nearest, hides)
+                part.forget_picture()  # the next part draws into the same textures
+
+        return self._gatherer.of_parts(
+            nearest, asked, SLICES if sliced else 1, first.slice_distances(view),
+            first.gathers_words(view, style, nearest), add, (state,) if whole else None,
+        )  # fmt: skip
+
+    def most_lines(self, *, wait: bool = True) -> float:
+        """Return the greatest weight of a pixel in what :meth:`gather` made last."""
+        return 0.0 if self._gatherer is None else self._gatherer.greatest(wait=wait)
+
+    def drop_gathered(self) -> None:
+        """Give back what :meth:`gather` keeps; twice is harmless."""
+        if self._gatherer is not None:
+            self._drop(self._gatherer)
+            self._gatherer = None
+        for renderer in self._there.values():
+            renderer.drop_gathered()
+
     def value_range(self, values: str | VolumeSource) -> tuple[float, float]:
         """Return the least and the greatest of a per-point value; see :meth:`.FibletRenderer.value_range`.
 
@@ -267,6 +323,7 @@ class StreamedRenderer(NearestOnly):
 
     def release(self) -> None:
         """Give back everything on the GPU; twice is harmless."""
+        self._gatherer = None
         for renderer in self._there.values():
             renderer.release()
         self._there.clear()

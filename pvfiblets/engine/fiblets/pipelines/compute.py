@@ -225,7 +225,8 @@ class ComputePipeline:
         self._own["visibility_bits"].bind_to_storage_buffer(STORAGE["visibility_bits"])
         request.gather.bind_images()
         with request.passes.timed("gather"):
-            request.gather.target.clear(self._gl)
+            if request.gather.own is None:
+                request.gather.target.clear(self._gl)
             size = ROUNDS * self._round_arguments * ARGUMENT_BYTES
             self._gl.clear_words(self._own["visibility_bits"], 4 * self._argument_base, size)
             features = self._planning(request)

@@ -281,7 +281,8 @@ class RasterPipeline(abc.ABC):
         """
         assert request.gather is not None
         with request.passes.timed("gather"), self._gl.framebuffers_kept(), self._drawing():
-            request.gather.target.clear(self._gl)
+            if request.gather.own is None:
+                request.gather.target.clear(self._gl)
             request.gather.target.framebuffer.use()
             self._ctx.blend_equation = moderngl.FUNC_ADD, moderngl.FUNC_ADD
             self._ctx.blend_func = moderngl.ONE, moderngl.ONE
