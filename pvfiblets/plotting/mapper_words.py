@@ -9,6 +9,7 @@ from collections.abc import Callable
 from typing import Any
 
 from pvfiblets.plotting.settings import NoSetting
+from pvfiblets.plotting.volumes.blending import BLENDING, mode_of_blending
 
 __all__ = ["LinesWords", "VolumeWords"]
 
@@ -56,13 +57,9 @@ class VolumeWords(_Words):
     @property
     def blend_mode(self) -> str:
         """The actor's mode by ``add_volume``'s words, or its own where these have none."""
-        from pvfiblets.plotting.volumes.component import BLENDING
-
         mode = self._shown_by().mode
         return next((theirs for theirs, ours in BLENDING.items() if ours == mode), mode)
 
     @blend_mode.setter
     def blend_mode(self, word: str) -> None:
-        from pvfiblets.plotting.volumes.component import mode_of_blending
-
         self._shown_by().mode = mode_of_blending(word)

@@ -17,6 +17,7 @@ import pyvista as pv
 from pvfiblets.plotting.actor_registry import ActorRegistry
 from pvfiblets.plotting.call_signature import plotter_method
 from pvfiblets.plotting.settings import Given
+from pvfiblets.plotting.volumes.blending import mode_of_blending
 from pvfiblets.plotting.volumes.settings import VolumeSettings
 
 if TYPE_CHECKING:
@@ -29,9 +30,6 @@ if TYPE_CHECKING:
         str | PathLike[str] | pv.ImageData | pv.MultiBlock | np.ndarray | tuple[Any, Any] | RaycastVolume
     )
 
-
-BLENDING = {"composite": "composite", "maximum": "mip", "minimum": "minimum", "average": "average"}
-"""Modes by the words of ``Plotter.add_volume``."""
 
 MULTI_COLOURS = ("Reds", "Greens", "Blues", "Greys", "Oranges", "Purples")
 """Maps of blocks with ``multi_colors``, as of ``Plotter.add_volume``."""
@@ -241,23 +239,6 @@ def _mode_of(blending: str, settings: Given) -> str:
     if "mode" in settings.named:
         raise ValueError("blending is add_volume's word for mode: give one of the two")
     return mode_of_blending(blending)
-
-
-def mode_of_blending(blending: str) -> str:
-    """Return the mode of a word of ``add_volume``'s.
-
-    Raises
-    ------
-    ValueError
-        If there is none.
-    """
-    if blending == "additive":
-        raise ValueError(
-            "blending='additive' adds up values times opacities, which depends on the step; mode 'average' does not"
-        )
-    if blending not in BLENDING:
-        raise ValueError(f"blending is {blending!r}; choose one of {tuple(BLENDING)}")
-    return BLENDING[blending]
 
 
 AddRaycastVolume = plotter_method(RaycastVolumesComponent)
