@@ -42,6 +42,8 @@ STAGES: dict[str, tuple[str, ...]] = {
     "page/segment.vert": ANY_LINES,
     "page/segment.frag": ANY_LINES,
     "page/screen.vert": (),
+    "page/tile_mask.frag": (),
+    "page/tiles.vert": (),
     "page/resolve.frag": (),
     "page/visible_edges.frag": (),
     "effects/picture/antialias_coverage.frag": (),

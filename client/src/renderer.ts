@@ -16,6 +16,7 @@ import { Drawn, ImageSlice, Surface } from "./surfaces";
 const SLICE = 60;      // ms of drawing between looks at the user's hands
 const MOVING = 45;     // ms of a picture while something moves
 const REFRESH = 400;   // ms between pictures while slices come in
+const TILE = 16;       // pixels; shaders/page/tile_size.glsl
 const LONGEST_SPRITE = 40; // pixels; squares of more are not drawn by every device
 const ALL_ONES = 0xffffffff;
 const MODES = { direction: 0, solid: 1, streamline: 2, value: 3, point: 4 };
@@ -289,12 +290,14 @@ export class Renderer {
       depths: target(gl, gl.DEPTH_COMPONENT32F, width, height),
       drawn: target(gl, gl.RGBA8, width, height),
       shown: target(gl, gl.RGBA32UI, width + 2, height + 2),
+      tiles: target(gl, gl.R8UI, Math.ceil(width / TILE), Math.ceil(height / TILE)),
     });
     this.buffers = {
       texels: framebuffer(gl, t.texels, t.depths),
       scene: framebuffer(gl, t.drawn, t.depths),
       drawn: framebuffer(gl, t.drawn, null),
       shown: framebuffer(gl, t.shown, null),
+      tiles: framebuffer(gl, t.tiles, null),
     };
     this.dirty = true;
   }
@@ -439,9 +442,10 @@ export class Renderer {
     const { gl, textures: t, buffers: b } = this;
     this.repaint(drawn);
     gl.disable(gl.DEPTH_TEST);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, b.drawn);
     gl.bindVertexArray(null);
-    const resolve = this.program("page/screen.vert", "page/resolve.frag").use(), back = inverse(drawn.projection) ?? identity();
+    this.findTiles();
+    gl.bindFramebuffer(gl.FRAMEBUFFER, b.drawn);
+    const resolve = this.program("page/tiles.vert", "page/resolve.frag").use(), back = inverse(drawn.projection) ?? identity();
     let narrower = 0;
     for (const lines of this.lines) {
       if (!lines.layer.visible) continue;
@@ -456,7 +460,7 @@ export class Renderer {
         data_to_view: linear(product(drawn.view, lines.model)), pixel_to_view: new Float32Array(back), picture: [this.width, this.height],
       });
       this.setLights(resolve, drawn.view);
-      gl.drawArrays(gl.TRIANGLES, 0, 3);
+      this.drawTiles(resolve);
     }
     this.drawTranslucent(drawn);
     gl.disable(gl.DEPTH_TEST);
@@ -468,14 +472,31 @@ export class Renderer {
       gl.drawArrays(gl.TRIANGLES, 0, 3);
       gl.viewport(0, 0, this.width, this.height);
       gl.bindFramebuffer(gl.FRAMEBUFFER, b.drawn);
-      const smooth = this.program("page/screen.vert", "effects/picture/antialias_coverage.frag").use().textures({ shown: t.shown });
+      const smooth = this.program("page/tiles.vert", "effects/picture/antialias_coverage.frag").use().textures({ shown: t.shown });
       gl.uniform2i(smooth.at("shift"), 1, 1);
-      gl.drawArrays(gl.TRIANGLES, 0, 3);
+      this.drawTiles(smooth);
     }
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     this.program("page/screen.vert", "page/copy.frag").use().textures({ drawn: t.drawn });
     gl.drawArrays(gl.TRIANGLES, 0, 3);
     this.presented?.();
+  }
+
+  /** Find which tiles of the picture have lines. */
+  private findTiles(): void {
+    const { gl, textures: t } = this;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.buffers.tiles);
+    gl.viewport(0, 0, Math.ceil(this.width / TILE), Math.ceil(this.height / TILE));
+    this.program("page/screen.vert", "page/tile_mask.frag").use().textures({ texels: t.texels });
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    gl.viewport(0, 0, this.width, this.height);
+  }
+
+  /** Run a pass over those tiles; its program is in use. */
+  private drawTiles(program: Program): void {
+    const { gl } = this;
+    program.textures({ tiles: this.textures.tiles }).set({ whole: [this.width, this.height] });
+    gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, Math.ceil(this.width / TILE) * Math.ceil(this.height / TILE));
   }
 
   /** Edges were mixed into an earlier look at this picture: have what lies behind lines afresh. */

@@ -139,9 +139,9 @@ def test_balls_and_boxes_choose_streamlines_and_have_switches(figure, visit):
     ball.get_by_label("On").uncheck()
     assert min(_ink(page, middle), _ink(page, above)) > 0
     ball.get_by_label("On").check()
-    ball.get_by_label("y, mm").fill("20")
-    until(page.page, "document.getElementById('status').textContent.startsWith('1 ')")
-    page.page.wait_for_timeout(200)
+    for place, count in (("10", 0), ("20", 1)):  # between the lines; on the upper one
+        ball.get_by_label("y, mm").fill(place)
+        until(page.page, f"document.getElementById('status').textContent.startsWith('{count} ')")
     assert _ink(page, middle) == 0 < _ink(page, above)
 
     page.page.get_by_role("button", name="Add a box").click()  # around the picked place: no line passes through both

@@ -99,6 +99,35 @@ def test_page_draws_the_points_that_are_chosen(width, plotter, fiblets, visit, t
     assert wrong < 0.01
 
 
+def test_empty_tiles_are_left_out_and_no_edge_of_a_line_with_them(visit, tmp_path):
+    """A line on the border of tiles has half of its pixels in the next one: all are as if no tile were left out."""
+    plotter = pv.Plotter(off_screen=True, window_size=(200, 160))
+    plotter.set_background("white")
+    plotter.enable_parallel_projection()
+    x = np.linspace(-90.0, 90.0, 361)
+    lines = [np.stack([x, np.full_like(x, y), np.zeros_like(x)], axis=1) for y in (0.2, 16.4, 31.6, 48.1)]
+    plotter.add_fiblets(pvfiblets.compress(pvfiblets.Streamlines.from_list(lines)), color="black", lighting=False)
+    plotter.picture.antialias = "coverage"
+    plotter.camera_position = [(0.0, 0.0, 200.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0)]
+    plotter.camera.parallel_scale = 80.0  # a pixel for each mm
+    expected = plotter.screenshot(return_img=True)
+    plotter.fiblets.export_page(tmp_path / "figure.html")
+    plotter.close()
+    page = visit(tmp_path / "figure.html")
+    wrong, drawn = differing(page.picture(), expected)
+    assert 0.02 < drawn < 0.1
+    assert wrong < 0.01
+    tiles = page.page.evaluate(
+        """() => {
+            const gl = pvfiblets.gl, found = new Uint32Array(4 * 13 * 10);
+            gl.bindFramebuffer(gl.FRAMEBUFFER, pvfiblets.buffers.tiles);
+            gl.readPixels(0, 0, 13, 10, gl.RGBA_INTEGER, gl.UNSIGNED_INT, found);
+            return [...found].filter((_, i) => i % 4 === 0);
+        }"""
+    )
+    assert 0.3 < np.mean(tiles) < 0.9
+
+
 def test_surfaces_hide_lines_and_are_hidden(plotter, fiblets, visit, tmp_path):
     plotter.add_fiblets(fiblets)
     plotter.add_mesh(pv.Sphere(radius=40.0), color="tan", smooth_shading=True, specular=0.5, specular_power=12.0)

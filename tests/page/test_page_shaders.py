@@ -13,12 +13,15 @@ import pytest
 from tests.reference_compiler import complaints, link
 
 SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
-PAIRS = {
-    "page/decode.vert": "page/none.frag",
-    "page/segment.vert": "page/segment.frag",
-    "page/surface.vert": "page/surface.frag",
-    "page/image.vert": "page/image.frag",
-}
+PAIRS = [
+    ("page/decode.vert", "page/none.frag"),
+    ("page/segment.vert", "page/segment.frag"),
+    ("page/surface.vert", "page/surface.frag"),
+    ("page/image.vert", "page/image.frag"),
+    ("page/screen.vert", "page/tile_mask.frag"),
+    ("page/tiles.vert", "page/resolve.frag"),
+    ("page/tiles.vert", "effects/picture/antialias_coverage.frag"),
+]
 
 
 def _script(name):
@@ -69,9 +72,9 @@ def test_every_choice_of_switches_compiles(stages, tmp_path):
     assert not complaints(paths)
 
 
-@pytest.mark.parametrize("vertex", PAIRS)
-def test_stages_link_with_all_switches_on_and_off(vertex, stages, tmp_path):
-    texts = stages[vertex], stages[PAIRS[vertex]]
+@pytest.mark.parametrize("pair", PAIRS)
+def test_stages_link_with_all_switches_on_and_off(pair, stages, tmp_path):
+    texts = [stages[name] for name in pair]
     for on in (_choices(*texts)[0], _choices(*texts)[-1]):
         done = link(tmp_path, dict(zip(("vert", "frag"), (_switched(text, on) for text in texts), strict=True)))
         assert done.returncode == 0, done.stdout

@@ -1,0 +1,1 @@
+const int TILE = 16;   // pixels; client/src/renderer.ts
