@@ -36,6 +36,9 @@ REST = 0.25  # seconds without an event after which the camera is at rest
 FASTEST = 1.0 / 60.0  # seconds from frame to frame, at least
 UNSENT = 4  # messages that may wait for the network before drawing waits for them
 PATIENCE = 10.0  # seconds that it does: of browsers that share a view, one may have gone to sleep
+HEAVY = 0.5  # seconds of a frame beyond which samples wait until nobody has acted for a while
+RESTS = 3.0  # so many frames long,
+LONGEST_REST = 8.0  # but no longer than these seconds
 HEARD = 0.002  # seconds between samples, in which events are heard
 SO_FAR = 0.5  # seconds between pictures of what is there so far of a set whose parts are fetched
 
@@ -313,13 +316,16 @@ class PictureStream:
 
         Where parts of a set are fetched, what is there so far is sent now and then.
         """
-        with contextlib.suppress(TimeoutError):
-            await asyncio.wait_for(self._wanted.wait(), REST)
-        await self._practise()
+        # Nobody is heard while a sample is drawn: where that takes long, they come when nobody has acted for a while.
         picture = self._plotter.picture
+        heavy = self.times[-1] if self.times and self.times[-1] > HEAVY and not picture.fetching else 0.0
+        with contextlib.suppress(TimeoutError):
+            await asyncio.wait_for(self._wanted.wait(), max(REST, min(RESTS * heavy, LONGEST_REST)))
+        await self._practise()
         before, fetching, sent = picture.samples, picture.fetching, time.monotonic()
         while not self._wanted.is_set() and picture.refine():
-            await asyncio.sleep(HEARD)
+            with contextlib.suppress(TimeoutError):
+                await asyncio.wait_for(self._wanted.wait(), max(HEARD, heavy))
             if picture.fetching and time.monotonic() - sent > SO_FAR:
                 await self._send(self._read(), self.still_quality)
                 sent = time.monotonic()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import io
+import time
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from PIL import Image
 from scipy import ndimage
 
 from pvfiblets.mappers.scene import hurry, slack
+from pvfiblets.web import stream as stream_module
 from pvfiblets.web.pace import LEVELS
 from pvfiblets.web.stream import REST, PictureStream, encode
 
@@ -259,6 +261,27 @@ def test_an_event_stops_refining_and_it_begins_anew(refined):
     assert stream.frames == 2
     assert stream.sent == 3
     assert plotter.picture.samples == 16
+
+
+def test_samples_of_slow_frames_wait_until_nobody_has_acted_for_a_while(refined, monkeypatch):
+    plotter, _ = refined
+    monkeypatch.setattr(stream_module, "HEAVY", 0.0)
+    monkeypatch.setattr(stream_module, "LONGEST_REST", 1.0)
+    monkeypatch.setattr(stream_module, "RESTS", 1e6)
+    stream, streamer = PictureStream(plotter, "view"), Streamer()
+    refine, begun = plotter.picture.refine, []
+
+    def once():
+        begun.append(time.monotonic())
+        return refine()
+
+    stream._plotter = Stand(plotter, once)
+    plotter.camera.Azimuth(10.0)
+    before = time.monotonic()
+    rest(stream, streamer)
+    assert begun[0] - before > 1.0
+    assert plotter.picture.samples == 16
+    assert np.median(np.diff(begun)) > 1.5 * stream_module.HEARD
 
 
 class Stand:
