@@ -128,12 +128,20 @@ def _add_actor(scene: PageScene, name: str, actor: Any, unable: list[str], *, co
     if isinstance(mapper, FibletMapper):
         _add_fiblets(scene, name, actor, mapper, unable, controls=controls)
     elif isinstance(mapper, EngineMapper):  # its data are no triangles
-        unable.append(f"{name!r}")
+        unable.append(repr(_label(name, type(actor).__name__)))
     elif getattr(actor, "pixels", None) is not None and hasattr(actor, "place"):
         add_image(scene, name, actor)
     elif isinstance(mapper, pv.mapper.DataSetMapper) or (mapper is not None and mapper.IsA("vtkPolyDataMapper")):
-        if mapper.GetNumberOfInputConnections(0) and not add_surface(scene, name, actor, mapper):
+        if not mapper.GetNumberOfInputConnections(0):
+            return
+        prop = actor.GetProperty()
+        if not add_surface(scene, name, actor, mapper):
             unable.append(f"{name!r}")
+            return
+        if prop.GetEdgeVisibility():
+            unable.append(f"the edges of {name!r}")
+        if prop.GetFrontfaceCulling() or prop.GetBackfaceCulling():
+            unable.append(f"the culling of {name!r}")
     elif mapper is not None and hasattr(mapper, "GetInput"):
         unable.append(f"{name!r}")
 

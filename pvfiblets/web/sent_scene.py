@@ -85,7 +85,8 @@ class SentScenes:
         unable = add_all(page, scene.plotter)
         self._made = page.made
         if unable:
-            return ", ".join(_readable(one, scene) for one in unable)
+            told = [one for one in unable if _NAMED.search(one)] or unable  # parts of layers have no name of their own
+            return ", ".join(_readable(one, scene) for one in told)
         if not page.layers:
             return ""
         names = [self._name(blob) for blob in page.blobs]
@@ -133,8 +134,8 @@ class _Remade(PageScene):
 
 def _views(scene: Scene) -> str | None:
     """Return what beside the 3-D view and its actors keeps a browser from drawing; None for nothing."""
-    if scene.slicing.workspace is not None and scene.slicing.view.layout != "3d":
-        return "slices beside the 3-D view"
+    if scene.slicing.workspace is not None:  # its pixels are made when the server draws
+        return "slices of images"
     if scene.state.measurements:
         return "measured distances"
     return None
@@ -162,7 +163,8 @@ def _readable(unable: str, scene: Scene) -> str:
             return found.group()
         return f"the {layer.kind} {layer.name!r}" if found.group() == unable else repr(layer.name)
 
-    return _NAMED.sub(named, unable)
+    what, apostrophe, rest = unable.partition("'")
+    return _NAMED.sub(named, what.replace("_", " ") + apostrophe + rest)
 
 
 def _bars(scene: Scene) -> list[dict[str, Any]]:

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import asyncio
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import pyvista as pv
 
 from pvfiblets.web.browser_drawing import BrowserDrawing
 from pvfiblets.web.options import Options
+from pvfiblets.web.scene import Scene
 from pvfiblets.web.sent_scene import LARGEST, SentScene, SentScenes
+from pvfiblets.web.slicing import LAYOUTS, ready_views
 from tests.web.desk import Desk
 
 CARD = "ANGLE (NVIDIA GeForce RTX 3060)"
@@ -70,6 +74,13 @@ def test_the_camera_is_no_part_of_the_scene(scene):
     [
         (lambda scene: scene.open("head.nii.gz", kind="volume"), "the volume 'head.nii.gz'"),
         (lambda scene: scene.open("vessel.vtp", kind="tubes"), "the tubes 'vessel.vtp'"),
+        (lambda scene: scene.set(scene.layers[0].id, "halos", True), "halos of 'lines.fiblets'"),
+        (
+            lambda scene: scene.set(scene.layers[0].id, "ambient_occlusion", True),
+            "ambient occlusion of 'lines.fiblets'",
+        ),
+        (lambda scene: scene.set(scene.open("ball.ply").id, "show_edges", True), "the edges of 'ball.ply'"),
+        (lambda scene: scene.set(scene.open("ball.ply").id, "culling", "front"), "the culling of 'ball.ply'"),
         (lambda scene: scene.set(scene.layers[0].id, "opacity", 0.5), "the opacity of 'lines.fiblets'"),
         (lambda scene: scene.add_measurement([0, 0, 0], [9, 0, 0]), "measured distances"),
         (lambda scene: scene.remove(scene.layers[0].id), ""),
@@ -79,6 +90,28 @@ def test_what_cannot_be_drawn_is_named(scene, change, why):
     scene.open("lines.fiblets")
     change(scene)
     assert SentScenes(scene).make() == why
+
+
+def test_a_selection_as_tubes_is_named_once(scene):
+    layer = scene.open("lines.fiblets")
+    scene.select(layer.id, [3])
+    scene.set(layer.id, "selection_as_tubes", True)
+    assert SentScenes(scene).make() == "the width or the tubes of what is selected of 'lines.fiblets'"
+
+
+def test_slices_are_the_servers_in_every_layout(folder):
+    plotter = pv.Plotter(off_screen=True, window_size=(200, 160), shape=(2, 2), border=False)
+    ready_views(plotter)
+    scene = Scene(plotter, folder)
+    scene.open("lines.fiblets")
+    image = scene.open("head.nii.gz", kind="image")
+    for layout in LAYOUTS:
+        scene.slicing.view = replace(scene.slicing.view, layout=layout)
+        assert SentScenes(scene).make() == "slices of images"
+    scene.remove(image.id)
+    assert isinstance(SentScenes(scene).make(), SentScene)
+    scene.close()
+    plotter.close()
 
 
 @pytest.mark.parametrize(
