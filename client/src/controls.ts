@@ -274,6 +274,7 @@ export class Controls {
 
   private choose(): void {
     let sum = 0;
+    this.drawOutlines();
     for (const choice of this.choices.values()) {
       choice.apply();
       sum += choice.count;
