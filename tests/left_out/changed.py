@@ -80,7 +80,8 @@ CHANGED = {
         passes="gather",
         buffers="fibletSumFloats (none), gathered",
         modules="""
-            engine.fiblets.gathering, engine.fiblets.paint, mappers.gathering, mappers.scene_state, mappers.slices
+            engine.fiblets.gatherer, engine.fiblets.gathering, engine.fiblets.paint, mappers.gathering,
+            mappers.scene_state, mappers.slices
         """,
     ),
     "opacity, the nearest": What(),
@@ -91,7 +92,8 @@ CHANGED = {
         passes="gather",
         buffers="fibletSumFloats (none), gathered",
         modules="""
-            engine.fiblets.gathering, engine.fiblets.paint, mappers.density, mappers.gathering, mappers.scene_state
+            engine.fiblets.gatherer, engine.fiblets.gathering, engine.fiblets.paint, mappers.density,
+            mappers.gathering, mappers.scene_state
         """,
     ),
     "density, by a map": What(
@@ -101,7 +103,8 @@ CHANGED = {
         passes="gather",
         buffers="fibletSumFloats (none), fibletTable, gathered",
         modules="""
-            engine.fiblets.gathering, engine.fiblets.paint, mappers.density, mappers.gathering, mappers.scene_state
+            engine.fiblets.gatherer, engine.fiblets.gathering, engine.fiblets.paint, mappers.density,
+            mappers.gathering, mappers.scene_state
         """,
     ),
     "layers": What(
