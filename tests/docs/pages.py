@@ -45,6 +45,19 @@ scene.close()
 shown.close()
 """
 
+# A fixel directory of MRtrix's: two fixels in each voxel.
+FIXELS = """
+import pathlib
+pathlib.Path("fixels").mkdir()
+count = np.full((12, 14, 10), 2)
+first = np.arange(count.size).reshape(count.shape) * 2
+place = np.stack([count, first], axis=-1).astype(np.uint32)
+ways = rng.normal(size=(2 * count.size, 3, 1)).astype("f4")
+density = rng.random((2 * count.size, 1, 1)).astype("f4")
+for name, numbers in {"index": place, "directions": ways, "fd": density}.items():
+    nibabel.save(nibabel.Nifti1Image(numbers, affine), f"fixels/{name}.nii")
+"""
+
 # Windows that a page gives no size are a quarter of the usual ones.
 SMALL = """
 import pyvista
@@ -111,7 +124,7 @@ for name, numbers in {
 nibabel.save(nibabel.MGHImage(labels, np.diag([12.0, 12.0, 12.0, 1.0])), "aparc+aseg.mgz")
 with open("FreeSurferColorLUT.txt", "w") as table:
     table.write("17  Left-Hippocampus  220 216 20 0\\n")
-""",
+""" + FIXELS,
     "docs/bundles.md": BRAIN + """
 import nibabel, numpy as np
 pvfiblets.compress_file("brain.trx", "brain.fiblets")
@@ -134,7 +147,7 @@ for name, numbers in {
     "peaks": rng.normal(size=(12, 14, 10, 6)).astype("f4"), "fod": rng.normal(size=(12, 14, 10, 15)).astype("f4"),
 }.items():
     nibabel.save(nibabel.Nifti1Image(numbers, affine), f"{name}.nii.gz")
-""",
+""" + FIXELS,
     "docs/shards.md": "",
     "docs/from-vtk.md": "",
     "docs/tubes.md": "",
