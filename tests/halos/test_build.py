@@ -256,7 +256,7 @@ BROKEN[30, 1] = np.inf
         (np.zeros((4, 2)), {}, "points have the shape (4, 2), expected (n, 3)"),
         ((POINTS, [[0, 40]]), {}, "segment 0 is [0, 40], but there are 40 points"),
         (pv.Sphere(), {}, "the PolyData has no lines but 1680 other cells"),
-        (pv.PolyData(), {}, "the PolyData has no lines but 0 other cells"),
+        (pv.PolyData(np.zeros((2, 3))), {}, "the PolyData has no lines but 2 other cells"),
     ],
 )  # fmt: skip
 def test_what_lines_cannot_be(source, arguments, message):

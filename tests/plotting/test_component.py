@@ -83,7 +83,7 @@ def test_every_kind_of_source_gives_the_same_picture(plotter, three_lines, tmp_p
         assert lit(ours) == pytest.approx(lit(theirs), rel=0.05)
 
 
-@pytest.mark.parametrize("source", [3, None, b"lines.trk", pv.ImageData(dimensions=(2, 2, 2)), [np.zeros(3)]])
+@pytest.mark.parametrize("source", [3, None, b"lines.trk", pv.ImageData(dimensions=(2, 2, 2)), [np.zeros(2)]])
 def test_an_unknown_kind_of_source_is_refused_in_words(plotter, source):
     with pytest.raises(TypeError, match=r"expected|has no lines"):
         plotter.add_fiblets(source)
