@@ -21,7 +21,7 @@ from .restrict import restrict
 if TYPE_CHECKING:
     from .fibletset import FibletSet
 
-__all__ = ["exact_bounds", "extract", "save_as"]
+__all__ = ["exact_bounds", "extract", "once", "save_as"]
 
 Ints = npt.NDArray[np.int64]
 Bounds = tuple[float, float, float, float, float, float]
@@ -54,7 +54,7 @@ def extract(fiblets: FibletSet, ids: Any) -> FibletSet:
     FormatError
         If the file is damaged.
     """
-    chosen = _once(select_streamlines(fiblets.n_streamlines, ids))
+    chosen = once(select_streamlines(fiblets.n_streamlines, ids))
     part = restrict(fiblets, chosen)
     number = np.full(fiblets.n_streamlines, -1, np.int64)
     number[chosen] = np.arange(len(chosen))
@@ -79,8 +79,8 @@ def extract(fiblets: FibletSet, ids: Any) -> FibletSet:
     return replace(part, bounds=exact_bounds(part))
 
 
-def _once(ids: Ints) -> Ints:
-    """Each number where it stands first."""
+def once(ids: Ints) -> Ints:
+    """Return each number where it stands first."""
     if len(ids) < 2 or bool((np.diff(ids) > 0).all()):
         return ids
     first = np.unique(ids, return_index=True)[1]

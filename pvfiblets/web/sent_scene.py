@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.page.scene import PageScene, encoded
 from pvfiblets.web.document import LINES
 from pvfiblets.web.scalar_bars import bars_of
@@ -148,8 +147,6 @@ def _too_large(scene: Scene, most: int) -> str | None:
     total = sum(set_.nbytes for set_ in shown.values())
     if total > most:
         return f"{total / 1e6:,.0f} MB of streamlines, more than the {most / 1e6:,.0f} MB that are sent to it"
-    if not all(isinstance(set_, FibletSet) for set_ in shown.values()):
-        return "sets in shards that are not put together"
     return None
 
 

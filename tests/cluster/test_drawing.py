@@ -26,7 +26,7 @@ from pvfiblets.report.stability.render_checks import camera
 from pvfiblets.synthetic import brain_streamlines
 from pvfiblets.web.scene import Scene
 from pvfiblets.web.slicing import ready_views
-from tests.engine.pictures import SIZE, differences, read
+from tests.engine.pictures import SIZE, assert_alike, read
 
 VIEW = View(SIZE, camera(SIZE, eye=(0, -300, 40), target=(0, -10, 20), far=900.0))
 CLOSE = View(SIZE, camera(SIZE, eye=(60, -60, 90), target=(20, 0, 40), far=900.0))
@@ -68,11 +68,6 @@ def make(gl, client):
     yield renderer
     for one in made:
         one.release()
-
-
-def assert_alike(parts, whole):
-    """Every bit but for the owners, which are parts."""
-    assert {name for name in differences(parts, whole) if name != "owner"} == set()
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 4])

@@ -74,6 +74,11 @@ def assert_same(a, b):
     assert not differences(a, b)
 
 
+def assert_alike(parts, whole):
+    """Every bit but for the owners, which are parts."""
+    assert {name for name in differences(parts, whole) if name != "owner"} == set()
+
+
 def near(mask, radius=1):
     """Pixels at most that many pixels away from the mask."""
     h, w = mask.shape

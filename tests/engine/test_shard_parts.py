@@ -19,7 +19,7 @@ from pvfiblets.engine.fiblets.shard_parts import ShardGroups, ShardParts, gpu_by
 from pvfiblets.engine.fiblets.streamed_renderer import StreamedRenderer, streamed_renderer
 from pvfiblets.synthetic import brain_streamlines
 
-from .pictures import SIZE, differences, read
+from .pictures import SIZE, assert_alike, read
 
 WHOLE_BRAIN = {"eye": (0, -300, 40), "target": (0, -10, 20), "far": 900.0}
 NEAR = {"eye": (60, -60, 90), "target": (20, 0, 40), "far": 900.0}
@@ -84,11 +84,6 @@ def made(gl, together):
     yield make
     for renderer in renderers:
         renderer.release()
-
-
-def assert_alike(parts, whole):
-    """Every bit but for the owners, which are parts."""
-    assert {name for name in differences(parts, whole) if name != "owner"} == set()
 
 
 @pytest.mark.parametrize("share", [0.9, 0.35])

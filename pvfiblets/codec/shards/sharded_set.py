@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from os import PathLike, fspath
 from pathlib import Path
@@ -22,7 +22,7 @@ from .store import Cache, Folder, Remote, store_at
 if TYPE_CHECKING:
     from ..fibletset import FibletSet
 
-__all__ = ["ShardedSet"]
+__all__ = ["ShardedSet", "renumbered"]
 
 Ints = npt.NDArray[np.int64]
 
@@ -260,21 +260,10 @@ class ShardedSet:
         """Parts of the whole as one set, in the order of the numbers that their streamlines have."""
         if not parts:
             return self.shard(0).extract(slice(0, 0))
-        joined = concatenate(part for part, _ in parts)
         numbers = np.concatenate([ids for _, ids in parts])
-        order = np.argsort(numbers)
-        place = np.empty_like(order)
-        place[order] = np.arange(len(order))
-        old = np.arange(joined.n_ranks) if joined.rank_to_id is None else np.asarray(joined.rank_to_id)
-        new = place[old]
-        plain = len(new) == len(joined) and bool((new == np.arange(len(new))).all())
-        return replace(
-            joined,
-            rank_to_id=None if plain else new,
-            per_streamline={name: np.asarray(rows)[order] for name, rows in joined.per_streamline.items()},
-            groups={name: np.sort(place[np.asarray(members, np.int64)]) for name, members in joined.groups.items()},
-            dropped=dict(self.manifest.dropped),
-        )
+        places = np.empty(len(numbers), np.int64)
+        places[np.argsort(numbers)] = np.arange(len(numbers))
+        return renumbered(concatenate(part for part, _ in parts), places, len(places), self.manifest.dropped)
 
     def _number(self, number: int) -> int:
         n = len(self.shards)
@@ -284,3 +273,30 @@ class ShardedSet:
 
     def _shard(self, number: int) -> Shard:
         return self.shards[self._number(number)]
+
+
+def renumbered(joined: FibletSet, places: Ints, count: int, dropped: Mapping[str, int]) -> FibletSet:
+    """Give the streamlines of parts that stand behind each other the numbers that they have together.
+
+    Parameters
+    ----------
+    joined : FibletSet
+    places : numpy.ndarray
+        ``(n,)`` int64: the number of each of its streamlines, each once.
+    count : int
+        How many numbers there are; those that no streamline has are of one without points.
+    dropped : mapping
+        What the source of all left out.
+    """
+    old = np.arange(joined.n_ranks) if joined.rank_to_id is None else np.asarray(joined.rank_to_id)
+    ids = places[old]
+    plain = len(ids) == count and bool((ids == np.arange(count)).all())
+    order = np.argsort(places)
+    return replace(
+        joined,
+        n_streamlines=count,
+        rank_to_id=None if plain else ids,
+        per_streamline={name: np.asarray(rows)[order] for name, rows in joined.per_streamline.items()},
+        groups={name: np.sort(places[np.asarray(members, np.int64)]) for name, members in joined.groups.items()},
+        dropped=dict(dropped),
+    )

@@ -19,12 +19,13 @@ import numpy.typing as npt
 from ...memory import free_host_memory
 from ...streamlines import Streamlines
 from ..decompress import select_streamlines
+from ..extract import once
 from ..fibletset import FibletSet
 from ..join import concatenate
 from ..parameters import Parameters
 from ..quantised import QuantisedPoints
 from ..stored_parts import of_streamlines
-from .sharded_set import ShardedSet
+from .sharded_set import ShardedSet, renumbered
 
 __all__ = ["CodesOfShards", "UnreadSet"]
 
@@ -107,11 +108,7 @@ class UnreadSet(FibletSet):
         """Streamlines that have points."""
         return sum(self.shards.shard(n).n_ranks for n in self.numbers)
 
-    @property
-    def in_order(self) -> bool:
-        """Whether fiblets stand in the order of their streamlines: not even in one shard, as a rule."""
-        ids = self.rank_to_id
-        return ids is None or bool((np.diff(ids) >= 0).all())
+    # What the dataclass stores is worked out here when it is asked for: checkers take that for another kind of thing.
 
     exact = None  # sets that keep every bit are put together when they are opened
 
@@ -171,6 +168,7 @@ class UnreadSet(FibletSet):
     def per_point(self) -> dict[str, QuantisedPoints]:  # type: ignore[override]
         """Values of points, whose codes are read when somebody reads them."""
         return {
+            # No array, but one for whoever calls NumPy with it.
             name: replace(stored, codes=CodesOfShards(self, name, stored.codes.dtype))  # type: ignore[arg-type]
             for name, stored in self._first.per_point.items()
         }
@@ -191,8 +189,7 @@ class UnreadSet(FibletSet):
     def ids_of_ranks(self, number: int) -> Ints:
         """``(n_ranks,)`` number in the whole of each rank's streamline of a shard."""
         if number not in self._own_order:
-            own, ids = self.shards.shard(number).rank_to_id, self.shards.ids(number)
-            self._own_order[number] = ids if own is None else ids[np.asarray(own)]
+            self._own_order[number] = _ranks_of(self.shards.shard(number), self.shards.ids(number))
         return self._own_order[number]
 
     # --------------------------------------------------------------------------------------------- shard after shard
@@ -204,9 +201,17 @@ class UnreadSet(FibletSet):
 
     def numbered(self, number: int) -> FibletSet:
         """Return a shard as a part of the whole: its streamlines have the whole's numbers, the others no points."""
+        return self._as_part(self.shards.shard(number), self.ids_of_ranks(number))
+
+    def thinned(self) -> FibletSet | None:
+        """Return the even share of all streamlines as such a part, if the set has one."""
+        found = self.shards.thinned()
+        return None if found is None else self._as_part(found[0], _ranks_of(*found))
+
+    def _as_part(self, part: FibletSet, names: Ints) -> FibletSet:
         return replace(
-            self.shards.shard(number), n_streamlines=self.n_streamlines, rank_to_id=self.ids_of_ranks(number),
-            bounds=self.bounds, per_streamline={}, groups={}, per_group={}, dropped={},
+            part, n_streamlines=self.n_streamlines, rank_to_id=names, bounds=self.bounds, per_streamline={}, groups={},
+            per_group={}, dropped={},
         )  # fmt: skip
 
     def of_shards(self, numbers: Iterable[int]) -> UnreadSet:
@@ -224,21 +229,19 @@ class UnreadSet(FibletSet):
 
     def extract(self, ids: npt.ArrayLike | slice) -> FibletSet:
         """Take some streamlines as a set in memory; see :meth:`.FibletSet.extract`. Only they are read."""
-        chosen = select_streamlines(self.n_streamlines, ids)
-        first = np.sort(np.unique(chosen, return_index=True)[1])
-        chosen = chosen[first]  # one that is named again is taken where it stands first
-        place = np.full(self.n_streamlines, -1, np.int64)
-        place[chosen] = np.arange(len(chosen))
-        found, numbers = [], []
+        chosen = once(select_streamlines(self.n_streamlines, ids))
+        order = np.argsort(chosen)
+        rising = chosen[order]
+        found, places = [], []
         for part, names in self.parts():
-            mine = np.flatnonzero(place[names] >= 0)
+            at = np.searchsorted(names, rising)
+            mine = np.flatnonzero(names[np.minimum(at, len(names) - 1)] == rising) if len(names) else at[:0]
             if len(mine):
-                found.append(part.extract(mine))
-                numbers.append(place[names[mine]])
+                found.append(part.extract(at[mine]))
+                places.append(order[mine])
         if not found:
             return self._first.extract(np.zeros(0, np.int64))
-        joined, order = concatenate(found), np.concatenate(numbers)
-        return _renumbered(joined, order, len(chosen), self.dropped)
+        return renumbered(concatenate(found), np.concatenate(places), len(chosen), self.dropped)
 
     def decompress(self, ids: npt.ArrayLike | None = None, *, dtype: npt.DTypeLike | None = None) -> Streamlines:
         """Decode to points; see :meth:`.FibletSet.decompress`. Only the streamlines that are asked for are read."""
@@ -292,6 +295,11 @@ class UnreadSet(FibletSet):
         return self.gathered.save(path, shards=shards)
 
 
+def _ranks_of(part: FibletSet, ids: Ints) -> Ints:
+    """What the streamlines of a part's ranks are called in the whole."""
+    return ids if part.rank_to_id is None else ids[np.asarray(part.rank_to_id)]
+
+
 def _of_gathered(name: str) -> property:
     return property(lambda self: getattr(self.gathered, name), doc=f"``{name}`` of all shards, put together.")
 
@@ -343,19 +351,3 @@ class CodesOfShards:
     def astype(self, *given: Any, **options: Any) -> npt.NDArray[Any]:
         """Return the codes as another type."""
         return self._read.astype(*given, **options)
-
-
-def _renumbered(joined: FibletSet, order: Ints, count: int, dropped: dict[str, int]) -> FibletSet:
-    """Give streamlines of parts that stand behind each other the numbers `order`."""
-    old = np.arange(joined.n_ranks) if joined.rank_to_id is None else np.asarray(joined.rank_to_id)
-    ids = order[old]
-    plain = len(ids) == count and bool((ids == np.arange(count)).all())
-    back = np.argsort(order)
-    return replace(
-        joined,
-        n_streamlines=count,
-        rank_to_id=None if plain else ids,
-        per_streamline={name: np.asarray(rows)[back] for name, rows in joined.per_streamline.items()},
-        groups={name: np.sort(order[np.asarray(members, np.int64)]) for name, members in joined.groups.items()},
-        dropped=dict(dropped),
-    )

@@ -100,7 +100,7 @@ class Gatherer:
         paint: Paint,
         slices: int,
         distances: SliceDistances,
-        words: bool,
+        words: Callable[[], bool],
         add: Callable[[Gathered], None],
         state: Any = None,
     ) -> Gathered:
@@ -110,8 +110,8 @@ class Gatherer:
         ----------
         nearest, paint, slices, distances
             As of :meth:`of`; the picture is that of all parts.
-        words : bool
-            As :meth:`gathers_words` of the parts says.
+        words : callable
+            Returns what :meth:`gathers_words` of the parts says; asked only where there is something to be done.
         add : callable
             Has the gatherers of all parts add to what it is given, by :meth:`add_to`.
         state : object
@@ -121,7 +121,7 @@ class Gatherer:
         if self._held is not None and key is not None and self._made == key:
             return self._held
         self._made = None
-        held = self._begin(nearest, paint, slices, distances, words)
+        held = self._begin(nearest, paint, slices, distances, words())
         held.clear(self._gl)
         add(held)
         self._made = key or object()

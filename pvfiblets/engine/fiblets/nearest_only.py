@@ -20,7 +20,7 @@ __all__ = ["NearestOnly"]
 
 _NO_LAYERS = (
     "a set that is drawn part by part has no layers of lines, which need all of it at once; let lines be added up "
-    "(actor.layers = None), draw a share of it by fit='sample', or fewer streamlines"
+    "(transparency='all'), draw a share of it by fit='sample', or fewer streamlines"
 )
 _NO_SUMS = (
     "workers of a cluster draw the nearest lines only: what all lines add up to is not sent; leave opacity at 1 and "

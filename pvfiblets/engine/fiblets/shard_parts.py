@@ -104,19 +104,13 @@ class ShardParts:
 
     def thinned(self, nbytes: int) -> FibletSet:
         """Return an even share of all streamlines; of sets without one, put together from all shards."""
-        found = self._set.shards.thinned()
-        if found is None:
-            share = min(nbytes / max(sum(_gpu_bytes(self._set, n) for n in self._set.numbers), 1), 1.0)
+        part = self._set.thinned()
+        if part is None:
+            share = min(nbytes / max(gpu_bytes_of_shards(self._set), 1), 1.0)
             numbers = self._set.numbers
             kept = [restrict(part, even_share(part, share)) for part in map(self._set.numbered, numbers)]
             names = [np.asarray(one.rank_to_id) for one in kept]
             return replace(concatenate(kept), n_streamlines=self.whole.n_streamlines, rank_to_id=np.concatenate(names))
-        part, ids = found
-        own = part.rank_to_id
-        part = replace(
-            part, n_streamlines=self.whole.n_streamlines, rank_to_id=ids if own is None else ids[np.asarray(own)],
-            bounds=self.whole.bounds, per_streamline={}, groups={}, per_group={}, dropped={},
-        )  # fmt: skip
         share = min(nbytes / max(part.nbytes * GPU_SHARE, 1.0), 1.0)
         return part if share == 1.0 else restrict(part, even_share(part, share))
 

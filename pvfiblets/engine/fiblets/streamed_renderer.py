@@ -265,9 +265,10 @@ class StreamedRenderer(NearestOnly):
         there = [number for number in drawn if number in self._there]
         numbers = [*there, *(number for number in drawn if number not in there)] if whole else there or [THINNED]
         first = self._fetch(numbers[0] if numbers else THINNED)
-        asked, hides = paint or Paint(), None if outside is None else outside()
+        asked = paint or Paint()
 
         def add(held: Gathered) -> None:
+            hides = None if outside is None else outside()
             for number in numbers:
                 part = self._fetch(number)
                 part.gather_into(held, view, style, asked, nearest, hides)
@@ -275,7 +276,7 @@ class StreamedRenderer(NearestOnly):
 
         return self._gatherer.of_parts(
             nearest, asked, SLICES if sliced else 1, first.slice_distances(view),
-            first.gathers_words(view, style, nearest), add, (state,) if whole else None,
+            lambda: first.gathers_words(view, style, nearest), add, (state,) if whole else None,
         )  # fmt: skip
 
     def most_lines(self, *, wait: bool = True) -> float:
