@@ -11,7 +11,7 @@ SHELL := /bin/bash
 # Compiled modules are kept, for the many processes that tests start.
 PYTEST := env -u PYTHONDONTWRITEBYTECODE $(BIN)/python -m pytest --numprocesses=auto --maxprocesses=8 --dist=loadfile --no-loadscope-reorder
 
-.PHONY: demo serve test test-all lint fuzz soak bench docs check-wheel drivers drivers-part wheel client environment gl shaders browser display clean
+.PHONY: demo serve test test-all lint fuzz soak bench docs check-wheel drivers drivers-part wheel client environment gl shaders browser display proxy clean
 
 demo: environment gl
 	$(BIN)/pvfiblets demo --output $(DEMO)
@@ -23,11 +23,11 @@ serve: demo
 # small pictures: here without optimising it, by `make test-all` as users have it.
 test: export GALLIVM_PERF = nopt
 test: export LEAST = 4.3
-test: environment gl shaders browser display lint
+test: environment gl shaders browser display proxy lint
 	$(PYTEST)
 
 test-all: export LEAST = 4.3
-test-all: environment gl shaders browser display lint
+test-all: environment gl shaders browser display proxy lint
 	PVFIBLETS_FUZZ=1000 $(PYTEST) -m '' --hypothesis-profile=exhaustive --timeout=3600
 
 lint: environment
@@ -79,6 +79,9 @@ browser:
 
 display:
 	@scripts/display.sh
+
+proxy: environment
+	@VENV=$(VENV) scripts/proxy.sh
 
 shaders:
 	@scripts/shader_tools.sh

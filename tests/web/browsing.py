@@ -218,6 +218,10 @@ class Visit:
     def press(self, key):
         self.page.keyboard.press(key)
 
+    def told(self, text):
+        """Wait until the page tells exactly this."""
+        self.wait(lambda: self.toast() == text, text)
+
     def toast(self):
         return self.page.locator("[data-toast]").inner_text()
 

@@ -168,7 +168,8 @@ def test_what_the_browser_cannot_draw_the_server_draws_and_says_so(here):
     here.page.evaluate("trame.trigger('release')")
     here.wait(lambda: not here.state("there")["on"], "the server to draw")
     said = "The server draws: a browser cannot draw the opacity of 'lines.fiblets'."
-    assert here.toast() == here.state("drawing") == said
+    here.told(said)
+    assert here.state("drawing") == said
     here.wait(lambda: picture.count() and here.picture().std() > 1.0, "the server's picture")
     here.page.wait_for_function("document.querySelector('#pv-there').style.visibility === 'hidden'")
     here.press("Control+z")
@@ -182,7 +183,7 @@ def test_a_page_that_loses_its_graphics_has_the_servers_pictures(here):
     lose = "window.lost = pvfibletsThere.canvas.getContext('webgl2').getExtension('WEBGL_lose_context')"
     here.page.evaluate(f"{lose}; lost.loseContext()")
     here.wait(lambda: "lost its graphics" in here.state("drawing"), "why the server draws")
-    assert here.toast() == "The server draws: this browser lost its graphics."
+    here.told("The server draws: this browser lost its graphics.")
     assert not here.state("there")["on"]
     assert (np.abs(here.rests() - expected).max(axis=2) > 60).mean() < 0.01
     here.page.evaluate("lost.restoreContext()")

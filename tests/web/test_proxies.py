@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import os
 import re
 import shutil
 import socket
@@ -23,6 +24,8 @@ from tests.web.visitors import TOKEN, gate
 
 DOCS = (Path(__file__).parents[2] / "docs" / "serving.md").read_text(encoding="utf-8")
 NAME = "lab.example"
+# Not where a user's programs are: where the system's are, and what was unpacked for the tests.
+PLACES = os.pathsep.join([os.environ.get("PATH", ""), "/usr/sbin", "/usr/local/sbin", str(Path(sys.executable).parent)])
 pytestmark = [
     pytest.mark.skipif(sys.platform != "linux", reason="a second address of loopback"),
     pytest.mark.skipif(shutil.which("openssl") is None, reason="openssl makes the certificate"),
@@ -138,7 +141,7 @@ class Near(aiohttp.abc.AbstractResolver):
 @pytest.mark.parametrize("proxy", [nginx, caddy, configurable_http_proxy], ids=lambda proxy: proxy.__name__)
 def test_a_recipe_passes_on_all_that_a_browser_needs(tmp_path, caplog, proxy):
     program = proxy.__name__.replace("_", "-")
-    if shutil.which(program) is None:
+    if (found := shutil.which(program, path=PLACES)) is None:
         pytest.skip(f"{program} is not installed")
     folder, root = tmp_path / "proxy", tmp_path / "root"
     folder.mkdir()
@@ -180,7 +183,7 @@ def test_a_recipe_passes_on_all_that_a_browser_needs(tmp_path, caplog, proxy):
         options = {"origins": [f"https://{NAME}"], "proxies": ["127.0.0.1"]}
         async with gate(root, **options) as server:
             port = free_port()
-            command = proxy(folder, server.port, port)
+            command = [found, *proxy(folder, server.port, port)[1:]]
             manager = running(command, port)
             await asyncio.to_thread(manager.__enter__)
             try:
