@@ -7,9 +7,10 @@
 4. Features and views of a whole brain (section 5, figures 1, 11 and 12).
 5. Spline tubes (Russig et al. 2020, figure 5), halos (Everts et al. 2009, table 1), ray-cast volumes.
 
-Each cell runs in a process of its own: what a driver dies of is a row that says so. Writes ``card-CARD.json``, ``.md``
-and ``.png``, a sheet of what was drawn, after every cell, so that a run that is cut short leaves what it has, and
-``--resume`` goes on there. Brains are made as they are needed, 12 GB of them in all, and kept in ``--folder``::
+A second process draws the cells: what a driver dies of is a row that says so, and the next cell has a new process.
+Writes ``card-CARD.json``, ``.md`` and ``.png``, a sheet of what was drawn, after every cell, so that a run that is cut
+short leaves what it has, and ``--resume`` goes on there. Brains are made as they are needed, 12 GB of them in all, and
+kept in ``--folder``::
 
     python benchmarks/card.py --folder /tmp --output docs/benchmarks --resume
     python benchmarks/card.py --small      # a rehearsal in some minutes
@@ -27,7 +28,8 @@ from typing import Any
 
 import numpy as np
 from card_cells import draw_cell
-from common import add_places, card_of, machine, make_brain, on_machine, run_child, slug, to_table
+from card_process import Drawer
+from common import add_places, card_of, machine, make_brain, on_machine, slug, to_table
 
 from pvfiblets.report.card_check import run_check
 from pvfiblets.report.card_file import png, summary
@@ -71,11 +73,12 @@ def main() -> None:
     )
     parser.add_argument("--small", action="store_true", help="a rehearsal: little data, small pictures")
     parser.add_argument("--resume", action="store_true", help="keep what --output has of this card, measure the rest")
-    parser.add_argument("--cell", help=argparse.SUPPRESS)
+    parser.add_argument("--draw-cells", action="store_true", help=argparse.SUPPRESS)
     add_places(parser)
     options = parser.parse_args()
-    if options.cell:
-        print(json.dumps(draw_cell(json.loads(options.cell), options.folder)))
+    if options.draw_cells:
+        for line in sys.stdin:
+            print(json.dumps(draw_cell(json.loads(line), options.folder)), flush=True)
         return
     with tempfile.TemporaryDirectory(dir=options.folder) as temporary:
         measure_all(options, Path(temporary))
@@ -91,6 +94,7 @@ def measure_all(options: Any, temporary: Path) -> None:
     about = about or {**checked(temporary), "step_mm": options.step}
     done = {json.dumps(row["cell"]): row for row in earlier if row.get("unmeasured") != LATE}
     results: list[Row] = []
+    drawer = Drawer(__file__, folder)
     slow: set[tuple[Any, ...]] = set()
     pipelines = about["pipelines"]
     for section, cells in sections(options, pipelines):
@@ -103,7 +107,7 @@ def measure_all(options: Any, temporary: Path) -> None:
             elif key in slow:
                 row = {"unmeasured": "far too slow at fewer segments"}
             else:
-                row = measured(cell, folder, pictures / f"{slug(section)}-{number:02d}.npy", options)
+                row = measured(cell, folder, pictures / f"{slug(section)}-{number:02d}.npy", options, drawer)
             slowly = row.get("unmeasured") != LATE and not row.get("ms", HOPELESS) < HOPELESS
             if slowly and cell["kind"] in ("fiblets", "raw lines"):
                 slow.add(key)
@@ -111,6 +115,7 @@ def measure_all(options: Any, temporary: Path) -> None:
             print({name: value for name, value in results[-1].items() if name not in ("passes", "cell")}, flush=True)
             if json.dumps(cell) not in done:
                 write(about, results, pictures, options.output)
+    drawer.close()
     print(f"wrote {write(about, results, pictures, options.output)}.json, .md and .png", file=sys.stderr)
 
 
@@ -135,8 +140,8 @@ def before(options: Any) -> tuple[Row, list[Row]]:
     return (about, results) if about["step_mm"] == options.step else ({}, [])
 
 
-def measured(cell: Row, folder: Path, picture: Path, options: Any) -> Row:
-    """Draw one cell in a process of its own; its data is made before, outside its time."""
+def measured(cell: Row, folder: Path, picture: Path, options: Any, drawer: Drawer) -> Row:
+    """Draw one cell; its data is made before, outside its time."""
     if "segments" in cell:
         try:
             make_brain(cell["segments"], cell["step"], folder)
@@ -144,8 +149,7 @@ def measured(cell: Row, folder: Path, picture: Path, options: Any) -> Row:
             return {"unmeasured": f"its data was not made: {error or type(error).__name__}"}
     at_most = {"frames": 5, "seconds": 1.0} if options.small else {"frames": options.frames, "seconds": options.seconds}
     wanted = {**cell, **at_most, "picture": str(picture)}
-    rows, reason = run_child(__file__, ["--cell", json.dumps(wanted), "--folder", folder], options.limit)
-    return rows[0] if rows else {"unmeasured": reason or "it said nothing"}
+    return drawer.draw(wanted, options.limit)
 
 
 def sections(options: Any, pipelines: list[str]) -> list[tuple[str, list[Row]]]:
@@ -155,10 +159,11 @@ def sections(options: Any, pipelines: list[str]) -> list[tuple[str, list[Row]]]:
     segments = [5e4, 2e5] if small else options.segments
     common = {"step": options.step}
     whole, low = max(segments), sizes[0]
-    table_2 = [
-        {"kind": "fiblets", "segments": count, "size": size, "pipeline": pipeline, "culling": culling, **common}
-        for size in sizes for count in segments for pipeline in pipelines for culling in CULLINGS
-    ]  # fmt: skip
+    table_2, larger = (
+        [{"kind": "fiblets", "segments": count, "size": size, "pipeline": pipeline, "culling": culling, **common}
+         for count in segments for pipeline in pipelines for culling in CULLINGS]
+        for size in sizes
+    )  # fmt: skip
     table_3 = [
         row
         for count in ([5e4] if small else TABLE_3)
@@ -176,7 +181,7 @@ def sections(options: Any, pipelines: list[str]) -> list[tuple[str, list[Row]]]:
     others += [{"kind": "halos", "set": name, "size": low} for name in (HALOS[-1:] if small else HALOS)]
     others += [{"kind": "volume", "set": name, "mode": mode, "size": low}
                for name in (["vessels-48"] if small else VOLUMES) for mode in MODES]  # fmt: skip
-    return [("table 2", table_2), ("table 3", table_3), ("figures", figures), ("others", others)]
+    return [("table 2", table_2), ("table 3", table_3), ("figures", figures), ("others", others), ("table 2", larger)]
 
 
 def sheet(results: list[Row], folder: Path) -> tuple[bytes | None, list[Row]]:

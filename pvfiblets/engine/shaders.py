@@ -110,6 +110,7 @@ FEATURES: dict[str, str] = {
     "VOLUME_TRICUBIC": "the field of cubics between voxels",
     "VOLUME_BRICKS": "a volume in bricks, larger than 3-D textures",
     "VOLUME_PAGES": "bricks in several textures",
+    "VOLUME_FETCHED": "a volume whose voxels the hardware weighs too coarsely",
     "VOLUME_LAYERS": "translucent surfaces in a volume, one behind the other",
     "VOLUME_COLOURS": "light in the voxels' own colours",
     "VOLUME_UNREFINED": "surfaces at the sample behind them",

@@ -79,7 +79,7 @@ vec4 light_between(Look a, Look b, float mm) {
         float head = mm * max(depth_between(a, turn) / change, 0.0), shown = min(opacity_of(head), alpha);
         vec2 ends = vec2(next, clamp(b.u, low, high)) / last;
         vec2 place = (ends * (size - 1.0) + 0.5) / size;
-        vec4 whole = textureLod(segments, vec2(place.x, 0.5 * place.y), 0.0);      // of the table of whole steps
+        vec4 whole = entry_at(segments, vec2(place.x, 0.5 * place.y));               // of the table of whole steps
         vec3 rest = whole.a > 0.0 ? whole.rgb / whole.a : c;
         c = mix(rest, colour_between(a.medium, turn.medium, head), shown / max(alpha, 1e-30));
     }

@@ -1,4 +1,5 @@
-// The field between the voxels, by one of three reconstruction filters.
+// The field between the voxels, by one of three reconstruction filters. Where the hardware interpolates too coarsely (8 bits of the
+// place; pvfiblets/engine/volumes/interpolation.py), voxels are fetched and weighed here.
 // Paper: Lesar 2015, section III.A; the third, tricubic, is Catmull and Rom's cubic along each axis.
 
 #if FEATURE_VOLUME_BRICKS
@@ -6,8 +7,23 @@
 #else
 uniform sampler3D voxels;
 
-float read_linear(vec3 p) { return textureLod(voxels, (p + 0.5) / volume_shape, 0.0).x; }
 float read_voxel(ivec3 voxel) { return texelFetch(voxels, voxel, 0).x; }
+
+#if FEATURE_VOLUME_FETCHED
+float read_linear(vec3 p) {
+    vec3 last = volume_shape - 1.0;
+    p = clamp(p, vec3(0.0), last);
+    ivec3 a = ivec3(p), b = min(a + 1, ivec3(last));
+    vec3 x = p - vec3(a);
+    vec4 low = vec4(read_voxel(a), read_voxel(ivec3(a.x, b.y, a.z)), read_voxel(ivec3(a.xy, b.z)), read_voxel(ivec3(a.x, b.yz)));
+    vec4 high = vec4(read_voxel(ivec3(b.x, a.yz)), read_voxel(ivec3(b.xy, a.z)), read_voxel(ivec3(b.x, a.y, b.z)), read_voxel(b));
+    vec4 edges = mix(low, high, x.x);
+    vec2 faces = mix(edges.xz, edges.yw, x.y);
+    return mix(faces.x, faces.y, x.z);
+}
+#else
+float read_linear(vec3 p) { return textureLod(voxels, (p + 0.5) / volume_shape, 0.0).x; }
+#endif
 #endif
 
 #if FEATURE_VOLUME_NEAREST

@@ -14,12 +14,26 @@
 uniform sampler2D colours;
 #include "volumes/shading.glsl"
 
+// Of a table, between its entries: by the hardware, unless it is too coarse.
+vec4 entry_at(sampler2D table, vec2 place) {
+#if FEATURE_VOLUME_FETCHED
+    ivec2 last = textureSize(table, 0) - 1;
+    vec2 p = clamp(place * vec2(last + 1) - 0.5, vec2(0.0), vec2(last));
+    ivec2 a = ivec2(p), b = min(a + 1, last);
+    vec2 x = p - vec2(a);
+    return mix(mix(texelFetch(table, a, 0), texelFetch(table, ivec2(b.x, a.y), 0), x.x),
+               mix(texelFetch(table, ivec2(a.x, b.y), 0), texelFetch(table, b, 0), x.x), x.y);
+#else
+    return textureLod(table, place, 0.0);
+#endif
+}
+
 float place_of(float value) { return clamp((value - transfer_low) / max(transfer_high - transfer_low, 1e-30), 0.0, 1.0); }
 
 vec4 medium_at(float value) {
     if (!(value >= value_low && value <= value_high)) return vec4(0.0);
     float size = float(textureSize(colours, 0).x);
-    return textureLod(colours, vec2((place_of(value) * (size - 1.0) + 0.5) / size, 0.5), 0.0);
+    return entry_at(colours, vec2((place_of(value) * (size - 1.0) + 0.5) / size, 0.5));
 }
 
 #if FEATURE_VOLUME_PREINTEGRATED

@@ -46,7 +46,7 @@ vec4 light_of_step(float front, float back, float row) {
 #if FEATURE_VOLUME_FINER
     place.y = 0.5 * (place.y + row);
 #endif
-    return middle >= value_low && middle <= value_high ? textureLod(segments, place, 0.0) : vec4(0.0);
+    return middle >= value_low && middle <= value_high ? entry_at(segments, place) : vec4(0.0);
 }
 
 #if FEATURE_VOLUME_FINER

@@ -59,9 +59,10 @@ def test_a_cell_that_cannot_be_drawn_says_why(card, folder):
 
 def test_sections_name_every_pipeline_size_and_culling(card):
     options = SimpleNamespace(small=False, step=0.1, segments=[1e6, 5.4e9])
-    found = dict(card.sections(options, ["compute", "mesh"]))
+    sections = card.sections(options, ["compute", "mesh"])
+    found = dict(sections)
     assert list(found) == list(card.TITLES)
-    table = found["table 2"]
+    table = [cell for name, cells in sections if name == "table 2" for cell in cells]
     assert len(table) == 2 * 2 * 2 * 3
     assert {tuple(row["size"]) for row in table} == {(1920, 1080), (3840, 2160)}
     assert {row["segments"] for row in found["figures"]} == {60e6}
@@ -122,10 +123,32 @@ def test_a_run_that_was_cut_short_goes_on_where_it_ended(card, tmp_path, monkeyp
     assert [row.get("ms", row.get("unmeasured")) for row in rows] == [1.0, "ended by SIGBUS", 1.0]
 
 
+def test_what_a_process_dies_of_is_a_row_and_the_next_cell_has_another(card, tmp_path):
+    script = tmp_path / "draws.py"
+    script.write_text(
+        "import sys, json, time, os\n"
+        "for number, line in enumerate(sys.stdin):\n"
+        "    wanted = json.loads(line)['wanted']\n"
+        "    if wanted == 'die': sys.exit('no such card')\n"
+        "    if wanted == 'crash': os.abort()\n"
+        "    if wanted == 'sleep': time.sleep(600)\n"
+        "    print(json.dumps({'number': number}), flush=True)\n"
+    )
+    drawer = card.Drawer(str(script), tmp_path)
+    rows = [drawer.draw({"wanted": one}, 5.0) for one in ("", "", "die", "", "crash", "")]
+    rows += [drawer.draw({"wanted": "sleep"}, 0.5), drawer.draw({"wanted": ""}, 5.0)]
+    drawer.close()
+    assert rows == [
+        {"number": 0}, {"number": 1}, {"unmeasured": "failed: no such card"}, {"number": 0},
+        {"unmeasured": "failed: ended with -6"}, {"number": 0}, {"unmeasured": "takes more than 0.5 s here"},
+        {"number": 0},
+    ]  # fmt: skip
+
+
 def test_data_that_cannot_be_made_is_a_row(card, tmp_path):
     target = tmp_path / "a file"
     target.write_text("")
-    row = card.measured(BRAIN, target, tmp_path / "picture.npy", SimpleNamespace(small=True, limit=60.0))
+    row = card.measured(BRAIN, target, tmp_path / "picture.npy", SimpleNamespace(small=True, limit=60.0), None)
     assert row["unmeasured"].startswith("its data was not made: ")
 
 

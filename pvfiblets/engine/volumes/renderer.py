@@ -14,6 +14,7 @@ from ..drawable import Drawable
 from ..gbuffer import GBuffer
 from ..view import Style, View
 from ..work_limits import WorkLimits
+from .interpolation import interpolates_finely
 from .nodes import NodeList
 from .ray_parts import VolumeRegionIntervals
 from .targets import RayTarget
@@ -240,7 +241,8 @@ class VolumeRenderer(Drawable[VolumeStyle]):
 
     def field_features(self, casting: RaycastOptions) -> list[str]:
         """Return the features of programs that read the volume."""
-        return [*FEATURES_OF_FILTER[casting.filter], *self._voxels.features]
+        coarse = casting.filter != "nearest" and not interpolates_finely(self._ctx, self._gl, self._voxels.kind)
+        return [*FEATURES_OF_FILTER[casting.filter], *self._voxels.features, *(["VOLUME_FETCHED"] if coarse else [])]
 
     @staticmethod
     def _place(program: moderngl.Program, stride: int, size: tuple[int, int]) -> None:

@@ -75,6 +75,8 @@ class VolumeTexture:
 
     Attributes
     ----------
+    kind : {'f1', 'nu2', 'f4'}
+        moderngl's type of the texels.
     scale, shift : float
         A value is what a shader reads times the scale, plus the shift.
     layout : BrickLayout or None
@@ -93,12 +95,12 @@ class VolumeTexture:
         voxels = volume.values
         # Mesa interpolates bytes to bytes: surfaces would lie on stairs.
         kept = np.uint16 if voxels.dtype == np.uint8 and is_software(ctx) else voxels.dtype.type
-        self._kind, self.scale, self.shift = _FORMATS[kept]
+        self.kind, self.scale, self.shift = _FORMATS[kept]
         self._pages: list[Any] = []
         self.layout: BrickLayout | None = None
         whole = volume.n_points
         self._make(volume.shape, limits)
-        self.nbytes = _BYTES[self._kind] * (
+        self.nbytes = _BYTES[self.kind] * (
             whole if self.layout is None else len(self._pages) * int(np.prod(self.layout.page_shape, dtype=np.int64))
         )
         for page in self._pages:
@@ -135,7 +137,7 @@ class VolumeTexture:
         size = " x ".join(map(str, shape))
         if fits:
             raise EngineError(
-                f"no memory for a volume of {size} voxels ({whole * _BYTES[self._kind]} bytes) in one texture or "
+                f"no memory for a volume of {size} voxels ({whole * _BYTES[self.kind]} bytes) in one texture or "
                 f"{MOST_PAGES}; take every second voxel, or a part of it"
             )
         raise EngineError(
@@ -148,7 +150,7 @@ class VolumeTexture:
         make = self._ctx.texture_array if layers else self._ctx.texture3d
         for _ in range(count):
             try:
-                self._pages.append(make(shape, 1, None, alignment=1, dtype=self._kind))
+                self._pages.append(make(shape, 1, None, alignment=1, dtype=self.kind))
             except moderngl.Error:
                 break
             if self._ctx.error != "GL_NO_ERROR":  # moderngl says nothing of it
@@ -172,7 +174,7 @@ class VolumeTexture:
     def _write(self, page: Any, corner: tuple[int, int], box: Range, piece: Range, voxels: npt.NDArray[Any]) -> None:
         if voxels.dtype == np.int16:
             voxels = (voxels.astype(np.int32) + 32768).astype(np.uint16)
-        elif voxels.dtype == np.uint8 and self._kind == "nu2":
+        elif voxels.dtype == np.uint8 and self.kind == "nu2":
             voxels = voxels.astype(np.uint16)
         x, y, z = (part.start - whole.start for part, whole in zip(piece, box, strict=True))
         data = np.ascontiguousarray(voxels.transpose(2, 1, 0))

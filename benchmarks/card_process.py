@@ -1,0 +1,82 @@
+"""The process that draws the cells of ``benchmarks/card.py``."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import tempfile
+import threading
+from pathlib import Path
+from typing import IO, Any
+
+__all__ = ["Drawer"]
+
+Row = dict[str, Any]
+
+
+class Drawer:
+    """A process that draws cells one after the other: its libraries and kernels are ready after the first.
+
+    Parameters
+    ----------
+    script : str
+        That reads a cell in JSON from each line, and answers with a row.
+    folder : Path
+        Where brains are.
+    """
+
+    def __init__(self, script: str, folder: Path) -> None:
+        self._command = [sys.executable, script, "--draw-cells", "--folder", str(folder)]
+        self._process: subprocess.Popen[str] | None = None
+        self._said: IO[str] | None = None
+
+    def draw(self, cell: Row, seconds: float) -> Row:
+        """Draw a cell; return its row, or why there is none: it takes too long, or what the process died of.
+
+        The next cell then has a new process.
+        """
+        if self._process is None:
+            self._said = tempfile.TemporaryFile("w+")  # noqa: SIM115 - closed with the process
+            self._process = subprocess.Popen(
+                self._command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._said, text=True
+            )
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        late = threading.Event()
+        timer = threading.Timer(seconds, lambda: (late.set(), self._process and self._process.kill()))
+        timer.start()
+        try:
+            self._process.stdin.write(json.dumps(cell) + "\n")
+            self._process.stdin.flush()
+            line = self._process.stdout.readline()
+        except BrokenPipeError:
+            line = ""
+        finally:
+            timer.cancel()
+        if line.endswith("}\n"):
+            row: Row = json.loads(line)
+            return row
+        reason = self.close()
+        return {"unmeasured": f"takes more than {seconds:g} s here" if late.is_set() else reason}
+
+    def close(self) -> str:
+        """End the process; return what it died of, if it had."""
+        process, said = self._process, self._said
+        if process is None or said is None:
+            return ""
+        self._process = None
+        if process.stdin is not None and process.poll() is None:
+            process.stdin.close()
+        try:
+            process.wait(10)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+        if process.stdout is not None:
+            process.stdout.close()
+        said.seek(0)
+        lines = said.read().strip().splitlines()
+        said.close()
+        print(*lines, sep="\n", file=sys.stderr)
+        return f"failed: {lines[-1]}" if lines else f"failed: ended with {process.returncode}"
