@@ -3,8 +3,7 @@
 >>> choose(ctx, "auto")                                           # doctest: +SKIP
 'compute'
 
-A version of OpenGL decides by its number, never by the extensions that it absorbed: drivers that are told to show an
-older version (``MESA_GL_VERSION_OVERRIDE``) still list those.
+What counts is the version that a context can be used as (:mod:`.gl_version`).
 """
 
 from __future__ import annotations
@@ -16,6 +15,7 @@ from typing import Any
 import moderngl
 
 from .errors import EngineError
+from .gl_version import version_of
 from .moderngl_extras import INTEGERS, GLExtras
 from .passes import is_software
 
@@ -139,7 +139,7 @@ class Capabilities:
         functions, info = GLExtras(ctx), ctx.info
         limits = {name: functions.get_integer(name) for name in _limits_of(ctx)}
         return cls(
-            version=_number(ctx.version_code),
+            version=_number(version_of(ctx)),
             vendor=str(info["GL_VENDOR"]),
             renderer=str(info["GL_RENDERER"]),
             driver=str(info["GL_VERSION"]),
@@ -160,7 +160,7 @@ def _limits_of(ctx: moderngl.Context) -> list[str]:
         name
         for name, (_, needs) in INTEGERS.items()
         if (name.startswith("GL_MAX") or needs == "GL_KHR_shader_subgroup")
-        and (needs in ctx.extensions if isinstance(needs, str) else ctx.version_code >= needs)
+        and (needs in ctx.extensions if isinstance(needs, str) else version_of(ctx) >= needs)
     )
 
 
@@ -192,8 +192,8 @@ def _inspect(ctx: moderngl.Context, name: str) -> PipelineInfo:
     either = f"{MESH} or {MESH_EXT}" if extension == MESH else extension
     needs = f"OpenGL {_number(version)}" + (f" and {either}" if either else "")
     missing = []
-    if ctx.version_code < version:
-        missing.append(f"OpenGL is {_number(ctx.version_code)}, needed is {_number(version)}")
+    if version_of(ctx) < version:
+        missing.append(f"OpenGL is {_number(version_of(ctx))}, needed is {_number(version)}")
     if extension and extension not in ctx.extensions and not (extension == MESH and MESH_EXT in ctx.extensions):
         missing.append(f"{either} is missing")
     return PipelineInfo(name, not missing, "; ".join(missing) or None, needs)
@@ -217,7 +217,7 @@ def choose(ctx: moderngl.Context, name: str) -> str:
     """
     check_choices(pipeline=name)
     table = pipelines(ctx)
-    place = f"OpenGL {_number(ctx.version_code)} ({ctx.info['GL_RENDERER']})"
+    place = f"OpenGL {_number(version_of(ctx))} ({ctx.info['GL_RENDERER']})"
     if table.auto is None:
         last = next(info for info in table if info.name == "geometry")
         raise EngineError(

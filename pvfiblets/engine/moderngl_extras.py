@@ -25,6 +25,7 @@ import moderngl
 from .errors import EngineError
 from .gl_functions import FUNCTIONS, INTEGERS, RETURNS
 from .gl_loader import loader
+from .gl_version import version_of
 
 __all__ = ["INTEGERS", "TEXEL_FORMATS", "BufferTexture", "GLExtras", "Uniform"]
 
@@ -141,7 +142,7 @@ class GLExtras:
     def has(self, name: str) -> bool:
         """Whether this OpenGL is new enough for a function, or has the extension that it is of."""
         needs = FUNCTIONS[name][1]
-        return self._ctx.version_code >= needs if isinstance(needs, int) else needs in self._ctx.extensions
+        return version_of(self._ctx) >= needs if isinstance(needs, int) else needs in self._ctx.extensions
 
     def function(self, name: str) -> Callable[..., Any]:
         """Return an OpenGL function.
@@ -170,7 +171,7 @@ class GLExtras:
         return found
 
     def _require(self, what: str, needs: int | str) -> None:
-        code = self._ctx.version_code
+        code = version_of(self._ctx)
         if isinstance(needs, int) and code < needs:
             raise EngineError(
                 f"{what} needs OpenGL {needs // 100}.{needs % 100 // 10}, found {code // 100}.{code % 100 // 10}"

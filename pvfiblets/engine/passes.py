@@ -12,7 +12,7 @@ import moderngl
 from .errors import EngineError
 from .moderngl_extras import GLExtras
 
-__all__ = ["GROUP_SIZE", "Passes", "dispatch", "is_software", "nowhere"]
+__all__ = ["GROUP_SIZE", "Passes", "dispatch", "is_software", "nowhere", "work_groups"]
 
 
 SOFTWARE = ("llvmpipe", "softpipe", "swrast")
@@ -92,6 +92,12 @@ def nowhere(ctx: moderngl.Context, gl: GLExtras) -> Iterator[None]:
         finally:
             target.release()
             pixel.release()
+
+
+def work_groups(ctx: moderngl.Context) -> int:
+    """Return how many work groups a dispatch may have along its first axis."""
+    # moderngl does not ask contexts that say they are older than 4.3; OpenGL promises so many.
+    return int(ctx.info.get("GL_MAX_COMPUTE_WORK_GROUP_COUNT", (65535,))[0])
 
 
 def dispatch(program: moderngl.ComputeShader, groups: int, max_groups: int) -> None:

@@ -30,6 +30,7 @@ import moderngl
 from ..codec import layout
 from .bindings import BLOCKS, CONSTANTS
 from .errors import EngineError
+from .gl_version import version_of
 from .uniform_struct import find_struct
 
 __all__ = ["EXTENDED", "FEATURES", "NEWEST", "Programs", "assemble", "read_shader", "switched_on"]
@@ -380,7 +381,7 @@ class Programs:
         """
         request = tuple(sorted(stages.items())), frozenset(features)
         if request not in self._linked:
-            version = EXTENDED if "mesh" in stages else min(self._ctx.version_code, NEWEST)
+            version = EXTENDED if "mesh" in stages else min(version_of(self._ctx), NEWEST)
             sources: dict[str, Any] = {
                 f"{stage}_shader": assemble(name, request[1], self._constants, version=version)
                 for stage, name in stages.items()

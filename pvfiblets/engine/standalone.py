@@ -9,8 +9,9 @@ from .errors import EngineError
 
 __all__ = ["bare_context"]
 
-# 3.3 is the least that any pipeline needs; 3.2, which VTK itself needs, is tried so as to be able to say so.
-VERSIONS = (330, 320)
+# Some drivers give the version that is asked for and no later one. 3.3 is the least that any pipeline needs; 3.2, which
+# VTK itself needs, is tried so as to be able to say so.
+VERSIONS = (460, 450, 430, 410, 330, 320)
 
 
 def bare_context() -> Any:

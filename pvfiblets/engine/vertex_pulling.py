@@ -11,6 +11,8 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
+from .gl_version import version_of
+
 __all__ = ["BATCH", "QUAD", "PulledShapes"]
 
 BATCH = 65536
@@ -52,7 +54,7 @@ class PulledShapes:
         count = min(self._step, max(n_shapes, 1))
         indices = (np.arange(count)[:, None] * corners + shape).astype("<u2")
         self.buffers: dict[str, moderngl.Buffer] = {"indices": ctx.buffer(indices.tobytes())}
-        if ctx.version_code >= INDIRECT and n_shapes > self._step:
+        if version_of(ctx) >= INDIRECT and n_shapes > self._step:
             self.buffers["commands"] = ctx.buffer(_commands(n_shapes, self._step, len(shape), corners))
 
     @property

@@ -16,8 +16,9 @@ from typing import TYPE_CHECKING
 import moderngl
 
 from ..bindings import ITEM_STORAGE, ITEMS, ITEMS_SHOWN
+from ..gl_version import version_of
 from ..moderngl_extras import BufferTexture, GLExtras
-from ..passes import dispatch
+from ..passes import dispatch, work_groups
 from ..shaders import Programs
 from ..vertex_pulling import BATCH
 from .pyramid import DepthPyramid
@@ -69,7 +70,7 @@ class Listing:
         self._pyramid = DepthPyramid(ctx, gl, programs)
         self._per_call = BATCH // _QUAD >> shift
         self._calls = -(-n_items // self._per_call)
-        self._max_groups = int(ctx.info["GL_MAX_COMPUTE_WORK_GROUP_COUNT"][0])
+        self._max_groups = work_groups(ctx)
         self.buffers: dict[str, moderngl.Buffer] = {}
         self._texture: BufferTexture | None = None
         try:
@@ -179,4 +180,4 @@ class Listing:
 
 def supports_listing(ctx: moderngl.Context) -> bool:
     """Say whether a context has what it takes."""
-    return bool(ctx.version_code >= 430)
+    return version_of(ctx) >= 430

@@ -19,8 +19,9 @@ from ...query.point_flags import ALL, ANY, FIRST, LAST
 from ..bindings import ANSWER_STORAGE, BLOCKS
 from ..errors import GPUMemoryError
 from ..frame import FRAME_BLOCK, Array
+from ..gl_version import version_of
 from ..moderngl_extras import GLExtras
-from ..passes import GROUP_SIZE, dispatch
+from ..passes import GROUP_SIZE, dispatch, work_groups
 from ..regions.uniform_block import RegionBlock
 from ..shaders import Programs
 from .chunks import Chunk, reserve_buffer, storage_buffer
@@ -85,7 +86,7 @@ class RegionQuery:
     @property
     def available(self) -> bool:
         """Whether the GPU can answer: the whole set is there, compute shaders, and large enough storage blocks."""
-        if self._ctx.version_code < 430 or sum(c.n_fiblets for c in self._chunks) < self._fiblets.n_fiblets:
+        if version_of(self._ctx) < 430 or sum(c.n_fiblets for c in self._chunks) < self._fiblets.n_fiblets:
             return False
         largest = self._gl.get_integer("GL_MAX_SHADER_STORAGE_BLOCK_SIZE")
         return all(buffer.size <= largest for chunk in self._chunks for buffer in chunk.buffers.values())
@@ -164,7 +165,7 @@ class RegionQuery:
         return marks
 
     def _ask_chunk(self, program: moderngl.ComputeShader, chunk: Chunk, ranks: int) -> Bytes:
-        groups = self._max_groups or int(self._ctx.info["GL_MAX_COMPUTE_WORK_GROUP_COUNT"][0])
+        groups = self._max_groups or work_groups(self._ctx)
         batch = min(BATCH, chunk.n_fiblets)
         with ExitStack() as stack:
             answers = storage_buffer(self._ctx, np.zeros(ranks, np.uint8), "answers")

@@ -28,6 +28,7 @@ from ..bindings import BLOCKS, REGIONS
 from ..delayed_read import DelayedRead
 from ..errors import EngineError
 from ..frame import Array, local_frame
+from ..gl_version import version_of
 from ..moderngl_extras import GLExtras
 from ..shaders import NEWEST, Programs, assemble, switched_on
 from ..view import View
@@ -256,7 +257,7 @@ class RegionIntervals:
             while len(self._forms) >= _FORMS:
                 for thing in self._forms.pop(next(iter(self._forms)))[1::-1]:
                     thing.release()
-            version = min(self._ctx.version_code, NEWEST)
+            version = min(version_of(self._ctx), NEWEST)
             features = ["PEEL"] if SURFACE in form.kinds else []
             constants = {**form.constants, "outputs": outputs}
             fragment = assemble("regions/combine.frag", features, constants, version=version)

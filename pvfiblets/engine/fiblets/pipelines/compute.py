@@ -46,6 +46,7 @@ import numpy as np
 from ....codec.layout import MAX_POINTS
 from ...bindings import IMAGES, STORAGE
 from ...errors import EngineError
+from ...gl_version import version_of
 from ...moderngl_extras import GLExtras
 from ...passes import GROUP_SIZE, dispatch, is_software
 from ...program_uniforms import set_uniforms
@@ -383,9 +384,9 @@ class ComputePipeline:
 def _has_int64_atomics(ctx: moderngl.Context) -> bool:
     """Whether shaders take the least of 64-bit words in a storage buffer, and there is a binding left for it."""
     wanted = {"GL_NV_shader_atomic_int64", "GL_ARB_gpu_shader_int64"}
-    if ctx.version_code < EXTENDED or not wanted <= set(ctx.extensions):
+    if version_of(ctx) < EXTENDED or not wanted <= set(ctx.extensions):
         return False
-    return int(ctx.info["GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS"]) > STORAGE["nearest"]
+    return GLExtras(ctx).get_integer("GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS") > STORAGE["nearest"]
 
 
 def _shares(line_width: float, segment: Callable[[], float]) -> list[tuple[int, int]]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import moderngl
 
 from ...moderngl_extras import GLExtras
+from ...passes import work_groups
 from ...work_limits import WorkLimits
 from .compute import CLASSES
 from .constants import VISIBILITY_WORDS
@@ -73,7 +74,7 @@ class Limits:
             most = min(4 * gl.get_integer("GL_MAX_TEXTURE_BUFFER_SIZE"), LARGEST)
             return cls(min(most, buffer_bytes or most), 0, side * side, "texture", work)
         most = gl.get_integer("GL_MAX_SHADER_STORAGE_BLOCK_SIZE")
-        axis = int(ctx.info["GL_MAX_COMPUTE_WORK_GROUP_COUNT"][0])
+        axis = work_groups(ctx)
         most = min(most, LARGEST)
         groups, records = min(axis, groups or axis), min(most, buffer_bytes or most)
         if pipeline in MESH:
