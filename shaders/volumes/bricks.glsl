@@ -54,8 +54,7 @@ float read_voxel(ivec3 voxel) {
     return fetch_page(page, ivec3(corner, 0) + voxel - ivec3(first));
 }
 
-#if FEATURE_VOLUME_FETCHED
-float read_slice(vec2 p, int z) {
+float fetched_slice(vec2 p, int z) {
     ivec2 corner, last = ivec2(volume_shape.xy) - 1, cell = clamp(ivec2(p), ivec2(0), max(last - 1, 0));
     ivec3 first;
     int page = brick_of(ivec3(cell, z), corner, first);
@@ -65,7 +64,7 @@ float read_slice(vec2 p, int z) {
                      vec2(fetch_page(page, ivec3(b.x, a.yz)), fetch_page(page, b)), x.x);
     return mix(edges.x, edges.y, x.y);
 }
-#else
+
 float read_page(int page, vec3 place) {
 #if FEATURE_VOLUME_PAGES
     if (page == 1) return textureLod(voxels_1, place, 0.0).x;
@@ -79,17 +78,22 @@ float read_page(int page, vec3 place) {
     return textureLod(voxels, place, 0.0).x;
 }
 
-float read_slice(vec2 p, int z) {
+float sampled_slice(vec2 p, int z) {
     ivec2 corner;
     ivec3 first;
     int page = brick_of(ivec3(min(ivec2(p), ivec2(volume_shape.xy) - 2), z), corner, first);
     vec2 size = vec2(brick_size * bricks_in_page);
     return read_page(page, vec3((vec2(corner - first.xy) + p + 0.5) / size, float(z - first.z)));
 }
-#endif
 
-float read_linear(vec3 p) {
+float sampled(vec3 p) {
     p = clamp(p, vec3(0.0), volume_shape - 1.0);
     float z = min(floor(p.z), volume_shape.z - 2.0);
-    return mix(read_slice(p.xy, int(z)), read_slice(p.xy, int(z) + 1), p.z - z);
+    return mix(sampled_slice(p.xy, int(z)), sampled_slice(p.xy, int(z) + 1), p.z - z);
+}
+
+float fetched(vec3 p) {
+    p = clamp(p, vec3(0.0), volume_shape - 1.0);
+    float z = min(floor(p.z), volume_shape.z - 2.0);
+    return mix(fetched_slice(p.xy, int(z)), fetched_slice(p.xy, int(z) + 1), p.z - z);
 }

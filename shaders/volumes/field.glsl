@@ -8,9 +8,9 @@
 uniform sampler3D voxels;
 
 float read_voxel(ivec3 voxel) { return texelFetch(voxels, voxel, 0).x; }
+float sampled(vec3 p) { return textureLod(voxels, (p + 0.5) / volume_shape, 0.0).x; }
 
-#if FEATURE_VOLUME_FETCHED
-float read_linear(vec3 p) {
+float fetched(vec3 p) {
     vec3 last = volume_shape - 1.0;
     p = clamp(p, vec3(0.0), last);
     ivec3 a = ivec3(p), b = min(a + 1, ivec3(last));
@@ -21,9 +21,12 @@ float read_linear(vec3 p) {
     vec2 faces = mix(edges.xz, edges.yw, x.y);
     return mix(faces.x, faces.y, x.z);
 }
-#else
-float read_linear(vec3 p) { return textureLod(voxels, (p + 0.5) / volume_shape, 0.0).x; }
 #endif
+
+#if FEATURE_VOLUME_FETCHED
+#define read_linear fetched
+#else
+#define read_linear sampled
 #endif
 
 #if FEATURE_VOLUME_NEAREST
@@ -56,6 +59,13 @@ float value_at(vec3 p) {
 }
 #else
 float value_at(vec3 p) { return read_linear(p) * field_scale + field_shift; }
+#endif
+
+// Good enough to see on which side of a surface a place is: what lies between two of them is then looked at closely.
+#if FEATURE_VOLUME_NEAREST || FEATURE_VOLUME_TRICUBIC
+#define value_along value_at
+#else
+float value_along(vec3 p) { return sampled(p) * field_scale + field_shift; }
 #endif
 
 // By mm, from central differences of one voxel (section III.A), one-sided at the box's faces.

@@ -57,7 +57,7 @@ float refined(Ray ray, float value, float a, float psi_a, float b, float psi_b) 
 
 // Says whether there is one, where, and which. Nothing before the first sample is looked at: a surface is where values change sides.
 bool find_surface(Ray ray, float step, float start, out float hit, out float value) {
-    float t = start, before = value_at(at(ray, t));
+    float t = start, before = value_along(at(ray, t));
     value = 0.0;
     hit = 0.0;
     while (t < ray.last) {
@@ -65,10 +65,10 @@ bool find_surface(Ray ray, float step, float start, out float hit, out float val
         if (number <= 0.5 && end - t >= step) {
             t += floor((end - t) / step) * step;
             if (t >= ray.last) return false;
-            before = value_at(at(ray, t));
+            before = value_along(at(ray, t));
         }
         do {
-            float next = min(t + step, ray.last), after = value_at(at(ray, next)), best = 2.0;
+            float next = min(t + step, ray.last), after = value_along(at(ray, next)), best = 2.0;
             for (int k = 0; k < isovalue_count; ++k) {
                 float mu = isovalues[k], a = before - mu, b = after - mu;
                 float share = (a < 0.0) != (b < 0.0) ? a / (a - b) : 2.0;
@@ -78,6 +78,14 @@ bool find_surface(Ray ray, float step, float start, out float hit, out float val
                 }
             }
             if (best <= 1.0) {
+#if FEATURE_VOLUME_FETCHED
+                before = value_at(at(ray, t));
+                after = value_at(at(ray, next));
+                if ((before < value) == (after < value)) {      // by a little beyond one of the ends
+                    hit = abs(before - value) < abs(after - value) ? t : next;
+                    return true;
+                }
+#endif
                 hit = refined(ray, value, t, before - value, next, after - value);
                 return true;
             }

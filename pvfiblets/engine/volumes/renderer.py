@@ -241,7 +241,11 @@ class VolumeRenderer(Drawable[VolumeStyle]):
 
     def field_features(self, casting: RaycastOptions) -> list[str]:
         """Return the features of programs that read the volume."""
-        coarse = casting.filter != "nearest" and not interpolates_finely(self._ctx, self._gl, self._voxels.kind)
+        coarse = (
+            casting.filter != "nearest"
+            and casting.mode in ("isosurface", "composite")  # what projections are off by is not seen, and costs most
+            and not interpolates_finely(self._ctx, self._gl, self._voxels.kind)
+        )
         return [*FEATURES_OF_FILTER[casting.filter], *self._voxels.features, *(["VOLUME_FETCHED"] if coarse else [])]
 
     @staticmethod
