@@ -22,12 +22,17 @@ def sliced(here, name="head.nii.gz"):
     here.rests()
 
 
-def click(here, name, across, down):
-    """Click in a view, at shares of it from its upper left."""
+def pixel(here, name, across, down):
+    """Return the page's pixel at shares of a view from its upper left."""
     view = next(one for one in here.state("slicing")["boxes"] if one["name"] == name)
     box = here.page.locator("#pv-view").bounding_box()
     x, y = view["x"] + across * view["w"], view["y"] + down * view["h"]
-    here.page.mouse.click(box["x"] + x * box["width"], box["y"] + y * box["height"])
+    return box["x"] + x * box["width"], box["y"] + y * box["height"]
+
+
+def click(here, name, across, down):
+    """Click in a view, at shares of it from its upper left."""
+    here.page.mouse.click(*pixel(here, name, across, down))
 
 
 def test_a_t1_is_opened_gone_through_and_found_again(visit):
@@ -52,6 +57,14 @@ def test_a_t1_is_opened_gone_through_and_found_again(visit):
     assert abs(told(here)[2] - start[2]) == 4.0  # mm: a voxel
     here.press("ArrowUp")
     here.wait(lambda: told(here)[1] == moved[1] + 4.0, "a step forward")
+    # Steps are of the pane that they were made in, however soon the pointer is in another one.
+    before = told(here)
+    for name, times in (("axial", 3), ("coronal", 2)):
+        here.page.mouse.move(*pixel(here, name, 0.5, 0.5))
+        for _ in range(times):
+            here.press("PageDown")
+    there = lambda: np.abs(np.subtract(told(here), before)).tolist()  # noqa: E731
+    here.wait(lambda: there() == [0.0, 8.0, 12.0], "three slices of one pane and two of the other")
     # Go to a point.
     for axis, text in enumerate(("20", "24,0", "28 mm")):
         here.page.fill(f"[data-place=position] input >> nth={axis}", text)
@@ -267,8 +280,9 @@ def test_a_phone_has_slices_below_and_tools_that_paint_at_hand(visit):
     here.page.wait_for_timeout(400)  # the panel slides away
     here.page.touchscreen.tap(*middle)
     here.wait(lambda: here.state("painting")["regions"][0]["voxels"] == "256", "the slice that is filled")
-    here.page.tap("[data-slice-step='1']")
-    here.wait(lambda: abs(told(here)[2] - at[2]) == 4.0, "the next slice")
+    for _ in range(3):  # as fast as they go
+        here.page.tap("[data-slice-step='1']")
+    here.wait(lambda: abs(told(here)[2] - at[2]) == 12.0, "a slice for each tap")
 
 
 def test_from_a_t1_and_labels_to_an_exported_connection(visit):

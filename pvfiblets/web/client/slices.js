@@ -15,7 +15,9 @@
 
   for (const kind of ["pointermove", "pointerdown"]) document.addEventListener(kind, (event) => {
     const here = place(event);
-    if (here.every(within) && !event.target.closest?.("#paint-tools")) at = here;
+    if (here.every(within) && event.target.closest?.("#pv-view") && !event.target.closest("#paint-tools, .pv-tools")) {
+      at = here;
+    }
   }, true);
 
   const STEPS = {
@@ -26,18 +28,28 @@
     "input, textarea, select, [contenteditable], [role=listbox], [role=slider], [role=tab], .v-overlay",
   ));
 
-  // One step at a time is on its way; those that come meanwhile are added up.
-  let waiting = null, busy = false;
+  // One step at a time is on its way; those that come meanwhile are added up, each for the pane that it was meant for.
+  const waiting = [];
+  let busy = false;
+  const pane = ([x, y]) => (get("slicing")?.boxes ?? []).findIndex(
+    (box) => x >= box.x && x <= box.x + box.w && y >= box.y && y <= box.y + box.h,
+  );
   const step = async (steps) => {
-    waiting = (waiting ?? [0, 0, 0]).map((sum, k) => Math.max(-100, Math.min(100, sum + steps[k])));
+    const last = waiting[waiting.length - 1];
+    if (last && last.pane === pane(at)) {
+      last.steps = last.steps.map((sum, k) => Math.max(-100, Math.min(100, sum + steps[k])));
+    } else waiting.push({ at, pane: pane(at), steps });
     if (busy) return;
     busy = true;
-    while (waiting) {
-      const now = waiting;
-      waiting = null;
-      await call("step_slice", ...at, ...now);
+    try {
+      while (waiting.length) {
+        const now = waiting.shift();
+        await call("step_slice", ...now.at, ...now.steps);
+      }
+    } finally { // a connection that is lost refuses: what is pressed after it counts again
+      waiting.length = 0;
+      busy = false;
     }
-    busy = false;
   };
 
   window.addEventListener("keydown", (event) => {
