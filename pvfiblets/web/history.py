@@ -117,7 +117,7 @@ class History:
         last = self._done[-1] if self._done and not self._undone else None
         before = self._present
         same = last is not None and change.key is not None and last.key == change.key
-        if last is not None and same and (self.held or now - last.at < self._together):
+        if last is not None and same and (self.held or change.whole or now - last.at < self._together):
             before = last.before
             self._done.pop()
         self._undone.clear()

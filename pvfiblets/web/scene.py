@@ -60,10 +60,13 @@ class Change:
         What was done, for a list of things to undo.
     key : tuple or None
         Changes of one key that follow each other at once are one, as a slider's are.
+    whole : bool
+        They are one however long they pause, as those of a drag.
     """
 
     what: str
     key: tuple[str, ...] | None = None
+    whole: bool = False
 
 
 @dataclass(frozen=True)
@@ -109,7 +112,7 @@ class Scene(
         self._drawn: dict[str, _Drawn] = {}
         self.store = Store(self.files)
         self.bars = Bars(plotter)
-        self.slicing = Slicing(plotter, lambda angles: self.set_slices(oblique=angles))
+        self.slicing = Slicing(plotter, self.turn_oblique)
         self.canvas = Canvas(self.slicing)
         self._bundled = BundleSync()
         self._listeners: list[Callable[[Change], None]] = []
@@ -148,7 +151,9 @@ class Scene(
         self._listeners.append(listener)
         return lambda: self._listeners.remove(listener) if listener in self._listeners else None
 
-    def become(self, state: State, what: str = "", key: tuple[str, ...] | None = None) -> None:
+    def become(
+        self, state: State, what: str = "", key: tuple[str, ...] | None = None, *, whole: bool = False
+    ) -> None:
         """Bring everything in step with another document.
 
         Parameters
@@ -157,7 +162,7 @@ class Scene(
             That was checked.
         what : str
             What is done, for listeners; they are told nothing if it is empty.
-        key : tuple of str, optional
+        key, whole
             Of the :class:`Change`.
 
         Raises
@@ -175,7 +180,7 @@ class Scene(
         self._state = state
         if what:
             for listener in tuple(self._listeners):
-                listener(Change(what, key))
+                listener(Change(what, key, whole))
 
     def _step(self, state: State) -> None:
         wanted = {layer.id: layer for layer in state.layers}

@@ -83,3 +83,9 @@ class SceneSlices:
             self.become(replace(self.state, oblique=wanted.oblique), said, ("oblique",))
         self.slicing.view = wanted
         return self.slicing.view
+
+    def turn_oblique(self, angles: tuple[float, float], drag: int | None = None) -> None:
+        """Have the oblique slice at angles that it was turned to by hand; turns of one drag are one step to undo."""
+        key = ("oblique",) if drag is None else ("oblique", f"drag {drag}")
+        state = replace(self.state, oblique=angles)
+        self.become(state, "turn the oblique slice", key, whole=drag is not None)

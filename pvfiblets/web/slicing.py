@@ -173,7 +173,8 @@ class Slicing:
     plotter : pyvista.Plotter
         Of the views `NAMES`, or of the first four, if there is to be an image.
     turned : callable
-        Called with the angles of the oblique slice when a drag in a pane has turned it.
+        Called with the angles of the oblique slice when it was turned by hand, and which drag of a handle does it, None
+        for none.
 
     Attributes
     ----------
@@ -181,7 +182,9 @@ class Slicing:
         None as long as there is no image.
     """
 
-    def __init__(self, plotter: Any, turned: Callable[[tuple[float, float]], Any] = lambda _: None) -> None:
+    def __init__(
+        self, plotter: Any, turned: Callable[[tuple[float, float], int | None], Any] = lambda *_: None
+    ) -> None:
         self._plotter, self._turned = plotter, turned
         self._view = SliceView()
         self._glyphs = GlyphLayers()
@@ -236,7 +239,7 @@ class Slicing:
         """Tell of a slice that is turned by hand, at whole hundredths of a degree."""
         angles = angles_of(normal)
         if self._view.oblique is None or not np.allclose(normal, normal_of(self._view.oblique), atol=1e-9):
-            self._turned(angles)
+            self._turned(angles, self.workspace.oblique.drag)
 
     def boxes(self) -> list[dict[str, Any]]:
         """Return where views are in the picture, as shares of it from its upper left, and how wide a pixel is, mm."""

@@ -177,10 +177,50 @@ def test_a_bundle_is_made_named_exported_and_kept(visit):
     assert here.page.locator("[data-bundle-row] [data-field=name]").nth(2).input_value() == "<b>shown</b>"
 
 
-def test_volumes_of_a_series_are_gone_through(visit):
+def test_a_handle_of_the_oblique_slice_is_dragged_and_undone_at_once(revisit):
+    here = revisit("lines.fiblets")
+    sliced(here)
+    here.page.click("[data-action=panes]")
+    here.page.click("[aria-label='Oblique slice']")
+    here.wait(lambda: here.state("slicing")["tilted"], "an oblique slice")
+    here.page.click("[data-layout-button=sagittal]")
+    here.wait(lambda: [one["name"] for one in here.state("slicing")["boxes"]] == ["sagittal"], "one view")
+    here.page.fill("input[aria-label='Tilt, degrees']", "30")
+    here.press("Tab")
+    tilt = lambda: here.state("slicing")["oblique"][0]  # noqa: E731
+    here.wait(lambda: float(tilt()) == 30.0, "its angle")
+    before = here.rests()
+    (view,) = here.state("slicing")["boxes"]
+    box = here.page.locator("#pv-view").bounding_box()
+    middle = np.array(pixel(here, "sagittal", 0.5, 0.5))  # the cross-hair is in the image's middle
+    reach = 0.36 * min(view["w"] * box["width"], view["h"] * box["height"])
+    to_front = 1.0 if view["letters"]["right"] == "A" else -1.0
+
+    def handle(degrees):
+        """Return where the handle is that lies towards the front, which goes down as the slice is tilted."""
+        angle = np.radians(degrees)
+        return (middle + reach * np.array([to_front * np.cos(angle), np.sin(angle)])).tolist()
+
+    mouse = here.page.mouse
+    mouse.move(*handle(30))
+    mouse.down()
+    mouse.move(*handle(45), steps=3)
+    here.wait(lambda: abs(float(tilt()) - 45.0) < 1.5, "the slice to follow")
+    here.page.wait_for_timeout(1100)  # longer than what follows at once is one step
+    mouse.move(*handle(60), steps=3)
+    mouse.up()
+    here.wait(lambda: abs(float(tilt()) - 60.0) < 1.5, "the slice to follow on")
+    here.changed(before)
+    here.press("Control+z")
+    here.wait(lambda: float(tilt()) == 30.0, "the slice as it was before the drag")
+    here.press("Control+y")
+    here.wait(lambda: abs(float(tilt()) - 60.0) < 1.5, "the whole drag again")
+
+
+def test_volumes_of_a_series_are_gone_through(revisit):
     import nibabel
 
-    here = visit("lines.fiblets")
+    here = revisit("lines.fiblets")
     series = np.stack([np.full((8, 8, 8), 10.0 * k, np.float32) for k in range(5)], axis=-1)
     nibabel.save(nibabel.Nifti1Image(series, np.diag([8.0, 8.0, 8.0, 1.0])), here.served.root / "bold.nii.gz")
     sliced(here, "bold.nii.gz")

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
+from pvfiblets.plotting.slices.oblique import HANDLE
 from pvfiblets.web import session
 from pvfiblets.web.history import History
 from pvfiblets.web.scene import Scene
@@ -293,6 +294,44 @@ def test_turning_an_oblique_slice_by_hand_is_undone_and_done_again(scene):
     history.redo()
     assert workspace.oblique.visible
     history.close()
+
+
+def test_a_drag_of_a_handle_is_one_step_to_undo_however_long_it_pauses(scene):
+    scene.open("head.nii.gz", "image")
+    clock = iter(range(0, 10000, 100))  # seconds: no two changes are near each other
+    history = History(scene, clock=lambda: next(clock))
+    scene.set_slices(oblique=[30.0, 0.0], layout="grid")
+    steps, (pane, oblique) = len(history), (scene.slicing.workspace.panes["sagittal"], scene.slicing.workspace.oblique)
+    for begin, end in ((30.0, 60.0), (60.0, 45.0)):
+        drag_handle(scene.plotter, pane, oblique, end)
+        assert scene.state.oblique == pytest.approx((end, 0.0), abs=5.0)  # in whole pixels
+        assert scene.state.oblique[0] != begin
+    assert len(history) == steps + 2
+    turned = scene.state.oblique
+    history.undo()
+    assert scene.state.oblique == pytest.approx((60.0, 0.0), abs=5.0)
+    history.undo()
+    assert scene.state.oblique == (30.0, 0.0)
+    assert oblique.drag is None
+    history.redo()
+    history.redo()
+    assert scene.state.oblique == turned
+    history.close()
+
+
+def drag_handle(plotter, pane, oblique, tilt):
+    """Drag a handle of the line in the sagittal pane to where a tilt has it, in five steps."""
+    middle = np.array(pane.pixel_of(pane.stack.position))
+    right, up = pane.axes
+    reach = HANDLE * min(pane.pixels)
+    now = angles_of(oblique.normal)[0]
+    interactor = plotter.iren.interactor
+    for k, angle in enumerate(np.radians(np.linspace(now, tilt, 6))):
+        along = np.array([0.0, np.cos(angle), -np.sin(angle)])  # across the normal, in the sagittal plane
+        x, y = np.rint(middle + reach * np.array([along @ right, along @ up])).astype(int).tolist()
+        interactor.SetEventInformation(x, y)
+        interactor.InvokeEvent("MouseMoveEvent" if k else "LeftButtonPressEvent")
+    interactor.InvokeEvent("LeftButtonReleaseEvent")
 
 
 def test_an_oblique_slice_lies_as_its_angles_say(scene, folder):

@@ -140,6 +140,8 @@ class ObliqueSlice:
         In the 3-D view.
     pane : Pane or None
         None where the plotter has no fifth view.
+    drag : int or None
+        Which drag of a handle turns it now, counted from 1; None while none is held.
     """
 
     def __init__(self, workspace: Workspace, plane: SlicePlane, pane: Pane | None, color: Any) -> None:
@@ -148,6 +150,8 @@ class ObliqueSlice:
         self.traces = {
             name: Trace(one, plane, color) for name, one in workspace.panes.items() if one.plane is not plane
         }
+        self.drag: int | None = None
+        self._drags = 0
         self._widget: Any = None
         self._callbacks: list[Callable[[Array], None]] = []
 
@@ -186,6 +190,11 @@ class ObliqueSlice:
         if widget is not None:
             widget.SetEnabled(bool(visible))
         self._workspace.arrange()
+
+    def hold(self, held: bool) -> None:
+        """Take note that a handle is taken, or let go."""
+        self._drags += held
+        self.drag = self._drags if held else None
 
     def on_turn(self, callback: Callable[[Array], None]) -> None:
         """Call something with the normal, ``(3,)``, whenever the slice is turned."""

@@ -120,6 +120,8 @@ class PaneEvents:
             self._handle = self._taken(pane)
             if self._handle is None:
                 self._go(pane)
+            else:
+                self._workspace.oblique.hold(True)
         return True
 
     def _taken(self, pane: Pane) -> int | None:
@@ -137,6 +139,8 @@ class PaneEvents:
 
     def _release(self) -> bool:
         dragging, self._dragging = self._dragging, None
+        if self._workspace.oblique is not None:
+            self._workspace.oblique.hold(False)
         return dragging is not None
 
     def _move(self) -> bool:
