@@ -15,31 +15,16 @@ from typing import Any
 
 from pvfiblets import formats
 from pvfiblets.codec.shards.manifest import MANIFEST, is_set_in_shards
-from pvfiblets.errors import FormatError
-from pvfiblets.formats import vtk_sizes
 from pvfiblets.formats.gzipped import check_ratio
 from pvfiblets.formats.registry import UnknownFormatError, suffix_of, suffixes
-from pvfiblets.volumes.gifti_files import SUFFIXES as GIFTI
-from pvfiblets.volumes.gifti_files import VALUES as OF_VERTICES
 from pvfiblets.volumes.sources import NIBABEL
-from pvfiblets.volumes.sources import SUFFIXES as VOLUMES
 from pvfiblets.web.document import LINES, Source
+from pvfiblets.web.file_kinds import MESHES, TABLES, VALUES, VOLUMES, VTK_SUFFIXES, kind_of, read_vtk
+from pvfiblets.web.layer_readers import read_colours, read_fixels, read_mesh, read_several, read_tubes, volume_facts
 from pvfiblets.web.values import shown
 
-__all__ = ["MESHES", "OF_VERTICES", "TABLES", "VALUES", "Cancelled", "Files", "Loaded", "Watch", "kind_of"]
+__all__ = ["Cancelled", "Files", "Loaded", "Watch"]
 
-MESHES = (".ply", ".stl", ".obj", ".vtu", ".vtp", ".vtk", ".off", ".glb", ".gltf", *GIFTI)
-"""Suffixes of surfaces; those of VTK's formats may hold lines instead."""
-
-VALUES = (".tsf", *OF_VERTICES)
-"""Suffixes of files with values for the lines, or for the vertices, of another file."""
-
-TABLES = (".txt", ".ctab", ".label", ".lbl", ".tsv", ".label.gii", ".label.gii.gz")
-"""Suffixes of files with names and colours of labels."""
-
-_EITHER = (".vtk", ".vtp")
-_RADII = ("radius", "Radius", "MaximumInscribedSphereRadius")
-LARGEST_AS_TUBES = 5_000_000  # points
 MOST_REMEMBERED = 16  # exports whose points are not coded again
 
 Progress = Callable[[str, float], None]
@@ -84,36 +69,6 @@ class Loaded:
     error: dict[str, Any] | None = None
     kept: tuple[str, ...] = ()
     stamps: dict[str, Stamp] = field(default_factory=dict)
-
-
-def kind_of(path: Path) -> str:
-    """Return the kind of layer that a file is for.
-
-    Raises
-    ------
-    UnknownFormatError
-        If no format has its suffix.
-    """
-    name = path.name.lower()
-    if name.endswith(VOLUMES):
-        return "volume"
-    if name.endswith(_EITHER):
-        import pyvista as pv
-
-        data = _of_vtk(path)
-        if isinstance(data, pv.ImageData):
-            return "volume"
-        if isinstance(data, pv.PolyData) and data.n_lines:
-            return "tubes" if any(radius in data.point_data for radius in _RADII) else "tractogram"
-        return "mesh"
-    if name.endswith(MESHES):
-        return "mesh"
-    try:
-        suffix_of(path)
-    except UnknownFormatError:
-        known = ", ".join(dict.fromkeys([*suffixes(), *VOLUMES, *MESHES]))
-        raise UnknownFormatError(f"{path.name}: no layer can be made of such a file; there are {known}") from None
-    return "tractogram"
 
 
 class Files:
@@ -235,7 +190,7 @@ class Files:
             return _demo(source, kind)
         place = self.resolve(source.path)
         asked, kind = kind, kind_of(place) if kind is None else kind
-        if asked is None and kind == "volume" and (fixels := _fixels(place)) is not None:
+        if asked is None and kind == "volume" and (fixels := read_fixels(place)) is not None:
             return Loaded("image", Source(self.name(place)), place.name, *fixels)
         source = Source(self.name(place))
         name = place.name
@@ -244,18 +199,20 @@ class Files:
         if kind in LINES:
             return self._lines(place, source, name, watch)
         if kind == "tubes":
-            return _tubes(place, source, name, watch)
+            tubes, facts = read_tubes(place)
+            watch("reading", 1.0)
+            return Loaded(kind, source, name, tubes, facts)
         if kind == "volume":
             from pvfiblets.volumes import as_raycast_volume
 
             try:
-                volume = as_raycast_volume(_of_vtk(place) if name.lower().endswith(_EITHER) else place)
+                volume = as_raycast_volume(read_vtk(place) if name.lower().endswith(VTK_SUFFIXES) else place)
             except ValueError:
-                if asked is not None or (several := _several(place)) is None:
+                if asked is not None or (several := read_several(place)) is None:
                     raise
                 return Loaded("image", source, name, *several)
             watch("reading", 1.0)
-            return Loaded(kind, source, name, volume, _volume_facts(volume))
+            return Loaded(kind, source, name, volume, volume_facts(volume))
         if kind == "image":
             from pvfiblets.web.label_images import facts_of, read_image
 
@@ -274,8 +231,8 @@ class Files:
             with opened(place) as image:  # and read where it is used
                 return Loaded(kind, source, name, image)
         if kind == "colours":
-            return Loaded(kind, source, name, _colours(place))
-        mesh = _mesh(place)
+            return Loaded(kind, source, name, read_colours(place))
+        mesh = read_mesh(place)
         watch("reading", 1.0)
         return Loaded("mesh", source, name, mesh, {"points": mesh.n_points, "faces": mesh.n_cells})
 
@@ -352,95 +309,6 @@ class Watch:
             self._progress(what, min(max(share, 0.0), 1.0))
 
 
-def _tubes(place: Path, source: Source, name: str, watch: Watch) -> Loaded:
-    from pvfiblets.plotting.tubes.scalars import as_tubes
-
-    if place.suffix.lower() not in _EITHER:
-        points = formats.info(place).get("points")
-        if points is not None and points > LARGEST_AS_TUBES:
-            raise ValueError(
-                f"{name} has {points:,} points, more than the {LARGEST_AS_TUBES:,} that spline tubes are made of here; "
-                "open it as a tractogram, and give that a tube radius"
-            )
-    tubes, _ = as_tubes(place)
-    watch("reading", 1.0)
-    return Loaded("tubes", source, name, tubes, {"tubes": tubes.n_tubes, "segments": tubes.n_segments})
-
-
-def _fixels(place: Path) -> tuple[Any, dict[str, Any]] | None:
-    """Return the image of a file of a fixel directory of MRtrix's, and its facts; None of any other."""
-    from pvfiblets.slices.fixels import files_beside
-    from pvfiblets.web.label_images import facts_of, read_image
-
-    image = read_image(place) if files_beside(place) else None
-    return None if image is None or image.fixels is None else (image, facts_of(image))
-
-
-def _several(place: Path) -> tuple[Any, dict[str, Any]] | None:
-    """Return a file's image and its facts if its voxels hold several numbers each, which slices can show."""
-    from pvfiblets.web.label_images import facts_of, read_image
-
-    if not place.name.lower().endswith(VOLUMES):
-        return None
-    image = read_image(place)
-    return None if image.n_volumes == 1 else (image, facts_of(image))
-
-
-def _of_vtk(place: Path) -> Any:
-    """Read a file with one of VTK's readers, which end the process where memory does not suffice."""
-    import pyvista as pv
-
-    vtk_sizes.check_memory(place)
-    try:
-        return pv.read(place)
-    except RuntimeError:  # by which PyVista says that VTK's reader gave nothing
-        raise FormatError(place, None, "what VTK's reader cannot read", "a whole file of this kind") from None
-
-
-def _mesh(place: Path) -> Any:
-    import pyvista as pv
-
-    if not place.name.lower().endswith(MESHES):  # VTK has readers of its own for volumes, which follow other names
-        raise UnknownFormatError(f"{place.name}: surfaces are in files of {', '.join(MESHES)}; convert it")
-    if place.name.lower().endswith(GIFTI):
-        from pvfiblets.plotting.gifti import read_surface
-
-        return read_surface(place)
-    data = _of_vtk(place)
-    if isinstance(data, pv.MultiBlock):
-        data = data.combine().extract_surface() if data.n_blocks else pv.PolyData()
-    if not isinstance(data, pv.PolyData) and hasattr(data, "extract_surface"):
-        data = data.extract_surface()
-    if not isinstance(data, pv.PolyData) or not data.n_points:
-        raise ValueError(f"{place.name}: there is no surface in it")
-    return data
-
-
-def _colours(place: Path) -> Any:
-    """Return a volume to be sampled along lines, from the same numbers as a script's ``scalars=path`` gives."""
-    from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
-    from pvfiblets.plotting.fiblets.volume_sources import as_volume
-    from pvfiblets.volumes import as_raycast_volume
-
-    if (found := as_volume(place)) is not None:
-        return found
-    if place.name.lower().endswith(_EITHER):
-        return as_volume(_of_vtk(place))
-    volume = as_raycast_volume(place)
-    return VolumeSource(volume.values, volume.affine, name=place.name.partition(".")[0])
-
-
-def _volume_facts(volume: Any) -> dict[str, Any]:
-    return {
-        "voxels": list(volume.shape),
-        "spacing_mm": volume.spacing,
-        "affine": volume.affine,
-        "values": list(volume.value_range),
-        "dtype": str(volume.values.dtype),
-        "missing": volume.n_missing,
-    }
-
-
 def _demo(source: Source, kind: str | None) -> Loaded:
     from pvfiblets import synthetic
 
@@ -457,7 +325,7 @@ def _demo(source: Source, kind: str | None) -> Loaded:
         from pvfiblets.synthetic.vessels import brain_like
 
         volume = brain_like(source.size)
-        return Loaded("volume", source, "demo head", volume, _volume_facts(volume))
+        return Loaded("volume", source, "demo head", volume, volume_facts(volume))
     if source.demo == "head" and kind == "image":
         from pvfiblets.synthetic.vessels import brain_like
         from pvfiblets.web.label_images import LabelledImage, facts_of

@@ -18,8 +18,9 @@ from pvfiblets.web.charts import short
 from pvfiblets.web.describe import typed
 from pvfiblets.web.document import LINES, Matrix
 from pvfiblets.web.elements import html, v3
+from pvfiblets.web.file_kinds import TABLES
 from pvfiblets.web.label_images import BESIDE
-from pvfiblets.web.loading import TABLES, Cancelled
+from pvfiblets.web.loading import Cancelled
 from pvfiblets.web.scene_matrix import choices
 
 if TYPE_CHECKING:

@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING, Any
 
 from pvfiblets import memory
 from pvfiblets.formats.registry import suffixes
-from pvfiblets.volumes.sources import SUFFIXES as VOLUMES
 from pvfiblets.web.actions import Actions
 from pvfiblets.web.confined import ConfinedError, TakenError
 from pvfiblets.web.document import LINES
-from pvfiblets.web.loading import MESHES, OF_VERTICES, TABLES, VALUES, Cancelled
+from pvfiblets.web.file_kinds import MESHES, OF_VERTICES, TABLES, VALUES, VOLUMES
+from pvfiblets.web.loading import Cancelled
 from pvfiblets.web.options import MEBIBYTE
 from pvfiblets.web.rpc_allowlist import EXPECTED, sentence
 

@@ -1,0 +1,70 @@
+"""Which kind of layer a file is for, by its suffix, and by what is in it where a suffix stands for several."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from pvfiblets.errors import FormatError
+from pvfiblets.formats import vtk_sizes
+from pvfiblets.formats.registry import UnknownFormatError, suffix_of, suffixes
+from pvfiblets.volumes.gifti_files import SUFFIXES as GIFTI
+from pvfiblets.volumes.gifti_files import VALUES as OF_VERTICES
+from pvfiblets.volumes.sources import SUFFIXES as VOLUMES
+
+__all__ = ["GIFTI", "MESHES", "OF_VERTICES", "TABLES", "VALUES", "VOLUMES", "VTK_SUFFIXES", "kind_of", "read_vtk"]
+
+MESHES = (".ply", ".stl", ".obj", ".vtu", ".vtp", ".vtk", ".off", ".glb", ".gltf", *GIFTI)
+"""Suffixes of surfaces; those of VTK's formats may hold lines instead."""
+
+VALUES = (".tsf", *OF_VERTICES)
+"""Suffixes of files with values for the lines, or for the vertices, of another file."""
+
+TABLES = (".txt", ".ctab", ".label", ".lbl", ".tsv", ".label.gii", ".label.gii.gz")
+"""Suffixes of files with names and colours of labels."""
+
+VTK_SUFFIXES = (".vtk", ".vtp")
+"""Suffixes of VTK's files that hold lines, surfaces or volumes."""
+
+_RADII = ("radius", "Radius", "MaximumInscribedSphereRadius")
+
+
+def kind_of(path: Path) -> str:
+    """Return the kind of layer that a file is for.
+
+    Raises
+    ------
+    UnknownFormatError
+        If no format has its suffix.
+    """
+    name = path.name.lower()
+    if name.endswith(VOLUMES):
+        return "volume"
+    if name.endswith(VTK_SUFFIXES):
+        import pyvista as pv
+
+        data = read_vtk(path)
+        if isinstance(data, pv.ImageData):
+            return "volume"
+        if isinstance(data, pv.PolyData) and data.n_lines:
+            return "tubes" if any(radius in data.point_data for radius in _RADII) else "tractogram"
+        return "mesh"
+    if name.endswith(MESHES):
+        return "mesh"
+    try:
+        suffix_of(path)
+    except UnknownFormatError:
+        known = ", ".join(dict.fromkeys([*suffixes(), *VOLUMES, *MESHES]))
+        raise UnknownFormatError(f"{path.name}: no layer can be made of such a file; there are {known}") from None
+    return "tractogram"
+
+
+def read_vtk(place: Path) -> Any:
+    """Read a file with one of VTK's readers, which end the process where memory does not suffice."""
+    import pyvista as pv
+
+    vtk_sizes.check_memory(place)
+    try:
+        return pv.read(place)
+    except RuntimeError:  # by which PyVista says that VTK's reader gave nothing
+        raise FormatError(place, None, "what VTK's reader cannot read", "a whole file of this kind") from None
