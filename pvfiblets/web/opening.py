@@ -1,35 +1,28 @@
-"""Files: opening with progress, uploads, sessions and the script."""
+"""Files: chosen in the file browser or uploaded, and opened with progress."""
 
 from __future__ import annotations
 
 import asyncio
 import contextlib
-import json
 import os
-import threading
-import time
-from collections.abc import AsyncIterator, Callable, Coroutine
+from collections.abc import Callable, Coroutine
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pvfiblets import memory
 from pvfiblets.formats.registry import suffixes
-from pvfiblets.web.actions import Actions
 from pvfiblets.web.confined import ConfinedError, TakenError
 from pvfiblets.web.document import LINES
 from pvfiblets.web.file_kinds import MESHES, OF_VERTICES, TABLES, VALUES, VOLUMES
 from pvfiblets.web.loading import Cancelled
 from pvfiblets.web.options import MEBIBYTE
 from pvfiblets.web.rpc_allowlist import EXPECTED, sentence
+from pvfiblets.web.session_actions import SESSION, SessionActions
 
 if TYPE_CHECKING:
     from pvfiblets.web.document import Source
-    from pvfiblets.web.loading import Cancel, Progress
-
-    Work = Callable[[Progress, Cancel], Any]
 
 PIECE = MEBIBYTE  # bytes of an upload at a time
-SESSION = ".json"
 PURPOSES = {
     "": (*suffixes(), *VOLUMES, *MESHES, *VALUES, SESSION),
     "clip": MESHES,
@@ -39,21 +32,14 @@ PURPOSES = {
     "painted": VOLUMES,
 }
 """What a file may be chosen for, and the suffixes that are shown then."""
-MOST_WAITING = 16
 MOST_MARKED = 64  # files that are chosen at once
-LATEST = 0.2  # seconds between two reports of progress
 
 
-class FileActions(Actions):
+class FileActions(SessionActions):
     """The files of an application."""
 
     def __init__(self, app: Any) -> None:
         super().__init__(app)
-        self._stop = threading.Event()
-        self._doing = ""  # what is done beside, for people
-        self._working = asyncio.Lock()
-        self._waiting: list[str] = []  # for their turn, for people
-        self.tell: Callable[[str], None] = lambda _: None  # told what is being opened, "" after it
         self._for = ""  # what the file that is chosen next is for, of PURPOSES
 
     # Opening
@@ -140,99 +126,6 @@ class FileActions(Actions):
         app.say(f"{layer.name} is coloured by {name}.", "success")
         app.refresh()
         return True
-
-    async def beside(self, name: str, work: Work, what: str, *, cancellable: bool = True) -> Any:
-        """Do what takes long in a thread of its own, with progress; the page goes on.
-
-        One thing at a time: what comes meanwhile waits for its turn, and the page names it.
-
-        Parameters
-        ----------
-        name : str
-            Of what it is about, for people.
-        work : callable
-            Takes what :meth:`.Scene.load` takes as ``progress`` and ``cancel``; it must not touch the scene.
-        what : str
-            What is done, until `work` says it.
-        cancellable : bool
-            Whether `work` asks if it is to stop.
-
-        Returns
-        -------
-        object
-            What `work` returned.
-
-        Raises
-        ------
-        TooLargeError
-            If memory does not suffice; nothing of what was done stays.
-        ValueError
-            If too much waits already.
-        """
-        app = self._app
-        loop = asyncio.get_running_loop()
-        reported = 0.0
-        stop = threading.Event()
-
-        def show(what: str, share: float) -> None:
-            if stop.is_set():
-                return
-            with app.state:
-                text = f"{name}: {what}"
-                app.page.job = {"text": text, "share": 100.0 * share, "cancellable": cancellable, "then": self._then}
-
-        def progress(what: str, share: float) -> None:  # in the thread
-            nonlocal reported
-            if (now := time.monotonic()) - reported > LATEST:
-                reported = now
-                loop.call_soon_threadsafe(show, what, share)
-
-        async with self._turn(name):
-            self._stop = stop
-            self._doing = name
-            self.tell(name)
-            show(what, 0.0 if cancellable else -1.0)
-            try:
-                return await asyncio.to_thread(memory.within, lambda: work(progress, stop.is_set))
-            finally:
-                self.tell("")
-                await asyncio.sleep(0)  # let the last report of the thread come first
-                with app.state:
-                    app.page.job = {}
-
-    def cancel(self) -> None:
-        """Stop what is being opened or written, as soon as it asks; what waits has its turn then."""
-        self._stop.set()
-        if self._app.page.job:
-            text = f"{self._doing}: stopping"
-            self._app.page.job = {"text": text, "share": -1.0, "cancellable": False, "then": self._then}
-
-    @property
-    def _then(self) -> str:
-        """What waits, for people."""
-        return f"then {', '.join(self._waiting)}" if self._waiting else ""
-
-    @contextlib.asynccontextmanager
-    async def _turn(self, name: str) -> AsyncIterator[None]:
-        """Wait until nothing else is done; the page says so."""
-        if len(self._waiting) >= MOST_WAITING:
-            raise ValueError(f"{name}: {MOST_WAITING} others wait for their turn; wait until some of them are done")
-        self._waiting.append(name)
-        self._show_waiting()
-        try:
-            await self._working.acquire()
-        finally:
-            self._waiting.remove(name)
-        self._show_waiting()
-        try:
-            yield
-        finally:
-            self._working.release()
-
-    def _show_waiting(self) -> None:
-        if self._app.page.job:
-            with self._app.state:
-                self._app.page.job = {**self._app.page.job, "then": self._then}
 
     # The file browser
 
@@ -353,64 +246,7 @@ class FileActions(Actions):
                 target.unlink(missing_ok=True)
                 raise
 
-    # Sessions and the script
-
-    def save_session(self) -> str:
-        """Return the session as JSON."""
-        from pvfiblets.web import session
-
-        return json.dumps(session.to_dict(self._app.scene), indent=1)
-
-    def store_session(self, name: str) -> None:
-        """Write the session to a file of the served folder."""
-        from pvfiblets.web import session
-
-        app = self._app
-        name = str(name).strip().removesuffix(SESSION) + SESSION
-        app.confined.writable(name, (SESSION,))
-        session.save(app.scene, name)
-        app.page.dialog = ""
-        app.say(f"The session is saved in the served folder as {name}.", "success")
-
-    def _text(self, path: str) -> str:
-        """Return the text of a session file in the served folder."""
-        from pvfiblets.web.session import LARGEST
-
-        place = self._app.confined.existing(path)
-        if place.stat().st_size > LARGEST:
-            raise ValueError(f"{path} has {place.stat().st_size:,} bytes; sessions have {LARGEST:,} at most")
-        return str(place.read_text(encoding="utf-8"))
-
-    def load_session(self, text: str, folder: Path | None = None) -> None:
-        """Become what a session file says; where it is malformed, all stays as it is.
-
-        Parameters
-        ----------
-        text : str
-            What the file holds.
-        folder : Path, optional
-            Where it lies in the served folder: its paths are looked for there first.
-        """
-        try:
-            data = json.loads(text)
-        except (ValueError, RecursionError) as error:
-            raise ValueError(f"this is no session file: {error}") from error
-        self._app.later(self._become(data, folder))
-
-    async def _become(self, data: Any, folder: Path | None) -> None:
-        from pvfiblets.web import session
-
-        app = self._app
-        scene = app.scene
-        try:
-            prepared = await self.beside(
-                "session", lambda progress, cancel: session.prepare(scene, data, folder, progress, cancel), "reading"
-            )
-        except Cancelled:
-            app.say("The session was not loaded: cancelled.")
-            return
-        session.apply(scene, prepared)
-        app.refresh()
+    # For other parts of the page
 
     async def with_shape(self, kind: str, path: str, then: Callable[[], Any]) -> None:
         """Read what a region is made of, a mesh or labels, beside everything else; then do what needs it."""

@@ -1,0 +1,128 @@
+"""Long work beside everything else: in a thread of its own, one thing at a time, with progress on the page."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import threading
+import time
+from collections.abc import AsyncIterator, Callable
+from typing import TYPE_CHECKING, Any
+
+from pvfiblets import memory
+from pvfiblets.web.actions import Actions
+
+if TYPE_CHECKING:
+    from pvfiblets.web.loading import Cancel, Progress
+
+    Work = Callable[[Progress, Cancel], Any]
+
+__all__ = ["Beside"]
+
+MOST_WAITING = 16
+LATEST = 0.2  # seconds between two reports of progress
+
+
+class Beside(Actions):
+    """What takes long, while the page goes on."""
+
+    def __init__(self, app: Any) -> None:
+        super().__init__(app)
+        self._stop = threading.Event()
+        self._doing = ""  # what is done beside, for people
+        self._working = asyncio.Lock()
+        self._waiting: list[str] = []  # for their turn, for people
+        self.tell: Callable[[str], None] = lambda _: None  # told what is being opened, "" after it
+
+    async def beside(self, name: str, work: Work, what: str, *, cancellable: bool = True) -> Any:
+        """Do what takes long in a thread of its own, with progress; the page goes on.
+
+        One thing at a time: what comes meanwhile waits for its turn, and the page names it.
+
+        Parameters
+        ----------
+        name : str
+            Of what it is about, for people.
+        work : callable
+            Takes what :meth:`.Scene.load` takes as ``progress`` and ``cancel``; it must not touch the scene.
+        what : str
+            What is done, until `work` says it.
+        cancellable : bool
+            Whether `work` asks if it is to stop.
+
+        Returns
+        -------
+        object
+            What `work` returned.
+
+        Raises
+        ------
+        TooLargeError
+            If memory does not suffice; nothing of what was done stays.
+        ValueError
+            If too much waits already.
+        """
+        app = self._app
+        loop = asyncio.get_running_loop()
+        reported = 0.0
+        stop = threading.Event()
+
+        def show(what: str, share: float) -> None:
+            if stop.is_set():
+                return
+            with app.state:
+                text = f"{name}: {what}"
+                app.page.job = {"text": text, "share": 100.0 * share, "cancellable": cancellable, "then": self._then}
+
+        def progress(what: str, share: float) -> None:  # in the thread
+            nonlocal reported
+            if (now := time.monotonic()) - reported > LATEST:
+                reported = now
+                loop.call_soon_threadsafe(show, what, share)
+
+        async with self._turn(name):
+            self._stop = stop
+            self._doing = name
+            self.tell(name)
+            show(what, 0.0 if cancellable else -1.0)
+            try:
+                return await asyncio.to_thread(memory.within, lambda: work(progress, stop.is_set))
+            finally:
+                self.tell("")
+                await asyncio.sleep(0)  # let the last report of the thread come first
+                with app.state:
+                    app.page.job = {}
+
+    def cancel(self) -> None:
+        """Stop what is being opened or written, as soon as it asks; what waits has its turn then."""
+        self._stop.set()
+        if self._app.page.job:
+            text = f"{self._doing}: stopping"
+            self._app.page.job = {"text": text, "share": -1.0, "cancellable": False, "then": self._then}
+
+    @property
+    def _then(self) -> str:
+        """What waits, for people."""
+        return f"then {', '.join(self._waiting)}" if self._waiting else ""
+
+    @contextlib.asynccontextmanager
+    async def _turn(self, name: str) -> AsyncIterator[None]:
+        """Wait until nothing else is done; the page says so."""
+        if len(self._waiting) >= MOST_WAITING:
+            raise ValueError(f"{name}: {MOST_WAITING} others wait for their turn; wait until some of them are done")
+        self._waiting.append(name)
+        self._show_waiting()
+        try:
+            await self._working.acquire()
+        finally:
+            self._waiting.remove(name)
+        self._show_waiting()
+        try:
+            yield
+        finally:
+            self._working.release()
+
+    def _show_waiting(self) -> None:
+        if self._app.page.job:
+            with self._app.state:
+                self._app.page.job = {**self._app.page.job, "then": self._then}
