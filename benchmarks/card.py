@@ -95,7 +95,7 @@ def measure_all(options: Any, temporary: Path) -> None:
     done = {json.dumps(row["cell"]): row for row in earlier if row.get("unmeasured") != LATE}
     results: list[Row] = []
     drawer = Drawer(__file__, folder)
-    slow: set[tuple[Any, ...]] = set()
+    hopeless: dict[tuple[Any, ...], str] = {}
     pipelines = about["pipelines"]
     for section, cells in sections(options, pipelines):
         for number, cell in enumerate(cells):
@@ -104,13 +104,13 @@ def measure_all(options: Any, temporary: Path) -> None:
                 row: Row = done[json.dumps(cell)]
             elif time.monotonic() > deadline:
                 row = {"unmeasured": LATE}
-            elif key in slow:
-                row = {"unmeasured": "far too slow at fewer segments"}
+            elif key in hopeless:
+                row = {"unmeasured": hopeless[key]}
             else:
                 row = measured(cell, folder, pictures / f"{slug(section)}-{number:02d}.npy", options, drawer)
             slowly = row.get("unmeasured") != LATE and not row.get("ms", HOPELESS) < HOPELESS
             if slowly and cell["kind"] in ("fiblets", "raw lines"):
-                slow.add(key)
+                hopeless.setdefault(key, row.get("unmeasured", "far too slow at fewer segments"))
             results.append({"section": section, "number": number, "cell": cell, **cell, **row})
             print({name: value for name, value in results[-1].items() if name not in ("passes", "cell")}, flush=True)
             if json.dumps(cell) not in done:
@@ -240,7 +240,7 @@ def table_2(rows: list[Row]) -> list[str]:
     found = []
     for size in dict.fromkeys(tuple(row["size"]) for row in rows):
         here = [row for row in rows if tuple(row["size"]) == size]
-        counts = list(dict.fromkeys(row["cell"]["segments"] for row in here))
+        counts = sorted({row["cell"]["segments"] for row in here})
         cells = {(row["pipeline"], row["culling"], row["cell"]["segments"]): told(row) for row in here}
         body = [
             f"| {pipeline} | {culling} | " + " | ".join(cells.get((pipeline, culling, n), "") for n in counts) + " |"

@@ -1,4 +1,4 @@
-"""Programs of task and mesh stages by GL_EXT_mesh_shader, which moderngl cannot make: it knows NVIDIA's extension only.
+"""Programs of task and mesh stages: by GL_EXT_mesh_shader, which moderngl cannot make, or by NVIDIA's extension.
 
 A :class:`MeshProgram` has what the engine uses of a ``moderngl.Program``, so that those who set uniforms need not know
 which of the two they have.
@@ -15,13 +15,20 @@ import moderngl
 from .errors import EngineError
 from .moderngl_extras import GLExtras, Uniform
 
-__all__ = ["MeshProgram"]
+__all__ = ["MeshProgram", "nvidia_program"]
 
 _STAGES = {"fragment_shader": 0x8B30, "mesh_shader": 0x9559, "task_shader": 0x955A}
 _COMPILE_STATUS, _LINK_STATUS, _LOG_LENGTH = 0x8B81, 0x8B82, 0x8B84
 _ACTIVE_UNIFORMS, _INVALID_INDEX = 0x8B86, 0xFFFFFFFF
 _STRICT, _LAX = "flat perprimitiveEXT in", "perprimitiveEXT in"
 """How fragments are handed integers of a primitive: Khronos' compiler refuses the second, Mesa's the first."""
+_NVIDIA_FORMS: tuple[dict[str, str], ...] = (
+    {},
+    {"#extension GL_NV_mesh_shader : enable\n": "\n"},
+    {"flat perprimitiveNV in": "perprimitiveNV in"},
+    {"#extension GL_NV_mesh_shader : enable\n": "\n", "flat perprimitiveNV in": "perprimitiveNV in"},
+)
+"""How a fragment stage says that it is handed a primitive's data, where compilers differ: the first that links."""
 _LONGEST = 256
 """Characters of a uniform's name, the closing zero included."""
 
@@ -33,6 +40,27 @@ _KINDS = {
     0x8B56: (1, "i"), 0x8B57: (2, "i"), 0x8B58: (3, "i"), 0x8B59: (4, "i"),
 }  # fmt: skip
 _WORDS = {"f": ctypes.c_float, "i": ctypes.c_int, "ui": ctypes.c_uint}
+
+
+def nvidia_program(ctx: moderngl.Context, sources: Mapping[str, str]) -> moderngl.Program:
+    """Return a program of task and mesh stages by GL_NV_mesh_shader.
+
+    Raises
+    ------
+    moderngl.Error
+        If no form of its fragment stage compiles and links; with what the driver says of the first.
+    """
+    said: moderngl.Error | None = None
+    for form in _NVIDIA_FORMS:
+        fragment = sources["fragment_shader"]
+        for old, new in form.items():
+            fragment = fragment.replace(old, new)
+        try:
+            stages: dict[str, Any] = {**sources, "fragment_shader": fragment}
+            return ctx.program(**stages)
+        except moderngl.Error as error:
+            said = said or error
+    raise said or moderngl.Error("no sources")
 
 
 class MeshProgram:

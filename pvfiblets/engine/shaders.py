@@ -387,10 +387,15 @@ class Programs:
                 for stage, name in stages.items()
             }
             try:
+                program: Any
                 if "MESH_EXT" in request[1]:
                     from .mesh_program import MeshProgram
 
-                    program: Any = MeshProgram(self._ctx, sources, BLOCKS)
+                    program = MeshProgram(self._ctx, sources, BLOCKS)
+                elif "mesh" in stages:
+                    from .mesh_program import nvidia_program
+
+                    program = nvidia_program(self._ctx, sources)
                 else:
                     program = self._ctx.program(**sources, varyings=tuple(varyings))
             except moderngl.Error as error:

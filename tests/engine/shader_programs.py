@@ -76,7 +76,7 @@ NEEDS: dict[str, tuple[tuple[str, ...], ...]] = {
     "VOLUME_SHADED": (("VOLUME_COMPOSITE",), ("VOLUME_LAYERS",)),
     "VOLUME_LAYERS": (("VOLUME_SURFACE",),),
     "VOLUME_COLOURS": (("VOLUME_COMPOSITE",),),
-    "VOLUME_EXACT": (("VOLUME_PREINTEGRATED",),),
+    "VOLUME_EXACT": (("VOLUME_PREINTEGRATED", "VOLUME_FINER"),),
     "VOLUME_PAGES": (("VOLUME_BRICKS",),),
     "TUBE_HOLLOW": (("TUBE_CHAIN",),),
     "HALO_TAPER": (("!HALO_POINTS",),),

@@ -17,7 +17,7 @@ from pvfiblets import compress, synthetic
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS
 from pvfiblets.engine.fiblets.pipelines.mesh import TASK_FIBLETS, MeshPipeline
-from pvfiblets.engine.mesh_program import MeshProgram
+from pvfiblets.engine.mesh_program import MeshProgram, nvidia_program
 from pvfiblets.engine.shaders import EXTENDED, assemble, read_shader
 from tests.reference_compiler import glslang, link
 
@@ -34,6 +34,7 @@ DRAWN = {
     "wide": ["WIDE_LINES", "LEVEL_OF_DETAIL"],
     "wide-planes": ["WIDE_LINES", "CLIPPING", "CLIPPING_DEPTH", "CLIP_PLANES", "LEVEL_OF_DETAIL"],
 }
+
 
 def stages(kind, features):
     """Sources by glslang's names of the stages."""
@@ -349,3 +350,35 @@ def test_fragments_are_handed_primitives_by_the_word_that_the_driver_takes(monke
     assert "#define VARYING perprimitiveEXT in" in tried[2]
     with pytest.raises(moderngl.Error):
         driver("void main")
+
+
+def test_fragments_say_what_they_are_handed_in_the_form_that_a_driver_takes(monkeypatch):
+    """Compilers differ by the extension's name and by `flat`; what the first form is refused for is told."""
+
+    fragment = assemble("fiblets/hardware_raster/line.frag", ["PER_PRIMITIVE"], {}, version=450)
+    assert "GL_NV_mesh_shader : require" not in fragment
+    sources = {"task_shader": "t", "mesh_shader": "m", "fragment_shader": fragment}
+    tried = []
+
+    class Driver:
+        def __init__(self, takes):
+            self.takes = takes
+
+        def program(self, *, fragment_shader, task_shader, mesh_shader):
+            tried.append(fragment_shader)
+            if not self.takes(fragment_shader):
+                raise moderngl.Error(f"refused {len(tried)}")
+            return task_shader + mesh_shader
+
+    assert nvidia_program(Driver(lambda _: True), sources) == "tm"
+    assert tried == [fragment]
+    tried.clear()
+    plain = "flat perprimitiveNV in"
+    assert (
+        nvidia_program(Driver(lambda text: "#extension GL_NV_mesh" not in text and plain not in text), sources) == "tm"
+    )
+    assert len(tried) == len(set(tried)) == 4
+    assert all("perprimitiveNV in\n" in text for text in tried)
+    tried.clear()
+    with pytest.raises(moderngl.Error, match="refused 1"):
+        nvidia_program(Driver(lambda _: False), sources)

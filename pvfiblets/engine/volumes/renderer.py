@@ -243,10 +243,16 @@ class VolumeRenderer(Drawable[VolumeStyle]):
         """Return the features of programs that read the volume."""
         coarse = (
             casting.filter != "nearest"
-            and casting.mode in ("isosurface", "composite")  # what projections are off by is not seen, and costs most
+            and self._shows_stairs(casting)
             and not interpolates_finely(self._ctx, self._gl, self._voxels.kind)
         )
         return [*FEATURES_OF_FILTER[casting.filter], *self._voxels.features, *(["VOLUME_FETCHED"] if coarse else [])]
+
+    def _shows_stairs(self, casting: RaycastOptions) -> bool:
+        """Whether values that are off by 1/512 of what neighbours differ by would be seen."""
+        if casting.mode == "composite" and casting.integrator in ("adaptive", "preintegrated"):
+            return self._tables.finer or self._tables.exact  # else the table is gentle
+        return casting.mode in ("composite", "isosurface")
 
     @staticmethod
     def _place(program: moderngl.Program, stride: int, size: tuple[int, int]) -> None:

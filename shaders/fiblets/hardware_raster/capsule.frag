@@ -4,7 +4,7 @@
 
 #version 430
 #if FEATURE_PER_PRIMITIVE
-#include "fiblets/mesh/extension.glsl"
+#include "fiblets/mesh/fragment_extension.glsl"
 #endif
 
 #include "codec/layout.glsl"

@@ -3,7 +3,7 @@
 
 #version 430
 #if FEATURE_PER_PRIMITIVE
-#include "fiblets/mesh/extension.glsl"
+#include "fiblets/mesh/fragment_extension.glsl"
 #endif
 
 #include "fiblets/hardware_raster/shade.glsl"
