@@ -43,6 +43,7 @@ STAGES: dict[str, tuple[str, ...]] = {
     "page/segment.frag": ANY_LINES,
     "page/screen.vert": (),
     "page/tile_mask.frag": (),
+    "page/far_tiles.frag": (),
     "page/tiles.vert": (),
     "page/resolve.frag": (),
     "page/visible_edges.frag": (),

@@ -7,11 +7,16 @@
 import type { Archive, NpyArray } from "./archive";
 import { FileError } from "./archive";
 import { Bounds, Mat, Vec, apply } from "./camera";
+import { FarDepths, capsules, lookAt } from "./hiding";
 import { Region, meets, within } from "./regions";
 import { PAGE_BITS, field, rotationScales, rotations } from "./engine";
 import { Format, GL, Program, UniformBlock, emptyRows, fillRows, rows } from "./gl";
 
 const BLOCK = 1024, SLOT_BYTES = 16;
+/** Items that are drawn with those on both sides of them, for a call less. */
+const GAP = 16;
+/** Share of a block's items that are drawn first where nothing is known of them. */
+const FIRST = 0.1;
 /** A texture that is filled as its array comes. */
 interface Growing {
   texture: WebGLTexture;
@@ -41,6 +46,9 @@ export interface Block {
   bounds: Bounds;     // data coordinates
   buffer: WebGLBuffer | null;
   used: number;
+  shapes: Float32Array | null;  // of its items, by which they are looked at (hiding.ts)
+  likely: Uint8Array | null;    // of each item, whether it is drawn before others, which it may hide
+  likelies: number;             // how many are
 }
 
 export interface PointValues {
@@ -217,7 +225,7 @@ export class FibletSet {
       this.kinds.add(field("kind", record));
       if (f % BLOCK === 0) {
         close();
-        block = { firstItem: item, items: 0, more: 0, bounds: [Infinity, -Infinity, Infinity, -Infinity, Infinity, -Infinity], buffer: null, used: 0 };
+        block = { firstItem: item, items: 0, more: 0, bounds: [Infinity, -Infinity, Infinity, -Infinity, Infinity, -Infinity], buffer: null, used: 0, shapes: null, likely: null, likelies: 0 };
       }
       const grid = [anchors[2 * f] & 0xffff, anchors[2 * f] >>> 16, word & 0xffff];
       for (let axis = 0; axis < 3; ++axis) {
@@ -335,9 +343,9 @@ export class FibletSet {
     return this.textures.items;
   }
 
-  /** How many segments at most a block has. */
-  instances(block: Block): number {
-    return block.items * this.share;
+  /** How many segments at most some items have. */
+  segments(items: number): number {
+    return items * this.share;
   }
 
   /** The longest segment that there is, mm; infinite where only the codes tell. */
@@ -345,16 +353,92 @@ export class FibletSet {
     return this.kinds.size === 1 && this.kinds.has(KIND_DIRECTION) ? 2 * this.parameters.step_hi : Infinity;
   }
 
-  /** Draw some of a block's first segments; the program is in use, all else is bound. */
-  draw(block: Block, program: Program, share: number, sprites: boolean): number {
-    const gl = this.gl, buffer = this.pointsOf(block);
-    program.use().ints({ first_item: block.firstItem, share_size: this.share });
-    gl.bindVertexArray(this.segmentArray(sprites));
-    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-    for (let i = 0; i < 3; ++i) gl.vertexAttribIPointer(i, 4, gl.UNSIGNED_INT, SLOT_BYTES, i * SLOT_BYTES);
-    const n = Math.max(1, Math.round(block.items * share)) * this.share;
+  /** Draw a block's items from its first on; the program is in use, all else is bound. */
+  draw(block: Block, program: Program, items: number, sprites: boolean): number {
+    return this.drawRun(block, program, 0, Math.max(1, Math.round(items)), sprites);
+  }
+
+  private drawRun(block: Block, program: Program, from: number, to: number, sprites: boolean): number {
+    const gl = this.gl, n = (to - from) * this.share;
+    this.aim(block, program, from, sprites);
     if (sprites) gl.drawArrays(gl.POINTS, 0, n);
     else gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, n);
+    gl.bindVertexArray(null);
+    return n;
+  }
+
+  private aim(block: Block, program: Program, from: number, sprites: boolean): void {
+    const gl = this.gl, buffer = this.pointsOf(block);
+    program.use().ints({ first_item: block.firstItem + from, share_size: this.share });
+    gl.bindVertexArray(this.segmentArray(sprites));
+    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+    for (let i = 0; i < 3; ++i) gl.vertexAttribIPointer(i, 4, gl.UNSIGNED_INT, SLOT_BYTES, from * this.itemBytes + i * SLOT_BYTES);
+  }
+
+  /** Those of a block's items that are drawn before others: what was seen last, and of what was never looked at a share. */
+  likely(block: Block): Uint8Array {
+    if (!block.likely) block.likely = new Uint8Array(block.items).fill(1, 0, (block.likelies = Math.max(1, Math.round(FIRST * block.items))));
+    return block.likely;
+  }
+
+  /** Find which of a block's items may show, and return those that are not `likely`, which these are from now on. */
+  look(block: Block, window: Mat, brush: number, width: number, height: number, far: FarDepths): Uint8Array {
+    const shows = new Uint8Array(block.items), before = this.likely(block), more = new Uint8Array(block.items);
+    lookAt((block.shapes ??= this.shapesOf(block)), window, brush, width, height, far, shows);
+    block.likelies = 0;
+    for (let i = 0; i < more.length; ++i) {
+      more[i] = shows[i] & ~before[i];
+      block.likelies += shows[i];
+    }
+    block.likely = shows;
+    return more;
+  }
+
+  private shapesOf(block: Block): Float32Array {
+    const a = this.toItems, { share } = this;
+    return capsules(this.slotsOf(block), block.items, share, (i) => {
+      const word = a[4 * (block.firstItem + i) + 2], end = (word >>> 7) & 1, points = word & 63;
+      return Math.min(points + 1 - end - share * (word >>> 8), share + 1);
+    });
+  }
+
+  private slotsOf(block: Block): Float32Array {
+    const gl = this.gl, slots = new Float32Array((block.items + block.more + 1) * this.share * 4);
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.pointsOf(block));
+    gl.getBufferSubData(gl.ARRAY_BUFFER, 0, slots, 0, (block.items + block.more) * this.share * 4);
+    gl.bindBuffer(gl.ARRAY_BUFFER, null);
+    return slots;
+  }
+
+  private indices: WebGLBuffer | null = null;
+
+  /** Draw those of a block's items that are chosen, `most` of them at most. */
+  drawSome(block: Block, program: Program, chosen: Uint8Array, sprites: boolean, most = Infinity): number {
+    const gl = this.gl, { share } = this;
+    if (!sprites) {
+      let drawn = 0, found = 0;
+      for (let from = 0; from < chosen.length && found < most; ++from) {
+        if (!chosen[from]) continue;
+        let to = from + 1;
+        ++found;
+        for (let i = to; i < Math.min(chosen.length, to + GAP) && found < most; ++i) {
+          if (!chosen[i]) continue;
+          to = i + 1;
+          ++found;
+        }
+        drawn += this.drawRun(block, program, from, to, sprites);
+        from = to;
+      }
+      return drawn;
+    }
+    const slots = new Uint32Array(Math.min(most, chosen.length) * share);
+    let n = 0;
+    for (let i = 0; i < chosen.length && n < slots.length; ++i) if (chosen[i]) for (let k = i * share; k < (i + 1) * share; ++k) slots[n++] = k;
+    if (!n) return 0;
+    this.aim(block, program, 0, sprites);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, (this.indices ??= gl.createBuffer()!));
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, slots.subarray(0, n), gl.STREAM_DRAW);
+    gl.drawElements(gl.POINTS, n, gl.UNSIGNED_INT, 0);
     gl.bindVertexArray(null);
     return n;
   }
@@ -376,13 +460,10 @@ export class FibletSet {
 
   /** Go through decoded fiblets, from the graphics card: a streamline, and its points in local mm, and a word, four numbers each. */
   private *decoded(wanted: (block: Block) => boolean): Generator<[number, Float32Array, boolean]> {
-    const gl = this.gl, a = this.toItems;
+    const a = this.toItems;
     for (const block of this.blocks) {
       if (!wanted(block)) continue;
-      const slots = new Float32Array((block.items + block.more) * this.share * 4);
-      gl.bindBuffer(gl.ARRAY_BUFFER, this.pointsOf(block));
-      gl.getBufferSubData(gl.ARRAY_BUFFER, 0, slots);
-      gl.bindBuffer(gl.ARRAY_BUFFER, null);
+      const slots = this.slotsOf(block);
       for (let item = block.firstItem; item < block.firstItem + block.items; ++item) {
         if (a[4 * item + 2] >>> 8) continue;
         const points = a[4 * item + 2] & 63, end = (a[4 * item + 2] & 128) !== 0, at = 4 * this.share * (item - block.firstItem);
@@ -435,7 +516,6 @@ export class FibletSet {
     const gl = this.gl;
     for (const block of this.blocks) if (block.buffer) gl.deleteBuffer(block.buffer);
     for (const texture of Object.values(this.textures)) gl.deleteTexture(texture);
-    if (this.scratch) gl.deleteBuffer(this.scratch);
-    gl.deleteBuffer(this.itemBuffer);
+    for (const buffer of [this.scratch, this.indices, this.itemBuffer]) if (buffer) gl.deleteBuffer(buffer);
   }
 }

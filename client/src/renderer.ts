@@ -10,15 +10,19 @@ import { Bounds, Camera, Mat, Vec, apply, identity, inverse, linear, product } f
 import { fromBase64 } from "./engine";
 import { Block, FibletSet, PointValues, asWords } from "./fiblets";
 import { GL, GraphicsError, Program, UniformBlock, framebuffer, lookUpTable, rows, target } from "./gl";
+import type { FarDepths } from "./hiding";
 import type { FibletLayer, Scene } from "./scene";
 import { Drawn, ImageSlice, Surface } from "./surfaces";
 
 const SLICE = 60;      // ms of drawing between looks at the user's hands
 const MOVING = 45;     // ms of a picture while something moves
-const REFRESH = 400;   // ms between pictures while slices come in
+const REFRESH = 400;   // ms between pictures while slices come in, or
+const LATER = 0.5;     // of the time that they have taken until then
 const TILE = 16;       // pixels; shaders/page/tile_size.glsl
+const FAR_TILE = 4;    // pixels; shaders/page/far_tile_size.glsl
 const LONGEST_SPRITE = 40; // pixels; squares of more are not drawn by every device
 const ALL_ONES = 0xffffffff;
+const FARTHEST = 0x3f800000;  // 1.0
 const MODES = { direction: 0, solid: 1, streamline: 2, value: 3, point: 4 };
 const LIGHTS = { none: 0, line: 1, illuminated: 2 };
 
@@ -65,9 +69,11 @@ export class Lines {
   }
 }
 
+/** A block to be drawn: all of it, its items that are likely to be seen, or those others that these leave in sight. */
 interface Job {
   lines: Lines;
   block: Block;
+  what: "all" | "likely" | "others";
 }
 
 interface Frame {
@@ -75,6 +81,7 @@ interface Frame {
   next: number;
   share: number;
   drawn: number;
+  begun: number;
   shownAt: number;
   matrices: Drawn;
   moving: boolean;
@@ -90,6 +97,7 @@ export class Renderer {
   height = 0;
   ratio = 1;
   frames = 0;                            // finished pictures
+  few = 2e5;                             // segments, up to which all are drawn without a look at what hides them
   loading = false;                       // whether streamlines have yet to come
   failed: ((error: Error) => void) | null = null;
   drawnOnce: (() => void) | null = null;
@@ -222,11 +230,34 @@ export class Renderer {
 
   private addJobs(frame: Frame, lines: Lines, blocks: Block[]): void {
     const matrix = product(frame.matrices.projection, product(frame.matrices.view, lines.model));
-    for (const block of blocks) if (!this.outside(matrix, block.bounds)) frame.jobs.push({ lines, block });
+    for (const block of blocks) if (!this.outside(matrix, block.bounds)) frame.jobs.push({ lines, block, what: "all" });
+  }
+
+  /** Find how far away what was drawn of a picture is, tile by tile. */
+  private findFarTiles(drawn: boolean, read: boolean): FarDepths | null {
+    const { gl, textures: t } = this, columns = Math.ceil(this.width / FAR_TILE), rows = Math.ceil(this.height / FAR_TILE);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.buffers.far);
+    if (!drawn) {
+      gl.clearBufferuiv(gl.COLOR, 0, [FARTHEST, 0, 0, 0]);
+      return null;
+    }
+    gl.disable(gl.DEPTH_TEST);
+    gl.bindVertexArray(null);
+    gl.viewport(0, 0, columns, rows);
+    this.program("page/screen.vert", "page/far_tiles.frag").use().textures({ depths: t.depths });
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    gl.viewport(0, 0, this.width, this.height);
+    if (!read) return null;
+    const words = new Uint32Array(4 * columns * rows);
+    gl.readPixels(0, 0, columns, rows, gl.RGBA_INTEGER, gl.UNSIGNED_INT, words);
+    return { size: FAR_TILE, columns, rows, depths: new Float32Array(words.buffer) };
   }
 
   private schedule(): void {
-    if (!this.asked) this.asked = requestAnimationFrame(() => this.guarded(() => this.tick()));
+    const tick = (): void => this.guarded(() => this.tick());
+    if (this.asked) return;
+    // A slice that is still drawn is looked at more often than the screen is: the next one follows at once.
+    this.asked = this.sync && this.frame && !this.frame.moving ? window.setTimeout(tick, 1) : requestAnimationFrame(tick);
   }
 
   /** Resolves when a picture at rest is finished. */
@@ -250,12 +281,12 @@ export class Renderer {
     if (this.dirty) this.start();
     const frame = this.frame;
     if (!frame) return;
-    const quota = this.rate * (frame.moving ? MOVING : SLICE);
+    const quota = this.rate * SLICE;
     this.sliceStarted = performance.now();
     this.sliceSize = 0;
     this.drawSlice(frame, frame.moving ? Infinity : quota);
     const finished = frame.next >= frame.jobs.length;
-    if (finished || performance.now() - frame.shownAt > REFRESH) {
+    if (finished || performance.now() - frame.shownAt > Math.max(REFRESH, LATER * (frame.shownAt - frame.begun))) {
       frame.shownAt = performance.now();
       this.present(frame.matrices, finished);
       if (this.drawnOnce && (frame.jobs.length || !this.loading)) {
@@ -291,6 +322,7 @@ export class Renderer {
       drawn: target(gl, gl.RGBA8, width, height),
       shown: target(gl, gl.RGBA32UI, width + 2, height + 2),
       tiles: target(gl, gl.R8UI, Math.ceil(width / TILE), Math.ceil(height / TILE)),
+      far: target(gl, gl.R32UI, Math.ceil(width / FAR_TILE), Math.ceil(height / FAR_TILE)),
     });
     this.buffers = {
       texels: framebuffer(gl, t.texels, t.depths),
@@ -298,6 +330,7 @@ export class Renderer {
       drawn: framebuffer(gl, t.drawn, null),
       shown: framebuffer(gl, t.shown, null),
       tiles: framebuffer(gl, t.tiles, null),
+      far: framebuffer(gl, t.far, null),
     };
     this.dirty = true;
   }
@@ -308,11 +341,18 @@ export class Renderer {
     this.dirty = false;
     const view = camera.view(), projection = camera.projection(this.width / this.height, scene.bounds);
     const drawn: Drawn = { view, projection, parallel: camera.state.parallel, lights: (program) => this.setLights(program, view), planes: this.planes };
-    const frame: Frame = (this.frame = { jobs: [], next: 0, share: 1, drawn: 0, shownAt: performance.now(), matrices: drawn, moving });
+    const frame: Frame = (this.frame = { jobs: [], next: 0, share: 1, drawn: 0, begun: performance.now(), shownAt: performance.now(), matrices: drawn, moving });
     this.rest = null;
     for (const lines of this.lines) if (lines.layer.visible) this.addJobs(frame, lines, lines.set.blocks);
-    const total = frame.jobs.reduce((sum, { lines, block }) => sum + lines.set.instances(block), 0);
-    if (moving) frame.share = Math.min(1, (this.rate * MOVING) / Math.max(total, 1));
+    const sum = (count: (job: Job) => number): number => frame.jobs.reduce((all, job) => all + job.lines.set.segments(count(job)), 0);
+    if (sum(({ block }) => block.items) > this.few) {
+      const depth = ({ lines, block: { bounds: b } }: Job): number => apply(product(view, lines.model), [b[0] + b[1], b[2] + b[3], b[4] + b[5]].map((part) => part / 2) as Vec)[2];
+      const order = new Map(frame.jobs.map((job) => [job, depth(job)]));
+      frame.jobs.sort((a, b) => order.get(b)! - order.get(a)!);
+      for (const job of frame.jobs) job.what = "likely";
+      if (moving) frame.share = Math.min(1, (this.rate * MOVING) / sum(({ lines, block }) => (lines.set.likely(block), block.likelies)));
+      else frame.jobs.push(...frame.jobs.map((job): Job => ({ ...job, what: "others" })));
+    } else if (moving) frame.share = Math.min(1, (this.rate * MOVING) / Math.max(sum(({ block }) => block.items), 1));
     if (!this.frames) frame.shownAt = 0;
     gl.viewport(0, 0, this.width, this.height);
     gl.disable(gl.BLEND);
@@ -367,7 +407,7 @@ export class Renderer {
   }
 
   /** Local coordinates of lines to the window, and the planes in them; returns how wide lines are drawn. */
-  private aim(lines: Lines, drawn: Drawn): { wide: boolean; clipped: boolean } {
+  private aim(lines: Lines, drawn: Drawn): { wide: boolean; clipped: boolean; window: Mat } {
     const width = lines.layer.line_width * this.ratio, wide = width > 1;
     const local = product(drawn.view, product(lines.model, lines.set.toData)), clip = product(drawn.projection, local);
     const largest = clip.reduce((most, value) => Math.max(most, Math.abs(value)), 0) || 1, window = new Float64Array(16);
@@ -395,7 +435,7 @@ export class Renderer {
       this.clipBlock.write({ clip_plane_count: planes.length }, ["clip_plane_count"]);
       this.clipBlock.bind();
     }
-    return { wide, clipped: planes.length > 0 };
+    return { wide, clipped: planes.length > 0, window };
   }
 
   /** How many pixels a length (mm) takes at most. */
@@ -408,13 +448,18 @@ export class Renderer {
 
   private drawSlice(frame: Frame, quota: number): void {
     const { gl } = this;
-    let aimed: Lines | null = null, program: Program | null = null, sprites = false;
+    let aimed: Lines | null = null, program: Program | null = null, sprites = false, window: Mat = identity(), brush = 1;
+    const hiding = frame.jobs[frame.next]?.what === "others", far = this.findFarTiles(frame.next > 0, hiding);
     while (frame.next < frame.jobs.length && this.sliceSize < quota) {
-      const { lines, block } = frame.jobs[frame.next++];
+      const { lines, block, what } = frame.jobs[frame.next];
+      if ((what === "others") !== hiding && this.sliceSize) break;
+      ++frame.next;
       lines.set.pointsOf(block);
       if (aimed !== lines) {
         aimed = lines;
-        const { wide, clipped } = this.aim(lines, frame.matrices);
+        const aim = this.aim(lines, frame.matrices), { wide, clipped } = aim;
+        window = aim.window;
+        brush = 1 + (wide ? (lines.layer.line_width * this.ratio) / 2 : 0);
         const features = ["CLIPPING", "CLIPPING_DEPTH", "EDGES"];
         if (wide) features.push("WIDE_LINES");
         if (clipped) features.push("CLIP_PLANES");
@@ -428,12 +473,14 @@ export class Renderer {
         if (lines.values) program.set({ value_code: lines.values.code, shown_values: lines.shownValues });
         program.uints({ layer: lines.index * 2 ** 28 });
       }
+      const chosen = what === "others" && far ? lines.set.look(block, window, brush, this.width, this.height, far) : lines.set.likely(block);
       gl.bindFramebuffer(gl.FRAMEBUFFER, this.buffers.texels);
       gl.enable(gl.DEPTH_TEST);
       gl.depthFunc(gl.LESS);
       this.frameBlock.bind();
-      program!.use().textures({ items: lines.set.items, kept: lines.kept, kept_points: lines.keptPoints, value_texels: lines.values && lines.values.texture, point_colours: lines.byPoint ? lines.colours : null });
-      this.sliceSize += lines.set.draw(block, program!, frame.share, sprites);
+      program!.use().textures({ far_tiles: this.textures.far, items: lines.set.items, kept: lines.kept, kept_points: lines.keptPoints, value_texels: lines.values && lines.values.texture, point_colours: lines.byPoint ? lines.colours : null });
+      if (what === "all") this.sliceSize += lines.set.draw(block, program!, frame.share * block.items, sprites);
+      else this.sliceSize += block.items + lines.set.drawSome(block, program!, chosen, sprites, Math.ceil(frame.share * (what === "likely" ? block.likelies : block.items)));
     }
   }
 

@@ -33,7 +33,6 @@ float value_between(float t) {
 void write(float s, uint edges) {
     float ratio = seg_start.w / max(seg_end.w, 1e-30);
     float t = mix(seg_along.x, seg_along.y, clamp(s * ratio / max(1.0 - s + s * ratio, 1e-30), 0.0, 1.0));
-    Tangents ends = unpacked_tangents(seg_ids.yz);
     uint bits = 0u;
 #if FEATURE_VALUES_STORED
     float value = value_between(t);
@@ -43,7 +42,7 @@ void write(float s, uint edges) {
 #if FEATURE_VALUES_COLOUR
     bits = packUnorm4x8(mix(unpackUnorm4x8(seg_colours.x), unpackUnorm4x8(seg_colours.y), t));
 #endif
-    out_texel = uvec4(seg_ids.x, packed_tangent(tangent_between(ends, t), 0u), edges, bits);
+    out_texel = uvec4(seg_ids.x, packed_tangent(tangent_between(Tangents(seg_tangent, seg_tangent_to), t), 0u), edges, bits);
 }
 
 #if FEATURE_WIDE_LINES
@@ -62,7 +61,7 @@ void main() {
     vec2 run = seg_end.xy - seg_start.xy, centre = gl_FragCoord.xy - seg_start.xy;
     float foot = dot(centre, run) / max(dot(run, run), 1e-12), s = clamp(foot, 0.0, 1.0);
     vec2 away = centre - s * run;
-    if (foot < 0.0 && (seg_ids.w & 1u) == 0u || dot(away, away) > half_line_width * half_line_width) discard;
+    if (foot < 0.0 && (seg_ids.y & 1u) == 0u || dot(away, away) > half_line_width * half_line_width) discard;
     if (foot > 1.0 && beyond_joint(seg_onward, centre - run)) discard;
 #if FEATURE_CLIP_PLANES
     if (!brush_kept(s, away)) discard;
@@ -75,7 +74,7 @@ void main() {
 void main() {
     vec2 first = pixel_of(seg_start), run = pixel_of(seg_end) - first, at = floor(gl_FragCoord.xy) - first;
     Cells cells = cells_between(ivec2(first), ivec2(first + run));
-    bool start = (seg_ids.w & 1u) != 0u, cap = (seg_ids.w & 2u) != 0u, steep = abs(run.y) > abs(run.x);
+    bool start = (seg_ids.y & 1u) != 0u, cap = (seg_ids.y & 2u) != 0u, steep = abs(run.y) > abs(run.x);
     float s = 1.0;
     if (at == run) {
         if (!cap) discard;

@@ -10,6 +10,7 @@
 #include "fiblets/segments/clipped_segment.glsl"
 #include "fiblets/segments/joint.glsl"
 #include "fiblets/attributes/tangent.glsl"
+#include "page/far_tile_size.glsl"
 #include "page/segment_varyings.glsl"
 
 const int ROW_BITS = 12;
@@ -51,6 +52,20 @@ float value_of(uint point) {
 }
 #endif
 
+uniform highp usampler2D far_tiles;    // r32ui, by far_tiles.frag; a whole picture of 1.0 where nothing is known
+
+// Whether all pixels of a piece, which takes at most two tiles by two, are nearer than it.
+bool hidden(ClippedSegment piece) {
+    vec2 reach = vec2(half_line_width > 0.0 ? half_line_width + 1.0 : 0.0), low = min(piece.a.xy, piece.b.xy) - reach, high = max(piece.a.xy, piece.b.xy) + reach;
+    ivec2 last = textureSize(far_tiles, 0) - 1;
+    ivec2 from = clamp(ivec2(low) / FAR_TILE, ivec2(0), last), to = clamp(ivec2(high) / FAR_TILE, ivec2(0), last);
+    if (any(greaterThan(to - from, ivec2(1)))) return false;
+    uint farthest = max(max(texelFetch(far_tiles, from, 0).x, texelFetch(far_tiles, to, 0).x),
+                        max(texelFetch(far_tiles, ivec2(from.x, to.y), 0).x, texelFetch(far_tiles, ivec2(to.x, from.y), 0).x));
+    // A pixel's depth may be a little beyond those of the ends (thin_line_rule.glsl).
+    return min(piece.a.z, piece.b.z) - abs(piece.b.z - piece.a.z) > uintBitsToFloat(farthest);
+}
+
 void main() {
     int index = SPRITES ? gl_VertexID : gl_InstanceID, place = first_item + index / share_size;
     uvec4 item = texelFetch(items, ivec2(place & ((1 << ROW_BITS) - 1), place >> ROW_BITS), 0);
@@ -76,9 +91,11 @@ void main() {
 #endif
     vec3 from = uintBitsToFloat(slot_from.xyz), to = uintBitsToFloat(slot_to.xyz);
     ClippedSegment piece;
-    if (!piece_of(from, to, start, cap, piece)) return;
+    if (!piece_of(from, to, start, cap, piece) || hidden(piece)) return;
 
-    seg_ids = uvec4(item.x | layer, slot_from.w, slot_to.w, (piece.start ? 1u : 0u) | (piece.cap ? 2u : 0u));
+    seg_ids = uvec2(item.x | layer, (piece.start ? 1u : 0u) | (piece.cap ? 2u : 0u));
+    seg_tangent = unpacked_tangent(slot_from.w);
+    seg_tangent_to = unpacked_tangent(slot_to.w);
     seg_start = piece.a;
     seg_end = piece.b;
     seg_along = vec4(piece.t0, piece.t1, values);
@@ -102,9 +119,10 @@ void main() {
     vec2 along = size > 0.0 ? run / size : vec2(1.0, 0.0), across = vec2(-along.y, along.x);
     if (size == 0.0 && !piece.cap) return;
     if (SPRITES) {
-        vec2 size = abs(run) + 1.0;
-        gl_PointSize = max(size.x, size.y);
-        gl_Position = vec4((p + q - 2.0 * CELL_SHIFT) / viewport - 1.0, 0.0, 1.0);
+        // As many pixels as the line has, from its first one on.
+        float pixels = max(abs(run.x), abs(run.y)) + (piece.cap ? 1.0 : 0.0);
+        gl_PointSize = pixels;
+        gl_Position = vec4(2.0 * (p - CELL_SHIFT + 0.5 * (pixels - 1.0) * sign(run + 1e-3)) / viewport - 1.0, 0.0, 1.0);
         return;
     }
     const float reach = 0.75;

@@ -4,7 +4,9 @@
 #define VARYING flat out
 #endif
 
-VARYING uvec4 seg_ids;     // streamline and layer; tangent at the start; at the end; 1: the line starts here, 2: it ends here
+VARYING uvec2 seg_ids;     // streamline and layer; 1: the line starts here, 2: it ends here
+VARYING vec3 seg_tangent;  // at the start
+VARYING vec3 seg_tangent_to;
 VARYING vec4 seg_start;    // of the part that is drawn: window x, y; depth; clip w
 VARYING vec4 seg_end;
 VARYING vec4 seg_along;    // t at both ends; values at the points

@@ -8,6 +8,8 @@ import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkPlane
 
 import pvfiblets
+from pvfiblets.page.scene import PageScene, fiblet_layer
+from pvfiblets.page.writing import write_page
 from pvfiblets.synthetic import brain_streamlines
 from tests.page.pages import differing
 
@@ -143,3 +145,25 @@ def test_surfaces_hide_lines_and_are_hidden(plotter, fiblets, visit, tmp_path):
     wrong, drawn = differing(visit(tmp_path / "figure.html").picture(), expected)
     assert drawn > 0.2
     assert wrong < 0.02  # of which most are edges of surfaces
+
+
+@pytest.mark.parametrize("width", [1.0, 3.0])
+def test_lines_that_others_hide_are_left_out_and_no_pixel_with_them(width, visit, tmp_path):
+    """From far, from near, and from within, where lines pass the eye on both sides."""
+    scene = PageScene("Dense")
+    fiblets = pvfiblets.compress(brain_streamlines(600, seed=3))
+    fiblet_layer(scene, fiblets, line_width=width, matrix=np.diag([1.5, -1.0, 1.0, 1.0]))
+    page = visit(write_page(scene, tmp_path / "figure.html")[0])
+    drawn = "[pvfiblets.change(), pvfiblets.settled()][1]"
+    hides = """pvfiblets.lines[0].set.blocks.reduce((sum, block) => sum + block.likelies / block.items, 0)
+               / pvfiblets.lines[0].set.blocks.length"""
+    for nearer in (1.0, 2.0, 10.0):
+        page.page.evaluate(f"pvfiblets.camera.dolly({nearer}), pvfiblets.camera.rotate(0.1, 0)")
+        for _ in range(2):  # at first by what was seen from elsewhere
+            page.page.evaluate(f"pvfiblets.few = 0, {drawn}")
+        found, hidden = page.picture(), page.page.evaluate(hides)
+        page.page.evaluate(f"pvfiblets.few = 1e9, {drawn}")
+        wrong, covered = differing(found, page.picture())
+        assert covered > 0.1
+        assert wrong < 1e-3  # of two lines at the same depth either may be drawn
+        assert 0.0 < hidden < 0.98

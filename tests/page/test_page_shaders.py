@@ -19,6 +19,7 @@ PAIRS = [
     ("page/surface.vert", "page/surface.frag"),
     ("page/image.vert", "page/image.frag"),
     ("page/screen.vert", "page/tile_mask.frag"),
+    ("page/screen.vert", "page/far_tiles.frag"),
     ("page/tiles.vert", "page/resolve.frag"),
     ("page/tiles.vert", "effects/picture/antialias_coverage.frag"),
 ]
