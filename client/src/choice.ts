@@ -7,7 +7,7 @@ import type { Control } from "./scene";
 /** Of one set: those of the figure, within all ranges, regions and groups that the reader has set. */
 export class Choice {
   private ranges = new Map<string, { values: Float32Array; low: number; high: number; whole: [number, number] }>();
-  readonly regions = new Map<Region, Uint8Array>();
+  readonly regions = new Map<Region, { through: Uint8Array; blocks: number }>();  // of the set's first blocks
   readonly hidden = new Set<Uint32Array>();  // groups
   groups: Uint32Array[] = [];
 
@@ -27,6 +27,12 @@ export class Choice {
     this.apply();
   }
 
+  /** Find which streamlines pass through a region; of one that was looked at, among those alone that have come since. */
+  look(region: Region, again: boolean): void {
+    const { set, model } = this.lines, known = again ? this.regions.get(region) : undefined;
+    this.regions.set(region, { through: set.through(region, model, known?.blocks, known?.through), blocks: set.blocks.length });
+  }
+
   apply(): void {
     const active = [...this.ranges.values()].filter((range) => range.low > range.whole[0] || range.high < range.whole[1]);
     const regions = [...this.regions].filter(([region]) => region.on);
@@ -38,7 +44,7 @@ export class Choice {
         const eps = 1e-6 * (range.whole[1] - range.whole[0]);
         keep = keep && range.values[i] >= range.low - eps && range.values[i] <= range.high + eps;
       }
-      for (const [region, through] of regions) keep = keep && (through[i] !== 0) !== region.inverted;
+      for (const [region, { through }] of regions) keep = keep && (through[i] !== 0) !== region.inverted;
       kept[i] = keep && grouped[i] ? 1 : 0;
     }
     this.keep(kept);

@@ -98,6 +98,7 @@ export class Controls {
     over.append(this.orientation());
     renderer.restored = () => { for (const choice of this.choices.values()) choice.apply(); };
     renderer.presented = () => this.follow();
+    renderer.grown = () => this.grown();
     this.follow();
   }
 
@@ -268,7 +269,14 @@ export class Controls {
   /** Find which streamlines pass through a region, where it is on and was not there before. */
   private update(region: Region): void {
     if (!this.regions.includes(region)) return;
-    for (const lines of this.renderer.lines) this.choiceOf(lines).regions.set(region, lines.set.through(region, lines.model));
+    for (const lines of this.renderer.lines) this.choiceOf(lines).look(region, false);
+    this.choose();
+  }
+
+  /** Streamlines have come: find those of them that pass through regions. */
+  private grown(): void {
+    if (!this.regions.length) return;
+    for (const choice of this.choices.values()) for (const region of this.regions) choice.look(region, true);
     this.choose();
   }
 

@@ -73,6 +73,11 @@ export function asWords(data: Uint8Array | Uint16Array): Uint32Array {
   return new Uint32Array(all.buffer);
 }
 
+/** An array of codes of 8 or 16 bits. */
+export function asCodes(data: Uint8Array, bits: 8 | 16): Uint8Array | Uint16Array {
+  return bits === 8 ? data : new Uint16Array(data.slice().buffer);
+}
+
 export class FibletSet {
   readonly blocks: Block[] = [];       // that can be drawn
   readonly streamlines: number;
@@ -269,11 +274,22 @@ export class FibletSet {
   pointValues(name: string): PointValues {
     const said = this.archive.header.per_point?.[name], array = said && this.archive.arrays.get(said.member);
     if (!array || array.data.length !== this.points) throw new FileError(`The file has no values ${name} for its points.`);
-    const wide = array.data instanceof Uint16Array, top = wide ? 65535 : 255, format = wide ? "r16ui" : "r8ui", data = array.data as Uint8Array;
+    return this.codedValues(name, array.data as Uint8Array | Uint16Array, said);
+  }
+
+  /** Values for each point of the set, by their codes and what the least and the greatest one is. */
+  codedValues(name: string, data: Uint8Array | Uint16Array, { lo, hi }: { lo: number; hi: number }): PointValues {
+    if (data.length !== this.points) throw new FileError(`The values ${name} are not those of the file's points.`);
+    const wide = data instanceof Uint16Array, top = wide ? 65535 : 255, format = wide ? "r16ui" : "r8ui";
     const texture = emptyRows(this.gl, format, this.points, "values of points");
     this.values.push({ texture, format, data });
     fillRows(this.gl, texture, format, data, 0, this.countBefore(this.done, 2));
-    return { name, texture, code: [said.lo, (said.hi - said.lo) / (top - 1), top] };
+    return { name, texture, code: [lo, (hi - lo) / (top - 1), top] };
+  }
+
+  forget({ texture }: PointValues): void {
+    this.values = this.values.filter((one) => one.texture !== texture);
+    this.gl.deleteTexture(texture);
   }
 
   private decoder(): Program {
@@ -459,9 +475,9 @@ export class FibletSet {
   }
 
   /** Go through decoded fiblets, from the graphics card: a streamline, and its points in local mm, and a word, four numbers each. */
-  private *decoded(wanted: (block: Block) => boolean): Generator<[number, Float32Array, boolean]> {
+  private *decoded(wanted: (block: Block) => boolean, from = 0): Generator<[number, Float32Array, boolean]> {
     const a = this.toItems;
-    for (const block of this.blocks) {
+    for (const block of this.blocks.slice(from)) {
       if (!wanted(block)) continue;
       const slots = this.slotsOf(block);
       for (let item = block.firstItem; item < block.firstItem + block.items; ++item) {
@@ -493,14 +509,14 @@ export class FibletSet {
     return found;
   }
 
-  /** Of each streamline 1 where some segment of it, moved by `model`, meets a region, else 0. */
-  through(region: Region, model: Mat): Uint8Array {
-    const kept = new Uint8Array(this.streamlines), { at, size } = region;
+  /** Of each streamline 1 where some segment of it, moved by `model`, meets a region, else 0; of the blocks from `from` on, beside what is known. */
+  through(region: Region, model: Mat, from = 0, kept: Uint8Array = new Uint8Array(this.streamlines)): Uint8Array {
+    const { at, size } = region;
     const near = ({ bounds: b }: Block): boolean => {
       const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => apply(model, [b[i & 1], b[2 + ((i >> 1) & 1)], b[4 + (i >> 2)]]));
       return [0, 1, 2].every((axis) => corners.some((c) => c[axis] >= at[axis] - size[axis]) && corners.some((c) => c[axis] <= at[axis] + size[axis]));
     };
-    for (const [id, p] of this.decoded(near)) {
+    for (const [id, p] of this.decoded(near, from)) {
       if (kept[id]) continue;
       let from = within(region, apply(model, this.world(p, 0)));
       for (let i = 0; i < p.length && !kept[id]; i += 4) {

@@ -8,7 +8,7 @@
 import type { Archive } from "./archive";
 import { Bounds, Camera, Mat, Vec, apply, identity, inverse, linear, product } from "./camera";
 import { fromBase64 } from "./engine";
-import { Block, FibletSet, PointValues, asWords } from "./fiblets";
+import { Block, FibletSet, PointValues, asCodes, asWords } from "./fiblets";
 import { GL, GraphicsError, Program, UniformBlock, framebuffer, lookUpTable, rows, target } from "./gl";
 import type { FarDepths } from "./hiding";
 import type { FibletLayer, Scene } from "./scene";
@@ -45,7 +45,8 @@ export class Lines {
     this.set.advance(archive.ready);
     this.model = new Float64Array(layer.matrix ?? identity());
     const { colours } = layer;
-    if (colours.values !== undefined) this.values = this.set.pointValues(colours.values);
+    if (colours.codes) this.values = this.set.codedValues(colours.values!, asCodes(data[colours.codes.data], colours.codes.bits), colours.codes);
+    else if (colours.values !== undefined) this.values = this.set.pointValues(colours.values);
     if (colours.data !== undefined) this.colours = rows(gl, "rgba8", data[colours.data], "colours");
     if (colours.table !== undefined) [this.table, this.tableRange] = lookUpTable(gl, fromBase64(colours.table), colours.clim!, !!colours.log);
     if (layer.kept !== undefined) this.keep(data[layer.kept]);
@@ -55,7 +56,8 @@ export class Lines {
 
   /** Give back all but the set. */
   release(): void {
-    for (const texture of [this.values?.texture, this.colours, this.table, this.kept, this.chosen, this.keptPoints]) if (texture) this.gl.deleteTexture(texture);
+    if (this.values) this.set.forget(this.values);
+    for (const texture of [this.colours, this.table, this.kept, this.chosen, this.keptPoints]) if (texture) this.gl.deleteTexture(texture);
   }
 
   get byPoint(): boolean {
@@ -102,6 +104,7 @@ export class Renderer {
   failed: ((error: Error) => void) | null = null;
   drawnOnce: (() => void) | null = null;
   presented: (() => void) | null = null;
+  grown: (() => void) | null = null;     // more streamlines are there
   finished: (() => void) | null = null;  // a picture at rest
 
   private gl: GL;
@@ -224,6 +227,7 @@ export class Renderer {
       }
       if (!frame) this.change();
       else if (!this.dirty) this.frame = frame;
+      this.grown?.();
     });
     this.schedule();
   }

@@ -90,6 +90,8 @@ class PageScene:
         Whether letters say where left, right, front, back, top and bottom are.
     antialias : bool
         Whether edges of lines are smooth.
+    values_apart : bool
+        Whether values of points are blobs of their own, and no part of the sets: other ones are then sent alone.
     """
 
     title: str
@@ -102,6 +104,7 @@ class PageScene:
     bounds: Bounds = (np.inf, -np.inf, np.inf, -np.inf, np.inf, -np.inf)
     letters: bool = False
     antialias: bool = True
+    values_apart: bool = False
 
     def add_blob(self, data: bytes | npt.NDArray[Any]) -> int:
         """Keep some bytes and return their number."""

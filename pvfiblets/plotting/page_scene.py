@@ -22,6 +22,7 @@ from pvfiblets.mappers.line_light import LineLight
 from pvfiblets.mappers.scene import to_array, world_planes
 from pvfiblets.page.scene import CameraPlace, Light, PageScene, encoded, fiblet_layer
 from pvfiblets.plotting.page_surfaces import add_image, add_surface, reflects_of
+from pvfiblets.plotting.slices.plane import prepare
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -104,6 +105,7 @@ def add_all(scene: PageScene, plotter: Any, *, controls: bool = True) -> tuple[l
         Of the actors that the layers are.
     """
     renderer = plotter.renderer
+    prepare(renderer)  # slices have their colours from then on
     scene.background = _background(renderer)
     unable: list[str] = []
     names: list[str] = []
@@ -273,8 +275,15 @@ def _colours(scene: PageScene, fiblets: Any, colouring: Colouring) -> tuple[Any,
         fiblets, name = scene.once(
             ("values", bare, colouring.source), lambda: with_values(bare, colouring.source)
         )
-        said = {"mode": "value", "values": name, "table": encoded(colouring.table()), "clim": colouring.clim}
-        return fiblets, {**said, "log": colouring.log_scale}, (name,)
+        said: dict[str, Any] = {"mode": "value", "values": name, "table": encoded(colouring.table())}
+        said |= {"clim": colouring.clim, "log": colouring.log_scale}
+        if not scene.values_apart:
+            return fiblets, said, (name,)
+        values = fiblets.per_point[name]
+        codes = scene.once(("codes", fiblets, name), lambda: np.asarray(values.codes).tobytes())
+        bits = 8 * values.codes.dtype.itemsize
+        said["codes"] = {"data": scene.add_blob(codes), "bits": bits, "lo": values.lo, "hi": values.hi}
+        return bare, said, ()
     if mode == "point_packed":
         from pvfiblets.plotting.page_values import colours
 

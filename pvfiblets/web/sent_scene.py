@@ -118,7 +118,7 @@ class _Remade(PageScene):
     """A scene of a page that takes over what an earlier one made of the same things."""
 
     def __init__(self, title: str, *, before: dict[tuple[Any, ...], tuple[tuple[Any, ...], Any]]) -> None:
-        super().__init__(title)
+        super().__init__(title, values_apart=True)
         self._before = before
         self.made: dict[tuple[Any, ...], tuple[tuple[Any, ...], Any]] = {}
 

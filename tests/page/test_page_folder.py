@@ -158,6 +158,28 @@ def test_streamlines_are_shown_as_they_come(kind, serve, visit, expected):
     assert (np.abs(picture - expected).max(axis=2) > 8).mean() < 0.02  # the camera is where it was, but for rounding
 
 
+def test_regions_choose_among_streamlines_that_come_later(serve, visit):
+    address, handler = serve(Slow, wait=True)
+    page = visit(f"{address}/figure.html").page
+    until(page, "pvfiblets.lines[0].set.blocks.length === 63")
+    page.click("#panel summary")
+    page.get_by_role("button", name="Add a ball").click()
+    page.get_by_label("Radius, mm").fill("20")
+    page.get_by_label("Radius, mm").evaluate("(slider) => slider.dispatchEvent(new Event('input'))")
+    until(page, "parseInt(document.getElementById('status').textContent) > 2000")
+    first = int(page.locator("#status").inner_text().split()[0])
+    handler.go_on.set()
+    until(page, "!pvfiblets.loading")
+    starts = np.random.default_rng(7).uniform(-40.0, 40.0, (SHORT, 3))
+    low, high = starts.min(axis=0), starts.max(axis=0) + (0.8, 0.1, 0.0)
+    radius = float(page.get_by_label("Radius, mm").input_value())
+    away = np.abs(starts + (0.4, 0.05, 0.0) - (low + high) / 2.0)
+    inside = np.linalg.norm(np.maximum(away - (0.4, 0.0, 0.0), 0.0), axis=1) <= radius  # as rods of 0.8 mm
+    last = int(page.locator("#status").inner_text().split()[0])
+    assert last == pytest.approx(inside.sum(), rel=0.01)
+    assert first < 0.96 * last
+
+
 def test_what_is_wrong_with_data_beside_a_page_is_said(serve, visit, folder, tmp_path):
     address, _ = serve(Ranged)
     data = folder / "figure_data" / "0.fiblets"

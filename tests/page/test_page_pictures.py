@@ -10,6 +10,7 @@ from vtkmodules.vtkCommonDataModel import vtkPlane
 import pvfiblets
 from pvfiblets.page.scene import PageScene, fiblet_layer
 from pvfiblets.page.writing import write_page
+from pvfiblets.plotting.page_scene import add_all, page_of
 from pvfiblets.synthetic import brain_streamlines
 from tests.page.pages import differing
 
@@ -65,6 +66,45 @@ def test_page_shows_what_the_engine_shows(case, plotter, fiblets, visit, tmp_pat
     wrong, drawn = differing(visit(tmp_path / "figure.html").picture(), expected)
     assert drawn > 0.2
     assert wrong < 0.01
+
+
+def test_values_that_are_sent_alone_colour_as_those_in_the_file_do(plotter, fiblets, visit, tmp_path):
+    """Both those that are stored, in 8 bits, and those that are computed, in 16."""
+    plotter.add_fiblets(fiblets, scalars="share", cmap="plasma", line_width=3.0)
+    plotter.add_fiblets(fiblets, scalars="curvature", user_matrix=np.diag([1.0, 1.0, 1.5, 1.0]))
+    apart = PageScene("Apart", values_apart=True)
+    add_all(apart, plotter)
+    apart.camera = page_of(plotter).camera
+    assert [layer["colours"]["codes"]["bits"] for layer in apart.layers] == [8, 16]
+    page = visit(write_page(apart, tmp_path / "apart.html")[0])
+    expected = visit(plotter.fiblets.export_page(tmp_path / "figure.html")[0]).picture()
+    assert (expected != 255).any(axis=2).mean() > 0.1
+    np.testing.assert_array_equal(page.picture(), expected)
+
+
+def test_slices_of_images_and_scales_are_shown_before_anything_was_drawn(plotter, fiblets, visit, tmp_path):
+    values = np.zeros((40, 40, 40), np.float32)
+    values[:20] = 1.0
+    values[:, :20] += 2.0
+    affine = np.array([[2, 0, 0, -40], [0, 2, 0, -40], [0, 0, 2, -40], [0, 0, 0, 1]], float)
+    plotter.add_slices((values, affine), planes="axial", clim=(0.0, 3.0), cmap="viridis")
+    plotter.add_fiblets(fiblets, scalars="number", cmap="plasma", clim=(0.0, 150.0))
+    plotter.view_xy()
+    page = visit(plotter.fiblets.export_page(tmp_path / "figure.html")[0])
+    assert [layer["kind"] for layer in page.page.evaluate("pvfiblets.scene.layers")] == ["image", "fiblets"]
+    page.page.evaluate("pvfiblets.scene.layers[1].visible = false, pvfiblets.change()")
+    picture = page.picture()
+    for x, y, colour in (  # matplotlib's viridis at 0, 1/3, 2/3 and 1; the view is from above
+        (112, 56, (68, 1, 84)), (88, 56, (49, 104, 142)), (112, 80, (53, 183, 121)), (88, 80, (253, 231, 37)),
+    ):  # fmt: skip
+        assert np.abs(picture[y, x] - colour).max() <= 3
+    bar = page.page.locator(".bar")
+    assert bar.locator("figcaption").inner_text() == "number"
+    assert bar.locator(".ticks span").all_inner_texts() == ["0", "75", "150"]
+    ends = bar.locator("canvas").evaluate(
+        "(strip) => [0, strip.width - 1].map((x) => [...strip.getContext('2d').getImageData(x, 0, 1, 1).data])"
+    )
+    np.testing.assert_allclose(ends, [[13, 8, 135, 255], [240, 249, 33, 255]], atol=2)  # of matplotlib's plasma
 
 
 def test_page_cuts_moves_selects_and_leaves_out_as_the_actor_does(plotter, fiblets, visit, tmp_path):

@@ -44,6 +44,20 @@ def test_a_filter_and_a_selection_send_a_byte_for_each_streamline(scene):
     assert np.flatnonzero(np.frombuffer(selected.blobs[chosen], np.uint8)).tolist() == [3, 59]
 
 
+def test_colours_by_values_of_points_send_those_alone(scene):
+    layer = scene.open("lines.fiblets")
+    scenes = SentScenes(scene)
+    sent = [scenes.make()]
+    points = scene.actor(layer.id).fiblets.n_points
+    for name, size in (("fa", 1), ("curvature", 2), ("fa", 1)):
+        scene.set(layer.id, "scalars", name)
+        sent.append(scenes.make())
+        (values,) = sent[-1].blobs.keys() - sent[0].blobs.keys()
+        assert len(sent[-1].blobs[values]) == size * points
+        assert sent[0].blobs.keys() < sent[-1].blobs.keys()
+    assert sent[3].content == sent[1].content
+
+
 def test_bars_say_what_lines_are_coloured_by(scene):
     layer = scene.open("lines.fiblets")
     scene.set(layer.id, "scalars", "group")
