@@ -14,14 +14,13 @@ import pyvista as pv
 from pvfiblets.mappers.kept_views import KeptViews
 from pvfiblets.plotting.slices.contours import PaneContours
 from pvfiblets.plotting.slices.layer import SliceLayer
-from pvfiblets.plotting.slices.layouts import LAYOUTS, viewports
-from pvfiblets.plotting.slices.oblique import NAME as OBLIQUE
 from pvfiblets.plotting.slices.oblique import ObliqueSlice, add_oblique_slice
 from pvfiblets.plotting.slices.pane import Pane
 from pvfiblets.plotting.slices.pane_events import PaneEvents
+from pvfiblets.plotting.slices.pane_settings import PaneSettings, checked_settings
+from pvfiblets.plotting.slices.picking import picked_on_planes
 from pvfiblets.plotting.slices.plane import before_render, on_events, prepare
 from pvfiblets.plotting.slices.point_values import PointValues, streamlines_near, words_of
-from pvfiblets.plotting.slices.seams import show_seams
 from pvfiblets.plotting.slices.stack import SliceStack
 from pvfiblets.slices.frames import ORIENTATIONS
 
@@ -29,10 +28,8 @@ __all__ = ["PointValues", "Workspace"]
 
 Array = npt.NDArray[np.float64]
 
-CONVENTIONS = ("radiological", "neurological")
 
-
-class Workspace:
+class Workspace(PaneSettings):
     """Axial, coronal and sagittal panes and the 3-D view, linked by a cross-hair.
 
     ``plotter.slices.workspace(...)`` makes it. Its properties may be set at any time and show with the next render.
@@ -65,9 +62,7 @@ class Workspace:
         color: Any,
     ) -> None:
         # What is wrong with them is said before anything is shown.
-        _choice("convention", convention, CONVENTIONS)
-        _choice("layout", layout, LAYOUTS)
-        _length(thickness)
+        checked_settings(convention, layout, thickness)
         self._plotter = plotter  # a proxy
         self.slices = slices
         self._renderers = dict(renderers)
@@ -134,71 +129,6 @@ class Workspace:
         self.position = moved
 
     @property
-    def convention(self) -> str:
-        """``"radiological"``: the patient's right is on the left of the window; or ``"neurological"``.
-
-        Front is on the left of sagittal slices by the first, and on the right by the second.
-        """
-        return self._convention
-
-    @convention.setter
-    def convention(self, convention: str) -> None:
-        self._convention = _choice("convention", convention, CONVENTIONS)
-        for pane in self.panes.values():
-            pane.mirrored = convention == "radiological"
-
-    @property
-    def thickness(self) -> float:
-        """Of the slab about each slice whose streamlines are shown in its pane, mm."""
-        return self.panes["axial"].thickness
-
-    @thickness.setter
-    def thickness(self, thickness: float) -> None:
-        found = _length(thickness)
-        for pane in self.panes.values():
-            pane.thickness = found
-        self._contours.forget()
-
-    @property
-    def layout(self) -> str:
-        """Which views are shown, and where.
-
-        ``"grid"``, ``"row"``, ``"beside"`` (the 3-D view and, small, three slices: below it in a window that is higher
-        than wide), or one of ``"3d"``, ``"axial"``,
-        ``"coronal"``, ``"sagittal"`` and, if it has a pane, ``"oblique"`` alone.
-        """
-        return self._layout
-
-    @layout.setter
-    def layout(self, layout: str) -> None:
-        found = _choice("layout", layout, LAYOUTS)
-        if found == OBLIQUE and not self._has_oblique_pane:
-            raise ValueError('layout is "oblique", and there is no such pane; call workspace.add_oblique() first')
-        self._layout = found
-        self.arrange()
-
-    @property
-    def _has_oblique_pane(self) -> bool:
-        return self.oblique is not None and self.oblique.pane is not None and self.oblique.visible
-
-    @property
-    def _places(self) -> Mapping[str, tuple[float, float, float, float]]:
-        """Where views are that are shown; the layout of a pane that is not is ``"beside"``."""
-        width, height = self._plotter.window_size
-        there = self._has_oblique_pane
-        layout = "beside" if self._layout == OBLIQUE and not there else self._layout
-        return viewports(layout, width / max(height, 1), oblique=there)
-
-    def arrange(self, *_: Any) -> None:
-        """Lay views out as it suits the window, which may have another shape now."""
-        places = self._places
-        for name, renderer in self._renderers.items():
-            renderer.SetDraw(name in places)
-            renderer.SetInteractive(name in places)
-            renderer.SetViewport(*places.get(name, (0.0, 0.0, 0.001, 0.001)))
-        show_seams(self._plotter, places.values())
-
-    @property
     def active(self) -> SliceLayer:
         """The layer whose window the right button changes; the lowest until another is set."""
         if self._active is None or self._active not in self.slices.layers:
@@ -211,16 +141,6 @@ class Workspace:
         if found not in self.slices.layers:
             raise ValueError(f"active is {layer!r}, which is no layer of the workspace")
         self._active = found
-
-    @property
-    def cross_hair(self) -> bool:
-        """Whether the panes show the cross-hair."""
-        return self.panes["axial"].cross_hair
-
-    @cross_hair.setter
-    def cross_hair(self, shown: bool) -> None:
-        for pane in self.panes.values():
-            pane.cross_hair = shown
 
     @property
     def told(self) -> bool:
@@ -411,27 +331,7 @@ class Workspace:
 
     def picked_in_view(self, x: float, y: float) -> Array | None:
         """Return the position of the slice that a pixel of the 3-D view shows; None if it shows none."""
-        renderer = self._renderers["3d"]
-        ends = []
-        for depth in (0.0, 1.0):
-            renderer.SetDisplayPoint(x, y, depth)
-            renderer.DisplayToWorld()
-            point = np.array(renderer.GetWorldPoint())
-            ends.append(point[:3] / point[3])
-        near, ray = ends[0], ends[1] - ends[0]
-        hits = []
-        for plane in self.slices:
-            pixels, grid = plane.actor.pixels, plane.grid
-            across = float(ray @ plane.normal)
-            if not plane.visible or grid is None or pixels is None or across == 0.0:
-                continue
-            share = float((plane.origin - near) @ plane.normal) / across
-            hit = near + share * ray
-            at = hit - grid.corner
-            i, j = int(at @ grid.along // (grid.along @ grid.along)), int(at @ grid.up // (grid.up @ grid.up))
-            if 0 <= i < pixels.shape[1] and 0 <= j < pixels.shape[0] and pixels[j, i, 3] and share > 0.0:
-                hits.append((share, hit))
-        return min(hits, key=lambda one: one[0])[1] if hits else None
+        return picked_on_planes(self._renderers["3d"], self.slices, x, y)
 
     def pane_at(self, x: float, y: float) -> Pane | None:
         """Return the pane of a pixel of the window; None if it is none's."""
@@ -467,19 +367,6 @@ class Workspace:
         for pane in self.panes.values():
             pane.remove()
         self.slices.remove()
-
-
-def _choice(name: str, given: str, choices: tuple[str, ...]) -> str:
-    if given not in choices:
-        raise ValueError(f"{name} is {given!r}; choose one of {choices}")
-    return given
-
-
-def _length(thickness: Any) -> float:
-    found = float(thickness) if isinstance(thickness, (int, float, np.number)) else np.nan
-    if not 0.0 < found < np.inf:
-        raise ValueError(f"thickness is {thickness!r}; give a length above 0, mm")
-    return found
 
 
 def _weakly(method: Callable[[], None]) -> Callable[[], None]:
