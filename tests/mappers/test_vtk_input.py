@@ -1,4 +1,4 @@
-"""Mappers as VTK's own code uses them: connected, given to actors by SetMapper, coloured by vtkMapper's settings."""
+"""Mappers as VTK's own code uses them: connected, given to actors by SetMapper, copied and followed."""
 
 from __future__ import annotations
 
@@ -7,124 +7,20 @@ import weakref
 
 import numpy as np
 import pytest
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkLookupTable, vtkPoints, vtkVariant
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkImageData, vtkPolyData
+from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkCommonExecutionModel import vtkTrivialProducer
 from vtkmodules.vtkCommonTransforms import vtkTransform
 from vtkmodules.vtkFiltersCore import vtkAppendPolyData, vtkContourFilter, vtkTubeFilter
 from vtkmodules.vtkFiltersGeneral import vtkTransformFilter
 from vtkmodules.vtkFiltersSources import vtkLineSource, vtkSphereSource
-from vtkmodules.vtkRenderingCore import (
-    vtkActor,
-    vtkColorTransferFunction,
-    vtkPolyDataMapper,
-    vtkRenderer,
-    vtkRenderWindow,
-    vtkWindowToImageFilter,
-)
+from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper
 
 from pvfiblets.codec.compress import compress
 from pvfiblets.mappers import Colouring, FibletMapper, HaloMapper, TubeMapper, VolumeMapper
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.volumes.raycast_options import RaycastOptions
 
-SIZE = (220, 180)
-
-
-def ring(turn: float, points: int = 120) -> np.ndarray:
-    """Return a curve about 40 mm across, around the origin."""
-    t = np.linspace(0, 5, points) + turn
-    return np.c_[20 * np.cos(t), 20 * np.sin(t), 6 * t - 15 - 6 * turn + 4 * np.sin(9 * turn)]
-
-
-CURVES = [ring(0.3 * i) for i in range(12)]
-
-
-def lines(curves=CURVES) -> vtkPolyData:
-    """Return curves as VTK's own poly-lines, with an array of each kind."""
-    data, points, cells = vtkPolyData(), vtkPoints(), vtkCellArray()
-    data.SetVerts(vtkCellArray())
-    data.GetVerts().InsertNextCell(1, (0,))  # cell data of the lines begin after it
-    for curve in curves:
-        first = points.GetNumberOfPoints()
-        for point in curve:
-            points.InsertNextPoint(point)
-        cells.InsertNextCell(len(curve), range(first, first + len(curve)))
-    data.SetPoints(points)
-    data.SetLines(cells)
-    places = np.concatenate(curves)
-    add(data.GetPointData(), "height", places[:, 2])
-    add(data.GetPointData(), "place", places)
-    add(data.GetPointData(), "label", np.digitize(places[:, 0], [-10, 10]).astype(float))
-    number = np.arange(len(curves) + 1.0)
-    add(data.GetCellData(), "number", number)
-    add(data.GetCellData(), "tint", (np.c_[number, number[::-1], number * 0] * 255 / len(curves)).astype(np.uint8))
-    add(data.GetPointData(), "tints", np.uint8(np.clip(places * 6 + 128, 0, 255)))
-    return data
-
-
-def add(attributes, name, values):
-    array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
-    array.SetName(name)
-    attributes.AddArray(array)
-
-
-def scene(mapper, prepare=None) -> vtkRenderWindow:
-    """Return a window whose only holder is the caller: actor and renderer are VTK's."""
-    actor = vtkActor()
-    actor.SetMapper(mapper)
-    actor.GetProperty().LightingOff()
-    if prepare:
-        prepare(actor)
-    renderer = vtkRenderer()
-    renderer.AddActor(actor)
-    window = vtkRenderWindow()
-    window.SetOffScreenRendering(True)
-    window.SetMultiSamples(0)
-    window.SetSize(SIZE)
-    window.AddRenderer(renderer)
-    renderer.GetActiveCamera().SetPosition(60, -70, 50)
-    renderer.GetActiveCamera().SetViewUp(0, 0, 1)
-    renderer.ResetCameraClippingRange()
-    return window
-
-
-def shot(window) -> np.ndarray:
-    """Return a window's picture, (height, width, 3)."""
-    grabber = vtkWindowToImageFilter()
-    grabber.SetInput(window)
-    grabber.ReadFrontBufferOff()
-    grabber.Update()
-    values = vtk_to_numpy(grabber.GetOutput().GetPointData().GetScalars())
-    return values.reshape(*SIZE[::-1], -1)[::-1].astype(int)
-
-
-def drawn(mapper, prepare=None) -> np.ndarray:
-    window = scene(mapper, prepare)
-    image = shot(window)
-    window.Finalize()
-    return image
-
-
-def alike(ours, theirs, tools, *, share=0.97, colours=25):
-    """Compare two pictures: the same pixels but for neighbours, and in those of both the same colours."""
-    assert tools.agreement(ours.any(axis=-1), theirs.any(axis=-1)) > share
-    both = ours.any(axis=-1) & theirs.any(axis=-1)
-    apart = np.abs(ours - theirs)[both].max(axis=-1)
-    assert np.percentile(apart, 80) <= colours  # where lines cross another one may be in front
-
-
-def vtks(data, settle=lambda mapper: None, prepare=None):
-    mapper = vtkPolyDataMapper()
-    mapper.SetInputData(data)
-    settle(mapper)
-    return drawn(mapper, prepare)
-
-
-def wide(actor):
-    actor.GetProperty().SetLineWidth(3)
-    actor.GetProperty().SetColor(1.0, 0.5, 0.2)
+from .vtk_lines import CURVES, alike, ball, drawn, lines, rainbow, scene, shot, vtks, wide
 
 
 def test_set_mapper_is_enough(tools):
@@ -198,110 +94,6 @@ def test_what_changes_upstream_is_taken_up_at_the_next_render():
     window.Finalize()
 
 
-def rainbow(mapper):
-    mapper.SetScalarModeToUsePointFieldData()
-    mapper.SelectColorArray("height")
-    mapper.SetScalarRange(-20, 20)
-
-
-def logarithm(mapper):
-    table = vtkLookupTable()
-    table.SetScaleToLog10()
-    table.SetTableRange(1, 40)
-    table.SetUseBelowRangeColor(True)
-    table.SetBelowRangeColor(1, 0, 1, 1)
-    mapper.SetScalarModeToUsePointFieldData()
-    mapper.SelectColorArray("height")
-    mapper.SetLookupTable(table)
-    mapper.UseLookupTableScalarRangeOn()
-
-
-def function(mapper):
-    table = vtkColorTransferFunction()
-    for place, colour in ((-20, (1, 0, 0)), (0, (1, 1, 1)), (20, (0, 0, 1))):
-        table.AddRGBPoint(place, *colour)
-    mapper.SetScalarModeToUsePointFieldData()
-    mapper.SelectColorArray("height")
-    mapper.SetLookupTable(table)
-
-
-def magnitude(mapper):
-    rainbow(mapper)
-    mapper.SelectColorArray("place")
-    mapper.GetLookupTable().SetVectorModeToMagnitude()
-    mapper.SetScalarRange(18, 25)
-
-
-def component(mapper):
-    mapper.SetScalarModeToUsePointFieldData()
-    mapper.ColorByArrayComponent("place", 1)
-    mapper.SetScalarRange(-20, 20)
-
-
-def by_cells(mapper):
-    mapper.SetScalarModeToUseCellFieldData()
-    mapper.SelectColorArray("number")
-    mapper.SetScalarRange(0, 12)
-
-
-def tints(mapper):
-    mapper.SetScalarModeToUseCellFieldData()
-    mapper.SelectColorArray("tint")
-
-
-def hidden(mapper):
-    mapper.SetScalarModeToUsePointFieldData()
-    mapper.SelectColorArray("height")
-    mapper.ScalarVisibilityOff()
-
-
-def labels(mapper):
-    table = vtkLookupTable()
-    table.IndexedLookupOn()
-    table.SetNumberOfTableValues(3)
-    for i, colour in enumerate(((1, 0, 0, 1), (0, 1, 0, 1), (0, 0, 1, 1))):
-        table.SetAnnotation(vtkVariant(i), str(i))
-        table.SetTableValue(i, *colour)
-    mapper.SetScalarModeToUsePointFieldData()
-    mapper.SelectColorArray("label")
-    mapper.SetLookupTable(table)
-
-
-COLOURS = (labels, rainbow, logarithm, function, magnitude, component, by_cells, tints, hidden)
-
-
-@pytest.mark.parametrize("settle", COLOURS)
-def test_colours_are_those_of_vtks_mapper(settle, tools):
-    data = lines()
-    mapper = FibletMapper()
-    mapper.SetInputData(data)
-    settle(mapper)
-    ours = drawn(mapper, wide)
-    mapper.raise_pending()
-    alike(ours, vtks(data, settle, wide), tools)
-
-
-@pytest.mark.parametrize("make", [TubeMapper, HaloMapper])
-def test_tubes_and_halos_are_coloured_point_by_point(make, tools):
-    """Of the nearest pixels of VTK's lines: tubes and strips have widths of their own."""
-    data = lines()
-
-    def tinted(mapper):
-        mapper.SetScalarModeToUsePointFieldData()
-        mapper.SelectColorArray("tints")
-
-    mapper = make()
-    mapper.SetInputData(data)
-    for settle in (tinted, rainbow, by_cells):
-        settle(mapper)
-        ours, theirs = drawn(mapper), vtks(data, settle)
-        both = (ours.max(axis=-1) > 90) & (theirs.max(axis=-1) > 90)
-        assert both.sum() > 500
-        hues = [image[both] / image[both].max(axis=-1, keepdims=True) for image in (ours, theirs)]
-        assert np.percentile(np.abs(hues[0] - hues[1]).max(axis=-1), 70) <= 0.12, settle.__name__
-    mapper.raise_pending()
-
-
 def test_tubes_cover_what_vtks_tube_filter_covers(tools):
     data = lines()
     mapper = TubeMapper(shape={"radius": 1.0})
@@ -332,16 +124,6 @@ def test_halos_have_the_color_of_the_background(tools):
     assert (seen[:, 2] == 0).all()  # yellow or black, no white
 
 
-def ball() -> vtkImageData:
-    axis = np.arange(-12.0, 13.0)
-    values = 12.0 - np.sqrt(axis[:, None, None] ** 2 + axis[:, None] ** 2 + axis**2)
-    image = vtkImageData()
-    image.SetDimensions(25, 25, 25)
-    image.SetOrigin(-12, -12, -12)
-    image.GetPointData().SetScalars(numpy_to_vtk(values.ravel(order="F"), deep=True))
-    return image
-
-
 def test_a_surface_of_an_image_covers_what_vtks_contour_covers(tools):
     image = ball()
     mapper = VolumeMapper(casting=RaycastOptions("isosurface", (5.0,)))
@@ -356,18 +138,6 @@ def test_a_surface_of_an_image_covers_what_vtks_contour_covers(tools):
     theirs.ScalarVisibilityOff()
     alike(drawn(mapper, wide), drawn(theirs, wide), tools)
     mapper.raise_pending()
-
-
-def test_peaks_of_an_image_have_the_colours_of_the_look_up_table():
-    """The ray through the middle of the ball meets 12, the last of the range."""
-    mapper = VolumeMapper()
-    mapper.SetInputData(ball())
-    mapper.SetScalarRange(0, 12)
-    image = drawn(mapper)
-    mapper.raise_pending()
-    wanted = [0.0, 0.0, 0.0]
-    mapper.GetLookupTable().GetColor(12.0, wanted)
-    np.testing.assert_allclose(image[SIZE[1] // 2, SIZE[0] // 2] / 255, wanted, atol=0.03)
 
 
 def test_a_shallow_copy_draws_the_same_data():
@@ -422,24 +192,6 @@ def test_an_actor_that_gets_another_mapper_shows_that():
     held[0].SetMapper(mapper)
     assert shot(window).any()
     mapper.raise_pending()
-    window.Finalize()
-
-
-def test_translucent_colours_are_drawn_in_the_translucent_pass():
-    """Half of white on blue."""
-    table = vtkLookupTable()
-    table.SetNumberOfTableValues(1)
-    table.SetTableValue(0, 1, 1, 1, 0.5)
-    mapper = FibletMapper()
-    mapper.SetInputData(lines(CURVES[:1]))
-    rainbow(mapper)
-    mapper.SetLookupTable(table)
-    window = scene(mapper)
-    window.GetRenderers().GetFirstRenderer().SetBackground(0, 0, 1)
-    image = shot(window)
-    line = image[image[..., 0] > 0]
-    assert len(line) > 50
-    np.testing.assert_allclose(np.median(line, axis=0), (128, 128, 255), atol=3)
     window.Finalize()
 
 
