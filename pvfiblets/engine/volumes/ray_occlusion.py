@@ -126,7 +126,7 @@ class RayOcclusionPass(ScreenEffect):
             texture = self._target(_MEAN, buffer.size, "f2")
         elif _MEAN in self._targets:
             self._drop(_MEAN)
-            self._queries.pop(_MEAN, None)
+            self._timers.drop(_MEAN)
         read = {"surface_depth": buffer.depth, "surface_position": buffer.position}
 
         def bound(program: moderngl.Program, textures: Mapping[str, Any]) -> None:
@@ -142,9 +142,7 @@ class RayOcclusionPass(ScreenEffect):
             in_data = float(radius) * float(np.linalg.norm(turn, 2))
             for name, part in {"away": AWAY * in_data, "near": NEAR * in_data, "bend": BEND}.items():
                 program[name] = part * reach
-            if _MEAN not in self._queries:
-                self._queries[_MEAN] = self._ctx.query(time=True)
-            with self._queries[_MEAN]:
+            with self._timers.timed(_MEAN):
                 self._targets[_MEAN][1].use()
                 array.render(moderngl.TRIANGLES, vertices=3)
 
@@ -160,9 +158,7 @@ class RayOcclusionPass(ScreenEffect):
             bound(program, read)
             for name, value in uniforms.items():
                 program[name] = value
-            if _NAME not in self._queries:
-                self._queries[_NAME] = self._ctx.query(time=True)
-            with self._queries[_NAME]:
+            with self._timers.timed(_NAME):
                 target, limits = self._targets[_NAME][1], WorkLimits.of(self._ctx)
                 target.use()
                 target.clear()
