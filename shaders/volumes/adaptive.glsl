@@ -70,7 +70,7 @@ vec4 light_between(Look a, Look b, float mm) {
     vec3 c = colour_between(a.medium, b.medium, x);
     if (wide > places_per_entry) {
         // The rest of the entry that it begins in by itself: only from whole entries on is the table of segments exact.
-        float last = float(textureSize(media, 0).x - 1), size = float(textureSize(segments, 0).x);
+        float last = float(textureSize(media, 0).x - 1);
         float low = clamp(u_of(value_low), 0.0, last), high = clamp(u_of(value_high), 0.0, last);
         float entry = floor(a.u / places_per_entry) + 1.0;
         if (change < 0.0) entry = ceil(a.u / places_per_entry) - 1.0;
@@ -78,8 +78,7 @@ vec4 light_between(Look a, Look b, float mm) {
         Look turn = look_at(next);
         float head = mm * max(depth_between(a, turn) / change, 0.0), shown = min(opacity_of(head), alpha);
         vec2 ends = vec2(next, clamp(b.u, low, high)) / last;
-        vec2 place = (ends * (size - 1.0) + 0.5) / size;
-        vec4 whole = entry_at(segments, vec2(place.x, 0.5 * place.y));               // of the table of whole steps
+        vec4 whole = entry_at(segments, ends * float(textureSize(segments, 0).x - 1));        // of the table of whole steps
         vec3 rest = whole.a > 0.0 ? whole.rgb / whole.a : c;
         c = mix(rest, colour_between(a.medium, turn.medium, head), shown / max(alpha, 1e-30));
     }

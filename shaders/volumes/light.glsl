@@ -14,17 +14,18 @@
 uniform sampler2D colours;
 #include "volumes/shading.glsl"
 
-// Of a table, between its entries: by the hardware, unless it is too coarse.
-vec4 entry_at(sampler2D table, vec2 place) {
+// Of a table, between its entries, which are counted from 0: by the hardware, unless it is too coarse. Whole numbers give an entry
+// itself and nothing of its neighbours, on all cards: where the table is clear there is no light, as the octree has it.
+vec4 entry_at(sampler2D table, vec2 entry) {
 #if FEATURE_VOLUME_FETCHED
     ivec2 last = textureSize(table, 0) - 1;
-    vec2 p = clamp(place * vec2(last + 1) - 0.5, vec2(0.0), vec2(last));
+    vec2 p = clamp(entry, vec2(0.0), vec2(last));
     ivec2 a = ivec2(p), b = min(a + 1, last);
     vec2 x = p - vec2(a);
     return mix(mix(texelFetch(table, a, 0), texelFetch(table, ivec2(b.x, a.y), 0), x.x),
                mix(texelFetch(table, ivec2(a.x, b.y), 0), texelFetch(table, b, 0), x.x), x.y);
 #else
-    return textureLod(table, place, 0.0);
+    return textureLod(table, (entry + 0.5) / vec2(textureSize(table, 0)), 0.0);
 #endif
 }
 
@@ -32,8 +33,7 @@ float place_of(float value) { return clamp((value - transfer_low) / max(transfer
 
 vec4 medium_at(float value) {
     if (!(value >= value_low && value <= value_high)) return vec4(0.0);
-    float size = float(textureSize(colours, 0).x);
-    return entry_at(colours, vec2((place_of(value) * (size - 1.0) + 0.5) / size, 0.5));
+    return entry_at(colours, vec2(place_of(value) * float(textureSize(colours, 0).x - 1), 0.0));
 }
 
 #if FEATURE_VOLUME_PREINTEGRATED

@@ -42,11 +42,11 @@ const float MOVED = 1.0 / 12.0, UNKNOWN = 3e38;
 
 vec4 light_of_step(float front, float back, float row) {
     float size = float(textureSize(segments, 0).x), middle = 0.5 * (front + back);
-    vec2 place = (vec2(place_of(front), place_of(back)) * (size - 1.0) + 0.5) / size;
+    vec2 entry = vec2(place_of(front), place_of(back)) * (size - 1.0);
 #if FEATURE_VOLUME_FINER
-    place.y = 0.5 * (place.y + row);
+    entry.y += row * size;
 #endif
-    return middle >= value_low && middle <= value_high ? entry_at(segments, place) : vec4(0.0);
+    return middle >= value_low && middle <= value_high ? entry_at(segments, entry) : vec4(0.0);
 }
 
 #if FEATURE_VOLUME_FINER
