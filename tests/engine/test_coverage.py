@@ -347,7 +347,8 @@ print(ctx.version_code, round(float(values[6, 8]), 3), float(values[0, 0]) < -1e
 @pytest.mark.parametrize("version", ["3.3", "4.1"])
 def test_works_on_the_oldest_opengl(version):
     """A wall across the picture at a quarter of a depth range of 100 mm; zeta counts from the near plane there."""
-    environment = {**os.environ, "MESA_GL_VERSION_OVERRIDE": version, "PYTHONPATH": str(ROOT)}
+    path = os.pathsep.join([str(ROOT), *sys.path])
+    environment = {**os.environ, "MESA_GL_VERSION_OVERRIDE": version, "PYTHONPATH": path}
     done = subprocess.run([sys.executable, "-c", OLD_GL], env=environment, capture_output=True, text=True, check=True)
     code, middle, corner = done.stdout.split()
     if code != version.replace(".", "") + "0":

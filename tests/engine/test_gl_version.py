@@ -37,7 +37,7 @@ renderer.release()
 def drawn(path, kind, **environment):
     done = subprocess.run(
         [sys.executable, "-c", DRAW, kind, str(path)], cwd=ROOT, capture_output=True, text=True, check=False,
-        env=os.environ | {"PYTHONPATH": str(ROOT)} | environment,
+        env=os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT), *sys.path])} | environment,
     )  # fmt: skip
     return done.stdout.split(), done.stderr, np.load(path) if path.exists() else None
 

@@ -17,6 +17,7 @@ import pytest
 
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS
 from pvfiblets.engine.fiblets.pipelines.compute import _has_int64_atomics
+from pvfiblets.engine.moderngl_extras import GLExtras
 from pvfiblets.engine.shaders import EXTENDED, assemble
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -36,9 +37,10 @@ def test_depth_and_owner_are_taken_at_once(stage):
         (["GL_EXT_shader_image_int64", "GL_ARB_gpu_shader_int64"], 96, False),
     ],
 )
-def test_used_where_storage_buffers_have_them(extensions, bindings, expected):
-    info = {"GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS": bindings}
-    ctx = SimpleNamespace(extensions=set(extensions), info=info, version_code=460)
+def test_used_where_storage_buffers_have_them(extensions, bindings, expected, monkeypatch):
+    asked = {"GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS": bindings}
+    monkeypatch.setattr(GLExtras, "get_integer", lambda self, name: asked[name])
+    ctx = SimpleNamespace(extensions=set(extensions), info={"GL_VENDOR": "somebody"}, version_code=460)
     assert _has_int64_atomics(ctx) is expected
     ctx.version_code = 440
     assert not _has_int64_atomics(ctx)
@@ -114,7 +116,7 @@ assert ctx.error == "GL_NO_ERROR"
 def test_pictures_are_the_same_bit_by_bit(tmp_path):
     script = tmp_path / "draw.py"
     script.write_text(DRAW)
-    environment = {**os.environ, "LP_NUM_THREADS": "0", "PYTHONPATH": str(ROOT)}
+    environment = {**os.environ, "LP_NUM_THREADS": "0", "PYTHONPATH": os.pathsep.join([str(ROOT), *sys.path])}
     done = subprocess.run([sys.executable, script], env=environment, capture_output=True, text=True, check=False)
     if done.stderr.strip() == "no 64-bit integers":
         pytest.skip("this OpenGL has no 64-bit integers")

@@ -57,8 +57,10 @@ def test_too_large_is_refused_before_anything_is_allocated(gl, brain, allocation
     assert said.endswith("draw fewer streamlines, an even share of them by fit='sample', or all of them part by part "
                          "by fit='stream'")  # fmt: skip
     monkeypatch.setattr(memory_fit, "free_memory", lambda ctx, gl: 50_000_000)
-    with pytest.raises(GPUMemoryError, match=r"99\.5 for a picture\), 50\.0 MB are available, of the machine's own; "):
-        FibletRenderer(gl, brain)
+    for software, whose in ((True, "of the machine's own"), (False, "by the driver's word")):
+        monkeypatch.setattr(memory_fit, "is_software", lambda ctx, software=software: software)
+        with pytest.raises(GPUMemoryError, match=rf"99\.5 for a picture\), 50\.0 MB are available, {whose}; "):
+            FibletRenderer(gl, brain)
     assert not allocations
 
 

@@ -213,7 +213,7 @@ def test_an_integer_of_a_newer_version_is_refused():
     class Old:
         version_code = 330
         extensions = frozenset()
-        info = {"GL_RENDERER": "an old card"}  # noqa: RUF012
+        info = {"GL_RENDERER": "an old card", "GL_VENDOR": "somebody"}  # noqa: RUF012
 
     with pytest.raises(EngineError, match=r"GL_MAX_TESS_GEN_LEVEL needs OpenGL 4\.0, found 3\.3"):
         GLExtras(Old()).get_integer("GL_MAX_TESS_GEN_LEVEL")

@@ -12,7 +12,6 @@ from pathlib import Path
 import moderngl
 import numpy as np
 import pytest
-import pyvista as pv
 
 from pvfiblets import regions
 from pvfiblets.engine.errors import EngineError
@@ -22,6 +21,8 @@ from pvfiblets.engine.regions.layer_stack import Squares
 from pvfiblets.engine.regions.ray_intervals import RegionIntervals
 from pvfiblets.engine.shaders import Programs, assemble
 from pvfiblets.engine.view import View
+
+pv = pytest.importorskip("pyvista")  # which makes surfaces
 
 SIZE = (120, 90)
 ORIGIN, SCALE, TOP = np.full(3, -100.0), np.full(3, 200.0 / 65535.0), 65535

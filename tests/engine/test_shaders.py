@@ -94,7 +94,8 @@ def test_a_pipeline_that_opengl_is_too_old_for_is_refused_plainly():
         "try: FibletRenderer(ctx, SimpleNamespace(), pipeline='compute')\n"
         "except EngineError as error: print(error)\n"
     )
-    environment = {**os.environ, "MESA_GL_VERSION_OVERRIDE": "4.1", "PYTHONPATH": str(ROOT)}
+    path = os.pathsep.join([str(ROOT), *sys.path])
+    environment = {**os.environ, "MESA_GL_VERSION_OVERRIDE": "4.1", "PYTHONPATH": path}
     done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)
     if "4.1" not in done.stdout and not done.stdout:
         pytest.skip("this OpenGL is not Mesa: its version cannot be lowered")

@@ -35,8 +35,7 @@ LIGHT = RaycastOptions("composite", transfer=Transfer([[1, 0.5, 0, 1 - np.exp(-K
 
 
 def icosphere(centre, radius):
-    import pyvista as pv
-
+    pv = pytest.importorskip("pyvista")
     mesh = pv.Icosphere(radius=radius, center=centre, nsub=5)
     return regions.Surface(np.asarray(mesh.points, float), mesh.regular_faces)
 

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from pvfiblets.engine import View, work_limits
+from pvfiblets.engine import View
 from pvfiblets.engine.fiblets.chunks import plan_chunks
 from pvfiblets.engine.fiblets.pipelines.limits import Limits
 from pvfiblets.engine.moderngl_extras import GLExtras
@@ -75,7 +75,8 @@ def test_rays_of_many_samples_are_cast_band_by_band(gl, monkeypatch, camera, spa
     view = View(SIZE, camera(SIZE, target=(46, 46, 46)))
     pictures, calls = [], []
     for samples in (1 << 62, 100_000):
-        monkeypatch.setattr(work_limits, "SOFTWARE", WorkLimits(1, samples))
+        limits = WorkLimits(1, samples)
+        monkeypatch.setattr(WorkLimits, "of", classmethod(lambda cls, ctx, limits=limits: limits))
         renderer = VolumeRenderer(gl, volume)
         honest = WorkLimits.bands
         monkeypatch.setattr(
