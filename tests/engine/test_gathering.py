@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pvfiblets.engine import FibletRenderer, FibletStyle, View
+from pvfiblets.engine import FibletRenderer, FibletStyle, View, shaders
 from pvfiblets.engine.fiblets.filter_textures import Filter
 from pvfiblets.engine.fiblets.gathering import SLICES, SliceDistances, slice_edges
 from pvfiblets.engine.fiblets.paint import Paint
@@ -74,10 +74,15 @@ STYLES = {
 }
 
 
-@pytest.mark.parametrize("style", STYLES.values(), ids=STYLES)
+@pytest.mark.parametrize(("name", "reciprocals"), [("thin", 0), ("wide", 0), ("tube", 0), ("tube", 1)])
 @pytest.mark.parametrize("pipeline", ["compute", "geometry"])
-def test_sums_are_those_of_streamlines_drawn_alone(gl, fabricate, camera, pipeline, style):
+def test_sums_are_those_of_streamlines_drawn_alone(gl, fabricate, camera, pipeline, name, reciprocals, monkeypatch):
     """Gentle lines that do not cross themselves: each adds once to every pixel that it takes."""
+    style, read_shader = STYLES[name], shaders.read_shader
+    if reciprocals:  # by which cards divide: of the whole axis a tube's end may be a bit less than all
+        whole, by = "y / t.size", "y * (1.0 / t.size)"
+        assert whole in read_shader("fiblets/segments/line_tube.glsl")
+        monkeypatch.setattr(shaders, "read_shader", lambda name: read_shader(name).replace(whole, by))
     rng = np.random.default_rng(5)
     t = np.linspace(-40, 40, 90)[:, None]
     a, b, c = rng.normal(size=(3, 20, 3))

@@ -213,7 +213,7 @@ bool body_at(Tube t, vec4 c0, vec2 pixel, out Hit hit) {
 #endif
     hit.side = face == vec3(0.0) && t.size > 0.0 && (y >= 0.0 || !t.start) && (y <= t.size || !t.cap);
     y = clamp(y, 0.0, t.size);
-    hit.t = t.size > 0.0 ? y / t.size : 0.0;
+    hit.t = y < t.size ? y / t.size : float(t.size > 0.0);      // exactly 1 at the end, which cards that divide by reciprocals miss
     hit.normal = face != vec3(0.0) ? face : normalize(v - y * t.axis);
     return true;
 }
@@ -228,7 +228,7 @@ bool brush_at(Tube t, Outline outline, vec2 pixel, out Hit hit) {
     if (foot < 0.0 && !t.start && outline.t0 == 0.0 || dot(away, away) > half_line_width * half_line_width) return false;
     precise float z = outline.a.z + (outline.b.z - outline.a.z) * s;
     if (!(z >= 0.0 && z <= 1.0)) return false;
-    precise float u = clamp(s * outline.a.w / max((1.0 - s) * outline.b.w + s * outline.a.w, 1e-30), 0.0, 1.0);
+    precise float u = s < 1.0 ? clamp(s * outline.a.w / max((1.0 - s) * outline.b.w + s * outline.a.w, 1e-30), 0.0, 1.0) : 1.0;
     hit.z = z;
     hit.t = mix(outline.t0, outline.t1, u);
 #if FEATURE_CLIP_PLANES
