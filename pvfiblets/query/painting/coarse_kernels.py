@@ -23,7 +23,7 @@ ADDED, REMOVED, ALL_FLAGS = 0, 1, 2
 """What is asked: of voxels that came in, or that went, whether it is passed; of any, all flags."""
 SAME, SURE, GONE, OPEN = 0, 1, 2, 3
 """Nothing changes for a fiblet; it passes now; it does no more; it must be decoded."""
-BLOCK = 256
+BLOCK, FEW = 256, 16
 STEP = 0.7  # voxels between discs, at most
 WIDEST = 2.0  # voxels: a larger radius settles nothing
 
@@ -73,22 +73,51 @@ def _bits(mask: Any, shape: Any, low: Any, high: Any, bit: int, every: bool) -> 
 
 
 @kernel
+def _free(steps: Any, first: Any, u: Any, k: int, t: float) -> int:
+    """Voxels from the one at ``t`` of part ``k`` to the nearest of a set, at least."""
+    x = min(max(math.floor(u[k, 0] + t * (u[k + 1, 0] - u[k, 0])) - first[0], 0), steps.shape[0] - 1)
+    y = min(max(math.floor(u[k, 1] + t * (u[k + 1, 1] - u[k, 1])) - first[1], 0), steps.shape[1] - 1)
+    z = min(max(math.floor(u[k, 2] + t * (u[k + 1, 2] - u[k, 2])) - first[2], 0), steps.shape[2] - 1)
+    return steps[x, y, z]
+
+
+@kernel
+def _deep(steps: Any, first: Any, at: Any, k: int, radius: float, rows: Any, slack: float) -> bool:
+    """Whether all within a radius, mm, of position ``k`` is farther than 0 from a set, which all beyond a box is in."""
+    x, y, z = math.floor(at[k, 0]) - first[0], math.floor(at[k, 1]) - first[1], math.floor(at[k, 2]) - first[2]
+    if x < 0 or y < 0 or z < 0 or x >= steps.shape[0] or y >= steps.shape[1] or z >= steps.shape[2]:
+        return False
+    return steps[x, y, z] - 1 >= radius * max(rows[0], rows[1], rows[2]) * (1.0 + 1e-9) + slack
+
+
+@kernel
+def _longest(u: Any, k: int) -> float:
+    return max(abs(u[k + 1, 0] - u[k, 0]), abs(u[k + 1, 1] - u[k, 1]), abs(u[k + 1, 2] - u[k, 2]))
+
+
+@kernel
 def _holds(u: Any, k: int, t: float, reach: Any, mask: Any, shape: Any, inside: int, low: Any, high: Any) -> bool:
     """Whether every voxel that holds positions of the disc across part ``k`` at ``t`` has a bit."""
     for axis in range(3):
         at = u[k, axis] + t * (u[k + 1, axis] - u[k, axis])
         low[axis], high[axis] = at - reach[axis], at + reach[axis]
+    x, y, z = (math.floor(0.5 * (low[0] + high[0])), math.floor(0.5 * (low[1] + high[1])),
+               math.floor(0.5 * (low[2] + high[2])))  # fmt: skip
+    if x < 0 or y < 0 or z < 0 or x >= shape[0] or y >= shape[1] or z >= shape[2]:
+        return False
+    if mask[(x * shape[1] + y) * shape[2] + z] & inside == 0:  # most often, where it is not
+        return False
     return _bits(mask, shape, low, high, inside, True)
 
 
 @kernel
 def _along(u: Any, k: int, enter: float, leave: float, reach: Any, kept: Any, radius: float, mask: Any, shape: Any,
-           touching: int, inside: int, low: Any, high: Any) -> Any:  # fmt: skip
-    if not (reach[0] <= WIDEST and reach[1] <= WIDEST and reach[2] <= WIDEST):
+           touching: int, inside: int, steps: Any, first: Any, low: Any, high: Any) -> Any:  # fmt: skip
+    widest = max(reach[0], reach[1], reach[2])
+    if not widest <= WIDEST:
         return True, False
-    longest, square = 0.0, 0.0
+    longest, square = _longest(u, k), 0.0
     for axis in range(3):
-        longest = max(longest, abs(u[k + 1, axis] - u[k, axis]))
         square += (kept[k + 1, axis] - kept[k, axis]) ** 2
     # So much of the part, at either end, may have no point of the fiblet across from it.
     share = radius / math.sqrt(square) * (1.0 + 1e-6) if square > 0.0 else np.inf
@@ -97,11 +126,17 @@ def _along(u: Any, k: int, enter: float, leave: float, reach: Any, kept: Any, ra
             at = enter + 0.25 * quarter * (leave - enter)
             if share <= at <= 1.0 - share and _holds(u, k, at, reach, mask, shape, inside, low, high):
                 return True, True
-    pieces = max(math.ceil((leave - enter) * longest / STEP), 1)
-    touches = False
-    for i in range(pieces):
-        s = enter + (leave - enter) * i / pieces
-        t = enter + (leave - enter) * (i + 1) / pieces
+    touches, s = False, enter
+    while True:
+        # As far as no voxel is near, there is nothing to look at. Positions so many voxels apart, rounded up, lie in
+        # voxels no farther from each other than that.
+        ahead = _free(steps, first, u, k, s) - 1 - widest
+        if ahead >= 0.5 * STEP:
+            if longest * (leave - s) <= ahead:
+                return touches, False
+            s += ahead / longest
+            continue
+        t = leave if longest * (leave - s) <= STEP else s + STEP / longest
         if not touches:
             for axis in range(3):
                 a, d = u[k, axis], u[k + 1, axis] - u[k, axis]
@@ -113,12 +148,14 @@ def _along(u: Any, k: int, enter: float, leave: float, reach: Any, kept: Any, ra
         across = inside and share <= middle <= 1.0 - share
         if across and _holds(u, k, middle, reach, mask, shape, inside, low, high):
             return True, True
-    return touches, False
+        if t >= leave:
+            return touches, False
+        s = t
 
 
 @kernel
 def _part(u: Any, k: int, kept: Any, radius: float, rows: Any, slack: float, box: Any, mask: Any, shape: Any,
-          touching: int, inside: int, reach: Any, low: Any, high: Any) -> Any:  # fmt: skip
+          touching: int, inside: int, steps: Any, first: Any, reach: Any, low: Any, high: Any) -> Any:  # fmt: skip
     """Whether part ``k`` may meet voxels of the bit ``touching``, and surely meets those of the bit ``inside``.
 
     ``inside`` 0: not asked.
@@ -128,20 +165,21 @@ def _part(u: Any, k: int, kept: Any, radius: float, rows: Any, slack: float, box
     enter, leave = _cut(u, k, reach, box)
     if enter > leave:
         return False, False
-    return _along(u, k, enter, leave, reach, kept, radius, mask, shape, touching, inside, low, high)
+    return _along(u, k, enter, leave, reach, kept, radius, mask, shape, touching, inside, steps, first, low, high)
 
 
 @kernel
 def _fiblet(u: Any, parts: int, only: int, kept: Any, pieces: Any, row: int, unit: float, rows: Any, slack: float,
-            box: Any, mask: Any, shape: Any, touching: int, inside: int, reach: Any, low: Any,
-            high: Any) -> Any:  # fmt: skip
+            box: Any, mask: Any, shape: Any, touching: int, inside: int, steps: Any, first: Any, reach: Any,
+            low: Any, high: Any) -> Any:  # fmt: skip
     """The same of a whole fiblet, or those of its parts whose bits are in `only`."""
     touches = False
     for k in range(parts):
         if not only >> k & 1:
             continue
         radius = unit * pieces[row, 3 * parts + 3 + k]
-        one, sure = _part(u, k, kept, radius, rows, slack, box, mask, shape, touching, inside, reach, low, high)
+        one, sure = _part(u, k, kept, radius, rows, slack, box, mask, shape, touching, inside, steps, first, reach, low,
+                          high)  # fmt: skip
         if sure:
             return True, True
         touches = touches or one
@@ -177,9 +215,13 @@ def _apart(pieces: Any, row: int, k: int, parts: int, centre: Any, box: Any, uni
 
 
 @parallel_kernel
-def close_parts(near: Any, leaves: Any, parts: int, linear: Any, corner: Any, rows: Any, box: Any,
+def close_parts(near: Any, leaves: Any, parts: int, linear: Any, corner: Any, rows: Any, box: Any, free: Any,
                 found: Any) -> None:  # fmt: skip
-    """Bits of the parts of some leaves whose capsules come near a box of voxels, ``found (n,)`` uint8."""
+    """Bits of the parts of some leaves whose capsules come near voxels in a box, ``found (n,)`` uint8.
+
+    ``free`` is the box's :class:`.FreeSpace` about these voxels.
+    """
+    steps, first = free
     nodes = parts + 1
     for block in numba.prange((len(near) + BLOCK - 1) // BLOCK):
         mean, reach = np.empty((nodes, 3)), np.empty(3)
@@ -191,7 +233,13 @@ def close_parts(near: Any, leaves: Any, parts: int, linear: Any, corner: Any, ro
                 for axis in range(3):
                     reach[axis] = float(leaves[leaf, 3 * nodes + k]) * rows[axis] * (1.0 + 1e-9) + slack
                 enter, leave = _cut(mean, k, reach, box)
-                found[j] |= 0 if enter > leave else 1 << k
+                widest, longest = max(reach[0], reach[1], reach[2]), _longest(mean, k)
+                while enter <= leave:
+                    ahead = _free(steps, first, mean, k, enter) - 1 - widest
+                    if ahead < STEP:
+                        found[j] |= 1 << k
+                        break
+                    enter = enter + ahead / longest if longest > 0.0 else np.inf
 
 
 @kernel
@@ -211,7 +259,7 @@ def _mean(leaves: Any, leaf: int, nodes: int, linear: Any, corner: Any, mean: An
 @parallel_kernel
 def settle(near: Any, bits: Any, leaves: Any, pieces: Any, parts: int, per_stretch: int, stretch: int, states: Any,
            asked: int, linear: Any, corner: Any, rows: Any, mask: Any, shape: Any, changed: Any, whole: Any,
-           in_mm: Any, found: Any) -> None:  # fmt: skip
+           in_mm: Any, about_changed: Any, about_whole: Any, within: Any, found: Any) -> None:  # fmt: skip
     """What becomes of the fiblets of some leaves, ``found (n, LEAF)`` uint8: :data:`SAME` and so on.
 
     Parameters
@@ -234,44 +282,67 @@ def settle(near: Any, bits: Any, leaves: Any, pieces: Any, parts: int, per_stret
         Boxes of the changed voxels, and of the region's.
     in_mm : (2, 3) float64
         Lower and upper corner, mm, of a box along the axes that holds that of the changed voxels.
+    about_changed, about_whole : FreeSpace
+        About the changed voxels, and about the region's where that is asked: :data:`REMOVED`.
+    within : FreeSpace
+        About all voxels but the region's, where that is asked: :data:`ADDED`.
     """
+    changed_steps, changed_first = about_changed
+    whole_steps, whole_first = about_whole
+    within_steps, within_first = within
     nodes, every = parts + 1, (1 << parts) - 1
-    for j in numba.prange(len(near)):
-        leaf = near[j]
-        at = leaf // per_stretch * stretch + leaf % per_stretch * LEAF
-        many = min(LEAF, min((leaf // per_stretch + 1) * stretch, len(states)) - at)
+    for block in numba.prange((len(near) + FEW - 1) // FEW):
         mean, u, kept = np.empty((nodes, 3)), np.empty((nodes, 3)), np.empty((nodes, 3))
         reach, low, high, centre = np.empty(3), np.empty(3), np.empty(3), np.empty((nodes, 3))
-        slack = _mean(leaves, leaf, nodes, linear, corner, mean)
-        unit, radius = float(leaves[leaf, 3 * nodes + parts]), float(leaves[leaf, 3 * nodes + parts + 1])
-        close = np.int64(bits[j])
-        for k in range(nodes):
-            for axis in range(3):
-                centre[k, axis] = float(leaves[leaf, 3 * k + axis])
-        for i in range(LEAF):
-            found[j, i] = SAME
-            if i >= many:
-                continue
-            passed = states[at + i] & ANY != 0
-            if (asked == ADDED and passed) or (asked == REMOVED and not passed):
-                continue
-            only = np.int64(0)
-            for k in range(parts):
-                if close >> k & 1 and not _apart(pieces, at + i, k, parts, centre, in_mm, unit, radius):
-                    only |= 1 << k
-            if only == 0:
-                continue
+        for j in range(block * FEW, min((block + 1) * FEW, len(near))):
+            leaf = near[j]
+            at = leaf // per_stretch * stretch + leaf % per_stretch * LEAF
+            many = min(LEAF, min((leaf // per_stretch + 1) * stretch, len(states)) - at)
+            slack = _mean(leaves, leaf, nodes, linear, corner, mean)
+            unit, radius = float(leaves[leaf, 3 * nodes + parts]), float(leaves[leaf, 3 * nodes + parts + 1])
+            close = np.int64(bits[j])
+            every_one = False  # a point of each fiblet lies so near to each mean position
             for k in range(nodes):
-                if (only | only << 1) >> k & 1:
-                    _place(k, pieces, at + i, leaves, leaf, unit, linear, mean, kept, u)
-            inside = HERE if asked == ADDED else 0
-            touches, sure = _fiblet(u, parts, only, kept, pieces, at + i, radius, rows, slack, changed, mask, shape,
-                                    CHANGED, inside, reach, low, high)  # fmt: skip
-            if touches and asked == REMOVED:
+                for axis in range(3):
+                    centre[k, axis] = float(leaves[leaf, 3 * k + axis])
+                wide = float(leaves[leaf, 3 * nodes + min(k, parts - 1)])
+                every_one |= asked == ADDED and _deep(within_steps, within_first, mean, k, wide, rows, slack)
+            for i in range(LEAF):
+                found[j, i] = SAME
+                if i >= many:
+                    continue
+                passed = states[at + i] & ANY != 0
+                if (asked == ADDED and passed) or (asked == REMOVED and not passed):
+                    continue
+                if every_one:
+                    found[j, i] = SURE
+                    continue
+                only = np.int64(0)
+                for k in range(parts):
+                    if close >> k & 1 and not _apart(pieces, at + i, k, parts, centre, in_mm, unit, radius):
+                        only |= 1 << k
+                if only == 0:
+                    continue
                 for k in range(nodes):
-                    _place(k, pieces, at + i, leaves, leaf, unit, linear, mean, kept, u)
-                touches, sure = _fiblet(u, parts, every, kept, pieces, at + i, radius, rows, slack, whole, mask, shape,
-                                        HERE, HERE, reach, low, high)  # fmt: skip
-                found[j, i] = SAME if sure else OPEN if touches else GONE
-            elif touches:
-                found[j, i] = SURE if sure else OPEN
+                    if (only | only << 1) >> k & 1:
+                        _place(k, pieces, at + i, leaves, leaf, unit, linear, mean, kept, u)
+                if asked == ADDED:
+                    for k in range(nodes):
+                        if (only | only << 1) >> k & 1 and found[j, i] != SURE:
+                            wide = radius * pieces[at + i, 3 * nodes + min(k, parts - 1)]
+                            if _deep(within_steps, within_first, u, k, wide, rows, slack):
+                                found[j, i] = SURE
+                    if found[j, i] == SURE:
+                        continue
+                inside = HERE if asked == ADDED else 0
+                touches, sure = _fiblet(u, parts, only, kept, pieces, at + i, radius, rows, slack, changed, mask, shape,
+                                        CHANGED, inside, changed_steps, changed_first, reach, low, high)  # fmt: skip
+                if touches and asked == REMOVED:
+                    for k in range(nodes):
+                        _place(k, pieces, at + i, leaves, leaf, unit, linear, mean, kept, u)
+                    touches, sure = _fiblet(u, parts, every, kept, pieces, at + i, radius, rows, slack, whole, mask,
+                                            shape, HERE, HERE, whole_steps, whole_first, reach, low,
+                                            high)  # fmt: skip
+                    found[j, i] = SAME if sure else OPEN if touches else GONE
+                elif touches:
+                    found[j, i] = SURE if sure else OPEN

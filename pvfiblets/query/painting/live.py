@@ -25,6 +25,7 @@ from ..point_flags import ANY as PASSES
 from ..point_flags import FIRST as BEGINS
 from ..point_flags import LAST as ENDS
 from .fiblet_index import CHUNK, LEAF, decoding_arrays, fiblets_of_streamlines, index_of
+from .free_space import FreeSpace
 
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
@@ -113,16 +114,23 @@ class LiveRegion:
         grid, mask, index = self.grid, self.mask, self.index
         prefer_kernels("decoding")
         mask[voxels] = np.where(inside, kernels.HERE, 0) | kernels.CHANGED
-        changed = _box(voxels, grid.shape)
+        changed, volume = _box(voxels, grid.shape), mask.reshape(grid.shape)
         whole = changed if asked == coarse.ADDED else _box(np.flatnonzero(mask), grid.shape)
         in_mm = _in_mm(changed, grid)
         near = index.near(*in_mm)
+        within = about_changed = about_whole = FreeSpace.of(volume & kernels.CHANGED != 0, changed)
+        if asked == coarse.REMOVED:
+            about_whole = FreeSpace.of(volume & kernels.HERE != 0, whole)
+        elif asked == coarse.ADDED:
+            within = FreeSpace.of(volume & kernels.HERE == 0, changed, beyond=True)
         per, rows, bits = CHUNK // LEAF, np.linalg.norm(grid.linear, axis=1), np.empty(len(near), np.uint8)
-        coarse.close_parts(near, index.leaves, index.parts, grid.linear, grid.corner, rows, changed, bits)
+        coarse.close_parts(near, index.leaves, index.parts, grid.linear, grid.corner, rows, changed, about_changed,
+                           bits)  # fmt: skip
         near, bits = near[bits > 0], bits[bits > 0]
         found = np.empty((len(near), LEAF), np.uint8)
         coarse.settle(near, bits, index.leaves, index.pieces, index.parts, per, CHUNK, self._states, asked, grid.linear,
-                      grid.corner, rows, mask, grid.shape, changed, whole, in_mm, found)  # fmt: skip
+                      grid.corner, rows, mask, grid.shape, changed, whole, in_mm, about_changed, about_whole,
+                      within, found)  # fmt: skip
         which = np.flatnonzero(found)
         fates, leaf = found.ravel()[which], near[which // LEAF]
         places = leaf // per * CHUNK + leaf % per * LEAF + which % LEAF
@@ -149,8 +157,10 @@ class LiveRegion:
     def _apply(self, places: Ints, flags: npt.NDArray[np.uint8]) -> None:
         from . import walk_kernels as kernels
 
-        more = kernels.apply(places, flags, self.index.order, self._arrays[0][0], self._bases, self._ids,
-                             self._states, self._any, self._out, self._ends)  # fmt: skip
+        order, anchors, lines = self.index.order, self._arrays[0][0], np.empty(len(places), np.int64)
+        kernels.lines_of(places, order, anchors, self._bases, self._ids, lines)
+        more = kernels.apply(places, lines, flags, order, anchors, self._states, self._any, self._out,
+                             self._ends)  # fmt: skip
         if more == kernels.DAMAGED:
             raise _damaged()
         self._passing += more

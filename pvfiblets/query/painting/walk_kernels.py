@@ -14,7 +14,8 @@ from ...codec.layout import PAGE_BITS
 from ..density_kernels import _clip, _ends, _faces, _within
 from .index_kernels import ROWS, next_anchor
 
-__all__ = ["ANY", "BAD", "CHANGED", "DAMAGED", "FIRST", "HERE", "LAST", "OUT", "apply", "in_order", "look", "passes"]
+__all__ = ["ANY", "BAD", "CHANGED", "DAMAGED", "FIRST", "HERE", "LAST", "OUT", "apply", "in_order", "lines_of", "look",
+           "passes"]  # fmt: skip
 
 ANY, OUT, FIRST, LAST = 1, 2, 4, 8
 """Of a fiblet: some position lies in the region, some does not, its first point does, its last point does."""
@@ -148,23 +149,32 @@ def passes(places: Any, order: Any, arrays: Any, low: Any, fine: Any, origin: An
                         found[j] = ANY
 
 
+@parallel_kernel
+def lines_of(places: Any, order: Any, anchors: Any, bases: Any, ids: Any, lines: Any) -> None:
+    """Streamlines of the fiblets ``order[places]``, ``lines (m,)`` int64; -1 where a damaged file leads to none.
+
+    ``bases`` and ``ids`` lead to them (``ids`` empty: ranks are streamlines).
+    """
+    for k in numba.prange(len(places)):
+        f = np.int64(order[places[k]])
+        rank: Any = np.int64(bases[f >> PAGE_BITS] + ((anchors[f, 1] >> 16) & 0x3FFF))
+        if len(ids):
+            rank = ids[rank] if rank < len(ids) else -1
+        lines[k] = rank
+
+
 @kernel
-def apply(places: Any, found: Any, order: Any, anchors: Any, bases: Any, ids: Any, states: Any, n_any: Any, n_out: Any,
+def apply(places: Any, lines: Any, found: Any, order: Any, anchors: Any, states: Any, n_any: Any, n_out: Any,
           ends: Any) -> int:  # fmt: skip
     """Take new flags of fiblets over; returns by how many more streamlines the region is passed.
 
-    ``order[places]`` are the fiblets, ``states (n_fiblets,)`` the flags before, in that order; ``bases`` and ``ids``
-    lead to streamlines (``ids`` empty: ranks are streamlines), for which ``n_any, n_out`` count fiblets and ``ends``
-    holds FIRST and LAST. Where ``n_out`` is empty, only ANY is told.
+    ``order[places]`` are the fiblets, of :func:`lines_of`, ``states (n_fiblets,)`` the flags before, in that order. Of
+    streamlines, ``n_any, n_out`` count fiblets and ``ends`` holds FIRST and LAST. Where ``n_out`` is empty, only ANY is
+    told.
     """
     more, whole = 0, len(n_out) > 0
     for k in range(len(places)):
-        f, new = np.int64(order[places[k]]), found[k]
-        word = anchors[f, 1]
-        rank = bases[f >> PAGE_BITS] + ((word >> 16) & 0x3FFF)
-        line: Any = np.int64(rank)
-        if len(ids):
-            line = ids[rank] if rank < len(ids) else -1
+        line, new = lines[k], found[k]
         if line < 0 or line >= len(n_any):  # of a damaged file
             return DAMAGED
         old = states[places[k]]
@@ -172,6 +182,7 @@ def apply(places: Any, found: Any, order: Any, anchors: Any, bases: Any, ids: An
         n_any[line] += int(new & ANY != 0) - int(old & ANY != 0)
         more += int(n_any[line] > 0) - int(before)
         if whole:
+            word = anchors[np.int64(order[places[k]]), 1]
             n_out[line] += int(new & OUT != 0) - int(old & OUT != 0)
             if word >> 30 & 1:
                 ends[line] = ends[line] & ~FIRST | new & FIRST
