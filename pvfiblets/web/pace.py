@@ -1,9 +1,9 @@
 """How coarse the pictures of a moving camera are: chosen from the times that frames took.
 
-Each level costs less than the one before. What a level costs is the least of the last two frames that it drew, since a
-frame may have compiled a program or waited for another process. Levels that have drawn nothing yet are reckoned from
-those that have, and when a level becomes faster or slower, as where the camera comes nearer, the others are taken to
-become so as well.
+Each level costs less than the one before. A level has become slower when two frames in a row were, and faster when
+three were; then the others are taken to have become so as well, as where the camera comes nearer. The first frame of a
+level compiles programs and copies data, and the first after another level's says only that something else was expected
+of it: neither says anything of other levels. Those that have drawn nothing yet are reckoned from the finest.
 """
 
 from __future__ import annotations
@@ -58,24 +58,42 @@ class Pace:
     """
 
     def __init__(self) -> None:
-        self._times: dict[Level, deque[float]] = {}
-        self._scale = 0.0  # seconds for a cost of 1, by the last frame; nothing is slow before the first
+        self._costs: dict[Level, float] = {}
+        self._first: set[Level] = set()  # levels that have drawn one frame, which compiled and copied
+        self._drawn: Level | None = None
+        self._run: deque[float] = deque(maxlen=3)  # of that level, since another one drew
+        self._scale = 0.0  # seconds for a cost of 1; nothing is slow before the first frame
         self.level = LEVELS[0]
 
-    def took(self, level: Level, seconds: float) -> None:
-        """Note how long a frame took to draw."""
-        before = self._cost(level) if level in self._times else None
-        times = self._times.setdefault(level, deque(maxlen=2))
-        times.append(seconds)
-        now = min(times)
+    def took(self, level: Level, seconds: float, *, moved: bool = True) -> None:
+        """Note how long a frame took to draw; where the camera has not moved since, it may take less than others do."""
+        if level is not self._drawn:
+            self._drawn = level
+            self._run.clear()
+        before = self._costs.get(level)
         if before is None:
-            self._scale = now / level.cost
+            self._costs[level], self._scale = seconds, self._scale or seconds / level.cost
+            self._first.add(level)
+        elif moved or seconds > before:
+            self._run.append(seconds)
+            self._learn(level, before)
+        if level is LEVELS[0]:
+            self._scale = self._costs[level] / level.cost
+
+    def _learn(self, level: Level, before: float) -> None:
+        newest = self._run[-1]
+        if level in self._first:
+            self._first.discard(level)
+            self._costs[level] = newest
             return
-        change = now / before
+        if len(self._run) == 1:  # what was expected of it was wrong, or the machine is busy: others have not changed
+            self._costs[level] = min(newest, (before * newest) ** 0.5)
+            return
+        slower, faster = min(list(self._run)[-2:]), max(self._run) if len(self._run) == 3 else before
+        change = (slower if slower > before else min(faster, before)) / before
         self._scale *= change
-        for other, its in self._times.items():
-            if other is not level:
-                self._times[other] = deque((change * time for time in its), maxlen=2)
+        for other in self._costs:
+            self._costs[other] *= change
 
     def choose(self) -> Level:
         """Choose the level of the next frame: the finest that the budget has time for."""
@@ -88,8 +106,10 @@ class Pace:
     @property
     def untried(self) -> bool:
         """Whether a moving frame would be drawn by a level that has drawn none yet."""
-        return self.choose() not in self._times
+        return self.choose() not in self._costs
 
     def _cost(self, level: Level) -> float:
         """Return the seconds that a level is expected to take."""
-        return min(self._times[level]) if level in self._times else self._scale * level.cost
+        expected = self._scale * level.cost
+        known = self._costs.get(level, expected)
+        return min(known, expected) if level in self._first and level is not LEVELS[0] else known

@@ -105,6 +105,7 @@ class PictureStream:
         self._scale = 1.0  # its pixels for one of the page
         self._level = LEVELS[0]  # of what is drawn now
         self._pace = Pace()
+        self._seen: dict[Level, tuple[Any, ...]] = {}  # from where each level saw the scene last
         self._sharp = (plotter.render_window.GetMultiSamples(), plotter.render_window.GetDPI())
         self._pressed: set[str] = set()
         self._fingers = Fingers(plotter, pane_at)
@@ -135,6 +136,7 @@ class PictureStream:
         wanted = max(int(size["w"] * scale), 16), max(int(size["h"] * scale), 16)
         if (wanted, scale) != (self._size, self._scale):
             self._size, self._scale = wanted, scale
+            self._pace = Pace()  # what other sizes cost says nothing
             self._plotter.render_window.SetDPI(self._dpi)
             self._plotter.iren.interactor.UpdateSize(*self._pixels)
         self.request()  # always: a page that was reloaded has no picture yet
@@ -398,7 +400,10 @@ class PictureStream:
         self._stale = False
         pixels = self._read()
         seconds = time.perf_counter() - started
-        self._pace.took(level, seconds)
+        camera = self._plotter.camera
+        seen = camera.position, camera.focal_point, camera.up, camera.parallel_scale
+        self._pace.took(level, seconds, moved=self.moving or seen != self._seen.get(level))
+        self._seen[level] = seen
         return pixels, seconds
 
     def _read(self) -> NDArray[np.uint8]:

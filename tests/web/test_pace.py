@@ -46,6 +46,32 @@ def test_one_slow_frame_among_quick_ones_changes_nothing():
         assert pace.choose() is LEVELS[0]
 
 
+def test_a_first_frame_that_compiled_makes_no_other_level_seem_quick():
+    pace = Pace()
+    pace.took(LEVELS[0], 1.5 * BUDGET)
+    assert pace.choose() is LEVELS[1]
+    pace.took(LEVELS[1], 1.2 * BUDGET)  # compiles and copies
+    pace.took(LEVELS[0], 0.4 * BUDGET, moved=False)  # the camera is where it was
+    for seconds in (0.3, 0.31, 0.29, 0.3, 0.3, 0.32, 0.3):
+        assert pace.choose() is LEVELS[1]
+        pace.took(LEVELS[1], seconds * BUDGET)
+
+
+def test_lucky_frames_of_a_coarse_level_are_no_reason_for_a_slow_one():
+    pace, level = Pace(), LEVELS[4]
+    pace.took(LEVELS[0], 16.0 * BUDGET)
+    for k in range(60):
+        assert pace.choose() is level
+        pace.took(level, BUDGET * (0.2 if k % 4 == 1 else 0.9))
+
+
+def test_a_level_that_was_expected_to_be_quicker_is_left_at_once():
+    pace = Pace()
+    for level, seconds in ((LEVELS[0], 4.0), (LEVELS[2], 0.8), (LEVELS[2], 0.8), (LEVELS[1], 3.0), (LEVELS[1], 3.0)):
+        pace.took(level, seconds * BUDGET)
+    assert pace.choose() is LEVELS[2]
+
+
 def test_a_frame_is_practised_once():
     pace = Pace()
     pace.took(LEVELS[0], 4.0 * BUDGET)

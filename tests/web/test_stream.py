@@ -66,7 +66,7 @@ def slow_stream(plotter, seconds=1.0, **settings):
     stream = PictureStream(plotter, "view", **settings)
     stream.update_size("", {"w": 200, "h": 120, "p": 1.0})
     took = stream._pace.took
-    stream._pace.took = lambda level, _: took(level, seconds * level.cost)
+    stream._pace.took = lambda level, _, **moved: took(level, seconds * level.cost, **moved)
     return stream
 
 
@@ -118,6 +118,24 @@ def test_slow_scenes_have_fewer_pixels_while_the_camera_moves_and_all_at_rest(pl
     assert streamer.qualities[-1] == stream.still_quality
     assert tuple(plotter.render_window.GetSize()) == (200, 120)
     assert plotter.render_window.GetMultiSamples() == stream._sharp[0]
+
+
+def test_a_picture_that_is_waited_for_comes_coarse_and_then_whole(plotter):
+    plotter.add_mesh(pv.Sphere())
+    stream, streamer = slow_stream(plotter, seconds=1.0), Streamer()
+    stream.warm()
+
+    async def run():
+        stream.set_streamer(streamer)
+        stream.hasten()
+        async with asyncio.timeout(30):
+            while not streamer.sizes or streamer.sizes[-1] != (200, 120):
+                await asyncio.sleep(0.01)
+        await stream.close()
+
+    asyncio.run(run())
+    assert streamer.sizes[0][0] < 200
+    assert streamer.qualities[0] < streamer.qualities[-1] == stream.still_quality
 
 
 def test_quick_scenes_keep_their_pixels(plotter):
