@@ -88,6 +88,7 @@ class SliceActions(Actions):
         if layout == "3d" or app.scene.slicing.workspace is not None:
             made = {"oblique": TILTED} if layout == "oblique" and app.scene.slicing.view.oblique is None else {}
             self._set(layout=layout, **made)
+            app.stream.hasten()
             return
         app.scene.set_slices(layout=layout)
         volumes = [layer for layer in app.scene.layers if layer.kind == "volume"]

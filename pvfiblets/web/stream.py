@@ -198,6 +198,11 @@ class PictureStream:
         """Draw and send soon: something has changed."""
         self._wanted.set()
 
+    def hasten(self) -> None:
+        """Draw and send soon, as coarsely as while the camera moves: the picture is not of what the page says."""
+        self._moved = time.monotonic()
+        self.request()
+
     def warm(self) -> None:
         """Draw before anybody looks, if nothing is drawn yet: by then programs are compiled and data are on the GPU."""
         if not self.frames:
