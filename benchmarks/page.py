@@ -1,11 +1,12 @@
-"""Pages that draw by themselves beside NiiVue: bytes, time to the first and to the finished picture, frames a second.
+"""Pages that draw by themselves beside NiiVue and PyVista's own: bytes, time to the first and the last picture, frames.
 
     python benchmarks/page.py --points 1e5 1e6 --output page.json
 
-NiiVue (npm ``@niivue/niivue``) is fetched and bundled into a temporary folder; node and npm are needed. Both pages come
-from the same server of files on this machine, are opened in the same Chromium one after the other, and are turned. A
-frame is counted when its pixels can be read. ``--gpu`` lets Chromium use the graphics card; without, its software
-OpenGL draws.
+NiiVue (npm ``@niivue/niivue``) is fetched and bundled into a temporary folder; node and npm are needed. PyVista's page
+is that of ``export_html`` (vtk.js; ``pip install trame-pyvista``), with the same lines and a colour for each point, and
+is left out above ``--most-vtk`` points. All pages come from the same server of files on this machine, are opened in the
+same Chromium one after the other, and are turned. A frame is counted when its pixels can be read. ``--gpu`` lets
+Chromium use the graphics card; without, its software OpenGL draws.
 """
 
 from __future__ import annotations
@@ -55,6 +56,56 @@ window.turn = (frames) => {
   return (performance.now() - begun) / frames;
 };
 """
+# Keeps what a page draws with, and counts what it draws.
+WATCH = """(() => {
+    const get = HTMLCanvasElement.prototype.getContext;
+    HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
+        const gl = get.call(this, kind, ...more);
+        if (!gl || !/webgl/.test(kind) || gl.watched || !gl.drawArrays) return gl;
+        gl.watched = true;
+        for (const name of ['drawArrays', 'drawElements']) {
+            const draw = gl[name].bind(gl);
+            gl[name] = (...all) => {
+                window.draws = (window.draws ?? 0) + 1;
+                window.drawnBy = gl;
+                return draw(...all);
+            };
+        }
+        return gl;
+    };
+    window.read = () => {
+        const gl = window.drawnBy;
+        gl.readPixels(1, 1, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+    };
+})()"""
+VTK_FIRST = """async () => {
+    while (!window.draws) await new Promise(requestAnimationFrame);
+    window.read();
+}"""
+# A drag by a pointer: vtk.js draws once for each move.
+VTK = {
+    "turned": """async (frames) => {
+        const canvas = window.drawnBy.canvas.isConnected ? window.drawnBy.canvas : document.querySelector('canvas');
+        const tell = (kind, x, buttons) => canvas.dispatchEvent(new PointerEvent(kind, {
+            clientX: x, clientY: 300, pointerId: 1, button: kind === 'pointermove' ? -1 : 0, buttons, bubbles: true,
+            cancelable: true, isPrimary: true, pointerType: 'mouse',
+        }));
+        tell('pointerdown', 300, 1);
+        const begun = performance.now();
+        for (let i = 0; i < frames; ++i) {
+            const before = window.draws, gone = performance.now();
+            tell('pointermove', 310 + 10 * i, 1);
+            while (window.draws === before) {
+                if (performance.now() - gone > 60000) throw new Error('the page does not turn');
+                await new Promise(requestAnimationFrame);
+            }
+            window.read();
+        }
+        const took = (performance.now() - begun) / frames;
+        tell('pointerup', 310 + 10 * frames, 0);
+        return took;
+    }""",
+}
 OURS = {
     "whole": """async (frames) => {
         const begun = performance.now();
@@ -102,14 +153,38 @@ def bundle_niivue(folder: Path) -> str:
     return json.loads((folder / "node_modules/@niivue/niivue/package.json").read_text())["version"]
 
 
+def export_vtk(lines: pvfiblets.Streamlines, path: Path) -> None:
+    """Write PyVista's own page of lines that are coloured by their directions."""
+    import numpy as np
+    import pyvista as pv
+
+    points, starts = np.asarray(lines.points, np.float32), np.asarray(lines.offsets)
+    sizes = np.diff(starts)
+    cells = np.insert(np.arange(len(points)), starts[:-1], sizes)
+    steps = np.gradient(points, axis=0)
+    length = np.maximum(np.linalg.norm(steps, axis=1, keepdims=True), 1e-9)
+    mesh = pv.PolyData(points, lines=cells)
+    mesh["colours"] = (255.0 * np.abs(steps / length)).astype(np.uint8)
+    plotter = pv.Plotter(off_screen=True, window_size=SIZE)
+    plotter.set_background("white")
+    plotter.add_mesh(mesh, scalars="colours", rgb=True, lighting=False, line_width=1)
+    plotter.trame.export_html(path)
+    plotter.close()
+
+
 def opened(browser: Any, url: str, turns: dict[str, str]) -> dict[str, float]:
     """Return how long a page takes to its first picture and to its last, and for frames; seconds and milliseconds."""
     context = browser.new_context(viewport={"width": SIZE[0], "height": SIZE[1]})
     page = context.new_page()
     page.set_default_timeout(600_000)
+    if turns is VTK:
+        page.add_init_script(WATCH)
     begun = time.perf_counter()
     page.goto(url)
-    page.wait_for_selector("body[data-state=drawn]", state="attached")
+    if turns is VTK:
+        page.evaluate(VTK_FIRST)
+    else:
+        page.wait_for_selector("body[data-state=drawn]", state="attached")
     found = {"first_s": time.perf_counter() - begun}
     if "whole" in turns:
         page.evaluate("pvfiblets.settled()")
@@ -120,7 +195,7 @@ def opened(browser: Any, url: str, turns: dict[str, str]) -> dict[str, float]:
     return {key: round(value, 3) for key, value in found.items()}
 
 
-def measure(points: float, browser: Any, folder: Path, base: str) -> list[dict[str, Any]]:
+def measure(points: float, browser: Any, folder: Path, base: str, most_vtk: float) -> list[dict[str, Any]]:
     """Return a row for each program."""
     lines = brain_streamlines(max(1, round(points / 188)), seed=4)
     fiblets = pvfiblets.compress(lines)
@@ -138,6 +213,11 @@ def measure(points: float, browser: Any, folder: Path, base: str) -> list[dict[s
     ]
     rows[0] |= opened(browser, f"{base}/ours.html", OURS)
     rows[1] |= opened(browser, f"{base}/niivue.html?file=lines.trk", {"turned": "(frames) => turn(frames)"})
+    if n <= most_vtk:
+        export_vtk(lines, folder / "vtk.html")
+        size = (folder / "vtk.html").stat().st_size
+        rows.append({"program": "pyvista", "bytes": size, "data_bytes": size})
+        rows[-1] |= opened(browser, f"{base}/vtk.html", VTK)
     for row in rows:
         row |= {"points": n, "data_bytes_per_point": round(row["data_bytes"] / n, 3)}
         print(row, flush=True)
@@ -148,6 +228,7 @@ def main() -> None:
     """Measure, and write what was found."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--points", type=float, nargs="+", default=[1e5, 1e6, 1e7])
+    parser.add_argument("--most-vtk", type=float, default=2e6, help="points up to which PyVista's page is measured")
     parser.add_argument("--gpu", action="store_true", help="let Chromium use the graphics card")
     parser.add_argument("--output", metavar="JSON")
     options = parser.parse_args()
@@ -161,7 +242,7 @@ def main() -> None:
         flags = [*FLAGS, *(() if options.gpu else SOFTWARE)]
         browser = driver.chromium.launch(executable_path=path, args=flags)
         base = f"http://127.0.0.1:{server.server_address[1]}"
-        rows = [row for points in options.points for row in measure(points, browser, folder, base)]
+        rows = [row for points in options.points for row in measure(points, browser, folder, base, options.most_vtk)]
         said = {"chromium": browser.version, "niivue": version, "software_opengl": not options.gpu, "rows": rows}
         browser.close()
         server.shutdown()
