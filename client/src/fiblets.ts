@@ -431,6 +431,7 @@ export class FibletSet {
   /** Draw those of a block's items that are chosen, `most` of them at most. */
   drawSome(block: Block, program: Program, chosen: Uint8Array, sprites: boolean, most = Infinity): number {
     const gl = this.gl, { share } = this;
+    let n = 0;
     if (!sprites) {
       let drawn = 0, found = 0;
       for (let from = 0; from < chosen.length && found < most; ++from) {
@@ -447,9 +448,13 @@ export class FibletSet {
       }
       return drawn;
     }
-    const slots = new Uint32Array(Math.min(most, chosen.length) * share);
-    let n = 0;
-    for (let i = 0; i < chosen.length && n < slots.length; ++i) if (chosen[i]) for (let k = i * share; k < (i + 1) * share; ++k) slots[n++] = k;
+    const left = Math.min(most, chosen.length), slots = new Uint32Array(left * share);
+    for (let i = 0, found = 0; i < chosen.length && found < left; ++i) {
+      if (!chosen[i]) continue;
+      const word = this.toItems[4 * (block.firstItem + i) + 2], points = word & 63, segments = points - ((word & 128) !== 0 && points > 1 ? 1 : 0);
+      for (let k = i * share, end = k + Math.min(segments - share * (word >>> 8), share); k < end; ++k) slots[n++] = k;
+      ++found;
+    }
     if (!n) return 0;
     this.aim(block, program, 0, sprites);
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, (this.indices ??= gl.createBuffer()!));

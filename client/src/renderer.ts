@@ -223,7 +223,12 @@ export class Renderer {
       for (const lines of this.lines) {
         const { set } = lines, before = set.blocks.length;
         set.advance(this.archives.get(lines.layer.data)!.ready);
-        if (frame && lines.layer.visible) this.addJobs(frame, lines, set.blocks.slice(before));
+        if (!frame || !lines.layer.visible) continue;
+        const held = frame.jobs.length;
+        this.addJobs(frame, lines, set.blocks.slice(before));
+        if (set.segments(set.blocks.reduce((sum, block) => sum + block.items, 0)) <= this.few) continue;
+        const more = frame.jobs.splice(held);
+        for (const what of ["likely", "others"] as const) frame.jobs.push(...more.map((job) => ({ ...job, what })));
       }
       if (!frame) this.change();
       else if (!this.dirty) this.frame = frame;
@@ -290,7 +295,7 @@ export class Renderer {
     this.sliceSize = 0;
     this.drawSlice(frame, frame.moving ? Infinity : quota);
     const finished = frame.next >= frame.jobs.length;
-    if (finished || performance.now() - frame.shownAt > Math.max(REFRESH, LATER * (frame.shownAt - frame.begun))) {
+    if (finished || this.worthShowing(frame)) {
       frame.shownAt = performance.now();
       this.present(frame.matrices, finished);
       if (this.drawnOnce && (frame.jobs.length || !this.loading)) {
@@ -308,6 +313,13 @@ export class Renderer {
       if (!frame.moving && !this.dirty && !this.loading) this.waiting.splice(0).forEach((resolve) => resolve());
     }
     this.schedule();
+  }
+
+  /** Whether a picture that is not finished has waited long enough, and will not be finished soon. */
+  private worthShowing({ jobs, next, begun, shownAt }: Frame): boolean {
+    const now = performance.now(), { what } = jobs[next], alike = (job: Job): boolean => job.what === what;
+    const left = ((now - begun) * jobs.slice(next).filter(alike).length) / Math.max(jobs.slice(0, next).filter(alike).length, 1);
+    return now - shownAt > Math.max(REFRESH, LATER * (shownAt - begun)) && (!this.frames || left > REFRESH);
   }
 
   /** Have the canvas as large as it is shown. */
@@ -353,7 +365,7 @@ export class Renderer {
       const depth = ({ lines, block: { bounds: b } }: Job): number => apply(product(view, lines.model), [b[0] + b[1], b[2] + b[3], b[4] + b[5]].map((part) => part / 2) as Vec)[2];
       const order = new Map(frame.jobs.map((job) => [job, depth(job)]));
       frame.jobs.sort((a, b) => order.get(b)! - order.get(a)!);
-      for (const job of frame.jobs) job.what = "likely";
+      frame.jobs = frame.jobs.map((job): Job => ({ ...job, what: "likely" }));
       if (moving) frame.share = Math.min(1, (this.rate * MOVING) / sum(({ lines, block }) => (lines.set.likely(block), block.likelies)));
       else frame.jobs.push(...frame.jobs.map((job): Job => ({ ...job, what: "others" })));
     } else if (moving) frame.share = Math.min(1, (this.rate * MOVING) / Math.max(sum(({ block }) => block.items), 1));
