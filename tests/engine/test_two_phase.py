@@ -64,13 +64,12 @@ def brain():
     return compress(brain_streamlines(4000, step=0.25))
 
 
-@pytest.fixture(scope="module")
-def onion():
-    """Return 42,000 fiblets in shells around shells, each dense, and rough enough to reach into its neighbours."""
+def shells(step):
+    """Return fiblets in shells around shells, their lines so many mm apart, rough enough to reach into neighbours."""
     rng = np.random.default_rng(2)
     lines = []
     for radius in np.arange(8.0, 36.0, 2.0):
-        for height in np.arange(-radius + 0.2, radius, 0.45):
+        for height in np.arange(-radius + 0.2, radius, step):
             around = np.sqrt(radius**2 - height**2)
             n = int(2 * np.pi * around / 0.1) + 2
             t = rng.uniform(0, 2 * np.pi) + 2 * np.pi * np.arange(n) / (n - 1)
@@ -78,6 +77,18 @@ def onion():
             rough = around * (1.0 + 0.015 * np.sin(waves * t + phases).sum(0))
             lines.append(np.c_[rough * np.cos(t), rough * np.sin(t), np.full(n, height)])
     return compress(Streamlines.from_list(lines), max_error=1e-3)
+
+
+@pytest.fixture(scope="module")
+def onion():
+    """Return 42,000 fiblets, dense enough to hide what is behind thin lines."""
+    return shells(0.45)
+
+
+@pytest.fixture(scope="module")
+def loose_onion():
+    """Return a quarter of them, which hide enough where lines are wide: wide ones take long to draw."""
+    return shells(1.8)
 
 
 def changed(monkeypatch, name, right, wrong):
@@ -158,9 +169,9 @@ def test_teleports(both, brain, onion, camera, near_plane):
 
 
 @pytest.mark.usefixtures("unpredicted")
-def test_clipping_ranges(both, onion, camera):
+def test_clipping_ranges(both, loose_onion, camera):
     """Near and far planes that cut the data, down to slices of a millimetre, where depth is coarse in float32."""
-    pair = both(onion)
+    pair = both(loose_onion)
     for near_plane, far in ((30, 200), (100, 105), (20, 101), (110, 110.2), (1e-3, 1e4)):
         for height in (None, 70.0):
             matrix = camera(SMALL, eye=(60, -80, 45), near=near_plane, far=far, height=height)
@@ -180,18 +191,18 @@ def test_sizes(both, onion, camera):
 
 
 @pytest.mark.usefixtures("unpredicted")
-def test_line_widths(both, onion, camera):
-    pair = both(onion)
+def test_line_widths(both, loose_onion, camera):
+    pair = both(loose_onion)
     for i, width in enumerate((1.0, 9.0, 1.0, 1.5, 2.0, 30.0, 3.0, 1.0)):
         pair.draw(View(SMALL, camera(SMALL, **orbit(7.0 * i, 110.0))), FibletStyle(width))
     assert pair.hidden > 0.3 * pair.tested
 
 
 @pytest.mark.usefixtures("unpredicted")
-@pytest.mark.parametrize("width", [1.0, 4.0])
-def test_clip_planes(both, onion, camera, width):
+@pytest.mark.parametrize(("width", "shape"), [(1.0, "onion"), (4.0, "loose_onion")])
+def test_clip_planes(both, camera, request, width, shape):
     """A plane dragged through what was hidden, and taken away again."""
-    pair = both(onion)
+    pair = both(request.getfixturevalue(shape))
     for i, height in enumerate((40.0, 20.0, 5.0, 0.0, -10.0, None, -20.0, 10.0)):
         planes = [] if height is None else [(0.1, 1.0, 0.2, height), (1.0, 0.0, 0.0, 20.0)]
         pair.draw(View(SMALL, camera(SMALL, **orbit(4.0 * i, 110.0)), planes), FibletStyle(width))
