@@ -21,12 +21,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from pvfiblets.web.state import WRITABLE
+
 FLAGS = (
     "--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-component-update", "--disable-sync",
     "--disable-quic", "--no-first-run",
 )  # fmt: skip
 PATIENCE = int(os.environ.get("PVFIBLETS_PATIENCE", "120000"))  # ms: machines that run tests are busy
-QUIET = 600  # ms without a picture: twice as long as the server waits for the camera to rest
+QUIET = 150  # ms between questions to a server that is to be at rest; pages throttle events to one in 100 ms
+FINE = 90  # the least quality of pictures at rest
+QUALITY = re.compile(rb"\xa7quality([\x00-\x7f]|\xcc.)", re.DOTALL)  # of a picture, an integer of msgpack
+# What the page has sent is taken, and what is drawn is drawn, when this comes back: the server does one after another.
+SESSION = "window.trame.trigger('save_session')"
+ANSWER = f"""() => Promise.race([
+    {SESSION}, new Promise((done) => setTimeout(done, 20000)),
+])"""
 
 
 def chromium() -> str | None:
@@ -101,9 +110,16 @@ class Visit:
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
         self.page.on("console", self._said)
         self.page.on("request", lambda request: self.requests.append(request.url))
-        self.page.on(
-            "websocket", lambda socket: socket.on("framereceived", lambda data: self.received.append(len(data)))
-        )
+        self.pictures = 0
+        self.quality = 0  # of the last one
+        self.page.on("websocket", lambda socket: socket.on("framereceived", self.take))
+
+    def take(self, data):
+        """Take note of a message from the server."""
+        self.received.append(len(data))
+        if isinstance(data, bytes) and b"image/" in data[:1000] and (found := QUALITY.search(data[:1000])):
+            self.pictures += 1
+            self.quality = found[1][-1]
 
     def _said(self, said):
         # An event that is on its way when a page is left is lost, of which its client complains.
@@ -152,12 +168,15 @@ class Visit:
         return np.asarray(Image.open(io.BytesIO(base64.b64decode(data))).convert("RGB")).astype(np.int16)
 
     def rests(self):
-        """Wait until no picture has come for a while, in which three could have been drawn, and return the last."""
-        count = -1
-        while len(self.received) != count:
-            count = len(self.received)
-            found = re.match(r"\d+", self.state("frame") or "")
-            self.page.wait_for_timeout(max(QUIET, 3 * int(found.group()) if found else 0))
+        """Wait until a fine picture is the last, and none comes while the server answers; return it."""
+        count, end = -1, time.monotonic() + PATIENCE / 1000.0
+        while self.pictures != count or self.quality < FINE:
+            assert time.monotonic() < end, f"no rest; the server said:\n{self.served.log.read_text()}"
+            count = self.pictures
+            self.page.evaluate(ANSWER)  # by then all that was done is known there
+            for _ in range(2):
+                self.page.wait_for_timeout(QUIET)
+                self.page.evaluate(ANSWER)  # by then it is drawn; then, by then it is coded and sent
         return self.picture()
 
     def changed(self, before, what="another picture", least=0.05):
@@ -175,17 +194,16 @@ class Visit:
 
     def remember(self):
         """Keep the session as it is now, for :meth:`begin_again`."""
-        self.begun = self.page.evaluate("window.trame.trigger('save_session')")
+        self.begun = self.page.evaluate(SESSION)
+        self.panels = {name: self.state(name) for name in WRITABLE}  # what is open, typed and chosen
         return self
 
     def begin_again(self):
         """Have the session as it was remembered, without another process for it; what can be undone stays."""
-        self.page.evaluate(
-            "window.trame.state.update({tool: 'rotate', tab: 'clip', dialog: '', left_open: true, right_open: true})"
-        )
+        self.page.evaluate("document.activeElement?.blur()")
+        self.page.evaluate("(panels) => window.trame.state.update(panels)", self.panels)
         self.page.evaluate("(text) => window.trame.trigger('load_session', [text])", self.begun)
-        now = "window.trame.trigger('save_session')"
-        self.wait(lambda: self.page.evaluate(now) == self.begun, "the session as it was")
+        self.wait(lambda: self.page.evaluate(SESSION) == self.begun, "the session as it was")
         self.rests()
         return self
 

@@ -163,10 +163,11 @@ def revisit(_pages, browser, served):
     """Return a function that opens a page that tests of a module share; each finds it as the first one did."""
     from tests.web.browsing import Visit
 
-    def open_page(*arguments):
-        if arguments in _pages:
-            return _pages[arguments].begin_again()
-        found = _pages[arguments] = Visit(browser, served(*arguments))
+    def open_page(*arguments, **options):
+        asked = arguments, tuple(sorted(options.items()))
+        if asked in _pages:
+            return _pages[asked].begin_again()
+        found = _pages[asked] = Visit(browser, served(*arguments), **options)
         return found.open().remember()
 
     yield open_page

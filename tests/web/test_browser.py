@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 
-def test_a_page_opens_turns_and_rests(visit):
-    here = visit("lines.fiblets")
+def test_a_page_opens_turns_and_rests(revisit):
+    here = revisit("lines.fiblets")
     assert here.state("layers")[0]["name"] == "lines.fiblets"
     before = here.rests()
     assert before.shape[0] > 400  # as large as the place for it
@@ -15,7 +15,7 @@ def test_a_page_opens_turns_and_rests(visit):
     assert after.shape == before.shape
     # At rest nothing is drawn and nothing is sent.
     count, frame = len(here.received), here.state("frame")
-    here.page.wait_for_timeout(1500)
+    here.page.wait_for_timeout(1000)
     assert len(here.received) == count
     assert here.state("frame") == frame
     # Everything comes from the server itself.
@@ -24,8 +24,8 @@ def test_a_page_opens_turns_and_rests(visit):
     assert "token" not in here.page.url
 
 
-def test_pictures_are_coarse_in_motion_and_fine_at_rest(visit):
-    here = visit("lines.fiblets")
+def test_pictures_are_coarse_in_motion_and_fine_at_rest(revisit):
+    here = revisit("lines.fiblets")
     here.rests()
     here.page.evaluate(
         """() => { window.sizes = []; const real = URL.createObjectURL;
@@ -38,8 +38,8 @@ def test_pictures_are_coarse_in_motion_and_fine_at_rest(visit):
     assert sizes[-1] > 1.5 * min(sizes[:-1])
 
 
-def test_properties_change_the_picture_and_are_undone(visit):
-    here = visit("lines.fiblets")
+def test_properties_change_the_picture_and_are_undone(revisit):
+    here = revisit("lines.fiblets")
     here.press("2")
     first = here.rests()
     here.choose("scalars", "length")
@@ -59,8 +59,8 @@ def test_properties_change_the_picture_and_are_undone(visit):
     here.wait(lambda: here.page.input_value(width) == "1", "the width that there is")
 
 
-def test_layers_are_hidden_renamed_duplicated_and_removed(visit):
-    here = visit("lines.fiblets")
+def test_layers_are_hidden_renamed_duplicated_and_removed(revisit):
+    here = revisit("lines.fiblets")
     full = here.rests()
     here.page.click("[data-action=eye]")
     here.wait(lambda: here.picture().std() < 0.5, "an empty picture")
@@ -78,8 +78,8 @@ def test_layers_are_hidden_renamed_duplicated_and_removed(visit):
     here.wait(lambda: here.layers() == 1, "one layer")
 
 
-def test_cuts_and_filters_leave_less_to_see(visit):
-    here = visit("lines.fiblets")
+def test_cuts_and_filters_leave_less_to_see(revisit):
+    here = revisit("lines.fiblets")
     here.press("2")
     full = here.rests()
 
@@ -106,10 +106,10 @@ def test_cuts_and_filters_leave_less_to_see(visit):
     assert lit(here.rests()) < 0.9 * lit(full)
 
 
-def test_what_is_picked_fills_the_table_and_is_exported(visit):
+def test_what_is_picked_fills_the_table_and_is_exported(revisit):
     import pvfiblets
 
-    here = visit("lines.fiblets")
+    here = revisit("lines.fiblets")
     here.press("2")
     before = here.rests()
     here.press("b")
@@ -130,8 +130,8 @@ def test_what_is_picked_fills_the_table_and_is_exported(visit):
     assert len(pvfiblets.read(path)) == count
 
 
-def test_sessions_are_saved_loaded_and_survive_a_reload(visit):
-    here = visit("lines.fiblets")
+def test_sessions_are_saved_loaded_and_survive_a_reload(revisit):
+    here = revisit("lines.fiblets")
     first = here.rests()
     here.choose("scalars", "length")
     coloured = here.changed(first)
@@ -159,10 +159,10 @@ def test_sessions_are_saved_loaded_and_survive_a_reload(visit):
     assert np.abs(here.rests() - kept).mean() < 0.5
 
 
-def test_files_are_opened_uploaded_and_refused(visit, tmp_path, lines):
+def test_files_are_opened_uploaded_and_refused(revisit, tmp_path, lines):
     import pvfiblets
 
-    here = visit("lines.fiblets")
+    here = revisit("lines.fiblets")
     here.press("o")
     here.page.click("[data-entry='ball.ply']")
     here.wait(lambda: here.layers() == 2, "the mesh")
@@ -179,8 +179,8 @@ def test_files_are_opened_uploaded_and_refused(visit, tmp_path, lines):
     assert (here.served.root / "sent.tck").read_bytes() == (tmp_path / "sent.tck").read_bytes()
 
 
-def test_two_browsers_are_two_sessions(visit):
-    one, other = visit("lines.fiblets"), visit("lines.fiblets")
+def test_two_browsers_are_two_sessions(revisit, visit):
+    one, other = revisit("lines.fiblets"), visit("lines.fiblets")
     still = other.rests()
     before = one.rests()
     one.choose("scalars", "length")
@@ -198,13 +198,3 @@ def test_a_shared_view_is_one_for_all(visit):
     one.choose("scalars", "length")
     other.wait(lambda: "scalars" in other.state("undo_label"), "what the other one did")
     assert np.array_equal(one.rests(), other.rests())
-
-
-def test_a_page_for_a_tablet_has_the_picture_first(visit):
-    here = visit("lines.fiblets", width=820, height=1180, has_touch=True)
-    here.wait(lambda: here.page.locator("#pv-view").bounding_box()["width"] >= 800, "the panels to close")
-    here.wait(lambda: here.picture().shape[1] >= 800, "a picture of that width")
-    before = here.rests()
-    assert before.shape[1] >= 800
-    here.press("3")
-    here.changed(before)

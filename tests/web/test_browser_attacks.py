@@ -32,9 +32,9 @@ def unharmed(here):
 
 
 @pytest.fixture
-def evil(visit):
+def evil(revisit):
     """Return a page with a tractogram whose values and groups have such names."""
-    here = visit("lines.fiblets")
+    here = revisit("lines.fiblets")
     rng = np.random.default_rng(1)
     lines = [np.cumsum(rng.normal(size=(30, 3)), axis=0) for _ in range(12)]
     # Names of members of trx files have no slashes.
@@ -82,8 +82,8 @@ def test_names_in_files_are_text_wherever_they_are_shown(evil):
     unharmed(here)
 
 
-def test_names_in_sessions_are_text_wherever_they_are_shown(visit):
-    here = visit("lines.fiblets")
+def test_names_in_sessions_are_text_wherever_they_are_shown(revisit):
+    here = revisit("lines.fiblets")
     here.tab("filter")
     here.page.click("[data-region=sphere]")
     here.wait(lambda: here.state("filters")["regions"], "a region")
@@ -125,8 +125,8 @@ def test_names_in_sessions_are_text_wherever_they_are_shown(visit):
     assert "\x1b" not in here.served.log.read_text()
 
 
-def test_uploads_with_such_names_are_refused_or_text(visit):
-    here = visit("lines.fiblets")
+def test_uploads_with_such_names_are_refused_or_text(revisit):
+    here = revisit("lines.fiblets")
     content = (here.served.root / "lines.trk").read_bytes()
     for name in (*NAMES, "a\u202ekrt.exe.trk", "..\\up", "../up", ".hidden", "a\x1b[2J"):
         status = here.page.evaluate(

@@ -21,8 +21,8 @@ def choose(here, *wanted):
         here.wait(lambda name=name: any(row["name"] == name and row["order"] for row in rows(here)), "its box")
 
 
-def test_bundles_are_found_ordered_measured_and_fetched(visit, tmp_path):
-    here = visit("lines.fiblets")
+def test_bundles_are_found_ordered_measured_and_fetched(revisit, tmp_path):
+    here = revisit("lines.fiblets")
     here.tab("bundles")
     here.page.click("[data-action=find]")
     # What runs near the selected ones.
@@ -78,8 +78,8 @@ def test_bundles_are_found_ordered_measured_and_fetched(visit, tmp_path):
     assert here.state("bundles")["coloured"]
 
 
-def test_a_matrix_is_made_pointed_at_and_clicked(visit, tmp_path):
-    here = visit("lines.fiblets")
+def test_a_matrix_is_made_pointed_at_and_clicked(revisit, tmp_path):
+    here = revisit("lines.fiblets")
     here.page.click("[data-action=matrix]")
     here.page.click("[data-select=matrix-labels] .v-field")
     here.page.click(".v-overlay--active .v-list-item:has-text('atlas.nii.gz')")

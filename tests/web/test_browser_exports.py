@@ -16,8 +16,8 @@ def text_of(download):
     return download.value.path().read_text(encoding="utf-8")
 
 
-def test_a_picture_is_saved_at_any_size(visit):
-    here = visit("lines.fiblets")
+def test_a_picture_is_saved_at_any_size(revisit):
+    here = revisit("lines.fiblets")
     before = here.rests()
     here.page.click("[data-action=picture]")
     here.page.wait_for_selector("#dialog-picture")
@@ -49,8 +49,8 @@ def test_a_picture_is_saved_at_any_size(visit):
         here.wait(lambda: not here.page.locator("#dialog-picture").is_visible(), "the dialog to close")
 
 
-def test_tables_profiles_and_named_files_are_fetched(visit):
-    here = visit("lines.fiblets")
+def test_tables_profiles_and_named_files_are_fetched(revisit):
+    here = revisit("lines.fiblets")
     here.page.click("[data-tool-button=box]")
     here.trace([(0.1, 0.1), (0.95, 0.95)])
     here.wait(lambda: here.state("selection")["count"] > 3, "a selection")

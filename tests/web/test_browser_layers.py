@@ -113,8 +113,8 @@ def test_a_mesh_is_a_layer(here):
     hide_and_remove(here, before, shown)
 
 
-def test_several_files_are_chosen_and_opened_at_once(visit):
-    here = visit("lines.fiblets")
+def test_several_files_are_chosen_and_opened_at_once(revisit):
+    here = revisit("lines.fiblets")
     here.press("o")
     here.page.wait_for_selector("#dialog-open")
     here.page.check("[data-mark='ball.ply']")

@@ -1,4 +1,4 @@
-"""Files that swell, in a real browser and a session with little memory; files that wait for their turn."""
+"""Files that swell, in a real browser and a session with little memory."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-import pvfiblets
 from pvfiblets import memory
 from tests.web import bombs
 
@@ -36,20 +35,3 @@ def test_bombs_are_refused_on_the_page_and_the_session_goes_on(visit):
     here.press("o")
     here.page.click("[data-entry='lines.trk']")
     here.wait(lambda: here.layers() == 2, "a file like any other")
-
-
-def test_a_file_that_is_opened_while_another_one_is_waits_and_is_named(visit):
-    from pvfiblets.synthetic import brain_streamlines
-
-    here = visit("lines.fiblets")
-    pvfiblets.write(here.served.root / "large.tck", brain_streamlines(12_000))
-    for name in ("large.tck", "ball.ply"):
-        here.press("o")
-        here.page.click(f"[data-entry='{name}']")
-        here.page.wait_for_selector("#dialog-open", state="hidden")  # the key would toggle it
-    here.wait(lambda: "then ball.ply" in here.page.locator("#busy").inner_text(), "what waits")
-    here.page.click("[data-action=cancel]")
-    here.wait(lambda: here.layers() == 2, "its turn")
-    names = here.page.locator("[data-layer]").all_inner_texts()
-    assert any("ball.ply" in name for name in names)
-    (here.served.root / "large.tck").unlink()

@@ -20,6 +20,11 @@ def sliced(here, name="head.nii.gz"):
     here.page.click(f"#dialog-open .v-list-item:has-text('{name}')")
     here.wait(lambda: here.state("slicing")["shown"], "slices")
     here.rests()
+    if here.state("slicing")["layout"] != "beside":  # a page that tests share keeps what the one before chose
+        here.page.evaluate("window.trame.trigger('set_layout', ['beside'])")
+        views = {"axial", "coronal", "sagittal"}
+        here.wait(lambda: views <= {one["name"] for one in here.state("slicing")["boxes"]}, "all views")
+        here.rests()
 
 
 def pixel(here, name, across, down):
@@ -35,8 +40,8 @@ def click(here, name, across, down):
     here.page.mouse.click(*pixel(here, name, across, down))
 
 
-def test_a_t1_is_opened_gone_through_and_found_again(visit):
-    here = visit("lines.fiblets")
+def test_a_t1_is_opened_gone_through_and_found_again(revisit):
+    here = revisit("lines.fiblets")
     before = here.picture()
     sliced(here)
     assert here.state("slicing")["layout"] == "beside"
@@ -97,8 +102,8 @@ def test_a_t1_is_opened_gone_through_and_found_again(visit):
     assert told(here) == [20.0, 24.0, 28.0]
 
 
-def test_a_painted_region_filters_and_is_kept(visit, tmp_path):
-    here = visit("lines.fiblets")
+def test_a_painted_region_filters_and_is_kept(revisit, tmp_path):
+    here = revisit("lines.fiblets")
     sliced(here)
     here.page.click("[data-layout-button=axial]")
     here.wait(lambda: [one["name"] for one in here.state("slicing")["boxes"]] == ["axial"], "one view")
@@ -145,8 +150,8 @@ def test_a_painted_region_filters_and_is_kept(visit, tmp_path):
     assert here.page.locator("[data-painted] [data-field=name]").input_value() == "left <b>arm</b>"
 
 
-def test_a_bundle_is_made_named_exported_and_kept(visit):
-    here = visit("lines.fiblets")
+def test_a_bundle_is_made_named_exported_and_kept(revisit):
+    here = revisit("lines.fiblets")
     here.tab("bundles")
     names = lambda: [row["name"] for row in here.state("bundles")["rows"]]  # noqa: E731
     assert names() == ["near", "far"]
@@ -237,8 +242,8 @@ def test_volumes_of_a_series_are_gone_through(revisit):
     here.wait(lambda: under.inner_text() == "40", "the last volume's value under the cross-hair")
 
 
-def test_regions_are_outlined_grown_and_taken_from_a_file(visit):
-    here = visit("lines.fiblets")
+def test_regions_are_outlined_grown_and_taken_from_a_file(revisit):
+    here = revisit("lines.fiblets")
     sliced(here)
     here.page.click("[data-layout-button=axial]")
     here.wait(lambda: [one["name"] for one in here.state("slicing")["boxes"]] == ["axial"], "one view")
@@ -268,8 +273,8 @@ def test_regions_are_outlined_grown_and_taken_from_a_file(visit):
     here.wait(lambda: [row["name"] for row in rows()] == ["3", "5"], "the regions of the file")
 
 
-def test_labels_of_an_atlas_are_searched_and_clicked(visit):
-    here = visit("lines.fiblets")
+def test_labels_of_an_atlas_are_searched_and_clicked(revisit):
+    here = revisit("lines.fiblets")
     shutil.copy(here.served.root / "atlas.nii.gz", here.served.root / "parts.nii.gz")
     (here.served.root / "parts.tsv").write_text("index\tname\n3\tputamen\n5\t<b>insula</b>\n")
     here.page.evaluate("window.trame.trigger('browse', ['', 'slices'])")
@@ -325,9 +330,9 @@ def test_a_phone_has_slices_below_and_tools_that_paint_at_hand(visit):
     here.wait(lambda: abs(told(here)[2] - at[2]) == 12.0, "a slice for each tap")
 
 
-def test_from_a_t1_and_labels_to_an_exported_connection(visit):
+def test_from_a_t1_and_labels_to_an_exported_connection(revisit):
     """A session as users have it: images, a point, a painted region, a label, a file, and all of it after a reload."""
-    here = visit("lines.fiblets")
+    here = revisit("lines.fiblets")
     shutil.copy(here.served.root / "atlas.nii.gz", here.served.root / "lobes.nii.gz")
     (here.served.root / "lobes.tsv").write_text("index\tname\n3\tputamen\n5\tinsula\n")
     sliced(here)

@@ -30,8 +30,8 @@ class Fingers:
         self._send("touchEnd", [])
 
 
-def tablet(visit):
-    here = visit("lines.fiblets", width=820, height=1180, has_touch=True, is_mobile=True)
+def tablet(revisit):
+    here = revisit("lines.fiblets", width=820, height=1180, has_touch=True, is_mobile=True)
     here.wait(lambda: here.page.locator("#pv-view").bounding_box()["width"] >= 800, "the panels to close")
     here.wait(lambda: here.picture().shape[1] >= 800, "a picture of that width")
     return here, here.rests()
@@ -43,8 +43,8 @@ def extent(picture):
     return columns[-1] - columns[0]
 
 
-def test_one_finger_turns_and_two_zoom(visit):
-    here, before = tablet(visit)
+def test_one_finger_turns_and_two_zoom(revisit):
+    here, before = tablet(revisit)
     assert before.shape[1] >= 800
     fingers = Fingers(here)
     edges = here.state("edges")
@@ -59,8 +59,8 @@ def test_one_finger_turns_and_two_zoom(visit):
     assert here.page.evaluate("window.visualViewport.scale") == 1.0  # the picture was zoomed, not the page
 
 
-def test_fingers_select_and_panels_open_over_the_picture(visit):
-    here, before = tablet(visit)
+def test_fingers_select_and_panels_open_over_the_picture(revisit):
+    here, before = tablet(revisit)
     here.press("1")
     here.changed(before)
     here.page.tap("[data-tool-button=box]")
