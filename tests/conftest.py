@@ -40,13 +40,15 @@ SIZES = {"value": 1, "pair": 2}
 """What ``pytest.mark.every`` may say, and of how many parameters it speaks."""
 
 LONGEST = (
-    "left_out/test_left_out.py", "tests/test_examples.py", "docs/test_snippets.py", "web/test_browser.py",
-    "stability/test_soak.py", "stability/test_load.py", "plotting/test_everything_at_once.py",
-    "engine/test_two_phase.py", "engine/test_coverage.py", "web/test_browser_tools.py", "web/test_browser_layout.py",
-    "report/test_features_study.py", "report/test_tubes_study.py", "formats/test_fuzz.py",
-    "engine/test_region_query.py", "engine/test_volume.py", "engine/test_volume_steep.py",
-    "engine/test_filter_textures.py", "engine/test_line_tubes.py", "web/test_browser_connection.py",
-    "web/test_browser_touch.py", "web/test_browser_drawing.py",
+    "docs/test_snippets.py", "tests/test_examples.py", "web/test_browser_layout.py", "web/test_browser_slices.py",
+    "web/test_browser.py", "web/test_browser_connection.py", "left_out/test_left_out.py",
+    "plotting/test_everything_at_once.py", "web/test_browser_tools.py", "engine/test_two_phase.py",
+    "page/test_page_browser.py", "stability/test_cases.py", "web/test_browser_drawing.py", "web/test_browser_layers.py",
+    "stability/test_load.py", "engine/test_volume_steep.py", "benchmarks/test_soak.py", "engine/test_coverage.py",
+    "web/test_browser_attacks.py", "web/test_browser_bundles.py", "engine/test_region_query.py",
+    "web/test_browser_exports.py", "engine/test_clip_regions.py", "web/test_browser_touch.py",
+    "web/test_browser_memory.py", "engine/test_filter_textures.py", "engine/test_line_tubes.py",
+    "report/test_features_study.py", "report/test_tubes_study.py", "formats/test_fuzz.py", "engine/test_volume.py",
 )  # fmt: skip
 """Files that take longest. They begin first, so that in the end no process works on while the others have nothing."""
 
