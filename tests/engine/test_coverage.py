@@ -236,39 +236,40 @@ def test_what_is_hidden_is_behind_the_depth_in_float64(gl, fabricate, random_lin
         assert behind((a + t * (b - a) + off)[flags]).all()
 
 
-def test_hidden_as_numpy_reads_the_buffer(gl, brain, orbit):
+def test_hidden_as_numpy_reads_the_buffer(gl, thinner, orbit):
     """coverage.glsl against the rule in words: all balls' centres, from the anchor to the next, behind the buffer."""
-    renderer = FibletRenderer(gl, brain, culling="coverage")
+    size = (480, 300)
+    renderer = FibletRenderer(gl, thinner, culling="coverage")
     for angle in (0.0, 3.0):
-        renderer.render(View(SIZE, orbit(angle)))
-    view = View(SIZE, orbit(3.0))
+        renderer.render(View(size, orbit(angle, size=size)))
+    view = View(size, orbit(3.0, size=size))
     buffer = renderer._occlusion
     flags = hidden_flags(gl, renderer)
     limit, axis, radius = values_of(buffer.texture), buffer._axis, buffer.radius
     reference = buffer._camera(view).reference
     renderer.release()
-    a, b, r = capsules(brain)
+    a, b, r = capsules(thinner)
     pieces = np.ceil(np.linalg.norm(b - a, axis=1) / 2 / np.maximum(radius - r, 1e-20)).clip(1.0)
     expected, near_limit = (r < radius) & (pieces <= 8), np.zeros(len(r), bool)
     for i in range(9):
         t = (i / pieces).clip(0.0, 1.0)[:, None]
         p = a + t * (b - a)
-        x, y, _, w = to_window(p, view.model_view_projection).T
-        inside = (w > 0) & (x >= 0) & (y >= 0) & (x < SIZE[0]) & (y < SIZE[1])
+        x, y, _, w = to_window(p, view.model_view_projection, size).T
+        inside = (w > 0) & (x >= 0) & (y >= 0) & (x < size[0]) & (y < size[1])
         column, row = (np.where(inside, v / 16, 0).astype(int) for v in (x, y))
-        zeta = (p - brain.origin - reference * brain.anchor_scale) @ axis
+        zeta = (p - thinner.origin - reference * thinner.anchor_scale) @ axis
         there = limit[row, column]
         expected &= inside & (there > -1e38) & (zeta > there)
         near_limit |= (np.abs(zeta - there) < 1e-3) | (np.abs([x % 16, y % 16]) < 1e-2).any(0)
     sure = ~near_limit
     assert sure.mean() > 0.9
-    assert expected.mean() > 0.1
+    assert expected.sum() > 300
     assert np.array_equal(flags[sure], expected[sure])
 
 
-def test_radius_is_between_the_thick_and_the_long(brain):
-    radii = np.asarray(brain.reach) * brain.reach_scale
-    radius = dilation_radius(brain)
+def test_radius_is_between_the_thick_and_the_long(thinner):
+    radii = np.asarray(thinner.reach) * thinner.reach_scale
+    radius = dilation_radius(thinner)
     assert np.quantile(radii, 0.9) < radius < 15.0
     assert radius < 60 * 0.5, "the paper's radius is the length of a fiblet"
 
@@ -357,11 +358,11 @@ def test_works_on_the_oldest_opengl(version):
     assert corner == "True"
 
 
-def test_memory_runs_out_plainly(gl, brain, monkeypatch):
+def test_memory_runs_out_plainly(gl, thinner, monkeypatch):
     from pvfiblets.engine import EngineError
 
     programs = Programs(gl, CONSTANTS)
-    buffer = CoverageBuffer(gl, GLExtras(gl), programs, brain)
+    buffer = CoverageBuffer(gl, GLExtras(gl), programs, thinner)
     target = GBuffer(gl, (64, 64))
 
     class Full:
