@@ -182,8 +182,8 @@ def test_a_bundle_is_made_named_exported_and_kept(revisit):
     assert here.page.locator("[data-bundle-row] [data-field=name]").nth(2).input_value() == "<b>shown</b>"
 
 
-def test_a_handle_of_the_oblique_slice_is_dragged_and_undone_at_once(revisit):
-    here = revisit("lines.fiblets")
+def test_a_handle_of_the_oblique_slice_is_dragged_and_undone_at_once(visit):
+    here = visit("lines.fiblets")  # a shared page would keep where the cross-hair was
     sliced(here)
     here.page.click("[data-action=panes]")
     here.page.click("[aria-label='Oblique slice']")
