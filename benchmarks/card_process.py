@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import subprocess
 import sys
@@ -66,8 +67,9 @@ class Drawer:
         if process is None or said is None:
             return ""
         self._process = None
-        if process.stdin is not None and process.poll() is None:
-            process.stdin.close()
+        if process.stdin is not None:
+            with contextlib.suppress(BrokenPipeError):  # of what it has not read
+                process.stdin.close()
         try:
             process.wait(10)
         except subprocess.TimeoutExpired:

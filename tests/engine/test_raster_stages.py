@@ -44,7 +44,7 @@ STAGES = {
 def test_stages_link_in_the_oldest_glsl(gl, name, values, culling, clipping):
     """With every kind of record, in the version of GLSL that the pipeline's OpenGL has."""
     version = 410 if "tessellation" in name else 330
-    older = SimpleNamespace(version_code=version, program=gl.program)
+    older = SimpleNamespace(version_code=version, program=gl.program, info=gl.info)
     every = ["ANCHORS_LOW", "DIRECTION", "LATTICE", "WIDE_LATTICE", "RANK_TO_ID", "LEVEL_OF_DETAIL", "TEXTURE_DATA"]
     wide = ["WIDE_LINES"] if "wide" in name else []
     stages = ("vertex", "tess_control", "tess_evaluation", "geometry", "fragment")

@@ -137,6 +137,11 @@ def test_moving_sends_no_picture_and_the_session_knows_the_camera(here):
     here.wait(lambda: here.state("info"), "the facts of the layer")
     here.press("1")  # the server moves it, too
     here.wait(lambda: here.session()["camera"]["position"] != now["position"], "the view from above")
+    above = here.session()["camera"]["position"]
+    here.wait(
+        lambda: np.allclose(here.page.evaluate("pvfibletsThere.camera.state.position"), above),
+        "the page's view from above",
+    )
     assert agrees(here)
 
 
