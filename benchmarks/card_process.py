@@ -11,6 +11,8 @@ import threading
 from pathlib import Path
 from typing import IO, Any
 
+from common import too_long, why_it_failed
+
 __all__ = ["Drawer"]
 
 Row = dict[str, Any]
@@ -59,7 +61,7 @@ class Drawer:
             row: Row = json.loads(line)
             return row
         reason = self.close()
-        return {"unmeasured": f"takes more than {seconds:g} s here" if late.is_set() else reason}
+        return {"unmeasured": too_long(seconds) if late.is_set() else reason}
 
     def close(self) -> str:
         """End the process; return what it died of, if it had."""
@@ -78,7 +80,6 @@ class Drawer:
         if process.stdout is not None:
             process.stdout.close()
         said.seek(0)
-        lines = said.read().strip().splitlines()
+        reason = why_it_failed(said.read(), process.returncode)
         said.close()
-        print(*lines, sep="\n", file=sys.stderr)
-        return f"failed: {lines[-1]}" if lines else f"failed: ended with {process.returncode}"
+        return reason

@@ -103,6 +103,18 @@ def pyplot() -> Any:
 # --------------------------------------------------------------------------------------------------- processes, windows
 
 
+def why_it_failed(said: str, code: int) -> str:
+    """Pass on what a process said, and return in a few words what it died of."""
+    said = said.strip()
+    print(said, file=sys.stderr)
+    return f"failed: {said.splitlines()[-1]}" if said else f"failed: ended with {code}"
+
+
+def too_long(seconds: float) -> str:
+    """Return in a few words that a process was given no more time."""
+    return f"takes more than {seconds:g} s here"
+
+
 def run_child(script: str, arguments: Sequence[object], seconds: float) -> tuple[list[dict[str, Any]], str]:
     """Run a benchmark in a process of its own, so that memory is its own and nothing is warm.
 
@@ -129,11 +141,9 @@ def run_child(script: str, arguments: Sequence[object], seconds: float) -> tuple
         done = subprocess.run(command, capture_output=True, check=False, timeout=limit, env=environment)
         printed, reason = done.stdout, ""
         if done.returncode != 0:
-            said = (done.stderr or b"").decode(errors="replace").strip()
-            print(said, file=sys.stderr)
-            reason = f"failed: {said.splitlines()[-1]}" if said else f"failed: ended with {done.returncode}"
+            reason = why_it_failed((done.stderr or b"").decode(errors="replace"), done.returncode)
     except subprocess.TimeoutExpired as error:
-        printed, reason = error.stdout or b"", f"takes more than {seconds:g} s here"
+        printed, reason = error.stdout or b"", too_long(seconds)
     lines = printed.decode().splitlines(keepends=True)
     return [json.loads(line) for line in lines if line.startswith("{") and line.endswith("}\n")], reason
 

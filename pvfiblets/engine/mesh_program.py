@@ -50,7 +50,7 @@ def nvidia_program(ctx: moderngl.Context, sources: Mapping[str, str]) -> moderng
     moderngl.Error
         If no form of its fragment stage compiles and links; with what the driver says of the first.
     """
-    said: moderngl.Error | None = None
+    refused: list[moderngl.Error] = []
     for form in _NVIDIA_FORMS:
         fragment = sources["fragment_shader"]
         for old, new in form.items():
@@ -59,8 +59,8 @@ def nvidia_program(ctx: moderngl.Context, sources: Mapping[str, str]) -> moderng
             stages: dict[str, Any] = {**sources, "fragment_shader": fragment}
             return ctx.program(**stages)
         except moderngl.Error as error:
-            said = said or error
-    raise said or moderngl.Error("no sources")
+            refused.append(error)
+    raise refused[0]
 
 
 class MeshProgram:
