@@ -27,6 +27,7 @@ ANY_LINES = (
     "CLIPPING",
     "CLIPPING_DEPTH",
     "CLIP_PLANES",
+    "CLIP_REGION",
     "EDGES",
     "WIDE_LINES",
     "VALUES_STORED",
@@ -55,7 +56,7 @@ STAGES: dict[str, tuple[str, ...]] = {
     "page/image.vert": (),
     "page/image.frag": (),
 }
-BLOCKS = ("Frame", "Coding", "Rotations", "ClipPlanes")
+BLOCKS = ("Frame", "Coding", "Rotations", "ClipPlanes", "Rays")
 PRECISION = "".join(f"precision highp {kind};\n" for kind in ("float", "int", "sampler2D", "usampler2D"))
 
 

@@ -11,7 +11,8 @@ export class GraphicsError extends Error {}
 /** A stage with some of its switches on. */
 function stage(name: string, features: readonly string[]): string {
   const text = features.includes("SPRITES") ? shaders[name].replace("const bool SPRITES=false", "const bool SPRITES=true") : shaders[name];
-  return text.replace(/#define FEATURE_(\w+) [01]/g, (_, feature) => `#define FEATURE_${feature} ${features.includes(feature) ? 1 : 0}`);
+  const region = features.find((one) => one.startsWith("REGION "));
+  return (region ? text.replace(/#define REGION .*/, `#define ${region}`) : text).replace(/#define FEATURE_(\w+) [01]/g, (_, feature) => `#define FEATURE_${feature} ${features.includes(feature) ? 1 : 0}`);
 }
 
 export class Program {

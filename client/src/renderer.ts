@@ -7,6 +7,7 @@
 
 import type { Archive } from "./archive";
 import { Bounds, Camera, Mat, Vec, apply, identity, inverse, linear, product } from "./camera";
+import { Cut, expression, raysOf } from "./cuts";
 import { fromBase64 } from "./engine";
 import { Block, FibletSet, PointValues, asCodes, asWords } from "./fiblets";
 import { GL, GraphicsError, Program, UniformBlock, framebuffer, lookUpTable, rows, target } from "./gl";
@@ -111,6 +112,7 @@ export class Renderer {
   private programs = new Map<string, Program>();
   private frameBlock!: UniformBlock;
   private clipBlock!: UniformBlock;
+  private raysBlock: UniformBlock | null = null;  // of regions that cut
   private textures: Record<string, WebGLTexture> = {};
   private buffers: Record<string, WebGLFramebuffer> = {};
   private frame: Frame | null = null;
@@ -158,6 +160,7 @@ export class Renderer {
     this.surfaces.length = this.images.length = 0;
     this.frameBlock = new UniformBlock(gl, "Frame");
     this.clipBlock = new UniformBlock(gl, "ClipPlanes");
+    this.raysBlock = null;
     this.fill(new Map(), new Map());
     before.forEach((old, i) => {
       const now = this.lines[i];
@@ -454,6 +457,17 @@ export class Renderer {
     return { wide, clipped: planes.length > 0, window };
   }
 
+  /** Have the shapes of a region as this camera sees them; false where it cuts nothing. */
+  private cut(cut: Cut, drawn: Drawn): boolean {
+    const { width, height } = this;
+    const window = new Float64Array([width / 2, 0, 0, 0, 0, height / 2, 0, 0, 0, 0, 0.5, 0, width / 2, height / 2, 0.5, 1]);
+    const rays = raysOf(cut, product(window, product(drawn.projection, drawn.view)), width, height);
+    if (!rays) return false;
+    (this.raysBlock ??= new UniformBlock(this.gl, "Rays")).write(rays);
+    this.raysBlock.bind();
+    return true;
+  }
+
   /** How many pixels a length (mm) takes at most. */
   private pixelsOf(lines: Lines, drawn: Drawn, length: number): number {
     const matrix = product(drawn.projection, product(drawn.view, lines.model)), b = lines.set.bounds, stretch = Math.hypot(...linear(lines.model));
@@ -479,6 +493,7 @@ export class Renderer {
         const features = ["CLIPPING", "CLIPPING_DEPTH", "EDGES"];
         if (wide) features.push("WIDE_LINES");
         if (clipped) features.push("CLIP_PLANES");
+        if (lines.layer.cut && this.cut(lines.layer.cut, frame.matrices)) features.push("CLIP_REGION", `REGION ${expression(lines.layer.cut)}`);
         sprites = !wide && this.pixelsOf(lines, frame.matrices, lines.set.longestStep) <= LONGEST_SPRITE;
         if (sprites) features.push("SPRITES");
         if (lines.values) features.push("VALUES_STORED");

@@ -1,6 +1,7 @@
 /** What the page is told to show: the JSON that pvfiblets/page writes, whose counterpart is pvfiblets/page/scene.py. */
 
 import type { Bounds, CameraState, Vec } from "./camera";
+import type { Cut } from "./cuts";
 
 export interface Light {
   colour: Vec;          // times intensity
@@ -52,6 +53,7 @@ export interface FibletLayer extends Layer {
   sheen: Vec;
   kept?: number;        // data: a byte for each streamline
   chosen?: { data: number; colour: [number, number, number, number]; faded: [number, number, number, number] };  // a byte for each streamline; colours, and how much of them
+  cut?: Cut;            // by a region, besides planes
   kept_points?: number; // data: a bit for each point
   groups?: { name: string; data: number }[]; // data: uint32, streamlines
   controls?: Control[];

@@ -14,13 +14,13 @@ import numpy as np
 import numpy.typing as npt
 import pyvista as pv
 
-from pvfiblets.engine.view import MAX_CLIP_PLANES
 from pvfiblets.mappers.engine_mapper import EngineMapper
 from pvfiblets.mappers.fiblets import FibletMapper
 from pvfiblets.mappers.highlight import Highlight
 from pvfiblets.mappers.line_light import LineLight
 from pvfiblets.mappers.scene import to_array, world_planes
 from pvfiblets.page.scene import CameraPlace, Light, PageScene, encoded, fiblet_layer
+from pvfiblets.plotting.page_cuts import cuts_of
 from pvfiblets.plotting.page_surfaces import add_image, add_surface, reflects_of
 from pvfiblets.plotting.slices.plane import prepare
 
@@ -182,16 +182,10 @@ def _add_fiblets(
         more["kept_points"] = scene.add_blob(np.asarray(filtering.points, "<u4"))
     if controls and fiblets.groups:
         more["groups"] = _groups(scene, fiblets, None if filtering is None else filtering.streamlines)
-    planes = world_planes(mapper)
-    if mapper.region is not None:
-        from pvfiblets.engine.regions.clip_planes import planes_of
-
-        flat, rest = planes_of(mapper.region, max(MAX_CLIP_PLANES - len(planes), 0))
-        planes = np.concatenate([planes, flat])
-        if rest is not None:
-            unable.append(f"the cut of {name!r} by what is no plane")
-    if len(planes):
-        more["planes"] = planes.tolist()
+    cuts, whole = cuts_of(world_planes(mapper), mapper.region)
+    more |= cuts
+    if not whole:
+        unable.append(f"the cut of {name!r} by a closed surface")
     if controls:
         more["controls"] = _controls(scene, fiblets, actor, mapper.colouring)
     reflects, sheen = reflects_of(actor.GetProperty())

@@ -11,6 +11,7 @@
 #include "fiblets/segments/edges.glsl"
 #include "fiblets/segments/joint.glsl"
 #include "fiblets/attributes/tangent.glsl"
+#include "page/region.glsl"
 #define VARYING flat in
 #include "page/segment_varyings.glsl"
 
@@ -31,6 +32,9 @@ float value_between(float t) {
 #endif
 
 void write(float s, uint edges) {
+#if FEATURE_CLIP_REGION
+    if (!region_keeps(clamp(mix(seg_start.z, seg_end.z, s), 0.0, 0.99999988))) discard;
+#endif
     float ratio = seg_start.w / max(seg_end.w, 1e-30);
     float t = mix(seg_along.x, seg_along.y, clamp(s * ratio / max(1.0 - s + s * ratio, 1e-30), 0.0, 1.0));
     uint bits = 0u;

@@ -11,6 +11,7 @@ import pvfiblets
 from pvfiblets.page.scene import PageScene, fiblet_layer
 from pvfiblets.page.writing import write_page
 from pvfiblets.plotting.page_scene import add_all, page_of
+from pvfiblets.regions import Box, Plane, Slab, Sphere
 from pvfiblets.synthetic import brain_streamlines
 from tests.page.pages import differing
 
@@ -125,6 +126,49 @@ def test_page_cuts_moves_selects_and_leaves_out_as_the_actor_does(plotter, fible
     wrong, drawn = differing(visit(tmp_path / "figure.html").picture(), expected)
     assert drawn > 0.1
     assert wrong < 0.01
+
+
+BALL, BOX = Sphere((-10.0, 0.0, 5.0), 45.0), Box(center=(-15.0, 5.0, 0.0), size=(40.0, 60.0, 50.0))
+TURNED = pv.Transform().rotate_z(30.0).rotate_x(20.0).matrix
+CUTS = {
+    "a ball": (BALL, 1.0),
+    "outside of a turned ellipsoid": (~BALL.moved(TURNED @ np.diag([1.2, 0.8, 0.5, 1.0])), 3.0),
+    "any or none of several": ((BALL - BOX.moved(TURNED)) | (Slab((0, 0, 1), (0, 0, -40), 20.0) & ~Plane((1, 0, 0))), 2.0),
+}
+
+
+@pytest.mark.parametrize("case", CUTS)
+@pytest.mark.parametrize("near", [False, True])
+def test_regions_cut_lines_where_the_engine_cuts_them(near, case, plotter, fiblets, visit, tmp_path):
+    """From far, and with an eye in the midst of the shapes, where they begin behind it."""
+    region, width = CUTS[case]
+    actor = plotter.add_fiblets(fiblets, line_width=width, user_matrix=np.diag([1.0, -1.0, 1.2, 1.0]))
+    actor.clip(region)
+    plotter.picture.antialias = "coverage"
+    plotter.camera_position = "xz"
+    plotter.camera.azimuth, plotter.camera.elevation = 25.0, 20.0
+    if near:
+        plotter.camera.position, plotter.camera.view_angle = (-15.0, -20.0, 0.0), 70.0
+        plotter.camera.focal_point = (5.0, 20.0, 10.0)
+        plotter.reset_camera_clipping_range()
+    expected = plotter.screenshot(return_img=True)
+    page = visit(plotter.fiblets.export_page(tmp_path / "figure.html")[0])
+    wrong, drawn = differing(page.picture(), expected)
+    assert drawn > 0.03
+    assert wrong < 0.01
+
+
+def test_a_page_without_regions_has_nothing_of_them(plotter, fiblets, visit, tmp_path):
+    actor = plotter.add_fiblets(fiblets)
+    actor.clip(BOX)  # planes are no region
+    page = visit(plotter.fiblets.export_page(tmp_path / "figure.html")[0]).settled()
+    programs = page.page.evaluate("[...pvfiblets.programs.keys()]")
+    assert page.page.evaluate("pvfiblets.raysBlock") is None
+    assert any("CLIP_PLANES" in key for key in programs)
+    assert not any("REGION" in key for key in programs)
+    actor.clip(pv.Sphere(radius=20.0))
+    with pytest.warns(UserWarning, match="leaves out the cut of .* by a closed surface"):
+        plotter.fiblets.export_page(tmp_path / "figure.html")
 
 
 @pytest.mark.parametrize("width", [1.0, 4.0])

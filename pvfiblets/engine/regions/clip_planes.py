@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ...query.region import Region
     from ..frame import Array
 
-__all__ = ["SIDES", "check_region", "planes_of"]
+__all__ = ["SIDES", "check_region", "placed_sides", "planes_of"]
 
 SIDES = {
     PLANE: np.array([[0.0, 0, 1, 0]]),
@@ -77,10 +77,15 @@ def _half_spaces(part: Region) -> Array | None:
     """Return ``(k, 4)`` planes that all of a part lies within and nothing else; None if there are none."""
     leaf = part.leaves[0]
     if part.program == (0,) and leaf.kind in SIDES:
-        return _placed(leaf, SIDES[leaf.kind])
+        return placed_sides(leaf)
     if part.program == (0, NOT) and leaf.kind == PLANE:
         return _placed(leaf, -SIDES[PLANE])
     return None
+
+
+def placed_sides(leaf: Shape) -> Array:
+    """Return ``(k, 4)`` rows over mm of the planes around a plane, a slab or a box."""
+    return _placed(leaf, SIDES[leaf.kind])
 
 
 def _placed(leaf: Shape, sides: Array) -> Array:

@@ -1,0 +1,46 @@
+"""Cuts of streamlines, as a page has them: planes, and regions of other shapes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from pvfiblets.engine.view import MAX_CLIP_PLANES
+from pvfiblets.engine.regions.clip_planes import placed_sides, planes_of
+from pvfiblets.query.shapes import SPHERE, SURFACE
+
+__all__ = ["cuts_of"]
+
+
+def cuts_of(planes: npt.NDArray[np.float64], region: Any) -> tuple[dict[str, Any], bool]:
+    """Return what cuts streamlines.
+
+    Parameters
+    ----------
+    planes : numpy.ndarray
+        ``(n, 4)`` rows (a, b, c, d), world mm: kept where ax + by + cz + d >= 0.
+    region : pvfiblets.regions.Region or None
+        World mm; outside of it nothing is kept.
+
+    Returns
+    -------
+    keys : dict
+        ``planes`` and ``cut`` of ``FibletLayer`` (client/src/scene.ts), as far as there are any.
+    whole : bool
+        Whether that is all. Closed surfaces are left out, with what of the region is no plane: along a pixel's ray
+        they begin and end any number of times, of which a page keeps no list.
+    """
+    flat, rest = planes_of(region, max(MAX_CLIP_PLANES - len(planes), 0))
+    planes = np.concatenate([planes, flat])
+    found: dict[str, Any] = {"planes": planes.tolist()} if len(planes) else {}
+    if rest is None:
+        return found, True
+    if any(leaf.kind == SURFACE for leaf in rest.leaves):
+        return found, False
+    leaves = []
+    for leaf in rest.leaves:
+        shape = {"ball": leaf.matrix[:3]} if leaf.kind == SPHERE else {"planes": placed_sides(leaf)}
+        leaves.append({"centre": leaf.centre.tolist(), **{key: rows.tolist() for key, rows in shape.items()}})
+    return {**found, "cut": {"leaves": leaves, "program": list(rest.program)}}, True
