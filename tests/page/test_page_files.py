@@ -114,14 +114,22 @@ def test_what_a_page_cannot_draw_is_named(fiblets, tmp_path):
     plotter.close()
 
 
-def test_a_cut_by_planes_goes_along_and_any_other_is_named(fiblets, tmp_path):
+def test_cuts_go_along_but_for_closed_surfaces_which_are_named(fiblets, tmp_path):
     plotter = pv.Plotter(off_screen=True, window_size=(100, 80))
     actor = plotter.add_fiblets(fiblets, name="lines")
     actor.clip(regions.Plane((0.0, 0.0, 1.0), (0.0, 0.0, 2.0)))
     (layer,) = page_of(plotter).layers
     np.testing.assert_allclose(layer["planes"], [[0.0, 0.0, 1.0, -2.0]])
-    actor.clip(regions.Sphere((0.0, 0.0, 0.0), 5.0))
-    with pytest.warns(UserWarning, match="leaves out the cut of 'lines' by what is no plane: it cannot draw them"):
+    assert "cut" not in layer
+    actor.clip(~(regions.Sphere((1.0, 2.0, 3.0), 5.0) & regions.Plane((1.0, 0.0, 0.0), (4.0, 0.0, 0.0))), name="any")
+    (layer,) = page_of(plotter).layers
+    assert len(layer["planes"]) == 1
+    ball, plane = layer["cut"]["leaves"]
+    np.testing.assert_allclose(ball["ball"], [[0.2, 0, 0, -0.2], [0, 0.2, 0, -0.4], [0, 0, 0.2, -0.6]])
+    np.testing.assert_allclose(plane["planes"], [[1.0, 0.0, 0.0, -4.0]])
+    assert (ball["centre"], layer["cut"]["program"]) == ([1.0, 2.0, 3.0], [0, 1, -1, -3])
+    actor.clip(pv.Sphere(radius=5.0), name="any")
+    with pytest.warns(UserWarning, match="leaves out the cut of 'lines' by a closed surface: it cannot draw them"):
         plotter.fiblets.export_page(tmp_path / "figure.html")
     plotter.close()
 

@@ -166,6 +166,27 @@ def test_filters_colours_and_selections_send_what_they_change(here):
     here.page.wait_for_selector("#pv-there-bars figcaption:has-text('fa')")
 
 
+def test_a_ball_and_a_box_cut_as_the_server_cuts(here):
+    seen = here.drawn()
+
+    def changes(what):
+        nonlocal seen
+        before = seen
+        here.wait(lambda: np.abs(here.drawn() - before).mean() > 0.05, what)
+        seen = here.drawn()
+        assert agrees(here)
+
+    here.tab("clip")
+    for kind in ("sphere", "box"):  # a box of which the outside stays is no planes
+        here.page.click(f"[data-cut={kind}]")
+        changes("what lies inside")
+        here.page.click("[data-clip] [data-action=side]")
+        changes("what lies outside")
+        here.page.click("[data-clip] [aria-label=Remove]")
+        changes("all")
+    assert here.state("drawing") == ""
+
+
 def test_what_the_browser_cannot_draw_the_server_draws_and_says_so(here):
     layer = here.state("layers")[0]["id"]
     picture = here.page.locator("#pv-view img[src^=blob]")
