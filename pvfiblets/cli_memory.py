@@ -45,7 +45,10 @@ def bytes_of_file(text: str) -> int:
 
 @contextmanager
 def held_to(most: str | None) -> Iterator[None]:
-    """Let this process have as much memory meanwhile as ``--max-memory`` says; half of the machine's by default.
+    """Let this process have as much memory meanwhile as ``--max-memory`` says.
+
+    By default it may take half of the machine's beyond what it has: a command that runs within a larger program, whose
+    memory nobody limited, is not refused for that.
 
     Raises
     ------
@@ -66,6 +69,8 @@ def held_to(most: str | None) -> Iterator[None]:
         yield
         return
     size = memory.parse(most) if chosen or memory.of_machine() else None
+    if size is not None and not chosen:
+        size += memory.taken()
     if size is not None and size < (least := memory.taken() + LEAST_MEMORY):
         raise FibletsError(f"--max-memory {most}: {memory.shown(least)} are needed to begin with; give as much or more")
     try:

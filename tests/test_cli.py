@@ -394,6 +394,15 @@ def test_a_limit_of_memory_that_is_none_is_refused(tractogram, tmp_path, capsys)
     assert not target.exists()
 
 
+@needs_limit
+def test_a_program_that_has_much_memory_can_run_a_command(tractogram, tmp_path, capsys, monkeypatch):
+    """As tests do, and notebooks: what they have was not taken by the command."""
+    monkeypatch.setattr(memory, "taken", lambda: 2 * memory.of_machine())
+    assert main(["convert", str(tractogram[0]), str(tmp_path / "a.fiblets")]) == 0
+    assert memory.limited_to() is None
+    assert "are needed to begin with" in fails(capsys, "info", tractogram[0], "--max-memory", "40%")
+
+
 @pytest.mark.parametrize("points", [np.zeros((1, 3)), np.zeros((2, 3)), np.full((4, 3), 7.5), np.full((3, 3), 1e-310)])
 def test_sets_without_extent_are_told_in_sensible_numbers(points, tmp_path, capsys):
     source, target = tmp_path / "a.trx", tmp_path / "a.fiblets"
