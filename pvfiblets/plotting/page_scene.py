@@ -78,8 +78,9 @@ def page_and_actors(plotter: Any, *, title: str | None = None) -> tuple[PageScen
     if unable:
         warnings.warn(f"the page leaves out {', '.join(unable)}: it cannot draw them", stacklevel=3)
     if scene.layers:
-        if not renderer.camera_set:
-            renderer.reset_camera(render=False)
+        if not renderer.camera_set:  # as the first picture of a plotter sees it
+            renderer.camera_position = renderer.get_default_cam_pos()
+            renderer.ResetCamera()
             renderer.camera_set = False
         scene.camera = camera_place(renderer.GetActiveCamera())
     scene.plain()

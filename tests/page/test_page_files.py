@@ -134,6 +134,19 @@ def test_cuts_go_along_but_for_closed_surfaces_which_are_named(fiblets, tmp_path
     plotter.close()
 
 
+def test_a_plotter_that_was_never_shown_is_seen_as_its_first_picture_is(fiblets):
+    plotter = pv.Plotter(off_screen=True, window_size=(60, 40))
+    plotter.add_fiblets(fiblets)
+    seen = page_of(plotter).camera
+    assert not plotter.camera_set  # what is added later is still brought into view
+    plotter.screenshot(return_img=True)
+    shown = plotter.camera
+    assert np.allclose(seen.position, shown.position)
+    assert np.allclose(seen.focal_point, shown.focal_point)
+    assert np.allclose(seen.up, shown.up)
+    plotter.close()
+
+
 def test_notebook_keeps_the_page(fiblets):
     plotter = pv.Plotter(off_screen=True, window_size=(100, 80))
     plotter.add_fiblets(fiblets)
