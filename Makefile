@@ -76,6 +76,7 @@ gl: environment
 
 browser:
 	@scripts/browser.sh
+	@scripts/firefox.sh
 
 display:
 	@scripts/display.sh

@@ -6,6 +6,7 @@ set -euo pipefail
 PACKAGES="chromium fonts-dejavu-core"
 
 opens() {
+    local name
     for name in "${CHROMIUM:-}" /usr/bin/chromium /usr/bin/chromium-browser /usr/bin/google-chrome; do
         if [ -n "$name" ] && [ -x "$name" ] && "$name" --version >/dev/null 2>&1; then return 0; fi
     done

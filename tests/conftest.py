@@ -5,7 +5,7 @@ Four rules live here:
 * Real data is found, never copied: the ``shared_data`` fixture.
 * A test that leaves an OpenGL error behind, or starts with one, fails: the ``gl`` fixture.
 * On continuous integration (``PVFIBLETS_CI`` is set) a check cannot vanish unseen: every test function
-  must run with some of its parameters, unless the real data is not on that machine.
+  must run with some of its parameters, unless the real data is not on that machine, or Firefox is not to be had there.
 * ``make test`` takes minutes: what is marked ``exhaustive``, or is left over of a product of parameters marked
   ``every``, runs by ``make test-all`` only.
 """
@@ -35,6 +35,7 @@ limits.EXACT_BELOW = limits.EXACT_UP_TO = 0
 os.environ["PVFIBLETS_ANTIALIAS"] = "off"
 
 NO_DATA = "real data is not on this machine"
+NO_FIREFOX = "Firefox is not to be had on this machine"
 
 SIZES = {"value": 1, "pair": 2}
 """What ``pytest.mark.every`` may say, and of how many parameters it speaks."""
@@ -231,7 +232,7 @@ class _SkipRule:
         function = report.nodeid.partition("[")[0]
         if report.skipped and not hasattr(report, "wasxfail"):
             reason = str(report.longrepr[2] if isinstance(report.longrepr, tuple) else report.longrepr)
-            if NO_DATA not in reason:
+            if not any(allowed in reason for allowed in (NO_DATA, NO_FIREFOX)):
                 self.skipped[function] = reason
         elif getattr(report, "when", "") == "call":
             self.ran.add(function)

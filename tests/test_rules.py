@@ -12,6 +12,9 @@ from pathlib import Path
 
 import pytest
 
+from tests.conftest import NO_FIREFOX
+from tests.web.firefox import launched_firefox
+
 CONFTEST = Path(__file__).with_name("conftest.py")
 
 
@@ -23,6 +26,7 @@ CONFTEST = Path(__file__).with_name("conftest.py")
         ("nothing = pytest.importorskip('no_such_module')\ndef test_a(): pass\n", True, False),
         ("@pytest.mark.parametrize('n', [1, 2])\ndef test_a(n):\n    if n == 2: pytest.skip('no meaning')", True, True),
         ("def test_a(shared_data): pass", True, True),
+        ("def test_a(): pytest.skip('Firefox is not to be had on this machine')", True, True),
     ],
 )
 def test_a_check_cannot_vanish_on_ci(tmp_path, body, on_ci, passes):
@@ -33,6 +37,21 @@ def test_a_check_cannot_vanish_on_ci(tmp_path, body, on_ci, passes):
     command = [sys.executable, "-m", "pytest", "-q", "--rootdir", str(tmp_path), str(tmp_path)]
     done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment, cwd=tmp_path)
     assert (done.returncode == 0) is passes, done.stdout
+
+
+@pytest.mark.parametrize(
+    ("answer", "may_miss"), [("Candidate: 153.7.0esr", False), ("Candidate: (none)", True), ("", True), (None, True)]
+)
+def test_firefox_may_be_missing_only_where_apt_has_none(tmp_path, monkeypatch, answer, may_miss):
+    if answer is not None:
+        program = tmp_path / "apt-cache"
+        program.write_text(f"#!/bin/sh\necho '{answer}'\n")
+        program.chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.delenv("FIREFOX", raising=False)
+    with pytest.raises(pytest.skip.Exception) as skipped, launched_firefox(tmp_path):
+        pass
+    assert (NO_FIREFOX in str(skipped.value)) is may_miss
 
 
 PRODUCT = """

@@ -28,7 +28,7 @@ def figure(tmp_path_factory):
 def test_page_opens_from_disk_without_asking_anybody_and_graphics_that_are_lost_come_back(figure, visit):
     page = visit(figure)
     assert page.page.title() == "Two lines"
-    assert page.requests == [figure.as_uri()]
+    assert set(page.requests) <= {figure.as_uri()}  # Firefox does not tell of files
     before = page.picture()
     assert (before != 255).any()
     assert not page.errors

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import os
-import shutil
 import subprocess
 import sys
 
 import numpy as np
 import pytest
+
+from tests.display import display
 
 # A process of its own: a window of X beside the tests' headless ones, and Qt's one application.
 SCRIPT = """
@@ -69,21 +70,12 @@ else:
 
 
 @pytest.fixture
-def display():
+def environment():
     """Return the environment of a display of its own, or skip where there is none."""
-    if shutil.which("Xvfb") is None:
-        pytest.skip("there is no Xvfb on this machine: scripts/display.sh installs it")
-    pytest.importorskip("pyvistaqt")
-    pytest.importorskip("PySide6")
-    ours, theirs = os.pipe()
-    command = ["Xvfb", "-displayfd", str(theirs), "-screen", "0", "800x600x24", "-nolisten", "tcp"]
-    server = subprocess.Popen(command, pass_fds=[theirs], stderr=subprocess.DEVNULL)
-    os.close(theirs)
-    with os.fdopen(ours) as told:
-        number = told.readline().strip()
-    yield {"DISPLAY": f":{number}", "QT_API": "pyside6", "QT_QPA_PLATFORM": "xcb"}
-    server.terminate()
-    server.wait(10)
+    with display() as number:
+        pytest.importorskip("pyvistaqt")
+        pytest.importorskip("PySide6")
+        yield {"DISPLAY": number, "QT_API": "pyside6", "QT_QPA_PLATFORM": "xcb"}
 
 
 def seen(tmp_path, kind, extra):
@@ -98,8 +90,8 @@ def seen(tmp_path, kind, extra):
     return np.load(path)
 
 
-def test_a_qt_window_shows_the_same_scene(display, tmp_path):
-    window = seen(tmp_path, "qt", display)
+def test_a_qt_window_shows_the_same_scene(environment, tmp_path):
+    window = seen(tmp_path, "qt", environment)
     headless = seen(tmp_path, "headless", {"VTK_DEFAULT_OPENGL_WINDOW": "vtkEGLRenderWindow"})
     for name in ("first", "wide"):
         assert window[name].shape == headless[name].shape == (240, 320, 3)
