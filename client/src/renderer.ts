@@ -171,11 +171,11 @@ export class Renderer {
     this.change();
   }
 
-  private fill(sets: Map<Uint8Array, FibletSet>, surfaces: Map<string, Surface>): void {
+  private fill(sets: Map<Uint8Array, FibletSet>, kept: Map<string, Surface | ImageSlice>): void {
     const { gl, scene } = this;
     scene.layers.forEach((layer) => {
-      if (layer.kind === "surface") this.surfaces.push(surfaces.get(JSON.stringify(layer)) ?? new Surface(gl, layer, this.data));
-      else if (layer.kind === "image") this.images.push(new ImageSlice(gl, layer, this.data));
+      if (layer.kind === "surface") this.surfaces.push((kept.get(JSON.stringify(layer)) as Surface) ?? new Surface(gl, layer, this.data));
+      else if (layer.kind === "image") this.images.push((kept.get(JSON.stringify(layer)) as ImageSlice) ?? new ImageSlice(gl, layer, this.data));
       else this.lines.push(new Lines(gl, layer, this.lines.length, this.data, this.archives.get(layer.data)!, sets.get(this.data[layer.data])));
     });
     const budget = Math.min(1024, 128 * ((navigator as { deviceMemory?: number }).deviceMemory ?? 4)) * 2 ** 20;
@@ -187,14 +187,16 @@ export class Renderer {
     if (this.gl.isContextLost()) return;
     const { data: old } = this, lines = this.lines.splice(0), surfaces = this.surfaces.splice(0), images = this.images.splice(0);
     const sets = new Map(lines.map((one) => [old[one.layer.data], one.set] as const));
-    const same = (one: Surface): boolean => [one.layer.places, one.layer.triangles, one.layer.normals, one.layer.colours, one.layer.values]
-      .every((at) => at === undefined || old[at] === data[at]);
+    const same = ({ layer }: Surface | ImageSlice): boolean =>
+      (layer.kind === "image" ? [layer.pixels] : [layer.places, layer.triangles, layer.normals, layer.colours, layer.values])
+        .every((at) => at === undefined || old[at] === data[at]);
     this.frame = this.rest = null;
     this.scene = scene;
     this.data = data;
     this.archives = archives;
-    this.fill(sets, new Map(surfaces.filter(same).map((one) => [JSON.stringify(one.layer), one] as const)));
-    for (const one of [...lines, ...images]) one.release();
+    this.fill(sets, new Map([...surfaces, ...images].filter(same).map((one) => [JSON.stringify(one.layer), one] as const)));
+    for (const one of lines) one.release();
+    for (const one of images) if (!this.images.includes(one)) one.release();
     for (const { set } of lines) if (!this.lines.some((one) => one.set === set)) set.release();
     for (const one of surfaces) if (!this.surfaces.includes(one)) one.release();
     this.change();
@@ -396,7 +398,7 @@ export class Renderer {
     const program = this.program("page/surface.vert", "page/surface.frag");
     for (const surface of this.surfaces) if (surface.layer.visible && !surface.translucent) surface.draw(program, drawn);
     const flat = this.program("page/image.vert", "page/image.frag");
-    for (const image of this.images) if (image.layer.visible && image.layer.opacity >= 1) image.draw(flat, drawn);
+    for (const image of this.images) if (image.layer.visible && !image.translucent) image.draw(flat, drawn);
   }
 
   private outside(matrix: Mat, b: Bounds): boolean {
@@ -584,7 +586,7 @@ export class Renderer {
 
   private drawTranslucent(drawn: Drawn): void {
     const { gl } = this, some = this.surfaces.filter((surface) => surface.layer.visible && surface.translucent);
-    const images = this.images.filter((image) => image.layer.visible && image.layer.opacity < 1);
+    const images = this.images.filter((image) => image.layer.visible && image.translucent);
     if (!some.length && !images.length) return;
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.buffers.scene);
     gl.enable(gl.DEPTH_TEST);

@@ -84,6 +84,8 @@ export interface ImageLayer extends Layer {
   up: Vec;
   size: [number, number];
   pixels: number;       // data: RGBA
+  smooth: boolean;      // colours between the centres of pixels are interpolated
+  clear: boolean;       // some pixels are translucent
   opacity: number;
   bounds: Bounds;
 }

@@ -98,8 +98,12 @@ export class ImageSlice {
     this.texture = gl.createTexture()!;
     gl.bindTexture(gl.TEXTURE_2D, this.texture);
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, width, height, 0, gl.RGBA, gl.UNSIGNED_BYTE, data[layer.pixels]);
-    for (const name of ["TEXTURE_MIN_FILTER", "TEXTURE_MAG_FILTER"] as const) gl.texParameteri(gl.TEXTURE_2D, gl[name], gl.NEAREST);
+    for (const name of ["TEXTURE_MIN_FILTER", "TEXTURE_MAG_FILTER"] as const) gl.texParameteri(gl.TEXTURE_2D, gl[name], layer.smooth ? gl.LINEAR : gl.NEAREST);
     for (const name of ["TEXTURE_WRAP_S", "TEXTURE_WRAP_T"] as const) gl.texParameteri(gl.TEXTURE_2D, gl[name], gl.CLAMP_TO_EDGE);
+  }
+
+  get translucent(): boolean {
+    return this.layer.clear || this.layer.opacity < 1;
   }
 
   release(): void {

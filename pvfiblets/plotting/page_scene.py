@@ -6,7 +6,7 @@ What a page cannot show is named in one warning, and left out.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -87,7 +87,9 @@ def page_and_actors(plotter: Any, *, title: str | None = None) -> tuple[PageScen
     return scene, names
 
 
-def add_all(scene: PageScene, plotter: Any, *, controls: bool = True) -> tuple[list[str], list[str]]:
+def add_all(
+    scene: PageScene, plotter: Any, *, controls: bool = True, besides: Collection[str] = ()
+) -> tuple[list[str], list[str]]:
     """Have a page show what a plotter's active renderer shows, but from where.
 
     Parameters
@@ -97,6 +99,8 @@ def add_all(scene: PageScene, plotter: Any, *, controls: bool = True) -> tuple[l
     plotter : pyvista.BasePlotter
     controls : bool
         Whether numbers go along that the page's reader may choose streamlines by.
+    besides : collection of str
+        Names of actors that somebody else shows.
 
     Returns
     -------
@@ -111,6 +115,8 @@ def add_all(scene: PageScene, plotter: Any, *, controls: bool = True) -> tuple[l
     unable: list[str] = []
     names: list[str] = []
     for name, actor in _actors(renderer):
+        if name in besides:
+            continue
         _add_actor(scene, name, actor, unable, controls=controls)
         names += [name] * (len(scene.layers) - len(names))
     scene.lights = list(_lights(renderer))

@@ -145,12 +145,11 @@ def _add_bar(scene: PageScene, mapper: Any) -> None:
 
 def add_image(scene: PageScene, name: str, actor: Any) -> None:
     """Show a slice of an image, which is a textured rectangle."""
-    pixels = np.asarray(actor.pixels)
-    corners = np.asarray(pv.wrap(actor.GetMapper().GetInput()).points, float)
+    matrix = to_array(actor.GetMatrix())
+    corners = np.asarray(pv.wrap(actor.GetMapper().GetInput()).points, float) @ matrix[:3, :3].T + matrix[:3, 3]
     bounds = tuple(float(v) for v in actor.GetBounds())
-    height, width = pixels.shape[:2]
-    full = np.full((height, width, 4), 255, np.uint8)
-    full[..., : pixels.shape[2]] = pixels
+    pixels = scene.once(("slice", actor, str(actor.shows)), actor.pixels.tobytes)
+    height, width = actor.pixels.shape[:2]
     layer = {
         "kind": "image",
         "name": "slice" if "Addr=" in name else name,
@@ -159,7 +158,9 @@ def add_image(scene: PageScene, name: str, actor: Any) -> None:
         "across": (corners[1] - corners[0]).tolist(),
         "up": (corners[-1] - corners[0]).tolist(),
         "size": (width, height),
-        "pixels": scene.add_blob(full),
+        "pixels": scene.add_blob(pixels),
+        "smooth": bool(actor.GetTexture().GetInterpolate()),
+        "clear": bool(actor.GetForceTranslucent()),
         "opacity": actor.GetProperty().GetOpacity(),
         "bounds": bounds,
     }

@@ -52,7 +52,7 @@ logger = logging.getLogger("pvfiblets.web")
 CLIENT = Path(__file__).with_name("client")
 CLIENT_URL = "__pvfiblets"
 SCRIPTS = ("pvfiblets.js", "fields.js", "regions.js", "slices.js", "painting.js", "matrix.js", "connection.js",
-           "there.js")  # fmt: skip
+           "distances.js", "there.js")  # fmt: skip
 
 
 class Explorer(TrameApp):
@@ -162,6 +162,7 @@ class Explorer(TrameApp):
             "slide": self.sliders.slide,
             "set_layout": self.slices.set_layout,
             "step_slice": self.slices.step,
+            "go_to_slice": self.slices.go_to,
             "step_volume": self.slices.step_volume,
             "ask_label": self.atlas.ask_at,
             "paint": self.painting.paint,

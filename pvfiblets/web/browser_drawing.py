@@ -23,8 +23,11 @@ logger = logging.getLogger("pvfiblets.web")
 SOFTWARE = re.compile(r"swiftshader|llvmpipe|softpipe|software|basic render", re.IGNORECASE)
 """Names of graphics cards that are none: programs that draw on the processor, slower than the server's may be."""
 
-KEPT = 2
+KEPT = 4
 """Scenes whose data can be fetched: what is on its way when the scene changes still arrives."""
+
+PACKED = 20_000
+"""Bytes from which pixels are packed beside the loop that answers browsers."""
 
 
 class BrowserDrawing(Actions):
@@ -155,7 +158,12 @@ class BrowserDrawing(Actions):
         from aiohttp import web
 
         name = request.match_info["name"]
-        found = next((sent.blobs[name] for sent in self._sent if name in sent.blobs), None)
+        found = next((sent for sent in self._sent if name in sent.blobs), None)
         if found is None:
             raise web.HTTPNotFound
-        return web.Response(body=found, content_type="application/octet-stream")
+        answer = web.Response(
+            body=found.blobs[name], content_type="application/octet-stream", zlib_executor_size=PACKED
+        )
+        if name in found.pixels:
+            answer.enable_compression()
+        return answer

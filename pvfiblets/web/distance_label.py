@@ -8,7 +8,7 @@ from typing import Any
 
 from pvfiblets.web.document import Measurement
 
-__all__ = ["LABELS", "LINES", "NEAREST", "hidden_distances", "show_distances"]
+__all__ = ["LABELS", "LINES", "NEAREST", "hidden_distances", "names_of", "show_distances"]
 
 _LINE, _TEXT = "measured-line", "measured-text"
 _COLOUR = "#ffcc00"
@@ -32,7 +32,7 @@ def show_distances(plotter: Any, measurements: Sequence[Measurement]) -> None:
     import numpy as np
     import pyvista as pv
 
-    for name in _names(plotter):
+    for name in names_of(plotter):
         plotter.remove_actor(name, reset_camera=False, render=False)
     if not measurements:
         return
@@ -49,7 +49,7 @@ def show_distances(plotter: Any, measurements: Sequence[Measurement]) -> None:
 @contextmanager
 def hidden_distances(plotter: Any) -> Iterator[None]:
     """Have a picture without distances drawn meanwhile, so that what is read of it is what they lie before."""
-    found = [plotter.actors[name] for name in _names(plotter)]
+    found = [plotter.actors[name] for name in names_of(plotter)]
     for actor in found:
         actor.SetVisibility(False)
     try:
@@ -61,5 +61,6 @@ def hidden_distances(plotter: Any) -> Iterator[None]:
             actor.SetVisibility(True)
 
 
-def _names(plotter: Any) -> list[str]:
+def names_of(plotter: Any) -> list[str]:
+    """Return the names of the actors that show distances."""
     return [name for name in (_LINE, f"{_TEXT}-labels", f"{_TEXT}-points") if name in plotter.actors]

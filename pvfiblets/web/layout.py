@@ -55,6 +55,9 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
   align-items: flex-end;
   pointer-events: none; color: #fff; font: 12px/1.3 Roboto, sans-serif; font-variant-numeric: tabular-nums }
 .pv-view[data-ground=light] #pv-there-bars { color: #000 }
+#pv-there-distances, #pv-there-distances svg { position: absolute; inset: 0; width: 100%; height: 100%;
+  overflow: hidden; pointer-events: none; stroke: #fc0; stroke-width: 2 }
+#pv-there-distances text { font: 14px Roboto, sans-serif; fill: #fc0; stroke: none; text-shadow: 1px 1px 1px #000 }
 .pv-there-bar div { display: flex; gap: 6px } .pv-there-bar { margin: 0 }
 .pv-there-bar canvas { width: 14px; height: min(220px, 30vh); border: .5px solid #8888; image-rendering: pixelated }
 .pv-there-bar ol { list-style: none; margin: 0; padding: 0; display: flex; flex-direction: column;
@@ -316,6 +319,7 @@ def _view(app: Any) -> None:
             id="pv-there", tabindex="0", role="img", style="visibility: hidden",
             aria_label="The scene. Arrow keys turn it, plus and minus zoom, Shift with arrows moves it.",
         )  # fmt: skip
+        html.Div(id="pv-there-distances")
         html.Div(id="pv-there-bars")
         with html.Div(  # over the 3-D view, wherever that is
             v_if="show_regions && marks.length && slicing.boxes.every((b) => b.name !== '3d') === !slicing.shown",

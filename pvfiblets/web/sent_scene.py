@@ -15,7 +15,9 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from pvfiblets.page.scene import PageScene, encoded
+from pvfiblets.web.distance_label import names_of
 from pvfiblets.web.document import LINES
+from pvfiblets.web.glyph_layers import GLYPHS
 from pvfiblets.web.scalar_bars import bars_of
 
 if TYPE_CHECKING:
@@ -45,10 +47,13 @@ class SentScene:
         As ``client/src/scene.ts`` has it, but for the camera.
     blobs : dict of str to bytes
         Its data, by their names.
+    pixels : set of str
+        Names of those that are pixels of slices, which are worth to be packed on their way.
     """
 
     content: dict[str, Any]
     blobs: dict[str, bytes]
+    pixels: frozenset[str] = frozenset()
 
     @property
     def bytes(self) -> int:
@@ -94,10 +99,14 @@ class SentScenes:
         content = page.plain()
         del content["camera"]
         content["bars"] = _bars(scene)
+        content["distances"] = [
+            {"from": one.begin, "to": one.end, "text": one.text} for one in scene.state.measurements
+        ]
         content["data"] = [
             {"bytes": len(blob), "file": f"{URL}/{name}"} for blob, name in zip(page.blobs, names, strict=True)
         ]
-        return SentScene(content, dict(zip(names, page.blobs, strict=True)))
+        pixels = frozenset(names[layer["pixels"]] for layer in page.layers if layer["kind"] == "image")
+        return SentScene(content, dict(zip(names, page.blobs, strict=True)), pixels)
 
     def _name(self, blob: bytes) -> str:
         """Return what some bytes are called; of those that are kept it is not worked out again."""
@@ -108,10 +117,10 @@ class SentScenes:
 
 
 def add_all(page: PageScene, plotter: Any) -> list[str]:
-    """Have a page show what a plotter shows, and return what it cannot."""
+    """Have a page show what a plotter shows but for measured distances, and return what it cannot."""
     from pvfiblets.plotting import page_scene  # PyVista is loaded by then
 
-    return page_scene.add_all(page, plotter, controls=False)[0]
+    return page_scene.add_all(page, plotter, controls=False, besides=names_of(plotter))[0]
 
 
 class _Remade(PageScene):
@@ -133,10 +142,12 @@ class _Remade(PageScene):
 
 def _views(scene: Scene) -> str | None:
     """Return what beside the 3-D view and its actors keeps a browser from drawing; None for nothing."""
-    if scene.slicing.workspace is not None:  # its pixels are made when the server draws
-        return "slices of images"
-    if scene.state.measurements:
-        return "measured distances"
+    if scene.slicing.workspace is not None:
+        if scene.slicing.workspace.layout != "3d":
+            return "slices beside the 3-D view"
+        for layer in scene.layers:
+            if layer.kind == "image" and layer.visible and layer.settings[GLYPHS] is not None:
+                return f"the glyphs of {layer.name!r}"
     return None
 
 

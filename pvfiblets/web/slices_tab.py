@@ -193,6 +193,14 @@ class SliceActions(Actions):
         workspace.step(name, *steps)
         self.changed()
 
+    def go_to(self, x: Any, y: Any) -> None:
+        """Have the cross-hair where a place of the picture shows a slice in the 3-D view, if it shows one."""
+        workspace = self._workspace
+        place = workspace.picked_in_view(*self.pixel(x, y))
+        if place is not None:
+            workspace.position = place
+            self.changed()
+
     def pane_at(self, x: Any, y: Any) -> Any:
         """Return the pane in a place of the picture; None if it is none's."""
         return self._workspace.pane_at(*self.pixel(x, y))

@@ -9,6 +9,6 @@ layout(location = 0) out vec4 colour;
 
 void main() {
     colour = texture(pixels, at);
-    if (colour.a == 0.0) discard;
+    if (colour.a <= 0.002) discard;
     colour.a *= opacity;
 }

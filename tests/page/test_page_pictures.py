@@ -108,6 +108,26 @@ def test_slices_of_images_and_scales_are_shown_before_anything_was_drawn(plotter
     np.testing.assert_allclose(ends, [[13, 8, 135, 255], [240, 249, 33, 255]], atol=2)  # of matplotlib's plasma
 
 
+@pytest.mark.parametrize("opacity", [1.0, 0.6])
+def test_slices_hide_lines_as_the_engines_do(opacity, plotter, fiblets, visit, tmp_path):
+    """Enlarged, so that colours between pixels count, and moved."""
+    x, y, z = np.meshgrid(*3 * [np.linspace(-1.0, 1.0, 12)], indexing="ij")
+    affine = np.array([[12, 0, 0, -66], [0, 12, 0, -66], [0, 0, 12, -66], [0, 0, 0, 1]], float)
+    image = np.float32(x * y + z), affine
+    slices = plotter.add_slices(image, planes=["axial", "sagittal"], cmap="viridis", opacity=opacity)
+    slices.user_matrix = pv.Transform().rotate_z(20.0).translate((0.0, 0.0, 9.0)).matrix
+    plotter.add_fiblets(fiblets, line_width=2.0)
+    plotter.picture.antialias = "coverage"
+    plotter.disable_anti_aliasing()  # of the slices' edges
+    plotter.camera_position = "xz"
+    plotter.camera.azimuth, plotter.camera.elevation = 25.0, 35.0
+    expected = plotter.screenshot(return_img=True)
+    page = visit(plotter.fiblets.export_page(tmp_path / "figure.html")[0])
+    wrong, drawn = differing(page.picture(), expected)
+    assert drawn > 0.1
+    assert wrong < 0.01
+
+
 def test_page_cuts_moves_selects_and_leaves_out_as_the_actor_does(plotter, fiblets, visit, tmp_path):
     actor = plotter.add_fiblets(fiblets, line_width=3.0)
     actor.select(range(60))

@@ -187,6 +187,57 @@ def test_a_ball_and_a_box_cut_as_the_server_cuts(here):
     assert here.state("drawing") == ""
 
 
+def test_slices_in_the_view_are_drawn_and_moved_without_the_lines(here):
+    before = here.drawn()
+    here.tab("slices")
+    here.page.click("[data-action=open-slices]")
+    here.page.click("#dialog-open .v-list-item:has-text('head.nii.gz')")
+    here.wait(lambda: here.state("slicing")["shown"], "slices")
+    here.told("The server draws: a browser cannot draw slices beside the 3-D view.")
+    here.page.evaluate("trame.trigger('set_layout', ['3d'])")
+    here.wait(here.draws, "the browser to draw again")
+    here.wait(lambda: np.abs(here.drawn() - before).mean() > 2.0, "slices")
+    assert agrees(here)
+    place = here.state("slicing")["position"]
+    largest, fetched = here.sends(
+        lambda: [
+            here.page.evaluate("trame.trigger('step_slice', [0.5, 0.5, 0, 0, 2])"),
+            here.wait(lambda: here.state("slicing")["position"] != place, "another slice"),
+        ]
+    )
+    assert largest < 20_000
+    assert len(fetched) == 1  # of three slices one
+    assert agrees(here)
+    place = here.state("slicing")["position"]
+    box = here.page.locator("#pv-there").bounding_box()
+    here.page.mouse.click(box["x"] + 0.5 * box["width"], box["y"] + 0.45 * box["height"])
+    here.wait(lambda: here.state("slicing")["position"] != place, "the place that was clicked on")
+    here.drag()
+    assert agrees(here)
+
+
+def test_distances_lie_over_the_picture_where_the_server_has_them(here):
+    session = here.session() | {"measurements": [[[0, 0, 0], [60, 36, 20]], [[20, 18, 2], [20, 18, 40]]]}
+    here.page.evaluate("(text) => trame.trigger('load_session', [text])", json.dumps(session))
+    here.page.wait_for_selector("#pv-there-distances text >> nth=1")
+    for _ in range(2):  # then from elsewhere
+        assert here.page.locator("#pv-there-distances text").all_text_contents() == ["72.77 mm", "38 mm"]
+        here.drawn()
+        server = here.of_server()
+        for line in here.page.locator("#pv-there-distances line").all():
+            x1, y1, x2, y2 = (float(line.get_attribute(name)) for name in ("x1", "y1", "x2", "y2"))
+            share = np.linspace(0.02, 0.98, 200)[:, None]
+            x, y = np.int64((np.array([x1, y1]) + share * (x2 - x1, y2 - y1)).T)
+            seen = (x > 0) & (x < server.shape[1] - 1) & (y > 0) & (y < server.shape[0] - 1)
+            assert seen.sum() > 50
+            yellow = np.abs(server[y[seen], x[seen]] - (255, 204, 0)).max(axis=1) < 60
+            assert yellow.mean() > 0.8  # the rest is beneath letters and their shadows
+        here.drag()
+    assert here.state("drawing") == ""
+    here.page.evaluate("(text) => trame.trigger('load_session', [text])", here.begun)
+    here.page.wait_for_selector("#pv-there-distances svg", state="detached")
+
+
 def test_what_the_browser_cannot_draw_the_server_draws_and_says_so(here):
     layer = here.state("layers")[0]["id"]
     picture = here.page.locator("#pv-view img[src^=blob]")

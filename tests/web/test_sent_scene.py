@@ -6,6 +6,7 @@ import asyncio
 from dataclasses import replace
 from types import SimpleNamespace
 
+import nibabel
 import numpy as np
 import pytest
 import pyvista as pv
@@ -97,7 +98,6 @@ def test_the_camera_is_no_part_of_the_scene(scene):
         (lambda scene: scene.set(scene.open("ball.ply").id, "culling", "front"), "the culling of 'ball.ply'"),
         (lambda scene: scene.set(scene.layers[0].id, "opacity", 0.5), "the opacity of 'lines.fiblets'"),
         (lambda scene: scene.add_clip("mesh", path="ball.ply"), "the cut of 'lines.fiblets' by a closed surface"),
-        (lambda scene: scene.add_measurement([0, 0, 0], [9, 0, 0]), "measured distances"),
         (lambda scene: scene.remove(scene.layers[0].id), ""),
     ],
 )
@@ -107,6 +107,15 @@ def test_what_cannot_be_drawn_is_named(scene, change, why):
     assert SentScenes(scene).make() == why
 
 
+def test_measured_distances_go_along_and_are_no_layers(scene):
+    scene.open("lines.fiblets")
+    before = SentScenes(scene).make()
+    scene.add_measurement([0, 0, 0], [9, 0, 0])
+    sent = SentScenes(scene).make()
+    assert sent.content["distances"] == [{"from": (0.0, 0.0, 0.0), "to": (9.0, 0.0, 0.0), "text": "9 mm"}]
+    assert {**sent.content, "distances": []} == before.content
+
+
 def test_a_selection_as_tubes_is_named_once(scene):
     layer = scene.open("lines.fiblets")
     scene.select(layer.id, [3])
@@ -114,19 +123,52 @@ def test_a_selection_as_tubes_is_named_once(scene):
     assert SentScenes(scene).make() == "the width or the tubes of what is selected of 'lines.fiblets'"
 
 
-def test_slices_are_the_servers_in_every_layout(folder):
+@pytest.fixture
+def sliced(folder):
+    """Return a scene of lines and an image, whose slices are in the 3-D view."""
     plotter = pv.Plotter(off_screen=True, window_size=(200, 160), shape=(2, 2), border=False)
     ready_views(plotter)
     scene = Scene(plotter, folder)
     scene.open("lines.fiblets")
-    image = scene.open("head.nii.gz", kind="image")
-    for layout in LAYOUTS:
-        scene.slicing.view = replace(scene.slicing.view, layout=layout)
-        assert SentScenes(scene).make() == "slices of images"
-    scene.remove(image.id)
-    assert isinstance(SentScenes(scene).make(), SentScene)
+    scene.open("head.nii.gz", kind="image")
+    scene.set_slices(layout="3d")
+    yield scene
     scene.close()
     plotter.close()
+
+
+def test_slices_beside_the_view_and_glyphs_are_the_servers(sliced):
+    scenes = SentScenes(sliced)
+    for layout in LAYOUTS:
+        sliced.slicing.view = replace(sliced.slicing.view, layout=layout)
+        beside = sliced.slicing.workspace.layout != "3d"
+        assert (scenes.make() == "slices beside the 3-D view") is beside
+    sliced.set_slices(layout="3d")
+    sent = scenes.make()
+    assert [layer["kind"] for layer in sent.content["layers"]] == ["fiblets", "image", "image", "image"]
+    peaks = nibabel.Nifti1Image(np.zeros((4, 4, 4, 3), np.float32), np.diag([16.0, 16.0, 16.0, 1.0]))
+    nibabel.save(peaks, sliced.files.resolve("peaks.nii.gz", new=True))
+    image = sliced.open("peaks.nii.gz", kind="image")
+    sliced.set(image.id, "glyphs", "peaks")
+    assert scenes.make() == "the glyphs of 'peaks.nii.gz'"
+    sliced.show(image.id, False)
+    assert isinstance(scenes.make(), SentScene)
+
+
+def test_a_slice_that_moves_sends_its_pixels_alone(sliced):
+    scenes = SentScenes(sliced)
+    x, y, z = sliced.slicing.view.position
+    sliced.set_slices(position=(x + 4.0, y + 8.0, z + 12.0))  # the image is round: in its middle slices are alike
+    first = scenes.make()
+    assert len(first.pixels) == 3
+    sliced.set_slices(position=(x + 4.0, y + 8.0, z + 20.0))
+    moved = scenes.make()
+    (pixels,) = moved.blobs.keys() - first.blobs.keys()
+    assert pixels in moved.pixels
+    found = np.frombuffer(moved.blobs[pixels], np.uint8)
+    assert np.array_equal(found, sliced.slicing.workspace.slices["axial"].actor.pixels.ravel())
+    sliced.set_slices(planes=False)
+    assert scenes.make().pixels == frozenset()
 
 
 @pytest.mark.parametrize(

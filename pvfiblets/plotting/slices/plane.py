@@ -52,6 +52,7 @@ class SliceActor(pv.Actor):
         texture.SetColorModeToDirectScalars()
         self.SetTexture(texture)
         self._pixels: npt.NDArray[np.uint8] | None = None
+        self.shows = 0  # how often it has been told what to show
         self.prop.lighting = False
         self.prop.color = "white"
         self.GetShaderProperty().AddFragmentShaderReplacement("//VTK::TCoord::Impl", True, _DISCARD, False)
@@ -75,6 +76,7 @@ class SliceActor(pv.Actor):
         """
         height, width = pixels.shape[:2]
         self._pixels = np.ascontiguousarray(pixels)
+        self.shows += 1
         image = self._image
         image.SetDimensions(width, height, 1)
         image.GetPointData().SetScalars(numpy_to_vtk(self._pixels.reshape(-1, 4)))

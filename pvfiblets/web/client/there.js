@@ -38,6 +38,15 @@
   // The scene -------------------------------------------------------------------------------------
 
   const fetched = async (file) => {
+    try {
+      return await read(file);
+    } catch (error) {
+      data.delete(file);
+      throw error;
+    }
+  };
+
+  const read = async (file) => {
     const answer = await fetch(file, { cache: "no-store" });
     if (!answer.ok) throw new Error(`its data could not be fetched (${answer.status})`);
     return new Uint8Array(await answer.arrayBuffer());
@@ -62,9 +71,13 @@
     renderer.failed = fail;
     renderer.presented = () => {
       show();
+      window.pvfibletsDistances(renderer);
       follow();
     };
-    window.pvfibletsPage.attachMouse(renderer);
+    window.pvfibletsPage.attachMouse(renderer, (x, y) => {
+      settle();
+      if (get("slicing")?.shown) call("go_to_slice", x / canvas.clientWidth, y / canvas.clientHeight);
+    });
     new ResizeObserver(() => renderer?.canvas.isConnected && renderer.change()).observe(canvas);
     canvas.addEventListener("webglcontextlost", () => {
       losses += 1;
@@ -103,7 +116,6 @@
         if (now.on) await apply(now);
         else hide();
       } catch (error) {
-        data.clear();
         if (!wanted) fail(error); // else it was of a scene that there is no more
       }
     }
@@ -121,7 +133,7 @@
     const gone = () => {
       if (get("there")?.on && !broken) return;
       old.style.visibility = "hidden";
-      document.querySelector("#pv-there-bars")?.replaceChildren();
+      for (const over of document.querySelectorAll("#pv-there-bars, #pv-there-distances")) over.replaceChildren();
     };
     view?.addEventListener("load", gone, { capture: true, once: true });
     setTimeout(gone, 2000);
