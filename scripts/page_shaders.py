@@ -19,9 +19,14 @@ from pvfiblets.engine.uniform_struct import find_struct
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-from shader_shrinking import pieces, shrunk
+from shader_shrinking import pieces, renamed, shrunk
 
-DATA = dict.fromkeys(("fiblets/data/culling.glsl", "fiblets/data/decoding.glsl"), "page/data.glsl")
+CLIENT = Path(__file__).resolve().parents[1] / "client" / "src"
+REPLACED = {
+    "fiblets/data/culling.glsl": "page/data.glsl",
+    "fiblets/data/decoding.glsl": "page/data.glsl",
+    "fiblets/gather/paint_colour.glsl": "page/paint_colour.glsl",
+}
 ANY_FIBLETS = ("ANCHORS_LOW", "DIRECTION", "LATTICE", "WIDE_LATTICE")
 ANY_LINES = (
     "CLIPPING",
@@ -35,18 +40,23 @@ ANY_LINES = (
     "POINT_MASK",
     "STREAMLINE_MASK",
 )
-ALWAYS = ("CLIPPING", "CLIPPING_DEPTH", "DIRECTION", "EDGES")
+NEAREST = (*ANY_LINES, "GATHER_SLICES")
+SUMS = (*NEAREST, "PAINT_ALPHA", "PAINT_LIGHT")
+ALWAYS = ("CLIPPING", "CLIPPING_DEPTH", "DIRECTION", "EDGES", "PAINT_ALPHA", "PAINT_LIGHT")
 """Switches that a page never has off, where a stage knows them."""
 STAGES: dict[str, tuple[str, ...]] = {
     "page/decode.vert": ANY_FIBLETS,
     "page/none.frag": (),
-    "page/segment.vert": ANY_LINES,
-    "page/segment.frag": ANY_LINES,
+    "page/segment.vert": NEAREST,
+    "page/segment.frag": NEAREST,
+    "page/sum.frag": SUMS,
     "page/screen.vert": (),
     "page/tile_mask.frag": (),
     "page/far_tiles.frag": (),
     "page/tiles.vert": (),
     "page/resolve.frag": (),
+    "page/through.frag": (),
+    "page/mixed.frag": (),
     "page/visible_edges.frag": (),
     "effects/picture/antialias_coverage.frag": (),
     "page/copy.frag": (),
@@ -62,7 +72,7 @@ PRECISION = "".join(f"precision highp {kind};\n" for kind in ("float", "int", "s
 
 def page_shader(name: str, features: tuple[str, ...]) -> str:
     """Return a stage in GLSL ES, without what is there for people."""
-    text = assemble(name, features, version=300, replaced=DATA)
+    text = assemble(name, features, version=300, replaced=REPLACED)
     text = re.sub(r"/\*.*?\*/", "", re.sub(r"//[^\n]*", "", text), flags=re.DOTALL)
     head, _, body = text.partition("\n")
     assert head == "#version 300", head
@@ -80,13 +90,25 @@ def _tight(line: str) -> str:
     return re.sub(r"(?<![+-]) ?([+-]) ?(?![+-])", r"\1", line)  # but not where it would make a `--`
 
 
+def _client_names() -> set[str]:
+    """Return all names that the client's own source has: those of uniforms and of what it changes are among them."""
+    source = "".join(path.read_text(encoding="utf-8") for path in sorted(CLIENT.glob("*.ts")))
+    return {
+        *re.findall(r"[A-Za-z_]\w*", source),
+        *BLOCKS,
+        *(f"o{i}" for i in range(15)),
+        *(f"sums{i}" for i in range(4)),
+    }
+
+
 def everything() -> dict[str, Any]:
     """Return all that a page needs of the package."""
     blocks = {}
     for name in BLOCKS:
         struct = find_struct(name)
         blocks[name] = {"bytes": struct.nbytes, "fields": {field: struct.offset(field) for field in struct.fields}}
-    lines, shaders = pieces({name: page_shader(name, features) for name, features in STAGES.items()})
+    texts = {name: page_shader(name, features) for name, features in STAGES.items()}
+    lines, shaders = pieces(renamed(texts, _client_names()))
     return {
         "lines": "\n".join(lines),
         "shaders": shaders,

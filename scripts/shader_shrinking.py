@@ -2,16 +2,36 @@
 
 `shrunk` keeps a stage's meaning for every choice of its switches: branches of switches that a page never sets, and
 functions, constants, structs, macros and uniforms that no remaining text names, go. `pieces` tells many stages by
-ranges of one list of lines; client/src/engine.ts puts them together again.
+ranges of one list of lines; client/src/engine.ts puts them together again. `renamed` gives what only shaders name
+short names.
 """
 
 from __future__ import annotations
 
+import itertools
 import re
+import string
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 
-__all__ = ["pieces", "shrunk"]
+__all__ = ["pieces", "renamed", "shrunk"]
+
+_WORDS = """
+    abs all and any attribute bool break bvec2 bvec3 bvec4 case ceil clamp const continue core cos cross dFdx
+    dFdy default define defined degrees determinant discard distance do dot elif else endif equal error es exp
+    exp2 extension false flat float floatBitsToInt floatBitsToUint floor for fract fwidth greaterThan
+    greaterThanEqual highp if ifdef ifndef in inout int intBitsToFloat inverse inversesqrt invariant isampler2D
+    isinf isnan ivec2 ivec3 ivec4 layout length lessThan lessThanEqual line location log log2 lowp main mat2
+    mat3 mat4 max mediump min mix mod normalize not notEqual or out outerProduct packHalf2x16 packSnorm2x16
+    packUnorm2x16 packUnorm4x8 pow pragma precision radians readonly reflect refract return round roundEven
+    sampler2D sampler2DArray sampler3D sign sin smooth smoothstep sqrt step struct switch tan texelFetch texture
+    textureLod textureSize transpose true trunc uint uintBitsToFloat undef uniform unpackHalf2x16
+    unpackSnorm2x16 unpackUnorm2x16 unpackUnorm4x8 usampler2D uvec2 uvec3 uvec4 vec2 vec3 vec4 version void
+    while xor std140
+"""
+_LANGUAGE = frozenset(_WORDS.split())
+"""Words of GLSL ES 3.00 that shaders here use; what is missing is found by the compiler of the tests."""
+_SWIZZLE = re.compile(r"[xyzw]{1,4}|[rgba]{1,4}")
 
 _SWITCH = re.compile(r"FEATURE_\w+|__VERSION__ >= \d+|[!()]|&&|\|\|")
 _NAME = re.compile(r"\b[A-Za-z_]\w*")
@@ -54,6 +74,40 @@ def pieces(texts: Mapping[str, str]) -> tuple[list[str], dict[str, list[int]]]:
                 found += [at, at + 1]
         ranges[name] = found
     return list(lines), ranges
+
+
+def renamed(texts: Mapping[str, str], kept: Collection[str]) -> dict[str, str]:
+    """Return texts with short names in the place of long ones, the same in all of them.
+
+    Parameters
+    ----------
+    texts : mapping of str to str
+    kept : collection of str
+        Names that stay, as others use them, too.
+    """
+    counts = Counter(name for text in texts.values() for name in _NAME.findall(text))
+    stays = _LANGUAGE.union(kept)
+    free = [
+        name for name in counts
+        if len(name) > 2 and name not in stays and not name.startswith(("gl_", "FEATURE_")) and "__" not in name
+    ]  # fmt: skip
+    free = [name for name in free if not _SWIZZLE.fullmatch(name)]
+    fresh = (short for short in _short_names() if short not in counts and short not in stays)
+    shorter = dict(zip(sorted(free, key=lambda name: (-counts[name], name)), fresh, strict=False))
+    return {
+        name: _NAME.sub(lambda found: shorter.get(found[0], found[0]), text)
+        for name, text in texts.items()
+    }  # fmt: skip
+
+
+def _short_names() -> Iterator[str]:
+    """Yield names of two letters, then of three, none of which is a swizzle."""
+    letters = string.ascii_uppercase + string.ascii_lowercase
+    for first, second in itertools.product(letters, letters + string.digits):
+        if not _SWIZZLE.fullmatch(first + second):
+            yield first + second
+    for parts in itertools.product(string.ascii_uppercase, repeat=3):
+        yield "".join(parts)
 
 
 def _condition(text: str, switches: Mapping[str, bool | None]) -> bool | str:

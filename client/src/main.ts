@@ -86,6 +86,7 @@ async function start(): Promise<void> {
   const renderer = new Renderer(document.getElementById("view") as HTMLCanvasElement, scene, data, archives);
   renderer.loading = loading.length > 0;
   renderer.failed = fail;
+  renderer.lacking = (why) => { document.getElementById("status")!.textContent = `This browser draws translucent lines opaque: ${why}.`; };
   renderer.drawnOnce = () => { document.body.dataset.state = "drawn"; };
   new ResizeObserver(() => renderer.change()).observe(renderer.canvas);
   const controls = new Controls(renderer, data);

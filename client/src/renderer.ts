@@ -14,6 +14,7 @@ import { GL, GraphicsError, Program, UniformBlock, framebuffer, lookUpTable, row
 import type { FarDepths } from "./hiding";
 import type { FibletLayer, Scene } from "./scene";
 import { Drawn, ImageSlice, Surface } from "./surfaces";
+import { Translucent, floatBits } from "./translucent";
 
 const SLICE = 60;      // ms of drawing between looks at the user's hands
 const MOVING = 45;     // ms of a picture while something moves
@@ -37,6 +38,7 @@ export class Lines {
   tableRange: number[] = [0, 1, 1, 1];
   kept: WebGLTexture | null = null;
   chosen: WebGLTexture | null = null;
+  opacities: WebGLTexture | null = null;
   keptPoints: WebGLTexture | null = null;
   shownValues: [number, number] = [1, 0];
   marked = ALL_ONES;
@@ -52,13 +54,14 @@ export class Lines {
     if (colours.table !== undefined) [this.table, this.tableRange] = lookUpTable(gl, fromBase64(colours.table), colours.clim!, !!colours.log);
     if (layer.kept !== undefined) this.keep(data[layer.kept]);
     if (layer.chosen) this.chosen = rows(gl, "r8ui", data[layer.chosen.data], "streamlines");
+    if (layer.through?.opacities !== undefined) this.opacities = rows(gl, "r8ui", data[layer.through.opacities], "streamlines");
     if (layer.kept_points !== undefined) this.keptPoints = rows(gl, "r32ui", asWords(data[layer.kept_points]), "points");
   }
 
   /** Give back all but the set. */
   release(): void {
     if (this.values) this.set.forget(this.values);
-    for (const texture of [this.colours, this.table, this.kept, this.chosen, this.keptPoints]) if (texture) this.gl.deleteTexture(texture);
+    for (const texture of [this.colours, this.table, this.kept, this.chosen, this.opacities, this.keptPoints]) if (texture) this.gl.deleteTexture(texture);
   }
 
   get byPoint(): boolean {
@@ -72,11 +75,11 @@ export class Lines {
   }
 }
 
-/** A block to be drawn: all of it, its items that are likely to be seen, or those others that these leave in sight. */
+/** A block to be drawn: all of it, its items that are likely to be seen, those others that these leave in sight, or all behind these. */
 interface Job {
   lines: Lines;
   block: Block;
-  what: "all" | "likely" | "others";
+  what: "all" | "likely" | "others" | "behind";
 }
 
 interface Frame {
@@ -88,6 +91,7 @@ interface Frame {
   shownAt: number;
   matrices: Drawn;
   moving: boolean;
+  through: Set<Lines>;   // whose nearest lines have begun
 }
 
 export class Renderer {
@@ -107,6 +111,7 @@ export class Renderer {
   presented: (() => void) | null = null;
   grown: (() => void) | null = null;     // more streamlines are there
   finished: (() => void) | null = null;  // a picture at rest
+  lacking: ((why: string) => void) | null = null;  // lines are drawn opaque that are translucent
 
   private gl: GL;
   private programs = new Map<string, Program>();
@@ -115,6 +120,9 @@ export class Renderer {
   private raysBlock: UniformBlock | null = null;  // of regions that cut
   private textures: Record<string, WebGLTexture> = {};
   private buffers: Record<string, WebGLFramebuffer> = {};
+  private translucent: Translucent | null = null;
+  private bits: 0 | 16 | 32 | null = null;   // of floats that are blended, once that was asked
+  private stale = false;                 // streamlines have come that the picture at work does not have
   private frame: Frame | null = null;
   private rest: Frame | null = null;     // the finished picture, which streamlines that come are added to
   private sync: WebGLSync | null = null;
@@ -153,7 +161,7 @@ export class Renderer {
   private begin(): void {
     const { gl } = this, before = this.lines.splice(0);
     this.programs.clear();
-    this.rest = null;
+    this.rest = this.translucent = this.bits = null;
     this.textures = {};
     this.buffers = {};
     this.width = this.height = 0;
@@ -225,6 +233,14 @@ export class Renderer {
   grow(): void {
     this.guarded(() => {
       const frame = this.frame ?? this.rest;
+      if (this.throughs().length) {
+        // Sums begin behind the nearest lines: those that come now make another picture.
+        for (const { set, layer } of this.lines) set.advance(this.archives.get(layer.data)!.ready);
+        if (this.frame) this.stale = true;
+        else this.change();
+        this.grown?.();
+        return;
+      }
       for (const lines of this.lines) {
         const { set } = lines, before = set.blocks.length;
         set.advance(this.archives.get(lines.layer.data)!.ready);
@@ -242,14 +258,23 @@ export class Renderer {
     this.schedule();
   }
 
+  /** Lines that are shown, and that one looks through. */
+  private throughs(): Lines[] {
+    const found = this.lines.filter(({ layer }) => layer.visible && layer.through);
+    if (found.length && this.bits === null && !(this.bits = floatBits(this.gl))) {
+      this.lacking?.("its graphics cannot add up colours of lines that one looks through");
+    }
+    return this.bits === 0 ? [] : found;
+  }
+
   private addJobs(frame: Frame, lines: Lines, blocks: Block[]): void {
     const matrix = product(frame.matrices.projection, product(frame.matrices.view, lines.model));
     for (const block of blocks) if (!this.outside(matrix, block.bounds)) frame.jobs.push({ lines, block, what: "all" });
   }
 
   /** Find how far away what was drawn of a picture is, tile by tile. */
-  private findFarTiles(drawn: boolean, read: boolean): FarDepths | null {
-    const { gl, textures: t } = this, columns = Math.ceil(this.width / FAR_TILE), rows = Math.ceil(this.height / FAR_TILE);
+  private findFarTiles(depths: WebGLTexture, drawn: boolean, read: boolean): FarDepths | null {
+    const { gl } = this, columns = Math.ceil(this.width / FAR_TILE), rows = Math.ceil(this.height / FAR_TILE);
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.buffers.far);
     if (!drawn) {
       gl.clearBufferuiv(gl.COLOR, 0, [FARTHEST, 0, 0, 0]);
@@ -258,7 +283,7 @@ export class Renderer {
     gl.disable(gl.DEPTH_TEST);
     gl.bindVertexArray(null);
     gl.viewport(0, 0, columns, rows);
-    this.program("page/screen.vert", "page/far_tiles.frag").use().textures({ depths: t.depths });
+    this.program("page/screen.vert", "page/far_tiles.frag").use().textures({ depths });
     gl.drawArrays(gl.TRIANGLES, 0, 3);
     gl.viewport(0, 0, this.width, this.height);
     if (!read) return null;
@@ -298,11 +323,12 @@ export class Renderer {
     const quota = this.rate * SLICE;
     this.sliceStarted = performance.now();
     this.sliceSize = 0;
-    this.drawSlice(frame, frame.moving ? Infinity : quota);
+    do this.drawSlice(frame, frame.moving ? Infinity : quota);
+    while (frame.next < frame.jobs.length && (frame.moving || (this.sliceSize < quota && frame.jobs[frame.next].what !== "others")));
     const finished = frame.next >= frame.jobs.length;
     if (finished || this.worthShowing(frame)) {
       frame.shownAt = performance.now();
-      this.present(frame.matrices, finished);
+      this.present(frame, finished);
       if (this.drawnOnce && (frame.jobs.length || !this.loading)) {
         this.drawnOnce();
         this.drawnOnce = null;
@@ -314,6 +340,7 @@ export class Renderer {
       this.frame = null;
       this.rest = frame.moving ? null : frame;
       ++this.frames;
+      if (this.stale) this.change();
       if (!frame.moving) this.finished?.();
       if (!frame.moving && !this.dirty && !this.loading) this.waiting.splice(0).forEach((resolve) => resolve());
     }
@@ -337,6 +364,8 @@ export class Renderer {
     this.ratio = ratio;
     for (const texture of Object.values(this.textures)) gl.deleteTexture(texture);
     for (const buffer of Object.values(this.buffers)) gl.deleteFramebuffer(buffer);
+    this.translucent?.release();
+    this.translucent = null;
     const t = (this.textures = {
       texels: target(gl, gl.RGBA32UI, width, height),
       depths: target(gl, gl.DEPTH_COMPONENT32F, width, height),
@@ -362,18 +391,36 @@ export class Renderer {
     this.dirty = false;
     const view = camera.view(), projection = camera.projection(this.width / this.height, scene.bounds);
     const drawn: Drawn = { view, projection, parallel: camera.state.parallel, lights: (program) => this.setLights(program, view), planes: this.planes };
-    const frame: Frame = (this.frame = { jobs: [], next: 0, share: 1, drawn: 0, begun: performance.now(), shownAt: performance.now(), matrices: drawn, moving });
+    const frame: Frame = (this.frame = { jobs: [], next: 0, share: 1, drawn: 0, begun: performance.now(), shownAt: performance.now(), matrices: drawn, moving, through: new Set() });
     this.rest = null;
-    for (const lines of this.lines) if (lines.layer.visible) this.addJobs(frame, lines, lines.set.blocks);
-    const sum = (count: (job: Job) => number): number => frame.jobs.reduce((all, job) => all + job.lines.set.segments(count(job)), 0);
-    if (sum(({ block }) => block.items) > this.few) {
+    this.stale = false;
+    const throughs = this.throughs(), visible = this.lines.filter(({ layer }) => layer.visible);
+    const sum = (jobs: Job[], count: (job: Job) => number): number => jobs.reduce((all, job) => all + job.lines.set.segments(count(job)), 0);
+    const jobsOf = (some: Lines[]): Job[] => {
+      frame.jobs = [];
+      for (const lines of some) this.addJobs(frame, lines, lines.set.blocks);
+      return frame.jobs;
+    };
+    const many = sum(jobsOf(visible), ({ block }) => block.items) > this.few;
+    const ordered = (jobs: Job[]): Job[] => {
+      if (!many) return jobs;
       const depth = ({ lines, block: { bounds: b } }: Job): number => apply(product(view, lines.model), [b[0] + b[1], b[2] + b[3], b[4] + b[5]].map((part) => part / 2) as Vec)[2];
-      const order = new Map(frame.jobs.map((job) => [job, depth(job)]));
-      frame.jobs.sort((a, b) => order.get(b)! - order.get(a)!);
-      frame.jobs = frame.jobs.map((job): Job => ({ ...job, what: "likely" }));
-      if (moving) frame.share = Math.min(1, (this.rate * MOVING) / sum(({ lines, block }) => (lines.set.likely(block), block.likelies)));
-      else frame.jobs.push(...frame.jobs.map((job): Job => ({ ...job, what: "others" })));
-    } else if (moving) frame.share = Math.min(1, (this.rate * MOVING) / Math.max(sum(({ block }) => block.items), 1));
+      const order = new Map(jobs.map((job) => [job, depth(job)]));
+      const likely = jobs.sort((a, b) => order.get(b)! - order.get(a)!).map((job): Job => ({ ...job, what: "likely" }));
+      return moving ? likely : [...likely, ...likely.map((job): Job => ({ ...job, what: "others" }))];
+    };
+    const jobs = ordered(jobsOf(visible.filter((lines) => !throughs.includes(lines))));
+    for (const lines of throughs) {
+      const own = jobsOf([lines]);
+      jobs.push(...ordered([...own]));
+      if (lines.layer.through!.all) jobs.push(...own.map((job): Job => ({ ...job, what: "behind" })));
+    }
+    frame.jobs = jobs;
+    if (moving) frame.share = Math.min(1, (this.rate * MOVING) / Math.max(sum(jobs, ({ lines, block, what }) => (what === "likely" ? (lines.set.likely(block), block.likelies) : block.items)), 1));
+    if (!this.mixes()) {
+      this.translucent?.release();
+      this.translucent = null;
+    } else (this.translucent ??= new Translucent(gl, this.bits as 16 | 32, this.width, this.height, this.textures.depths)).keep(throughs);
     if (!this.frames) frame.shownAt = 0;
     gl.viewport(0, 0, this.width, this.height);
     gl.disable(gl.BLEND);
@@ -429,7 +476,7 @@ export class Renderer {
 
   /** Local coordinates of lines to the window, and the planes in them; returns how wide lines are drawn. */
   private aim(lines: Lines, drawn: Drawn): { wide: boolean; clipped: boolean; window: Mat } {
-    const width = lines.layer.line_width * this.ratio, wide = width > 1;
+    const width = lines.layer.line_width * this.ratio, wide = this.wide(lines);
     const local = product(drawn.view, product(lines.model, lines.set.toData)), clip = product(drawn.projection, local);
     const largest = clip.reduce((most, value) => Math.max(most, Math.abs(value)), 0) || 1, window = new Float64Array(16);
     for (let j = 0; j < 4; ++j) {
@@ -481,10 +528,16 @@ export class Renderer {
   private drawSlice(frame: Frame, quota: number): void {
     const { gl } = this;
     let aimed: Lines | null = null, program: Program | null = null, sprites = false, window: Mat = identity(), brush = 1;
-    const hiding = frame.jobs[frame.next]?.what === "others", far = this.findFarTiles(frame.next > 0, hiding);
+    const first = frame.jobs[frame.next], phase = first && this.phase(first), behind = first?.what === "behind", translucent = phase ? this.translucent : null;
+    if (translucent && !frame.through.has(first.lines)) {
+      frame.through.add(first.lines);
+      translucent.begin(first.lines, this.wide(first.lines) && first.lines.layer.through!.all, this.buffers.texels);
+    }
+    const hiding = first?.what === "others", depths = translucent && !behind ? translucent.depthsOf(first.lines) : this.textures.depths;
+    const far = this.findFarTiles(depths, frame.next > 0, hiding);
     while (frame.next < frame.jobs.length && this.sliceSize < quota) {
       const { lines, block, what } = frame.jobs[frame.next];
-      if ((what === "others") !== hiding && this.sliceSize) break;
+      if (this.phase(frame.jobs[frame.next]) !== phase || ((what === "others") !== hiding && this.sliceSize)) break;
       ++frame.next;
       lines.set.pointsOf(block);
       if (aimed !== lines) {
@@ -502,54 +555,89 @@ export class Renderer {
         if (lines.byPoint) features.push("VALUES_COLOUR");
         if (lines.kept) features.push("STREAMLINE_MASK");
         if (lines.keptPoints) features.push("POINT_MASK");
-        program = this.program("page/segment.vert", "page/segment.frag", features).use();
+        if (wide && translucent && lines.layer.through!.all) features.push("GATHER_SLICES");
+        program = this.program("page/segment.vert", behind ? "page/sum.frag" : "page/segment.frag", features).use();
         if (lines.values) program.set({ value_code: lines.values.code, shown_values: lines.shownValues });
         program.uints({ layer: lines.index * 2 ** 28 });
       }
       const chosen = what === "others" && far ? lines.set.look(block, window, brush, this.width, this.height, far) : lines.set.likely(block);
-      gl.bindFramebuffer(gl.FRAMEBUFFER, this.buffers.texels);
+      if (behind) translucent!.behind(lines);
+      else if (translucent) translucent.nearest(lines);
+      else gl.bindFramebuffer(gl.FRAMEBUFFER, this.buffers.texels);
       gl.enable(gl.DEPTH_TEST);
-      gl.depthFunc(gl.LESS);
+      gl.depthFunc(translucent ? gl.LEQUAL : gl.LESS);  // what is opaque hides nothing that lies in it
       this.frameBlock.bind();
+      if (behind) {
+        this.colour(program!.use(), lines);
+        translucent!.paint(program!, lines, frame.matrices);
+      }
       program!.use().textures({ far_tiles: this.textures.far, items: lines.set.items, kept: lines.kept, kept_points: lines.keptPoints, value_texels: lines.values && lines.values.texture, point_colours: lines.byPoint ? lines.colours : null });
-      if (what === "all") this.sliceSize += lines.set.draw(block, program!, frame.share * block.items, sprites);
+      if (what === "all" || behind) this.sliceSize += lines.set.draw(block, program!, frame.share * block.items, sprites);
       else this.sliceSize += block.items + lines.set.drawSome(block, program!, chosen, sprites, Math.ceil(frame.share * (what === "likely" ? block.likelies : block.items)));
     }
+    gl.disable(gl.BLEND);
+    gl.depthMask(true);
+  }
+
+  /** What is drawn together: opaque lines are. */
+  private phase({ lines, what }: Job): string {
+    return lines.layer.through && this.bits ? `${lines.index} ${what === "behind"}` : "";
+  }
+
+  private wide(lines: Lines): boolean {
+    return lines.layer.line_width * this.ratio > 1;
+  }
+
+  /** Tell a program what colours lines. */
+  private colour(program: Program, lines: Lines): void {
+    const { colours, through } = lines.layer, { texels } = this.textures;
+    program.textures({ colours: lines.byPoint ? null : lines.colours, table: lines.table, opacities: lines.opacities ?? texels });
+    program.ints({ mode: MODES[colours.mode], logarithm: colours.log ? 1 : 0, by_streamline: lines.opacities ? 1 : 0, by_point: through?.by_point ? 1 : 0 });
+    program.set({ one_colour: colours.colour ?? [1, 1, 1], table_range: lines.tableRange });
+  }
+
+  /** Tell a program how the nearest lines look that some textures hold. */
+  private light(program: Program, lines: Lines, drawn: Drawn, texels: WebGLTexture, depths: WebGLTexture): void {
+    const { layer } = lines, back = inverse(drawn.projection) ?? identity();
+    this.colour(program, lines);
+    program.textures({ texels, depths, chosen: lines.chosen ?? texels }).uints({ layer: lines.index * 2 ** 28, marked: lines.marked });
+    program.ints({ light: LIGHTS[layer.light] }).set({
+      reflects: layer.reflects, sheen: layer.sheen,
+      chosen_colour: layer.chosen?.colour ?? [0, 0, 0, 0], faded: layer.chosen?.faded ?? [0, 0, 0, 0],
+      data_to_view: linear(product(drawn.view, lines.model)), pixel_to_view: new Float32Array(back), picture: [this.width, this.height],
+    });
+    this.setLights(program, drawn.view);
   }
 
   /** From the nearest lines to the canvas. */
-  private present(drawn: Drawn, finished: boolean): void {
-    const { gl, textures: t, buffers: b } = this;
+  private present(frame: Frame, finished: boolean): void {
+    const { gl, textures: t, buffers: b } = this, drawn = frame.matrices, through = [...frame.through];
     this.repaint(drawn);
     gl.disable(gl.DEPTH_TEST);
     gl.bindVertexArray(null);
-    this.findTiles();
+    this.findTiles(through);
     gl.bindFramebuffer(gl.FRAMEBUFFER, b.drawn);
-    const resolve = this.program("page/tiles.vert", "page/resolve.frag").use(), back = inverse(drawn.projection) ?? identity();
-    let narrower = 0;
+    const resolve = this.program("page/tiles.vert", "page/resolve.frag").use();
     for (const lines of this.lines) {
-      if (!lines.layer.visible) continue;
-      const { layer } = lines, { colours } = layer, width = layer.line_width * this.ratio;
-      narrower = Math.max(narrower, 1 - Math.min(1, width));
-      resolve.textures({ texels: t.texels, depths: t.depths, colours: lines.byPoint ? null : lines.colours, table: lines.table, chosen: lines.chosen ?? t.texels });
-      resolve.uints({ layer: lines.index * 2 ** 28, marked: lines.marked });
-      resolve.ints({ mode: MODES[colours.mode], logarithm: colours.log ? 1 : 0, light: LIGHTS[layer.light] });
-      resolve.set({
-        one_colour: colours.colour ?? [1, 1, 1], table_range: lines.tableRange, reflects: layer.reflects, sheen: layer.sheen,
-        chosen_colour: layer.chosen?.colour ?? [0, 0, 0, 0], faded: layer.chosen?.faded ?? [0, 0, 0, 0],
-        data_to_view: linear(product(drawn.view, lines.model)), pixel_to_view: new Float32Array(back), picture: [this.width, this.height],
-      });
-      this.setLights(resolve, drawn.view);
+      if (!lines.layer.visible || frame.through.has(lines)) continue;
+      this.light(resolve, lines, drawn, t.texels, t.depths);
       this.drawTiles(resolve);
     }
-    this.drawTranslucent(drawn);
+    this.drawTranslucent(frame);
     gl.disable(gl.DEPTH_TEST);
     gl.bindVertexArray(null);
     if (finished && this.scene.antialias && this.lines.length) {
+      const narrower = (some: Lines[]): number => Math.max(0, ...some.map(({ layer }) => 1 - Math.min(1, layer.visible ? layer.line_width * this.ratio : 1)));
       gl.bindFramebuffer(gl.FRAMEBUFFER, b.shown);
       gl.viewport(0, 0, this.width + 2, this.height + 2);
-      this.program("page/screen.vert", "page/visible_edges.frag").use().textures({ texels: t.texels, depths: t.depths, drawn: t.drawn }).set({ narrower });
+      const edges = this.program("page/screen.vert", "page/visible_edges.frag").use().textures({ texels: t.texels, depths: t.depths, drawn: t.drawn });
+      edges.ints({ first: 1 }).set({ narrower: narrower(this.lines.filter((lines) => !frame.through.has(lines))) });
       gl.drawArrays(gl.TRIANGLES, 0, 3);
+      for (const lines of through) {
+        const { texels, depths } = this.translucent!.of(lines)!;
+        edges.textures({ texels, depths }).ints({ first: 0 }).set({ narrower: narrower([lines]) });
+        gl.drawArrays(gl.TRIANGLES, 0, 3);
+      }
       gl.viewport(0, 0, this.width, this.height);
       gl.bindFramebuffer(gl.FRAMEBUFFER, b.drawn);
       const smooth = this.program("page/tiles.vert", "effects/picture/antialias_coverage.frag").use().textures({ shown: t.shown });
@@ -563,12 +651,15 @@ export class Renderer {
   }
 
   /** Find which tiles of the picture have lines. */
-  private findTiles(): void {
+  private findTiles(through: Lines[]): void {
     const { gl, textures: t } = this;
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.buffers.tiles);
     gl.viewport(0, 0, Math.ceil(this.width / TILE), Math.ceil(this.height / TILE));
-    this.program("page/screen.vert", "page/tile_mask.frag").use().textures({ texels: t.texels });
-    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    const mask = this.program("page/screen.vert", "page/tile_mask.frag").use();
+    [t.texels, ...through.map((lines) => this.translucent!.of(lines)!.texels)].forEach((texels, i) => {
+      mask.textures({ texels }).ints({ first: i ? 0 : 1 });
+      gl.drawArrays(gl.TRIANGLES, 0, 3);
+    });
     gl.viewport(0, 0, this.width, this.height);
   }
 
@@ -584,20 +675,40 @@ export class Renderer {
     if (this.frame && this.frame.drawn++ > 0) this.drawBackdrop(drawn);
   }
 
-  private drawTranslucent(drawn: Drawn): void {
-    const { gl } = this, some = this.surfaces.filter((surface) => surface.layer.visible && surface.translucent);
+  /** Whether anything is shown that one looks through. */
+  private mixes(): boolean {
+    const some = this.throughs().length || [...this.surfaces, ...this.images].some(({ layer, translucent }) => layer.visible && translucent);
+    return !!some && !!(this.bits ??= floatBits(this.gl));
+  }
+
+  private drawTranslucent(frame: Frame): void {
+    const { gl, translucent } = this, drawn = frame.matrices, some = this.surfaces.filter((surface) => surface.layer.visible && surface.translucent);
     const images = this.images.filter((image) => image.layer.visible && image.translucent);
-    if (!some.length && !images.length) return;
-    gl.bindFramebuffer(gl.FRAMEBUFFER, this.buffers.scene);
+    if (!some.length && !images.length && !frame.through.size) return;
+    if (translucent) translucent.start();
+    else {
+      gl.bindFramebuffer(gl.FRAMEBUFFER, this.buffers.scene);
+      gl.depthMask(false);
+      gl.enable(gl.BLEND);
+      gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+    }
+    for (const lines of frame.through) {
+      const program = this.program("page/tiles.vert", "page/through.frag").use(), { texels, depths } = translucent!.of(lines)!;
+      this.light(program, lines, drawn, texels, depths);
+      translucent!.show(program, lines, frame.share);
+      this.drawTiles(program);
+    }
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.LEQUAL);
-    gl.depthMask(false);
-    gl.enable(gl.BLEND);
-    gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
-    const program = this.program("page/surface.vert", "page/surface.frag");
-    some.sort((a, b) => b.depth(drawn.view) - a.depth(drawn.view)).forEach((surface) => surface.draw(program, drawn));
-    const flat = this.program("page/image.vert", "page/image.frag");
-    images.forEach((image) => image.draw(flat, drawn));
+    if (some.length) {
+      const program = this.program("page/surface.vert", "page/surface.frag");
+      some.sort((a, b) => b.depth(drawn.view) - a.depth(drawn.view)).forEach((surface) => surface.draw(program, drawn));
+    }
+    if (images.length) {
+      const flat = this.program("page/image.vert", "page/image.frag");
+      images.forEach((image) => image.draw(flat, drawn));
+    }
+    if (translucent) translucent.finish(this.program("page/screen.vert", "page/mixed.frag").use(), this.buffers.drawn);
     gl.disable(gl.BLEND);
     gl.depthMask(true);
   }
@@ -608,8 +719,12 @@ export class Renderer {
     const near: [number, number][] = [[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1], [2, 0], [-2, 0], [0, 2], [0, -2]];
     for (const [dx, dy] of near) {
       if (px + dx < 0 || py + dy < 0 || px + dx >= this.width || py + dy >= this.height) continue;
-      gl.bindFramebuffer(gl.FRAMEBUFFER, this.buffers.texels);
-      gl.readPixels(px + dx, py + dy, 1, 1, gl.RGBA_INTEGER, gl.UNSIGNED_INT, word);
+      for (const buffer of [...this.throughs().map((lines) => this.translucent?.of(lines)?.nearest), this.buffers.texels]) {
+        if (!buffer) continue;
+        gl.bindFramebuffer(gl.FRAMEBUFFER, buffer);
+        gl.readPixels(px + dx, py + dy, 1, 1, gl.RGBA_INTEGER, gl.UNSIGNED_INT, word);
+        if (word[0] !== ALL_ONES || word[1] !== ALL_ONES) break;
+      }
       if (word[0] === ALL_ONES && word[1] === ALL_ONES) continue;
       const lines = this.lines[word[0] >>> 28];
       if (!lines) continue;

@@ -43,6 +43,15 @@ interface Layer {
   planes?: number[][];  // (a, b, c, d): kept where a x + b y + c z + d >= 0, in world coordinates
 }
 
+/** Of lines that one looks through. */
+export interface Through {
+  opacity: number;      // of all
+  varied: boolean;      // whether colours or what is below have opacities of their own, which that is times
+  all: boolean;         // whether all lines show through the nearest, or what is behind all lines
+  opacities?: number;   // data: a byte for each streamline
+  by_point?: boolean;   // whether values of points are opacities
+}
+
 export interface FibletLayer extends Layer {
   kind: "fiblets";
   data: number;
@@ -51,6 +60,7 @@ export interface FibletLayer extends Layer {
   light: "none" | "line" | "illuminated";
   reflects: [number, number, number, number];
   sheen: Vec;
+  through?: Through;
   kept?: number;        // data: a byte for each streamline
   chosen?: { data: number; colour: [number, number, number, number]; faded: [number, number, number, number] };  // a byte for each streamline; colours, and how much of them
   cut?: Cut;            // by a region, besides planes

@@ -1,5 +1,5 @@
-// Built by `make client` of sources ffaa6b8cbefcbd6f
-"use strict";(()=>{var bt=Object.defineProperty;var vt=(o,e,n)=>e in o?bt(o,e,{enumerable:!0,configurable:!0,writable:!0,value:n}):o[e]=n;var h=(o,e,n)=>vt(o,typeof e!="symbol"?e+"":e,n);var T=class extends Error{},wt=101010256,yt=101075792,xt=117853008,At=33639248,He=67324752,Xe="header.json",me="Copy or make the file again.",_t=4096;function J(o,e){return o.getUint32(e,!0)+o.getUint32(e+4,!0)*4294967296}function Et(o){let e=o.byteLength;for(let n=e-22;n>=Math.max(0,e-65558);--n)if(o.getUint32(n,!0)===wt){if(n>=20&&o.getUint32(n-20,!0)===xt){let t=J(o,n-12);if(t+56<=e&&o.getUint32(t,!0)===yt)return[J(o,t+48),J(o,t+32)]}return[o.getUint32(n+16,!0),o.getUint16(n+10,!0)]}throw new T("This is no whole .fiblets file: the end of its zip archive is missing. Copy or make it again.")}function Tt(o,e,n,t){let r=o.getUint32(e+24,!0),s=o.getUint32(e+42,!0),i=o.getUint32(e+20,!0);for(let a=e+46+n,l=a+t;a+4<=l;){let c=o.getUint16(a,!0),u=o.getUint16(a+2,!0),f=a+4;c===1&&(r===4294967295&&(r=J(o,f),f+=8),i===4294967295&&(i=J(o,f),f+=8),s===4294967295&&(s=J(o,f))),a+=4+u}return[r,s]}var Ft={"|u1":[1,Uint8Array],"|i1":[1,Int8Array],"|b1":[1,Uint8Array],"<u2":[2,Uint16Array],"<i2":[2,Int16Array],"<u4":[4,Uint32Array],"<i4":[4,Int32Array],"<f4":[4,Float32Array],"<f8":[8,Float64Array],"<i8":[8,BigInt64Array],"<u8":[8,BigUint64Array]};function Pe(o,e){let n=new T(`The member ${e} of the file is damaged. ${me}`);if(o.length<10||o[0]!==147||o[6]!==1)throw n;let t=o[8]|o[9]<<8,r=new TextDecoder("latin1").decode(o.subarray(10,10+t)),s=/'descr':\s*'([^']+)'/.exec(r),i=/'shape':\s*\(([^)]*)\)/.exec(r);if(!s||!i||/'fortran_order':\s*True/.test(r))throw n;let a=Ft[s[1]];if(!a)return null;let l=i[1].split(",").map(p=>p.trim()).filter(p=>p).map(Number),c=l.reduce((p,g)=>p*g,1),u=o.byteOffset+10+t;if(!l.every(p=>Number.isSafeInteger(p)&&p>=0)||10+t+c*a[0]>o.length)throw n;let f=o.buffer,d=u%a[0]===0?new a[1](f,u,c):new a[1](f.slice(u,u+c*a[0]),0,c);return{shape:l,data:d}}function Oe(o){let e=new DataView(o.buffer,o.byteOffset,o.byteLength);if(o.length<22)throw new T("This is no .fiblets file: it is empty, or cut short.");let[n,t]=Et(e),r=new Map,s=null,i=n;for(let a=0;a<t;++a){if(i+46>o.length||e.getUint32(i,!0)!==At)throw new T(`The list of the file's members is damaged. ${me}`);let l=e.getUint16(i+28,!0),c=e.getUint16(i+30,!0),u=e.getUint16(i+32,!0),f=new TextDecoder().decode(o.subarray(i+46,i+46+l)),[d,p]=Tt(e,i,l,c);if(e.getUint16(i+10,!0)!==0)throw new T(`The member ${f} of the file is compressed; .fiblets files store their members as they are.`);if(p+30>o.length||e.getUint32(p,!0)!==He)throw new T(`The member ${f} of the file is damaged. ${me}`);let g=p+30+e.getUint16(p+26,!0)+e.getUint16(p+28,!0);if(g+d>o.length)throw new T(`The file ends within its member ${f}. Copy or make it again.`);let b=o.subarray(g,g+d);if(f===Xe)s=We(b);else{let m=Pe(b,f);m&&r.set(f,m)}i+=46+l+c+u}return Ke(s,r,1/0)}function We(o){try{return JSON.parse(new TextDecoder().decode(o))}catch{throw new T(`The file's header is damaged. ${me}`)}}function Ke(o,e,n){if(o===null||typeof o!="object")throw new T("This is a zip archive, but no .fiblets file: it has no header.json.");return{header:o,arrays:e,ready:n}}async function Je(o,e){let{bytes:n}=o,t=new DataView(n.buffer,n.byteOffset,n.byteLength),r=new Map,s=null;for(let i=0;i+30<=n.length&&(await o.need(i,Math.min(i+_t,n.length)),t.getUint32(i,!0)===He);){let a=t.getUint16(i+26,!0),l=t.getUint16(i+28,!0),c=i+30+a+l,u=new TextDecoder().decode(n.subarray(i+30,i+30+a)),f=t.getUint32(i+18,!0);for(let d=i+30+a;f===4294967295&&d+20<=c;d+=4+t.getUint16(d+2,!0))t.getUint16(d,!0)===1&&(f=J(t,d+4));if(t.getUint16(i+8,!0)!==0||c+f>n.length)throw new T(`The member ${u} of the file is damaged. ${me}`);if(u===Xe)await o.need(c,c+f),s=We(n.subarray(c,c+f));else{let d=Pe(n.subarray(c,c+f),u);d&&r.set(u,d),d&&(d.data.buffer!==n.buffer||u==="pages.npy")&&(await o.need(c,c+f),r.set(u,Pe(n.subarray(c,c+f),u)))}if(r.has("codes.npy")&&e.every(d=>r.has(s?.per_point?.[d]?.member)))break;i=c+f}return Ke(s,r,0)}var Rt=[["anchors.npy",2,-1],["decoding.npy",3,-1],["anchors_low.npy",3,-1],["rank_to_id.npy",1,0],["codes.npy",1,1]];async function je(o,e,n,t,r,s){let i=e.arrays.get("pages.npy").data,a=e.header.n_fiblets,l=[...Rt,...s.map(c=>[e.header.per_point?.[c]?.member,1,2])];await Promise.all(l.map(([c,u,f])=>{let d=e.arrays.get(c)?.data;if(!d)return;let[p,g]=[n,t].map(b=>(f<0?Math.min(b*r,a)*u:Number(i[3*b+f]))*d.BYTES_PER_ELEMENT);return o.need(d.byteOffset+p,Math.min(d.byteOffset+g+(f===1?4:0),o.bytes.length))}))}var Q={blocks:{ClipPlanes:{bytes:400,fields:{clip_brushes:256,clip_plane_count:384,clip_planes:0,clip_rounding:388,clip_tilts:128}},Coding:{bytes:96,fields:{anchor_scale:0,end_vector_scale:28,lattice_edge:24,radius_scale:12,rotation_scales:32,step_low:16,step_span:20}},Frame:{bytes:208,fields:{half_line_width:172,line_reach:184,most_pixels_per_mm:192,plane_rounding:188,reference:160,segment_deviation:200,segment_size:204,view_planes:64,viewport:176,w_per_mm:196,window_from_local:0}},Rays:{bytes:5632,fields:{rays_centres:3072,rays_first_layers:4096,rays_first_tallies:5120,rays_layer_counts:4608,rays_rectangles:3584,rays_rows:0}},Rotations:{bytes:16384,fields:{rotations:0}}},fields:{anchor_x:[0,0,16],anchor_y:[0,16,16],anchor_z:[1,0,16],begin:[1,30,1],cap:[2,26,4],code:[1,0,22],end:[1,31,1],kind:[2,30,2],last:[2,20,6],point:[2,0,20],rank:[1,16,14],shape:[0,0,32],step:[1,22,10]},lines:`#version 300 es
+// Built by `make client` of sources 211922c9efa6d077
+"use strict";(()=>{var yt=Object.defineProperty;var xt=(o,e,t)=>e in o?yt(o,e,{enumerable:!0,configurable:!0,writable:!0,value:t}):o[e]=t;var f=(o,e,t)=>xt(o,typeof e!="symbol"?e+"":e,t);var D=class extends Error{},Et=101010256,Bt=101075792,Ft=117853008,Tt=33639248,Ke=67324752,Je="header.json",ge="Copy or make the file again.",Ct=4096;function $(o,e){return o.getUint32(e,!0)+o.getUint32(e+4,!0)*4294967296}function Rt(o){let e=o.byteLength;for(let t=e-22;t>=Math.max(0,e-65558);--t)if(o.getUint32(t,!0)===Et){if(t>=20&&o.getUint32(t-20,!0)===Ft){let n=$(o,t-12);if(n+56<=e&&o.getUint32(n,!0)===Bt)return[$(o,n+48),$(o,n+32)]}return[o.getUint32(t+16,!0),o.getUint16(t+10,!0)]}throw new D("This is no whole .fiblets file: the end of its zip archive is missing. Copy or make it again.")}function Dt(o,e,t,n){let r=o.getUint32(e+24,!0),s=o.getUint32(e+42,!0),i=o.getUint32(e+20,!0);for(let a=e+46+t,l=a+n;a+4<=l;){let c=o.getUint16(a,!0),u=o.getUint16(a+2,!0),h=a+4;c===1&&(r===4294967295&&(r=$(o,h),h+=8),i===4294967295&&(i=$(o,h),h+=8),s===4294967295&&(s=$(o,h))),a+=4+u}return[r,s]}var Lt={"|u1":[1,Uint8Array],"|i1":[1,Int8Array],"|b1":[1,Uint8Array],"<u2":[2,Uint16Array],"<i2":[2,Int16Array],"<u4":[4,Uint32Array],"<i4":[4,Int32Array],"<f4":[4,Float32Array],"<f8":[8,Float64Array],"<i8":[8,BigInt64Array],"<u8":[8,BigUint64Array]};function Oe(o,e){let t=new D(`The member ${e} of the file is damaged. ${ge}`);if(o.length<10||o[0]!==147||o[6]!==1)throw t;let n=o[8]|o[9]<<8,r=new TextDecoder("latin1").decode(o.subarray(10,10+n)),s=/'descr':\s*'([^']+)'/.exec(r),i=/'shape':\s*\(([^)]*)\)/.exec(r);if(!s||!i||/'fortran_order':\s*True/.test(r))throw t;let a=Lt[s[1]];if(!a)return null;let l=i[1].split(",").map(p=>p.trim()).filter(p=>p).map(Number),c=l.reduce((p,A)=>p*A,1),u=o.byteOffset+10+n;if(!l.every(p=>Number.isSafeInteger(p)&&p>=0)||10+n+c*a[0]>o.length)throw t;let h=o.buffer,m=u%a[0]===0?new a[1](h,u,c):new a[1](h.slice(u,u+c*a[0]),0,c);return{shape:l,data:m}}function ze(o){let e=new DataView(o.buffer,o.byteOffset,o.byteLength);if(o.length<22)throw new D("This is no .fiblets file: it is empty, or cut short.");let[t,n]=Rt(e),r=new Map,s=null,i=t;for(let a=0;a<n;++a){if(i+46>o.length||e.getUint32(i,!0)!==Tt)throw new D(`The list of the file's members is damaged. ${ge}`);let l=e.getUint16(i+28,!0),c=e.getUint16(i+30,!0),u=e.getUint16(i+32,!0),h=new TextDecoder().decode(o.subarray(i+46,i+46+l)),[m,p]=Dt(e,i,l,c);if(e.getUint16(i+10,!0)!==0)throw new D(`The member ${h} of the file is compressed; .fiblets files store their members as they are.`);if(p+30>o.length||e.getUint32(p,!0)!==Ke)throw new D(`The member ${h} of the file is damaged. ${ge}`);let A=p+30+e.getUint16(p+26,!0)+e.getUint16(p+28,!0);if(A+m>o.length)throw new D(`The file ends within its member ${h}. Copy or make it again.`);let v=o.subarray(A,A+m);if(h===Je)s=We(v);else{let d=Oe(v,h);d&&r.set(h,d)}i+=46+l+c+u}return je(s,r,1/0)}function We(o){try{return JSON.parse(new TextDecoder().decode(o))}catch{throw new D(`The file's header is damaged. ${ge}`)}}function je(o,e,t){if(o===null||typeof o!="object")throw new D("This is a zip archive, but no .fiblets file: it has no header.json.");return{header:o,arrays:e,ready:t}}async function Ze(o,e){let{bytes:t}=o,n=new DataView(t.buffer,t.byteOffset,t.byteLength),r=new Map,s=null;for(let i=0;i+30<=t.length&&(await o.need(i,Math.min(i+Ct,t.length)),n.getUint32(i,!0)===Ke);){let a=n.getUint16(i+26,!0),l=n.getUint16(i+28,!0),c=i+30+a+l,u=new TextDecoder().decode(t.subarray(i+30,i+30+a)),h=n.getUint32(i+18,!0);for(let m=i+30+a;h===4294967295&&m+20<=c;m+=4+n.getUint16(m+2,!0))n.getUint16(m,!0)===1&&(h=$(n,m+4));if(n.getUint16(i+8,!0)!==0||c+h>t.length)throw new D(`The member ${u} of the file is damaged. ${ge}`);if(u===Je)await o.need(c,c+h),s=We(t.subarray(c,c+h));else{let m=Oe(t.subarray(c,c+h),u);m&&r.set(u,m),m&&(m.data.buffer!==t.buffer||u==="pages.npy")&&(await o.need(c,c+h),r.set(u,Oe(t.subarray(c,c+h),u)))}if(r.has("codes.npy")&&e.every(m=>r.has(s?.per_point?.[m]?.member)))break;i=c+h}return je(s,r,0)}var _t=[["anchors.npy",2,-1],["decoding.npy",3,-1],["anchors_low.npy",3,-1],["rank_to_id.npy",1,0],["codes.npy",1,1]];async function $e(o,e,t,n,r,s){let i=e.arrays.get("pages.npy").data,a=e.header.n_fiblets,l=[..._t,...s.map(c=>[e.header.per_point?.[c]?.member,1,2])];await Promise.all(l.map(([c,u,h])=>{let m=e.arrays.get(c)?.data;if(!m)return;let[p,A]=[t,n].map(v=>(h<0?Math.min(v*r,a)*u:Number(i[3*v+h]))*m.BYTES_PER_ELEMENT);return o.need(m.byteOffset+p,Math.min(m.byteOffset+A+(h===1?4:0),o.bytes.length))}))}var K={blocks:{ClipPlanes:{bytes:400,fields:{clip_brushes:256,clip_plane_count:384,clip_planes:0,clip_rounding:388,clip_tilts:128}},Coding:{bytes:96,fields:{anchor_scale:0,end_vector_scale:28,lattice_edge:24,radius_scale:12,rotation_scales:32,step_low:16,step_span:20}},Frame:{bytes:208,fields:{half_line_width:172,line_reach:184,most_pixels_per_mm:192,plane_rounding:188,reference:160,segment_deviation:200,segment_size:204,view_planes:64,viewport:176,w_per_mm:196,window_from_local:0}},Rays:{bytes:5632,fields:{rays_centres:3072,rays_first_layers:4096,rays_first_tallies:5120,rays_layer_counts:4608,rays_rectangles:3584,rays_rows:0}},Rotations:{bytes:16384,fields:{rotations:0}}},fields:{anchor_x:[0,0,16],anchor_y:[0,16,16],anchor_z:[1,0,16],begin:[1,30,1],cap:[2,26,4],code:[1,0,22],end:[1,31,1],kind:[2,30,2],last:[2,20,6],point:[2,0,20],rank:[1,16,14],shape:[0,0,32],step:[1,22,10]},lines:`#version 300 es
 precision highp float;
 precision highp int;
 precision highp sampler2D;
@@ -7,44 +7,44 @@ precision highp usampler2D;
 #define FEATURE_ANCHORS_LOW 1
 #define FEATURE_LATTICE 1
 #define FEATURE_WIDE_LATTICE 1
-uint bitfieldExtract(uint value,int offset,int bits){
+uint AD(uint value,int offset,int bits){
 return bits==32?value:(value>>uint(offset))&((1u<<uint(bits))-1u);
 }
-int bitfieldExtract(int value,int offset,int bits){
+int AD(int value,int offset,int bits){
 return bits==32?value:(value<<(32-offset-bits))>>(32-bits);
-const uint FIBLET_PAGE_BITS=14u;
-const float FIBLET_DIRECTION_SCALE=32767.0;
-const float FIBLET_STEP_LEVELS=1023.0;
-const uint FIBLET_WIDE_HEADER=20u;
-const uint FIBLET_PLAIN_BYTES=12u;
-const uint FIBLET_DECODING_WORDS=3u;
+const uint CQ=14u;
+const float AR=32767.0;
+const float C1=1023.0;
+const uint C2=20u;
+const uint CR=12u;
+const uint C0=3u;
 const uint KIND_DIRECTION=0u;
 const uint KIND_WIDE=3u;
-uint fiblet_anchor_x(uvec2 words){return bitfieldExtract(words.x,0,16);}
-uint fiblet_anchor_y(uvec2 words){return bitfieldExtract(words.x,16,16);}
-uint fiblet_anchor_z(uvec2 words){return bitfieldExtract(words.y,0,16);}
-uint fiblet_rank(uvec2 words){return bitfieldExtract(words.y,16,14);}
-uint fiblet_begin(uvec2 words){return bitfieldExtract(words.y,30,1);}
-uint fiblet_end(uvec2 words){return bitfieldExtract(words.y,31,1);}
-uint fiblet_shape(uvec3 words){return bitfieldExtract(words.x,0,32);}
-uint fiblet_code(uvec3 words){return bitfieldExtract(words.y,0,22);}
-uint fiblet_step(uvec3 words){return bitfieldExtract(words.y,22,10);}
-uint fiblet_last(uvec3 words){return bitfieldExtract(words.z,20,6);}
-uint fiblet_cap(uvec3 words){return bitfieldExtract(words.z,26,4);}
-uint fiblet_kind(uvec3 words){return bitfieldExtract(words.z,30,2);}
-ivec3 fiblet_end_vector(uint word){return ivec3(bitfieldExtract(int(word),0,10),bitfieldExtract(int(word),10,10),bitfieldExtract(int(word),20,10));}
+uint DL(uvec2 words){return AD(words.x,0,16);}
+uint DM(uvec2 words){return AD(words.x,16,16);}
+uint DN(uvec2 words){return AD(words.y,0,16);}
+uint DS(uvec2 words){return AD(words.y,16,14);}
+uint DO(uvec2 words){return AD(words.y,30,1);}
+uint DQ(uvec2 words){return AD(words.y,31,1);}
+uint Bm(uvec3 words){return AD(words.x,0,32);}
+uint DP(uvec3 words){return AD(words.y,0,22);}
+uint Bn(uvec3 words){return AD(words.y,22,10);}
+uint Bl(uvec3 words){return AD(words.z,20,6);}
+uint Bk(uvec3 words){return AD(words.z,26,4);}
+uint BR(uvec3 words){return AD(words.z,30,2);}
+ivec3 DR(uint word){return ivec3(AD(int(word),0,10),AD(int(word),10,10),AD(int(word),20,10));}
 layout(std140)uniform Frame{
 mat4 window_from_local;
-vec4 view_planes[6];
+vec4 CL[6];
 uvec3 reference;
 float half_line_width;
 vec2 viewport;
-float line_reach;
-float plane_rounding;
-float most_pixels_per_mm;
-float w_per_mm;
-float segment_deviation;
-float segment_size;
+float Bs;
+float B7;
+float Bv;
+float CM;
+float CD;
+float CE;
 };
 layout(std140)uniform Coding{
 vec3 anchor_scale;
@@ -56,68 +56,68 @@ float end_vector_scale;
 vec4 rotation_scales[4];
 layout(std140)uniform Rotations{
 uvec4 rotations[1024];
-const int ROW_BITS=12;
-const uint chunk_first_rank=0u,chunk_pages=0u;
+const int A0=12;
+const uint DE=0u,Dv=0u;
 uniform highp usampler2D anchor_texels;
 uniform highp usampler2D page_texels;
 uniform highp usampler2D decoding_texels;
 uniform highp usampler2D code_texels;
 uniform uint chunk_fiblets;
-ivec2 texel(uint index){return ivec2(int(index&((1u<<uint(ROW_BITS))-1u)),int(index>>uint(ROW_BITS)));}
-uvec2 anchor_words(uint f){return texelFetch(anchor_texels,texel(f),0).xy;}
-uvec4 page_words(uint row){return texelFetch(page_texels,texel(row),0);}
-uint decoding_word(uint index){return texelFetch(decoding_texels,texel(index),0).x;}
-uint code_word(uint index){return texelFetch(code_texels,texel(index),0).x;}
-uint rotation_word(uint index){return rotations[index>>2][index&3u];}
-uint bound_word(uint index){return 0u;}
-const uint chunk_end_words=0u;
+ivec2 AP(uint index){return ivec2(int(index&((1u<<uint(A0))-1u)),int(index>>uint(A0)));}
+uvec2 BO(uint f){return texelFetch(anchor_texels,AP(f),0).xy;}
+uvec4 Cl(uint row){return texelFetch(page_texels,AP(row),0);}
+uint Bi(uint index){return texelFetch(decoding_texels,AP(index),0).x;}
+uint Bf(uint index){return texelFetch(code_texels,AP(index),0).x;}
+uint Do(uint index){return rotations[index>>2][index&3u];}
+uint DC(uint index){return 0u;}
+const uint DD=0u;
 #if FEATURE_ANCHORS_LOW
 uniform highp usampler2D anchor_low_texels;
-uint anchor_low_word(uint index){return texelFetch(anchor_low_texels,texel(index),0).x;}
+uint C8(uint index){return texelFetch(anchor_low_texels,AP(index),0).x;}
 #endif
-uint anchor_low(uint index){return bitfieldExtract(anchor_low_word(index>>1),int(index&1u)*16,16);}
-float difference(uint a,uint b){return a>=b?float(a-b):-float(b-a);}
-vec3 anchor_local(uint f){
-uvec2 words=anchor_words(f);
-uvec3 q=uvec3(fiblet_anchor_x(words),fiblet_anchor_y(words),fiblet_anchor_z(words));
-q=(q<<16u)|uvec3(anchor_low(3u*f),anchor_low(3u*f+1u),anchor_low(3u*f+2u));
-vec3 d=vec3(difference(q.x,reference.x),difference(q.y,reference.y),difference(q.z,reference.z));
+uint BY(uint index){return AD(C8(index>>1),int(index&1u)*16,16);}
+float Bj(uint a,uint b){return a>=b?float(a-b):-float(b-a);}
+vec3 Aq(uint f){
+uvec2 words=BO(f);
+uvec3 q=uvec3(DL(words),DM(words),DN(words));
+q=(q<<16u)|uvec3(BY(3u*f),BY(3u*f+1u),BY(3u*f+2u));
+vec3 d=vec3(Bj(q.x,reference.x),Bj(q.y,reference.y),Bj(q.z,reference.z));
 #else
 vec3 d=vec3(ivec3(q)-ivec3(reference));
 vec3 p=d*anchor_scale;
 return p;
-bool begins(uint f){return fiblet_begin(anchor_words(f))!=0u;}
-bool ends(uint f){return fiblet_end(anchor_words(f))!=0u;}
-uint rank_of(uint f){return page_words(f>>FIBLET_PAGE_BITS).x+fiblet_rank(anchor_words(f));}
-uvec3 decoding_words(uint f){
-uint at=FIBLET_DECODING_WORDS*f;
-return uvec3(decoding_word(at),decoding_word(at+1u),decoding_word(at+2u));
-uint first_code(uint f,uvec3 words){return page_words(f>>FIBLET_PAGE_BITS).y+fiblet_code(words);}
-uint code_at(uint byte){return bitfieldExtract(code_word(byte>>2),int(byte&3u)*8,8);}
-uint codes_at(uint byte){
+bool begins(uint f){return DO(BO(f))!=0u;}
+bool ends(uint f){return DQ(BO(f))!=0u;}
+uint Dh(uint f){return Cl(f>>CQ).x+DS(BO(f));}
+uvec3 Cd(uint f){
+uint at=C0*f;
+return uvec3(Bi(at),Bi(at+1u),Bi(at+2u));
+uint Cg(uint f,uvec3 words){return Cl(f>>CQ).y+DP(words);}
+uint DI(uint byte){return AD(Bf(byte>>2),int(byte&3u)*8,8);}
+uint AX(uint byte){
 uint word=byte>>2,shift=(byte&3u)*8u;
-uint low=code_word(word);
-return shift==0u?low:(low>>shift)|(code_word(word+1u)<<(32u-shift));
-float rotation_scale(uint cap){return rotation_scales[cap>>2][cap&3u];}
-vec4 rotation(uint cap,uint code,float scale){
-int word=int(rotation_word((cap<<8u)+code));
-vec2 t=scale*vec2(bitfieldExtract(word,0,16),bitfieldExtract(word,16,16));
+uint low=Bf(word);
+return shift==0u?low:(low>>shift)|(Bf(word+1u)<<(32u-shift));
+float Dn(uint AC){return rotation_scales[AC>>2][AC&3u];}
+vec4 Dm(uint AC,uint code,float scale){
+int word=int(Do((AC<<8u)+code));
+vec2 t=scale*vec2(AD(word,0,16),AD(word,16,16));
 float w=sqrt(1.0-t.x*t.x-t.y*t.y);
 return vec4(0.0,t,w);
-float sign_of(int value){return value<0?-1.0:1.0;}
-float step_length(uvec3 words){return step_low+float(fiblet_step(words))*(step_span/FIBLET_STEP_LEVELS);}
-vec4 first_frame(uint shape){
-int u=bitfieldExtract(int(shape),0,16),v=bitfieldExtract(int(shape),16,16);
-bool forward=abs(u)+abs(v)<=int(FIBLET_DIRECTION_SCALE);
-vec2 s=vec2(float(u),float(v))/FIBLET_DIRECTION_SCALE;
+float Cn(int value){return value<0?-1.0:1.0;}
+float Cq(uvec3 words){return step_low+float(Bn(words))*(step_span/C1);}
+vec4 Ch(uint shape){
+int u=AD(int(shape),0,16),v=AD(int(shape),16,16);
+bool forward=abs(u)+abs(v)<=int(AR);
+vec2 s=vec2(float(u),float(v))/AR;
 float x=1.0-abs(s.x)-abs(s.y);
 vec3 d=forward?vec3(x,s)
-:vec3(x,(1.0-abs(s.y))*sign_of(u),(1.0-abs(s.x))*sign_of(v));
+:vec3(x,(1.0-abs(s.y))*Cn(u),(1.0-abs(s.x))*Cn(v));
 d=d/sqrt(dot(d,d));
 vec3 h=forward?vec3(1.0+d.x,-d.z,d.y):vec3(1.0-d.x,d.z,-d.y);
 h=h/sqrt(dot(h,h));
 return forward?vec4(0.0,h.y,h.z,h.x):vec4(h.y,0.0,h.x,-h.z);
-vec3 rotated_x(vec4 q){
+vec3 Cm(vec4 q){
 vec3 d=vec3(1.0-2.0*(q.y*q.y+q.z*q.z),2.0*(q.x*q.y+q.w*q.z),2.0*(q.x*q.z-q.w*q.y));
 return d;
 vec4 turned(vec4 a,vec4 t){
@@ -125,96 +125,96 @@ vec4 q=vec4(a.x*t.w+a.y*t.z-a.z*t.y,a.w*t.y-a.x*t.z+a.y*t.w,
 a.w*t.z+a.x*t.y+a.z*t.w,a.w*t.w-a.y*t.y-a.z*t.z);
 return q;
 #if FEATURE_LATTICE
-void lattice_box(uvec3 words,inout uint byte,out ivec3 lo,out uvec2 n,out uint width){
-int shape=int(fiblet_shape(words));
-lo=ivec3(bitfieldExtract(shape,0,8),bitfieldExtract(shape,8,8),bitfieldExtract(shape,16,8));
-n=uvec2((uint(shape)>>24u)+1u,(fiblet_step(words)&255u)+1u);
-width=fiblet_kind(words);
+void Ci(uvec3 words,inout uint byte,out ivec3 lo,out uvec2 n,out uint width){
+int shape=int(Bm(words));
+lo=ivec3(AD(shape,0,8),AD(shape,8,8),AD(shape,16,8));
+n=uvec2((uint(shape)>>24u)+1u,(Bn(words)&255u)+1u);
+width=BR(words);
 #if FEATURE_WIDE_LATTICE
-if(fiblet_kind(words)==KIND_WIDE&&fiblet_last(words)>0u){
-width=fiblet_step(words)&7u;
+if(BR(words)==KIND_WIDE&&Bl(words)>0u){
+width=Bn(words)&7u;
 if(width==0u){
 lo=ivec3(0);
-width=FIBLET_PLAIN_BYTES;
+width=CR;
 return;
-lo=ivec3(codes_at(byte),codes_at(byte+4u),codes_at(byte+8u));
-n=uvec2(codes_at(byte+12u),codes_at(byte+16u));
-byte+=FIBLET_WIDE_HEADER;
-ivec3 lattice_cell(uint byte,uint width,ivec3 lo,uvec2 n){
-if(width==FIBLET_PLAIN_BYTES)return lo+ivec3(codes_at(byte),codes_at(byte+4u),codes_at(byte+8u));
-uint code=codes_at(byte)&(0xFFFFFFFFu>>(32u-8u*width));
+lo=ivec3(AX(byte),AX(byte+4u),AX(byte+8u));
+n=uvec2(AX(byte+12u),AX(byte+16u));
+byte+=C2;
+ivec3 Cj(uint byte,uint width,ivec3 lo,uvec2 n){
+if(width==CR)return lo+ivec3(AX(byte),AX(byte+4u),AX(byte+8u));
+uint code=AX(byte)&(0xFFFFFFFFu>>(32u-8u*width));
 uint row=code/n.x;
 return lo+ivec3(code-row*n.x,row%n.y,row/n.y);
-struct Walk{
+struct C5{
 uint last;
 uint kind;
 uint byte;
-uint cap;
+uint AC;
 float scale;
 float step;
 uint width;
 uvec2 n;
 ivec3 lo;
 ivec3 k;
-Walk walk;
-vec3 walk_anchor;
-vec3 walk_point;
-vec3 walk_delta;
-vec4 walk_frame;
-void walk_begin(uint f){
-uvec3 words=decoding_words(f);
-walk_anchor=anchor_local(f);
-walk_point=walk_anchor;
-walk_delta=vec3(0.0);
-walk.last=fiblet_last(words);
-walk.kind=fiblet_kind(words);
-walk.byte=first_code(f,words);
-walk.cap=fiblet_cap(words);
-walk.scale=rotation_scale(walk.cap);
-walk.step=step_length(words);
-walk_frame=first_frame(fiblet_shape(words));
+C5 walk;
+vec3 CN;
+vec3 Aw;
+vec3 BK;
+vec4 BU;
+void Cv(uint f){
+uvec3 words=Cd(f);
+CN=Aq(f);
+Aw=CN;
+BK=vec3(0.0);
+walk.last=Bl(words);
+walk.kind=BR(words);
+walk.byte=Cg(f,words);
+walk.AC=Bk(words);
+walk.scale=Dn(walk.AC);
+walk.step=Cq(words);
+BU=Ch(Bm(words));
 if(walk.kind!=KIND_DIRECTION){
 walk.k=ivec3(0);
-walk.step=lattice_edge*exp2(-float(fiblet_cap(words)));
-lattice_box(words,walk.byte,walk.lo,walk.n,walk.width);
-void walk_next(uint i){
-ivec3 cell=lattice_cell(walk.byte,walk.width,walk.lo,walk.n);
+walk.step=lattice_edge*exp2(-float(Bk(words)));
+Ci(words,walk.byte,walk.lo,walk.n,walk.width);
+void Cw(uint i){
+ivec3 CZ=Cj(walk.byte,walk.width,walk.lo,walk.n);
 walk.byte+=walk.width;
-walk.k+=cell;
-walk_delta=walk.step*vec3(cell);
-walk_point=walk_anchor+walk.step*vec3(walk.k);
+walk.k+=CZ;
+BK=walk.step*vec3(CZ);
+Aw=CN+walk.step*vec3(walk.k);
 if(i>1u){
-walk_frame=turned(walk_frame,rotation(walk.cap,code_at(walk.byte+i-2u),walk.scale));
-walk_delta=walk.step*rotated_x(walk_frame);
-walk_point+=walk_delta;
-vec3 end_vector(uint f){
-uint word=bound_word(chunk_end_words+rank_of(f)-chunk_first_rank);
-vec3 v=end_vector_scale*vec3(fiblet_end_vector(word));
+BU=turned(BU,Dm(walk.AC,DI(walk.byte+i-2u),walk.scale));
+BK=walk.step*Cm(BU);
+Aw+=BK;
+vec3 DK(uint f){
+uint word=DC(DD+Dh(f)-DE);
+vec3 v=end_vector_scale*vec3(DR(word));
 return v;
-vec3 first_segment(uint f){
-if(fiblet_last(words)==0u)return ends(f)?vec3(0.0):anchor_local(f+1u)-anchor_local(f);
-if(fiblet_kind(words)!=KIND_DIRECTION){
-uint byte=first_code(f,words),width;
-lattice_box(words,byte,lo,n,width);
-return lattice_edge*exp2(-float(fiblet_cap(words)))*vec3(lattice_cell(byte,width,lo,n));
-return step_length(words)*rotated_x(first_frame(fiblet_shape(words)));
-vec3 direction_after(uint f,bool whole){
+vec3 DT(uint f){
+if(Bl(words)==0u)return ends(f)?vec3(0.0):Aq(f+1u)-Aq(f);
+if(BR(words)!=KIND_DIRECTION){
+uint byte=Cg(f,words),width;
+Ci(words,byte,lo,n,width);
+return lattice_edge*exp2(-float(Bk(words)))*vec3(Cj(byte,width,lo,n));
+return Cq(words)*Cm(Ch(Bm(words)));
+vec3 DJ(uint f,bool whole){
 if(ends(f)||f+1u>=chunk_fiblets)return vec3(0.0);
-if(!whole)return first_segment(f+1u);
-return ends(f+1u)?end_vector(f+1u):anchor_local(f+2u)-anchor_local(f+1u);
-uint packed_direction(vec3 d){
+if(!whole)return DT(f+1u);
+return ends(f+1u)?DK(f+1u):Aq(f+2u)-Aq(f+1u);
+uint B4(vec3 d){
 float norm=abs(d.x)+abs(d.y)+abs(d.z);
 vec2 s=d.yz/norm;
 if(d.x<0.0)s=(1.0-abs(s.yx))*vec2(s.x<0.0?-1.0:1.0,s.y<0.0?-1.0:1.0);
-ivec2 i=ivec2(round(clamp(s,-1.0,1.0)*FIBLET_DIRECTION_SCALE));
+ivec2 i=ivec2(round(clamp(s,-1.0,1.0)*AR));
 return uint(i.x&0xFFFF)|(uint(i.y)<<16u);
-uint packed_tangent(vec3 delta,uint before){
-float size=max(abs(delta.x),max(abs(delta.y),abs(delta.z)));
-return size>0.0?packed_direction(delta/size):before;
-vec3 unit_or_none(vec3 d){
+uint B5(vec3 AY,uint before){
+float size=max(abs(AY.x),max(abs(AY.y),abs(AY.z)));
+return size>0.0?B4(AY/size):before;
+vec3 CI(vec3 d){
 float size=max(abs(d.x),max(abs(d.y),abs(d.z)));
 return size>0.0?normalize(d/size):vec3(0.0);
-vec3 mean_direction(vec3 before,vec3 after){
+vec3 DY(vec3 before,vec3 after){
 vec3 sum=before+after;
 float square=dot(sum,sum);
 return square>1e-6?sum*inversesqrt(square):before;
@@ -224,41 +224,42 @@ flat out uvec4 o0;flat out uvec4 o1;flat out uvec4 o2;flat out uvec4 o3;flat out
 flat out uvec4 o6;flat out uvec4 o7;flat out uvec4 o8;flat out uvec4 o9;flat out uvec4 o10;flat out uvec4 o11;
 flat out uvec4 o12;flat out uvec4 o13;flat out uvec4 o14;
 uvec4 slots[15];
-uvec4 slot(vec3 point,vec3 tangent){return uvec4(floatBitsToUint(point),packed_tangent(tangent,0u));}
+uvec4 slot(vec3 point,vec3 AA){return uvec4(floatBitsToUint(point),B5(AA,0u));}
 void main(){
 uint f=item.x,first=item.y*share_size,stop=first+share_size;
 bool end=ends(f);
-walk_begin(f);
+Cv(f);
 uint last=walk.last;
-vec3 point=walk_point,next=end||f+1u>=chunk_fiblets?vec3(0.0):anchor_local(f+1u),before=vec3(0.0),tangent;
+vec3 point=Aw,next=end||f+1u>=chunk_fiblets?vec3(0.0):Aq(f+1u),before=vec3(0.0),AA;
 for(uint i=0u;i<=min(last,stop-1u);++i){
 vec3 here=point,run;
 if(i<last){
-walk_next(i+1u);
-run=walk_delta;
-point=walk_point;
+Cw(i+1u);
+run=BK;
+point=Aw;
 }else run=end?vec3(0.0):next-here;
-vec3 along=unit_or_none(run);
-tangent=i==0u?along:mean_direction(before,along);
-if(i>=first)slots[i-first]=slot(here,tangent);
+vec3 along=CI(run);
+AA=i==0u?along:DY(before,along);
+if(i>=first)slots[i-first]=slot(here,AA);
 if(along!=vec3(0.0))before=along;
 if(last+1u<stop){
-vec3 beyond=vec3(0.0);
+vec3 Ar=vec3(0.0);
 if(end)next=point;
-else beyond=direction_after(f,false);
+else Ar=DJ(f,false);
 if(end&&last==0u&&!begins(f)&&f>0u){
-walk_begin(f-1u);
-for(uint i=1u;i<=walk.last;++i)walk_next(i);
-tangent=unit_or_none(next-walk_point);
-if(first==0u)slots[0]=slot(next,tangent);
-}else if(beyond!=vec3(0.0))tangent=unit_or_none(beyond);
-for(uint i=max(last+1u,first);i<stop;++i)slots[i-first]=slot(i==last+1u?next:next+beyond,tangent);
+Cv(f-1u);
+for(uint i=1u;i<=walk.last;++i)Cw(i);
+AA=CI(next-Aw);
+if(first==0u)slots[0]=slot(next,AA);
+}else if(Ar!=vec3(0.0))AA=CI(Ar);
+for(uint i=max(last+1u,first);i<stop;++i)slots[i-first]=slot(i==last+1u?next:next+Ar,AA);
 o0=slots[0];o1=slots[1];o2=slots[2];o3=slots[3];o4=slots[4];o5=slots[5];o6=slots[6];o7=slots[7];
 o8=slots[8];o9=slots[9];o10=slots[10];o11=slots[11];o12=slots[12];o13=slots[13];o14=slots[14];
 gl_Position=vec4(0.0);
 out vec4 colour;
 void main(){colour=vec4(0.0);}
 #define FEATURE_CLIP_PLANES 1
+#define FEATURE_GATHER_SLICES 1
 #define FEATURE_POINT_MASK 1
 #define FEATURE_STREAMLINE_MASK 1
 #define FEATURE_VALUES_COLOUR 1
@@ -267,125 +268,128 @@ void main(){colour=vec4(0.0);}
 uint packUnorm4x8(vec4 value){
 uvec4 bytes=uvec4(round(clamp(value,0.0,1.0)*255.0));
 return bytes.x|bytes.y<<8u|bytes.z<<16u|bytes.w<<24u;
-vec4 to_homogeneous(vec3 p){
+vec4 Dt(vec3 p){
 vec4 c=window_from_local[0]*p.x+window_from_local[1]*p.y+window_from_local[2]*p.z
 +window_from_local[3];
 return c;
-vec3 above_lower(vec4 c){
+vec3 BW(vec4 c){
 vec3 d=c.xyz+vec3(vec2(half_line_width),0.0)*c.w;
-vec3 below_upper(vec4 c){
+vec3 BZ(vec4 c){
 vec3 d=vec3(viewport+half_line_width,1.0)*c.w-c.xyz;
-bool in_volume(vec4 c){
-return all(greaterThanEqual(above_lower(c),vec3(0.0)))&&all(greaterThanEqual(below_upper(c),vec3(0.0)));
-vec4 to_window(vec4 c){
+bool DV(vec4 c){
+return all(greaterThanEqual(BW(c),vec3(0.0)))&&all(greaterThanEqual(BZ(c),vec3(0.0)));
+vec4 CH(vec4 c){
 float r=1.0/max(c.w,1e-30);
 vec4 window=vec4(c.xyz*r,c.w);
 return window;
-bool clip_segment(vec4 a,vec4 b,out float t0,out float t1){
+bool DH(vec4 a,vec4 b,out float t0,out float t1){
 t0=0.0;
 t1=1.0;
-vec3 a_low=above_lower(a),a_high=below_upper(a),b_low=above_lower(b),b_high=below_upper(b);
+vec3 C7=BW(a),C6=BZ(a),DA=BW(b),C9=BZ(b);
 for(int side=0;side<6;++side){
 int axis=side>>1;
-float da=(side&1)==0?a_low[axis]:a_high[axis],db=(side&1)==0?b_low[axis]:b_high[axis];
+float da=(side&1)==0?C7[axis]:C6[axis],db=(side&1)==0?DA[axis]:C9[axis];
 if(da<0.0&&db<0.0)return false;
 float t=da/(da-db);
 if(da<0.0)t0=max(t0,t);
 else if(db<0.0)t1=min(t1,t);
 return t0<=t1;
-const vec2 CELL_SHIFT=vec2(23.0,23.0)/256.0;
-vec2 in_picture(vec4 window){
+const vec2 AK=vec2(23.0,23.0)/256.0;
+vec2 AZ(vec4 window){
 return clamp(window.xy,vec2(0.0),viewport-0.01);
-vec2 pixel_of(vec4 window){return floor(in_picture(window));}
+vec2 Ae(vec4 window){return floor(AZ(window));}
 #if FEATURE_CLIP_PLANES
 layout(std140)uniform ClipPlanes{
 vec4 clip_planes[8];
 vec2 clip_tilts[8];
-float clip_brushes[8];
+float Ca[8];
 int clip_plane_count;
 float clip_rounding;
-float clip_height_of(int plane,vec3 p){
+float AU(int plane,vec3 p){
 float h=dot(clip_planes[plane].xyz,p)+clip_planes[plane].w;
 return h;
-float clip_height(vec3 p){
-float least=clip_height_of(0,p);
-for(int plane=1;plane<clip_plane_count;++plane)least=min(least,clip_height_of(plane,p));
+float DF(vec3 p){
+float least=AU(0,p);
+for(int plane=1;plane<clip_plane_count;++plane)least=min(least,AU(plane,p));
 return least;
-bool clip_by_planes(vec3 a,vec3 b,inout float t0,inout float t1){
+bool Cb(vec3 a,vec3 b,inout float t0,inout float t1){
 for(int plane=0;plane<clip_plane_count;++plane){
-float ha=clip_height_of(plane,a),hb=clip_height_of(plane,b);
+float ha=AU(plane,a),hb=AU(plane,b);
 if(ha<0.0&&hb<0.0)return false;
 float t=ha/(ha-hb);
 if(ha<0.0)t0=max(t0,t);
 else if(hb<0.0)t1=min(t1,t);
-bool on_kept_side(vec3 p){return clip_height(p)>=0.0;}
-bool clip_by_planes(vec3 a,vec3 b,inout float t0,inout float t1){return true;}
-bool on_kept_side(vec3 p){return true;}
-struct Vertex{
+bool Ck(vec3 p){return DF(p)>=0.0;}
+bool Cb(vec3 a,vec3 b,inout float t0,inout float t1){return true;}
+bool Ck(vec3 p){return true;}
+struct AO{
 vec3 local;
 vec4 clip;
 vec4 window;
-bool inside;
-struct ClippedSegment{
+bool AG;
+struct AQ{
 vec4 a;
 vec4 b;
 float t0;
 float t1;
 bool start;
-bool cap;
+bool AC;
 float reach;
-bool thin;
-Vertex vertex_of(vec3 p){
-vec4 clip=to_homogeneous(p);
-vec4 window=to_window(clip);
-bool inside=true;
-inside=in_volume(clip)&&on_kept_side(p);
-return Vertex(p,clip,window,inside);
-bool clip_in_space(Vertex from,Vertex to,inout ClippedSegment piece){
-if(from.inside&&to.inside)return true;
+bool Cr;
+AO Cu(vec3 p){
+vec4 clip=Dt(p);
+vec4 window=CH(clip);
+bool AG=true;
+AG=DV(clip)&&Ck(p);
+return AO(p,clip,window,AG);
+bool DG(AO from,AO to,inout AQ piece){
+if(from.AG&&to.AG)return true;
 float t0,t1;
-if(!clip_segment(from.clip,to.clip,t0,t1))return false;
-if(!clip_by_planes(from.local,to.local,t0,t1))return false;
-if(t0>0.0)piece.a=to_window(from.clip+t0*(to.clip-from.clip));
-if(t1<1.0)piece.b=to_window(from.clip+t1*(to.clip-from.clip));
-piece=ClippedSegment(piece.a,piece.b,t0,t1,piece.start||t0>0.0,piece.cap||t1<1.0,0.0,false);
+if(!DH(from.clip,to.clip,t0,t1))return false;
+if(!Cb(from.local,to.local,t0,t1))return false;
+if(t0>0.0)piece.a=CH(from.clip+t0*(to.clip-from.clip));
+if(t1<1.0)piece.b=CH(from.clip+t1*(to.clip-from.clip));
+piece=AQ(piece.a,piece.b,t0,t1,piece.start||t0>0.0,piece.AC||t1<1.0,0.0,false);
 return true;
-bool piece_of(Vertex from,Vertex to,bool start,bool cap,out ClippedSegment piece){
-piece=ClippedSegment(from.window,to.window,0.0,1.0,start,cap,0.0,false);
-return clip_in_space(from,to,piece);
-bool piece_of(vec3 from,vec3 to,bool start,bool cap,out ClippedSegment piece){
-return piece_of(vertex_of(from),vertex_of(to),start,cap,piece);
-const float JOINT_LEAST=0.1,JOINT_OVERLAP=0.05;
-vec2 onward_at(vec4 end,vec3 ahead){
-vec4 c=window_from_local[0]*ahead.x+window_from_local[1]*ahead.y+window_from_local[2]*ahead.z;
+bool B6(AO from,AO to,bool start,bool AC,out AQ piece){
+piece=AQ(from.window,to.window,0.0,1.0,start,AC,0.0,false);
+return DG(from,to,piece);
+bool B6(vec3 from,vec3 to,bool start,bool AC,out AQ piece){
+return B6(Cu(from),Cu(to),start,AC,piece);
+const float BV=0.1,BM=0.05;
+vec2 DZ(vec4 end,vec3 BX){
+vec4 c=window_from_local[0]*BX.x+window_from_local[1]*BX.y+window_from_local[2]*BX.z;
 vec2 run=c.xy-end.xy*c.w;
 float size=length(run);
-return size>JOINT_LEAST*end.w?run/size:vec2(0.0);
-vec3 unpacked_tangent(uint word){
+return size>BV*end.w?run/size:vec2(0.0);
+vec3 Au(uint word){
 ivec2 s=ivec2(int(word<<16)>>16,int(word)>>16);
-vec2 p=vec2(s)/FIBLET_DIRECTION_SCALE;
+vec2 p=vec2(s)/AR;
 float x=1.0-abs(p.x)-abs(p.y);
 if(x<0.0)p=(1.0-abs(p.yx))*vec2(s.x<0?-1.0:1.0,s.y<0?-1.0:1.0);
 return normalize(vec3(x,p));
 const int FAR_TILE=4;
-#ifndef VARYING
-#define VARYING flat out
-VARYING uvec2 seg_ids;
-VARYING vec3 seg_tangent;
-VARYING vec3 seg_tangent_to;
-VARYING vec4 seg_start;
-VARYING vec4 seg_end;
-VARYING vec4 seg_along;
+#ifndef AB
+#define AB flat out
+AB uvec2 AM;
+AB vec3 BC;
+AB vec3 BD;
+AB vec4 AE;
+AB vec4 AH;
+AB vec4 Aa;
 #if FEATURE_VALUES_COLOUR
-VARYING uvec2 seg_colours;
+AB uvec2 Ao;
 #if FEATURE_WIDE_LINES
-VARYING vec2 seg_onward;
-VARYING vec3 seg_from;
-VARYING vec3 seg_to;
+AB vec2 BA;
+#if FEATURE_GATHER_SLICES
+AB uint BB;
+const float Az=64.0;
+AB vec3 A9;
+AB vec3 BE;
 const bool SPRITES=false;
-layout(location=0)in uvec4 slot_from;
-layout(location=1)in uvec4 slot_to;
-layout(location=2)in uvec4 slot_after;
+layout(location=0)in uvec4 Co;
+layout(location=1)in uvec4 Cp;
+layout(location=2)in uvec4 Dq;
 uniform int share_size;
 uniform highp usampler2D items;
 uniform int first_item;
@@ -394,19 +398,19 @@ uniform uint layer;
 uniform highp usampler2D kept;
 #if FEATURE_POINT_MASK
 uniform highp usampler2D kept_points;
-bool point_kept(uint point){
+bool BS(uint point){
 uint word=point>>5u;
 return((texelFetch(kept_points,ivec2(int(word&4095u),int(word>>12u)),0).x>>(point&31u))&1u)!=0u;
 uniform highp sampler2D point_colours;
-vec4 colour_of(uint point){return texelFetch(point_colours,ivec2(int(point&4095u),int(point>>12u)),0);}
+vec4 Cc(uint point){return texelFetch(point_colours,ivec2(int(point&4095u),int(point>>12u)),0);}
 #if FEATURE_VALUES_STORED
 uniform highp usampler2D value_texels;
 uniform vec3 value_code;
-float value_of(uint point){
+float Ct(uint point){
 uint code=texelFetch(value_texels,ivec2(int(point&4095u),int(point>>12u)),0).x;
 return float(code)==value_code.z?uintBitsToFloat(0x7FC00000u):value_code.x+value_code.y*float(code);
 uniform highp usampler2D far_tiles;
-bool hidden(ClippedSegment piece){
+bool hidden(AQ piece){
 vec2 reach=vec2(half_line_width>0.0?half_line_width+1.0:0.0),low=min(piece.a.xy,piece.b.xy)-reach,high=max(piece.a.xy,piece.b.xy)+reach;
 ivec2 last=textureSize(far_tiles,0)-1;
 ivec2 from=clamp(ivec2(low)/FAR_TILE,ivec2(0),last),to=clamp(ivec2(high)/FAR_TILE,ivec2(0),last);
@@ -415,7 +419,7 @@ uint farthest=max(max(texelFetch(far_tiles,from,0).x,texelFetch(far_tiles,to,0).
 max(texelFetch(far_tiles,ivec2(from.x,to.y),0).x,texelFetch(far_tiles,ivec2(to.x,from.y),0).x));
 return min(piece.a.z,piece.b.z)-abs(piece.b.z-piece.a.z)>uintBitsToFloat(farthest);
 int index=SPRITES?gl_VertexID:gl_InstanceID,place=first_item+index/share_size;
-uvec4 item=texelFetch(items,ivec2(place&((1<<ROW_BITS)-1),place>>ROW_BITS),0);
+uvec4 item=texelFetch(items,ivec2(place&((1<<A0)-1),place>>A0),0);
 uint points=item.z&63u,share=item.z>>8u;
 bool begins=(item.z&64u)!=0u,ends=(item.z&128u)!=0u;
 uint k=share*uint(share_size)+uint(index%share_size),count=points-(ends&&points>1u?1u:0u);
@@ -423,187 +427,281 @@ gl_Position=vec4(2.0,2.0,2.0,1.0);
 gl_PointSize=1.0;
 if(k>=count)return;
 if(texelFetch(kept,ivec2(int(item.x&4095u),int(item.x>>12u)),0).x==0u)return;
-bool start=k==0u&&begins,cap=k+1u==count&&ends;
+bool start=k==0u&&begins,AC=k+1u==count&&ends;
 uint here=item.y+k,there=item.y+min(k+1u,points-(ends?1u:0u));
-if(!point_kept(here)||!point_kept(there))return;
-start=start||!point_kept(here-1u);
-cap=cap||!point_kept(there+1u);
+if(!BS(here)||!BS(there))return;
+start=start||!BS(here-1u);
+AC=AC||!BS(there+1u);
 vec2 values=vec2(0.0);
-values=vec2(value_of(here),value_of(there));
-vec3 from=uintBitsToFloat(slot_from.xyz),to=uintBitsToFloat(slot_to.xyz);
-ClippedSegment piece;
-if(!piece_of(from,to,start,cap,piece)||hidden(piece))return;
-seg_ids=uvec2(item.x|layer,(piece.start?1u:0u)|(piece.cap?2u:0u));
-seg_tangent=unpacked_tangent(slot_from.w);
-seg_tangent_to=unpacked_tangent(slot_to.w);
-seg_start=piece.a;
-seg_end=piece.b;
-seg_along=vec4(piece.t0,piece.t1,values);
-seg_colours=uvec2(packUnorm4x8(colour_of(here)),packUnorm4x8(colour_of(there)));
-seg_onward=piece.cap?vec2(0.0):onward_at(piece.b,uintBitsToFloat(slot_after.xyz)-to);
-seg_from=mix(from,to,piece.t0);
-seg_to=mix(from,to,piece.t1);
+values=vec2(Ct(here),Ct(there));
+vec3 from=uintBitsToFloat(Co.xyz),to=uintBitsToFloat(Cp.xyz);
+AQ piece;
+if(!B6(from,to,start,AC,piece)||hidden(piece))return;
+AM=uvec2(item.x|layer,(piece.start?1u:0u)|(piece.AC?2u:0u));
+BC=Au(Co.w);
+BD=Au(Cp.w);
+AE=piece.a;
+AH=piece.b;
+Aa=vec4(piece.t0,piece.t1,values);
+Ao=uvec2(packUnorm4x8(Cc(here)),packUnorm4x8(Cc(there)));
+BB=here*uint(Az);
+BA=piece.AC?vec2(0.0):DZ(piece.b,uintBitsToFloat(Dq.xyz)-to);
+A9=mix(from,to,piece.t0);
+BE=mix(from,to,piece.t1);
 vec2 a=piece.a.xy,run=piece.b.xy-a;
 float size=length(run),reach=half_line_width+0.05,back=piece.start?reach:0.05;
 vec2 along=size>0.0?run/size:vec2(1.0,0.0),across=vec2(-along.y,along.x);
 vec2 at=((gl_VertexID&2)==0?a-back*along:piece.b.xy+reach*along)+((gl_VertexID&1)==0?-reach:reach)*across;
 gl_Position=vec4(2.0*at/viewport-1.0,0.0,1.0);
-vec2 p=pixel_of(piece.a)+0.5+CELL_SHIFT,q=pixel_of(piece.b)+0.5+CELL_SHIFT,run=q-p;
+vec2 p=Ae(piece.a)+0.5+AK,q=Ae(piece.b)+0.5+AK,run=q-p;
 float square=dot(run,run),size=sqrt(square);
-if(size==0.0&&!piece.cap)return;
+if(size==0.0&&!piece.AC)return;
 if(SPRITES){
-float pixels=max(abs(run.x),abs(run.y))+(piece.cap?1.0:0.0);
+float pixels=max(abs(run.x),abs(run.y))+(piece.AC?1.0:0.0);
 gl_PointSize=pixels;
-gl_Position=vec4(2.0*(p-CELL_SHIFT+0.5*(pixels-1.0)*sign(run+1e-3))/viewport-1.0,0.0,1.0);
+gl_Position=vec4(2.0*(p-AK+0.5*(pixels-1.0)*sign(run+1e-3))/viewport-1.0,0.0,1.0);
 const float reach=0.75;
 vec2 at=((gl_VertexID&2)==0?p-reach*along:q+reach*along)+((gl_VertexID&1)==0?-reach:reach)*across;
 float depth=square>0.0?piece.a.z+dot(at-p,run)/square*(piece.b.z-piece.a.z):piece.b.z;
 gl_Position=vec4(2.0*at/viewport-1.0,2.0*clamp(depth,0.0,0.99999988)-1.0,1.0);
 #define FEATURE_CLIP_REGION 1
 vec4 unpackUnorm4x8(uint word){return vec4(word&255u,word>>8u&255u,word>>16u&255u,word>>24u)/255.0;}
-struct Cells{
+struct Ag{
 ivec2 first;
 vec2 run;
 int count;
 float shift;
 float inverse;
 float square;
-Cells cells_between(ivec2 p,ivec2 q){
+Ag Be(ivec2 p,ivec2 q){
 ivec2 run=q-p,size=abs(run);
 int n=max(size.x,size.y);
-bool steep=size.y>size.x;
-float shift=steep?(run.y<0?-CELL_SHIFT.y:CELL_SHIFT.y):(run.x<0?-CELL_SHIFT.x:CELL_SHIFT.x);
+bool AS=size.y>size.x;
+float shift=AS?(run.y<0?-AK.y:AK.y):(run.x<0?-AK.x:AK.x);
 vec2 way=vec2(run);
-return Cells(p,way,n,shift,1.0/float(max(n,1)),1.0/max(dot(way,way),1.0));
-const float EDGE_STEPS=448.0;
-const float EDGE_LEAST=2.0;
-const float WIDTH_STEPS=32.0;
-uint packed_edges(vec2 n,float e,float w,uint end){
+return Ag(p,way,n,shift,1.0/float(max(n,1)),1.0/max(dot(way,way),1.0));
+float Bg(float s,vec2 w){
+return clamp(s*w.x/max((1.0-s)*w.y+s*w.x,1e-30),0.0,1.0);
+float A2(AO from,AO to,AQ piece,float s){
+return mix(piece.t0,piece.t1,Bg(s,vec2(piece.a.w,piece.b.w)));
+const float Ah=448.0;
+const float Ay=2.0;
+const float Aj=32.0;
+uint A8(vec2 n,float e,float w,uint end){
 vec2 q=n/max(abs(n.x)+abs(n.y),1e-30);
 int turn=int((q.y>=0.0?1.0-q.x:3.0+q.x)*512.0+0.5)&2047;
-int inside=int(clamp((e+EDGE_LEAST)*EDGE_STEPS+0.5,0.0,2047.0));
-int across=int(clamp(w*WIDTH_STEPS+0.5,1.0,127.0));
-return uint(turn|(inside<<11)|(across<<22))|(end<<29u);
-uint capsule_edges(vec2 centre,vec2 run,float r){
+int AG=int(clamp((e+Ay)*Ah+0.5,0.0,2047.0));
+int across=int(clamp(w*Aj+0.5,1.0,127.0));
+return uint(turn|(AG<<11)|(across<<22))|(end<<29u);
+uint Bd(vec2 centre,vec2 run,float r){
 vec2 away=centre-clamp(dot(centre,run)/max(dot(run,run),1e-12),0.0,1.0)*run;
 float size=length(away);
 vec2 n=size>1e-4?away/size:vec2(-run.y,run.x)/max(length(run),1e-6);
-return packed_edges(n,r-size,2.0*r,0u);
+return A8(n,r-size,2.0*r,0u);
 #if !FEATURE_WIDE_LINES
-uint thin_edges(ivec2 first,ivec2 last,vec2 at,vec4 parts,bool start,bool cap){
+uint CG(ivec2 first,ivec2 last,vec2 at,vec4 parts,bool start,bool AC){
 vec2 run=vec2(last-first),a=parts.xy-0.5-at,d=run+parts.zw-parts.xy;
-float square=dot(d,d),shrink=inversesqrt(max(square,1e-6));
+float square=dot(d,d),BF=inversesqrt(max(square,1e-6));
 vec2 along=square>1e-6?d:vec2(1.0,0.0);
-float left=(along.y*a.x-along.x*a.y)*shrink;
-bool turned=left<0.0,begins=start&&at==vec2(0.0),ends=cap&&at==run;
-float stop=dot(along,begins?a:a+d)*shrink;
-uint third=uint(int(2.5+clamp(turned?3.0*stop:-3.0*stop,-1.0,1.0)));
-uint end=begins&&ends?7u:begins||ends?(turned==ends?third:third+3u):0u;
-return packed_edges(turned?vec2(along.y,-along.x):vec2(-along.y,along.x),0.5-abs(left),1.0,end);
-bool beyond_joint(vec2 onward,vec2 away){return dot(onward,away)>JOINT_OVERLAP;}
-struct Tangents{vec3 start;vec3 end;};
-vec3 tangent_between(Tangents ends,float t){
+float left=(along.y*a.x-along.x*a.y)*BF;
+bool turned=left<0.0,begins=start&&at==vec2(0.0),ends=AC&&at==run;
+float stop=dot(along,begins?a:a+d)*BF;
+uint BI=uint(int(2.5+clamp(turned?3.0*stop:-3.0*stop,-1.0,1.0)));
+uint end=begins&&ends?7u:begins||ends?(turned==ends?BI:BI+3u):0u;
+return A8(turned?vec2(along.y,-along.x):vec2(-along.y,along.x),0.5-abs(left),1.0,end);
+bool Ba(vec2 B0,vec2 away){return dot(B0,away)>BM;}
+struct CV{vec3 start;vec3 end;};
+vec3 Dr(CV ends,float t){
 vec3 d=mix(ends.start,ends.end,t);
 return dot(d,d)>1e-6?d:ends.start;
 #if FEATURE_CLIP_REGION
 layout(std140)uniform Rays{
 vec4 rays_rows[192];
 vec3 rays_centres[32];
-ivec4 rays_rectangles[32];
-int rays_first_layers[32];
-int rays_layer_counts[32];
-int rays_first_tallies[32];
-const vec2 RAYS_NOWHERE=vec2(3.0,-3.0);
-const float RAYS_FAR=3.0;
-float rays_bounded(float z){return clamp(z,-RAYS_FAR,RAYS_FAR);}
-vec2 rays_planes(int leaf,int planes,vec2 pixel){
-vec3 centre=rays_centres[leaf];
-vec2 d=pixel-centre.xy,span=vec2(-RAYS_FAR,RAYS_FAR);
+ivec4 Dl[32];
+int Di[32];
+int Dk[32];
+int Dj[32];
+const vec2 Ai=vec2(3.0,-3.0);
+const float AI=3.0;
+float Am(float z){return clamp(z,-AI,AI);}
+vec2 B8(int AF,int planes,vec2 pixel){
+vec3 centre=rays_centres[AF];
+vec2 d=pixel-centre.xy,span=vec2(-AI,AI);
 for(int k=0;k<planes;++k){
-vec4 row=rays_rows[6*leaf+k];
+vec4 row=rays_rows[6*AF+k];
 float height=dot(row.xy,d)+row.w;
 if(row.z==0.0){
-if(height<0.0)return RAYS_NOWHERE;
+if(height<0.0)return Ai;
 continue;
-float z=rays_bounded(centre.z-height/row.z);
+float z=Am(centre.z-height/row.z);
 if(row.z>0.0)span.x=max(span.x,z);
 else span.y=min(span.y,z);
-return span.x<=span.y?span:RAYS_NOWHERE;
-vec2 rays_sphere(int leaf,vec2 pixel){
+return span.x<=span.y?span:Ai;
+vec2 B9(int AF,vec2 pixel){
 vec2 d=pixel-centre.xy;
-vec4 xy=rays_rows[6*leaf],slope=rays_rows[6*leaf+1],along=rays_rows[6*leaf+2];
-float a=along.x,b=along.y+slope.z*d.x+slope.w*d.y;
-float c=xy.w+d.x*(slope.x+xy.x*d.x+xy.z*d.y)+d.y*(slope.y+xy.y*d.y);
-float discriminant=b*b-a*c;
-if(!(discriminant>=0.0))return a<0.0?vec2(-RAYS_FAR,RAYS_FAR):RAYS_NOWHERE;
-float q=-(b+(b<0.0?-1.0:1.0)*sqrt(discriminant));
-float one=q==0.0?0.0:c/q,other=a==0.0?(b<0.0?RAYS_FAR:-RAYS_FAR):q/a;
-one=rays_bounded(centre.z+one);
-other=rays_bounded(centre.z+other);
-return vec2(a<0.0?-RAYS_FAR:min(one,other),a<0.0?min(one,other):max(one,other));
+vec4 xy=rays_rows[6*AF],Ab=rays_rows[6*AF+1],along=rays_rows[6*AF+2];
+float a=along.x,b=along.y+Ab.z*d.x+Ab.w*d.y;
+float c=xy.w+d.x*(Ab.x+xy.x*d.x+xy.z*d.y)+d.y*(Ab.y+xy.y*d.y);
+float A6=b*b-a*c;
+if(!(A6>=0.0))return a<0.0?vec2(-AI,AI):Ai;
+float q=-(b+(b<0.0?-1.0:1.0)*sqrt(A6));
+float one=q==0.0?0.0:c/q,other=a==0.0?(b<0.0?AI:-AI):q/a;
+one=Am(centre.z+one);
+other=Am(centre.z+other);
+return vec2(a<0.0?-AI:min(one,other),a<0.0?min(one,other):max(one,other));
 bool along(vec2 span,float z){return span.x<=z&&z<span.y;}
-bool planes_hold(int leaf,int planes,float z){return along(rays_planes(leaf,planes,gl_FragCoord.xy),z);}
-bool sphere_holds(int leaf,float z){return along(rays_sphere(leaf,gl_FragCoord.xy),z);}
+bool planes_hold(int AF,int planes,float z){return along(B8(AF,planes,gl_FragCoord.xy),z);}
+bool sphere_holds(int AF,float z){return along(B9(AF,gl_FragCoord.xy),z);}
 #define REGION planes_hold(0, 6, z) || sphere_holds(1, z)
-bool region_keeps(float z){return REGION;}
-#define VARYING flat in
-layout(location=0)out uvec4 out_texel;
+bool CB(float z){return REGION;}
+#define AB flat in
 uniform vec2 shown_values;
 bool none(float value){return(floatBitsToUint(value)&0x7FFFFFFFu)>0x7F800000u;}
-float value_between(float t){
-vec2 ends=seg_along.zw;
+float CJ(float t){
+vec2 ends=Aa.zw;
 if(none(ends.x)||none(ends.y))return t<0.5?ends.x:ends.y;
 return mix(ends.x,ends.y,t);
-void write(float s,uint edges){
-if(!region_keeps(clamp(mix(seg_start.z,seg_end.z,s),0.0,0.99999988)))discard;
-float ratio=seg_start.w/max(seg_end.w,1e-30);
-float t=mix(seg_along.x,seg_along.y,clamp(s*ratio/max(1.0-s+s*ratio,1e-30),0.0,1.0));
+float A2(float s){
+if(!CB(clamp(mix(AE.z,AH.z,s),0.0,0.99999988)))discard;
+float ratio=AE.w/max(AH.w,1e-30);
+return mix(Aa.x,Aa.y,clamp(s*ratio/max(1.0-s+s*ratio,1e-30),0.0,1.0));
+uint Bb(float t){
 uint bits=0u;
-float value=value_between(t);
+float value=CJ(t);
 if(shown_values.x<=shown_values.y&&!(value>=shown_values.x&&value<=shown_values.y))discard;
 bits=floatBitsToUint(value);
-bits=packUnorm4x8(mix(unpackUnorm4x8(seg_colours.x),unpackUnorm4x8(seg_colours.y),t));
-out_texel=uvec4(seg_ids.x,packed_tangent(tangent_between(Tangents(seg_tangent,seg_tangent_to),t),0u),edges,bits);
-bool brush_kept(float s,vec2 away){
-vec2 heights=vec2(clip_height_of(plane,seg_from),clip_height_of(plane,seg_to));
-vec2 h=max(heights/max(vec2(seg_start.w,seg_end.w),vec2(1e-30)),vec2(0.0));
+bits=packUnorm4x8(mix(unpackUnorm4x8(Ao.x),unpackUnorm4x8(Ao.y),t));
+return bits;
+layout(location=0)out uvec4 Df;
+#if (FEATURE_WIDE_LINES && FEATURE_GATHER_SLICES)
+layout(location=1)out uint Da;
+void write(float s,uint edges,float z){
+float t=A2(s);
+Df=uvec4(AM.x,B5(Dr(CV(BC,BD),t),0u),edges,Bb(t));
+Da=BB+uint(t*Az);
+bool Bc(float s,vec2 away){
+vec2 Bp=vec2(AU(plane,A9),AU(plane,BE));
+vec2 h=max(Bp/max(vec2(AE.w,AH.w),vec2(1e-30)),vec2(0.0));
 if(h.x+s*(h.y-h.x)+dot(clip_tilts[plane],away)<0.0)return false;
-vec2 run=seg_end.xy-seg_start.xy,centre=gl_FragCoord.xy-seg_start.xy;
-float foot=dot(centre,run)/max(dot(run,run),1e-12),s=clamp(foot,0.0,1.0);
+vec2 run=AH.xy-AE.xy,centre=gl_FragCoord.xy-AE.xy;
+float Ak=dot(centre,run)/max(dot(run,run),1e-12),s=clamp(Ak,0.0,1.0);
 vec2 away=centre-s*run;
-if(foot<0.0&&(seg_ids.y&1u)==0u||dot(away,away)>half_line_width*half_line_width)discard;
-if(foot>1.0&&beyond_joint(seg_onward,centre-run))discard;
-if(!brush_kept(s,away))discard;
-gl_FragDepth=clamp(seg_start.z+(seg_end.z-seg_start.z)*s,0.0,0.99999988);
-write(s,capsule_edges(centre,run,half_line_width));
-vec2 first=pixel_of(seg_start),run=pixel_of(seg_end)-first,at=floor(gl_FragCoord.xy)-first;
-Cells cells=cells_between(ivec2(first),ivec2(first+run));
-bool start=(seg_ids.y&1u)!=0u,cap=(seg_ids.y&2u)!=0u,steep=abs(run.y)>abs(run.x);
+if(Ak<0.0&&(AM.y&1u)==0u||dot(away,away)>half_line_width*half_line_width)discard;
+if(Ak>1.0&&Ba(BA,centre-run))discard;
+if(!Bc(s,away))discard;
+gl_FragDepth=clamp(AE.z+(AH.z-AE.z)*s,0.0,0.99999988);
+write(s,Bd(centre,run,half_line_width),gl_FragDepth);
+vec2 first=Ae(AE),run=Ae(AH)-first,at=floor(gl_FragCoord.xy)-first;
+Ag AW=Be(ivec2(first),ivec2(first+run));
+bool start=(AM.y&1u)!=0u,AC=(AM.y&2u)!=0u,AS=abs(run.y)>abs(run.x);
 float s=1.0;
 if(at==run){
-if(!cap)discard;
+if(!AC)discard;
 }else{
-float major=steep?at.y:at.x,way=steep?run.y:run.x,steps=abs(major);
-if(major*way<0.0||steps>=float(cells.count))discard;
-vec2 line=floor(0.5+CELL_SHIFT+(steps-cells.shift)*cells.inverse*run);
-if(steep?line.x!=at.x:line.y!=at.y)discard;
-s=dot(at-CELL_SHIFT,run)*cells.square;
-if(SPRITES)gl_FragDepth=clamp(mix(seg_start.z,seg_end.z,s),0.0,0.99999988);
-vec4 ends=vec4(in_picture(seg_start),in_picture(seg_end)),parts=floor((ends-floor(ends))*256.0)/256.0;
-write(s,thin_edges(ivec2(first),ivec2(first+run),at,parts,start,cap));
+float A7=AS?at.y:at.x,way=AS?run.y:run.x,BH=abs(A7);
+if(A7*way<0.0||BH>=float(AW.count))discard;
+vec2 line=floor(0.5+AK+(BH-AW.shift)*AW.inverse*run);
+if(AS?line.x!=at.x:line.y!=at.y)discard;
+s=dot(at-AK,run)*AW.square;
+float z=gl_FragCoord.z;
+if(SPRITES)gl_FragDepth=z=clamp(mix(AE.z,AH.z,s),0.0,0.99999988);
+vec4 ends=vec4(AZ(AE),AZ(AH)),parts=floor((ends-floor(ends))*256.0)/256.0;
+write(s,CG(ivec2(first),ivec2(first+run),at,parts,start,AC),z);
+uniform highp sampler2D table;
+uniform vec4 table_range;
+uniform int logarithm;
+vec4 Al(float value){
+int n=int(table_range.w),entry;
+if((floatBitsToUint(value)&0x7FFFFFFFu)>0x7F800000u)entry=n+2;
+else{
+if(logarithm==1)value=value>0.0?log(value)*0.4342944819032518:-3.0e38;
+if(value<table_range.x)entry=n;
+else if(value>table_range.y)entry=n+1;
+else entry=int(min((value-table_range.x)*table_range.z,float(n-1)));
+return texelFetch(table,ivec2(entry&4095,entry>>12),0);
+uniform highp sampler2D colours;
+uniform int mode;
+uniform vec3 one_colour;
+vec4 A5(uint streamline,vec3 AA,uint bits){
+if(mode==0)return vec4(abs(AA),1.0);
+if(mode==2)return texelFetch(colours,ivec2(int(streamline&4095u),int(streamline>>12u)),0);
+if(mode==3)return Al(uintBitsToFloat(bits));
+if(mode==4)return unpackUnorm4x8(bits);
+return vec4(one_colour,1.0);
+uniform highp usampler2D opacities;
+uniform int by_streamline;
+uniform int by_point;
+float B1(uint streamline,uint bits){
+float a=1.0,value=uintBitsToFloat(bits);
+if(by_streamline==1)a=float(texelFetch(opacities,ivec2(int(streamline&4095u),int(streamline>>12u)),0).r)/255.0;
+if(by_point==1)a*=(bits&0x7FFFFFFFu)>0x7F800000u?0.0:clamp(value,0.0,1.0);
+return a;
+vec4 DX(uint streamline,vec3 AA,float value){
+vec4 c=A5(streamline,AA,floatBitsToUint(value));
+return vec4(c.rgb,c.a*B1(streamline,floatBitsToUint(value)));
+uniform float paint_opacity;
+uniform float paint_unit;
+const float MOST_OPAQUE=0.999;
+float Du(float a,uint streamline,float value){
+return floor(0.5-paint_unit*log(1.0-min(paint_opacity*a,MOST_OPAQUE)));
+uniform vec3 paint_light;
+const float CT=0.6;
+vec3 Ad(vec3 c,vec3 AA){
+float along=dot(AA,paint_light);
+along*=along;
+return c*(CT+(1.0-CT)*(1.0-along*along));
+vec4 Dg(uint streamline,vec3 AA,float value){
+vec4 c=DX(streamline,AA,value);
+float w=1.0;
+c.rgb=Ad(c.rgb,AA);
+w=Du(c.a,streamline,value);
+return vec4(floor(255.0*c.rgb+0.5)*w,w);
+uniform highp usampler2D texels;
+uniform highp sampler2D depths;
+uniform vec4 slice_distances;
+uniform float slice_far;
+uniform vec3 slice_edges;
+uniform float sum_unit;
+uniform highp usampler2D places;
+const float C4=2.0;
+layout(location=0)out vec4 Db;
+layout(location=1)out vec4 Dc;
+layout(location=2)out vec4 Dd;
+layout(location=3)out vec4 De;
+float Ce(float z){
+float c=1.0-z;
+return(slice_distances.x+slice_distances.y*c)/(slice_distances.z+slice_distances.w*c);
+ivec2 pixel=ivec2(gl_FragCoord.xy);
+uint streamline=AM.x&0x0FFFFFFFu;
+float first=texelFetch(depths,pixel,0).r,t=A2(s);
+bool same=(texelFetch(texels,pixel,0).x&0x0FFFFFFFu)==streamline;
+if(s>=1.0&&(AM.y&2u)==0u||s<=0.0&&(AM.y&1u)==0u)discard;
+if(same){
+float from=float(int(BB-texelFetch(places,pixel,0).x))/Az;
+if(max(from,-1.0-from)<=2.0*C4*half_line_width/max(length(AH.xy-AE.xy),1e-3))discard;
+if(same&&abs(z-first)<4e-7)discard;
+float near=Ce(first),far=max(slice_far,near),d=Ce(z);
+int slice=int(dot(vec3(greaterThanEqual(vec3(d-near),(far-near)*slice_edges)),vec3(1.0)));
+vec3 AA=normalize(BC+BD+1e-6);
+vec4 adds=sum_unit*Dg(streamline,AA,uintBitsToFloat(Bb(t)));
+Db=slice==0?adds:vec4(0.0);
+Dc=slice==1?adds:vec4(0.0);
+Dd=slice==2?adds:vec4(0.0);
+De=slice==3?adds:vec4(0.0);
 void main(){gl_Position=vec4(gl_VertexID==1?3.0:-1.0,gl_VertexID==2?3.0:-1.0,0.0,1.0);}
 const int TILE=16;
-uniform highp usampler2D texels;
+uniform int first;
 layout(location=0)out uint some;
 ivec2 size=textureSize(texels,0),from=max(ivec2(gl_FragCoord.xy)*TILE-1,ivec2(0));
 ivec2 stop=min(ivec2(gl_FragCoord.xy)*TILE+TILE+1,size);
 some=0u;
 for(int y=from.y;y<stop.y&&some==0u;++y)
 for(int x=from.x;x<stop.x;++x){
-uvec4 texel=texelFetch(texels,ivec2(x,y),0);
-some|=~(texel.x&texel.y);
+uvec4 AP=texelFetch(texels,ivec2(x,y),0);
+some|=~(AP.x&AP.y);
 some=min(some,1u);
-uniform highp sampler2D depths;
+if(first+int(some)==0)discard;
 layout(location=0)out uint farthest;
 ivec2 from=ivec2(gl_FragCoord.xy)*FAR_TILE,stop=min(from+FAR_TILE,textureSize(depths,0));
 float most=0.0;
@@ -616,53 +714,37 @@ int columns=textureSize(tiles,0).x;
 ivec2 tile=ivec2(gl_InstanceID%columns,gl_InstanceID/columns);
 vec2 corner=vec2(TILE*(tile+ivec2(gl_VertexID&1,gl_VertexID>>1)));
 gl_Position=texelFetch(tiles,tile,0).x==0u?vec4(2.0,2.0,2.0,1.0):vec4(2.0*corner/whole-1.0,0.0,1.0);
-const int MOST_LIGHTS=8;
+const int Ac=8;
 uniform int light_count;
-uniform vec3 light_colour[MOST_LIGHTS];
-uniform vec4 light_place[MOST_LIGHTS];
+uniform vec3 light_colour[Ac];
+uniform vec4 light_place[Ac];
 uniform vec3 light_sum;
 uniform float light_standing;
-vec3 to_light(int i,vec3 place){return normalize(light_place[i].xyz-light_place[i].w*place);}
-float across_line(vec3 tangent,vec3 d){
-float along=dot(tangent,d);
-along*=along;
+vec3 BJ(int i,vec3 place){return normalize(light_place[i].xyz-light_place[i].w*place);}
+float A1(vec3 AA,vec3 d){
+float along=dot(AA,d);
 return max(0.0,1.0-along*along);
-vec3 light_on_line(vec3 own,vec3 tangent,vec3 place,bool illuminated,vec4 reflects,vec3 sheen){
-vec3 sight=normalize(-place),normal=sight-tangent*dot(tangent,sight);
-normal=length(normal)>1e-3?normalize(normal):sight;
-vec3 diffuse=vec3(0.0),shine=vec3(0.0);
+vec3 Br(vec3 own,vec3 AA,vec3 place,bool illuminated,vec4 reflects,vec3 sheen){
+vec3 sight=normalize(-place),AJ=sight-AA*dot(AA,sight);
+AJ=length(AJ)>1e-3?normalize(AJ):sight;
+vec3 AV=vec3(0.0),Af=vec3(0.0);
 for(int i=0;i<light_count;++i){
-vec3 l=to_light(i,place);
-float along=dot(tangent,l),sine=sqrt(max(0.0,1.0-along*along));
-diffuse+=light_colour[i]*(illuminated?sine:across_line(tangent,l));
+vec3 l=BJ(i,place);
+float along=dot(AA,l),BG=sqrt(max(0.0,1.0-along*along));
+AV+=light_colour[i]*(illuminated?BG:A1(AA,l));
 if(reflects.z>0.0){
-float spread=illuminated?sine:sqrt(max(0.0,1.0-along*along));
-vec3 back=-along*tangent+spread*normal;
-shine+=light_colour[i]*pow(max(1e-5,dot(back,sight)),reflects.w);
+float CF=illuminated?BG:sqrt(max(0.0,1.0-along*along));
+vec3 back=-along*AA+CF*AJ;
+Af+=light_colour[i]*pow(max(1e-5,dot(back,sight)),reflects.w);
 vec3 on;
-if(illuminated)on=diffuse/max(1.0,max(light_sum.r,max(light_sum.g,light_sum.b)));
-else{
-float brightest=max(light_sum.r,max(light_sum.g,light_sum.b));
-vec3 tint=light_sum/max(brightest,1e-6);
-tint=mix(vec3(1.0),tint,1.0-min(tint.r,min(tint.g,tint.b)));
-vec3 share=min(diffuse/max(light_sum,vec3(1e-6)),vec3(1.0));
-share=mix(vec3(across_line(tangent,vec3(-0.57735027,0.57735027,0.57735027))),share,light_standing);
-on=min(brightest,1.0)*tint*mix(vec3(0.6),vec3(1.0),share);
-return reflects.x*own+reflects.y*on*own+reflects.z*sheen*shine;
-uniform highp sampler2D table;
-uniform vec4 table_range;
-uniform int logarithm;
-vec4 of_value(float value){
-int n=int(table_range.w),entry;
-if((floatBitsToUint(value)&0x7FFFFFFFu)>0x7F800000u)entry=n+2;
-if(logarithm==1)value=value>0.0?log(value)*0.4342944819032518:-3.0e38;
-if(value<table_range.x)entry=n;
-else if(value>table_range.y)entry=n+1;
-else entry=int(min((value-table_range.x)*table_range.z,float(n-1)));
-return texelFetch(table,ivec2(entry&4095,entry>>12),0);
-uniform highp sampler2D colours;
-uniform int mode;
-uniform vec3 one_colour;
+if(illuminated)on=AV/max(1.0,max(light_sum.r,max(light_sum.g,light_sum.b)));
+float A4=max(light_sum.r,max(light_sum.g,light_sum.b));
+vec3 AN=light_sum/max(A4,1e-6);
+AN=mix(vec3(1.0),AN,1.0-min(AN.r,min(AN.g,AN.b)));
+vec3 share=min(AV/max(light_sum,vec3(1e-6)),vec3(1.0));
+share=mix(vec3(A1(AA,vec3(-0.57735027,0.57735027,0.57735027))),share,light_standing);
+on=min(A4,1.0)*AN*mix(vec3(0.6),vec3(1.0),share);
+return reflects.x*own+reflects.y*on*own+reflects.z*sheen*Af;
 uniform int light;
 uniform vec4 reflects;
 uniform vec3 sheen;
@@ -673,54 +755,92 @@ uniform uint marked;
 uniform mat3 data_to_view;
 uniform mat4 pixel_to_view;
 uniform vec2 picture;
-layout(location=0)out vec4 colour;
-ivec2 pixel=ivec2(gl_FragCoord.xy);
+uvec4 Bx(ivec2 pixel){
 uvec4 word=texelFetch(texels,pixel,0);
 if(word.y==0xFFFFFFFFu&&word.x==0xFFFFFFFFu||(word.x&0xF0000000u)!=layer)discard;
+return word;
+vec3 Ad(ivec2 pixel,vec3 own,vec3 AA){
+if(light==0)return own;
+vec2 Bw=2.0*(vec2(pixel)+0.5)/picture-1.0;
+vec4 place=pixel_to_view*vec4(Bw,2.0*texelFetch(depths,pixel,0).r-1.0,1.0);
+return Br(own,AA,place.xyz/place.w,light==2,reflects,sheen);
+vec4 Bt(ivec2 pixel,uvec4 word){
 uint streamline=word.x&0x0FFFFFFFu;
-vec3 tangent=unpacked_tangent(word.y);
-vec4 own=vec4(one_colour,1.0);
-if(mode==0)own=vec4(abs(tangent),1.0);
-else if(mode==2)own=texelFetch(colours,ivec2(int(streamline&4095u),int(streamline>>12u)),0);
-else if(mode==3)own=of_value(uintBitsToFloat(word.w));
-else if(mode==4)own=unpackUnorm4x8(word.w);
-if(own.a==0.0)discard;
+vec3 AA=Au(word.y);
+vec4 own=A5(streamline,AA,word.w);
 if(chosen_colour.a+faded.a>0.0){
-uint is_chosen=texelFetch(chosen,ivec2(int(streamline&4095u),int(streamline>>12u)),0).r;
-vec4 mark=is_chosen!=0u?chosen_colour:faded;
+uint Bq=texelFetch(chosen,ivec2(int(streamline&4095u),int(streamline>>12u)),0).r;
+vec4 mark=Bq!=0u?chosen_colour:faded;
 own.rgb=mix(own.rgb,mark.rgb,mark.a);
-vec3 lit=own.rgb;
-if(light!=0){
-vec2 ndc=2.0*(vec2(pixel)+0.5)/picture-1.0;
-vec4 place=pixel_to_view*vec4(ndc,2.0*texelFetch(depths,pixel,0).r-1.0,1.0);
-lit=light_on_line(own.rgb,normalize(data_to_view*tangent),place.xyz/place.w,light==2,reflects,sheen);
-if(streamline==marked)lit=mix(lit,vec3(1.0,0.9,0.2),0.75);
-colour=vec4(lit,1.0);
+own.rgb=Ad(pixel,own.rgb,normalize(data_to_view*AA));
+if(streamline==marked)own.rgb=mix(own.rgb,vec3(1.0,0.9,0.2),0.75);
+return own;
+layout(location=0)out vec4 colour;
+colour=Bt(pixel,Bx(pixel));
+if(colour.a==0.0)discard;
+colour.a=1.0;
+uniform highp sampler2D sums0;
+uniform highp sampler2D sums1;
+uniform highp sampler2D sums2;
+uniform highp sampler2D sums3;
+uniform float opacity;
+uniform float absorbance;
+uniform float least;
+layout(location=1)out vec4 weight;
+vec3 seen;
+float CC,BT;
+void add(ivec2 pixel,highp sampler2D sums){
+vec4 sum=texelFetch(sums,pixel,0);
+if(sum.a<least)return;
+float through=exp(-absorbance*sum.a),share=BT*(1.0-through);
+seen+=share*Ad(pixel,mix(sum.rgb/(255.0*sum.a),faded.rgb,faded.a),vec3(0.70710678,0.70710678,0.0));
+CC+=share;
+BT*=through;
+uvec4 word=Bx(pixel);
+vec4 line=Bt(pixel,word);
+float a=opacity*line.a*B1(word.x&0x0FFFFFFFu,word.w);
+seen=a*line.rgb;
+CC=a;
+BT=1.0-a;
+add(pixel,sums0);
+add(pixel,sums1);
+add(pixel,sums2);
+add(pixel,sums3);
+float alpha=1.0-BT;
+if(alpha<=0.0)discard;
+colour=vec4(seen/alpha,alpha);
+weight=vec4(CC/alpha,0.0,0.0,alpha);
+uniform highp sampler2D mixed;
+uniform highp sampler2D weights;
+vec4 sum=texelFetch(mixed,pixel,0);
+if(sum.a>=1.0)discard;
+colour=vec4(sum.rgb/max(texelFetch(weights,pixel,0).r,0.01),1.0-sum.a);
 uniform highp sampler2D drawn;
 uniform float narrower;
 layout(location=0)out uvec4 shown;
-uint thinned(uint word){
-uint inside=(word>>11u)&2047u,width=(word>>22u)&127u;
-inside-=min(inside,uint(0.5*narrower*EDGE_STEPS+0.5));
-width-=min(width-1u,uint(narrower*WIDTH_STEPS+0.5));
-return(word&0xE00007FFu)|(inside<<11u)|(width<<22u);
+uint Ds(uint word){
+uint AG=(word>>11u)&2047u,width=(word>>22u)&127u;
+AG-=min(AG,uint(0.5*narrower*Ah+0.5));
+width-=min(width-1u,uint(narrower*Aj+0.5));
+return(word&0xE00007FFu)|(AG<<11u)|(width<<22u);
 ivec2 pixel=ivec2(gl_FragCoord.xy)-1;
 shown=uvec4(0u);
 if(any(lessThan(pixel,ivec2(0)))||any(greaterThanEqual(pixel,textureSize(texels,0))))return;
-uvec4 texel=texelFetch(texels,pixel,0);
-bool line=texel.x!=0xFFFFFFFFu||texel.y!=0xFFFFFFFFu;
-shown=uvec4(floatBitsToUint(texelFetch(depths,pixel,0).r),line?thinned(texel.z):0u,packUnorm4x8(texelFetch(drawn,pixel,0)),0u);
+uvec4 AP=texelFetch(texels,pixel,0);
+bool line=AP.x!=0xFFFFFFFFu||AP.y!=0xFFFFFFFFu;
+if(!line&&first==0)discard;
+shown=uvec4(floatBitsToUint(texelFetch(depths,pixel,0).r),line?Ds(AP.z):0u,packUnorm4x8(texelFetch(drawn,pixel,0)),0u);
 struct Edges{
 vec2 n;
 float e;
 float w;
 uint end;
 float stop;
-Edges unpacked_edges(uint word){
+Edges Cs(uint word){
 float turn=float(int(word&2047u))/512.0,x=abs(turn-2.0)-1.0;
 int width=int((word>>22u)&127u),end=int(word>>29u);
 return Edges(normalize(vec2(x,turn<2.0?1.0-abs(x):abs(x)-1.0)),
-float(int((word>>11u)&2047u))/EDGE_STEPS-EDGE_LEAST,width==127?128.0:float(width)/WIDTH_STEPS,
+float(int((word>>11u)&2047u))/Ah-Ay,width==127?128.0:float(width)/Aj,
 uint(end),float(end>3?end-5:end-2)/3.0);
 uniform usampler2D shown;
 uniform ivec2 shift;
@@ -728,108 +848,108 @@ const vec4 X0=vec4(1.5,2.5,5.5,6.5),X1=vec4(-2.5,-1.5,-5.5,-7.5);
 const vec4 Y0=vec4(1.5,5.5,3.5,7.5),Y1=vec4(2.5,6.5,4.5,0.5);
 const vec4 X2=vec4(4.5,3.5,0.5,7.5),X3=vec4(-0.5,-4.5,-3.5,-6.5);
 const vec4 Y2=vec4(-0.5,-4.5,-6.5,-3.5),Y3=vec4(-2.5,-1.5,-5.5,-7.5);
-const uint EVERY=0x01010101u,SAMPLE=12u,PIXEL=16u*SAMPLE;
-const int OWN=4;
-struct Band{
+const uint CP=0x01010101u,Ap=12u,CU=16u*Ap;
+const int AL=4;
+struct Ax{
 float away;
 float size;
-uint bits(bvec4 inside){
-return(inside.x?1u:0u)|(inside.y?0x100u:0u)|(inside.z?0x10000u:0u)|(inside.w?0x1000000u:0u);
-uint count(uint samples){return(samples*EVERY)>>24u;}
-Band band_of(Edges edges,vec2 at,bool there){
+uint bits(bvec4 AG){
+return(AG.x?1u:0u)|(AG.y?0x100u:0u)|(AG.z?0x10000u:0u)|(AG.w?0x1000000u:0u);
+uint count(uint Dp){return(Dp*CP)>>24u;}
+Ax DB(Edges edges,vec2 at,bool there){
 float along=edges.n.x*at.y-edges.n.y*at.x;
-bool beyond=edges.end==7u||edges.end!=0u&&(edges.end<4u)==(along>edges.stop);
-return Band(edges.n/16.0,dot(edges.n,at)-edges.e+0.5*edges.w,there&&!beyond?0.5*edges.w:-1.0);
-uint covered(Band band,vec4 x,vec4 y){
-return bits(lessThanEqual(abs(band.n.x*x+band.n.y*y+band.away),vec4(band.size)));
+bool Ar=edges.end==7u||edges.end!=0u&&(edges.end<4u)==(along>edges.stop);
+return Ax(edges.n/16.0,dot(edges.n,at)-edges.e+0.5*edges.w,there&&!Ar?0.5*edges.w:-1.0);
+uint BQ(Ax BP,vec4 x,vec4 y){
+return bits(lessThanEqual(abs(BP.n.x*x+BP.n.y*y+BP.away),vec4(BP.size)));
 uint within(Edges edges,vec4 x,vec4 y){
 vec4 along=(edges.n.x*y-edges.n.y*x)/16.0;
 vec2 range=edges.end==7u?vec2(-0.5,0.5)
 :vec2(edges.end<4u?-1.0:edges.stop,edges.end>0u&&edges.end<4u?edges.stop:1.0);
 return bits(lessThanEqual(abs(along-0.5*(range.x+range.y)),vec4(0.5*(range.y-range.x))));
 uvec4 around[9];
-Band bands[9];
+Ax AT[9];
 uint visible[9];
 uint shares[9];
 uint behind[9];
 uint lines[9];
-#define NINE(what) what(0, -1, -1) what(1, 0, -1) what(2, 1, -1) what(3, -1, 0) what(4, 0, 0) what(5, 1, 0) what(6, -1, 1) what(7, 0, 1) what(8, 1, 1)
-#define EIGHT(what) what(0, -1, -1) what(1, 0, -1) what(2, 1, -1) what(3, -1, 0) what(5, 1, 0) what(6, -1, 1) what(7, 0, 1) what(8, 1, 1)
-#define FETCH(k, right, up) around[k] = texelFetch(shown, pixel + ivec2(right, up), 0);
-#define BEGIN(k, right, up) bands[k] = band_of(unpacked_edges(around[k].y), -vec2(right, up), around[k].y != 0u && (line || around[k].x < around[OWN].x)); behind[k] = line && around[k].y == 0u && around[k].x > around[OWN].x ? 1u : 0u; lines[k] = line && around[k].y != 0u ? 1u : 0u; visible[k] = shares[k] = 0u;
-#define QUARTER(right, up, a, b, c) { uint m = covered(bands[OWN], right, up) & within(own, right, up), ma = covered(bands[a], right, up), mb = covered(bands[b], right, up), mc = covered(bands[c], right, up), open = EVERY & ~((m | ma) | (mb | mc)), left = count(open); bool a_first = around[a].x < depth, b_first = around[b].x < depth, c_first = around[c].x < depth, ab = around[a].x <= around[b].x, ac = around[a].x <= around[c].x, bc = around[b].x <= around[c].x; visible[OWN] += m & ~((a_first ? ma : 0u) | (b_first ? mb : 0u) | (c_first ? mc : 0u)); visible[a] += ma & ~((a_first ? 0u : m) | (ab ? 0u : mb) | (ac ? 0u : mc)); visible[b] += mb & ~((b_first ? 0u : m) | (ab ? ma : 0u) | (bc ? 0u : mc)); visible[c] += mc & ~((c_first ? 0u : m) | (ac ? ma : 0u) | (bc ? mb : 0u)); uint backs = behind[a] + behind[b] + behind[c], fronts = lines[a] + lines[b] + lines[c], n = backs > 0u ? backs : fronts; left *= n == 3u ? SAMPLE / 3u : n == 2u ? SAMPLE / 2u : SAMPLE; shares[a] += left * (backs > 0u ? behind[a] : lines[a]); shares[b] += left * (backs > 0u ? behind[b] : lines[b]); shares[c] += left * (backs > 0u ? behind[c] : lines[c]); shares[OWN] += n == 0u ? left : 0u; }
-#define ADOPT(k) if (abs(bands[k].away) <= bands[k].size && around[k].x < depth) { depth = around[k].x; bands[OWN] = bands[k]; of_own = around[k].z; }
-#define SHARE(k, right, up) shares[k] += SAMPLE * count(visible[k]);
-#define ADD(k, right, up) red_blue += shares[k] * (around[k].z & 0xFF00FFu); green_alpha += shares[k] * ((around[k].z >> 8u) & 0xFF00FFu);
+#define CS(what) what(0, -1, -1) what(1, 0, -1) what(2, 1, -1) what(3, -1, 0) what(4, 0, 0) what(5, 1, 0) what(6, -1, 1) what(7, 0, 1) what(8, 1, 1)
+#define CO(what) what(0, -1, -1) what(1, 0, -1) what(2, 1, -1) what(3, -1, 0) what(5, 1, 0) what(6, -1, 1) what(7, 0, 1) what(8, 1, 1)
+#define Cz(k, right, up) around[k] = texelFetch(shown, pixel + ivec2(right, up), 0);
+#define Cy(k, right, up) AT[k] = DB(Cs(around[k].y), -vec2(right, up), around[k].y != 0u && (line || around[k].x < around[AL].x)); behind[k] = line && around[k].y == 0u && around[k].x > around[AL].x ? 1u : 0u; lines[k] = line && around[k].y != 0u ? 1u : 0u; visible[k] = shares[k] = 0u;
+#define BN(right, up, a, b, c) { uint m = BQ(AT[AL], right, up) & within(own, right, up), ma = BQ(AT[a], right, up), mb = BQ(AT[b], right, up), mc = BQ(AT[c], right, up), open = CP & ~((m | ma) | (mb | mc)), left = count(open); bool CW = around[a].x < depth, CX = around[b].x < depth, CY = around[c].x < depth, ab = around[a].x <= around[b].x, ac = around[a].x <= around[c].x, bc = around[b].x <= around[c].x; visible[AL] += m & ~((CW ? ma : 0u) | (CX ? mb : 0u) | (CY ? mc : 0u)); visible[a] += ma & ~((CW ? 0u : m) | (ab ? 0u : mb) | (ac ? 0u : mc)); visible[b] += mb & ~((CX ? 0u : m) | (ab ? ma : 0u) | (bc ? 0u : mc)); visible[c] += mc & ~((CY ? 0u : m) | (ac ? ma : 0u) | (bc ? mb : 0u)); uint A3 = behind[a] + behind[b] + behind[c], DU = lines[a] + lines[b] + lines[c], n = A3 > 0u ? A3 : DU; left *= n == 3u ? Ap / 3u : n == 2u ? Ap / 2u : Ap; shares[a] += left * (A3 > 0u ? behind[a] : lines[a]); shares[b] += left * (A3 > 0u ? behind[b] : lines[b]); shares[c] += left * (A3 > 0u ? behind[c] : lines[c]); shares[AL] += n == 0u ? left : 0u; }
+#define BL(k) if (abs(AT[k].away) <= AT[k].size && around[k].x < depth) { depth = around[k].x; AT[AL] = AT[k]; Bz = around[k].z; }
+#define C3(k, right, up) shares[k] += Ap * count(visible[k]);
+#define Cx(k, right, up) CA += shares[k] * (around[k].z & 0xFF00FFu); Bo += shares[k] * ((around[k].z >> 8u) & 0xFF00FFu);
 ivec2 pixel=ivec2(gl_FragCoord.xy)+shift;
-NINE(FETCH)
+CS(Cz)
 if(((around[0].y|around[1].y|around[2].y)|(around[3].y|around[4].y|around[5].y)
 |(around[6].y|around[7].y|around[8].y))==0u)discard;
-Edges own=unpacked_edges(around[OWN].y);
-bool line=around[OWN].y!=0u;
-EIGHT(BEGIN)
-bands[OWN]=Band(own.n/16.0,0.5*own.w-own.e,line?0.5*own.w:-1.0);
-visible[OWN]=shares[OWN]=0u;
-uint depth=around[OWN].x,of_own=around[OWN].z;
-if(!line){ADOPT(1)ADOPT(3)ADOPT(5)ADOPT(7)}
-QUARTER(X0,Y0,5,7,8)
-QUARTER(X1,Y1,3,7,6)
-QUARTER(X2,Y2,5,1,2)
-QUARTER(X3,Y3,3,1,0)
-EIGHT(SHARE)
-uint mine=SAMPLE*count(visible[OWN]);
-if(shares[OWN]+(line?mine:0u)==PIXEL)discard;
-uint red_blue=mine*(of_own&0xFF00FFu),green_alpha=mine*((of_own>>8u)&0xFF00FFu);
-NINE(ADD)
-colour=vec4(red_blue&0xFFFFu,green_alpha&0xFFFFu,red_blue>>16u,green_alpha>>16u)/(255.0*float(PIXEL));
+Edges own=Cs(around[AL].y);
+bool line=around[AL].y!=0u;
+CO(Cy)
+AT[AL]=Ax(own.n/16.0,0.5*own.w-own.e,line?0.5*own.w:-1.0);
+visible[AL]=shares[AL]=0u;
+uint depth=around[AL].x,Bz=around[AL].z;
+if(!line){BL(1)BL(3)BL(5)BL(7)}
+BN(X0,Y0,5,7,8)
+BN(X1,Y1,3,7,6)
+BN(X2,Y2,5,1,2)
+BN(X3,Y3,3,1,0)
+CO(C3)
+uint Bu=Ap*count(visible[AL]);
+if(shares[AL]+(line?Bu:0u)==CU)discard;
+uint CA=Bu*(Bz&0xFF00FFu),Bo=Bu*((Bz>>8u)&0xFF00FFu);
+CS(Cx)
+colour=vec4(CA&0xFFFFu,Bo&0xFFFFu,CA>>16u,Bo>>16u)/(255.0*float(CU));
 void main(){colour=vec4(texelFetch(drawn,ivec2(gl_FragCoord.xy),0).rgb,1.0);}
 uniform vec3 bottom;
 uniform vec3 top;
 uniform float height;
 void main(){colour=vec4(mix(bottom,top,gl_FragCoord.y/height),1.0);}
 layout(location=0)in vec3 place;
-layout(location=1)in vec3 normal;
+layout(location=1)in vec3 AJ;
 layout(location=2)in vec4 own;
 layout(location=3)in float value;
 uniform mat4 clip_from_data;
 uniform mat4 view_from_data;
 uniform mat3 normal_to_view;
-out vec3 view_place;
-out vec3 view_normal;
-out vec4 own_colour;
-out vec3 data_place;
-out float own_value;
+out vec3 Av;
+out vec3 CK;
+out vec4 B2;
+out vec3 Bh;
+out float B3;
 gl_Position=clip_from_data*vec4(place,1.0);
-view_place=(view_from_data*vec4(place,1.0)).xyz;
-view_normal=normal_to_view*normal;
-own_colour=own;
-data_place=place;
-own_value=value;
-vec3 light_on_surface(vec3 own,vec3 normal,vec3 place,vec4 reflects,vec3 sheen){
-vec3 diffuse=vec3(0.0),shine=vec3(0.0),sight=normalize(-place);
-float facing=max(0.0,dot(normal,l));
-diffuse+=facing*light_colour[i];
-if(reflects.z>0.0&&facing>0.0)shine+=light_colour[i]*pow(max(0.0,dot(reflect(-l,normal),sight)),reflects.w);
-return reflects.x*own+reflects.y*diffuse*own+reflects.z*sheen*shine;
-in vec3 view_place;
-in vec3 view_normal;
-in vec4 own_colour;
-in vec3 data_place;
-in float own_value;
+Av=(view_from_data*vec4(place,1.0)).xyz;
+CK=normal_to_view*AJ;
+B2=own;
+Bh=place;
+B3=value;
+vec3 DW(vec3 own,vec3 AJ,vec3 place,vec4 reflects,vec3 sheen){
+vec3 AV=vec3(0.0),Af=vec3(0.0),sight=normalize(-place);
+float Cf=max(0.0,dot(AJ,l));
+AV+=Cf*light_colour[i];
+if(reflects.z>0.0&&Cf>0.0)Af+=light_colour[i]*pow(max(0.0,dot(reflect(-l,AJ),sight)),reflects.w);
+return reflects.x*own+reflects.y*AV*own+reflects.z*sheen*Af;
+in vec3 Av;
+in vec3 CK;
+in vec4 B2;
+in vec3 Bh;
+in float B3;
 uniform int smooth_normals;
 uniform int lighting;
 uniform int by_value;
 uniform float parallel;
-uniform float opacity;
 uniform int plane_count;
 uniform vec4 planes[6];
-for(int i=0;i<plane_count;++i)if(dot(planes[i].xyz,data_place)+planes[i].w<0.0)discard;
-vec3 normal=smooth_normals==1?normalize(view_normal):normalize(cross(dFdx(view_place),dFdy(view_place)));
-vec3 sight=parallel==1.0?vec3(0.0,0.0,1.0):normalize(-view_place);
-if(dot(normal,sight)<0.0)normal=-normal;
-vec4 own=by_value==1?of_value(own_value):own_colour;
-vec3 lit=lighting==1?light_on_surface(own.rgb,normal,view_place,reflects,sheen):own.rgb;
-colour=vec4(lit,own.a*opacity);
+for(int i=0;i<plane_count;++i)if(dot(planes[i].xyz,Bh)+planes[i].w<0.0)discard;
+vec3 AJ=smooth_normals==1?normalize(CK):normalize(cross(dFdx(Av),dFdy(Av)));
+vec3 sight=parallel==1.0?vec3(0.0,0.0,1.0):normalize(-Av);
+if(dot(AJ,sight)<0.0)AJ=-AJ;
+vec4 own=by_value==1?Al(B3):B2;
+vec3 Ad=lighting==1?DW(own.rgb,AJ,Av,reflects,sheen):own.rgb;
+colour=vec4(Ad,own.a*opacity);
+weight=vec4(1.0,0.0,0.0,colour.a);
 uniform vec3 corner;
 uniform vec3 across;
 uniform vec3 up;
@@ -840,7 +960,7 @@ in vec2 at;
 uniform highp sampler2D pixels;
 colour=texture(pixels,at);
 if(colour.a<=0.002)discard;
-colour.a*=opacity;`,page_bits:14,rotation_scales:[39380907423947065e-23,5413425014921813e-22,7445069627465273e-22,1023472805172787e-21,14070004681343562e-22,19338988295203308e-22,2657444838405354e-21,3649580548881204e-21,5006992068956606e-21,6855771061964333e-21,9352394044981338e-21,1266809158551041e-20,1692779733275529e-20,22030990294297226e-21,27206533559365198e-21,300810752378311e-19],rotations:"AAAAAFH/Qf/aASoA5f2dAZgApPw6AoADTfu9/vEEb/3a/eEFWv2X+eQGOQMc+HkCeQRI+A4CWQmm9yH6wgqb/pv4xgiA/+nz+QgFCa3yYv+2ChD3D/5uDlf3jfNiD3YDzfEjCCcF2O9cB+8PRO//+J8RqfkE9xgR7vrE7DgREgtC65EDPQ3o7tUBHhZK74vwVRcdAE3uDxBCAqTnIQ/vE9TmbPshFhPy8fjAGY7zwOcUGqsJu+WyCmIM3+WuCCgcHObT8OAdlvn97VsZFvyZ4IMY3RRL3zEBshem6Eb+wyEg6obljCLSBNXiFhQQCPfc/BG+H8vclPQoImvwIfENIx3znduMIl8Sm9nsCeUVT96zBiYoh9+Z5qApwvwl4+QeawA21fEcOCBh1L77dSNd5cH3GiwF6HnZNCxZDJvW/RSHEBXUrBEGLMXUQethLvPxCechKtn1k8+dKCYd3M0ABkAhUtmgAXwzq9vG2nE08AL11pQhqAcFy20eqCzpyoPzBTAa5ZvuvzT+6ObM8TNWFiTKyBJEG1TNPw5DOBPP3d9GOpL2GNu1LqH7IsQGLIgp/sIb//UtH9et+a49tdrazdw94QvyyUkhghF5wt8cozlSw9To2Tzr5y/jTTsN7VfAZDlkIvm9gg3ZJwzJywfsQwHM3NJRRSb+ys2GMEYE0rmPLAM3gbl29YA74tcd7z5GxdxgwGlFRRepvO0doh0BvDwYnEYDvhTcY0nN7erVZD8j9Fu0ODwQMKeyRQXNNYbHeP53TtDLwMT6Tn0Ipr9fL4sPIrEPKg9F4rFb6VJJuNtF4rlM7OHnsq5KvSSpr30XnisCuI8QA1NWu7PNFFWp9kTHtkAd/n6pJzzaPrioQfqbRPzIgfJfV6zOErbEVk4VOLEgKx0di6pyJBtTj6wn29xWqeKM07dQJeoBpktN3DOEowsOADvQtvYFSV6Vuy++X19UAsG3Az/CCkagADk6Tq2gu+y0U5TNNeQqXq/UYac7XEEkEqO8I5csd6a6G5Vg7KlFy4pjpuxnw+BRVPU8mvRMIkTGmMABREuruKf45mf0vhGuw2eMEO6nJDrHGTKZpzKeXfuaCd2HYl3V99NpYtrdQpn6Xuo0yJU/GYY9QqX/D+tsSKo0us5uiflYsvFPRgMlkHBJCFX2j9ry3Vu/ve3oWW+SxeydxW37IGCYBjLJKrKUGClybAuYl8t+cE3gOsK/YxfqSIyvXstG6onNC2dPM6dxAZB33q18qCB4FgnvoLlKshM+iJ5C/GWOibDhNWwixifXL3R3z1OO+3A4M6uJsSZXPSeTZhwhejKY4LgHfUPugq/hYTf5A4EaW15ZBICh+6phe6xZ8P9/07SvlgAAAABR/0H/2gEqAOX9nQGYAKT8OgKAA037vf7xBG/92v3hBVr9l/nkBjkDHPh5AnkESPgOAlkJpvch+sIKm/6b+MYIgP/p8/kIBQmt8mL/tgoQ9w/+bg5X943zYg92A83xIwgnBdjvXAfvD0Tv//ifEan5BPcYEe76xOw4ERILQuuRAz0N6O7VAR4WSu+L8FUXHQBN7g8QQgKk5yEP7xPU5mz7IRYT8vH4wBmO88DnFBqrCbvlsgpiDN/lrggoHBzm0/DgHZb5/e1bGRb8meCDGN0US98xAbIXpuhG/sMhIOqG5Ywi0gTV4hYUEAj33PwRvh/L3JT0KCJr8CHxDSMd853bjCJfEpvZ7AnlFU/eswYmKIffmeagKcL8JePkHmsANtXxHDggYdS++3UjXeXB9xosBeh52TQsWQyb1v0UhxAV1KwRBizF1EHrYS7z8QnnISrZ9ZPPnSgmHdzNAAZAIVLZoAF8M6vbxtpxNPAC9daUIagHBcttHqcs6cqD8wUwGuWb7r80/ujmzPEzVhYkysgSRBtUzT8OQzgTz93fRjqS9hjbtS6h+yLEBiyIKf7CG//1LR/XrfmuPbXa2s3cPeEL8slJIYIRecLfHKM5UsPU6Nk86+cv4007De1XwGQ5ZCL5vYIN2ScMycsH7EMBzNzSUUUm/srNhjBGBNK5jywDN4G5dvWAO+LXHe8+RsXcYMBpRUUXqbztHaIdAbw8GJxGA74U3GNJze3q1WQ/I/RbtDg8EDCnskUFzTWGx3j+d07Qy8DE+k59CKa/Xy+LDyKxDyoPReKxW+lSSbjbRuK5TOzh57KuSr0kqa99F54rAriPEANTVruzzRRVqfZEx7ZAHf5+qSc82j64qEH6m0T8yIHyX1eszhK2xFZOFTixICsdHYuqciQbU4+sJ9vcVqnijNO3UCXqAaZLTdwzhKMLDgA70Lb2BUlelbsvvl9fVALBtwM/wgpGoAA5Ok6toLvstFOUzTXkKl6v1GGnO1xBJBKjvCOXLHemuhuVYOypRcuKY6bsZ8PgUVT1PJr0TCJExpjAAURLq7in+OZn9L4RrsNnjBDupyQ6xxkymacynl37mgndh2Jd1ffTaWLa3UKZ+l7qNMiVPxmGPUKl/w/rbEiqNLrObon5WLLxT0YDJZBwSQhV9o/a8t1bv73t6FlvksXsncVt+yBgmAYyySqylBgpcmwLmJfLfnBN4DrCv2MX6kiMr17LRuqJzQtnTzOncQGQd96tfKggeBYJ76C5SrITPoieQvxljomw4TVsIsYn1y90d89TjvtwODOribEmVz0nk2YcIXoymOC4B31D7oKv4WE3+QOBGlteWQSAofuqYXusWfD/f9O0r5YAAAAAUf9B/9oBKgDl/Z0BmACk/DoCgANN+73+8QRv/dr94QVa/Zf55AY5Axz4eQJ5BEj4DgJZCab3IfrCCpv+m/jGCID/6fP5CAUJrfJi/7YKEPcP/m4OV/eN82IPdgPN8SMIJwXY71wH7w9E7//4nxGp+QT3GBHu+sTsOBESC0LrkQM9Deju1QEeFkrvi/BVFx0ATe4PEEICpOchD+8T1OZs+yEWE/Lx+MAZjvPA5xQaqwm75bIKYgzf5a4IKBwc5tPw4B2W+f3tWxkW/JnggxjdFEvfMQGyF6boRv7DISDqhuWMItIE1eIWFBAI99z8Eb4fy9yU9Cgia/Ah8Q0jHfOd24wiXxKb2ewJ5RVP3rMGJiiH35nmoCnC/CXj5B5rADbV8Rw4IGHUvvt1I13lwfcaLAXoedk0LFkMm9b9FIcQFdSsEQYsxdRB62Eu8/EJ5yEq2fWTz50oJh3czQAGQCFS2aABfDOr28bacTTwAvXWlCGoBwXLbR6oLOnKg/MFMBrlm+6/NP7o5szxM1YWJMrIEkQbVM0/DkM4E8/d30Y6kvYY27UuofsixAYsiCn+whv/9S0f1635rj212trN3D3hC/LJSSGCEXnC3xyjOVLD1OjZPOvnL+NNOw3tV8BkOWQi+b2CDdknDMnLB+xDAczc0lFFJv7KzYYwRgTSuY8sAzeBuXb1gDvi1x3vPkbF3GDAaUVFF6m87R2iHQG8PBicRgO+FNxjSc3t6tVkPyP0W7Q4PBAwp7JFBc01hsd4/ndO0MvAxPpOfQimv18viw8isQ8qD0XisVvpUkm420XiuUzs4eeyrkq9JKmvfReeKwK4jxADU1a7s80UVan2RMe2QB3+fqknPNo+uKhB+ptE/MiB8l9XrM4StsRWThU4sSArHR2LqnIkG1OPrCfb3Fap4ozTt1Al6gGmS03cM4SjCw4AO9C29gVJXpW7L75fX1QCwbcDP8IKRqAAOTpOraC77LRTlM015Cper9RhpztcQSQSo7wjlyx3problWDsqUXLimOm7GfD4FFU9Tya9EwiRMaYwAFES6u4p/jmZ/S+Ea7DZ4wQ7qckOscZMpmnMp5d+5oJ3YdiXdX302li2t1Cmfpe6jTIlT8Zhj1Cpf8P62xIqjS6zm6J+Viy8U9GAyWQcEkIVfaP2vLdW7+97ehZb5LF7J3FbfsgYJgGMskqspQYKXJsC5iXy35wTeA6wr9jF+pIjK9ey0bqic0LZ08zp3EBkHferXyoIHgWCe+guUqyEz6InkL8ZY6JsOE1bCLGJ9cvdHfPU477cDgzq4mxJlc9J5NmHCF6MpjguAd9Q+6Cr+FhN/kDgRpbXlkEgKH7qmF7rFnw/3/TtK+WAAAAAFH/Qf/aASoA5f2dAZgApPw6AoADTfu9/vEEb/3a/eEFWv2X+eQGOQMc+HkCeQRI+A4CWQmm9yH6wgqb/pv4xgiA/+nz+QgFCa3yYv+2ChD3D/5uDlf3jfNiD3YDzfEjCCcF2O9cB+8PRO//+J8RqfkE9xgR7vrE7DgREgtC65EDPQ3o7tUBHhZK74vwVRcdAE3uDxBCAqTnIQ/vE9TmbPshFhPy8fjAGY7zwOcUGqsJu+WyCmIM3+WuCCgcHObT8OAdlvn97VsZFvyZ4IMY3RRL3zEBshem6Eb+wyEg6obljCLSBNXiFhQQCPfc/BG+H8vclPQoImvwIfENIx3znduMIl8Sm9nsCeUVT96zBiYoh9+Z5qApwvwl4+QeawA21fEcOCBh1L77dSNd5cH3GiwF6HnZNCxZDJvW/RSHEBXUrBEGLMXUQethLvPxCechKtn1k8+dKCYd3M0ABkAhUtmgAXwzq9vG2nE08AL11pQhqAcFy20eqCzpyoPzBTAa5ZvuvzT+6ObM8TNWFiTKyBJEG1TNPw5DOBPP3d9GOpL2GNu1LqH7IsQGLIgp/sIb//UtH9et+a49tdrazdw94QvyyUkhghF5wt8cozlSw9To2Tzr5y/jTTsN7VfAZDlkIvm9gg3ZJwzJywfsQwHM3NJRRSb+ys2GMEYE0rmPLAM3gbl29YA74tcd7z5GxdxgwGlFRRepvO0doh0BvDwYnEYDvhTcY0nN7erVZD8j9Fu0ODwQMKeyRQXNNYbHeP53TtDLwMT6Tn0Ipr9fL4sPIrEPKg9F4rFb6VJJuNtF4rlM7OHnsq5KvSSpr30XnisCuI8QA1NWu7PNFFWp9kTHtkAd/n6pJzzaPrioQfqbRPzIgfJfV6zOErbEVk4VOLEgKx0di6pyJBtTj6wn29xWqeKM07dQJeoBpktN3DOEowsOADvQtvYFSV6Vuy++X19UAsG3Az/CCkagADk6Tq2gu+y0U5TNNeQqXq/UYac7XEEkEqO8I5csd6a6G5Vg7KlFy4pjpuxnw+BRVPU8mvRMIkTGmMABREuruKf45mf0vhGuw2eMEO6nJDrHGTKZpzKeXfuaCd2HYl3V99NpYtrdQpn6Xuo0yJU/GYY9QqX/D+tsSKo0us5uiflYsvFPRgMlkHBJCFX2j9ry3Vu/ve3oWW+SxeydxW37IGCYBjLJKrKUGClybAuYl8t+cE3gOsK/YxfqSIyvXstG6onNC2dPM6dxAZB33q18qCB4FgnvoLlKshM+iJ5C/GWOibDhNWwixifXL3R3z1OO+3A4M6uJsSZXPSeTZhwhejKY4LgHfUPugq/hYTf5A4EaW15ZBICh+6phe6xZ8P9/07SvlgAAAABR/0H/2gEqAOX9nQGYAKT8OgKAA037vf7xBG/92v3hBVr9l/nkBjkDHPh5AnkESPgOAlkJpvch+sIKm/6b+MYIgP/p8/kIBQmt8mL/tgoQ9w/+bg5X943zYg92A83xIwgnBdjvXAfvD0Tv//ifEan5BPcYEe76xOw4ERILQuuRAz0N6O7VAR4WSu+L8FUXHQBN7g8QQgKk5yEP7xPU5mz7IRYT8vH4wBmO88DnFBqrCbvlsgpiDN/lrggoHBzm0/DgHZb5/e1bGRb8meCDGN0US98xAbIXpuhG/sMhIOqG5Ywi0gTV4hYUEAj33PwRvh/L3JT0KCJr8CHxDSMd853bjCJfEpvZ7AnlFU/eswYmKIffmeagKcL8JePkHmsANtXxHDggYdS++3UjXeXB9xosBeh52TQsWQyb1v0UhxAV1KwRBizF1EHrYS7z8QnnISrZ9ZPPnSgmHdzNAAZAIVLZoAF8M6vbxtpxNPAC9daUIagHBcttHqgs6cqD8wUwGuWb7r80/ujmzPEzVhYkysgSRBtUzT8OQzgTz93fRjqS9hjbtS6h+yLEBiyIKf7CG//1LR/XrfmuPbXa2s3cPeEL8slJIYIRecLfHKM5UsPU6Nk86+cv4007De1XwGQ5ZCL5vYIN2ScMycsH7EMBzNzSUUUm/srNhjBGBNK5jywDN4G5dvWAO+LXHe8+RsXcYMBpRUUXqbztHaIdAbw8GJxGA74U3GNJze3q1WQ/I/RbtDg8EDCnskUFzTWGx3j+d07Qy8DE+k59CKa/Xy+LDyKxDyoPReKxW+lSSbjbReK5TOzh57KuSr0kqa99F54rAriPEANTVruzzRRVqfZEx7ZAHf5+qSc82j64qEH6m0T8yIHyX1eszhK2xFZOFTixICsdHYuqciQbU4+sJ9vcVqnijNO3UCXqAaZLTdwzhKMLDgA70Lb2BUlelbsvvl9fVALBtwM/wgpGoAA5Ok6toLvstFOUzTXkKl6v1GGnO1xBJBKjvCOXLHemuhuVYOypRcuKY6bsZ8PgUVT1PJr0TCJExpjAAURLq7in+OZn9L4RrsNnjBDupyQ6xxkymacynl37mgndh2Jd1ffTaWLa3UKZ+l7qNMiVPxmGPUKl/w/rbEiqNLrObon5WLLxT0YDJZBwSQhV9o/a8t1bv73t6FlvksXsncVt+yBgmAYyySqylBgpcmwLmJfLfnBN4DrCv2MX6kiMr17LRuqJzQtnTzOncQGQd96tfKggeBYJ76C5SrITPoieQvxljomw4TVsIsYn1y90d89TjvtwODOribEmVz0nk2YcIXoymOC4B31D7oKv4WE3+QOBGlteWQSAofuqYXusWfD/f9O0r5YAAAAAUf9B/9oBKgDl/Z0BmACk/DoCgANN+73+8QRv/dr94QVa/Zf55AY5Axz4eQJ5BEj4DgJZCab3IfrCCpv+m/jGCID/6fP5CAUJrfJi/7YKEPcP/m4OV/eN82IPdgPN8SMIJwXY71wH7w9E7//4nxGp+QT3GBHu+sTsOBESC0LrkQM9Deju1QEeFkrvi/BVFx0ATe4PEEICpOchD+8T1OZs+yEWE/Lx+MAZjvPA5xQaqwm75bIKYgzf5a4IKBwc5tPw4B2W+f3tWxkW/JnggxjdFEvfMQGyF6boRv7DISDqhuWMItIE1eIWFBAI99z8Eb4fy9yU9Cgia/Ah8Q0jHfOd24wiXxKb2ewJ5RVP3rMGJiiH35nmoCnC/CXj5B5rADbV8Rw4IGHUvvt1I13lwfcaLAXoedk0LFkMm9b9FIcQFdSsEQYsxdRB62Eu8/EJ5yEq2fWTz50oJh3czQAGQCFS2aABfDOr28bacTTwAvXWlCGoBwXLbR6nLOnKg/MFMBrlm+6/NP7o5szxM1YWJMrIEkQbVM0/DkM4E8/d30Y6kvYY27UuofsixAYsiCn+whv/9S0f1635rj212trN3D3hC/LJSSGCEXnC3xyjOVLD1OjZPOvnL+NNOw3tV8BkOWQi+b2CDdknDMnLB+xDAczc0lFFJv7KzYYwRgTSuY8sAzeBuXb1gDvi1x3vPkbF3GDAaUVFF6m87R2iHQG8PBicRgO+FNxjSc3t6tVkPyP0W7Q4PBAwp7JFBc01hsd4/ndO0MvAxPpOfQimv18viw8isQ8qD0XisVvpUkm420biuUzs4eeyrkq9JKmvfReeKwK4jxADU1a7s80UVan2RMe2QB3+fqknPNo+uKhB+ptE/MiB8l9XrM4StsRWThU4sSArHR2LqnIkG1OPrCfb3Fap4ozTt1Al6gGmS03cM4SjCw4AO9C29gVJXpW7L75fX1QCwbcDP8IKRqAAOTpOraC77LRTlM015Cper9RhpztcQSQSo7wjlyx3problWDsqUXLimOm7GfD4FFU9Tya9EwiRMaYwAFES6u4p/jmZ/S+Ea7DZ4wQ7qckOscZMpmnMp5d+5oJ3YdiXdX302li2t1Cmfpe6jTIlT8Zhj1Cpf8P62xIqjS6zm6J+Viy8U9GAyWQcEkIVfaP2vLdW7+97ehZb5LF7J3FbfsgYJgGMskqspQYKXJsC5iXy35wTeA6wr9jF+pIjK9ey0bqic0LZ08zp3EBkHferXyoIHgWCe+guUqyEz6InkL8ZY6JsOE1bCLGJ9cvdHfPU477cDgzq4mxJlc9J5NmHCF6MpjguAd9Q+6Cr+FhN/kDgRpbXlkEgKH7qmF7rFnw/3/TtK+WAAAAAFH/Qf/aASoA5f2dAZgApPw6AoADTfu9/vEEb/3a/eEFWv2X+eQGOQMc+HkCeQRI+A4CWQmm9yH6wgqb/pv4xgiA/+nz+QgFCa3yYv+2ChD3D/5uDlf3jfNiD3YDzfEjCCcF2O9cB+8PRO//+J8RqfkE9xgR7vrE7DgREgtC65EDPQ3o7tUBHhZK74vwVRcdAE3uDxBCAqTnIQ/vE9TmbPshFhPy8fjAGY7zwOcUGqsJu+WyCmIM3+WuCCgcHObT8OAdlvn97VsZFvyZ4IMY3RRL3zEBshem6Eb+wyEg6obljCLSBNXiFhQQCPfc/BG+H8vclPQoImvwIfENIx3znduMIl8Sm9nsCeUVT96zBiYoh9+Z5qApwvwl4+QeawA21fEcOCBh1L77dSNd5cH3GiwF6HnZNCxZDJvW/RSHEBXUrBEGLMXUQethLvPxCechKtn1k8+dKCYd3M0ABkAhUtmgAXwzq9vG2nE08AL11pQhqAcFy20eqCzpyoPzBTAa5ZvuvzT+6ObM8TNWFiTKyBJEG1TNPw5DOBPP3d9GOpL2GNu1LqH7IsQGLIgp/sIb//UtH9et+a49tdrazdw94QvyyUkhghF5wt8cozlSw9To2Tzr5y/jTTsN7VfAZDlkIvm9gg3ZJwzJywfsQwHM3NJRRSb+ys2GMEYE0rmPLAM3gbl29YA74tcd7z5GxdxgwGlFRRepvO0doh0BvDwYnEYDvhTcY0nN7erVZD8j9Fu0ODwQMKeyRQXNNYbHeP53TtDLwMT6Tn0Ipr9fL4sPIrEPKg9F4rFb6VJJuNtF4rlM7OHnsq5KvSSpr30XnisCuI8QA1NWu7PNFFWp9kTHtkAd/n6pJzzaPrioQfqbRPzIgfJfV6zOErbEVk4VOLEgKx0di6pyJBtTj6wn29xWqeKM07dQJeoBpktN3DOEowsOADvQtvYFSV6Vuy++X19UAsG3Az/CCkagADk6Tq2gu+y0U5TNNeQqXq/UYac7XEEkEqO8I5csd6a6G5Vg7KlFy4pjpuxnw+BRVPU8mvRMIkTGmMABREuruKf45mf0vhGuw2eMEO6nJDrHGTKZpzKeXfuaCd2HYl3V99NpYtrdQpn6Xuo0yJU/GYY9QqX/D+tsSKo0us5uiflYsvFPRgMlkHBJCFX2j9ry3Vu/ve3oWW+SxeydxW37IGCYBjLJKrKUGClybAuYl8t+cE3gOsK/YxfqSIyvXstG6onNC2dPM6dxAZB33q18qCB4FgnvoLlKshM+iJ5C/GWOibDhNWwixifXL3R3z1OO+3A4M6uJsSZXPSeTZhwhejKY4LgHfUPugq/hYTf5A4EaW15ZBICh+6phe6xZ8P9/07SvlgAAAABR/0H/2gEqAOX9nQGYAKT8OgKAA037vf7xBG/92v3hBVr9l/nkBjkDHPh5AnkESPgOAlkJpvch+sIKm/6b+MYIgP/p8/kIBQmt8mL/tgoQ9w/+bg5X943zYg92A83xIwgnBdjvXAfvD0Tv//ifEan5BPcYEe76xOw4ERILQuuRAz0N6O7VAR4WSu+L8FUXHQBN7g8QQgKk5yEP7xPU5mz7IRYT8vH4wBmO88DnFBqrCbvlsgpiDN/lrggoHBzm0/DgHZb5/e1bGRb8meCDGN0US98xAbIXpuhG/sMhIOqG5Ywi0gTV4hYUEAj33PwRvh/L3JT0KCJr8CHxDSMd853bjCJfEpvZ7AnlFU/eswYmKIffmeagKcL8JePkHmsANtXxHDggYdS++3UjXeXB9xosBeh52TQsWQyb1v0UhxAV1KwRBizF1EHrYS7z8QnnISrZ9ZPPnSgmHdzNAAZAIVLZoAF8M6vbxtpxNPAC9daUIagHBcttHqcs6cqD8wUwGuWb7r80/ujmzPEzVhYkysgSRBtUzT8OQzgTz93fRjqS9hjbtS6h+yLEBiyIKf7CG//1LR/XrfmuPbXa2s3cPeEL8slJIYIRecLfHKM5UsPU6Nk86+cv4007De1XwGQ5ZCL5vYIN2ScMycsH7EMBzNzSUUUm/srNhjBGBNK5jywDN4G5dvWAO+LXHe8+RsXcYMBpRUUXqbztHaIdAbw8GJxGA74U3GNJze3q1WQ/I/RbtDg8EDCnskUFzTWGx3j+d07Qy8DE+k59CKa/Xy+LDyKxDyoPReKxW+lSSbjbReK5TOzh57KuSr0kqa99F54rAriPEANTVruzzRRVqfZEx7ZAHf5+qSc82j64qEH6m0T8yIHyX1eszhK2xFZOFTixICsdHYuqciQbU4+sJ9vcVqnijNO3UCXqAaZLTdwzhKMLDgA70Lb2BUlelbsvvl9fVALBtwM/wgpGoAA5Ok6toLvstFOUzTXkKl6v1GGnO1xBJBKjvCOXLHemuhuVYOypRcuKY6bsZ8PgUVT1PJr0TCJExpjAAURLq7in+OZn9L4RrsNnjBDupyQ6xxkymacynl37mgndh2Jd1ffTaWLa3UKZ+l7qNMiVPxmGPUKl/w/rbEiqNLrObon5WLLxT0YDJZBwSQhV9o/a8t1bv73t6FlvksXsncVt+yBgmAYyySqylBgpcmwLmJfLfnBN4DrCv2MX6kiMr17LRuqJzQtnTzOncQGQd96tfKggeBYJ76C5SrITPoieQvxljomw4TVsIsYn1y90d89TjvtwODOribEmVz0nk2YcIXoymOC4B31D7oKv4WE3+QOBGlteWQSAofuqYXusWfD/f9O0r5YAAAAAUf9B/9oBKgDl/Z0BmACk/DoCgANN+73+8QRv/dr94QVa/Zf55AY5Axz4eQJ5BEj4DgJZCab3IfrCCpv+m/jGCID/6fP5CAUJrfJi/7YKEPcP/m4OV/eN82IPdgPN8SMIJwXY71wH7w9E7//4nxGp+QT3GBHu+sTsOBESC0LrkQM9Deju1QEeFkrvi/BVFx0ATe4PEEICpOchD+8T1OZs+yEWE/Lx+MAZjvPA5xQaqwm75bIKYgzf5a4IKBwc5tPw4B2W+f3tWxkW/JnggxjdFEvfMQGyF6boRv7DISDqhuWMItIE1eIWFBAI99z8Eb4fy9yU9Cgia/Ah8Q0jHfOd24wiXxKb2ewJ5RVP3rMGJiiH35nmoCnC/CXj5B5rADbV8Rw4IGHUvvt1I13lwfcaLAXoedk0LFkMm9b9FIcQFdSsEQYsxdRB62Eu8/EJ5yEq2fWTz50oJh3czQAGQCFS2aABfDOr28bacTTwAvXWlCGoBwXLbR6oLOnKg/MFMBrlm+6/NP7o5szxM1YWJMrIEkQbVM0/DkM4E8/d30Y6kvYY27UuofsixAYsiCn+whv/9S0f1635rj212trN3D3hC/LJSSGCEXnC3xyjOVLD1OjZPOvnL+NNOw3tV8BkOWQi+b2CDdknDMnLB+xDAczc0lFFJv7KzYYwRgTSuY8sAzeBuXb1gDvi1x3vPkbF3GDAaUVFF6m87R2iHQG8PBicRgO+FNxjSc3t6tVkPyP0W7Q4PBAwp7JFBc01hsd4/ndO0MvAxPpOfQimv18viw8isQ8qD0XisVvpUkm420XiuUzs4eeyrkq9JKmvfReeKwK4jxADU1a7s80UVan2RMe2QB3+fqknPNo+uKhB+ptE/MiB8l9XrM4StsRWThU4sSArHR2LqnIkG1OPrCfb3Fap4ozTt1Al6gGmS03cM4SjCw4AO9C29gVJXpW7L75fX1QCwbcDP8IKRqAAOTpOraC77LRTlM015Cper9RhpztcQSQSo7wjlyx3problWDsqUXLimOm7GfD4FFU9Tya9EwiRMaYwAFES6u4p/jmZ/S+Ea7DZ4wQ7qckOscZMpmnMp5d+5oJ3YdiXdX302li2t1Cmfpe6jTIlT8Zhj1Cpf8P62xIqjS6zm6J+Viy8U9GAyWQcEkIVfaP2vLdW7+97ehZb5LF7J3FbfsgYJgGMskqspQYKXJsC5iXy35wTeA6wr9jF+pIjK9ey0bqic0LZ08zp3EBkHferXyoIHgWCe+guUqyEz6InkL8ZY6JsOE1bCLGJ9cvdHfPU477cDgzq4mxJlc9J5NmHCF6MpjguAd9Q+6Cr+FhN/kDgRpbXlkEgKH7qmF7rFnw/3/TtK+WAAAAAFH/Qf/aASoA5f2dAZgApPw6AoADTfu9/vEEb/3a/eEFWv2X+eQGOQMc+HkCeQRI+A4CWQmm9yH6wgqb/pv4xgiA/+nz+QgFCa3yYv+2ChD3D/5uDlf3jfNiD3YDzfEjCCcF2O9cB+8PRO//+J8RqfkE9xgR7vrE7DgREgtC65EDPQ3o7tUBHhZK74vwVRcdAE3uDxBCAqTnIQ/vE9TmbPshFhPy8fjAGY7zwOcUGqsJu+WyCmIM3+WuCCgcHObT8OAdlvn97VsZFvyZ4IMY3RRL3zEBshem6Eb+wyEg6obljCLSBNXiFhQQCPfc/BG+H8vclPQoImvwIfENIx3znduMIl8Sm9nsCeUVT96zBiYoh9+Z5qApwvwl4+QeawA21fEcOCBh1L77dSNd5cH3GiwF6HnZNCxZDJvW/RSHEBXUrBEGLMXUQethLvPxCechKtn1k8+dKCYd3M0ABkAhUtmgAXwzq9vG2nE08AL11pQhqAcFy20eqCzpyoPzBTAa5ZvuvzT+6ObM8TNWFiTKyBJEG1TNPw5DOBPP3d9GOpL2GNu1LqH7IsQGLIgp/sIb//UtH9et+a49tdrazdw94QvyyUkhghF5wt8cozlSw9To2Tzr5y/jTTsN7VfAZDlkIvm9gg3ZJwzJywfsQwHM3NJRRSb+ys2GMEYE0rmPLAM3gbl29YA74tcd7z5GxdxgwGlFRRepvO0doh0BvDwYnEYDvhTcY0nN7erVZD8j9Fu0ODwQMKeyRQXNNYbHeP53TtDLwMT6Tn0Ipr9fL4sPIrEPKg9F4rFb6VJJuNtF4rlM7OHnsq5KvSSpr30XnisCuI8QA1NWu7PNFFWp9kTHtkAd/n6pJzzaPrioQfqbRPzIgfJfV6zOErbEVk4VOLEgKx0di6pyJBtTj6wn29xWqeKM07dQJeoBpktN3DOEowsOADvQtvYFSV6Vuy++X19UAsG3Az/CCkagADk6Tq2gu+y0U5TNNeQqXq/UYac7XEEkEqO8I5csd6a6G5Vg7KlFy4pjpuxnw+BRVPU8mvRMIkTGmMABREuruKf45mf0vhGuw2eMEO6nJDrHGTKZpzKeXfuaCd2HYl3V99NpYtrdQpn6Xuo0yJU/GYY9QqX/D+tsSKo0us5uiflYsvFPRgMlkHBJCFX2j9ry3Vu/ve3oWW+SxeydxW37IGCYBjLJKrKUGClybAuYl8t+cE3gOsK/YxfqSIyvXstG6onNC2dPM6dxAZB33q18qCB4FgnvoLlKshM+iJ5C/GWOibDhNWwixifXL3R3z1OO+3A4M6uJsSZXPSeTZhwhejKY4LgHfUPugq/hYTf5A4EaW15ZBICh+6phe6xZ8P9/07SvlgAAAABR/0H/2gEqAOX9nQGYAKT8OgKAA037vf7xBG/92v3hBVr9l/nkBjkDHPh5AnkESPgOAlkJpvch+sIKm/6b+MYIgP/p8/kIBQmt8mL/tgoQ9w/+bg5X943zYg92A83xIwgnBdjvXAfvD0Tv//ifEan5BPcYEe76xOw4ERILQuuRAz0N6O7VAR4WSu+L8FUXHQBN7g8QQgKk5yEP7xPU5mz7IRYT8vH4wBmO88DnFBqrCbvlsgpiDN/lrggoHBzm0/DgHZb5/e1bGRb8meCDGN0US98xAbIXpuhG/sMhIOqG5Ywi0gTV4hYUEAj33PwRvh/L3JT0KCJr8CHxDSMd853bjCJfEpvZ7AnlFU/eswYmKIffmeagKcL8JePkHmsANtXxHDggYdS++3UjXeXB9xosBeh52TQsWQyb1v0UhxAV1KwRBizF1EHrYS7z8QnnISrZ9ZPPnSgmHdzNAAZAIVLZoAF8M6vbxtpxNPAC9daUIagHBcttHqgs6cqD8wUwGuWb7r80/ujmzPEzVhYkysgSRBtUzT8OQzgTz93fRjqS9hjbtS6h+yLEBiyIKf7CG//1LR/XrfmuPbXa2s3cPeEL8slJIYIRecLfHKM5UsPU6Nk86+cv4007De1XwGQ5ZCL5vYIN2ScMycsH7EMBzNzSUUUm/srNhjBGBNK5jywDN4G5dvWAO+LXHe8+RsXcYMBpRUUXqbztHaIdAbw8GJxGA74U3GNJze3q1WQ/I/RbtDg8EDCnskUFzTWGx3j+d07Qy8DE+k59CKa/Xy+LDyKxDyoPReKxW+lSSbjbReK5TOzh57KuSr0kqa99F54rAriPEANTVruzzRRVqfZEx7ZAHf5+qSc82j64qEH6m0T8yIHyX1eszhK2xFZOFTixICsdHYuqciQbU4+sJ9vcVqnijNO3UCXqAaZLTdwzhKMLDgA70Lb2BUlelbsvvl9fVALBtwM/wgpGoAA5Ok6toLvstFOUzTXkKl6v1GGnO1xBJBKjvCOXLHemuhuVYOypRcuKY6bsZ8PgUVT1PJr0TCJExpjAAURLq7in+OZn9L4RrsNnjBDupyQ6xxkymacynl37mgndh2Jd1ffTaWLa3UKZ+l7qNMiVPxmGPUKl/w/rbEiqNLrObon5WLLxT0YDJZBwSQhV9o/a8t1bv73t6FlvksXsncVt+yBgmAYyySqylBgpcmwLmJfLfnBN4DrCv2MX6kiMr17LRuqJzQtnTzOncQGQd96tfKggeBYJ76C5SrITPoieQvxljomw4TVsIsYn1y90d89TjvtwODOribEmVz0nk2YcIXoymOC4B31D7oKv4WE3+QOBGlteWQSAofuqYXusWfD/f9O0r5YAAAAAUf9B/9oBKgDl/Z0BmACk/DoCgANN+73+8QRv/dr94QVa/Zf55AY5Axz4eQJ5BEj4DgJZCab3IfrCCpv+m/jGCID/6fP5CAUJrfJi/7YKEPcP/m4OV/eN82IPdgPN8SMIJwXY71wH7w9E7//4nxGp+QT3GBHu+sTsOBESC0LrkQM9Deju1QEeFkrvi/BVFx0ATe4PEEICpOchD+8T1OZs+yEWE/Lx+MAZjvPA5xQaqwm75bIKYgzf5a4IKBwc5tPw4B2W+f3tWxkW/JnggxjdFEvfMQGyF6boRv7DISDqhuWMItIE1eIWFBAI99z8Eb4fy9yU9Cgia/Ah8Q0jHfOd24wiXxKb2ewJ5RVP3rMGJiiH35nmoCnC/CXj5B5rADbV8Rw4IGHUvvt1I13lwfcaLAXoedk0LFkMm9b9FIcQFdSsEQYsxdRB62Eu8/EJ5yEq2fWTz50oJh3czQAGQCFS2aABfDOr28bacTTwAvXWlCGoBwXLbR6oLOnKg/MFMBrlm+6/NP7o5szxM1YWJMrIEkQbVM0/DkM4E8/d30Y6kvYY27UuofsixAYsiCn+whv/9S0f1635rj212trN3D3hC/LJSSGCEXnC3xyjOVLD1OjZPOvnL+NNOw3tV8BkOWQi+b2CDdknDMnLB+xDAczc0lFFJv7KzYYwRgTSuY8sAzeBuXb1gDvi1x3vPkbF3GDAaUVFF6m87R2iHQG8PBicRgO+FNxjSc3t6tVkPyP0W7Q4PBAwp7JFBc01hsd4/ndO0MvAxPpOfQimv18viw8isQ8qD0XisVvpUkm420XiuUzs4eeyrkq9JKmvfReeKwK4jxADU1a7s80UVan2RMe2QB3+fqknPNo+uKhB+ptE/MiB8l9XrM4StsRWThU4sSArHR2LqnIkG1OPrCfb3Fap4ozTt1Al6gGmS03cM4SjCw4AO9C29gVJXpW7L75fX1QCwbcDP8IKRqAAOTpOraC77LRTlM015Cper9RhpztcQSQSo7wjlyx3problWDsqUXLimOm7GfD4FFU9Tya9EwiRMaYwAFES6u4p/jmZ/S+Ea7DZ4wQ7qckOscZMpmnMp5d+5oJ3YdiXdX302li2t1Cmfpe6jTIlT8Zhj1Cpf8P62xIqjS6zm6J+Viy8U9GAyWQcEkIVfaP2vLdW7+97ehZb5LF7J3FbfsgYJgGMskqspQYKXJsC5iXy35wTeA6wr9jF+pIjK9ey0bqic0LZ08zp3EBkHferXyoIHgWCe+guUqyEz6InkL8ZY6JsOE1bCLGJ9cvdHfPU477cDgzq4mxJlc9J5NmHCF6MpjguAd9Q+6Cr+FhN/kDgRpbXlkEgKH7qmF7rFnw/3/TtK+WAAAAAFH/Qf/aASoA5f2dAZgApPw6AoADTfu9/vEEb/3a/eEFWv2X+eQGOQMc+HkCeQRI+A4CWQmm9yH6wgqb/pv4xgiA/+nz+QgFCa3yYv+2ChD3D/5uDlf3jfNiD3YDzfEjCCcF2O9cB+8PRO//+J8RqfkE9xgR7vrE7DgREgtC65EDPQ3o7tUBHhZK74vwVRcdAE3uDxBCAqTnIQ/vE9TmbPshFhPy8fjAGY7zwOcUGqsJu+WyCmIM3+WuCCgcHObT8OAdlvn97VsZFvyZ4IMY3RRL3zEBshem6Eb+wyEg6obljCLSBNXiFhQQCPfc/BG+H8vclPQoImvwIfENIx3znduMIl8Sm9nsCeUVT96zBiYoh9+Z5qApwvwl4+QeawA21fEcOCBh1L77dSNd5cH3GiwF6HnZNCxZDJvW/RSHEBXUrBEGLMXUQethLvPxCechKtn1k8+dKCYd3M0ABkAhUtmgAXwzq9vG2nE08AL11pQhqAcFy20eqCzpyoPzBTAa5ZvuvzT+6ObM8TNWFiTKyBJEG1TNPw5DOBPP3d9GOpL2GNu1LqH7IsQGLIgp/sIb//UtH9et+a49tdrazdw94QvyyUkhghF5wt8cozlSw9To2Tzr5y/jTTsN7VfAZDlkIvm9gg3ZJwzJywfsQwHM3NJRRSb+ys2GMEYE0rmPLAM3gbl29YA74tcd7z5GxdxgwGlFRRepvO0doh0BvDwYnEYDvhTcY0nN7erVZD8j9Fu0ODwQMKeyRQXNNYbHeP53TtDLwMT6Tn0Ipr9fL4sPIrEPKg9F4rFb6VJJuNtF4rlM7OHnsq5KvSSpr30XnisCuI8QA1NWu7PNFFWp9kTHtkAd/n6pJzzaPrioQfqbRPzIgfJfV6zOErbEVk4VOLEgKx0di6pyJBtTj6wn29xWqeKM07dQJeoBpktN3DOEowsOADvQtvYFSV6Vuy++X19UAsG3Az/CCkagADk6Tq2gu+y0U5TNNeQqXq/UYac7XEEkEqO8I5csd6a6G5Vg7KlFy4pjpuxnw+BRVPU8mvRMIkTGmMABREuruKf45mf0vhGuw2eMEO6nJDrHGTKZpzKeXfuaCd2HYl3V99NpYtrdQpn6Xuo0yJU/GYY9QqX/D+tsSKo0us5uiflYsvFPRgMlkHBJCFX2j9ry3Vu/ve3oWW+SxeydxW37IGCYBjLJKrKUGClybAuYl8t+cE3gOsK/YxfqSIyvXstG6onNC2dPM6dxAZB33q18qCB4FgnvoLlKshM+iJ5C/GWOibDhNWwixifXL3R3z1OO+3A4M6uJsSZXPSeTZhwhejKY4LgHfUPugq/hYTf5A4EaW15ZBICh+6phe6xZ8P9/07SvlgAAAABR/0H/2gEqAOX9nQGYAKT8OgKAA037vf7xBG/92v3hBVr9l/nkBjkDHPh5AnkESPgOAlkJpvch+sIKm/6b+MYIgP/p8/kIBQmt8mL/tgoQ9w/+bg5X943zYg92A83xIwgnBdjvXAfvD0Tv//ifEan5BPcYEe76xOw4ERILQuuRAz0N6O7VAR4WSu+L8FUXHQBN7g8QQgKk5yEP7xPU5mz7IRYT8vH4wBmO88DnFBqrCbvlsgpiDN/lrggoHBzm0/DgHZb5/e1bGRb8meCDGN0US98xAbIXpuhG/sMhIOqG5Ywi0gTV4hYUEAj33PwRvh/L3JT0KCJr8CHxDSMd853bjCJfEpvZ7AnlFU/eswYmKIffmeagKcL8JePkHmsANtXxHDggYdS++3UjXeXB9xosBeh52TQsWQyb1v0UhxAV1KwRBizF1EHrYS7z8QnnISrZ9ZPPnSgmHdzNAAZAIVLZoAF8M6vbxtpxNPAC9daUIagHBcttHqgs6cqD8wUwGuWb7r80/ujmzPEzVhYkysgSRBtUzT8OQzgTz93fRjqS9hjbtS6h+yLEBiyIKf7CG//1LR/XrfmuPbXa2s3cPeEL8slJIYIRecLfHKM5UsPU6Nk86+cv4007De1XwGQ5ZCL5vYIN2ScMycsH7EMBzNzSUUUm/srNhjBGBNK5jywDN4G5dvWAO+LXHe8+RsXcYMBpRUUXqbztHaIdAbw8GJxGA74U3GNJze3q1WQ/I/RbtDg8EDCnskUFzTWGx3j+d07Qy8DE+k59CKa/Xy+LDyKxDyoPReKxW+lSSbjbReK5TOzh57KuSr0kqa99F54rAriPEANTVruzzRRVqfZEx7ZAHf5+qSc82j64qEH6m0T8yIHyX1eszhK2xFZOFTixICsdHYuqciQbU4+sJ9vcVqnijNO3UCXqAaZLTdwzhKMLDgA70Lb2BUlelbsvvl9fVALBtwM/wgpGoAA5Ok6toLvstFOUzTXkKl6v1GGnO1xBJBKjvCOXLHemuhuVYOypRcuKY6bsZ8PgUVT1PJr0TCJExpjAAURLq7in+OZn9L4RrsNnjBDupyQ6xxkymacynl37mgndh2Jd1ffTaWLa3UKZ+l7qNMiVPxmGPUKl/w/rbEiqNLrObon5WLLxT0YDJZBwSQhV9o/a8t1bv73t6FlvksXsncVt+yBgmAYyySqylBgpcmwLmJfLfnBN4DrCv2MX6kiMr17LRuqJzQtnTzOncQGQd96tfKggeBYJ76C5SrITPoieQvxljomw4TVsIsYn1y90d89TjvtwODOribEmVz0nk2YcIXoymOC4B31D7oKv4WE3+QOBGlteWQSAofuqYXusWfD/f9O0r5YAAAAAUf9B/9oBKgDl/Z0BmACk/DoCgANN+73+8QRv/dr94QVa/Zf55AY5Axz4eQJ5BEj4DgJZCab3IfrCCpv+m/jGCID/6fP5CAUJrfJi/7YKEPcP/m4OV/eN82IPdgPN8SMIJwXY71wH7w9E7//4nxGp+QT3GBHu+sTsOBESC0LrkQM9Deju1QEeFkrvi/BVFx0ATe4PEEICpOchD+8T1OZs+yEWE/Lx+MAZjvPA5xQaqwm75bIKYgzf5a4IKBwc5tPw4B2W+f3tWxkW/JnggxjdFEvfMQGyF6boRv7DISDqhuWMItIE1eIWFBAI99z8Eb4fy9yU9Cgia/Ah8Q0jHfOd24wiXxKb2ewJ5RVP3rMGJiiH35nmoCnC/CXj5B5rADbV8Rw4IGHUvvt1I13lwfcaLAXoedk0LFkMm9b9FIcQFdSsEQYsxdRB62Eu8/EJ5yEq2fWTz50oJh3czQAGQCFS2aABfDOr28bacTTwAvXWlCGoBwXLbR6oLOnKg/MFMBrlm+6/NP7o5szxM1YWJMrIEkQbVM0/DkM4E8/d30Y6kvYY27UuofsixAYsiCn+whv/9S0f1635rj212trN3D3hC/LJSSGCEXnC3xyjOVLD1OjZPOvnL+NNOw3tV8BkOWQi+b2CDdknDMnLB+xDAczc0lFFJv7KzYYwRgTSuY8sAzeBuXb1gDvi1x3vPkbF3GDAaUVFF6m87R2iHQG8PBicRgO+FNxjSc3t6tVkPyP0W7Q4PBAwp7JFBc01hsd4/ndO0MvAxPpOfQimv18viw8isQ8qD0XisVvpUkm420XiuUzs4eeyrkq9JKmvfReeKwK4jxADU1a7s80UVan2RMe2QB3+fqknPNo+uKhB+ptE/MiB8l9XrM4StsRWThU4sSArHR2LqnIkG1OPrCfb3Fap4ozTt1Al6gGmS03cM4SjCw4AO9C29gVJXpW7L75fX1QCwbcDP8IKRqAAOTpOraC77LRTlM015Cper9RhpztcQSQSo7wjlyx3problWDsqUXLimOm7GfD4FFU9Tya9EwiRMaYwAFES6u4p/jmZ/S+Ea7DZ4wQ7qckOscZMpmnMp5d+5oJ3YdiXdX302li2t1Cmfpe6jTIlT8Zhj1Cpf8P62xIqjS6zm6J+Viy8U9GAyWQcEkIVfaP2vLdW7+97ehZb5LF7J3FbfsgYJgGMskqspQYKXJsC5iXy35wTeA6wr9jF+pIjK9ey0bqic0LZ08zp3EBkHferXyoIHgWCe+guUqyEz6InkL8ZY6JsOE1bCLGJ9cvdHfPU477cDgzq4mxJlc9J5NmHCF6MpjguAd9Q+6Cr+FhN/kDgRpbXlkEgKH7qmF7rFnw/3/TtK+WAAAAAFH/Qf/aASoA5f2dAZgApPw6AoADTfu9/vEEb/3a/eEFWv2X+eQGOQMc+HkCeQRI+A4CWQmm9yH6wgqb/pv4xgiA/+nz+QgFCa3yYv+2ChD3D/5uDlf3jfNiD3YDzfEjCCcF2O9cB+8PRO//+J8RqfkE9xgR7vrE7DgREgtC65EDPQ3o7tUBHhZK74vwVRcdAE3uDxBCAqTnIQ/vE9TmbPshFhPy8fjAGY7zwOcUGqsJu+WyCmIM3+WuCCgcHObT8OAdlvn97VsZFvyZ4IMY3RRL3zEBshem6Eb+wyEg6obljCLSBNXiFhQQCPfc/BG+H8vclPQoImvwIfENIx3znduMIl8Sm9nsCeUVT96zBiYoh9+Z5qApwvwl4+QeawA21fEcOCBh1L77dSNd5cH3GiwF6HnZNCxZDJvW/RSHEBXUrBEGLMXUQethLvPxCechKtn1k8+dKCYd3M0ABkAhUtmgAXwzq9vG2nE08AL11pQhqAcFy20eqCzpyoPzBTAa5ZvuvzT+6ObM8TNWFiTKyBJEG1TNPw5DOBPP3d9GOpL2GNu1LqH7IsQGLIgp/sIb//UtH9et+a49tdrazdw94QvyyUkhghF5wt8cozlSw9To2Tzr5y/jTTsN7VfAZDlkIvm9gg3ZJwzJywfsQwHM3NJRRSb+ys2GMEYE0rmPLAM3gbl29YA74tcd7z5GxdxgwGlFRRepvO0doh0BvDwYnEYDvhTcY0nN7erVZD8j9Fu0ODwQMKeyRQXNNYbHeP53TtDLwMT6Tn0Ipr9fL4sPIrEPKg9F4rFb6VJJuNtF4rlM7OHnsq5KvSSpr30XnisCuI8QA1NWu7PNFFWp9kTHtkAd/n6pJzzaPrioQfqbRPzIgfJfV6zOErbEVk4VOLEgKx0di6pyJBtTj6wn29xWqeKM07dQJeoBpktN3DOEowsOADvQtvYFSV6Vuy++X19UAsG3Az/CCkagADk6Tq2gu+y0U5TNNeQqXq/UYac7XEEkEqO8I5csd6a6G5Vg7KlFy4pjpuxnw+BRVPU8mvRMIkTGmMABREuruKf45mf0vhGuw2eMEO6nJDrHGTKZpzKeXfuaCd2HYl3V99NpYtrdQpn6Xuo0yJU/GYY9QqX/D+tsSKo0us5uiflYsvFPRgMlkHBJCFX2j9ry3Vu/ve3oWW+SxeydxW37IGCYBjLJKrKUGClybAuYl8t+cE3gOsK/YxfqSIyvXstG6onNC2dPM6dxAZB33q18qCB4FgnvoLlKshM+iJ5C/GWOibDhNWwixifXL3R3z1OO+3A4M6uJsSZXPSeTZhwhejKY4LgHfUPugq/hYTf5A4EaW15ZBICh+6phe6xZ8P9/07Svlg==",shaders:{"effects/picture/antialias_coverage.frag":[0,5,476,479,711,717,46,47,717,723,10,11,723,725,257,258,725,732,712,713,732,734,46,47,734,736,10,11,736,741,10,11,741,743,10,11,743,748,10,11,748,762,226,227,762,783,10,11],"page/background.frag":[0,5,784,787,674,675,787,788],"page/copy.frag":[0,5,697,698,674,675,783,784],"page/decode.vert":[0,13,10,11,13,55,46,47,55,57,46,47,57,76,72,73,76,77,75,76,77,81,72,73,81,85,75,76,85,87,10,11,87,93,10,11,93,99,10,11,99,105,10,11,105,118,10,11,118,121,10,11,121,125,10,11,125,138,10,11,138,141,10,11,75,76,10,11,141,142,131,132,142,143,75,76,143,146,10,11,75,76,146,157,46,47,157,174,125,126,174,178,10,11,75,76,10,11,178,179,125,126,174,175,179,184,137,138,10,11,75,76,184,186,10,11,186,188,10,11,188,192,10,11,192,193,163,164,193,194,125,126,194,196,154,156,196,198,10,11,75,76,198,199,10,11,199,203,10,11,203,209,10,11,209,212,10,11,212,215,10,11,215,219,10,11,219,243,10,11,243,254,10,11,254,257,10,11],"page/far_tiles.frag":[0,5,368,369,604,606,226,227,606,611,10,11],"page/image.frag":[0,5,837,839,821,822,674,675,226,227,839,842,10,11],"page/image.vert":[0,5,792,793,831,835,226,227,835,837,10,11],"page/none.frag":[0,5,257,259],"page/resolve.frag":[0,5,461,462,14,15,362,368,10,11,617,628,10,11,628,640,10,11,10,11,640,649,10,11,649,650,10,11,650,656,642,643,656,660,10,11,660,661,10,11,594,595,604,605,661,662,390,391,662,675,226,227,675,690,10,11,690,695,10,11,695,697,10,11],"page/screen.vert":[0,5,592,593],"page/segment.frag":[0,5,259,260,460,461,262,268,10,11,461,462,34,47,294,297,10,11,297,298,462,469,46,47,469,476,10,11,298,305,46,47,305,308,10,11,75,76,476,485,10,11,379,380,485,490,10,11,75,76,490,501,10,11,75,76,356,357,501,502,14,15,203,209,10,11,209,212,10,11,502,506,10,11,506,514,46,47,514,526,10,11,526,529,10,11,529,530,10,11,530,531,518,519,531,542,10,11,542,547,75,76,547,548,369,371,75,76,371,379,75,76,379,381,298,299,381,383,75,76,75,76,383,384,548,549,400,401,549,555,10,11,75,76,555,556,506,507,556,557,75,76,557,560,400,401,560,563,75,76,377,378,563,564,75,76,564,565,10,11,379,380,298,299,565,566,313,314,566,569,10,11,350,351,10,11,75,76,226,227,569,574,298,299,574,575,75,76,575,577,10,11,83,84,226,227,577,589,10,11,589,592,10,11,75,76],"page/segment.vert":[0,5,259,268,10,11,34,47,268,272,10,11,272,274,120,121,10,11,274,276,120,121,10,11,276,278,10,11,278,282,10,11,282,293,10,11,293,294,10,11,294,297,10,11,297,305,46,47,305,308,10,11,308,312,10,11,312,319,10,11,293,294,10,11,319,320,83,84,320,322,75,76,322,327,46,47,327,336,46,47,336,342,10,11,342,351,10,11,351,354,10,11,354,356,10,11,356,362,10,11,14,15,362,368,10,11,368,371,75,76,371,379,75,76,379,381,298,299,381,383,75,76,75,76,57,58,383,386,379,380,386,387,75,76,387,393,75,76,393,398,10,11,75,76,377,378,398,400,75,76,400,406,10,11,75,76,406,415,10,11,226,227,415,423,391,392,423,424,75,76,424,426,393,394,426,429,75,76,429,430,400,401,430,431,75,76,431,440,377,378,440,441,75,76,379,380,441,442,298,299,442,444,75,76,444,449,83,84,449,451,446,447,451,456,137,138,10,11,456,460,75,76,10,11],"page/surface.frag":[0,5,617,621,623,624,806,808,632,634,808,811,10,11,811,812,10,11,650,656,642,643,656,660,10,11,660,661,10,11,812,822,665,667,822,824,674,675,226,227,824,831,10,11],"page/surface.vert":[0,5,788,800,226,227,800,806,10,11],"page/tile_mask.frag":[0,5,593,596,226,227,596,603,10,11,603,604,10,11],"page/tiles.vert":[0,5,593,594,611,613,226,227,613,617,10,11],"page/visible_edges.frag":[0,5,265,268,10,11,476,477,478,479,594,595,604,605,697,705,10,11,226,227,705,711,10,11]}};var kt=Q.lines.split(`
-`);function Bt(o){let e=[];for(let n=0;n<o.length;n+=2)e.push(...kt.slice(o[n],o[n+1]));return e.join(`
+colour.a*=opacity;`,page_bits:14,rotation_scales:[39380907423947065e-23,5413425014921813e-22,7445069627465273e-22,1023472805172787e-21,14070004681343562e-22,19338988295203308e-22,2657444838405354e-21,3649580548881204e-21,5006992068956606e-21,6855771061964333e-21,9352394044981338e-21,1266809158551041e-20,1692779733275529e-20,22030990294297226e-21,27206533559365198e-21,300810752378311e-19],rotations:"AAAAAFH/Qf/aASoA5f2dAZgApPw6AoADTfu9/vEEb/3a/eEFWv2X+eQGOQMc+HkCeQRI+A4CWQmm9yH6wgqb/pv4xgiA/+nz+QgFCa3yYv+2ChD3D/5uDlf3jfNiD3YDzfEjCCcF2O9cB+8PRO//+J8RqfkE9xgR7vrE7DgREgtC65EDPQ3o7tUBHhZK74vwVRcdAE3uDxBCAqTnIQ/vE9TmbPshFhPy8fjAGY7zwOcUGqsJu+WyCmIM3+WuCCgcHObT8OAdlvn97VsZFvyZ4IMY3RRL3zEBshem6Eb+wyEg6obljCLSBNXiFhQQCPfc/BG+H8vclPQoImvwIfENIx3znduMIl8Sm9nsCeUVT96zBiYoh9+Z5qApwvwl4+QeawA21fEcOCBh1L77dSNd5cH3GiwF6HnZNCxZDJvW/RSHEBXUrBEGLMXUQethLvPxCechKtn1k8+dKCYd3M0ABkAhUtmgAXwzq9vG2nE08AL11pQhqAcFy20eqCzpyoPzBTAa5ZvuvzT+6ObM8TNWFiTKyBJEG1TNPw5DOBPP3d9GOpL2GNu1LqH7IsQGLIgp/sIb//UtH9et+a49tdrazdw94QvyyUkhghF5wt8cozlSw9To2Tzr5y/jTTsN7VfAZDlkIvm9gg3ZJwzJywfsQwHM3NJRRSb+ys2GMEYE0rmPLAM3gbl29YA74tcd7z5GxdxgwGlFRRepvO0doh0BvDwYnEYDvhTcY0nN7erVZD8j9Fu0ODwQMKeyRQXNNYbHeP53TtDLwMT6Tn0Ipr9fL4sPIrEPKg9F4rFb6VJJuNtF4rlM7OHnsq5KvSSpr30XnisCuI8QA1NWu7PNFFWp9kTHtkAd/n6pJzzaPrioQfqbRPzIgfJfV6zOErbEVk4VOLEgKx0di6pyJBtTj6wn29xWqeKM07dQJeoBpktN3DOEowsOADvQtvYFSV6Vuy++X19UAsG3Az/CCkagADk6Tq2gu+y0U5TNNeQqXq/UYac7XEEkEqO8I5csd6a6G5Vg7KlFy4pjpuxnw+BRVPU8mvRMIkTGmMABREuruKf45mf0vhGuw2eMEO6nJDrHGTKZpzKeXfuaCd2HYl3V99NpYtrdQpn6Xuo0yJU/GYY9QqX/D+tsSKo0us5uiflYsvFPRgMlkHBJCFX2j9ry3Vu/ve3oWW+SxeydxW37IGCYBjLJKrKUGClybAuYl8t+cE3gOsK/YxfqSIyvXstG6onNC2dPM6dxAZB33q18qCB4FgnvoLlKshM+iJ5C/GWOibDhNWwixifXL3R3z1OO+3A4M6uJsSZXPSeTZhwhejKY4LgHfUPugq/hYTf5A4EaW15ZBICh+6phe6xZ8P9/07SvlgAAAABR/0H/2gEqAOX9nQGYAKT8OgKAA037vf7xBG/92v3hBVr9l/nkBjkDHPh5AnkESPgOAlkJpvch+sIKm/6b+MYIgP/p8/kIBQmt8mL/tgoQ9w/+bg5X943zYg92A83xIwgnBdjvXAfvD0Tv//ifEan5BPcYEe76xOw4ERILQuuRAz0N6O7VAR4WSu+L8FUXHQBN7g8QQgKk5yEP7xPU5mz7IRYT8vH4wBmO88DnFBqrCbvlsgpiDN/lrggoHBzm0/DgHZb5/e1bGRb8meCDGN0US98xAbIXpuhG/sMhIOqG5Ywi0gTV4hYUEAj33PwRvh/L3JT0KCJr8CHxDSMd853bjCJfEpvZ7AnlFU/eswYmKIffmeagKcL8JePkHmsANtXxHDggYdS++3UjXeXB9xosBeh52TQsWQyb1v0UhxAV1KwRBizF1EHrYS7z8QnnISrZ9ZPPnSgmHdzNAAZAIVLZoAF8M6vbxtpxNPAC9daUIagHBcttHqcs6cqD8wUwGuWb7r80/ujmzPEzVhYkysgSRBtUzT8OQzgTz93fRjqS9hjbtS6h+yLEBiyIKf7CG//1LR/XrfmuPbXa2s3cPeEL8slJIYIRecLfHKM5UsPU6Nk86+cv4007De1XwGQ5ZCL5vYIN2ScMycsH7EMBzNzSUUUm/srNhjBGBNK5jywDN4G5dvWAO+LXHe8+RsXcYMBpRUUXqbztHaIdAbw8GJxGA74U3GNJze3q1WQ/I/RbtDg8EDCnskUFzTWGx3j+d07Qy8DE+k59CKa/Xy+LDyKxDyoPReKxW+lSSbjbRuK5TOzh57KuSr0kqa99F54rAriPEANTVruzzRRVqfZEx7ZAHf5+qSc82j64qEH6m0T8yIHyX1eszhK2xFZOFTixICsdHYuqciQbU4+sJ9vcVqnijNO3UCXqAaZLTdwzhKMLDgA70Lb2BUlelbsvvl9fVALBtwM/wgpGoAA5Ok6toLvstFOUzTXkKl6v1GGnO1xBJBKjvCOXLHemuhuVYOypRcuKY6bsZ8PgUVT1PJr0TCJExpjAAURLq7in+OZn9L4RrsNnjBDupyQ6xxkymacynl37mgndh2Jd1ffTaWLa3UKZ+l7qNMiVPxmGPUKl/w/rbEiqNLrObon5WLLxT0YDJZBwSQhV9o/a8t1bv73t6FlvksXsncVt+yBgmAYyySqylBgpcmwLmJfLfnBN4DrCv2MX6kiMr17LRuqJzQtnTzOncQGQd96tfKggeBYJ76C5SrITPoieQvxljomw4TVsIsYn1y90d89TjvtwODOribEmVz0nk2YcIXoymOC4B31D7oKv4WE3+QOBGlteWQSAofuqYXusWfD/f9O0r5YAAAAAUf9B/9oBKgDl/Z0BmACk/DoCgANN+73+8QRv/dr94QVa/Zf55AY5Axz4eQJ5BEj4DgJZCab3IfrCCpv+m/jGCID/6fP5CAUJrfJi/7YKEPcP/m4OV/eN82IPdgPN8SMIJwXY71wH7w9E7//4nxGp+QT3GBHu+sTsOBESC0LrkQM9Deju1QEeFkrvi/BVFx0ATe4PEEICpOchD+8T1OZs+yEWE/Lx+MAZjvPA5xQaqwm75bIKYgzf5a4IKBwc5tPw4B2W+f3tWxkW/JnggxjdFEvfMQGyF6boRv7DISDqhuWMItIE1eIWFBAI99z8Eb4fy9yU9Cgia/Ah8Q0jHfOd24wiXxKb2ewJ5RVP3rMGJiiH35nmoCnC/CXj5B5rADbV8Rw4IGHUvvt1I13lwfcaLAXoedk0LFkMm9b9FIcQFdSsEQYsxdRB62Eu8/EJ5yEq2fWTz50oJh3czQAGQCFS2aABfDOr28bacTTwAvXWlCGoBwXLbR6oLOnKg/MFMBrlm+6/NP7o5szxM1YWJMrIEkQbVM0/DkM4E8/d30Y6kvYY27UuofsixAYsiCn+whv/9S0f1635rj212trN3D3hC/LJSSGCEXnC3xyjOVLD1OjZPOvnL+NNOw3tV8BkOWQi+b2CDdknDMnLB+xDAczc0lFFJv7KzYYwRgTSuY8sAzeBuXb1gDvi1x3vPkbF3GDAaUVFF6m87R2iHQG8PBicRgO+FNxjSc3t6tVkPyP0W7Q4PBAwp7JFBc01hsd4/ndO0MvAxPpOfQimv18viw8isQ8qD0XisVvpUkm420XiuUzs4eeyrkq9JKmvfReeKwK4jxADU1a7s80UVan2RMe2QB3+fqknPNo+uKhB+ptE/MiB8l9XrM4StsRWThU4sSArHR2LqnIkG1OPrCfb3Fap4ozTt1Al6gGmS03cM4SjCw4AO9C29gVJXpW7L75fX1QCwbcDP8IKRqAAOTpOraC77LRTlM015Cper9RhpztcQSQSo7wjlyx3problWDsqUXLimOm7GfD4FFU9Tya9EwiRMaYwAFES6u4p/jmZ/S+Ea7DZ4wQ7qckOscZMpmnMp5d+5oJ3YdiXdX302li2t1Cmfpe6jTIlT8Zhj1Cpf8P62xIqjS6zm6J+Viy8U9GAyWQcEkIVfaP2vLdW7+97ehZb5LF7J3FbfsgYJgGMskqspQYKXJsC5iXy35wTeA6wr9jF+pIjK9ey0bqic0LZ08zp3EBkHferXyoIHgWCe+guUqyEz6InkL8ZY6JsOE1bCLGJ9cvdHfPU477cDgzq4mxJlc9J5NmHCF6MpjguAd9Q+6Cr+FhN/kDgRpbXlkEgKH7qmF7rFnw/3/TtK+WAAAAAFH/Qf/aASoA5f2dAZgApPw6AoADTfu9/vEEb/3a/eEFWv2X+eQGOQMc+HkCeQRI+A4CWQmm9yH6wgqb/pv4xgiA/+nz+QgFCa3yYv+2ChD3D/5uDlf3jfNiD3YDzfEjCCcF2O9cB+8PRO//+J8RqfkE9xgR7vrE7DgREgtC65EDPQ3o7tUBHhZK74vwVRcdAE3uDxBCAqTnIQ/vE9TmbPshFhPy8fjAGY7zwOcUGqsJu+WyCmIM3+WuCCgcHObT8OAdlvn97VsZFvyZ4IMY3RRL3zEBshem6Eb+wyEg6obljCLSBNXiFhQQCPfc/BG+H8vclPQoImvwIfENIx3znduMIl8Sm9nsCeUVT96zBiYoh9+Z5qApwvwl4+QeawA21fEcOCBh1L77dSNd5cH3GiwF6HnZNCxZDJvW/RSHEBXUrBEGLMXUQethLvPxCechKtn1k8+dKCYd3M0ABkAhUtmgAXwzq9vG2nE08AL11pQhqAcFy20eqCzpyoPzBTAa5ZvuvzT+6ObM8TNWFiTKyBJEG1TNPw5DOBPP3d9GOpL2GNu1LqH7IsQGLIgp/sIb//UtH9et+a49tdrazdw94QvyyUkhghF5wt8cozlSw9To2Tzr5y/jTTsN7VfAZDlkIvm9gg3ZJwzJywfsQwHM3NJRRSb+ys2GMEYE0rmPLAM3gbl29YA74tcd7z5GxdxgwGlFRRepvO0doh0BvDwYnEYDvhTcY0nN7erVZD8j9Fu0ODwQMKeyRQXNNYbHeP53TtDLwMT6Tn0Ipr9fL4sPIrEPKg9F4rFb6VJJuNtF4rlM7OHnsq5KvSSpr30XnisCuI8QA1NWu7PNFFWp9kTHtkAd/n6pJzzaPrioQfqbRPzIgfJfV6zOErbEVk4VOLEgKx0di6pyJBtTj6wn29xWqeKM07dQJeoBpktN3DOEowsOADvQtvYFSV6Vuy++X19UAsG3Az/CCkagADk6Tq2gu+y0U5TNNeQqXq/UYac7XEEkEqO8I5csd6a6G5Vg7KlFy4pjpuxnw+BRVPU8mvRMIkTGmMABREuruKf45mf0vhGuw2eMEO6nJDrHGTKZpzKeXfuaCd2HYl3V99NpYtrdQpn6Xuo0yJU/GYY9QqX/D+tsSKo0us5uiflYsvFPRgMlkHBJCFX2j9ry3Vu/ve3oWW+SxeydxW37IGCYBjLJKrKUGClybAuYl8t+cE3gOsK/YxfqSIyvXstG6onNC2dPM6dxAZB33q18qCB4FgnvoLlKshM+iJ5C/GWOibDhNWwixifXL3R3z1OO+3A4M6uJsSZXPSeTZhwhejKY4LgHfUPugq/hYTf5A4EaW15ZBICh+6phe6xZ8P9/07SvlgAAAABR/0H/2gEqAOX9nQGYAKT8OgKAA037vf7xBG/92v3hBVr9l/nkBjkDHPh5AnkESPgOAlkJpvch+sIKm/6b+MYIgP/p8/kIBQmt8mL/tgoQ9w/+bg5X943zYg92A83xIwgnBdjvXAfvD0Tv//ifEan5BPcYEe76xOw4ERILQuuRAz0N6O7VAR4WSu+L8FUXHQBN7g8QQgKk5yEP7xPU5mz7IRYT8vH4wBmO88DnFBqrCbvlsgpiDN/lrggoHBzm0/DgHZb5/e1bGRb8meCDGN0US98xAbIXpuhG/sMhIOqG5Ywi0gTV4hYUEAj33PwRvh/L3JT0KCJr8CHxDSMd853bjCJfEpvZ7AnlFU/eswYmKIffmeagKcL8JePkHmsANtXxHDggYdS++3UjXeXB9xosBeh52TQsWQyb1v0UhxAV1KwRBizF1EHrYS7z8QnnISrZ9ZPPnSgmHdzNAAZAIVLZoAF8M6vbxtpxNPAC9daUIagHBcttHqgs6cqD8wUwGuWb7r80/ujmzPEzVhYkysgSRBtUzT8OQzgTz93fRjqS9hjbtS6h+yLEBiyIKf7CG//1LR/XrfmuPbXa2s3cPeEL8slJIYIRecLfHKM5UsPU6Nk86+cv4007De1XwGQ5ZCL5vYIN2ScMycsH7EMBzNzSUUUm/srNhjBGBNK5jywDN4G5dvWAO+LXHe8+RsXcYMBpRUUXqbztHaIdAbw8GJxGA74U3GNJze3q1WQ/I/RbtDg8EDCnskUFzTWGx3j+d07Qy8DE+k59CKa/Xy+LDyKxDyoPReKxW+lSSbjbReK5TOzh57KuSr0kqa99F54rAriPEANTVruzzRRVqfZEx7ZAHf5+qSc82j64qEH6m0T8yIHyX1eszhK2xFZOFTixICsdHYuqciQbU4+sJ9vcVqnijNO3UCXqAaZLTdwzhKMLDgA70Lb2BUlelbsvvl9fVALBtwM/wgpGoAA5Ok6toLvstFOUzTXkKl6v1GGnO1xBJBKjvCOXLHemuhuVYOypRcuKY6bsZ8PgUVT1PJr0TCJExpjAAURLq7in+OZn9L4RrsNnjBDupyQ6xxkymacynl37mgndh2Jd1ffTaWLa3UKZ+l7qNMiVPxmGPUKl/w/rbEiqNLrObon5WLLxT0YDJZBwSQhV9o/a8t1bv73t6FlvksXsncVt+yBgmAYyySqylBgpcmwLmJfLfnBN4DrCv2MX6kiMr17LRuqJzQtnTzOncQGQd96tfKggeBYJ76C5SrITPoieQvxljomw4TVsIsYn1y90d89TjvtwODOribEmVz0nk2YcIXoymOC4B31D7oKv4WE3+QOBGlteWQSAofuqYXusWfD/f9O0r5YAAAAAUf9B/9oBKgDl/Z0BmACk/DoCgANN+73+8QRv/dr94QVa/Zf55AY5Axz4eQJ5BEj4DgJZCab3IfrCCpv+m/jGCID/6fP5CAUJrfJi/7YKEPcP/m4OV/eN82IPdgPN8SMIJwXY71wH7w9E7//4nxGp+QT3GBHu+sTsOBESC0LrkQM9Deju1QEeFkrvi/BVFx0ATe4PEEICpOchD+8T1OZs+yEWE/Lx+MAZjvPA5xQaqwm75bIKYgzf5a4IKBwc5tPw4B2W+f3tWxkW/JnggxjdFEvfMQGyF6boRv7DISDqhuWMItIE1eIWFBAI99z8Eb4fy9yU9Cgia/Ah8Q0jHfOd24wiXxKb2ewJ5RVP3rMGJiiH35nmoCnC/CXj5B5rADbV8Rw4IGHUvvt1I13lwfcaLAXoedk0LFkMm9b9FIcQFdSsEQYsxdRB62Eu8/EJ5yEq2fWTz50oJh3czQAGQCFS2aABfDOr28bacTTwAvXWlCGoBwXLbR6nLOnKg/MFMBrlm+6/NP7o5szxM1YWJMrIEkQbVM0/DkM4E8/d30Y6kvYY27UuofsixAYsiCn+whv/9S0f1635rj212trN3D3hC/LJSSGCEXnC3xyjOVLD1OjZPOvnL+NNOw3tV8BkOWQi+b2CDdknDMnLB+xDAczc0lFFJv7KzYYwRgTSuY8sAzeBuXb1gDvi1x3vPkbF3GDAaUVFF6m87R2iHQG8PBicRgO+FNxjSc3t6tVkPyP0W7Q4PBAwp7JFBc01hsd4/ndO0MvAxPpOfQimv18viw8isQ8qD0XisVvpUkm420biuUzs4eeyrkq9JKmvfReeKwK4jxADU1a7s80UVan2RMe2QB3+fqknPNo+uKhB+ptE/MiB8l9XrM4StsRWThU4sSArHR2LqnIkG1OPrCfb3Fap4ozTt1Al6gGmS03cM4SjCw4AO9C29gVJXpW7L75fX1QCwbcDP8IKRqAAOTpOraC77LRTlM015Cper9RhpztcQSQSo7wjlyx3problWDsqUXLimOm7GfD4FFU9Tya9EwiRMaYwAFES6u4p/jmZ/S+Ea7DZ4wQ7qckOscZMpmnMp5d+5oJ3YdiXdX302li2t1Cmfpe6jTIlT8Zhj1Cpf8P62xIqjS6zm6J+Viy8U9GAyWQcEkIVfaP2vLdW7+97ehZb5LF7J3FbfsgYJgGMskqspQYKXJsC5iXy35wTeA6wr9jF+pIjK9ey0bqic0LZ08zp3EBkHferXyoIHgWCe+guUqyEz6InkL8ZY6JsOE1bCLGJ9cvdHfPU477cDgzq4mxJlc9J5NmHCF6MpjguAd9Q+6Cr+FhN/kDgRpbXlkEgKH7qmF7rFnw/3/TtK+WAAAAAFH/Qf/aASoA5f2dAZgApPw6AoADTfu9/vEEb/3a/eEFWv2X+eQGOQMc+HkCeQRI+A4CWQmm9yH6wgqb/pv4xgiA/+nz+QgFCa3yYv+2ChD3D/5uDlf3jfNiD3YDzfEjCCcF2O9cB+8PRO//+J8RqfkE9xgR7vrE7DgREgtC65EDPQ3o7tUBHhZK74vwVRcdAE3uDxBCAqTnIQ/vE9TmbPshFhPy8fjAGY7zwOcUGqsJu+WyCmIM3+WuCCgcHObT8OAdlvn97VsZFvyZ4IMY3RRL3zEBshem6Eb+wyEg6obljCLSBNXiFhQQCPfc/BG+H8vclPQoImvwIfENIx3znduMIl8Sm9nsCeUVT96zBiYoh9+Z5qApwvwl4+QeawA21fEcOCBh1L77dSNd5cH3GiwF6HnZNCxZDJvW/RSHEBXUrBEGLMXUQethLvPxCechKtn1k8+dKCYd3M0ABkAhUtmgAXwzq9vG2nE08AL11pQhqAcFy20eqCzpyoPzBTAa5ZvuvzT+6ObM8TNWFiTKyBJEG1TNPw5DOBPP3d9GOpL2GNu1LqH7IsQGLIgp/sIb//UtH9et+a49tdrazdw94QvyyUkhghF5wt8cozlSw9To2Tzr5y/jTTsN7VfAZDlkIvm9gg3ZJwzJywfsQwHM3NJRRSb+ys2GMEYE0rmPLAM3gbl29YA74tcd7z5GxdxgwGlFRRepvO0doh0BvDwYnEYDvhTcY0nN7erVZD8j9Fu0ODwQMKeyRQXNNYbHeP53TtDLwMT6Tn0Ipr9fL4sPIrEPKg9F4rFb6VJJuNtF4rlM7OHnsq5KvSSpr30XnisCuI8QA1NWu7PNFFWp9kTHtkAd/n6pJzzaPrioQfqbRPzIgfJfV6zOErbEVk4VOLEgKx0di6pyJBtTj6wn29xWqeKM07dQJeoBpktN3DOEowsOADvQtvYFSV6Vuy++X19UAsG3Az/CCkagADk6Tq2gu+y0U5TNNeQqXq/UYac7XEEkEqO8I5csd6a6G5Vg7KlFy4pjpuxnw+BRVPU8mvRMIkTGmMABREuruKf45mf0vhGuw2eMEO6nJDrHGTKZpzKeXfuaCd2HYl3V99NpYtrdQpn6Xuo0yJU/GYY9QqX/D+tsSKo0us5uiflYsvFPRgMlkHBJCFX2j9ry3Vu/ve3oWW+SxeydxW37IGCYBjLJKrKUGClybAuYl8t+cE3gOsK/YxfqSIyvXstG6onNC2dPM6dxAZB33q18qCB4FgnvoLlKshM+iJ5C/GWOibDhNWwixifXL3R3z1OO+3A4M6uJsSZXPSeTZhwhejKY4LgHfUPugq/hYTf5A4EaW15ZBICh+6phe6xZ8P9/07SvlgAAAABR/0H/2gEqAOX9nQGYAKT8OgKAA037vf7xBG/92v3hBVr9l/nkBjkDHPh5AnkESPgOAlkJpvch+sIKm/6b+MYIgP/p8/kIBQmt8mL/tgoQ9w/+bg5X943zYg92A83xIwgnBdjvXAfvD0Tv//ifEan5BPcYEe76xOw4ERILQuuRAz0N6O7VAR4WSu+L8FUXHQBN7g8QQgKk5yEP7xPU5mz7IRYT8vH4wBmO88DnFBqrCbvlsgpiDN/lrggoHBzm0/DgHZb5/e1bGRb8meCDGN0US98xAbIXpuhG/sMhIOqG5Ywi0gTV4hYUEAj33PwRvh/L3JT0KCJr8CHxDSMd853bjCJfEpvZ7AnlFU/eswYmKIffmeagKcL8JePkHmsANtXxHDggYdS++3UjXeXB9xosBeh52TQsWQyb1v0UhxAV1KwRBizF1EHrYS7z8QnnISrZ9ZPPnSgmHdzNAAZAIVLZoAF8M6vbxtpxNPAC9daUIagHBcttHqcs6cqD8wUwGuWb7r80/ujmzPEzVhYkysgSRBtUzT8OQzgTz93fRjqS9hjbtS6h+yLEBiyIKf7CG//1LR/XrfmuPbXa2s3cPeEL8slJIYIRecLfHKM5UsPU6Nk86+cv4007De1XwGQ5ZCL5vYIN2ScMycsH7EMBzNzSUUUm/srNhjBGBNK5jywDN4G5dvWAO+LXHe8+RsXcYMBpRUUXqbztHaIdAbw8GJxGA74U3GNJze3q1WQ/I/RbtDg8EDCnskUFzTWGx3j+d07Qy8DE+k59CKa/Xy+LDyKxDyoPReKxW+lSSbjbReK5TOzh57KuSr0kqa99F54rAriPEANTVruzzRRVqfZEx7ZAHf5+qSc82j64qEH6m0T8yIHyX1eszhK2xFZOFTixICsdHYuqciQbU4+sJ9vcVqnijNO3UCXqAaZLTdwzhKMLDgA70Lb2BUlelbsvvl9fVALBtwM/wgpGoAA5Ok6toLvstFOUzTXkKl6v1GGnO1xBJBKjvCOXLHemuhuVYOypRcuKY6bsZ8PgUVT1PJr0TCJExpjAAURLq7in+OZn9L4RrsNnjBDupyQ6xxkymacynl37mgndh2Jd1ffTaWLa3UKZ+l7qNMiVPxmGPUKl/w/rbEiqNLrObon5WLLxT0YDJZBwSQhV9o/a8t1bv73t6FlvksXsncVt+yBgmAYyySqylBgpcmwLmJfLfnBN4DrCv2MX6kiMr17LRuqJzQtnTzOncQGQd96tfKggeBYJ76C5SrITPoieQvxljomw4TVsIsYn1y90d89TjvtwODOribEmVz0nk2YcIXoymOC4B31D7oKv4WE3+QOBGlteWQSAofuqYXusWfD/f9O0r5YAAAAAUf9B/9oBKgDl/Z0BmACk/DoCgANN+73+8QRv/dr94QVa/Zf55AY5Axz4eQJ5BEj4DgJZCab3IfrCCpv+m/jGCID/6fP5CAUJrfJi/7YKEPcP/m4OV/eN82IPdgPN8SMIJwXY71wH7w9E7//4nxGp+QT3GBHu+sTsOBESC0LrkQM9Deju1QEeFkrvi/BVFx0ATe4PEEICpOchD+8T1OZs+yEWE/Lx+MAZjvPA5xQaqwm75bIKYgzf5a4IKBwc5tPw4B2W+f3tWxkW/JnggxjdFEvfMQGyF6boRv7DISDqhuWMItIE1eIWFBAI99z8Eb4fy9yU9Cgia/Ah8Q0jHfOd24wiXxKb2ewJ5RVP3rMGJiiH35nmoCnC/CXj5B5rADbV8Rw4IGHUvvt1I13lwfcaLAXoedk0LFkMm9b9FIcQFdSsEQYsxdRB62Eu8/EJ5yEq2fWTz50oJh3czQAGQCFS2aABfDOr28bacTTwAvXWlCGoBwXLbR6oLOnKg/MFMBrlm+6/NP7o5szxM1YWJMrIEkQbVM0/DkM4E8/d30Y6kvYY27UuofsixAYsiCn+whv/9S0f1635rj212trN3D3hC/LJSSGCEXnC3xyjOVLD1OjZPOvnL+NNOw3tV8BkOWQi+b2CDdknDMnLB+xDAczc0lFFJv7KzYYwRgTSuY8sAzeBuXb1gDvi1x3vPkbF3GDAaUVFF6m87R2iHQG8PBicRgO+FNxjSc3t6tVkPyP0W7Q4PBAwp7JFBc01hsd4/ndO0MvAxPpOfQimv18viw8isQ8qD0XisVvpUkm420XiuUzs4eeyrkq9JKmvfReeKwK4jxADU1a7s80UVan2RMe2QB3+fqknPNo+uKhB+ptE/MiB8l9XrM4StsRWThU4sSArHR2LqnIkG1OPrCfb3Fap4ozTt1Al6gGmS03cM4SjCw4AO9C29gVJXpW7L75fX1QCwbcDP8IKRqAAOTpOraC77LRTlM015Cper9RhpztcQSQSo7wjlyx3problWDsqUXLimOm7GfD4FFU9Tya9EwiRMaYwAFES6u4p/jmZ/S+Ea7DZ4wQ7qckOscZMpmnMp5d+5oJ3YdiXdX302li2t1Cmfpe6jTIlT8Zhj1Cpf8P62xIqjS6zm6J+Viy8U9GAyWQcEkIVfaP2vLdW7+97ehZb5LF7J3FbfsgYJgGMskqspQYKXJsC5iXy35wTeA6wr9jF+pIjK9ey0bqic0LZ08zp3EBkHferXyoIHgWCe+guUqyEz6InkL8ZY6JsOE1bCLGJ9cvdHfPU477cDgzq4mxJlc9J5NmHCF6MpjguAd9Q+6Cr+FhN/kDgRpbXlkEgKH7qmF7rFnw/3/TtK+WAAAAAFH/Qf/aASoA5f2dAZgApPw6AoADTfu9/vEEb/3a/eEFWv2X+eQGOQMc+HkCeQRI+A4CWQmm9yH6wgqb/pv4xgiA/+nz+QgFCa3yYv+2ChD3D/5uDlf3jfNiD3YDzfEjCCcF2O9cB+8PRO//+J8RqfkE9xgR7vrE7DgREgtC65EDPQ3o7tUBHhZK74vwVRcdAE3uDxBCAqTnIQ/vE9TmbPshFhPy8fjAGY7zwOcUGqsJu+WyCmIM3+WuCCgcHObT8OAdlvn97VsZFvyZ4IMY3RRL3zEBshem6Eb+wyEg6obljCLSBNXiFhQQCPfc/BG+H8vclPQoImvwIfENIx3znduMIl8Sm9nsCeUVT96zBiYoh9+Z5qApwvwl4+QeawA21fEcOCBh1L77dSNd5cH3GiwF6HnZNCxZDJvW/RSHEBXUrBEGLMXUQethLvPxCechKtn1k8+dKCYd3M0ABkAhUtmgAXwzq9vG2nE08AL11pQhqAcFy20eqCzpyoPzBTAa5ZvuvzT+6ObM8TNWFiTKyBJEG1TNPw5DOBPP3d9GOpL2GNu1LqH7IsQGLIgp/sIb//UtH9et+a49tdrazdw94QvyyUkhghF5wt8cozlSw9To2Tzr5y/jTTsN7VfAZDlkIvm9gg3ZJwzJywfsQwHM3NJRRSb+ys2GMEYE0rmPLAM3gbl29YA74tcd7z5GxdxgwGlFRRepvO0doh0BvDwYnEYDvhTcY0nN7erVZD8j9Fu0ODwQMKeyRQXNNYbHeP53TtDLwMT6Tn0Ipr9fL4sPIrEPKg9F4rFb6VJJuNtF4rlM7OHnsq5KvSSpr30XnisCuI8QA1NWu7PNFFWp9kTHtkAd/n6pJzzaPrioQfqbRPzIgfJfV6zOErbEVk4VOLEgKx0di6pyJBtTj6wn29xWqeKM07dQJeoBpktN3DOEowsOADvQtvYFSV6Vuy++X19UAsG3Az/CCkagADk6Tq2gu+y0U5TNNeQqXq/UYac7XEEkEqO8I5csd6a6G5Vg7KlFy4pjpuxnw+BRVPU8mvRMIkTGmMABREuruKf45mf0vhGuw2eMEO6nJDrHGTKZpzKeXfuaCd2HYl3V99NpYtrdQpn6Xuo0yJU/GYY9QqX/D+tsSKo0us5uiflYsvFPRgMlkHBJCFX2j9ry3Vu/ve3oWW+SxeydxW37IGCYBjLJKrKUGClybAuYl8t+cE3gOsK/YxfqSIyvXstG6onNC2dPM6dxAZB33q18qCB4FgnvoLlKshM+iJ5C/GWOibDhNWwixifXL3R3z1OO+3A4M6uJsSZXPSeTZhwhejKY4LgHfUPugq/hYTf5A4EaW15ZBICh+6phe6xZ8P9/07SvlgAAAABR/0H/2gEqAOX9nQGYAKT8OgKAA037vf7xBG/92v3hBVr9l/nkBjkDHPh5AnkESPgOAlkJpvch+sIKm/6b+MYIgP/p8/kIBQmt8mL/tgoQ9w/+bg5X943zYg92A83xIwgnBdjvXAfvD0Tv//ifEan5BPcYEe76xOw4ERILQuuRAz0N6O7VAR4WSu+L8FUXHQBN7g8QQgKk5yEP7xPU5mz7IRYT8vH4wBmO88DnFBqrCbvlsgpiDN/lrggoHBzm0/DgHZb5/e1bGRb8meCDGN0US98xAbIXpuhG/sMhIOqG5Ywi0gTV4hYUEAj33PwRvh/L3JT0KCJr8CHxDSMd853bjCJfEpvZ7AnlFU/eswYmKIffmeagKcL8JePkHmsANtXxHDggYdS++3UjXeXB9xosBeh52TQsWQyb1v0UhxAV1KwRBizF1EHrYS7z8QnnISrZ9ZPPnSgmHdzNAAZAIVLZoAF8M6vbxtpxNPAC9daUIagHBcttHqgs6cqD8wUwGuWb7r80/ujmzPEzVhYkysgSRBtUzT8OQzgTz93fRjqS9hjbtS6h+yLEBiyIKf7CG//1LR/XrfmuPbXa2s3cPeEL8slJIYIRecLfHKM5UsPU6Nk86+cv4007De1XwGQ5ZCL5vYIN2ScMycsH7EMBzNzSUUUm/srNhjBGBNK5jywDN4G5dvWAO+LXHe8+RsXcYMBpRUUXqbztHaIdAbw8GJxGA74U3GNJze3q1WQ/I/RbtDg8EDCnskUFzTWGx3j+d07Qy8DE+k59CKa/Xy+LDyKxDyoPReKxW+lSSbjbReK5TOzh57KuSr0kqa99F54rAriPEANTVruzzRRVqfZEx7ZAHf5+qSc82j64qEH6m0T8yIHyX1eszhK2xFZOFTixICsdHYuqciQbU4+sJ9vcVqnijNO3UCXqAaZLTdwzhKMLDgA70Lb2BUlelbsvvl9fVALBtwM/wgpGoAA5Ok6toLvstFOUzTXkKl6v1GGnO1xBJBKjvCOXLHemuhuVYOypRcuKY6bsZ8PgUVT1PJr0TCJExpjAAURLq7in+OZn9L4RrsNnjBDupyQ6xxkymacynl37mgndh2Jd1ffTaWLa3UKZ+l7qNMiVPxmGPUKl/w/rbEiqNLrObon5WLLxT0YDJZBwSQhV9o/a8t1bv73t6FlvksXsncVt+yBgmAYyySqylBgpcmwLmJfLfnBN4DrCv2MX6kiMr17LRuqJzQtnTzOncQGQd96tfKggeBYJ76C5SrITPoieQvxljomw4TVsIsYn1y90d89TjvtwODOribEmVz0nk2YcIXoymOC4B31D7oKv4WE3+QOBGlteWQSAofuqYXusWfD/f9O0r5YAAAAAUf9B/9oBKgDl/Z0BmACk/DoCgANN+73+8QRv/dr94QVa/Zf55AY5Axz4eQJ5BEj4DgJZCab3IfrCCpv+m/jGCID/6fP5CAUJrfJi/7YKEPcP/m4OV/eN82IPdgPN8SMIJwXY71wH7w9E7//4nxGp+QT3GBHu+sTsOBESC0LrkQM9Deju1QEeFkrvi/BVFx0ATe4PEEICpOchD+8T1OZs+yEWE/Lx+MAZjvPA5xQaqwm75bIKYgzf5a4IKBwc5tPw4B2W+f3tWxkW/JnggxjdFEvfMQGyF6boRv7DISDqhuWMItIE1eIWFBAI99z8Eb4fy9yU9Cgia/Ah8Q0jHfOd24wiXxKb2ewJ5RVP3rMGJiiH35nmoCnC/CXj5B5rADbV8Rw4IGHUvvt1I13lwfcaLAXoedk0LFkMm9b9FIcQFdSsEQYsxdRB62Eu8/EJ5yEq2fWTz50oJh3czQAGQCFS2aABfDOr28bacTTwAvXWlCGoBwXLbR6oLOnKg/MFMBrlm+6/NP7o5szxM1YWJMrIEkQbVM0/DkM4E8/d30Y6kvYY27UuofsixAYsiCn+whv/9S0f1635rj212trN3D3hC/LJSSGCEXnC3xyjOVLD1OjZPOvnL+NNOw3tV8BkOWQi+b2CDdknDMnLB+xDAczc0lFFJv7KzYYwRgTSuY8sAzeBuXb1gDvi1x3vPkbF3GDAaUVFF6m87R2iHQG8PBicRgO+FNxjSc3t6tVkPyP0W7Q4PBAwp7JFBc01hsd4/ndO0MvAxPpOfQimv18viw8isQ8qD0XisVvpUkm420XiuUzs4eeyrkq9JKmvfReeKwK4jxADU1a7s80UVan2RMe2QB3+fqknPNo+uKhB+ptE/MiB8l9XrM4StsRWThU4sSArHR2LqnIkG1OPrCfb3Fap4ozTt1Al6gGmS03cM4SjCw4AO9C29gVJXpW7L75fX1QCwbcDP8IKRqAAOTpOraC77LRTlM015Cper9RhpztcQSQSo7wjlyx3problWDsqUXLimOm7GfD4FFU9Tya9EwiRMaYwAFES6u4p/jmZ/S+Ea7DZ4wQ7qckOscZMpmnMp5d+5oJ3YdiXdX302li2t1Cmfpe6jTIlT8Zhj1Cpf8P62xIqjS6zm6J+Viy8U9GAyWQcEkIVfaP2vLdW7+97ehZb5LF7J3FbfsgYJgGMskqspQYKXJsC5iXy35wTeA6wr9jF+pIjK9ey0bqic0LZ08zp3EBkHferXyoIHgWCe+guUqyEz6InkL8ZY6JsOE1bCLGJ9cvdHfPU477cDgzq4mxJlc9J5NmHCF6MpjguAd9Q+6Cr+FhN/kDgRpbXlkEgKH7qmF7rFnw/3/TtK+WAAAAAFH/Qf/aASoA5f2dAZgApPw6AoADTfu9/vEEb/3a/eEFWv2X+eQGOQMc+HkCeQRI+A4CWQmm9yH6wgqb/pv4xgiA/+nz+QgFCa3yYv+2ChD3D/5uDlf3jfNiD3YDzfEjCCcF2O9cB+8PRO//+J8RqfkE9xgR7vrE7DgREgtC65EDPQ3o7tUBHhZK74vwVRcdAE3uDxBCAqTnIQ/vE9TmbPshFhPy8fjAGY7zwOcUGqsJu+WyCmIM3+WuCCgcHObT8OAdlvn97VsZFvyZ4IMY3RRL3zEBshem6Eb+wyEg6obljCLSBNXiFhQQCPfc/BG+H8vclPQoImvwIfENIx3znduMIl8Sm9nsCeUVT96zBiYoh9+Z5qApwvwl4+QeawA21fEcOCBh1L77dSNd5cH3GiwF6HnZNCxZDJvW/RSHEBXUrBEGLMXUQethLvPxCechKtn1k8+dKCYd3M0ABkAhUtmgAXwzq9vG2nE08AL11pQhqAcFy20eqCzpyoPzBTAa5ZvuvzT+6ObM8TNWFiTKyBJEG1TNPw5DOBPP3d9GOpL2GNu1LqH7IsQGLIgp/sIb//UtH9et+a49tdrazdw94QvyyUkhghF5wt8cozlSw9To2Tzr5y/jTTsN7VfAZDlkIvm9gg3ZJwzJywfsQwHM3NJRRSb+ys2GMEYE0rmPLAM3gbl29YA74tcd7z5GxdxgwGlFRRepvO0doh0BvDwYnEYDvhTcY0nN7erVZD8j9Fu0ODwQMKeyRQXNNYbHeP53TtDLwMT6Tn0Ipr9fL4sPIrEPKg9F4rFb6VJJuNtF4rlM7OHnsq5KvSSpr30XnisCuI8QA1NWu7PNFFWp9kTHtkAd/n6pJzzaPrioQfqbRPzIgfJfV6zOErbEVk4VOLEgKx0di6pyJBtTj6wn29xWqeKM07dQJeoBpktN3DOEowsOADvQtvYFSV6Vuy++X19UAsG3Az/CCkagADk6Tq2gu+y0U5TNNeQqXq/UYac7XEEkEqO8I5csd6a6G5Vg7KlFy4pjpuxnw+BRVPU8mvRMIkTGmMABREuruKf45mf0vhGuw2eMEO6nJDrHGTKZpzKeXfuaCd2HYl3V99NpYtrdQpn6Xuo0yJU/GYY9QqX/D+tsSKo0us5uiflYsvFPRgMlkHBJCFX2j9ry3Vu/ve3oWW+SxeydxW37IGCYBjLJKrKUGClybAuYl8t+cE3gOsK/YxfqSIyvXstG6onNC2dPM6dxAZB33q18qCB4FgnvoLlKshM+iJ5C/GWOibDhNWwixifXL3R3z1OO+3A4M6uJsSZXPSeTZhwhejKY4LgHfUPugq/hYTf5A4EaW15ZBICh+6phe6xZ8P9/07SvlgAAAABR/0H/2gEqAOX9nQGYAKT8OgKAA037vf7xBG/92v3hBVr9l/nkBjkDHPh5AnkESPgOAlkJpvch+sIKm/6b+MYIgP/p8/kIBQmt8mL/tgoQ9w/+bg5X943zYg92A83xIwgnBdjvXAfvD0Tv//ifEan5BPcYEe76xOw4ERILQuuRAz0N6O7VAR4WSu+L8FUXHQBN7g8QQgKk5yEP7xPU5mz7IRYT8vH4wBmO88DnFBqrCbvlsgpiDN/lrggoHBzm0/DgHZb5/e1bGRb8meCDGN0US98xAbIXpuhG/sMhIOqG5Ywi0gTV4hYUEAj33PwRvh/L3JT0KCJr8CHxDSMd853bjCJfEpvZ7AnlFU/eswYmKIffmeagKcL8JePkHmsANtXxHDggYdS++3UjXeXB9xosBeh52TQsWQyb1v0UhxAV1KwRBizF1EHrYS7z8QnnISrZ9ZPPnSgmHdzNAAZAIVLZoAF8M6vbxtpxNPAC9daUIagHBcttHqgs6cqD8wUwGuWb7r80/ujmzPEzVhYkysgSRBtUzT8OQzgTz93fRjqS9hjbtS6h+yLEBiyIKf7CG//1LR/XrfmuPbXa2s3cPeEL8slJIYIRecLfHKM5UsPU6Nk86+cv4007De1XwGQ5ZCL5vYIN2ScMycsH7EMBzNzSUUUm/srNhjBGBNK5jywDN4G5dvWAO+LXHe8+RsXcYMBpRUUXqbztHaIdAbw8GJxGA74U3GNJze3q1WQ/I/RbtDg8EDCnskUFzTWGx3j+d07Qy8DE+k59CKa/Xy+LDyKxDyoPReKxW+lSSbjbReK5TOzh57KuSr0kqa99F54rAriPEANTVruzzRRVqfZEx7ZAHf5+qSc82j64qEH6m0T8yIHyX1eszhK2xFZOFTixICsdHYuqciQbU4+sJ9vcVqnijNO3UCXqAaZLTdwzhKMLDgA70Lb2BUlelbsvvl9fVALBtwM/wgpGoAA5Ok6toLvstFOUzTXkKl6v1GGnO1xBJBKjvCOXLHemuhuVYOypRcuKY6bsZ8PgUVT1PJr0TCJExpjAAURLq7in+OZn9L4RrsNnjBDupyQ6xxkymacynl37mgndh2Jd1ffTaWLa3UKZ+l7qNMiVPxmGPUKl/w/rbEiqNLrObon5WLLxT0YDJZBwSQhV9o/a8t1bv73t6FlvksXsncVt+yBgmAYyySqylBgpcmwLmJfLfnBN4DrCv2MX6kiMr17LRuqJzQtnTzOncQGQd96tfKggeBYJ76C5SrITPoieQvxljomw4TVsIsYn1y90d89TjvtwODOribEmVz0nk2YcIXoymOC4B31D7oKv4WE3+QOBGlteWQSAofuqYXusWfD/f9O0r5YAAAAAUf9B/9oBKgDl/Z0BmACk/DoCgANN+73+8QRv/dr94QVa/Zf55AY5Axz4eQJ5BEj4DgJZCab3IfrCCpv+m/jGCID/6fP5CAUJrfJi/7YKEPcP/m4OV/eN82IPdgPN8SMIJwXY71wH7w9E7//4nxGp+QT3GBHu+sTsOBESC0LrkQM9Deju1QEeFkrvi/BVFx0ATe4PEEICpOchD+8T1OZs+yEWE/Lx+MAZjvPA5xQaqwm75bIKYgzf5a4IKBwc5tPw4B2W+f3tWxkW/JnggxjdFEvfMQGyF6boRv7DISDqhuWMItIE1eIWFBAI99z8Eb4fy9yU9Cgia/Ah8Q0jHfOd24wiXxKb2ewJ5RVP3rMGJiiH35nmoCnC/CXj5B5rADbV8Rw4IGHUvvt1I13lwfcaLAXoedk0LFkMm9b9FIcQFdSsEQYsxdRB62Eu8/EJ5yEq2fWTz50oJh3czQAGQCFS2aABfDOr28bacTTwAvXWlCGoBwXLbR6oLOnKg/MFMBrlm+6/NP7o5szxM1YWJMrIEkQbVM0/DkM4E8/d30Y6kvYY27UuofsixAYsiCn+whv/9S0f1635rj212trN3D3hC/LJSSGCEXnC3xyjOVLD1OjZPOvnL+NNOw3tV8BkOWQi+b2CDdknDMnLB+xDAczc0lFFJv7KzYYwRgTSuY8sAzeBuXb1gDvi1x3vPkbF3GDAaUVFF6m87R2iHQG8PBicRgO+FNxjSc3t6tVkPyP0W7Q4PBAwp7JFBc01hsd4/ndO0MvAxPpOfQimv18viw8isQ8qD0XisVvpUkm420XiuUzs4eeyrkq9JKmvfReeKwK4jxADU1a7s80UVan2RMe2QB3+fqknPNo+uKhB+ptE/MiB8l9XrM4StsRWThU4sSArHR2LqnIkG1OPrCfb3Fap4ozTt1Al6gGmS03cM4SjCw4AO9C29gVJXpW7L75fX1QCwbcDP8IKRqAAOTpOraC77LRTlM015Cper9RhpztcQSQSo7wjlyx3problWDsqUXLimOm7GfD4FFU9Tya9EwiRMaYwAFES6u4p/jmZ/S+Ea7DZ4wQ7qckOscZMpmnMp5d+5oJ3YdiXdX302li2t1Cmfpe6jTIlT8Zhj1Cpf8P62xIqjS6zm6J+Viy8U9GAyWQcEkIVfaP2vLdW7+97ehZb5LF7J3FbfsgYJgGMskqspQYKXJsC5iXy35wTeA6wr9jF+pIjK9ey0bqic0LZ08zp3EBkHferXyoIHgWCe+guUqyEz6InkL8ZY6JsOE1bCLGJ9cvdHfPU477cDgzq4mxJlc9J5NmHCF6MpjguAd9Q+6Cr+FhN/kDgRpbXlkEgKH7qmF7rFnw/3/TtK+WAAAAAFH/Qf/aASoA5f2dAZgApPw6AoADTfu9/vEEb/3a/eEFWv2X+eQGOQMc+HkCeQRI+A4CWQmm9yH6wgqb/pv4xgiA/+nz+QgFCa3yYv+2ChD3D/5uDlf3jfNiD3YDzfEjCCcF2O9cB+8PRO//+J8RqfkE9xgR7vrE7DgREgtC65EDPQ3o7tUBHhZK74vwVRcdAE3uDxBCAqTnIQ/vE9TmbPshFhPy8fjAGY7zwOcUGqsJu+WyCmIM3+WuCCgcHObT8OAdlvn97VsZFvyZ4IMY3RRL3zEBshem6Eb+wyEg6obljCLSBNXiFhQQCPfc/BG+H8vclPQoImvwIfENIx3znduMIl8Sm9nsCeUVT96zBiYoh9+Z5qApwvwl4+QeawA21fEcOCBh1L77dSNd5cH3GiwF6HnZNCxZDJvW/RSHEBXUrBEGLMXUQethLvPxCechKtn1k8+dKCYd3M0ABkAhUtmgAXwzq9vG2nE08AL11pQhqAcFy20eqCzpyoPzBTAa5ZvuvzT+6ObM8TNWFiTKyBJEG1TNPw5DOBPP3d9GOpL2GNu1LqH7IsQGLIgp/sIb//UtH9et+a49tdrazdw94QvyyUkhghF5wt8cozlSw9To2Tzr5y/jTTsN7VfAZDlkIvm9gg3ZJwzJywfsQwHM3NJRRSb+ys2GMEYE0rmPLAM3gbl29YA74tcd7z5GxdxgwGlFRRepvO0doh0BvDwYnEYDvhTcY0nN7erVZD8j9Fu0ODwQMKeyRQXNNYbHeP53TtDLwMT6Tn0Ipr9fL4sPIrEPKg9F4rFb6VJJuNtF4rlM7OHnsq5KvSSpr30XnisCuI8QA1NWu7PNFFWp9kTHtkAd/n6pJzzaPrioQfqbRPzIgfJfV6zOErbEVk4VOLEgKx0di6pyJBtTj6wn29xWqeKM07dQJeoBpktN3DOEowsOADvQtvYFSV6Vuy++X19UAsG3Az/CCkagADk6Tq2gu+y0U5TNNeQqXq/UYac7XEEkEqO8I5csd6a6G5Vg7KlFy4pjpuxnw+BRVPU8mvRMIkTGmMABREuruKf45mf0vhGuw2eMEO6nJDrHGTKZpzKeXfuaCd2HYl3V99NpYtrdQpn6Xuo0yJU/GYY9QqX/D+tsSKo0us5uiflYsvFPRgMlkHBJCFX2j9ry3Vu/ve3oWW+SxeydxW37IGCYBjLJKrKUGClybAuYl8t+cE3gOsK/YxfqSIyvXstG6onNC2dPM6dxAZB33q18qCB4FgnvoLlKshM+iJ5C/GWOibDhNWwixifXL3R3z1OO+3A4M6uJsSZXPSeTZhwhejKY4LgHfUPugq/hYTf5A4EaW15ZBICh+6phe6xZ8P9/07Svlg==",shaders:{"effects/picture/antialias_coverage.frag":[0,5,485,488,831,837,46,47,837,843,10,11,843,845,257,258,845,852,832,833,852,854,46,47,854,856,10,11,856,861,10,11,861,863,10,11,863,868,10,11,868,882,226,227,882,903,10,11],"page/background.frag":[0,5,904,907,776,777,907,908],"page/copy.frag":[0,5,816,817,776,777,903,904],"page/decode.vert":[0,13,10,11,13,55,46,47,55,57,46,47,57,76,72,73,76,77,75,76,77,81,72,73,81,85,75,76,85,87,10,11,87,93,10,11,93,99,10,11,99,105,10,11,105,118,10,11,118,121,10,11,121,125,10,11,125,138,10,11,138,141,10,11,75,76,10,11,141,142,131,132,142,143,75,76,143,146,10,11,75,76,146,157,46,47,157,174,125,126,174,178,10,11,75,76,10,11,178,179,125,126,174,175,179,184,137,138,10,11,75,76,184,186,10,11,186,188,10,11,188,192,10,11,192,193,163,164,193,194,125,126,194,196,154,156,196,198,10,11,75,76,198,199,10,11,199,203,10,11,203,209,10,11,209,212,10,11,212,215,10,11,215,219,10,11,219,243,10,11,243,254,10,11,254,257,10,11],"page/far_tiles.frag":[0,5,369,370,659,660,703,704,226,227,704,709,10,11],"page/image.frag":[0,5,957,959,784,785,776,777,787,788,226,227,959,962,950,951,10,11],"page/image.vert":[0,5,912,913,951,955,226,227,955,957,10,11],"page/mixed.frag":[0,5,811,813,776,777,226,227,673,674,813,816,10,11],"page/none.frag":[0,5,257,259],"page/resolve.frag":[0,5,466,467,14,15,363,369,10,11,715,724,650,651,724,725,10,11,725,737,10,11,10,11,737,739,615,616,739,745,10,11,745,746,10,11,609,620,10,11,620,621,10,11,621,630,10,11,658,660,394,395,746,760,10,11,760,765,10,11,765,773,10,11,773,776,10,11,776,777,226,227,673,674,777,780,10,11],"page/screen.vert":[0,5,690,691],"page/segment.frag":[0,5,259,260,465,466,260,261,263,269,10,11,466,467,34,47,295,298,10,11,298,299,467,474,46,47,474,481,10,11,299,306,46,47,306,309,10,11,75,76,323,328,46,47,328,337,46,47,481,483,10,11,483,485,10,11,485,494,10,11,380,381,494,499,10,11,75,76,499,510,10,11,75,76,357,358,510,511,14,15,203,209,10,11,209,212,10,11,511,515,10,11,515,523,46,47,523,535,10,11,535,538,10,11,538,539,10,11,539,540,527,528,540,551,10,11,551,556,75,76,556,557,370,372,75,76,372,380,75,76,380,385,75,76,299,300,385,387,75,76,75,76,387,388,404,405,557,563,10,11,75,76,563,564,515,516,564,565,75,76,565,567,10,11,567,569,404,405,569,572,75,76,378,379,572,573,75,76,573,574,10,11,574,577,75,76,577,580,575,576,580,581,75,76,10,11,380,381,299,300,581,582,314,315,582,585,10,11,351,352,10,11,75,76,226,227,585,590,299,300,590,591,75,76,591,593,10,11,83,84,226,227,593,605,10,11,605,609,10,11,75,76],"page/segment.vert":[0,5,259,269,10,11,34,47,269,273,10,11,273,275,120,121,10,11,275,277,120,121,10,11,277,279,10,11,279,283,10,11,283,294,10,11,294,295,10,11,295,298,10,11,298,306,46,47,306,309,10,11,309,313,10,11,313,320,10,11,294,295,10,11,320,321,83,84,321,323,75,76,323,328,46,47,328,337,46,47,337,343,10,11,343,352,10,11,352,355,10,11,355,357,10,11,357,363,10,11,14,15,363,369,10,11,369,372,75,76,372,380,75,76,380,385,75,76,299,300,385,387,75,76,75,76,57,58,387,390,380,381,390,391,75,76,391,397,75,76,397,402,10,11,75,76,378,379,402,404,75,76,404,410,10,11,75,76,410,419,10,11,226,227,419,427,395,396,427,428,75,76,428,430,397,398,430,433,75,76,433,434,404,405,434,435,75,76,435,444,378,379,444,445,75,76,380,381,382,383,445,446,75,76,446,447,299,300,447,449,75,76,449,454,83,84,454,456,451,452,456,461,137,138,10,11,461,465,75,76,10,11],"page/sum.frag":[0,5,259,260,465,466,260,261,263,269,10,11,466,467,34,47,295,298,10,11,298,299,467,474,46,47,474,481,10,11,299,306,46,47,306,309,10,11,75,76,323,328,46,47,328,337,46,47,481,483,10,11,483,485,10,11,485,494,10,11,380,381,494,499,10,11,75,76,499,510,10,11,75,76,357,358,510,511,515,523,46,47,523,535,10,11,535,538,10,11,538,539,10,11,539,540,527,528,540,551,10,11,551,556,75,76,556,557,370,372,75,76,372,380,75,76,380,385,75,76,299,300,385,387,75,76,75,76,387,388,404,405,557,563,10,11,75,76,563,564,515,516,564,565,75,76,565,567,10,11,567,569,404,405,569,572,75,76,378,379,572,573,75,76,573,574,10,11,609,620,10,11,620,621,10,11,621,630,10,11,630,638,10,11,638,641,10,11,641,646,10,11,646,652,10,11,652,658,10,11,658,664,575,576,664,666,75,76,666,673,10,11,577,578,673,677,380,381,677,678,75,76,575,576,678,681,10,11,83,84,681,682,75,76,682,690,10,11,380,381,299,300,581,582,314,315,582,585,10,11,351,352,10,11,75,76,226,227,585,590,299,300,590,591,75,76,591,593,10,11,83,84,226,227,593,605,10,11,605,609,10,11,75,76],"page/surface.frag":[0,5,715,719,721,722,926,928,729,731,928,931,10,11,931,932,10,11,609,620,10,11,620,621,10,11,932,941,784,785,747,749,941,943,776,777,787,788,226,227,943,951,10,11],"page/surface.vert":[0,5,908,920,226,227,920,926,10,11],"page/through.frag":[0,5,466,467,14,15,363,369,10,11,715,724,650,651,724,725,10,11,725,737,10,11,10,11,737,739,615,616,739,745,10,11,745,746,10,11,609,620,10,11,620,621,10,11,621,630,10,11,658,660,394,395,746,760,10,11,760,765,10,11,765,773,10,11,773,776,10,11,630,638,10,11,780,787,776,777,787,797,10,11,226,227,673,674,797,811,10,11],"page/tile_mask.frag":[0,5,691,692,658,659,692,694,226,227,694,701,10,11,701,703,10,11],"page/tiles.vert":[0,5,691,692,709,711,226,227,711,715,10,11],"page/visible_edges.frag":[0,5,266,269,10,11,485,486,487,488,658,660,816,818,692,693,818,824,10,11,226,227,824,831,10,11]}};var Mt=K.lines.split(`
+`);function kt(o){let e=[];for(let t=0;t<o.length;t+=2)e.push(...Mt.slice(o[t],o[t+1]));return e.join(`
 `)+`
-`}var Fe={};for(let[o,e]of Object.entries(Q.shaders))Fe[o]=Bt(e);var ge=Q.blocks,Ze=Q.rotation_scales,se=Q.page_bits;function N(o){let e=atob(o),n=new Uint8Array(e.length);for(let t=0;t<e.length;++t)n[t]=e.charCodeAt(t);return n}var $e=N(Q.rotations),Lt=Q.fields;function P(o,e){let[,n,t]=Lt[o];return t===32?e:e>>>n&(1<<t)-1}var Z=(o,e)=>[o[0]-e[0],o[1]-e[1],o[2]-e[2]],q=(o,e,n=1)=>[o[0]+n*e[0],o[1]+n*e[1],o[2]+n*e[2]],$=(o,e)=>[o[0]*e,o[1]*e,o[2]*e],G=(o,e)=>o[0]*e[0]+o[1]*e[1]+o[2]*e[2],oe=(o,e)=>[o[1]*e[2]-o[2]*e[1],o[2]*e[0]-o[0]*e[2],o[0]*e[1]-o[1]*e[0]],et=o=>Math.hypot(o[0],o[1],o[2]),j=o=>$(o,1/(et(o)||1));function R(o,e){let n=new Float64Array(16);for(let t=0;t<4;++t)for(let r=0;r<4;++r){let s=0;for(let i=0;i<4;++i)s+=o[r+4*i]*e[i+4*t];n[r+4*t]=s}return n}function Ie(){let o=new Float64Array(16);return o[0]=o[5]=o[10]=o[15]=1,o}function ee(o){let e=Array.from({length:4},(t,r)=>Array.from({length:8},(s,i)=>i<4?o[r+4*i]:i-4===r?1:0));for(let t=0;t<4;++t){let r=t;for(let i=t+1;i<4;++i)Math.abs(e[i][t])>Math.abs(e[r][t])&&(r=i);if(!(Math.abs(e[r][t])>0))return null;[e[t],e[r]]=[e[r],e[t]];let s=e[t][t];for(let i=0;i<8;++i)e[t][i]/=s;for(let i=0;i<4;++i){if(i===t)continue;let a=e[i][t];for(let l=0;l<8;++l)e[i][l]-=a*e[t][l]}}let n=new Float64Array(16);for(let t=0;t<4;++t)for(let r=0;r<4;++r)n[t+4*r]=e[t][r+4];return n}function k(o,e,n=1){return[0,1,2,3].map(t=>o[t]*e[0]+o[t+4]*e[1]+o[t+8]*e[2]+o[t+12]*n)}function be(o){return[o[0],o[1],o[2],o[4],o[5],o[6],o[8],o[9],o[10]]}var ke=o=>new Float32Array(o);function ze(o,e,n){let t=n*Math.PI/180,r=Math.cos(t),s=Math.sin(t),i=j(e);return q(q($(o,r),oe(i,o),s),i,G(i,o)*(1-r))}var Re=class{constructor(e){h(this,"state",e)}get forward(){return j(Z(this.state.focal_point,this.state.position))}get right(){return j(oe(this.forward,this.state.up))}get distance(){return et(Z(this.state.focal_point,this.state.position))}view(){let e=this.forward,n=this.right,t=oe(n,e),r=this.state.position;return new Float64Array([n[0],t[0],-e[0],0,n[1],t[1],-e[1],0,n[2],t[2],-e[2],0,-G(n,r),-G(t,r),G(e,r),1])}range(e){let n=this.forward,t=this.state.position,r=1/0,s=-1/0;for(let a=0;a<8;++a){let l=G(n,Z([e[a&1],e[2+(a>>1&1)],e[4+(a>>2)]],t));r=Math.min(r,l),s=Math.max(s,l)}let i=Math.max(.005*(s-r),1e-6*Math.abs(s));return r-=i,s+=i,this.state.parallel?[r,Math.max(s,r+1e-6)]:(s=Math.max(s,1e-6),[Math.max(r,.001*s),s])}projection(e,n){let[t,r]=this.range(n),s=new Float64Array(16),i=this.state;if(i.parallel)s[0]=1/(i.parallel_scale*e),s[5]=1/i.parallel_scale,s[10]=-2/(r-t),s[14]=-(r+t)/(r-t),s[15]=1;else{let a=1/Math.tan(i.view_angle*Math.PI/360);s[0]=a/e,s[5]=a,s[10]=-(r+t)/(r-t),s[11]=-1,s[14]=-2*r*t/(r-t)}return s}rotate(e,n){let t=this.state,r=ze(Z(t.position,t.focal_point),t.up,-200*e),s=j(oe($(r,-1),t.up));r=ze(r,s,-200*n),t.position=q(t.focal_point,r),t.up=j(oe(s,j($(r,-1))))}roll(e){this.state.up=ze(this.state.up,this.forward,e)}pan(e,n){let t=this.state,r=t.parallel?2*t.parallel_scale:2*this.distance*Math.tan(t.view_angle*Math.PI/360),s=oe(this.right,this.forward),i=q($(this.right,-e*r),s,-n*r);t.position=q(t.position,i),t.focal_point=q(t.focal_point,i)}dolly(e){let n=this.state;n.parallel?n.parallel_scale/=e:n.position=q(n.focal_point,Z(n.position,n.focal_point),1/e)}lookAlong(e,n,t){let r=this.state,s=[(t[0]+t[1])/2,(t[2]+t[3])/2,(t[4]+t[5])/2],i=Math.hypot(t[1]-t[0],t[3]-t[2],t[5]-t[4])/2||1,a=i/Math.sin(r.view_angle*Math.PI/360);r.focal_point=s,r.position=q(s,j(e),-a),r.up=n,r.parallel_scale=i}};var Be=class{constructor(e,n){h(this,"lines",e);h(this,"base",n);h(this,"ranges",new Map);h(this,"regions",new Map);h(this,"hidden",new Set);h(this,"groups",[]);h(this,"chosen",null)}get count(){let e=this.chosen;return e?e.reduce((n,t)=>n+t,0):this.lines.set.streamlines}set(e,n,t,r){let s=this.ranges.get(e.name)??{values:n,low:e.range[0],high:e.range[1],whole:e.range};t===0?s.low=r:s.high=r,this.ranges.set(e.name,s),this.apply()}look(e,n){let{set:t,model:r}=this.lines,s=n?this.regions.get(e):void 0;this.regions.set(e,{through:t.through(e,r,s?.blocks,s?.through),blocks:t.blocks.length})}apply(){let e=[...this.ranges.values()].filter(i=>i.low>i.whole[0]||i.high<i.whole[1]),n=[...this.regions].filter(([i])=>i.on);if(!e.length&&!n.length&&!this.hidden.size)return this.keep(this.base);let t=this.lines.set.streamlines,r=new Uint8Array(t),s=this.grouped(t);for(let i=0;i<t;++i){let a=this.base===null||this.base[i]!==0;for(let l of e){let c=1e-6*(l.whole[1]-l.whole[0]);a=a&&l.values[i]>=l.low-c&&l.values[i]<=l.high+c}for(let[l,{through:c}]of n)a=a&&c[i]!==0!==l.inverted;r[i]=a&&s[i]?1:0}this.keep(r)}keep(e){this.chosen=e,this.lines.keep(e)}grouped(e){let n=new Uint8Array(e).fill(1);for(let t of this.hidden)for(let r of t)n[r]=0;for(let t of this.hidden.size?this.groups:[])if(!this.hidden.has(t))for(let r of t)n[r]=1;return n}};function tt(o,e,n,t){let r=new Float32Array(7*e);for(let s=0;s<e;++s){let i=4*n*s,a=t(s),l=i+4*(Math.min(a,n)-1),c=7*s,u=o[l]-o[i],f=o[l+1]-o[i+1],d=o[l+2]-o[i+2],p=u*u+f*f+d*d||1,g=0;for(let b=i+4;b<i+4*a;b+=4){let m=o[b]-o[i],v=o[b+1]-o[i+1],w=o[b+2]-o[i+2],I=Math.min(Math.max((m*u+v*f+w*d)/p,0),1),M=m-I*u,x=v-I*f,A=w-I*d;g=Math.max(g,M*M+x*x+A*A)}for(let b=0;b<3;++b)r[c+b]=o[i+b],r[c+3+b]=o[l+b];r[c+6]=1.0001*Math.sqrt(g)+1e-4}return r}function nt(o,e,n,t,r,s,i){let a=Float64Array.from(e),[l,c,u,f]=[0,1,2,3].map(m=>Math.hypot(a[m],a[m+4],a[m+8])),{size:d,columns:p,rows:g,depths:b}=s;for(let m=0,v=0;m<i.length;++m,v+=7){let w=o[v+6],I=1/0,M=-1/0,x=1/0,A=-1/0,L=1/0;for(let U=v;U<v+6;U+=3){let C=o[U],K=o[U+1],Y=o[U+2],ie=a[3]*C+a[7]*K+a[11]*Y+a[15],F=ie-w*f;if(!(F>0)){L=-1/0;break}let V=(a[0]*C+a[4]*K+a[8]*Y+a[12])/ie,pe=(a[1]*C+a[5]*K+a[9]*Y+a[13])/ie,Ee=w*(l+Math.abs(V)*f)/F+n,Te=w*(c+Math.abs(pe)*f)/F+n;V-Ee<I&&(I=V-Ee),V+Ee>M&&(M=V+Ee),pe-Te<x&&(x=pe-Te),pe+Te>A&&(A=pe+Te),L=Math.min(L,(a[2]*C+a[6]*K+a[10]*Y+a[14]-w*u)/F)}if(i[m]=1,L===-1/0)continue;if(M<0||I>t||A<0||x>r){i[m]=0;continue}let E=Math.max(Math.floor(I/d),0),_=Math.min(Math.floor(M/d),p-1),B=Math.max(Math.floor(x/d),0),S=Math.min(Math.floor(A/d),g-1);if((_-E+1)*(S-B+1)>256)continue;L-=1e-6;let D=!0;for(let U=B;U<=S&&D;++U)for(let C=E;C<=_;++C)if(L<=b[4*(U*p+C)]){D=!1;break}D&&(i[m]=0)}}function Ne({at:o,size:e},n){return[0,1,2].map(t=>(n[t]-o[t])/Math.max(e[t],1e-9))}function rt({ball:o},e,n){let t=Z(n,e);if(o){let i=Math.min(1,Math.max(0,-G(e,t)/(G(t,t)||1))),a=[e[0]+i*t[0],e[1]+i*t[1],e[2]+i*t[2]];return G(a,a)<=1}let r=0,s=1;for(let i=0;i<3;++i){if(t[i]===0){if(Math.abs(e[i])>1)return!1;continue}let a=(-1-e[i])/t[i],l=(1-e[i])/t[i];r=Math.max(r,Math.min(a,l)),s=Math.min(s,Math.max(a,l))}return r<=s}function it({ball:o,at:e,size:n}){let t=(s,i,a)=>[e[0]+s*n[0],e[1]+i*n[1],e[2]+a*n[2]];if(o){let s=Array.from({length:49},(i,a)=>[Math.cos(a*Math.PI/24),Math.sin(a*Math.PI/24)]);return[s.map(([i,a])=>t(i,a,0)),s.map(([i,a])=>t(i,0,a)),s.map(([i,a])=>t(0,i,a))]}let r=s=>[t(-1,-1,s),t(1,-1,s),t(1,1,s),t(-1,1,s),t(-1,-1,s)];return[r(-1),r(1),...[[-1,-1],[1,-1],[1,1],[-1,1]].map(([s,i])=>[t(s,i,-1),t(s,i,1)])]}var H=4096,ae=class extends Error{};function St(o,e){let n=e.includes("SPRITES")?Fe[o].replace("const bool SPRITES=false","const bool SPRITES=true"):Fe[o],t=e.find(r=>r.startsWith("REGION "));return(t?n.replace(/#define REGION .*/,`#define ${t}`):n).replace(/#define FEATURE_(\w+) [01]/g,(r,s)=>`#define FEATURE_${s} ${e.includes(s)?1:0}`)}var le=class{constructor(e,n,t,r=[],s=[]){h(this,"gl",e);h(this,"handle");h(this,"places",new Map);h(this,"units",new Map);this.handle=e.createProgram();let i=[[e.VERTEX_SHADER,n],[e.FRAGMENT_SHADER,t]].map(([a,l])=>{let c=e.createShader(a);return e.shaderSource(c,St(l,r)),e.compileShader(c),e.attachShader(this.handle,c),[l,c]});if(s.length&&e.transformFeedbackVaryings(this.handle,s,e.INTERLEAVED_ATTRIBS),e.linkProgram(this.handle),!e.getProgramParameter(this.handle,e.LINK_STATUS)&&!e.isContextLost()){let a=i.map(([l,c])=>`${l}: ${e.getShaderInfoLog(c)}`).join("; ");throw new ae(`This browser's graphics cannot run the page's programs: ${e.getProgramInfoLog(this.handle)} ${a}`)}Object.keys(ge).forEach((a,l)=>{let c=e.getUniformBlockIndex(this.handle,a);c!==e.INVALID_INDEX&&e.uniformBlockBinding(this.handle,c,l)})}use(){return this.gl.useProgram(this.handle),this}at(e){return this.places.has(e)||this.places.set(e,this.gl.getUniformLocation(this.handle,e)),this.places.get(e)}set(e){let n=this.gl;for(let[t,r]of Object.entries(e)){let s=this.at(t);s!==null&&(typeof r=="number"?n.uniform1f(s,r):r.length===2?n.uniform2fv(s,r):r.length===3?n.uniform3fv(s,r):r.length===4?n.uniform4fv(s,r):r.length===9?n.uniformMatrix3fv(s,!1,r):n.uniformMatrix4fv(s,!1,r))}return this}ints(e){for(let[n,t]of Object.entries(e)){let r=this.at(n);r!==null&&this.gl.uniform1i(r,t)}return this}uints(e){for(let[n,t]of Object.entries(e)){let r=this.at(n);r!==null&&this.gl.uniform1ui(r,t)}return this}textures(e){let n=this.gl;for(let[t,r]of Object.entries(e)){let s=this.at(t);if(s===null)continue;this.units.has(t)||this.units.set(t,this.units.size);let i=this.units.get(t);n.activeTexture(n.TEXTURE0+i),n.bindTexture(n.TEXTURE_2D,r),n.uniform1i(s,i)}return this}},Ge={r8ui:["R8UI","RED_INTEGER","UNSIGNED_BYTE",1,Uint8Array],r16ui:["R16UI","RED_INTEGER","UNSIGNED_SHORT",1,Uint16Array],r32ui:["R32UI","RED_INTEGER","UNSIGNED_INT",1,Uint32Array],rg32ui:["RG32UI","RG_INTEGER","UNSIGNED_INT",2,Uint32Array],rgba32ui:["RGBA32UI","RGBA_INTEGER","UNSIGNED_INT",4,Uint32Array],rgba8:["RGBA8","RGBA","UNSIGNED_BYTE",4,Uint8Array]};function st(o){for(let e of["TEXTURE_MIN_FILTER","TEXTURE_MAG_FILTER"])o.texParameteri(o.TEXTURE_2D,o[e],o.NEAREST);for(let e of["TEXTURE_WRAP_S","TEXTURE_WRAP_T"])o.texParameteri(o.TEXTURE_2D,o[e],o.CLAMP_TO_EDGE)}function ve(o,e,n,t){let[r]=Ge[e],s=Math.max(1,Math.ceil(n/H)),i=o.getParameter(o.MAX_TEXTURE_SIZE);if(s>i)throw new ae(`The ${t} have ${n} texels; this device's textures hold ${i*H}. Make a page of fewer streamlines.`);let a=o.createTexture();return o.bindTexture(o.TEXTURE_2D,a),st(o),o.texStorage2D(o.TEXTURE_2D,1,o[r],H,s),a}function ce(o,e,n,t,r,s){let[,i,a,l,c]=Ge[n],u=H*l,f=Math.floor(t.length/u),d=Math.ceil(s/H);o.bindTexture(o.TEXTURE_2D,e),o.pixelStorei(o.UNPACK_ALIGNMENT,1);for(let p=Math.floor(r/H);p<Math.min(f,d);p+=256){let g=Math.min(256,f-p,d-p);o.texSubImage2D(o.TEXTURE_2D,0,0,p,H,g,o[i],o[a],t.subarray(p*u,(p+g)*u))}if(d>f){let p=new c(u);p.set(t.subarray(f*u)),o.texSubImage2D(o.TEXTURE_2D,0,0,f,H,1,o[i],o[a],p)}}function X(o,e,n,t){let r=Math.ceil(n.length/Ge[e][3]),s=ve(o,e,r,t);return ce(o,s,e,n,0,r),s}function Le(o,e,n,t){let r=e.length/4-3,[s,i]=t?n.map(a=>Math.log10(a)):n;return[X(o,"rgba8",e,"colours"),[s,i,r/Math.max(i-s,1e-30),r]]}function te(o,e,n,t){let r=o.createTexture();return o.bindTexture(o.TEXTURE_2D,r),st(o),o.texStorage2D(o.TEXTURE_2D,1,e,n,t),r}function ne(o,e,n){let t=o.createFramebuffer();return o.bindFramebuffer(o.FRAMEBUFFER,t),o.framebufferTexture2D(o.FRAMEBUFFER,o.COLOR_ATTACHMENT0,o.TEXTURE_2D,e,0),n&&o.framebufferTexture2D(o.FRAMEBUFFER,o.DEPTH_ATTACHMENT,o.TEXTURE_2D,n,0),t}var O=class{constructor(e,n){h(this,"gl",e);h(this,"name",n);h(this,"bytes");h(this,"floats");h(this,"words");h(this,"buffer");h(this,"binding");this.bytes=new ArrayBuffer(ge[n].bytes),this.floats=new Float32Array(this.bytes),this.words=new Uint32Array(this.bytes),this.buffer=e.createBuffer(),this.binding=Object.keys(ge).indexOf(n),e.bindBuffer(e.UNIFORM_BUFFER,this.buffer),e.bufferData(e.UNIFORM_BUFFER,this.bytes.byteLength,e.DYNAMIC_DRAW)}write(e,n=[]){for(let[t,r]of Object.entries(e)){let s=ge[this.name].fields[t]/4,i=n.includes(t)?this.words:this.floats;typeof r=="number"?i[s]=r:i.set(r,s)}this.upload()}fill(e){new Uint8Array(this.bytes).set(e),this.upload()}upload(){this.gl.bindBuffer(this.gl.UNIFORM_BUFFER,this.buffer),this.gl.bufferSubData(this.gl.UNIFORM_BUFFER,0,new Uint8Array(this.bytes))}bind(){this.gl.bindBufferBase(this.gl.UNIFORM_BUFFER,this.binding,this.buffer)}};var Mt=1024,we=16,Dt=16,Ut=.1,Ct=[4,8,11,15],ot=0,Pt=3;function at(o,e,n,t){if(!o||!(o.data instanceof Uint32Array)||o.data.length!==n*t)throw new T(`The file's ${e} do not fit its header. Copy or make it again.`);return o.data}function ue(o){let e=Math.ceil(o.byteLength/4);if(o.byteOffset%4===0&&o.byteOffset+4*e<=o.buffer.byteLength)return new Uint32Array(o.buffer,o.byteOffset,e);let n=new Uint8Array(4*e);return n.set(new Uint8Array(o.buffer,o.byteOffset,o.byteLength)),new Uint32Array(n.buffer)}function lt(o,e){return e===8?o:new Uint16Array(o.slice().buffer)}var Se=class{constructor(e,n){h(this,"gl",e);h(this,"archive",n);h(this,"blocks",[]);h(this,"streamlines");h(this,"points");h(this,"bounds");h(this,"reference");h(this,"toData");h(this,"coding");h(this,"budget",256<<20);h(this,"parameters");h(this,"decodeProgram",null);h(this,"rotationBlock");h(this,"frameForDecoding");h(this,"textures",{});h(this,"itemBuffer");h(this,"toItems");h(this,"feedback");h(this,"scratch",null);h(this,"scratchBytes",0);h(this,"share",15);h(this,"itemBytes",15*we);h(this,"kinds",new Set);h(this,"table");h(this,"done",0);h(this,"shares",0);h(this,"before",0);h(this,"open",null);h(this,"growing",{});h(this,"values",[]);h(this,"held",0);h(this,"clock",0);h(this,"fiblets");h(this,"decodeArray");h(this,"indices",null);h(this,"arrays",[null,null]);let{header:t,arrays:r}=n;if(t.format!=="fiblets")throw new T("The file is no .fiblets file: its header says something else.");if(t.version!==2)throw new T(`The file is of version ${t.version}; this page reads version 2. Make the page again with a newer pvfiblets.`);let s=this.parameters=t.parameters,i=this.fiblets=t.n_fiblets;this.streamlines=t.n_streamlines,this.points=t.n_points,this.bounds=t.bounds;let a=at(r.get("anchors.npy"),"anchors",2,i),l=at(r.get("decoding.npy"),"records",3,i),c=r.get("codes.npy"),u=r.get("pages.npy");if(!c||!(c.data instanceof Uint8Array)||!u||!(u.data instanceof BigInt64Array))throw new T("The file's codes or pages are missing. Copy or make it again.");let f=this.table=Array.from(u.data,Number),d=Math.ceil(i/(1<<se));if(f.length!==3*(d+1)||f[3*d+1]!==c.data.length||f[3*d+2]!==this.points)throw new T("The file's table of pages does not fit its records. Copy or make it again.");let p=s.anchor_bits===32?r.get("anchors_low.npy"):void 0;if(s.anchor_bits===32&&!(p?.data instanceof Uint16Array&&p.data.length===3*i))throw new T("The lower halves of the file's anchors are missing. Copy or make it again.");let g=s.anchor_bits===32?4294967295:65535;this.reference=[0,1,2].map(m=>{let v=(this.bounds[2*m]+this.bounds[2*m+1])/2,w=s.anchor_scale[m];return w>0&&Number.isFinite(v)?Math.round(Math.min(Math.max((v-s.origin[m])/w,0),g)):0}),this.toData=new Float64Array([1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]);for(let m=0;m<3;++m)this.toData[12+m]=s.origin[m]+s.anchor_scale[m]*this.reference[m];this.grow("anchor_texels","rg32ui",a,"anchors"),this.grow("decoding_texels","r32ui",l,"records"),this.grow("code_texels","r32ui",ue(c.data),"codes"),p&&this.grow("anchor_low_texels","r32ui",ue(p.data),"anchors");let b=new Uint32Array(4*Math.max(d,1));for(let m=0;m<d;++m)for(let v=0;v<3;++v)b[4*m+v]=f[3*m+v];this.textures.page_texels=X(e,"rgba32ui",b,"pages"),this.coding=new O(e,"Coding"),this.coding.write({anchor_scale:s.anchor_scale,radius_scale:0,step_low:s.step_lo,step_span:s.step_hi-s.step_lo,lattice_edge:s.lattice,end_vector_scale:0,rotation_scales:Ze}),this.rotationBlock=new O(e,"Rotations"),this.rotationBlock.fill($e),this.frameForDecoding=new O(e,"Frame"),this.frameForDecoding.write({reference:this.reference},["reference"]),this.feedback=e.createTransformFeedback(),this.decodeArray=e.createVertexArray(),e.bindVertexArray(this.decodeArray),e.enableVertexAttribArray(0),e.bindVertexArray(null)}grow(e,n,t,r){let s=this.textures[e]=ve(this.gl,n,n==="rg32ui"?t.length/2:t.length,r);this.growing[e]={texture:s,format:n,data:t}}fill(e,n,t){let r=this.growing[e];r&&ce(this.gl,r.texture,r.format,r.data,n,t)}sharesOf(e,n=this.share){let t=P("last",this.growing.decoding_texels.data[3*e+2])+1,r=this.growing.anchor_texels.data[2*e+1]>>>31;return t%n===0&&!r?t/n:Math.ceil((t+(r?1:2))/n)}begin(e){let n=this.gl,r=Ct.map(l=>{let c=0,u=0;for(let f=0;f<e;++f){let d=this.sharesOf(f,l);c+=d*l*(1+.05*d),u+=d}return{share:l,cost:c,total:u}}).reduce((l,c)=>c.cost<l.cost?c:l),s=this.fiblets-e;this.share=r.share,this.itemBytes=this.share*we;let i=this.points;for(let l=0;l<e;++l)i-=P("last",this.growing.decoding_texels.data[3*l+2])+1;let a=Math.max(r.total+Math.floor((Math.max(i,0)+(this.share+1)*s)/this.share),1);this.toItems=new Uint32Array(4*a),this.textures.items=ve(n,"rgba32ui",a,"shares of fiblets"),this.itemBuffer=n.createBuffer(),n.bindBuffer(n.ARRAY_BUFFER,this.itemBuffer),n.bufferData(n.ARRAY_BUFFER,8*a,n.STATIC_DRAW)}advance(e){let n=this.gl,t=this.done,r=Math.min(e,this.fiblets),s=this.parameters,{table:i}=this;if(r<=t&&this.fiblets)return;t||this.begin(r);let a=this.archive.arrays.get("rank_to_id.npy")?.data,l=this.archive.arrays.get("anchors_low.npy")?.data,c=this.growing.anchor_texels.data,u=this.growing.decoding_texels.data,f=this.toItems,d=i[i.length-2],p=this.shares,g=2*s.largest_radius,b=this.kinds.size,m=p,v=this.open,w=0;for(let x=t;x<r;++x)w+=this.sharesOf(x);let I=new Uint32Array(2*w),M=()=>{v&&(v.more=1,this.blocks.push(v))};for(let x=t;x<r;++x){let A=3*(x>>se),L=c[2*x+1],E=u[3*x+2],_=P("rank",L)+i[A],B=P("last",E)+1,S=a?Number(a[_]):_,D=P("begin",L),U=P("end",L),C=P("code",u[3*x+1])+i[A+1],K=P("point",E)+i[A+2],Y=this.sharesOf(x);if(B>60||4*(m+Y)>f.length||!(S>=0&&S<this.streamlines)||C>d||K+B>this.points)throw new T(`Record ${x} of the file is damaged. Copy or make it again.`);this.kinds.add(P("kind",E)),x%Mt===0&&(M(),v={firstItem:m,items:0,more:0,bounds:[1/0,-1/0,1/0,-1/0,1/0,-1/0],buffer:null,used:0,shapes:null,likely:null,likelies:0});let ie=[c[2*x]&65535,c[2*x]>>>16,L&65535];for(let F=0;F<3;++F){let V=s.origin[F]+s.anchor_scale[F]*(l?ie[F]*65536+l[3*x+F]:ie[F]);v.bounds[2*F]=Math.min(v.bounds[2*F],V-g),v.bounds[2*F+1]=Math.max(v.bounds[2*F+1],V+g)}D&&(this.before=0);for(let F=0;F<Y;++F,++m)f[4*m]=S,f[4*m+1]=K,f[4*m+2]=B|D<<6|U<<7|F<<8,f[4*m+3]=this.before,I[2*(m-p)]=x,I[2*(m-p)+1]=F;this.before+=B,v.items+=Y}this.open=v,r===this.fiblets&&v&&this.blocks.push(v),this.shares=m,this.done=r,this.kinds.size>b&&(this.decodeProgram=null),ce(n,this.textures.items,"rgba32ui",f,p,m),n.bindBuffer(n.ARRAY_BUFFER,this.itemBuffer),n.bufferSubData(n.ARRAY_BUFFER,8*p,I),this.fill("anchor_texels",t,r),this.fill("decoding_texels",3*t,3*r),this.fill("anchor_low_texels",Math.floor(1.5*t),Math.ceil(1.5*r)),this.fill("code_texels",this.countBefore(t,1)>>2,this.countBefore(r,1)+3>>2);for(let{texture:x,format:A,data:L}of this.values)ce(n,x,A,L,this.countBefore(t,2),this.countBefore(r,2))}countBefore(e,n){return this.table[3*Math.ceil(e/(1<<se))+n]}pointValues(e){let n=this.archive.header.per_point?.[e],t=n&&this.archive.arrays.get(n.member);if(!t||t.data.length!==this.points)throw new T(`The file has no values ${e} for its points.`);return this.codedValues(e,t.data,n)}codedValues(e,n,{lo:t,hi:r}){if(n.length!==this.points)throw new T(`The values ${e} are not those of the file's points.`);let s=n instanceof Uint16Array,i=s?65535:255,a=s?"r16ui":"r8ui",l=ve(this.gl,a,this.points,"values of points");return this.values.push({texture:l,format:a,data:n}),ce(this.gl,l,a,n,0,this.countBefore(this.done,2)),{name:e,texture:l,code:[t,(r-t)/(i-1),i]}}forget({texture:e}){this.values=this.values.filter(n=>n.texture!==e),this.gl.deleteTexture(e)}decoder(){let e=["DIRECTION"];return this.textures.anchor_low_texels&&e.push("ANCHORS_LOW"),(this.kinds.size>1||!this.kinds.has(ot))&&e.push("LATTICE"),this.kinds.has(Pt)&&e.push("WIDE_LATTICE"),this.decodeProgram??(this.decodeProgram=new le(this.gl,"page/decode.vert","page/none.frag",e,Array.from({length:this.share},(n,t)=>`o${t}`)))}decode(e,n){let t=this.gl,r=e.items+e.more;this.coding.bind(),this.rotationBlock.bind(),this.frameForDecoding.bind();let{items:s,...i}=this.textures;this.decoder().use().textures(i).uints({chunk_fiblets:this.fiblets,share_size:this.share}),t.bindVertexArray(this.decodeArray),t.bindBuffer(t.ARRAY_BUFFER,this.itemBuffer),t.vertexAttribIPointer(0,2,t.UNSIGNED_INT,8,8*e.firstItem),t.bindBuffer(t.ARRAY_BUFFER,null),t.enable(t.RASTERIZER_DISCARD),t.bindTransformFeedback(t.TRANSFORM_FEEDBACK,this.feedback),t.bindBufferRange(t.TRANSFORM_FEEDBACK_BUFFER,0,n,0,r*this.itemBytes),t.beginTransformFeedback(t.POINTS),t.drawArrays(t.POINTS,0,r),t.endTransformFeedback(),t.bindBufferBase(t.TRANSFORM_FEEDBACK_BUFFER,0,null),t.bindTransformFeedback(t.TRANSFORM_FEEDBACK,null),t.disable(t.RASTERIZER_DISCARD),t.bindVertexArray(null)}size(e){return(e.items+e.more)*this.itemBytes+2*we}newBuffer(e){let n=this.gl,t=n.createBuffer();return n.bindBuffer(n.ARRAY_BUFFER,t),n.bufferData(n.ARRAY_BUFFER,e,n.DYNAMIC_COPY),n.bindBuffer(n.ARRAY_BUFFER,null),t}pointsOf(e){if(e.used=++this.clock,e.buffer)return e.buffer;let n=this.size(e);return this.held+n<=this.budget?(this.held+=n,e.buffer=this.newBuffer(n),this.decode(e,e.buffer),e.buffer):(this.scratchBytes<n&&(this.scratch&&this.gl.deleteBuffer(this.scratch),this.scratch=this.newBuffer(this.scratchBytes=n)),this.decode(e,this.scratch),this.scratch)}get items(){return this.textures.items}segments(e){return e*this.share}get longestStep(){return this.kinds.size===1&&this.kinds.has(ot)?2*this.parameters.step_hi:1/0}draw(e,n,t,r){return this.drawRun(e,n,0,Math.max(1,Math.round(t)),r)}drawRun(e,n,t,r,s){let i=this.gl,a=(r-t)*this.share;return this.aim(e,n,t,s),s?i.drawArrays(i.POINTS,0,a):i.drawArraysInstanced(i.TRIANGLE_STRIP,0,4,a),i.bindVertexArray(null),a}aim(e,n,t,r){let s=this.gl,i=this.pointsOf(e);n.use().ints({first_item:e.firstItem+t,share_size:this.share}),s.bindVertexArray(this.segmentArray(r)),s.bindBuffer(s.ARRAY_BUFFER,i);for(let a=0;a<3;++a)s.vertexAttribIPointer(a,4,s.UNSIGNED_INT,we,t*this.itemBytes+a*we)}likely(e){return e.likely||(e.likely=new Uint8Array(e.items).fill(1,0,e.likelies=Math.max(1,Math.round(Ut*e.items)))),e.likely}look(e,n,t,r,s,i){let a=new Uint8Array(e.items),l=this.likely(e),c=new Uint8Array(e.items);nt(e.shapes??(e.shapes=this.shapesOf(e)),n,t,r,s,i,a),e.likelies=0;for(let u=0;u<c.length;++u)c[u]=a[u]&~l[u],e.likelies+=a[u];return e.likely=a,c}shapesOf(e){let n=this.toItems,{share:t}=this;return tt(this.slotsOf(e),e.items,t,r=>{let s=n[4*(e.firstItem+r)+2],i=s>>>7&1,a=s&63;return Math.min(a+1-i-t*(s>>>8),t+1)})}slotsOf(e){let n=this.gl,t=new Float32Array((e.items+e.more+1)*this.share*4);return n.bindBuffer(n.ARRAY_BUFFER,this.pointsOf(e)),n.getBufferSubData(n.ARRAY_BUFFER,0,t,0,(e.items+e.more)*this.share*4),n.bindBuffer(n.ARRAY_BUFFER,null),t}drawSome(e,n,t,r,s=1/0){let i=this.gl,{share:a}=this,l=0;if(!r){let f=0,d=0;for(let p=0;p<t.length&&d<s;++p){if(!t[p])continue;let g=p+1;++d;for(let b=g;b<Math.min(t.length,g+Dt)&&d<s;++b)t[b]&&(g=b+1,++d);f+=this.drawRun(e,n,p,g,r),p=g}return f}let c=Math.min(s,t.length),u=new Uint32Array(c*a);for(let f=0,d=0;f<t.length&&d<c;++f){if(!t[f])continue;let p=this.toItems[4*(e.firstItem+f)+2],g=p&63,b=g-((p&128)!==0&&g>1?1:0);for(let m=f*a,v=m+Math.min(b-a*(p>>>8),a);m<v;++m)u[l++]=m;++d}return l?(this.aim(e,n,0,r),i.bindBuffer(i.ELEMENT_ARRAY_BUFFER,this.indices??(this.indices=i.createBuffer())),i.bufferData(i.ELEMENT_ARRAY_BUFFER,u.subarray(0,l),i.STREAM_DRAW),i.drawElements(i.POINTS,l,i.UNSIGNED_INT,0),i.bindVertexArray(null),l):0}segmentArray(e){let n=e?1:0;if(!this.arrays[n]){let t=this.gl;t.bindVertexArray(this.arrays[n]=t.createVertexArray());for(let r=0;r<3;++r)t.enableVertexAttribArray(r),t.vertexAttribDivisor(r,e?0:1)}return this.arrays[n]}*decoded(e,n=0){let t=this.toItems;for(let r of this.blocks.slice(n)){if(!e(r))continue;let s=this.slotsOf(r);for(let i=r.firstItem;i<r.firstItem+r.items;++i){if(t[4*i+2]>>>8)continue;let a=t[4*i+2]&63,l=(t[4*i+2]&128)!==0,c=4*this.share*(i-r.firstItem);yield[t[4*i],s.subarray(c,c+4*(a+(l?0:1))),(t[4*i+2]&64)!==0]}}}blocksOf(e){let n=this.toItems;return t=>{for(let r=t.firstItem;r<t.firstItem+t.items;++r)if(n[4*r]===e)return!0;return!1}}world(e,n){return[0,1,2].map(t=>this.toData[12+t]+e[4*n+t])}pointsOfStreamline(e){let n=[];for(let[t,r]of this.decoded(this.blocksOf(e)))if(t===e)for(let s=0;4*s<r.length;++s)n.push(this.world(r,s));return n}through(e,n,t=0,r=new Uint8Array(this.streamlines)){let{at:s,size:i}=e,a=({bounds:l})=>{let c=[0,1,2,3,4,5,6,7].map(u=>k(n,[l[u&1],l[2+(u>>1&1)],l[4+(u>>2)]]));return[0,1,2].every(u=>c.some(f=>f[u]>=s[u]-i[u])&&c.some(f=>f[u]<=s[u]+i[u]))};for(let[l,c]of this.decoded(a,t)){if(r[l])continue;let u=Ne(e,k(n,this.world(c,0)));for(let f=0;f<c.length&&!r[l];f+=4){let d=Ne(e,k(n,this.world(c,Math.min(f+4,c.length-4)/4)));rt(e,u,d)&&(r[l]=1),u=d}}return r}release(){let e=this.gl;for(let n of this.blocks)n.buffer&&e.deleteBuffer(n.buffer);for(let n of Object.values(this.textures))e.deleteTexture(n);for(let n of[this.scratch,this.indices,this.itemBuffer])n&&e.deleteBuffer(n)}};var ct="http://www.w3.org/2000/svg";function y(o,e={},...n){let t=document.createElement(o);for(let[r,s]of Object.entries(e))t.setAttribute(r,s);return t.append(...n),t}var W=o=>Number.isFinite(o)?String(Number(o.toPrecision(4))):"no value";function z(o,e,n,t,r){let s=(n-e)/200||1,i=y("output",{},W(t)),a=y("input",{type:"range",min:String(e),max:String(n),step:String(s),value:String(t)});return a.addEventListener("input",()=>{i.textContent=W(a.valueAsNumber),r(a.valueAsNumber)}),y("label",{},y("span",{},o),a,i)}function Me(o,e,n){let t=y("input",{type:"checkbox"});return t.checked=e,t.addEventListener("change",()=>n(t.checked)),y("label",{},t,y("span",{},o))}function fe(o,e){let n=y("button",{type:"button"},o);return n.addEventListener("click",e),n}function re(o,...e){return y("fieldset",{},y("legend",{},o),...e)}var Ot=[["Left",[1,0,0],[0,0,1]],["Right",[-1,0,0],[0,0,1]],["Front",[0,-1,0],[0,0,1]],["Back",[0,1,0],[0,0,1]],["Top",[0,0,-1],[0,1,0]],["Bottom",[0,0,1],[0,1,0]]];function zt(o){let e=N(o.table),n=e.length/4,t=y("canvas",{width:String(n),height:"1",role:"img","aria-label":`Colours from ${W(o.clim[0])} to ${W(o.clim[1])}`}),r=t.getContext("2d"),s=r.createImageData(n,1);if(s.data.set(e),r.putImageData(s,0,0),o.labels){let c=o.labels.map(({name:u,colour:f})=>{let d=y("i",{"aria-hidden":"true"});return d.style.background=`rgb(${f.join(",")})`,y("li",{},d,u)});return y("figure",{class:"bar"},y("figcaption",{},o.title),y("ul",{tabindex:"0","aria-label":o.title},...c))}let[i,a]=o.clim,l=o.log?Math.sqrt(i*a):(i+a)/2;return y("figure",{class:"bar"},y("figcaption",{},o.title),t,y("div",{class:"ticks","aria-hidden":"true"},...[i,l,a].map(c=>y("span",{},W(c)))))}var De=class{constructor(e,n){h(this,"renderer",e);h(this,"data",n);h(this,"told",null);h(this,"status",document.getElementById("status"));h(this,"axes",[]);h(this,"choices",new Map);h(this,"picked",null);h(this,"regions",[]);h(this,"outlines",document.createElementNS(ct,"svg"));h(this,"later",0);let t=document.getElementById("over"),{scene:r}=e,s=y("details",{id:"panel"},y("summary",{},"Scene"));s.append(this.layers(),...this.groups(),this.views(),this.cut(),...this.ranges(),this.regionList()),t.append(this.outlines,s),r.bars.length&&t.append(y("div",{id:"bars"},...r.bars.map(zt))),t.append(this.orientation()),e.restored=()=>{for(let i of this.choices.values())i.apply()},e.presented=()=>this.follow(),e.grown=()=>this.grown(),this.follow()}layers(){let{renderer:e}=this,n=[];return e.scene.layers.forEach(t=>{n.push(Me(t.name,t.visible,r=>{t.visible=r,e.change()})),t.kind==="fiblets"?n.push(z("Line width",.5,10,t.line_width,r=>{t.line_width=r,e.change(!0)})):n.push(z("Opacity",0,1,t.opacity,r=>{t.opacity=r,e.change(!0)}))}),re("Shown",...n)}views(){let{renderer:e}=this,n=structuredClone(e.camera.state),t=Ot.map(([r,s,i])=>fe(r,()=>{e.camera.lookAlong(s,i,e.scene.bounds),e.change()}));return t.push(fe("As at first",()=>{Object.assign(e.camera.state,structuredClone(n)),e.change()})),t.push(fe("Save picture",()=>this.save())),re("View",y("div",{class:"buttons"},...t))}save(){let{renderer:e}=this;e.settled().then(()=>{let n=y("canvas",{width:String(e.width),height:String(e.height)}),t=n.getContext("2d"),r=t.createImageData(e.width,e.height);r.data.set(e.pixels()),t.putImageData(r,0,0),n.toBlob(s=>{let i=y("a",{href:URL.createObjectURL(s),download:"picture.png"});i.click(),setTimeout(()=>URL.revokeObjectURL(i.href),6e4)})})}cut(){let{renderer:e}=this,n=e.scene.bounds,t=y("select",{"aria-label":"Cut across"});for(let l of["nothing","left to right","back to front","bottom to top"])t.append(y("option",{},l));let r=y("div"),s=0,i=0,a=()=>{let l=t.selectedIndex-1,c=u=>[0,1,2].map(f=>f===l?u:0).concat(-u*s+i/2);e.planes=l<0?[]:[c(1),c(-1)],e.change(!0)};return t.addEventListener("change",()=>{let l=t.selectedIndex-1;if(r.replaceChildren(),l>=0){let c=n[2*l],u=n[2*l+1];s=(c+u)/2,i=(u-c)/8,r.append(z("Middle",c,u,s,f=>{s=f,a()}),z("Thickness",(u-c)/200,u-c,i,f=>{i=f,a()}))}a()}),re("Slab across",t,r)}choiceOf(e){let n=this.choices.get(e.index);return n||this.choices.set(e.index,n=new Be(e,e.layer.kept===void 0?null:this.data[e.layer.kept])),n}ranges(){let{renderer:e}=this,n=[];for(let t of e.lines){let{values:r,layer:s}=t;if(r){let i=r.code[0],a=i+r.code[1]*(r.code[2]-1),l=[i,a],c=()=>{e.lines[t.index].shownValues=l[0]>i||l[1]<a?[l[0],l[1]]:[1,0],e.change(!0)};n.push(re(r.name,z("From",i,a,i,u=>{l[0]=u,c()}),z("To",i,a,a,u=>{l[1]=u,c()})))}for(let i of s.controls??[]){if(i.data===void 0)continue;let a=this.data[i.data],l=new Float32Array(a.slice().buffer),[c,u]=i.range,f=d=>p=>{this.choiceOf(e.lines[t.index]).set(i,l,d,p),e.change(!0)};n.push(re(i.name,z("From",c,u,c,f(0)),z("To",c,u,u,f(1))))}}return n}groups(){return this.renderer.lines.filter(({layer:e})=>e.groups?.length).map(e=>{let n=this.choiceOf(e),t=e.layer.groups.map(({name:r,data:s})=>{let i=ue(this.data[s]);return n.groups.push(i),Me(r,!0,a=>{a?n.hidden.delete(i):n.hidden.add(i),n.apply(),this.renderer.change()})});return re(`Groups of ${e.layer.name}`,...t)})}regionList(){let e=y("div"),{renderer:n}=this,t=n.scene.bounds,r=Math.hypot(t[1]-t[0],t[3]-t[2],t[5]-t[4]),s=i=>()=>{let a=this.picked?k(this.picked.lines.model,this.picked.place).slice(0,3):[0,1,2].map(c=>(t[2*c]+t[2*c+1])/2),l={ball:i,at:a,size:[r/40,r/40,r/40],on:!0,inverted:!1};this.regions.push(l),e.append(this.regionRow(l,r)),this.update(l)};return re("Regions",y("div",{class:"buttons"},fe("Add a ball",s(!0)),fe("Add a box",s(!1))),e)}regionRow(e,n){let{renderer:t}=this,r=t.scene.bounds,s=`${e.ball?"Ball":"Box"} ${this.regions.length}`,i=()=>{window.clearTimeout(this.later),this.later=window.setTimeout(()=>this.update(e),120),this.drawOutlines()},a=(c,u)=>z(c,n/1e3,n/4,e.size[u[0]],f=>{for(let d of u)e.size[d]=f;i()}),l=y("details",{},y("summary",{},s),Me("On",!0,c=>{e.on=c,this.choose()}),Me("Streamlines outside it",!1,c=>{e.inverted=c,this.choose()}),...["x","y","z"].map((c,u)=>z(`${c}, mm`,r[2*u],r[2*u+1],e.at[u],f=>{e.at[u]=f,i()})),...e.ball?[a("Radius, mm",[0,1,2])]:["x","y","z"].map((c,u)=>a(`Half of ${c}, mm`,[u])),y("div",{class:"buttons"},fe(`Remove ${s.toLowerCase()}`,()=>{l.remove(),this.regions.splice(this.regions.indexOf(e),1);for(let c of this.choices.values())c.regions.delete(e);this.choose()})));return l.open=!0,l}update(e){if(this.regions.includes(e)){for(let n of this.renderer.lines)this.choiceOf(n).look(e,!1);this.choose()}}grown(){if(this.regions.length){for(let e of this.choices.values())for(let n of this.regions)e.look(n,!0);this.choose()}}choose(){let e=0;this.drawOutlines();for(let n of this.choices.values())n.apply(),e+=n.count;this.status.textContent=this.regions.some(n=>n.on)?`${e} streamlines are shown`:"",this.renderer.change()}pick(e,n){let{renderer:t}=this,r=t.pick(e,n);if(this.unmark(),r){let{lines:s,streamline:i,value:a}=r,l=t.placeOf(s,i,e,n),c=k(s.model,l).slice(0,3);this.say(s,i,a,c),this.picked={lines:s,streamline:i,place:l},this.told?.({layer:t.scene.layers.indexOf(s.layer),streamline:i,place:c})}else this.told?.(null);t.change()}mark(e){this.unmark();let n=e&&this.renderer.lines.find(({layer:t})=>t===this.renderer.scene.layers[e.layer]);if(e&&n&&e.streamline>=0&&e.streamline<n.set.streamlines){let{streamline:t}=e,r=n.set.pointsOfStreamline(t),s=r[r.length>>1];this.say(n,t,null,e.place??[]),s&&(this.picked={lines:n,streamline:t,place:s})}this.renderer.change()}unmark(){for(let e of this.renderer.lines)e.marked=4294967295;this.picked=null,this.status.textContent=""}say(e,n,t,r){e.marked=n;let s=[`Streamline ${n} of ${e.layer.name}`];t!==null&&e.values&&s.push(`${e.values.name} ${W(t)}`);for(let i of e.layer.controls??[])i.data!==void 0&&s.push(`${i.name} ${W(new Float32Array(this.data[i.data].slice().buffer)[n])}`);r.length&&s.push(`at ${r.map(W).join(", ")} mm`),this.status.textContent=s.join("; ")}orientation(){let n=(this.renderer.scene.letters?[["L","R"],["P","A"],["I","S"]]:[["","x"],["","y"],["","z"]]).flat().map((t,r)=>y("span",{class:`axis a${r>>1}`},t));return this.axes=n,y("div",{id:"axes","aria-hidden":"true"},...n)}follow(){this.turnAxes(),this.drawOutlines()}drawOutlines(){let{renderer:e,outlines:n}=this,{camera:t,canvas:r}=e,s=r.clientWidth,i=r.clientHeight;if(!this.regions.length)return n.replaceChildren();let a=R(t.projection(s/i,e.scene.bounds),t.view());n.replaceChildren(...this.regions.map(l=>{let c=document.createElementNS(ct,"path"),u=[];for(let f of it(l)){let d="M";for(let p of f){let[g,b,,m]=k(a,p);m>0&&u.push(`${d}${((g/m+1)*s/2).toFixed(1)} ${((1-b/m)*i/2).toFixed(1)}`),d=m>0?"L":"M"}}return c.setAttribute("d",u.join("")),c.setAttribute("opacity",l.on?"1":".3"),c}))}turnAxes(){let e=this.renderer.camera.view();this.axes.forEach((n,t)=>{let r=$([0,1,2].map(l=>l===t>>1?1:0),t&1?1:-1),[s,i,a]=k(e,r,0);n.style.transform=`translate(${(s*32).toFixed(1)}px, ${(-i*32).toFixed(1)}px)`,n.style.opacity=String(.35+.65*(.5+a/2))})}};function Ye(o,e=()=>{}){let{canvas:n,camera:t}=o,r=new Map,s=0,i=0;n.addEventListener("pointerdown",l=>{n.focus(),n.setPointerCapture(l.pointerId),r.set(l.pointerId,{x:l.offsetX,y:l.offsetY}),s=0,i=l.button,l.preventDefault()}),n.addEventListener("contextmenu",l=>l.preventDefault());let a=l=>{r.delete(l.pointerId)&&(l.type==="pointerup"&&s<4&&i===0&&!r.size?e(l.offsetX,l.offsetY):o.change())};n.addEventListener("pointerup",a),n.addEventListener("pointercancel",a),n.addEventListener("pointermove",l=>{let c=r.get(l.pointerId);if(!c)return;let u=l.offsetX-c.x,f=l.offsetY-c.y,d=n.clientWidth,p=n.clientHeight;if(s+=Math.abs(u)+Math.abs(f),r.size===2){let g=[...r.entries()].find(([v])=>v!==l.pointerId)[1],b=[c.x-g.x,c.y-g.y],m=[l.offsetX-g.x,l.offsetY-g.y];t.dolly(Math.hypot(m[0],m[1])/Math.max(1,Math.hypot(b[0],b[1]))),t.roll((Math.atan2(m[1],m[0])-Math.atan2(b[1],b[0]))*180/Math.PI),t.pan(u/2/p,-f/2/p)}else i===1||l.shiftKey?t.pan(u/p,-f/p):i===2?t.dolly(Math.pow(1.1,-20*.2*f/(p/2)*5)):l.ctrlKey?t.roll(180*u/d):t.rotate(u/d,-f/p);c.x=l.offsetX,c.y=l.offsetY,o.change(!0)}),n.addEventListener("wheel",l=>{t.dolly(Math.pow(1.1,Math.max(-3,Math.min(3,-l.deltaY/50)))),o.change(!0),l.preventDefault()},{passive:!1}),n.addEventListener("keydown",l=>{let u={ArrowLeft:()=>l.shiftKey?t.pan(-.04,0):t.rotate(-.04,0),ArrowRight:()=>l.shiftKey?t.pan(.04,0):t.rotate(.04,0),ArrowUp:()=>l.shiftKey?t.pan(0,.04):t.rotate(0,.04),ArrowDown:()=>l.shiftKey?t.pan(0,-.04):t.rotate(0,-.04),"+":()=>t.dolly(1.1),"=":()=>t.dolly(1.1),"-":()=>t.dolly(.9090909090909091),Enter:()=>e(n.clientWidth/2,n.clientHeight/2)};l.altKey||l.metaKey||!u[l.key]||(u[l.key](),o.change(!0),l.preventDefault())})}var Ve=o=>Array.isArray(o)&&o.length===3&&o.every(Number.isFinite);function ut(o,e){let{parent:n}=window;if(n===window)return;let t=i=>n.postMessage({pvfiblets:i},"*"),{state:r}=o.camera,s=JSON.stringify(r);window.addEventListener("message",i=>{let a=i.source===n?i.data?.pvfiblets:void 0;if(!a)return;let{camera:l,picked:c}=a;if(l&&Ve(l.position)&&Ve(l.focal_point)&&Ve(l.up)&&l.view_angle>0&&l.parallel_scale>0){Object.assign(r,l);let u=JSON.stringify(r);u!==s&&o.change(),s=u}c!==void 0&&e.mark(c)}),o.finished=()=>{let i=JSON.stringify(r);i!==s&&t({camera:JSON.parse(s=i)})},e.told=i=>t({picked:i}),t({ready:!0})}var ye=class{constructor(e,n){h(this,"file",e);h(this,"bytes");h(this,"come",0);h(this,"whole",null);h(this,"waiting",[]);h(this,"had",[]);this.bytes=new Uint8Array(n)}async need(e,n){n<=e||this.had.some(([t,r])=>t<=e&&r>=n)||(this.whole||await this.tried(e,n),this.whole&&await this.upTo(n))}async tried(e,n){for(let t=2;;--t)try{return await this.ask(e,n)}catch(r){if(!(r instanceof TypeError))throw r;if(!t)throw new Error(`${this.file} cannot be read: the connection to its server broke, or there is no server. Files beside a page need one; "python -m http.server" is enough.`);await new Promise(s=>setTimeout(s,500))}}async ask(e,n){let t=await fetch(this.file,{headers:{Range:`bytes=${e}-${n-1}`}});if(!t.ok)throw new Error(`${this.file} cannot be read (${t.status}); it must lie beside this page.`);if(t.status!==206){this.whole?t.body?.cancel():this.whole=this.flow(t);return}let r=Number(/\/(\d+)$/.exec(t.headers.get("Content-Range")??"")?.[1]??this.bytes.length),s=new Uint8Array(await t.arrayBuffer());if(r!==this.bytes.length||s.length!==n-e)throw this.changed(r);this.bytes.set(s,e),this.had.push([e,n])}async flow(e){let n=e.body.getReader();for(;;){let{done:t,value:r}=await n.read();if(t)break;if(this.come+r.length>this.bytes.length)throw this.changed(this.come+r.length);this.bytes.set(r,this.come),this.come+=r.length,this.waiting=this.waiting.filter(s=>s.end<=this.come?s.resolve():!0)}if(this.come!==this.bytes.length)throw this.changed(this.come)}async upTo(e){e>this.come&&await Promise.race([this.whole,new Promise(n=>this.waiting.push({end:e,resolve:n}))])}changed(e){return new Error(`${this.file} has ${e} bytes, and this page was made with one of ${this.bytes.length}. Copy the page and its folder again.`)}};var Qe=6;function ft({leaves:o,program:e}){let n=[];for(let t of e)t>=0?n.push(o[t].ball?`sphere_holds(${t},z)`:`planes_hold(${t},${o[t].planes.length},z)`):t===-3?n.push(`!${n.pop()}`):n.push(`(${n.pop()}${t===-1?"&&":"||"}${n.pop()})`);return n[0]}function ht({leaves:o},e,n,t){let r=ee(e),s=[n,t,1,1],i=[0,1,2,3];if(!r)return null;let a=new Float64Array(4*Qe*o.length),l=new Float64Array(4*o.length);return o.forEach(({centre:c,planes:u,ball:f},d)=>{let[p,g,b,m]=k(e,c),v=[p/m,g/m,b/m],w=m>0&&v.every(isFinite)?v.map((E,_)=>Math.min(Math.max(E,0),s[_])):[n/2,t/2,0],I=E=>{let _=i.map(B=>i.reduce((S,D)=>S+E[D]*r[D+4*B],0));return _[3]+=_[0]*w[0]+_[1]*w[1]+_[2]*w[2],_},M=E=>{let _=Math.max(...E.map((B,S)=>Math.abs(B*s[S])))||1;return E.map((B,S)=>Math.abs(B*s[S])<1e-30*_?0:B/_)};if(l.set(w,4*d),u&&u.forEach((E,_)=>a.set(M(I(E)),4*(Qe*d+_))),!f)return;let x=[...f,[0,0,0,1]].map(I),A=i.map(E=>i.map(_=>x.reduce((B,S,D)=>B+(D<3?1:-1)*S[E]*S[_],0))),L=Math.max(...i.flatMap(E=>i.map(_=>Math.abs(A[E][_]*s[E]*s[_]))))||1;a.set([A[0][0],A[1][1],2*A[0][1],A[3][3],2*A[0][3],2*A[1][3],A[0][2],A[1][2],A[2][2],A[2][3]].map(E=>E/L),4*Qe*d)}),{rays_rows:a,rays_centres:l}}function Nt(o,e,n){let t=e.slice(0,6).map(r=>[0,1,2,3].map(s=>r[0]*n[4*s]+r[1]*n[4*s+1]+r[2]*n[4*s+2]+r[3]*n[4*s+3]));o.ints({plane_count:t.length}),t.forEach((r,s)=>o.set({[`planes[${s}]`]:r}))}var Ue=class{constructor(e,n,t){h(this,"gl",e);h(this,"layer",n);h(this,"array");h(this,"buffers",[]);h(this,"count");h(this,"table",null);h(this,"tableRange",[0,1,1,1]);h(this,"model");this.model=new Float64Array(n.matrix??[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]),this.array=e.createVertexArray(),e.bindVertexArray(this.array);let r=(i,a,l,c,u)=>{let f=e.createBuffer();e.bindBuffer(e.ARRAY_BUFFER,f),e.bufferData(e.ARRAY_BUFFER,a,e.STATIC_DRAW),e.enableVertexAttribArray(i),e.vertexAttribPointer(i,l,c,u,0,0),this.buffers.push(f)};r(0,t[n.places],3,e.FLOAT,!1),n.normals!==void 0&&r(1,t[n.normals],3,e.FLOAT,!1),n.colours!==void 0&&r(2,t[n.colours],4,e.UNSIGNED_BYTE,!0),n.values!==void 0&&(r(3,t[n.values],1,e.FLOAT,!1),[this.table,this.tableRange]=Le(e,N(n.table),n.clim,!!n.log));let s=e.createBuffer();e.bindBuffer(e.ELEMENT_ARRAY_BUFFER,s),e.bufferData(e.ELEMENT_ARRAY_BUFFER,t[n.triangles],e.STATIC_DRAW),this.buffers.push(s),this.count=t[n.triangles].byteLength/4,e.bindVertexArray(null)}get translucent(){return this.layer.opacity<1}draw(e,n){let t=this.gl,{layer:r}=this,s=R(n.view,this.model),i=be(s),a=ee(s),l=a?[a[0],a[4],a[8],a[1],a[5],a[9],a[2],a[6],a[10]]:i;e.use().set({clip_from_data:ke(R(n.projection,s)),view_from_data:ke(s),normal_to_view:l,parallel:n.parallel?1:0,opacity:r.opacity,reflects:r.reflects,sheen:r.sheen}),e.ints({smooth_normals:r.normals===void 0?0:1,lighting:r.lighting?1:0,by_value:this.table?1:0,logarithm:r.log?1:0}),e.textures({table:this.table}).set({table_range:this.tableRange}),n.lights(e),Nt(e,[...r.planes??[],...n.planes],this.model),t.bindVertexArray(this.array),r.normals===void 0&&t.vertexAttrib3f(1,0,0,1),r.colours===void 0&&t.vertexAttrib4f(2,r.colour[0],r.colour[1],r.colour[2],1),t.drawElements(t.TRIANGLES,this.count,t.UNSIGNED_INT,0),t.bindVertexArray(null)}release(){for(let e of this.buffers)this.gl.deleteBuffer(e);this.gl.deleteVertexArray(this.array),this.table&&this.gl.deleteTexture(this.table)}depth(e){let n=this.layer.bounds,t=[(n[0]+n[1])/2,(n[2]+n[3])/2,(n[4]+n[5])/2];return-(e[2]*t[0]+e[6]*t[1]+e[10]*t[2]+e[14])}},Ce=class{constructor(e,n,t){h(this,"gl",e);h(this,"layer",n);h(this,"texture");let[r,s]=n.size;this.texture=e.createTexture(),e.bindTexture(e.TEXTURE_2D,this.texture),e.texImage2D(e.TEXTURE_2D,0,e.RGBA8,r,s,0,e.RGBA,e.UNSIGNED_BYTE,t[n.pixels]);for(let i of["TEXTURE_MIN_FILTER","TEXTURE_MAG_FILTER"])e.texParameteri(e.TEXTURE_2D,e[i],n.smooth?e.LINEAR:e.NEAREST);for(let i of["TEXTURE_WRAP_S","TEXTURE_WRAP_T"])e.texParameteri(e.TEXTURE_2D,e[i],e.CLAMP_TO_EDGE)}get translucent(){return this.layer.clear||this.layer.opacity<1}release(){this.gl.deleteTexture(this.texture)}draw(e,n){let{layer:t}=this;e.use().set({clip_from_data:ke(R(n.projection,n.view)),corner:t.corner,across:t.across,up:t.up,opacity:t.opacity}),e.textures({pixels:this.texture}),this.gl.bindVertexArray(null),this.gl.drawArrays(this.gl.TRIANGLE_STRIP,0,4)}};var Gt=60,dt=45,pt=400,Yt=.5,he=16,xe=4,Vt=40,Ae=4294967295,Qt=1065353216,qt={direction:0,solid:1,streamline:2,value:3,point:4},Ht={none:0,line:1,illuminated:2},qe=class{constructor(e,n,t,r,s,i){h(this,"gl",e);h(this,"layer",n);h(this,"index",t);h(this,"set");h(this,"model");h(this,"values",null);h(this,"colours",null);h(this,"table",null);h(this,"tableRange",[0,1,1,1]);h(this,"kept",null);h(this,"chosen",null);h(this,"keptPoints",null);h(this,"shownValues",[1,0]);h(this,"marked",Ae);this.set=i??new Se(e,s),this.set.advance(s.ready),this.model=new Float64Array(n.matrix??Ie());let{colours:a}=n;a.codes?this.values=this.set.codedValues(a.values,lt(r[a.codes.data],a.codes.bits),a.codes):a.values!==void 0&&(this.values=this.set.pointValues(a.values)),a.data!==void 0&&(this.colours=X(e,"rgba8",r[a.data],"colours")),a.table!==void 0&&([this.table,this.tableRange]=Le(e,N(a.table),a.clim,!!a.log)),n.kept!==void 0&&this.keep(r[n.kept]),n.chosen&&(this.chosen=X(e,"r8ui",r[n.chosen.data],"streamlines")),n.kept_points!==void 0&&(this.keptPoints=X(e,"r32ui",ue(r[n.kept_points]),"points"))}release(){this.values&&this.set.forget(this.values);for(let e of[this.colours,this.table,this.kept,this.chosen,this.keptPoints])e&&this.gl.deleteTexture(e)}get byPoint(){return this.layer.colours.mode==="point"}keep(e){this.kept&&this.gl.deleteTexture(this.kept),this.kept=e&&X(this.gl,"r8ui",e,"streamlines")}},_e=class{constructor(e,n,t,r){h(this,"canvas",e);h(this,"scene",n);h(this,"data",t);h(this,"archives",r);h(this,"camera");h(this,"lines",[]);h(this,"surfaces",[]);h(this,"images",[]);h(this,"planes",[]);h(this,"width",0);h(this,"height",0);h(this,"ratio",1);h(this,"frames",0);h(this,"few",2e5);h(this,"loading",!1);h(this,"failed",null);h(this,"drawnOnce",null);h(this,"presented",null);h(this,"grown",null);h(this,"finished",null);h(this,"gl");h(this,"programs",new Map);h(this,"frameBlock");h(this,"clipBlock");h(this,"raysBlock",null);h(this,"textures",{});h(this,"buffers",{});h(this,"frame",null);h(this,"rest",null);h(this,"sync",null);h(this,"sliceStarted",0);h(this,"sliceSize",0);h(this,"rate",1e3);h(this,"dirty",!0);h(this,"moving",!1);h(this,"asked",0);h(this,"still",0);h(this,"waiting",[]);h(this,"restored",null);this.camera=new Re(structuredClone(n.camera));let s=e.getContext("webgl2",{alpha:!1,antialias:!1,depth:!1,preserveDrawingBuffer:!1,powerPreference:"high-performance"});if(!s)throw new ae("This browser has no WebGL 2, which the page draws with. Turn on graphics acceleration in its settings, or open the page in another browser.");this.gl=s,e.addEventListener("webglcontextlost",i=>{i.preventDefault(),this.frame=this.rest=null,this.sync=null}),e.addEventListener("webglcontextrestored",()=>this.guarded(()=>this.begin())),this.begin()}guarded(e){try{e()}catch(n){this.gl.isContextLost()||this.failed?.(n)}}begin(){let{gl:e}=this,n=this.lines.splice(0);this.programs.clear(),this.rest=null,this.textures={},this.buffers={},this.width=this.height=0,this.surfaces.length=this.images.length=0,this.frameBlock=new O(e,"Frame"),this.clipBlock=new O(e,"ClipPlanes"),this.raysBlock=null,this.fill(new Map,new Map),n.forEach((t,r)=>{let s=this.lines[r];s.shownValues=t.shownValues,s.marked=t.marked}),this.restored?.(),this.change()}fill(e,n){let{gl:t,scene:r}=this;r.layers.forEach(i=>{i.kind==="surface"?this.surfaces.push(n.get(JSON.stringify(i))??new Ue(t,i,this.data)):i.kind==="image"?this.images.push(n.get(JSON.stringify(i))??new Ce(t,i,this.data)):this.lines.push(new qe(t,i,this.lines.length,this.data,this.archives.get(i.data),e.get(this.data[i.data])))});let s=Math.min(1024,128*(navigator.deviceMemory??4))*2**20;for(let i of this.lines)i.set.budget=s/this.lines.length}update(e,n,t){if(this.gl.isContextLost())return;let{data:r}=this,s=this.lines.splice(0),i=this.surfaces.splice(0),a=this.images.splice(0),l=new Map(s.map(u=>[r[u.layer.data],u.set])),c=({layer:u})=>(u.kind==="image"?[u.pixels]:[u.places,u.triangles,u.normals,u.colours,u.values]).every(f=>f===void 0||r[f]===n[f]);this.frame=this.rest=null,this.scene=e,this.data=n,this.archives=t,this.fill(l,new Map([...i,...a].filter(c).map(u=>[JSON.stringify(u.layer),u])));for(let u of s)u.release();for(let u of a)this.images.includes(u)||u.release();for(let{set:u}of s)this.lines.some(f=>f.set===u)||u.release();for(let u of i)this.surfaces.includes(u)||u.release();this.change()}program(e,n,t=[]){let r=[e,n,...t].join(" "),s=this.programs.get(r);return s||this.programs.set(r,s=new le(this.gl,e,n,t)),s}change(e=!1){this.dirty=!0,this.moving=e,window.clearTimeout(this.still),e&&(this.still=window.setTimeout(()=>this.change(),200)),this.schedule()}grow(){this.guarded(()=>{let e=this.frame??this.rest;for(let n of this.lines){let{set:t}=n,r=t.blocks.length;if(t.advance(this.archives.get(n.layer.data).ready),!e||!n.layer.visible)continue;let s=e.jobs.length;if(this.addJobs(e,n,t.blocks.slice(r)),t.segments(t.blocks.reduce((a,l)=>a+l.items,0))<=this.few)continue;let i=e.jobs.splice(s);for(let a of["likely","others"])e.jobs.push(...i.map(l=>({...l,what:a})))}e?this.dirty||(this.frame=e):this.change(),this.grown?.()}),this.schedule()}addJobs(e,n,t){let r=R(e.matrices.projection,R(e.matrices.view,n.model));for(let s of t)this.outside(r,s.bounds)||e.jobs.push({lines:n,block:s,what:"all"})}findFarTiles(e,n){let{gl:t,textures:r}=this,s=Math.ceil(this.width/xe),i=Math.ceil(this.height/xe);if(t.bindFramebuffer(t.FRAMEBUFFER,this.buffers.far),!e)return t.clearBufferuiv(t.COLOR,0,[Qt,0,0,0]),null;if(t.disable(t.DEPTH_TEST),t.bindVertexArray(null),t.viewport(0,0,s,i),this.program("page/screen.vert","page/far_tiles.frag").use().textures({depths:r.depths}),t.drawArrays(t.TRIANGLES,0,3),t.viewport(0,0,this.width,this.height),!n)return null;let a=new Uint32Array(4*s*i);return t.readPixels(0,0,s,i,t.RGBA_INTEGER,t.UNSIGNED_INT,a),{size:xe,columns:s,rows:i,depths:new Float32Array(a.buffer)}}schedule(){let e=()=>this.guarded(()=>this.tick());this.asked||(this.asked=this.sync&&this.frame&&!this.frame.moving?window.setTimeout(e,1):requestAnimationFrame(e))}settled(){return!this.dirty&&!this.frame&&!this.loading?Promise.resolve():new Promise(e=>this.waiting.push(e))}tick(){this.asked=0;let{gl:e}=this;if(e.isContextLost())return;if(this.sync){if(e.getSyncParameter(this.sync,e.SYNC_STATUS)!==e.SIGNALED)return this.schedule();e.deleteSync(this.sync),this.sync=null;let s=Math.max(performance.now()-this.sliceStarted,.5);this.sliceSize>2e3&&(this.rate+=.5*(Math.min(this.sliceSize/s,8*this.rate)-this.rate))}this.fit(),this.dirty&&this.start();let n=this.frame;if(!n)return;let t=this.rate*Gt;this.sliceStarted=performance.now(),this.sliceSize=0,this.drawSlice(n,n.moving?1/0:t);let r=n.next>=n.jobs.length;(r||this.worthShowing(n))&&(n.shownAt=performance.now(),this.present(n.matrices,r),this.drawnOnce&&(n.jobs.length||!this.loading)&&(this.drawnOnce(),this.drawnOnce=null)),this.sync=e.fenceSync(e.SYNC_GPU_COMMANDS_COMPLETE,0),e.flush(),r&&(this.frame=null,this.rest=n.moving?null:n,++this.frames,n.moving||this.finished?.(),!n.moving&&!this.dirty&&!this.loading&&this.waiting.splice(0).forEach(s=>s())),this.schedule()}worthShowing({jobs:e,next:n,begun:t,shownAt:r}){let s=performance.now(),{what:i}=e[n],a=c=>c.what===i,l=(s-t)*e.slice(n).filter(a).length/Math.max(e.slice(0,n).filter(a).length,1);return s-r>Math.max(pt,Yt*(r-t))&&(!this.frames||l>pt)}fit(){let{gl:e,canvas:n}=this,t=window.devicePixelRatio||1,r=e.getParameter(e.MAX_TEXTURE_SIZE)-2,s=Math.min(r,Math.max(1,Math.round(n.clientWidth*t))),i=Math.min(r,Math.max(1,Math.round(n.clientHeight*t)));if(s===this.width&&i===this.height)return;n.width=this.width=s,n.height=this.height=i,this.ratio=t;for(let l of Object.values(this.textures))e.deleteTexture(l);for(let l of Object.values(this.buffers))e.deleteFramebuffer(l);let a=this.textures={texels:te(e,e.RGBA32UI,s,i),depths:te(e,e.DEPTH_COMPONENT32F,s,i),drawn:te(e,e.RGBA8,s,i),shown:te(e,e.RGBA32UI,s+2,i+2),tiles:te(e,e.R8UI,Math.ceil(s/he),Math.ceil(i/he)),far:te(e,e.R32UI,Math.ceil(s/xe),Math.ceil(i/xe))};this.buffers={texels:ne(e,a.texels,a.depths),scene:ne(e,a.drawn,a.depths),drawn:ne(e,a.drawn,null),shown:ne(e,a.shown,null),tiles:ne(e,a.tiles,null),far:ne(e,a.far,null)},this.dirty=!0}start(){let{gl:e,camera:n,scene:t}=this,r=this.moving;this.dirty=!1;let s=n.view(),i=n.projection(this.width/this.height,t.bounds),a={view:s,projection:i,parallel:n.state.parallel,lights:u=>this.setLights(u,s),planes:this.planes},l=this.frame={jobs:[],next:0,share:1,drawn:0,begun:performance.now(),shownAt:performance.now(),matrices:a,moving:r};this.rest=null;for(let u of this.lines)u.layer.visible&&this.addJobs(l,u,u.set.blocks);let c=u=>l.jobs.reduce((f,d)=>f+d.lines.set.segments(u(d)),0);if(c(({block:u})=>u.items)>this.few){let u=({lines:d,block:{bounds:p}})=>k(R(s,d.model),[p[0]+p[1],p[2]+p[3],p[4]+p[5]].map(g=>g/2))[2],f=new Map(l.jobs.map(d=>[d,u(d)]));l.jobs.sort((d,p)=>f.get(p)-f.get(d)),l.jobs=l.jobs.map(d=>({...d,what:"likely"})),r?l.share=Math.min(1,this.rate*dt/c(({lines:d,block:p})=>(d.set.likely(p),p.likelies))):l.jobs.push(...l.jobs.map(d=>({...d,what:"others"})))}else r&&(l.share=Math.min(1,this.rate*dt/Math.max(c(({block:u})=>u.items),1)));this.frames||(l.shownAt=0),e.viewport(0,0,this.width,this.height),e.disable(e.BLEND),e.disable(e.CULL_FACE),e.bindFramebuffer(e.FRAMEBUFFER,this.buffers.texels),e.clearBufferuiv(e.COLOR,0,[Ae,Ae,0,0]),e.depthMask(!0),e.clearBufferfv(e.DEPTH,0,[1]),this.drawBackdrop(a)}drawBackdrop(e){let{gl:n,scene:t}=this;n.bindFramebuffer(n.FRAMEBUFFER,this.buffers.scene),n.disable(n.DEPTH_TEST),n.bindVertexArray(null),this.program("page/screen.vert","page/background.frag").use().set({bottom:t.background[0],top:t.background[1],height:this.height}),n.drawArrays(n.TRIANGLES,0,3),n.enable(n.DEPTH_TEST),n.depthFunc(n.LEQUAL),n.depthMask(!0);let r=this.program("page/surface.vert","page/surface.frag");for(let i of this.surfaces)i.layer.visible&&!i.translucent&&i.draw(r,e);let s=this.program("page/image.vert","page/image.frag");for(let i of this.images)i.layer.visible&&!i.translucent&&i.draw(s,e)}outside(e,n){let t=[0,0,0,0,0,0];for(let r=0;r<8;++r){let[s,i,a,l]=k(e,[n[r&1],n[2+(r>>1&1)],n[4+(r>>2)]]);[s<-l,s>l,i<-l,i>l,a<-l,a>l].forEach((c,u)=>t[u]+=c?1:0)}return t.some(r=>r===8)}setLights(e,n){let t=[0,0,0],r=0;this.scene.lights.slice(0,8).forEach((s,i)=>{let a=[0,0,1,0];s.view?a=[...s.view,0]:s.world&&(r=1,a=k(n,s.world,s.positional?1:0),a[3]=s.positional?1:0),e.set({[`light_colour[${i}]`]:s.colour,[`light_place[${i}]`]:a}),s.colour.forEach((l,c)=>t[c]+=l)}),e.ints({light_count:Math.min(this.scene.lights.length,8)}).set({light_sum:t,light_standing:r})}aim(e,n){let t=e.layer.line_width*this.ratio,r=t>1,s=R(n.view,R(e.model,e.set.toData)),i=R(n.projection,s),a=i.reduce((u,f)=>Math.max(u,Math.abs(f)),0)||1,l=new Float64Array(16);for(let u=0;u<4;++u){let[f,d,p,g]=[0,1,2,3].map(b=>i[b+4*u]/a);l.set([this.width/2*(f+g),this.height/2*(d+g),(p+g)/2,g],4*u)}this.frameBlock.write({window_from_local:l,reference:e.set.reference,half_line_width:r?t/2:0,viewport:[this.width,this.height]},["reference"]),this.frameBlock.bind();let c=[...e.layer.planes??[],...this.planes].slice(0,8);if(c.length){let u=R(e.model,e.set.toData),f=ee(i),d=new Float64Array(32),p=new Float64Array(32);c.forEach((g,b)=>{let m=[0,1,2,3].map(w=>g[0]*u[4*w]+g[1]*u[4*w+1]+g[2]*u[4*w+2]+g[3]*u[4*w+3]),v=Math.hypot(m[0],m[1],m[2])||1;if(m.forEach((w,I)=>d[4*b+I]=w/v),f)for(let w=0;w<2;++w){let I=[0,1,2,3].reduce((M,x)=>M+d[4*b+x]*f[x+4*w],0);p[4*b+w]=I*a*(2/(w===0?this.width:this.height))}}),this.clipBlock.write({clip_planes:d,clip_tilts:p,clip_plane_count:0,clip_rounding:0}),this.clipBlock.write({clip_plane_count:c.length},["clip_plane_count"]),this.clipBlock.bind()}return{wide:r,clipped:c.length>0,window:l}}cut(e,n){let{width:t,height:r}=this,s=new Float64Array([t/2,0,0,0,0,r/2,0,0,0,0,.5,0,t/2,r/2,.5,1]),i=ht(e,R(s,R(n.projection,n.view)),t,r);return i?((this.raysBlock??(this.raysBlock=new O(this.gl,"Rays"))).write(i),this.raysBlock.bind(),!0):!1}pixelsOf(e,n,t){let r=R(n.projection,R(n.view,e.model)),s=e.set.bounds,i=Math.hypot(...be(e.model)),a=1/0;for(let l=0;l<8;++l)a=Math.min(a,k(r,[s[l&1],s[2+(l>>1&1)],s[4+(l>>2)]])[3]);return a>0?t*i*(this.height/2)*n.projection[5]/a:1/0}drawSlice(e,n){let{gl:t}=this,r=null,s=null,i=!1,a=Ie(),l=1,c=e.jobs[e.next]?.what==="others",u=this.findFarTiles(e.next>0,c);for(;e.next<e.jobs.length&&this.sliceSize<n;){let{lines:f,block:d,what:p}=e.jobs[e.next];if(p==="others"!==c&&this.sliceSize)break;if(++e.next,f.set.pointsOf(d),r!==f){r=f;let b=this.aim(f,e.matrices),{wide:m,clipped:v}=b;a=b.window,l=1+(m?f.layer.line_width*this.ratio/2:0);let w=["CLIPPING","CLIPPING_DEPTH","EDGES"];m&&w.push("WIDE_LINES"),v&&w.push("CLIP_PLANES"),f.layer.cut&&this.cut(f.layer.cut,e.matrices)&&w.push("CLIP_REGION",`REGION ${ft(f.layer.cut)}`),i=!m&&this.pixelsOf(f,e.matrices,f.set.longestStep)<=Vt,i&&w.push("SPRITES"),f.values&&w.push("VALUES_STORED"),f.byPoint&&w.push("VALUES_COLOUR"),f.kept&&w.push("STREAMLINE_MASK"),f.keptPoints&&w.push("POINT_MASK"),s=this.program("page/segment.vert","page/segment.frag",w).use(),f.values&&s.set({value_code:f.values.code,shown_values:f.shownValues}),s.uints({layer:f.index*2**28})}let g=p==="others"&&u?f.set.look(d,a,l,this.width,this.height,u):f.set.likely(d);t.bindFramebuffer(t.FRAMEBUFFER,this.buffers.texels),t.enable(t.DEPTH_TEST),t.depthFunc(t.LESS),this.frameBlock.bind(),s.use().textures({far_tiles:this.textures.far,items:f.set.items,kept:f.kept,kept_points:f.keptPoints,value_texels:f.values&&f.values.texture,point_colours:f.byPoint?f.colours:null}),p==="all"?this.sliceSize+=f.set.draw(d,s,e.share*d.items,i):this.sliceSize+=d.items+f.set.drawSome(d,s,g,i,Math.ceil(e.share*(p==="likely"?d.likelies:d.items)))}}present(e,n){let{gl:t,textures:r,buffers:s}=this;this.repaint(e),t.disable(t.DEPTH_TEST),t.bindVertexArray(null),this.findTiles(),t.bindFramebuffer(t.FRAMEBUFFER,s.drawn);let i=this.program("page/tiles.vert","page/resolve.frag").use(),a=ee(e.projection)??Ie(),l=0;for(let c of this.lines){if(!c.layer.visible)continue;let{layer:u}=c,{colours:f}=u,d=u.line_width*this.ratio;l=Math.max(l,1-Math.min(1,d)),i.textures({texels:r.texels,depths:r.depths,colours:c.byPoint?null:c.colours,table:c.table,chosen:c.chosen??r.texels}),i.uints({layer:c.index*2**28,marked:c.marked}),i.ints({mode:qt[f.mode],logarithm:f.log?1:0,light:Ht[u.light]}),i.set({one_colour:f.colour??[1,1,1],table_range:c.tableRange,reflects:u.reflects,sheen:u.sheen,chosen_colour:u.chosen?.colour??[0,0,0,0],faded:u.chosen?.faded??[0,0,0,0],data_to_view:be(R(e.view,c.model)),pixel_to_view:new Float32Array(a),picture:[this.width,this.height]}),this.setLights(i,e.view),this.drawTiles(i)}if(this.drawTranslucent(e),t.disable(t.DEPTH_TEST),t.bindVertexArray(null),n&&this.scene.antialias&&this.lines.length){t.bindFramebuffer(t.FRAMEBUFFER,s.shown),t.viewport(0,0,this.width+2,this.height+2),this.program("page/screen.vert","page/visible_edges.frag").use().textures({texels:r.texels,depths:r.depths,drawn:r.drawn}).set({narrower:l}),t.drawArrays(t.TRIANGLES,0,3),t.viewport(0,0,this.width,this.height),t.bindFramebuffer(t.FRAMEBUFFER,s.drawn);let c=this.program("page/tiles.vert","effects/picture/antialias_coverage.frag").use().textures({shown:r.shown});t.uniform2i(c.at("shift"),1,1),this.drawTiles(c)}t.bindFramebuffer(t.FRAMEBUFFER,null),this.program("page/screen.vert","page/copy.frag").use().textures({drawn:r.drawn}),t.drawArrays(t.TRIANGLES,0,3),this.presented?.()}findTiles(){let{gl:e,textures:n}=this;e.bindFramebuffer(e.FRAMEBUFFER,this.buffers.tiles),e.viewport(0,0,Math.ceil(this.width/he),Math.ceil(this.height/he)),this.program("page/screen.vert","page/tile_mask.frag").use().textures({texels:n.texels}),e.drawArrays(e.TRIANGLES,0,3),e.viewport(0,0,this.width,this.height)}drawTiles(e){let{gl:n}=this;e.textures({tiles:this.textures.tiles}).set({whole:[this.width,this.height]}),n.drawArraysInstanced(n.TRIANGLE_STRIP,0,4,Math.ceil(this.width/he)*Math.ceil(this.height/he))}repaint(e){this.frame&&this.frame.drawn++>0&&this.drawBackdrop(e)}drawTranslucent(e){let{gl:n}=this,t=this.surfaces.filter(a=>a.layer.visible&&a.translucent),r=this.images.filter(a=>a.layer.visible&&a.translucent);if(!t.length&&!r.length)return;n.bindFramebuffer(n.FRAMEBUFFER,this.buffers.scene),n.enable(n.DEPTH_TEST),n.depthFunc(n.LEQUAL),n.depthMask(!1),n.enable(n.BLEND),n.blendFunc(n.SRC_ALPHA,n.ONE_MINUS_SRC_ALPHA);let s=this.program("page/surface.vert","page/surface.frag");t.sort((a,l)=>l.depth(e.view)-a.depth(e.view)).forEach(a=>a.draw(s,e));let i=this.program("page/image.vert","page/image.frag");r.forEach(a=>a.draw(i,e)),n.disable(n.BLEND),n.depthMask(!0)}pick(e,n){let{gl:t}=this,r=Math.floor(e*this.ratio),s=this.height-1-Math.floor(n*this.ratio),i=new Uint32Array(4),a=[[0,0],[1,0],[-1,0],[0,1],[0,-1],[2,0],[-2,0],[0,2],[0,-2]];for(let[l,c]of a){if(r+l<0||s+c<0||r+l>=this.width||s+c>=this.height||(t.bindFramebuffer(t.FRAMEBUFFER,this.buffers.texels),t.readPixels(r+l,s+c,1,1,t.RGBA_INTEGER,t.UNSIGNED_INT,i),i[0]===Ae&&i[1]===Ae))continue;let u=this.lines[i[0]>>>28];if(!u)continue;let f=u.values?new Float32Array(new Uint32Array([i[3]]).buffer)[0]:null;return{lines:u,streamline:i[0]&268435455,value:f}}return null}placeOf(e,n,t,r){let{camera:s,scene:i,canvas:a}=this,l=a.clientWidth,c=a.clientHeight,u=R(s.projection(this.width/this.height,i.bounds),R(s.view(),e.model)),f=[0,0,0],d=1/0;for(let p of e.set.pointsOfStreamline(n)){let[g,b,,m]=k(u,p),v=Math.hypot((g/m+1)*l/2-t,(1-b/m)*c/2-r);m>0&&v<d&&([f,d]=[p,v])}return f}pixels(){let{gl:e,width:n,height:t}=this,r=new Uint8Array(4*n*t),s=new Uint8Array(r.length);e.bindFramebuffer(e.FRAMEBUFFER,this.buffers.drawn),e.readPixels(0,0,n,t,e.RGBA,e.UNSIGNED_BYTE,r);for(let i=0;i<t;++i)s.set(r.subarray(4*n*i,4*n*(i+1)),4*n*(t-1-i));return s}};var mt=o=>document.getElementById(o)?.textContent??"",de=4;async function Xt(o){let e=new Set(o.layers.map(n=>n.kind==="fiblets"?n.data:-1));return Promise.all(o.data.map(async(n,t)=>{if(n.file===void 0)return N(mt(`data-${t}`).trim());if(e.has(t))return new Uint8Array;let r=new ye(n.file,n.bytes);return await r.need(0,n.bytes),r.bytes}))}async function Wt(o,e,n){let t=new Map;return await Promise.all(o.layers.map(async r=>{if(r.kind!=="fiblets")return;let{file:s,bytes:i}=o.data[r.data];if(s===void 0){t.set(r.data,Oe(e[r.data]));return}let a=new ye(s,i),l=r.colours.values===void 0?[]:[r.colours.values],c=await Je(a,l);t.set(r.data,c),n.push({archive:c,remote:a,values:l})})),t}async function Kt(o,e){let n=document.createElement("progress"),t=1<<se;n.setAttribute("aria-label","Streamlines that have come"),n.max=o.reduce((r,{archive:s})=>r+s.header.n_fiblets,0),document.getElementById("over").append(n),await Promise.all(o.map(async({archive:r,remote:s,values:i})=>{let a=r.header.n_fiblets,l=Math.ceil(a/t),c=f=>je(s,r,f,Math.min(f+de,l),t,i),u=c(0);for(let f=0;f<l;f+=de){let d=u;f+de<l&&(u=c(f+de)).catch(()=>{}),await d,n.value+=Math.min((f+de)*t,a)-r.ready,r.ready=Math.min((f+de)*t,a),e.grow()}})),n.remove()}function gt(o){let e=document.getElementById("message");e.textContent=o instanceof Error?o.message:String(o),e.hidden=!1,document.body.dataset.state="failed"}async function Jt(){let o=JSON.parse(mt("scene"));document.title=o.title;let e=await Xt(o),n=[],t=await Wt(o,e,n),r=new _e(document.getElementById("view"),o,e,t);r.loading=n.length>0,r.failed=gt,r.drawnOnce=()=>{document.body.dataset.state="drawn"},new ResizeObserver(()=>r.change()).observe(r.canvas);let s=new De(r,e);if(Ye(r,(i,a)=>s.pick(i,a)),ut(r,s),window.pvfiblets=r,!!n.length)try{await Kt(n,r)}finally{r.loading=!1,r.grow()}}window.pvfibletsPage={Renderer:_e,attachMouse:Ye,readArchive:Oe};document.getElementById("scene")&&Jt().catch(gt);})();
+`}var Te={};for(let[o,e]of Object.entries(K.shaders))Te[o]=kt(e);var Ae=K.blocks,et=K.rotation_scales,oe=K.page_bits;function Q(o){let e=atob(o),t=new Uint8Array(e.length);for(let n=0;n<e.length;++n)t[n]=e.charCodeAt(n);return t}var tt=Q(K.rotations),Ut=K.fields;function z(o,e){let[,t,n]=Ut[o];return n===32?e:e>>>t&(1<<n)-1}var te=(o,e)=>[o[0]-e[0],o[1]-e[1],o[2]-e[2]],J=(o,e,t=1)=>[o[0]+t*e[0],o[1]+t*e[1],o[2]+t*e[2]],ne=(o,e)=>[o[0]*e,o[1]*e,o[2]*e],Y=(o,e)=>o[0]*e[0]+o[1]*e[1]+o[2]*e[2],ae=(o,e)=>[o[1]*e[2]-o[2]*e[1],o[2]*e[0]-o[0]*e[2],o[0]*e[1]-o[1]*e[0]],nt=o=>Math.hypot(o[0],o[1],o[2]),ee=o=>ne(o,1/(nt(o)||1));function C(o,e){let t=new Float64Array(16);for(let n=0;n<4;++n)for(let r=0;r<4;++r){let s=0;for(let i=0;i<4;++i)s+=o[r+4*i]*e[i+4*n];t[r+4*n]=s}return t}function Re(){let o=new Float64Array(16);return o[0]=o[5]=o[10]=o[15]=1,o}function V(o){let e=Array.from({length:4},(n,r)=>Array.from({length:8},(s,i)=>i<4?o[r+4*i]:i-4===r?1:0));for(let n=0;n<4;++n){let r=n;for(let i=n+1;i<4;++i)Math.abs(e[i][n])>Math.abs(e[r][n])&&(r=i);if(!(Math.abs(e[r][n])>0))return null;[e[n],e[r]]=[e[r],e[n]];let s=e[n][n];for(let i=0;i<8;++i)e[n][i]/=s;for(let i=0;i<4;++i){if(i===n)continue;let a=e[i][n];for(let l=0;l<8;++l)e[i][l]-=a*e[n][l]}}let t=new Float64Array(16);for(let n=0;n<4;++n)for(let r=0;r<4;++r)t[n+4*r]=e[n][r+4];return t}function _(o,e,t=1){return[0,1,2,3].map(n=>o[n]*e[0]+o[n+4]*e[1]+o[n+8]*e[2]+o[n+12]*t)}function ve(o){return[o[0],o[1],o[2],o[4],o[5],o[6],o[8],o[9],o[10]]}var De=o=>new Float32Array(o);function Ge(o,e,t){let n=t*Math.PI/180,r=Math.cos(n),s=Math.sin(n),i=ee(e);return J(J(ne(o,r),ae(i,o),s),i,Y(i,o)*(1-r))}var Ce=class{constructor(e){f(this,"state",e)}get forward(){return ee(te(this.state.focal_point,this.state.position))}get right(){return ee(ae(this.forward,this.state.up))}get distance(){return nt(te(this.state.focal_point,this.state.position))}view(){let e=this.forward,t=this.right,n=ae(t,e),r=this.state.position;return new Float64Array([t[0],n[0],-e[0],0,t[1],n[1],-e[1],0,t[2],n[2],-e[2],0,-Y(t,r),-Y(n,r),Y(e,r),1])}range(e){let t=this.forward,n=this.state.position,r=1/0,s=-1/0;for(let a=0;a<8;++a){let l=Y(t,te([e[a&1],e[2+(a>>1&1)],e[4+(a>>2)]],n));r=Math.min(r,l),s=Math.max(s,l)}let i=Math.max(.005*(s-r),1e-6*Math.abs(s));return r-=i,s+=i,this.state.parallel?[r,Math.max(s,r+1e-6)]:(s=Math.max(s,1e-6),[Math.max(r,.001*s),s])}projection(e,t){let[n,r]=this.range(t),s=new Float64Array(16),i=this.state;if(i.parallel)s[0]=1/(i.parallel_scale*e),s[5]=1/i.parallel_scale,s[10]=-2/(r-n),s[14]=-(r+n)/(r-n),s[15]=1;else{let a=1/Math.tan(i.view_angle*Math.PI/360);s[0]=a/e,s[5]=a,s[10]=-(r+n)/(r-n),s[11]=-1,s[14]=-2*r*n/(r-n)}return s}rotate(e,t){let n=this.state,r=Ge(te(n.position,n.focal_point),n.up,-200*e),s=ee(ae(ne(r,-1),n.up));r=Ge(r,s,-200*t),n.position=J(n.focal_point,r),n.up=ee(ae(s,ee(ne(r,-1))))}roll(e){this.state.up=Ge(this.state.up,this.forward,e)}pan(e,t){let n=this.state,r=n.parallel?2*n.parallel_scale:2*this.distance*Math.tan(n.view_angle*Math.PI/360),s=ae(this.right,this.forward),i=J(ne(this.right,-e*r),s,-t*r);n.position=J(n.position,i),n.focal_point=J(n.focal_point,i)}dolly(e){let t=this.state;t.parallel?t.parallel_scale/=e:t.position=J(t.focal_point,te(t.position,t.focal_point),1/e)}lookAlong(e,t,n){let r=this.state,s=[(n[0]+n[1])/2,(n[2]+n[3])/2,(n[4]+n[5])/2],i=Math.hypot(n[1]-n[0],n[3]-n[2],n[5]-n[4])/2||1,a=i/Math.sin(r.view_angle*Math.PI/360);r.focal_point=s,r.position=J(s,ee(e),-a),r.up=t,r.parallel_scale=i}};var Le=class{constructor(e,t){f(this,"lines",e);f(this,"base",t);f(this,"ranges",new Map);f(this,"regions",new Map);f(this,"hidden",new Set);f(this,"groups",[]);f(this,"chosen",null)}get count(){let e=this.chosen;return e?e.reduce((t,n)=>t+n,0):this.lines.set.streamlines}set(e,t,n,r){let s=this.ranges.get(e.name)??{values:t,low:e.range[0],high:e.range[1],whole:e.range};n===0?s.low=r:s.high=r,this.ranges.set(e.name,s),this.apply()}look(e,t){let{set:n,model:r}=this.lines,s=t?this.regions.get(e):void 0;this.regions.set(e,{through:n.through(e,r,s?.blocks,s?.through),blocks:n.blocks.length})}apply(){let e=[...this.ranges.values()].filter(i=>i.low>i.whole[0]||i.high<i.whole[1]),t=[...this.regions].filter(([i])=>i.on);if(!e.length&&!t.length&&!this.hidden.size)return this.keep(this.base);let n=this.lines.set.streamlines,r=new Uint8Array(n),s=this.grouped(n);for(let i=0;i<n;++i){let a=this.base===null||this.base[i]!==0;for(let l of e){let c=1e-6*(l.whole[1]-l.whole[0]);a=a&&l.values[i]>=l.low-c&&l.values[i]<=l.high+c}for(let[l,{through:c}]of t)a=a&&c[i]!==0!==l.inverted;r[i]=a&&s[i]?1:0}this.keep(r)}keep(e){this.chosen=e,this.lines.keep(e)}grouped(e){let t=new Uint8Array(e).fill(1);for(let n of this.hidden)for(let r of n)t[r]=0;for(let n of this.hidden.size?this.groups:[])if(!this.hidden.has(n))for(let r of n)t[r]=1;return t}};function rt(o,e,t,n){let r=new Float32Array(7*e);for(let s=0;s<e;++s){let i=4*t*s,a=n(s),l=i+4*(Math.min(a,t)-1),c=7*s,u=o[l]-o[i],h=o[l+1]-o[i+1],m=o[l+2]-o[i+2],p=u*u+h*h+m*m||1,A=0;for(let v=i+4;v<i+4*a;v+=4){let d=o[v]-o[i],g=o[v+1]-o[i+1],w=o[v+2]-o[i+2],E=Math.min(Math.max((d*u+g*h+w*m)/p,0),1),B=d-E*u,b=g-E*h,x=w-E*m;A=Math.max(A,B*B+b*b+x*x)}for(let v=0;v<3;++v)r[c+v]=o[i+v],r[c+3+v]=o[l+v];r[c+6]=1.0001*Math.sqrt(A)+1e-4}return r}function it(o,e,t,n,r,s,i){let a=Float64Array.from(e),[l,c,u,h]=[0,1,2,3].map(d=>Math.hypot(a[d],a[d+4],a[d+8])),{size:m,columns:p,rows:A,depths:v}=s;for(let d=0,g=0;d<i.length;++d,g+=7){let w=o[g+6],E=1/0,B=-1/0,b=1/0,x=-1/0,F=1/0;for(let P=g;P<g+6;P+=3){let O=o[P],Z=o[P+1],H=o[P+2],se=a[3]*O+a[7]*Z+a[11]*H+a[15],L=se-w*h;if(!(L>0)){F=-1/0;break}let X=(a[0]*O+a[4]*Z+a[8]*H+a[12])/se,pe=(a[1]*O+a[5]*Z+a[9]*H+a[13])/se,Be=w*(l+Math.abs(X)*h)/L+t,Fe=w*(c+Math.abs(pe)*h)/L+t;X-Be<E&&(E=X-Be),X+Be>B&&(B=X+Be),pe-Fe<b&&(b=pe-Fe),pe+Fe>x&&(x=pe+Fe),F=Math.min(F,(a[2]*O+a[6]*Z+a[10]*H+a[14]-w*u)/L)}if(i[d]=1,F===-1/0)continue;if(B<0||E>n||x<0||b>r){i[d]=0;continue}let R=Math.max(Math.floor(E/m),0),T=Math.min(Math.floor(B/m),p-1),I=Math.max(Math.floor(b/m),0),M=Math.min(Math.floor(x/m),A-1);if((T-R+1)*(M-I+1)>256)continue;F-=1e-6;let U=!0;for(let P=I;P<=M&&U;++P)for(let O=R;O<=T;++O)if(F<=v[4*(P*p+O)]){U=!1;break}U&&(i[d]=0)}}function Ne({at:o,size:e},t){return[0,1,2].map(n=>(t[n]-o[n])/Math.max(e[n],1e-9))}function st({ball:o},e,t){let n=te(t,e);if(o){let i=Math.min(1,Math.max(0,-Y(e,n)/(Y(n,n)||1))),a=[e[0]+i*n[0],e[1]+i*n[1],e[2]+i*n[2]];return Y(a,a)<=1}let r=0,s=1;for(let i=0;i<3;++i){if(n[i]===0){if(Math.abs(e[i])>1)return!1;continue}let a=(-1-e[i])/n[i],l=(1-e[i])/n[i];r=Math.max(r,Math.min(a,l)),s=Math.min(s,Math.max(a,l))}return r<=s}function ot({ball:o,at:e,size:t}){let n=(s,i,a)=>[e[0]+s*t[0],e[1]+i*t[1],e[2]+a*t[2]];if(o){let s=Array.from({length:49},(i,a)=>[Math.cos(a*Math.PI/24),Math.sin(a*Math.PI/24)]);return[s.map(([i,a])=>n(i,a,0)),s.map(([i,a])=>n(i,0,a)),s.map(([i,a])=>n(0,i,a))]}let r=s=>[n(-1,-1,s),n(1,-1,s),n(1,1,s),n(-1,1,s),n(-1,-1,s)];return[r(-1),r(1),...[[-1,-1],[1,-1],[1,1],[-1,1]].map(([s,i])=>[n(s,i,-1),n(s,i,1)])]}var W=4096,le=class extends Error{};function Pt(o,e){let t=e.includes("SPRITES")?Te[o].replace("const bool SPRITES=false","const bool SPRITES=true"):Te[o],n=e.find(r=>r.startsWith("REGION "));return(n?t.replace(/#define REGION .*/,`#define ${n}`):t).replace(/#define FEATURE_(\w+) [01]/g,(r,s)=>`#define FEATURE_${s} ${e.includes(s)?1:0}`)}var ce=class{constructor(e,t,n,r=[],s=[]){f(this,"gl",e);f(this,"handle");f(this,"places",new Map);f(this,"units",new Map);this.handle=e.createProgram();let i=[[e.VERTEX_SHADER,t],[e.FRAGMENT_SHADER,n]].map(([a,l])=>{let c=e.createShader(a);return e.shaderSource(c,Pt(l,r)),e.compileShader(c),e.attachShader(this.handle,c),[l,c]});if(s.length&&e.transformFeedbackVaryings(this.handle,s,e.INTERLEAVED_ATTRIBS),e.linkProgram(this.handle),!e.getProgramParameter(this.handle,e.LINK_STATUS)&&!e.isContextLost()){let a=i.map(([l,c])=>`${l}: ${e.getShaderInfoLog(c)}`).join("; ");throw new le(`This browser's graphics cannot run the page's programs: ${e.getProgramInfoLog(this.handle)} ${a}`)}Object.keys(Ae).forEach((a,l)=>{let c=e.getUniformBlockIndex(this.handle,a);c!==e.INVALID_INDEX&&e.uniformBlockBinding(this.handle,c,l)})}use(){return this.gl.useProgram(this.handle),this}at(e){return this.places.has(e)||this.places.set(e,this.gl.getUniformLocation(this.handle,e)),this.places.get(e)}set(e){let t=this.gl;for(let[n,r]of Object.entries(e)){let s=this.at(n);s!==null&&(typeof r=="number"?t.uniform1f(s,r):r.length===2?t.uniform2fv(s,r):r.length===3?t.uniform3fv(s,r):r.length===4?t.uniform4fv(s,r):r.length===9?t.uniformMatrix3fv(s,!1,r):t.uniformMatrix4fv(s,!1,r))}return this}ints(e){for(let[t,n]of Object.entries(e)){let r=this.at(t);r!==null&&this.gl.uniform1i(r,n)}return this}uints(e){for(let[t,n]of Object.entries(e)){let r=this.at(t);r!==null&&this.gl.uniform1ui(r,n)}return this}textures(e){let t=this.gl;for(let[n,r]of Object.entries(e)){let s=this.at(n);if(s===null)continue;this.units.has(n)||this.units.set(n,this.units.size);let i=this.units.get(n);t.activeTexture(t.TEXTURE0+i),t.bindTexture(t.TEXTURE_2D,r),t.uniform1i(s,i)}return this}},Qe={r8ui:["R8UI","RED_INTEGER","UNSIGNED_BYTE",1,Uint8Array],r16ui:["R16UI","RED_INTEGER","UNSIGNED_SHORT",1,Uint16Array],r32ui:["R32UI","RED_INTEGER","UNSIGNED_INT",1,Uint32Array],rg32ui:["RG32UI","RG_INTEGER","UNSIGNED_INT",2,Uint32Array],rgba32ui:["RGBA32UI","RGBA_INTEGER","UNSIGNED_INT",4,Uint32Array],rgba8:["RGBA8","RGBA","UNSIGNED_BYTE",4,Uint8Array]};function at(o){for(let e of["TEXTURE_MIN_FILTER","TEXTURE_MAG_FILTER"])o.texParameteri(o.TEXTURE_2D,o[e],o.NEAREST);for(let e of["TEXTURE_WRAP_S","TEXTURE_WRAP_T"])o.texParameteri(o.TEXTURE_2D,o[e],o.CLAMP_TO_EDGE)}function be(o,e,t,n){let[r]=Qe[e],s=Math.max(1,Math.ceil(t/W)),i=o.getParameter(o.MAX_TEXTURE_SIZE);if(s>i)throw new le(`The ${n} have ${t} texels; this device's textures hold ${i*W}. Make a page of fewer streamlines.`);let a=o.createTexture();return o.bindTexture(o.TEXTURE_2D,a),at(o),o.texStorage2D(o.TEXTURE_2D,1,o[r],W,s),a}function ue(o,e,t,n,r,s){let[,i,a,l,c]=Qe[t],u=W*l,h=Math.floor(n.length/u),m=Math.ceil(s/W);o.bindTexture(o.TEXTURE_2D,e),o.pixelStorei(o.UNPACK_ALIGNMENT,1);for(let p=Math.floor(r/W);p<Math.min(h,m);p+=256){let A=Math.min(256,h-p,m-p);o.texSubImage2D(o.TEXTURE_2D,0,0,p,W,A,o[i],o[a],n.subarray(p*u,(p+A)*u))}if(m>h){let p=new c(u);p.set(n.subarray(h*u)),o.texSubImage2D(o.TEXTURE_2D,0,0,h,W,1,o[i],o[a],p)}}function q(o,e,t,n){let r=Math.ceil(t.length/Qe[e][3]),s=be(o,e,r,n);return ue(o,s,e,t,0,r),s}function _e(o,e,t,n){let r=e.length/4-3,[s,i]=n?t.map(a=>Math.log10(a)):t;return[q(o,"rgba8",e,"colours"),[s,i,r/Math.max(i-s,1e-30),r]]}function k(o,e,t,n){let r=o.createTexture();return o.bindTexture(o.TEXTURE_2D,r),at(o),o.texStorage2D(o.TEXTURE_2D,1,e,t,n),r}function S(o,e,t){let n=o.createFramebuffer();return o.bindFramebuffer(o.FRAMEBUFFER,n),o.framebufferTexture2D(o.FRAMEBUFFER,o.COLOR_ATTACHMENT0,o.TEXTURE_2D,e,0),t&&o.framebufferTexture2D(o.FRAMEBUFFER,o.DEPTH_ATTACHMENT,o.TEXTURE_2D,t,0),n}var G=class{constructor(e,t){f(this,"gl",e);f(this,"name",t);f(this,"bytes");f(this,"floats");f(this,"words");f(this,"buffer");f(this,"binding");this.bytes=new ArrayBuffer(Ae[t].bytes),this.floats=new Float32Array(this.bytes),this.words=new Uint32Array(this.bytes),this.buffer=e.createBuffer(),this.binding=Object.keys(Ae).indexOf(t),e.bindBuffer(e.UNIFORM_BUFFER,this.buffer),e.bufferData(e.UNIFORM_BUFFER,this.bytes.byteLength,e.DYNAMIC_DRAW)}write(e,t=[]){for(let[n,r]of Object.entries(e)){let s=Ae[this.name].fields[n]/4,i=t.includes(n)?this.words:this.floats;typeof r=="number"?i[s]=r:i.set(r,s)}this.upload()}fill(e){new Uint8Array(this.bytes).set(e),this.upload()}upload(){this.gl.bindBuffer(this.gl.UNIFORM_BUFFER,this.buffer),this.gl.bufferSubData(this.gl.UNIFORM_BUFFER,0,new Uint8Array(this.bytes))}bind(){this.gl.bindBufferBase(this.gl.UNIFORM_BUFFER,this.binding,this.buffer)}};var St=1024,we=16,Ot=16,zt=.1,Gt=[4,8,11,15],lt=0,Nt=3;function ct(o,e,t,n){if(!o||!(o.data instanceof Uint32Array)||o.data.length!==t*n)throw new D(`The file's ${e} do not fit its header. Copy or make it again.`);return o.data}function he(o){let e=Math.ceil(o.byteLength/4);if(o.byteOffset%4===0&&o.byteOffset+4*e<=o.buffer.byteLength)return new Uint32Array(o.buffer,o.byteOffset,e);let t=new Uint8Array(4*e);return t.set(new Uint8Array(o.buffer,o.byteOffset,o.byteLength)),new Uint32Array(t.buffer)}function ut(o,e){return e===8?o:new Uint16Array(o.slice().buffer)}var Ie=class{constructor(e,t){f(this,"gl",e);f(this,"archive",t);f(this,"blocks",[]);f(this,"streamlines");f(this,"points");f(this,"bounds");f(this,"reference");f(this,"toData");f(this,"coding");f(this,"budget",256<<20);f(this,"parameters");f(this,"decodeProgram",null);f(this,"rotationBlock");f(this,"frameForDecoding");f(this,"textures",{});f(this,"itemBuffer");f(this,"toItems");f(this,"feedback");f(this,"scratch",null);f(this,"scratchBytes",0);f(this,"share",15);f(this,"itemBytes",15*we);f(this,"kinds",new Set);f(this,"table");f(this,"done",0);f(this,"shares",0);f(this,"before",0);f(this,"open",null);f(this,"growing",{});f(this,"values",[]);f(this,"held",0);f(this,"clock",0);f(this,"fiblets");f(this,"decodeArray");f(this,"indices",null);f(this,"arrays",[null,null]);let{header:n,arrays:r}=t;if(n.format!=="fiblets")throw new D("The file is no .fiblets file: its header says something else.");if(n.version!==2)throw new D(`The file is of version ${n.version}; this page reads version 2. Make the page again with a newer pvfiblets.`);let s=this.parameters=n.parameters,i=this.fiblets=n.n_fiblets;this.streamlines=n.n_streamlines,this.points=n.n_points,this.bounds=n.bounds;let a=ct(r.get("anchors.npy"),"anchors",2,i),l=ct(r.get("decoding.npy"),"records",3,i),c=r.get("codes.npy"),u=r.get("pages.npy");if(!c||!(c.data instanceof Uint8Array)||!u||!(u.data instanceof BigInt64Array))throw new D("The file's codes or pages are missing. Copy or make it again.");let h=this.table=Array.from(u.data,Number),m=Math.ceil(i/(1<<oe));if(h.length!==3*(m+1)||h[3*m+1]!==c.data.length||h[3*m+2]!==this.points)throw new D("The file's table of pages does not fit its records. Copy or make it again.");let p=s.anchor_bits===32?r.get("anchors_low.npy"):void 0;if(s.anchor_bits===32&&!(p?.data instanceof Uint16Array&&p.data.length===3*i))throw new D("The lower halves of the file's anchors are missing. Copy or make it again.");let A=s.anchor_bits===32?4294967295:65535;this.reference=[0,1,2].map(d=>{let g=(this.bounds[2*d]+this.bounds[2*d+1])/2,w=s.anchor_scale[d];return w>0&&Number.isFinite(g)?Math.round(Math.min(Math.max((g-s.origin[d])/w,0),A)):0}),this.toData=new Float64Array([1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]);for(let d=0;d<3;++d)this.toData[12+d]=s.origin[d]+s.anchor_scale[d]*this.reference[d];this.grow("anchor_texels","rg32ui",a,"anchors"),this.grow("decoding_texels","r32ui",l,"records"),this.grow("code_texels","r32ui",he(c.data),"codes"),p&&this.grow("anchor_low_texels","r32ui",he(p.data),"anchors");let v=new Uint32Array(4*Math.max(m,1));for(let d=0;d<m;++d)for(let g=0;g<3;++g)v[4*d+g]=h[3*d+g];this.textures.page_texels=q(e,"rgba32ui",v,"pages"),this.coding=new G(e,"Coding"),this.coding.write({anchor_scale:s.anchor_scale,radius_scale:0,step_low:s.step_lo,step_span:s.step_hi-s.step_lo,lattice_edge:s.lattice,end_vector_scale:0,rotation_scales:et}),this.rotationBlock=new G(e,"Rotations"),this.rotationBlock.fill(tt),this.frameForDecoding=new G(e,"Frame"),this.frameForDecoding.write({reference:this.reference},["reference"]),this.feedback=e.createTransformFeedback(),this.decodeArray=e.createVertexArray(),e.bindVertexArray(this.decodeArray),e.enableVertexAttribArray(0),e.bindVertexArray(null)}grow(e,t,n,r){let s=this.textures[e]=be(this.gl,t,t==="rg32ui"?n.length/2:n.length,r);this.growing[e]={texture:s,format:t,data:n}}fill(e,t,n){let r=this.growing[e];r&&ue(this.gl,r.texture,r.format,r.data,t,n)}sharesOf(e,t=this.share){let n=z("last",this.growing.decoding_texels.data[3*e+2])+1,r=this.growing.anchor_texels.data[2*e+1]>>>31;return n%t===0&&!r?n/t:Math.ceil((n+(r?1:2))/t)}begin(e){let t=this.gl,r=Gt.map(l=>{let c=0,u=0;for(let h=0;h<e;++h){let m=this.sharesOf(h,l);c+=m*l*(1+.05*m),u+=m}return{share:l,cost:c,total:u}}).reduce((l,c)=>c.cost<l.cost?c:l),s=this.fiblets-e;this.share=r.share,this.itemBytes=this.share*we;let i=this.points;for(let l=0;l<e;++l)i-=z("last",this.growing.decoding_texels.data[3*l+2])+1;let a=Math.max(r.total+Math.floor((Math.max(i,0)+(this.share+1)*s)/this.share),1);this.toItems=new Uint32Array(4*a),this.textures.items=be(t,"rgba32ui",a,"shares of fiblets"),this.itemBuffer=t.createBuffer(),t.bindBuffer(t.ARRAY_BUFFER,this.itemBuffer),t.bufferData(t.ARRAY_BUFFER,8*a,t.STATIC_DRAW)}advance(e){let t=this.gl,n=this.done,r=Math.min(e,this.fiblets),s=this.parameters,{table:i}=this;if(r<=n&&this.fiblets)return;n||this.begin(r);let a=this.archive.arrays.get("rank_to_id.npy")?.data,l=this.archive.arrays.get("anchors_low.npy")?.data,c=this.growing.anchor_texels.data,u=this.growing.decoding_texels.data,h=this.toItems,m=i[i.length-2],p=this.shares,A=2*s.largest_radius,v=this.kinds.size,d=p,g=this.open,w=0;for(let b=n;b<r;++b)w+=this.sharesOf(b);let E=new Uint32Array(2*w),B=()=>{g&&(g.more=1,this.blocks.push(g))};for(let b=n;b<r;++b){let x=3*(b>>oe),F=c[2*b+1],R=u[3*b+2],T=z("rank",F)+i[x],I=z("last",R)+1,M=a?Number(a[T]):T,U=z("begin",F),P=z("end",F),O=z("code",u[3*b+1])+i[x+1],Z=z("point",R)+i[x+2],H=this.sharesOf(b);if(I>60||4*(d+H)>h.length||!(M>=0&&M<this.streamlines)||O>m||Z+I>this.points)throw new D(`Record ${b} of the file is damaged. Copy or make it again.`);this.kinds.add(z("kind",R)),b%St===0&&(B(),g={firstItem:d,items:0,more:0,bounds:[1/0,-1/0,1/0,-1/0,1/0,-1/0],buffer:null,used:0,shapes:null,likely:null,likelies:0});let se=[c[2*b]&65535,c[2*b]>>>16,F&65535];for(let L=0;L<3;++L){let X=s.origin[L]+s.anchor_scale[L]*(l?se[L]*65536+l[3*b+L]:se[L]);g.bounds[2*L]=Math.min(g.bounds[2*L],X-A),g.bounds[2*L+1]=Math.max(g.bounds[2*L+1],X+A)}U&&(this.before=0);for(let L=0;L<H;++L,++d)h[4*d]=M,h[4*d+1]=Z,h[4*d+2]=I|U<<6|P<<7|L<<8,h[4*d+3]=this.before,E[2*(d-p)]=b,E[2*(d-p)+1]=L;this.before+=I,g.items+=H}this.open=g,r===this.fiblets&&g&&this.blocks.push(g),this.shares=d,this.done=r,this.kinds.size>v&&(this.decodeProgram=null),ue(t,this.textures.items,"rgba32ui",h,p,d),t.bindBuffer(t.ARRAY_BUFFER,this.itemBuffer),t.bufferSubData(t.ARRAY_BUFFER,8*p,E),this.fill("anchor_texels",n,r),this.fill("decoding_texels",3*n,3*r),this.fill("anchor_low_texels",Math.floor(1.5*n),Math.ceil(1.5*r)),this.fill("code_texels",this.countBefore(n,1)>>2,this.countBefore(r,1)+3>>2);for(let{texture:b,format:x,data:F}of this.values)ue(t,b,x,F,this.countBefore(n,2),this.countBefore(r,2))}countBefore(e,t){return this.table[3*Math.ceil(e/(1<<oe))+t]}pointValues(e){let t=this.archive.header.per_point?.[e],n=t&&this.archive.arrays.get(t.member);if(!n||n.data.length!==this.points)throw new D(`The file has no values ${e} for its points.`);return this.codedValues(e,n.data,t)}codedValues(e,t,{lo:n,hi:r}){if(t.length!==this.points)throw new D(`The values ${e} are not those of the file's points.`);let s=t instanceof Uint16Array,i=s?65535:255,a=s?"r16ui":"r8ui",l=be(this.gl,a,this.points,"values of points");return this.values.push({texture:l,format:a,data:t}),ue(this.gl,l,a,t,0,this.countBefore(this.done,2)),{name:e,texture:l,code:[n,(r-n)/(i-1),i]}}forget({texture:e}){this.values=this.values.filter(t=>t.texture!==e),this.gl.deleteTexture(e)}decoder(){let e=["DIRECTION"];return this.textures.anchor_low_texels&&e.push("ANCHORS_LOW"),(this.kinds.size>1||!this.kinds.has(lt))&&e.push("LATTICE"),this.kinds.has(Nt)&&e.push("WIDE_LATTICE"),this.decodeProgram??(this.decodeProgram=new ce(this.gl,"page/decode.vert","page/none.frag",e,Array.from({length:this.share},(t,n)=>`o${n}`)))}decode(e,t){let n=this.gl,r=e.items+e.more;this.coding.bind(),this.rotationBlock.bind(),this.frameForDecoding.bind();let{items:s,...i}=this.textures;this.decoder().use().textures(i).uints({chunk_fiblets:this.fiblets,share_size:this.share}),n.bindVertexArray(this.decodeArray),n.bindBuffer(n.ARRAY_BUFFER,this.itemBuffer),n.vertexAttribIPointer(0,2,n.UNSIGNED_INT,8,8*e.firstItem),n.bindBuffer(n.ARRAY_BUFFER,null),n.enable(n.RASTERIZER_DISCARD),n.bindTransformFeedback(n.TRANSFORM_FEEDBACK,this.feedback),n.bindBufferRange(n.TRANSFORM_FEEDBACK_BUFFER,0,t,0,r*this.itemBytes),n.beginTransformFeedback(n.POINTS),n.drawArrays(n.POINTS,0,r),n.endTransformFeedback(),n.bindBufferBase(n.TRANSFORM_FEEDBACK_BUFFER,0,null),n.bindTransformFeedback(n.TRANSFORM_FEEDBACK,null),n.disable(n.RASTERIZER_DISCARD),n.bindVertexArray(null)}size(e){return(e.items+e.more)*this.itemBytes+2*we}newBuffer(e){let t=this.gl,n=t.createBuffer();return t.bindBuffer(t.ARRAY_BUFFER,n),t.bufferData(t.ARRAY_BUFFER,e,t.DYNAMIC_COPY),t.bindBuffer(t.ARRAY_BUFFER,null),n}pointsOf(e){if(e.used=++this.clock,e.buffer)return e.buffer;let t=this.size(e);return this.held+t<=this.budget?(this.held+=t,e.buffer=this.newBuffer(t),this.decode(e,e.buffer),e.buffer):(this.scratchBytes<t&&(this.scratch&&this.gl.deleteBuffer(this.scratch),this.scratch=this.newBuffer(this.scratchBytes=t)),this.decode(e,this.scratch),this.scratch)}get items(){return this.textures.items}segments(e){return e*this.share}get longestStep(){return this.kinds.size===1&&this.kinds.has(lt)?2*this.parameters.step_hi:1/0}draw(e,t,n,r){return this.drawRun(e,t,0,Math.max(1,Math.round(n)),r)}drawRun(e,t,n,r,s){let i=this.gl,a=(r-n)*this.share;return this.aim(e,t,n,s),s?i.drawArrays(i.POINTS,0,a):i.drawArraysInstanced(i.TRIANGLE_STRIP,0,4,a),i.bindVertexArray(null),a}aim(e,t,n,r){let s=this.gl,i=this.pointsOf(e);t.use().ints({first_item:e.firstItem+n,share_size:this.share}),s.bindVertexArray(this.segmentArray(r)),s.bindBuffer(s.ARRAY_BUFFER,i);for(let a=0;a<3;++a)s.vertexAttribIPointer(a,4,s.UNSIGNED_INT,we,n*this.itemBytes+a*we)}likely(e){return e.likely||(e.likely=new Uint8Array(e.items).fill(1,0,e.likelies=Math.max(1,Math.round(zt*e.items)))),e.likely}look(e,t,n,r,s,i){let a=new Uint8Array(e.items),l=this.likely(e),c=new Uint8Array(e.items);it(e.shapes??(e.shapes=this.shapesOf(e)),t,n,r,s,i,a),e.likelies=0;for(let u=0;u<c.length;++u)c[u]=a[u]&~l[u],e.likelies+=a[u];return e.likely=a,c}shapesOf(e){let t=this.toItems,{share:n}=this;return rt(this.slotsOf(e),e.items,n,r=>{let s=t[4*(e.firstItem+r)+2],i=s>>>7&1,a=s&63;return Math.min(a+1-i-n*(s>>>8),n+1)})}slotsOf(e){let t=this.gl,n=new Float32Array((e.items+e.more+1)*this.share*4);return t.bindBuffer(t.ARRAY_BUFFER,this.pointsOf(e)),t.getBufferSubData(t.ARRAY_BUFFER,0,n,0,(e.items+e.more)*this.share*4),t.bindBuffer(t.ARRAY_BUFFER,null),n}drawSome(e,t,n,r,s=1/0){let i=this.gl,{share:a}=this,l=0;if(!r){let h=0,m=0;for(let p=0;p<n.length&&m<s;++p){if(!n[p])continue;let A=p+1;++m;for(let v=A;v<Math.min(n.length,A+Ot)&&m<s;++v)n[v]&&(A=v+1,++m);h+=this.drawRun(e,t,p,A,r),p=A}return h}let c=Math.min(s,n.length),u=new Uint32Array(c*a);for(let h=0,m=0;h<n.length&&m<c;++h){if(!n[h])continue;let p=this.toItems[4*(e.firstItem+h)+2],A=p&63,v=A-((p&128)!==0&&A>1?1:0);for(let d=h*a,g=d+Math.min(v-a*(p>>>8),a);d<g;++d)u[l++]=d;++m}return l?(this.aim(e,t,0,r),i.bindBuffer(i.ELEMENT_ARRAY_BUFFER,this.indices??(this.indices=i.createBuffer())),i.bufferData(i.ELEMENT_ARRAY_BUFFER,u.subarray(0,l),i.STREAM_DRAW),i.drawElements(i.POINTS,l,i.UNSIGNED_INT,0),i.bindVertexArray(null),l):0}segmentArray(e){let t=e?1:0;if(!this.arrays[t]){let n=this.gl;n.bindVertexArray(this.arrays[t]=n.createVertexArray());for(let r=0;r<3;++r)n.enableVertexAttribArray(r),n.vertexAttribDivisor(r,e?0:1)}return this.arrays[t]}*decoded(e,t=0){let n=this.toItems;for(let r of this.blocks.slice(t)){if(!e(r))continue;let s=this.slotsOf(r);for(let i=r.firstItem;i<r.firstItem+r.items;++i){if(n[4*i+2]>>>8)continue;let a=n[4*i+2]&63,l=(n[4*i+2]&128)!==0,c=4*this.share*(i-r.firstItem);yield[n[4*i],s.subarray(c,c+4*(a+(l?0:1))),(n[4*i+2]&64)!==0]}}}blocksOf(e){let t=this.toItems;return n=>{for(let r=n.firstItem;r<n.firstItem+n.items;++r)if(t[4*r]===e)return!0;return!1}}world(e,t){return[0,1,2].map(n=>this.toData[12+n]+e[4*t+n])}pointsOfStreamline(e){let t=[];for(let[n,r]of this.decoded(this.blocksOf(e)))if(n===e)for(let s=0;4*s<r.length;++s)t.push(this.world(r,s));return t}through(e,t,n=0,r=new Uint8Array(this.streamlines)){let{at:s,size:i}=e,a=({bounds:l})=>{let c=[0,1,2,3,4,5,6,7].map(u=>_(t,[l[u&1],l[2+(u>>1&1)],l[4+(u>>2)]]));return[0,1,2].every(u=>c.some(h=>h[u]>=s[u]-i[u])&&c.some(h=>h[u]<=s[u]+i[u]))};for(let[l,c]of this.decoded(a,n)){if(r[l])continue;let u=Ne(e,_(t,this.world(c,0)));for(let h=0;h<c.length&&!r[l];h+=4){let m=Ne(e,_(t,this.world(c,Math.min(h+4,c.length-4)/4)));st(e,u,m)&&(r[l]=1),u=m}}return r}release(){let e=this.gl;for(let t of this.blocks)t.buffer&&e.deleteBuffer(t.buffer);for(let t of Object.values(this.textures))e.deleteTexture(t);for(let t of[this.scratch,this.indices,this.itemBuffer])t&&e.deleteBuffer(t)}};var ht="http://www.w3.org/2000/svg";function y(o,e={},...t){let n=document.createElement(o);for(let[r,s]of Object.entries(e))n.setAttribute(r,s);return n.append(...t),n}var j=o=>Number.isFinite(o)?String(Number(o.toPrecision(4))):"no value";function N(o,e,t,n,r){let s=(t-e)/200||1,i=y("output",{},j(n)),a=y("input",{type:"range",min:String(e),max:String(t),step:String(s),value:String(n)});return a.addEventListener("input",()=>{i.textContent=j(a.valueAsNumber),r(a.valueAsNumber)}),y("label",{},y("span",{},o),a,i)}function Me(o,e,t){let n=y("input",{type:"checkbox"});return n.checked=e,n.addEventListener("change",()=>t(n.checked)),y("label",{},n,y("span",{},o))}function fe(o,e){let t=y("button",{type:"button"},o);return t.addEventListener("click",e),t}function re(o,...e){return y("fieldset",{},y("legend",{},o),...e)}var Qt=[["Left",[1,0,0],[0,0,1]],["Right",[-1,0,0],[0,0,1]],["Front",[0,-1,0],[0,0,1]],["Back",[0,1,0],[0,0,1]],["Top",[0,0,-1],[0,1,0]],["Bottom",[0,0,1],[0,1,0]]];function Yt(o){let e=Q(o.table),t=e.length/4,n=y("canvas",{width:String(t),height:"1",role:"img","aria-label":`Colours from ${j(o.clim[0])} to ${j(o.clim[1])}`}),r=n.getContext("2d"),s=r.createImageData(t,1);if(s.data.set(e),r.putImageData(s,0,0),o.labels){let c=o.labels.map(({name:u,colour:h})=>{let m=y("i",{"aria-hidden":"true"});return m.style.background=`rgb(${h.join(",")})`,y("li",{},m,u)});return y("figure",{class:"bar"},y("figcaption",{},o.title),y("ul",{tabindex:"0","aria-label":o.title},...c))}let[i,a]=o.clim,l=o.log?Math.sqrt(i*a):(i+a)/2;return y("figure",{class:"bar"},y("figcaption",{},o.title),n,y("div",{class:"ticks","aria-hidden":"true"},...[i,l,a].map(c=>y("span",{},j(c)))))}var ke=class{constructor(e,t){f(this,"renderer",e);f(this,"data",t);f(this,"told",null);f(this,"status",document.getElementById("status"));f(this,"axes",[]);f(this,"choices",new Map);f(this,"picked",null);f(this,"regions",[]);f(this,"outlines",document.createElementNS(ht,"svg"));f(this,"later",0);let n=document.getElementById("over"),{scene:r}=e,s=y("details",{id:"panel"},y("summary",{},"Scene"));s.append(this.layers(),...this.groups(),this.views(),this.cut(),...this.ranges(),this.regionList()),n.append(this.outlines,s),r.bars.length&&n.append(y("div",{id:"bars"},...r.bars.map(Yt))),n.append(this.orientation()),e.restored=()=>{for(let i of this.choices.values())i.apply()},e.presented=()=>this.follow(),e.grown=()=>this.grown(),this.follow()}layers(){let{renderer:e}=this,t=[];return e.scene.layers.forEach(n=>{t.push(Me(n.name,n.visible,r=>{n.visible=r,e.change()})),n.kind==="fiblets"?t.push(N("Line width",.5,10,n.line_width,r=>{n.line_width=r,e.change(!0)})):t.push(N("Opacity",0,1,n.opacity,r=>{n.opacity=r,e.change(!0)}))}),re("Shown",...t)}views(){let{renderer:e}=this,t=structuredClone(e.camera.state),n=Qt.map(([r,s,i])=>fe(r,()=>{e.camera.lookAlong(s,i,e.scene.bounds),e.change()}));return n.push(fe("As at first",()=>{Object.assign(e.camera.state,structuredClone(t)),e.change()})),n.push(fe("Save picture",()=>this.save())),re("View",y("div",{class:"buttons"},...n))}save(){let{renderer:e}=this;e.settled().then(()=>{let t=y("canvas",{width:String(e.width),height:String(e.height)}),n=t.getContext("2d"),r=n.createImageData(e.width,e.height);r.data.set(e.pixels()),n.putImageData(r,0,0),t.toBlob(s=>{let i=y("a",{href:URL.createObjectURL(s),download:"picture.png"});i.click(),setTimeout(()=>URL.revokeObjectURL(i.href),6e4)})})}cut(){let{renderer:e}=this,t=e.scene.bounds,n=y("select",{"aria-label":"Cut across"});for(let l of["nothing","left to right","back to front","bottom to top"])n.append(y("option",{},l));let r=y("div"),s=0,i=0,a=()=>{let l=n.selectedIndex-1,c=u=>[0,1,2].map(h=>h===l?u:0).concat(-u*s+i/2);e.planes=l<0?[]:[c(1),c(-1)],e.change(!0)};return n.addEventListener("change",()=>{let l=n.selectedIndex-1;if(r.replaceChildren(),l>=0){let c=t[2*l],u=t[2*l+1];s=(c+u)/2,i=(u-c)/8,r.append(N("Middle",c,u,s,h=>{s=h,a()}),N("Thickness",(u-c)/200,u-c,i,h=>{i=h,a()}))}a()}),re("Slab across",n,r)}choiceOf(e){let t=this.choices.get(e.index);return t||this.choices.set(e.index,t=new Le(e,e.layer.kept===void 0?null:this.data[e.layer.kept])),t}ranges(){let{renderer:e}=this,t=[];for(let n of e.lines){let{values:r,layer:s}=n;if(r){let i=r.code[0],a=i+r.code[1]*(r.code[2]-1),l=[i,a],c=()=>{e.lines[n.index].shownValues=l[0]>i||l[1]<a?[l[0],l[1]]:[1,0],e.change(!0)};t.push(re(r.name,N("From",i,a,i,u=>{l[0]=u,c()}),N("To",i,a,a,u=>{l[1]=u,c()})))}for(let i of s.controls??[]){if(i.data===void 0)continue;let a=this.data[i.data],l=new Float32Array(a.slice().buffer),[c,u]=i.range,h=m=>p=>{this.choiceOf(e.lines[n.index]).set(i,l,m,p),e.change(!0)};t.push(re(i.name,N("From",c,u,c,h(0)),N("To",c,u,u,h(1))))}}return t}groups(){return this.renderer.lines.filter(({layer:e})=>e.groups?.length).map(e=>{let t=this.choiceOf(e),n=e.layer.groups.map(({name:r,data:s})=>{let i=he(this.data[s]);return t.groups.push(i),Me(r,!0,a=>{a?t.hidden.delete(i):t.hidden.add(i),t.apply(),this.renderer.change()})});return re(`Groups of ${e.layer.name}`,...n)})}regionList(){let e=y("div"),{renderer:t}=this,n=t.scene.bounds,r=Math.hypot(n[1]-n[0],n[3]-n[2],n[5]-n[4]),s=i=>()=>{let a=this.picked?_(this.picked.lines.model,this.picked.place).slice(0,3):[0,1,2].map(c=>(n[2*c]+n[2*c+1])/2),l={ball:i,at:a,size:[r/40,r/40,r/40],on:!0,inverted:!1};this.regions.push(l),e.append(this.regionRow(l,r)),this.update(l)};return re("Regions",y("div",{class:"buttons"},fe("Add a ball",s(!0)),fe("Add a box",s(!1))),e)}regionRow(e,t){let{renderer:n}=this,r=n.scene.bounds,s=`${e.ball?"Ball":"Box"} ${this.regions.length}`,i=()=>{window.clearTimeout(this.later),this.later=window.setTimeout(()=>this.update(e),120),this.drawOutlines()},a=(c,u)=>N(c,t/1e3,t/4,e.size[u[0]],h=>{for(let m of u)e.size[m]=h;i()}),l=y("details",{},y("summary",{},s),Me("On",!0,c=>{e.on=c,this.choose()}),Me("Streamlines outside it",!1,c=>{e.inverted=c,this.choose()}),...["x","y","z"].map((c,u)=>N(`${c}, mm`,r[2*u],r[2*u+1],e.at[u],h=>{e.at[u]=h,i()})),...e.ball?[a("Radius, mm",[0,1,2])]:["x","y","z"].map((c,u)=>a(`Half of ${c}, mm`,[u])),y("div",{class:"buttons"},fe(`Remove ${s.toLowerCase()}`,()=>{l.remove(),this.regions.splice(this.regions.indexOf(e),1);for(let c of this.choices.values())c.regions.delete(e);this.choose()})));return l.open=!0,l}update(e){if(this.regions.includes(e)){for(let t of this.renderer.lines)this.choiceOf(t).look(e,!1);this.choose()}}grown(){if(this.regions.length){for(let e of this.choices.values())for(let t of this.regions)e.look(t,!0);this.choose()}}choose(){let e=0;this.drawOutlines();for(let t of this.choices.values())t.apply(),e+=t.count;this.status.textContent=this.regions.some(t=>t.on)?`${e} streamlines are shown`:"",this.renderer.change()}pick(e,t){let{renderer:n}=this,r=n.pick(e,t);if(this.unmark(),r){let{lines:s,streamline:i,value:a}=r,l=n.placeOf(s,i,e,t),c=_(s.model,l).slice(0,3);this.say(s,i,a,c),this.picked={lines:s,streamline:i,place:l},this.told?.({layer:n.scene.layers.indexOf(s.layer),streamline:i,place:c})}else this.told?.(null);n.change()}mark(e){this.unmark();let t=e&&this.renderer.lines.find(({layer:n})=>n===this.renderer.scene.layers[e.layer]);if(e&&t&&e.streamline>=0&&e.streamline<t.set.streamlines){let{streamline:n}=e,r=t.set.pointsOfStreamline(n),s=r[r.length>>1];this.say(t,n,null,e.place??[]),s&&(this.picked={lines:t,streamline:n,place:s})}this.renderer.change()}unmark(){for(let e of this.renderer.lines)e.marked=4294967295;this.picked=null,this.status.textContent=""}say(e,t,n,r){e.marked=t;let s=[`Streamline ${t} of ${e.layer.name}`];n!==null&&e.values&&s.push(`${e.values.name} ${j(n)}`);for(let i of e.layer.controls??[])i.data!==void 0&&s.push(`${i.name} ${j(new Float32Array(this.data[i.data].slice().buffer)[t])}`);r.length&&s.push(`at ${r.map(j).join(", ")} mm`),this.status.textContent=s.join("; ")}orientation(){let t=(this.renderer.scene.letters?[["L","R"],["P","A"],["I","S"]]:[["","x"],["","y"],["","z"]]).flat().map((n,r)=>y("span",{class:`axis a${r>>1}`},n));return this.axes=t,y("div",{id:"axes","aria-hidden":"true"},...t)}follow(){this.turnAxes(),this.drawOutlines()}drawOutlines(){let{renderer:e,outlines:t}=this,{camera:n,canvas:r}=e,s=r.clientWidth,i=r.clientHeight;if(!this.regions.length)return t.replaceChildren();let a=C(n.projection(s/i,e.scene.bounds),n.view());t.replaceChildren(...this.regions.map(l=>{let c=document.createElementNS(ht,"path"),u=[];for(let h of ot(l)){let m="M";for(let p of h){let[A,v,,d]=_(a,p);d>0&&u.push(`${m}${((A/d+1)*s/2).toFixed(1)} ${((1-v/d)*i/2).toFixed(1)}`),m=d>0?"L":"M"}}return c.setAttribute("d",u.join("")),c.setAttribute("opacity",l.on?"1":".3"),c}))}turnAxes(){let e=this.renderer.camera.view();this.axes.forEach((t,n)=>{let r=ne([0,1,2].map(l=>l===n>>1?1:0),n&1?1:-1),[s,i,a]=_(e,r,0);t.style.transform=`translate(${(s*32).toFixed(1)}px, ${(-i*32).toFixed(1)}px)`,t.style.opacity=String(.35+.65*(.5+a/2))})}};function Ye(o,e=()=>{}){let{canvas:t,camera:n}=o,r=new Map,s=0,i=0;t.addEventListener("pointerdown",l=>{t.focus(),t.setPointerCapture(l.pointerId),r.set(l.pointerId,{x:l.offsetX,y:l.offsetY}),s=0,i=l.button,l.preventDefault()}),t.addEventListener("contextmenu",l=>l.preventDefault());let a=l=>{r.delete(l.pointerId)&&(l.type==="pointerup"&&s<4&&i===0&&!r.size?e(l.offsetX,l.offsetY):o.change())};t.addEventListener("pointerup",a),t.addEventListener("pointercancel",a),t.addEventListener("pointermove",l=>{let c=r.get(l.pointerId);if(!c)return;let u=l.offsetX-c.x,h=l.offsetY-c.y,m=t.clientWidth,p=t.clientHeight;if(s+=Math.abs(u)+Math.abs(h),r.size===2){let A=[...r.entries()].find(([g])=>g!==l.pointerId)[1],v=[c.x-A.x,c.y-A.y],d=[l.offsetX-A.x,l.offsetY-A.y];n.dolly(Math.hypot(d[0],d[1])/Math.max(1,Math.hypot(v[0],v[1]))),n.roll((Math.atan2(d[1],d[0])-Math.atan2(v[1],v[0]))*180/Math.PI),n.pan(u/2/p,-h/2/p)}else i===1||l.shiftKey?n.pan(u/p,-h/p):i===2?n.dolly(Math.pow(1.1,-20*.2*h/(p/2)*5)):l.ctrlKey?n.roll(180*u/m):n.rotate(u/m,-h/p);c.x=l.offsetX,c.y=l.offsetY,o.change(!0)}),t.addEventListener("wheel",l=>{n.dolly(Math.pow(1.1,Math.max(-3,Math.min(3,-l.deltaY/50)))),o.change(!0),l.preventDefault()},{passive:!1}),t.addEventListener("keydown",l=>{let u={ArrowLeft:()=>l.shiftKey?n.pan(-.04,0):n.rotate(-.04,0),ArrowRight:()=>l.shiftKey?n.pan(.04,0):n.rotate(.04,0),ArrowUp:()=>l.shiftKey?n.pan(0,.04):n.rotate(0,.04),ArrowDown:()=>l.shiftKey?n.pan(0,-.04):n.rotate(0,-.04),"+":()=>n.dolly(1.1),"=":()=>n.dolly(1.1),"-":()=>n.dolly(.9090909090909091),Enter:()=>e(t.clientWidth/2,t.clientHeight/2)};l.altKey||l.metaKey||!u[l.key]||(u[l.key](),o.change(!0),l.preventDefault())})}var Ve=o=>Array.isArray(o)&&o.length===3&&o.every(Number.isFinite);function ft(o,e){let{parent:t}=window;if(t===window)return;let n=i=>t.postMessage({pvfiblets:i},"*"),{state:r}=o.camera,s=JSON.stringify(r);window.addEventListener("message",i=>{let a=i.source===t?i.data?.pvfiblets:void 0;if(!a)return;let{camera:l,picked:c}=a;if(l&&Ve(l.position)&&Ve(l.focal_point)&&Ve(l.up)&&l.view_angle>0&&l.parallel_scale>0){Object.assign(r,l);let u=JSON.stringify(r);u!==s&&o.change(),s=u}c!==void 0&&e.mark(c)}),o.finished=()=>{let i=JSON.stringify(r);i!==s&&n({camera:JSON.parse(s=i)})},e.told=i=>n({picked:i}),n({ready:!0})}var ye=class{constructor(e,t){f(this,"file",e);f(this,"bytes");f(this,"come",0);f(this,"whole",null);f(this,"waiting",[]);f(this,"had",[]);this.bytes=new Uint8Array(t)}async need(e,t){t<=e||this.had.some(([n,r])=>n<=e&&r>=t)||(this.whole||await this.tried(e,t),this.whole&&await this.upTo(t))}async tried(e,t){for(let n=2;;--n)try{return await this.ask(e,t)}catch(r){if(!(r instanceof TypeError))throw r;if(!n)throw new Error(`${this.file} cannot be read: the connection to its server broke, or there is no server. Files beside a page need one; "python -m http.server" is enough.`);await new Promise(s=>setTimeout(s,500))}}async ask(e,t){let n=await fetch(this.file,{headers:{Range:`bytes=${e}-${t-1}`}});if(!n.ok)throw new Error(`${this.file} cannot be read (${n.status}); it must lie beside this page.`);if(n.status!==206){this.whole?n.body?.cancel():this.whole=this.flow(n);return}let r=Number(/\/(\d+)$/.exec(n.headers.get("Content-Range")??"")?.[1]??this.bytes.length),s=new Uint8Array(await n.arrayBuffer());if(r!==this.bytes.length||s.length!==t-e)throw this.changed(r);this.bytes.set(s,e),this.had.push([e,t])}async flow(e){let t=e.body.getReader();for(;;){let{done:n,value:r}=await t.read();if(n)break;if(this.come+r.length>this.bytes.length)throw this.changed(this.come+r.length);this.bytes.set(r,this.come),this.come+=r.length,this.waiting=this.waiting.filter(s=>s.end<=this.come?s.resolve():!0)}if(this.come!==this.bytes.length)throw this.changed(this.come)}async upTo(e){e>this.come&&await Promise.race([this.whole,new Promise(t=>this.waiting.push({end:e,resolve:t}))])}changed(e){return new Error(`${this.file} has ${e} bytes, and this page was made with one of ${this.bytes.length}. Copy the page and its folder again.`)}};var qe=6;function dt({leaves:o,program:e}){let t=[];for(let n of e)n>=0?t.push(o[n].ball?`sphere_holds(${n},z)`:`planes_hold(${n},${o[n].planes.length},z)`):n===-3?t.push(`!${t.pop()}`):t.push(`(${t.pop()}${n===-1?"&&":"||"}${t.pop()})`);return t[0]}function mt({leaves:o},e,t,n){let r=V(e),s=[t,n,1,1],i=[0,1,2,3];if(!r)return null;let a=new Float64Array(4*qe*o.length),l=new Float64Array(4*o.length);return o.forEach(({centre:c,planes:u,ball:h},m)=>{let[p,A,v,d]=_(e,c),g=[p/d,A/d,v/d],w=d>0&&g.every(isFinite)?g.map((R,T)=>Math.min(Math.max(R,0),s[T])):[t/2,n/2,0],E=R=>{let T=i.map(I=>i.reduce((M,U)=>M+R[U]*r[U+4*I],0));return T[3]+=T[0]*w[0]+T[1]*w[1]+T[2]*w[2],T},B=R=>{let T=Math.max(...R.map((I,M)=>Math.abs(I*s[M])))||1;return R.map((I,M)=>Math.abs(I*s[M])<1e-30*T?0:I/T)};if(l.set(w,4*m),u&&u.forEach((R,T)=>a.set(B(E(R)),4*(qe*m+T))),!h)return;let b=[...h,[0,0,0,1]].map(E),x=i.map(R=>i.map(T=>b.reduce((I,M,U)=>I+(U<3?1:-1)*M[R]*M[T],0))),F=Math.max(...i.flatMap(R=>i.map(T=>Math.abs(x[R][T]*s[R]*s[T]))))||1;a.set([x[0][0],x[1][1],2*x[0][1],x[3][3],2*x[0][3],2*x[1][3],x[0][2],x[1][2],x[2][2],x[2][3]].map(R=>R/F),4*qe*m)}),{rays_rows:a,rays_centres:l}}function Vt(o,e,t){let n=e.slice(0,6).map(r=>[0,1,2,3].map(s=>r[0]*t[4*s]+r[1]*t[4*s+1]+r[2]*t[4*s+2]+r[3]*t[4*s+3]));o.ints({plane_count:n.length}),n.forEach((r,s)=>o.set({[`planes[${s}]`]:r}))}var Ue=class{constructor(e,t,n){f(this,"gl",e);f(this,"layer",t);f(this,"array");f(this,"buffers",[]);f(this,"count");f(this,"table",null);f(this,"tableRange",[0,1,1,1]);f(this,"model");this.model=new Float64Array(t.matrix??[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]),this.array=e.createVertexArray(),e.bindVertexArray(this.array);let r=(i,a,l,c,u)=>{let h=e.createBuffer();e.bindBuffer(e.ARRAY_BUFFER,h),e.bufferData(e.ARRAY_BUFFER,a,e.STATIC_DRAW),e.enableVertexAttribArray(i),e.vertexAttribPointer(i,l,c,u,0,0),this.buffers.push(h)};r(0,n[t.places],3,e.FLOAT,!1),t.normals!==void 0&&r(1,n[t.normals],3,e.FLOAT,!1),t.colours!==void 0&&r(2,n[t.colours],4,e.UNSIGNED_BYTE,!0),t.values!==void 0&&(r(3,n[t.values],1,e.FLOAT,!1),[this.table,this.tableRange]=_e(e,Q(t.table),t.clim,!!t.log));let s=e.createBuffer();e.bindBuffer(e.ELEMENT_ARRAY_BUFFER,s),e.bufferData(e.ELEMENT_ARRAY_BUFFER,n[t.triangles],e.STATIC_DRAW),this.buffers.push(s),this.count=n[t.triangles].byteLength/4,e.bindVertexArray(null)}get translucent(){return this.layer.opacity<1}draw(e,t){let n=this.gl,{layer:r}=this,s=C(t.view,this.model),i=ve(s),a=V(s),l=a?[a[0],a[4],a[8],a[1],a[5],a[9],a[2],a[6],a[10]]:i;e.use().set({clip_from_data:De(C(t.projection,s)),view_from_data:De(s),normal_to_view:l,parallel:t.parallel?1:0,opacity:r.opacity,reflects:r.reflects,sheen:r.sheen}),e.ints({smooth_normals:r.normals===void 0?0:1,lighting:r.lighting?1:0,by_value:this.table?1:0,logarithm:r.log?1:0}),e.textures({table:this.table}).set({table_range:this.tableRange}),t.lights(e),Vt(e,[...r.planes??[],...t.planes],this.model),n.bindVertexArray(this.array),r.normals===void 0&&n.vertexAttrib3f(1,0,0,1),r.colours===void 0&&n.vertexAttrib4f(2,r.colour[0],r.colour[1],r.colour[2],1),n.drawElements(n.TRIANGLES,this.count,n.UNSIGNED_INT,0),n.bindVertexArray(null)}release(){for(let e of this.buffers)this.gl.deleteBuffer(e);this.gl.deleteVertexArray(this.array),this.table&&this.gl.deleteTexture(this.table)}depth(e){let t=this.layer.bounds,n=[(t[0]+t[1])/2,(t[2]+t[3])/2,(t[4]+t[5])/2];return-(e[2]*n[0]+e[6]*n[1]+e[10]*n[2]+e[14])}},Pe=class{constructor(e,t,n){f(this,"gl",e);f(this,"layer",t);f(this,"texture");let[r,s]=t.size;this.texture=e.createTexture(),e.bindTexture(e.TEXTURE_2D,this.texture),e.texImage2D(e.TEXTURE_2D,0,e.RGBA8,r,s,0,e.RGBA,e.UNSIGNED_BYTE,n[t.pixels]);for(let i of["TEXTURE_MIN_FILTER","TEXTURE_MAG_FILTER"])e.texParameteri(e.TEXTURE_2D,e[i],t.smooth?e.LINEAR:e.NEAREST);for(let i of["TEXTURE_WRAP_S","TEXTURE_WRAP_T"])e.texParameteri(e.TEXTURE_2D,e[i],e.CLAMP_TO_EDGE)}get translucent(){return this.layer.clear||this.layer.opacity<1}release(){this.gl.deleteTexture(this.texture)}draw(e,t){let{layer:n}=this;e.use().set({clip_from_data:De(C(t.projection,t.view)),corner:n.corner,across:n.across,up:n.up,opacity:n.opacity}),e.textures({pixels:this.texture}),this.gl.bindVertexArray(null),this.gl.drawArrays(this.gl.TRIANGLE_STRIP,0,4)}};var qt=4,pt=2.5,Ht=.999,gt=[1,2,3].map(o=>(pt**o-1)/(pt**qt-1)),At=4294967295,Xt=[-1,1,1];function He(o){let e=o.getExtension("EXT_color_buffer_float"),t=e??o.getExtension("EXT_color_buffer_half_float");return e&&o.getExtension("EXT_float_blend")?32:t?16:0}var Se=class{constructor(e,t,n,r,s){f(this,"gl",e);f(this,"bits",t);f(this,"width",n);f(this,"height",r);f(this,"depths",s);f(this,"held",new Map);f(this,"mixed");f(this,"weights");f(this,"buffer");this.mixed=k(e,e.RGBA16F,n,r),this.weights=k(e,e.R16F,n,r),this.buffer=S(e,this.mixed,s),this.attach([this.weights])}attach(e){let{gl:t}=this;e.forEach((n,r)=>t.framebufferTexture2D(t.FRAMEBUFFER,t.COLOR_ATTACHMENT1+r,t.TEXTURE_2D,n,0)),t.drawBuffers([t.COLOR_ATTACHMENT0,...e.map((n,r)=>t.COLOR_ATTACHMENT1+r)])}begin(e,t,n){let{gl:r,width:s,height:i}=this,a=this.held.get(e);if(a&&!!a.places!==t&&(this.drop(a),a=void 0),!a){let l=k(r,r.RGBA32UI,s,i),c=k(r,r.DEPTH_COMPONENT32F,s,i),u=t?k(r,r.R32UI,s,i):null,h=e.layer.through.all?gt.concat(1).map(()=>k(r,this.bits===32?r.RGBA32F:r.RGBA16F,s,i)):[],m=S(r,l,c);u&&this.attach([u]);let p=h.length?S(r,h[0],this.depths):m;h.length&&this.attach(h.slice(1)),this.held.set(e,a={texels:l,depths:c,places:u,sums:h,nearest:m,behind:p,summed:!1})}a.summed=!1,r.bindFramebuffer(r.READ_FRAMEBUFFER,n),r.bindFramebuffer(r.DRAW_FRAMEBUFFER,a.nearest),r.blitFramebuffer(0,0,s,i,0,0,s,i,r.DEPTH_BUFFER_BIT,r.NEAREST),r.bindFramebuffer(r.FRAMEBUFFER,a.nearest),r.clearBufferuiv(r.COLOR,0,[At,At,0,0])}nearest(e){this.gl.bindFramebuffer(this.gl.FRAMEBUFFER,this.held.get(e).nearest)}depthsOf(e){return this.held.get(e).depths}behind(e){let{gl:t}=this,n=this.held.get(e);t.bindFramebuffer(t.FRAMEBUFFER,n.behind),n.summed||n.sums.forEach((r,s)=>t.clearBufferfv(t.COLOR,s,[0,0,0,0])),n.summed=!0,t.depthMask(!1),t.enable(t.BLEND),t.blendFunc(t.ONE,t.ONE)}paint(e,t,n){let{texels:r,depths:s,places:i}=this.held.get(t),{layer:a}=t,{through:l}=a,c=C(n.view,t.model),u=new Float64Array(c),h=n.projection,m=t.set.bounds;u.set([0,0,0],12);let p=a.light==="line"?V(u):null,A=p?_(p,Xt,0).slice(0,3):[0,0,0],v=Math.hypot(...A)||1,d=-1/0;for(let g=0;g<8;++g)d=Math.max(d,-_(c,[m[g&1],m[2+(g>>1&1)],m[4+(g>>2)]])[2]);e.textures({texels:r,depths:s,places:i}).set({slice_distances:n.parallel?[(h[14]-1)/h[10],2/h[10],1,0]:[h[14],0,1+h[10],-2],slice_far:d,slice_edges:gt,paint_light:A.map(g=>g/v),paint_opacity:l.opacity,paint_unit:1/Math.max(this.absorbance(t),1e-12),sum_unit:this.unit(t)})}absorbance(e){let{opacity:t,varied:n}=e.layer.through;return n?-Math.log(1-Math.min(t,Ht))/255:-Math.log(Math.max(1-t,1e-6))}unit(e){return this.bits===32?1:e.layer.through.varied?2**-16:2**-8}of(e){return this.held.get(e)??null}start(){let{gl:e}=this;e.bindFramebuffer(e.FRAMEBUFFER,this.buffer),e.clearBufferfv(e.COLOR,0,[0,0,0,1]),e.clearBufferfv(e.COLOR,1,[0,0,0,0]),e.depthMask(!1),e.enable(e.BLEND),e.blendFuncSeparate(e.SRC_ALPHA,e.ONE,e.ZERO,e.ONE_MINUS_SRC_ALPHA)}show(e,t,n){let{sums:r,summed:s}=this.held.get(t),i=this.unit(t);e.textures(Object.fromEntries([0,1,2,3].map(a=>[`sums${a}`,s?r[a]:null]))),e.set({opacity:t.layer.through.opacity,absorbance:this.absorbance(t)/i/n,least:s?i/2:1/0})}finish(e,t){let{gl:n}=this;n.bindFramebuffer(n.FRAMEBUFFER,t),n.disable(n.DEPTH_TEST),n.bindVertexArray(null),n.blendFunc(n.SRC_ALPHA,n.ONE_MINUS_SRC_ALPHA),e.textures({mixed:this.mixed,weights:this.weights}),n.drawArrays(n.TRIANGLES,0,3),n.disable(n.BLEND),n.depthMask(!0)}drop(e){let{gl:t}=this;for(let n of[e.texels,e.depths,e.places,...e.sums])t.deleteTexture(n);for(let n of[e.nearest,e.behind])t.deleteFramebuffer(n)}keep(e){for(let[t,n]of this.held)e.includes(t)||(this.drop(n),this.held.delete(t))}release(){this.keep([]);for(let e of[this.mixed,this.weights])this.gl.deleteTexture(e);this.gl.deleteFramebuffer(this.buffer)}};var Kt=60,Jt=45,vt=400,Wt=.5,de=16,xe=4,jt=40,ie=4294967295,Zt=1065353216,$t={direction:0,solid:1,streamline:2,value:3,point:4},en={none:0,line:1,illuminated:2},Xe=class{constructor(e,t,n,r,s,i){f(this,"gl",e);f(this,"layer",t);f(this,"index",n);f(this,"set");f(this,"model");f(this,"values",null);f(this,"colours",null);f(this,"table",null);f(this,"tableRange",[0,1,1,1]);f(this,"kept",null);f(this,"chosen",null);f(this,"opacities",null);f(this,"keptPoints",null);f(this,"shownValues",[1,0]);f(this,"marked",ie);this.set=i??new Ie(e,s),this.set.advance(s.ready),this.model=new Float64Array(t.matrix??Re());let{colours:a}=t;a.codes?this.values=this.set.codedValues(a.values,ut(r[a.codes.data],a.codes.bits),a.codes):a.values!==void 0&&(this.values=this.set.pointValues(a.values)),a.data!==void 0&&(this.colours=q(e,"rgba8",r[a.data],"colours")),a.table!==void 0&&([this.table,this.tableRange]=_e(e,Q(a.table),a.clim,!!a.log)),t.kept!==void 0&&this.keep(r[t.kept]),t.chosen&&(this.chosen=q(e,"r8ui",r[t.chosen.data],"streamlines")),t.through?.opacities!==void 0&&(this.opacities=q(e,"r8ui",r[t.through.opacities],"streamlines")),t.kept_points!==void 0&&(this.keptPoints=q(e,"r32ui",he(r[t.kept_points]),"points"))}release(){this.values&&this.set.forget(this.values);for(let e of[this.colours,this.table,this.kept,this.chosen,this.opacities,this.keptPoints])e&&this.gl.deleteTexture(e)}get byPoint(){return this.layer.colours.mode==="point"}keep(e){this.kept&&this.gl.deleteTexture(this.kept),this.kept=e&&q(this.gl,"r8ui",e,"streamlines")}},Ee=class{constructor(e,t,n,r){f(this,"canvas",e);f(this,"scene",t);f(this,"data",n);f(this,"archives",r);f(this,"camera");f(this,"lines",[]);f(this,"surfaces",[]);f(this,"images",[]);f(this,"planes",[]);f(this,"width",0);f(this,"height",0);f(this,"ratio",1);f(this,"frames",0);f(this,"few",2e5);f(this,"loading",!1);f(this,"failed",null);f(this,"drawnOnce",null);f(this,"presented",null);f(this,"grown",null);f(this,"finished",null);f(this,"lacking",null);f(this,"gl");f(this,"programs",new Map);f(this,"frameBlock");f(this,"clipBlock");f(this,"raysBlock",null);f(this,"textures",{});f(this,"buffers",{});f(this,"translucent",null);f(this,"bits",null);f(this,"stale",!1);f(this,"frame",null);f(this,"rest",null);f(this,"sync",null);f(this,"sliceStarted",0);f(this,"sliceSize",0);f(this,"rate",1e3);f(this,"dirty",!0);f(this,"moving",!1);f(this,"asked",0);f(this,"still",0);f(this,"waiting",[]);f(this,"restored",null);this.camera=new Ce(structuredClone(t.camera));let s=e.getContext("webgl2",{alpha:!1,antialias:!1,depth:!1,preserveDrawingBuffer:!1,powerPreference:"high-performance"});if(!s)throw new le("This browser has no WebGL 2, which the page draws with. Turn on graphics acceleration in its settings, or open the page in another browser.");this.gl=s,e.addEventListener("webglcontextlost",i=>{i.preventDefault(),this.frame=this.rest=null,this.sync=null}),e.addEventListener("webglcontextrestored",()=>this.guarded(()=>this.begin())),this.begin()}guarded(e){try{e()}catch(t){this.gl.isContextLost()||this.failed?.(t)}}begin(){let{gl:e}=this,t=this.lines.splice(0);this.programs.clear(),this.rest=this.translucent=this.bits=null,this.textures={},this.buffers={},this.width=this.height=0,this.surfaces.length=this.images.length=0,this.frameBlock=new G(e,"Frame"),this.clipBlock=new G(e,"ClipPlanes"),this.raysBlock=null,this.fill(new Map,new Map),t.forEach((n,r)=>{let s=this.lines[r];s.shownValues=n.shownValues,s.marked=n.marked}),this.restored?.(),this.change()}fill(e,t){let{gl:n,scene:r}=this;r.layers.forEach(i=>{i.kind==="surface"?this.surfaces.push(t.get(JSON.stringify(i))??new Ue(n,i,this.data)):i.kind==="image"?this.images.push(t.get(JSON.stringify(i))??new Pe(n,i,this.data)):this.lines.push(new Xe(n,i,this.lines.length,this.data,this.archives.get(i.data),e.get(this.data[i.data])))});let s=Math.min(1024,128*(navigator.deviceMemory??4))*2**20;for(let i of this.lines)i.set.budget=s/this.lines.length}update(e,t,n){if(this.gl.isContextLost())return;let{data:r}=this,s=this.lines.splice(0),i=this.surfaces.splice(0),a=this.images.splice(0),l=new Map(s.map(u=>[r[u.layer.data],u.set])),c=({layer:u})=>(u.kind==="image"?[u.pixels]:[u.places,u.triangles,u.normals,u.colours,u.values]).every(h=>h===void 0||r[h]===t[h]);this.frame=this.rest=null,this.scene=e,this.data=t,this.archives=n,this.fill(l,new Map([...i,...a].filter(c).map(u=>[JSON.stringify(u.layer),u])));for(let u of s)u.release();for(let u of a)this.images.includes(u)||u.release();for(let{set:u}of s)this.lines.some(h=>h.set===u)||u.release();for(let u of i)this.surfaces.includes(u)||u.release();this.change()}program(e,t,n=[]){let r=[e,t,...n].join(" "),s=this.programs.get(r);return s||this.programs.set(r,s=new ce(this.gl,e,t,n)),s}change(e=!1){this.dirty=!0,this.moving=e,window.clearTimeout(this.still),e&&(this.still=window.setTimeout(()=>this.change(),200)),this.schedule()}grow(){this.guarded(()=>{let e=this.frame??this.rest;if(this.throughs().length){for(let{set:t,layer:n}of this.lines)t.advance(this.archives.get(n.data).ready);this.frame?this.stale=!0:this.change(),this.grown?.();return}for(let t of this.lines){let{set:n}=t,r=n.blocks.length;if(n.advance(this.archives.get(t.layer.data).ready),!e||!t.layer.visible)continue;let s=e.jobs.length;if(this.addJobs(e,t,n.blocks.slice(r)),n.segments(n.blocks.reduce((a,l)=>a+l.items,0))<=this.few)continue;let i=e.jobs.splice(s);for(let a of["likely","others"])e.jobs.push(...i.map(l=>({...l,what:a})))}e?this.dirty||(this.frame=e):this.change(),this.grown?.()}),this.schedule()}throughs(){let e=this.lines.filter(({layer:t})=>t.visible&&t.through);return e.length&&this.bits===null&&!(this.bits=He(this.gl))&&this.lacking?.("its graphics cannot add up colours of lines that one looks through"),this.bits===0?[]:e}addJobs(e,t,n){let r=C(e.matrices.projection,C(e.matrices.view,t.model));for(let s of n)this.outside(r,s.bounds)||e.jobs.push({lines:t,block:s,what:"all"})}findFarTiles(e,t,n){let{gl:r}=this,s=Math.ceil(this.width/xe),i=Math.ceil(this.height/xe);if(r.bindFramebuffer(r.FRAMEBUFFER,this.buffers.far),!t)return r.clearBufferuiv(r.COLOR,0,[Zt,0,0,0]),null;if(r.disable(r.DEPTH_TEST),r.bindVertexArray(null),r.viewport(0,0,s,i),this.program("page/screen.vert","page/far_tiles.frag").use().textures({depths:e}),r.drawArrays(r.TRIANGLES,0,3),r.viewport(0,0,this.width,this.height),!n)return null;let a=new Uint32Array(4*s*i);return r.readPixels(0,0,s,i,r.RGBA_INTEGER,r.UNSIGNED_INT,a),{size:xe,columns:s,rows:i,depths:new Float32Array(a.buffer)}}schedule(){let e=()=>this.guarded(()=>this.tick());this.asked||(this.asked=this.sync&&this.frame&&!this.frame.moving?window.setTimeout(e,1):requestAnimationFrame(e))}settled(){return!this.dirty&&!this.frame&&!this.loading?Promise.resolve():new Promise(e=>this.waiting.push(e))}tick(){this.asked=0;let{gl:e}=this;if(e.isContextLost())return;if(this.sync){if(e.getSyncParameter(this.sync,e.SYNC_STATUS)!==e.SIGNALED)return this.schedule();e.deleteSync(this.sync),this.sync=null;let s=Math.max(performance.now()-this.sliceStarted,.5);this.sliceSize>2e3&&(this.rate+=.5*(Math.min(this.sliceSize/s,8*this.rate)-this.rate))}this.fit(),this.dirty&&this.start();let t=this.frame;if(!t)return;let n=this.rate*Kt;this.sliceStarted=performance.now(),this.sliceSize=0;do this.drawSlice(t,t.moving?1/0:n);while(t.next<t.jobs.length&&(t.moving||this.sliceSize<n&&t.jobs[t.next].what!=="others"));let r=t.next>=t.jobs.length;(r||this.worthShowing(t))&&(t.shownAt=performance.now(),this.present(t,r),this.drawnOnce&&(t.jobs.length||!this.loading)&&(this.drawnOnce(),this.drawnOnce=null)),this.sync=e.fenceSync(e.SYNC_GPU_COMMANDS_COMPLETE,0),e.flush(),r&&(this.frame=null,this.rest=t.moving?null:t,++this.frames,this.stale&&this.change(),t.moving||this.finished?.(),!t.moving&&!this.dirty&&!this.loading&&this.waiting.splice(0).forEach(s=>s())),this.schedule()}worthShowing({jobs:e,next:t,begun:n,shownAt:r}){let s=performance.now(),{what:i}=e[t],a=c=>c.what===i,l=(s-n)*e.slice(t).filter(a).length/Math.max(e.slice(0,t).filter(a).length,1);return s-r>Math.max(vt,Wt*(r-n))&&(!this.frames||l>vt)}fit(){let{gl:e,canvas:t}=this,n=window.devicePixelRatio||1,r=e.getParameter(e.MAX_TEXTURE_SIZE)-2,s=Math.min(r,Math.max(1,Math.round(t.clientWidth*n))),i=Math.min(r,Math.max(1,Math.round(t.clientHeight*n)));if(s===this.width&&i===this.height)return;t.width=this.width=s,t.height=this.height=i,this.ratio=n;for(let l of Object.values(this.textures))e.deleteTexture(l);for(let l of Object.values(this.buffers))e.deleteFramebuffer(l);this.translucent?.release(),this.translucent=null;let a=this.textures={texels:k(e,e.RGBA32UI,s,i),depths:k(e,e.DEPTH_COMPONENT32F,s,i),drawn:k(e,e.RGBA8,s,i),shown:k(e,e.RGBA32UI,s+2,i+2),tiles:k(e,e.R8UI,Math.ceil(s/de),Math.ceil(i/de)),far:k(e,e.R32UI,Math.ceil(s/xe),Math.ceil(i/xe))};this.buffers={texels:S(e,a.texels,a.depths),scene:S(e,a.drawn,a.depths),drawn:S(e,a.drawn,null),shown:S(e,a.shown,null),tiles:S(e,a.tiles,null),far:S(e,a.far,null)},this.dirty=!0}start(){let{gl:e,camera:t,scene:n}=this,r=this.moving;this.dirty=!1;let s=t.view(),i=t.projection(this.width/this.height,n.bounds),a={view:s,projection:i,parallel:t.state.parallel,lights:d=>this.setLights(d,s),planes:this.planes},l=this.frame={jobs:[],next:0,share:1,drawn:0,begun:performance.now(),shownAt:performance.now(),matrices:a,moving:r,through:new Set};this.rest=null,this.stale=!1;let c=this.throughs(),u=this.lines.filter(({layer:d})=>d.visible),h=(d,g)=>d.reduce((w,E)=>w+E.lines.set.segments(g(E)),0),m=d=>{l.jobs=[];for(let g of d)this.addJobs(l,g,g.set.blocks);return l.jobs},p=h(m(u),({block:d})=>d.items)>this.few,A=d=>{if(!p)return d;let g=({lines:B,block:{bounds:b}})=>_(C(s,B.model),[b[0]+b[1],b[2]+b[3],b[4]+b[5]].map(x=>x/2))[2],w=new Map(d.map(B=>[B,g(B)])),E=d.sort((B,b)=>w.get(b)-w.get(B)).map(B=>({...B,what:"likely"}));return r?E:[...E,...E.map(B=>({...B,what:"others"}))]},v=A(m(u.filter(d=>!c.includes(d))));for(let d of c){let g=m([d]);v.push(...A([...g])),d.layer.through.all&&v.push(...g.map(w=>({...w,what:"behind"})))}l.jobs=v,r&&(l.share=Math.min(1,this.rate*Jt/Math.max(h(v,({lines:d,block:g,what:w})=>w==="likely"?(d.set.likely(g),g.likelies):g.items),1))),this.mixes()?(this.translucent??(this.translucent=new Se(e,this.bits,this.width,this.height,this.textures.depths))).keep(c):(this.translucent?.release(),this.translucent=null),this.frames||(l.shownAt=0),e.viewport(0,0,this.width,this.height),e.disable(e.BLEND),e.disable(e.CULL_FACE),e.bindFramebuffer(e.FRAMEBUFFER,this.buffers.texels),e.clearBufferuiv(e.COLOR,0,[ie,ie,0,0]),e.depthMask(!0),e.clearBufferfv(e.DEPTH,0,[1]),this.drawBackdrop(a)}drawBackdrop(e){let{gl:t,scene:n}=this;t.bindFramebuffer(t.FRAMEBUFFER,this.buffers.scene),t.disable(t.DEPTH_TEST),t.bindVertexArray(null),this.program("page/screen.vert","page/background.frag").use().set({bottom:n.background[0],top:n.background[1],height:this.height}),t.drawArrays(t.TRIANGLES,0,3),t.enable(t.DEPTH_TEST),t.depthFunc(t.LEQUAL),t.depthMask(!0);let r=this.program("page/surface.vert","page/surface.frag");for(let i of this.surfaces)i.layer.visible&&!i.translucent&&i.draw(r,e);let s=this.program("page/image.vert","page/image.frag");for(let i of this.images)i.layer.visible&&!i.translucent&&i.draw(s,e)}outside(e,t){let n=[0,0,0,0,0,0];for(let r=0;r<8;++r){let[s,i,a,l]=_(e,[t[r&1],t[2+(r>>1&1)],t[4+(r>>2)]]);[s<-l,s>l,i<-l,i>l,a<-l,a>l].forEach((c,u)=>n[u]+=c?1:0)}return n.some(r=>r===8)}setLights(e,t){let n=[0,0,0],r=0;this.scene.lights.slice(0,8).forEach((s,i)=>{let a=[0,0,1,0];s.view?a=[...s.view,0]:s.world&&(r=1,a=_(t,s.world,s.positional?1:0),a[3]=s.positional?1:0),e.set({[`light_colour[${i}]`]:s.colour,[`light_place[${i}]`]:a}),s.colour.forEach((l,c)=>n[c]+=l)}),e.ints({light_count:Math.min(this.scene.lights.length,8)}).set({light_sum:n,light_standing:r})}aim(e,t){let n=e.layer.line_width*this.ratio,r=this.wide(e),s=C(t.view,C(e.model,e.set.toData)),i=C(t.projection,s),a=i.reduce((u,h)=>Math.max(u,Math.abs(h)),0)||1,l=new Float64Array(16);for(let u=0;u<4;++u){let[h,m,p,A]=[0,1,2,3].map(v=>i[v+4*u]/a);l.set([this.width/2*(h+A),this.height/2*(m+A),(p+A)/2,A],4*u)}this.frameBlock.write({window_from_local:l,reference:e.set.reference,half_line_width:r?n/2:0,viewport:[this.width,this.height]},["reference"]),this.frameBlock.bind();let c=[...e.layer.planes??[],...this.planes].slice(0,8);if(c.length){let u=C(e.model,e.set.toData),h=V(i),m=new Float64Array(32),p=new Float64Array(32);c.forEach((A,v)=>{let d=[0,1,2,3].map(w=>A[0]*u[4*w]+A[1]*u[4*w+1]+A[2]*u[4*w+2]+A[3]*u[4*w+3]),g=Math.hypot(d[0],d[1],d[2])||1;if(d.forEach((w,E)=>m[4*v+E]=w/g),h)for(let w=0;w<2;++w){let E=[0,1,2,3].reduce((B,b)=>B+m[4*v+b]*h[b+4*w],0);p[4*v+w]=E*a*(2/(w===0?this.width:this.height))}}),this.clipBlock.write({clip_planes:m,clip_tilts:p,clip_plane_count:0,clip_rounding:0}),this.clipBlock.write({clip_plane_count:c.length},["clip_plane_count"]),this.clipBlock.bind()}return{wide:r,clipped:c.length>0,window:l}}cut(e,t){let{width:n,height:r}=this,s=new Float64Array([n/2,0,0,0,0,r/2,0,0,0,0,.5,0,n/2,r/2,.5,1]),i=mt(e,C(s,C(t.projection,t.view)),n,r);return i?((this.raysBlock??(this.raysBlock=new G(this.gl,"Rays"))).write(i),this.raysBlock.bind(),!0):!1}pixelsOf(e,t,n){let r=C(t.projection,C(t.view,e.model)),s=e.set.bounds,i=Math.hypot(...ve(e.model)),a=1/0;for(let l=0;l<8;++l)a=Math.min(a,_(r,[s[l&1],s[2+(l>>1&1)],s[4+(l>>2)]])[3]);return a>0?n*i*(this.height/2)*t.projection[5]/a:1/0}drawSlice(e,t){let{gl:n}=this,r=null,s=null,i=!1,a=Re(),l=1,c=e.jobs[e.next],u=c&&this.phase(c),h=c?.what==="behind",m=u?this.translucent:null;m&&!e.through.has(c.lines)&&(e.through.add(c.lines),m.begin(c.lines,this.wide(c.lines)&&c.lines.layer.through.all,this.buffers.texels));let p=c?.what==="others",A=m&&!h?m.depthsOf(c.lines):this.textures.depths,v=this.findFarTiles(A,e.next>0,p);for(;e.next<e.jobs.length&&this.sliceSize<t;){let{lines:d,block:g,what:w}=e.jobs[e.next];if(this.phase(e.jobs[e.next])!==u||w==="others"!==p&&this.sliceSize)break;if(++e.next,d.set.pointsOf(g),r!==d){r=d;let B=this.aim(d,e.matrices),{wide:b,clipped:x}=B;a=B.window,l=1+(b?d.layer.line_width*this.ratio/2:0);let F=["CLIPPING","CLIPPING_DEPTH","EDGES"];b&&F.push("WIDE_LINES"),x&&F.push("CLIP_PLANES"),d.layer.cut&&this.cut(d.layer.cut,e.matrices)&&F.push("CLIP_REGION",`REGION ${dt(d.layer.cut)}`),i=!b&&this.pixelsOf(d,e.matrices,d.set.longestStep)<=jt,i&&F.push("SPRITES"),d.values&&F.push("VALUES_STORED"),d.byPoint&&F.push("VALUES_COLOUR"),d.kept&&F.push("STREAMLINE_MASK"),d.keptPoints&&F.push("POINT_MASK"),b&&m&&d.layer.through.all&&F.push("GATHER_SLICES"),s=this.program("page/segment.vert",h?"page/sum.frag":"page/segment.frag",F).use(),d.values&&s.set({value_code:d.values.code,shown_values:d.shownValues}),s.uints({layer:d.index*2**28})}let E=w==="others"&&v?d.set.look(g,a,l,this.width,this.height,v):d.set.likely(g);h?m.behind(d):m?m.nearest(d):n.bindFramebuffer(n.FRAMEBUFFER,this.buffers.texels),n.enable(n.DEPTH_TEST),n.depthFunc(m?n.LEQUAL:n.LESS),this.frameBlock.bind(),h&&(this.colour(s.use(),d),m.paint(s,d,e.matrices)),s.use().textures({far_tiles:this.textures.far,items:d.set.items,kept:d.kept,kept_points:d.keptPoints,value_texels:d.values&&d.values.texture,point_colours:d.byPoint?d.colours:null}),w==="all"||h?this.sliceSize+=d.set.draw(g,s,e.share*g.items,i):this.sliceSize+=g.items+d.set.drawSome(g,s,E,i,Math.ceil(e.share*(w==="likely"?g.likelies:g.items)))}n.disable(n.BLEND),n.depthMask(!0)}phase({lines:e,what:t}){return e.layer.through&&this.bits?`${e.index} ${t==="behind"}`:""}wide(e){return e.layer.line_width*this.ratio>1}colour(e,t){let{colours:n,through:r}=t.layer,{texels:s}=this.textures;e.textures({colours:t.byPoint?null:t.colours,table:t.table,opacities:t.opacities??s}),e.ints({mode:$t[n.mode],logarithm:n.log?1:0,by_streamline:t.opacities?1:0,by_point:r?.by_point?1:0}),e.set({one_colour:n.colour??[1,1,1],table_range:t.tableRange})}light(e,t,n,r,s){let{layer:i}=t,a=V(n.projection)??Re();this.colour(e,t),e.textures({texels:r,depths:s,chosen:t.chosen??r}).uints({layer:t.index*2**28,marked:t.marked}),e.ints({light:en[i.light]}).set({reflects:i.reflects,sheen:i.sheen,chosen_colour:i.chosen?.colour??[0,0,0,0],faded:i.chosen?.faded??[0,0,0,0],data_to_view:ve(C(n.view,t.model)),pixel_to_view:new Float32Array(a),picture:[this.width,this.height]}),this.setLights(e,n.view)}present(e,t){let{gl:n,textures:r,buffers:s}=this,i=e.matrices,a=[...e.through];this.repaint(i),n.disable(n.DEPTH_TEST),n.bindVertexArray(null),this.findTiles(a),n.bindFramebuffer(n.FRAMEBUFFER,s.drawn);let l=this.program("page/tiles.vert","page/resolve.frag").use();for(let c of this.lines)!c.layer.visible||e.through.has(c)||(this.light(l,c,i,r.texels,r.depths),this.drawTiles(l));if(this.drawTranslucent(e),n.disable(n.DEPTH_TEST),n.bindVertexArray(null),t&&this.scene.antialias&&this.lines.length){let c=m=>Math.max(0,...m.map(({layer:p})=>1-Math.min(1,p.visible?p.line_width*this.ratio:1)));n.bindFramebuffer(n.FRAMEBUFFER,s.shown),n.viewport(0,0,this.width+2,this.height+2);let u=this.program("page/screen.vert","page/visible_edges.frag").use().textures({texels:r.texels,depths:r.depths,drawn:r.drawn});u.ints({first:1}).set({narrower:c(this.lines.filter(m=>!e.through.has(m)))}),n.drawArrays(n.TRIANGLES,0,3);for(let m of a){let{texels:p,depths:A}=this.translucent.of(m);u.textures({texels:p,depths:A}).ints({first:0}).set({narrower:c([m])}),n.drawArrays(n.TRIANGLES,0,3)}n.viewport(0,0,this.width,this.height),n.bindFramebuffer(n.FRAMEBUFFER,s.drawn);let h=this.program("page/tiles.vert","effects/picture/antialias_coverage.frag").use().textures({shown:r.shown});n.uniform2i(h.at("shift"),1,1),this.drawTiles(h)}n.bindFramebuffer(n.FRAMEBUFFER,null),this.program("page/screen.vert","page/copy.frag").use().textures({drawn:r.drawn}),n.drawArrays(n.TRIANGLES,0,3),this.presented?.()}findTiles(e){let{gl:t,textures:n}=this;t.bindFramebuffer(t.FRAMEBUFFER,this.buffers.tiles),t.viewport(0,0,Math.ceil(this.width/de),Math.ceil(this.height/de));let r=this.program("page/screen.vert","page/tile_mask.frag").use();[n.texels,...e.map(s=>this.translucent.of(s).texels)].forEach((s,i)=>{r.textures({texels:s}).ints({first:i?0:1}),t.drawArrays(t.TRIANGLES,0,3)}),t.viewport(0,0,this.width,this.height)}drawTiles(e){let{gl:t}=this;e.textures({tiles:this.textures.tiles}).set({whole:[this.width,this.height]}),t.drawArraysInstanced(t.TRIANGLE_STRIP,0,4,Math.ceil(this.width/de)*Math.ceil(this.height/de))}repaint(e){this.frame&&this.frame.drawn++>0&&this.drawBackdrop(e)}mixes(){return!!(this.throughs().length||[...this.surfaces,...this.images].some(({layer:t,translucent:n})=>t.visible&&n))&&!!(this.bits??(this.bits=He(this.gl)))}drawTranslucent(e){let{gl:t,translucent:n}=this,r=e.matrices,s=this.surfaces.filter(a=>a.layer.visible&&a.translucent),i=this.images.filter(a=>a.layer.visible&&a.translucent);if(!(!s.length&&!i.length&&!e.through.size)){n?n.start():(t.bindFramebuffer(t.FRAMEBUFFER,this.buffers.scene),t.depthMask(!1),t.enable(t.BLEND),t.blendFunc(t.SRC_ALPHA,t.ONE_MINUS_SRC_ALPHA));for(let a of e.through){let l=this.program("page/tiles.vert","page/through.frag").use(),{texels:c,depths:u}=n.of(a);this.light(l,a,r,c,u),n.show(l,a,e.share),this.drawTiles(l)}if(t.enable(t.DEPTH_TEST),t.depthFunc(t.LEQUAL),s.length){let a=this.program("page/surface.vert","page/surface.frag");s.sort((l,c)=>c.depth(r.view)-l.depth(r.view)).forEach(l=>l.draw(a,r))}if(i.length){let a=this.program("page/image.vert","page/image.frag");i.forEach(l=>l.draw(a,r))}n&&n.finish(this.program("page/screen.vert","page/mixed.frag").use(),this.buffers.drawn),t.disable(t.BLEND),t.depthMask(!0)}}pick(e,t){let{gl:n}=this,r=Math.floor(e*this.ratio),s=this.height-1-Math.floor(t*this.ratio),i=new Uint32Array(4),a=[[0,0],[1,0],[-1,0],[0,1],[0,-1],[2,0],[-2,0],[0,2],[0,-2]];for(let[l,c]of a){if(r+l<0||s+c<0||r+l>=this.width||s+c>=this.height)continue;for(let m of[...this.throughs().map(p=>this.translucent?.of(p)?.nearest),this.buffers.texels])if(m&&(n.bindFramebuffer(n.FRAMEBUFFER,m),n.readPixels(r+l,s+c,1,1,n.RGBA_INTEGER,n.UNSIGNED_INT,i),i[0]!==ie||i[1]!==ie))break;if(i[0]===ie&&i[1]===ie)continue;let u=this.lines[i[0]>>>28];if(!u)continue;let h=u.values?new Float32Array(new Uint32Array([i[3]]).buffer)[0]:null;return{lines:u,streamline:i[0]&268435455,value:h}}return null}placeOf(e,t,n,r){let{camera:s,scene:i,canvas:a}=this,l=a.clientWidth,c=a.clientHeight,u=C(s.projection(this.width/this.height,i.bounds),C(s.view(),e.model)),h=[0,0,0],m=1/0;for(let p of e.set.pointsOfStreamline(t)){let[A,v,,d]=_(u,p),g=Math.hypot((A/d+1)*l/2-n,(1-v/d)*c/2-r);d>0&&g<m&&([h,m]=[p,g])}return h}pixels(){let{gl:e,width:t,height:n}=this,r=new Uint8Array(4*t*n),s=new Uint8Array(r.length);e.bindFramebuffer(e.FRAMEBUFFER,this.buffers.drawn),e.readPixels(0,0,t,n,e.RGBA,e.UNSIGNED_BYTE,r);for(let i=0;i<n;++i)s.set(r.subarray(4*t*i,4*t*(i+1)),4*t*(n-1-i));return s}};var bt=o=>document.getElementById(o)?.textContent??"",me=4;async function tn(o){let e=new Set(o.layers.map(t=>t.kind==="fiblets"?t.data:-1));return Promise.all(o.data.map(async(t,n)=>{if(t.file===void 0)return Q(bt(`data-${n}`).trim());if(e.has(n))return new Uint8Array;let r=new ye(t.file,t.bytes);return await r.need(0,t.bytes),r.bytes}))}async function nn(o,e,t){let n=new Map;return await Promise.all(o.layers.map(async r=>{if(r.kind!=="fiblets")return;let{file:s,bytes:i}=o.data[r.data];if(s===void 0){n.set(r.data,ze(e[r.data]));return}let a=new ye(s,i),l=r.colours.values===void 0?[]:[r.colours.values],c=await Ze(a,l);n.set(r.data,c),t.push({archive:c,remote:a,values:l})})),n}async function rn(o,e){let t=document.createElement("progress"),n=1<<oe;t.setAttribute("aria-label","Streamlines that have come"),t.max=o.reduce((r,{archive:s})=>r+s.header.n_fiblets,0),document.getElementById("over").append(t),await Promise.all(o.map(async({archive:r,remote:s,values:i})=>{let a=r.header.n_fiblets,l=Math.ceil(a/n),c=h=>$e(s,r,h,Math.min(h+me,l),n,i),u=c(0);for(let h=0;h<l;h+=me){let m=u;h+me<l&&(u=c(h+me)).catch(()=>{}),await m,t.value+=Math.min((h+me)*n,a)-r.ready,r.ready=Math.min((h+me)*n,a),e.grow()}})),t.remove()}function wt(o){let e=document.getElementById("message");e.textContent=o instanceof Error?o.message:String(o),e.hidden=!1,document.body.dataset.state="failed"}async function sn(){let o=JSON.parse(bt("scene"));document.title=o.title;let e=await tn(o),t=[],n=await nn(o,e,t),r=new Ee(document.getElementById("view"),o,e,n);r.loading=t.length>0,r.failed=wt,r.lacking=i=>{document.getElementById("status").textContent=`This browser draws translucent lines opaque: ${i}.`},r.drawnOnce=()=>{document.body.dataset.state="drawn"},new ResizeObserver(()=>r.change()).observe(r.canvas);let s=new ke(r,e);if(Ye(r,(i,a)=>s.pick(i,a)),ft(r,s),window.pvfiblets=r,!!t.length)try{await rn(t,r)}finally{r.loading=!1,r.grow()}}window.pvfibletsPage={Renderer:Ee,attachMouse:Ye,readArchive:ze};document.getElementById("scene")&&sn().catch(wt);})();

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Collection, Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 import pyvista as pv
 
+from pvfiblets.mappers.depth_peeling import Layers
 from pvfiblets.mappers.engine_mapper import EngineMapper
 from pvfiblets.mappers.fiblets import FibletMapper
 from pvfiblets.mappers.highlight import Highlight
@@ -166,16 +168,17 @@ def _add_fiblets(
         return
     effects = mapper.effects
     unable += [f"{effect} of {name!r}" for effect in effects if effect not in (*_SHOWN_EFFECTS, _OPACITY)]
-    if actor.GetProperty().GetOpacity() < 1.0 or _OPACITY in effects:
-        unable.append(f"the opacity of {name!r}")
     if len(getattr(actor, "picking_layers", ())) > 1:
         unable.append(f"the width or the tubes of what is selected of {name!r}")
     filtering = mapper.filtering
     fiblets, colours, keep = _colours(scene, fiblets, mapper.colouring)
+    through = _through(scene, actor, mapper)
+    if through is not None and isinstance(effects.get(_OPACITY), Layers):
+        unable.append(f"the layers of {name!r}")
     light = "none"
     if actor.GetProperty().GetLighting():
         light = "illuminated" if "illuminated" in effects else "line" if _is_lit(effects) else "none"
-    more: dict[str, Any] = {}
+    more: dict[str, Any] = {} if through is None else {"through": through}
     if filtering is not None and filtering.streamlines is not None:
         more["kept"] = scene.add_blob(np.asarray(filtering.streamlines, np.uint8))
     highlight = effects.get("selection")
@@ -210,6 +213,20 @@ def _add_fiblets(
         if scalars.categories:
             bar["labels"] = _names(scalars.categories, mapper.colouring)
         scene.bars.append(bar)
+
+
+def _through(scene: PageScene, actor: Any, mapper: FibletMapper) -> dict[str, Any] | None:
+    """Return ``Through`` of the page; None where lines are opaque."""
+    colouring, opacity = mapper.colouring, float(actor.GetProperty().GetOpacity())
+    varied = colouring.translucent()
+    if opacity >= 1.0 and not varied:
+        return None
+    found: dict[str, Any] = {"opacity": opacity, "varied": varied, "all": _OPACITY in mapper.effects}
+    if colouring.opacities is not None:
+        found["opacities"] = scene.add_blob(colouring.streamline_opacities()[:, 3])
+    if colouring.opacity_source is not None:
+        found["by_point"] = True
+    return found
 
 
 def _groups(scene: PageScene, fiblets: FibletSet, shown: npt.NDArray[np.bool_] | None) -> list[dict[str, Any]]:
@@ -261,6 +278,10 @@ def _label(name: str, usual: str) -> str:
 def _colours(scene: PageScene, fiblets: Any, colouring: Colouring) -> tuple[Any, dict[str, Any], tuple[str, ...]]:
     """Return the set with what colours it, ``Colours`` of the page, and the arrays of points that it needs."""
     mode = colouring.mode
+    if mode != "point_scalar" and colouring.opacity_source is not None:
+        _, said, _ = _colours(scene, fiblets, replace(colouring, opacity_source=None))
+        fiblets, values, keep = _values(scene, fiblets, colouring.opacity_source)
+        return fiblets, said | values, keep
     if mode == "orientation":
         return fiblets, {"mode": "direction"}, ()
     if mode == "streamline_rgba":
@@ -270,21 +291,9 @@ def _colours(scene: PageScene, fiblets: Any, colouring: Colouring) -> tuple[Any,
         entries = table[_entries(np.asarray(colouring.values, float), colouring, len(table) - 3)]
         return fiblets, {"mode": "streamline", "data": scene.add_blob(entries)}, ()
     if mode == "point_scalar":
-        from pvfiblets.plotting.page_values import with_values
-
-        bare = fiblets
-        fiblets, name = scene.once(
-            ("values", bare, colouring.source), lambda: with_values(bare, colouring.source)
-        )
-        said: dict[str, Any] = {"mode": "value", "values": name, "table": encoded(colouring.table())}
-        said |= {"clim": colouring.clim, "log": colouring.log_scale}
-        if not scene.values_apart:
-            return fiblets, said, (name,)
-        values = fiblets.per_point[name]
-        codes = scene.once(("codes", fiblets, name), lambda: np.asarray(values.codes).tobytes())
-        bits = 8 * values.codes.dtype.itemsize
-        said["codes"] = {"data": scene.add_blob(codes), "bits": bits, "lo": values.lo, "hi": values.hi}
-        return bare, said, ()
+        fiblets, said, keep = _values(scene, fiblets, colouring.source)
+        said |= {"mode": "value", "table": encoded(colouring.table()), "clim": colouring.clim}
+        return fiblets, said | {"log": colouring.log_scale}, keep
     if mode == "point_packed":
         from pvfiblets.plotting.page_values import colours
 
@@ -292,6 +301,21 @@ def _colours(scene: PageScene, fiblets: Any, colouring: Colouring) -> tuple[Any,
         packed = scene.once(("colours", fiblets, source), lambda: colours(fiblets, source).tobytes())
         return fiblets, {"mode": "point", "data": scene.add_blob(packed)}, ()
     return fiblets, {"mode": "solid", "colour": colouring.color}, ()
+
+
+def _values(scene: PageScene, bare: Any, source: Any) -> tuple[Any, dict[str, Any], tuple[str, ...]]:
+    """Return the set with some values of points, where ``Colours`` of the page find them, and the arrays of it."""
+    from pvfiblets.plotting.page_values import with_values
+
+    fiblets, name = scene.once(("values", bare, source), lambda: with_values(bare, source))
+    said: dict[str, Any] = {"values": name}
+    if not scene.values_apart:
+        return fiblets, said, (name,)
+    values = fiblets.per_point[name]
+    codes = scene.once(("codes", fiblets, name), lambda: np.asarray(values.codes).tobytes())
+    bits = 8 * values.codes.dtype.itemsize
+    said["codes"] = {"data": scene.add_blob(codes), "bits": bits, "lo": values.lo, "hi": values.hi}
+    return bare, said, ()
 
 
 def _rgba(values: npt.NDArray[Any]) -> npt.NDArray[np.uint8]:

@@ -2,95 +2,23 @@
 //
 //   streamline, the layer in the upper four bits | tangent (frame/tangent.glsl) | edges (frame/edges.glsl) | value, as a float's bits, or a colour
 //
-// The pixels of thin lines: fiblets/segments/thin_line_rule.glsl. Those of wide lines: fiblets/hardware_raster/capsule.frag.
+// Of wide lines that others are to show through (sum.frag), the place along the line stands beside it.
 
 #version 430
 
-#include "fiblets/segments/thin_line_rule.glsl"
-#include "fiblets/segments/clipped_segment.glsl"
-#include "fiblets/segments/edges.glsl"
-#include "fiblets/segments/joint.glsl"
-#include "fiblets/attributes/tangent.glsl"
-#include "page/region.glsl"
-#define VARYING flat in
-#include "page/segment_varyings.glsl"
-
-const bool SPRITES = false;
+#include "page/segment_value.glsl"
 
 layout(location = 0) out uvec4 out_texel;
-
-#if FEATURE_VALUES_STORED
-uniform vec2 shown_values;     // least and greatest that is drawn; the first above the second: all
-
-bool none(float value) { return (floatBitsToUint(value) & 0x7FFFFFFFu) > 0x7F800000u; }
-
-float value_between(float t) {
-    vec2 ends = seg_along.zw;
-    if (none(ends.x) || none(ends.y)) return t < 0.5 ? ends.x : ends.y;
-    return mix(ends.x, ends.y, t);
-}
+#if FEATURE_WIDE_LINES && FEATURE_GATHER_SLICES
+layout(location = 1) out uint out_place;
 #endif
 
-void write(float s, uint edges) {
-#if FEATURE_CLIP_REGION
-    if (!region_keeps(clamp(mix(seg_start.z, seg_end.z, s), 0.0, 0.99999988))) discard;
+void write(float s, uint edges, float z) {
+    float t = along_segment(s);
+    out_texel = uvec4(seg_ids.x, packed_tangent(tangent_between(Tangents(seg_tangent, seg_tangent_to), t), 0u), edges, bits_at(t));
+#if FEATURE_WIDE_LINES && FEATURE_GATHER_SLICES
+    out_place = seg_place + uint(t * PLACE_STEPS);
 #endif
-    float ratio = seg_start.w / max(seg_end.w, 1e-30);
-    float t = mix(seg_along.x, seg_along.y, clamp(s * ratio / max(1.0 - s + s * ratio, 1e-30), 0.0, 1.0));
-    uint bits = 0u;
-#if FEATURE_VALUES_STORED
-    float value = value_between(t);
-    if (shown_values.x <= shown_values.y && !(value >= shown_values.x && value <= shown_values.y)) discard;
-    bits = floatBitsToUint(value);
-#endif
-#if FEATURE_VALUES_COLOUR
-    bits = packUnorm4x8(mix(unpackUnorm4x8(seg_colours.x), unpackUnorm4x8(seg_colours.y), t));
-#endif
-    out_texel = uvec4(seg_ids.x, packed_tangent(tangent_between(Tangents(seg_tangent, seg_tangent_to), t), 0u), edges, bits);
 }
 
-#if FEATURE_WIDE_LINES
-#if FEATURE_CLIP_PLANES
-bool brush_kept(float s, vec2 away) {
-    for (int plane = 0; plane < clip_plane_count; ++plane) {
-        vec2 heights = vec2(clip_height_of(plane, seg_from), clip_height_of(plane, seg_to));
-        vec2 h = max(heights / max(vec2(seg_start.w, seg_end.w), vec2(1e-30)), vec2(0.0));
-        if (h.x + s * (h.y - h.x) + dot(clip_tilts[plane], away) < 0.0) return false;
-    }
-    return true;
-}
-#endif
-
-void main() {
-    vec2 run = seg_end.xy - seg_start.xy, centre = gl_FragCoord.xy - seg_start.xy;
-    float foot = dot(centre, run) / max(dot(run, run), 1e-12), s = clamp(foot, 0.0, 1.0);
-    vec2 away = centre - s * run;
-    if (foot < 0.0 && (seg_ids.y & 1u) == 0u || dot(away, away) > half_line_width * half_line_width) discard;
-    if (foot > 1.0 && beyond_joint(seg_onward, centre - run)) discard;
-#if FEATURE_CLIP_PLANES
-    if (!brush_kept(s, away)) discard;
-#endif
-    gl_FragDepth = clamp(seg_start.z + (seg_end.z - seg_start.z) * s, 0.0, 0.99999988);
-    write(s, capsule_edges(centre, run, half_line_width));
-}
-#else
-
-void main() {
-    vec2 first = pixel_of(seg_start), run = pixel_of(seg_end) - first, at = floor(gl_FragCoord.xy) - first;
-    Cells cells = cells_between(ivec2(first), ivec2(first + run));
-    bool start = (seg_ids.y & 1u) != 0u, cap = (seg_ids.y & 2u) != 0u, steep = abs(run.y) > abs(run.x);
-    float s = 1.0;
-    if (at == run) {
-        if (!cap) discard;
-    } else {
-        float major = steep ? at.y : at.x, way = steep ? run.y : run.x, steps = abs(major);
-        if (major * way < 0.0 || steps >= float(cells.count)) discard;
-        vec2 line = floor(0.5 + CELL_SHIFT + (steps - cells.shift) * cells.inverse * run);
-        if (steep ? line.x != at.x : line.y != at.y) discard;
-        s = dot(at - CELL_SHIFT, run) * cells.square;
-    }
-    if (SPRITES) gl_FragDepth = clamp(mix(seg_start.z, seg_end.z, s), 0.0, 0.99999988);
-    vec4 ends = vec4(in_picture(seg_start), in_picture(seg_end)), parts = floor((ends - floor(ends)) * 256.0) / 256.0;
-    write(s, thin_edges(ivec2(first), ivec2(first + run), at, parts, start, cap));
-}
-#endif
+#include "page/segment_pixels.glsl"

@@ -103,6 +103,9 @@ void main() {
     seg_colours = uvec2(packUnorm4x8(colour_of(here)), packUnorm4x8(colour_of(there)));
 #endif
 #if FEATURE_WIDE_LINES
+#if FEATURE_GATHER_SLICES
+    seg_place = here * uint(PLACE_STEPS);
+#endif
     seg_onward = piece.cap ? vec2(0.0) : onward_at(piece.b, uintBitsToFloat(slot_after.xyz) - to);
 #if FEATURE_CLIP_PLANES
     seg_from = mix(from, to, piece.t0);

@@ -15,6 +15,10 @@ VARYING uvec2 seg_colours; // at the points
 #endif
 #if FEATURE_WIDE_LINES
 VARYING vec2 seg_onward;   // fiblets/segments/joint.glsl
+#if FEATURE_GATHER_SLICES
+VARYING uint seg_place;    // of the first point along all lines, PLACE_STEPS to a segment; compared as differences alone
+const float PLACE_STEPS = 64.0;
+#endif
 #if FEATURE_CLIP_PLANES
 VARYING vec3 seg_from;
 VARYING vec3 seg_to;

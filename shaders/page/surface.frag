@@ -21,6 +21,7 @@ uniform vec3 sheen;
 uniform int plane_count;
 uniform vec4 planes[6];
 layout(location = 0) out vec4 colour;
+layout(location = 1) out vec4 weight;   // mixed.frag; nothing where it is not blended by it
 
 void main() {
     for (int i = 0; i < plane_count; ++i) if (dot(planes[i].xyz, data_place) + planes[i].w < 0.0) discard;
@@ -30,4 +31,5 @@ void main() {
     vec4 own = by_value == 1 ? of_value(own_value) : own_colour;
     vec3 lit = lighting == 1 ? light_on_surface(own.rgb, normal, view_place, reflects, sheen) : own.rgb;
     colour = vec4(lit, own.a * opacity);
+    weight = vec4(1.0, 0.0, 0.0, colour.a);
 }

@@ -5,6 +5,7 @@
 #include "page/tile_size.glsl"
 
 uniform highp usampler2D texels;
+uniform int first;                     // 1: tiles without any are cleared
 
 layout(location = 0) out uint some;
 
@@ -18,4 +19,5 @@ void main() {
             some |= ~(texel.x & texel.y);
         }
     some = min(some, 1u);
+    if (first + int(some) == 0) discard;
 }

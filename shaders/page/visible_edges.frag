@@ -10,6 +10,7 @@ uniform highp usampler2D texels;
 uniform highp sampler2D depths;
 uniform highp sampler2D drawn;
 uniform float narrower;
+uniform int first;                     // 1: pixels without a line count, too
 
 layout(location = 0) out uvec4 shown;
 
@@ -26,5 +27,6 @@ void main() {
     if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, textureSize(texels, 0)))) return;
     uvec4 texel = texelFetch(texels, pixel, 0);
     bool line = texel.x != 0xFFFFFFFFu || texel.y != 0xFFFFFFFFu;
+    if (!line && first == 0) discard;
     shown = uvec4(floatBitsToUint(texelFetch(depths, pixel, 0).r), line ? thinned(texel.z) : 0u, packUnorm4x8(texelFetch(drawn, pixel, 0)), 0u);
 }

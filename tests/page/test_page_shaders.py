@@ -16,11 +16,14 @@ SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 PAIRS = [
     ("page/decode.vert", "page/none.frag"),
     ("page/segment.vert", "page/segment.frag"),
+    ("page/segment.vert", "page/sum.frag"),
     ("page/surface.vert", "page/surface.frag"),
     ("page/image.vert", "page/image.frag"),
     ("page/screen.vert", "page/tile_mask.frag"),
     ("page/screen.vert", "page/far_tiles.frag"),
     ("page/tiles.vert", "page/resolve.frag"),
+    ("page/tiles.vert", "page/through.frag"),
+    ("page/screen.vert", "page/mixed.frag"),
     ("page/tiles.vert", "effects/picture/antialias_coverage.frag"),
 ]
 
@@ -83,11 +86,10 @@ def test_stages_link_with_all_switches_on_and_off(pair, stages, tmp_path):
 
 def test_nothing_is_named_that_the_client_does_not_have(engine, stages):
     client = SCRIPTS.parent / "client" / "src"
-    asked = set(re.findall(r'"((?:page|effects)/[\w/]+\.(?:vert|frag))"', (client / "renderer.ts").read_text()))
-    asked |= set(re.findall(r'"(page/[\w/]+\.(?:vert|frag))"', (client / "fiblets.ts").read_text()))
+    text = (client / "renderer.ts").read_text() + (client / "fiblets.ts").read_text()
+    asked = set(re.findall(r'"((?:page|effects)/[\w/]+\.(?:vert|frag))"', text))
     assert asked == set(stages)
     free = set(re.findall(r"#define FEATURE_(\w+)", "".join(stages.values())))
-    text = (client / "renderer.ts").read_text() + (client / "fiblets.ts").read_text()
     assert {name for name in free if f'"{name}"' not in text} == set()
 
 
@@ -132,3 +134,18 @@ def test_what_is_left_out(case):
     _script("page_shaders")  # puts its folder among the places of modules
     text, expected = SHRUNK[case]
     assert _script("shader_shrinking").shrunk(text, {"ON": True, "OFF": False}) == expected
+
+
+def test_names_that_only_shaders_have_become_short():
+    _script("page_shaders")
+    given = {
+        "a": "struct Piece{vec2 start;};\nuniform float opacity;\n"
+        "float taken(Piece piece){return piece.start.xy.x*opacity;}\n",
+        "b": "float taken(Piece piece);\nconst float AA=1.0;\n",
+    }
+    texts = _script("shader_shrinking").renamed(given, {"opacity"})
+    form = r"struct (\w\w)\{vec2 (\w\w);\};\nuniform float opacity;\nfloat (\w\w)\(\1 (\w\w)\)\{.*\}\n"
+    struct, member, function, argument = names = re.fullmatch(form, texts["a"]).groups()
+    assert len({*names, "AA"}) == 5
+    assert texts["a"].endswith(f"{{return {argument}.{member}.xy.x*opacity;}}\n")
+    assert texts["b"] == f"float {function}({struct} {argument});\nconst float AA=1.0;\n"

@@ -243,8 +243,11 @@ def test_what_the_browser_cannot_draw_the_server_draws_and_says_so(here):
     picture = here.page.locator("#pv-view img[src^=blob]")
     here.page.evaluate("(id) => trame.trigger('slide', ['property', id, 'opacity', 0.5])", layer)
     here.page.evaluate("trame.trigger('release')")
+    assert agrees(here)
+    here.page.evaluate("(id) => trame.trigger('slide', ['property', id, 'halos', true])", layer)
+    here.page.evaluate("trame.trigger('release')")
     here.wait(lambda: not here.state("there")["on"], "the server to draw")
-    said = "The server draws: a browser cannot draw the opacity of 'lines.fiblets'."
+    said = "The server draws: a browser cannot draw halos of 'lines.fiblets'."
     here.told(said)
     assert here.state("drawing") == said
     here.wait(lambda: picture.count() and here.picture().std() > 1.0, "the server's picture")

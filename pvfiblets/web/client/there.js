@@ -68,7 +68,7 @@
   const make = (scene, all) => {
     canvas = document.querySelector("#pv-there");
     renderer = new window.pvfibletsPage.Renderer(canvas, { ...scene, camera: get("there_camera").camera }, all, opened(scene, all));
-    renderer.failed = fail;
+    renderer.failed = renderer.lacking = fail;
     renderer.presented = () => {
       show();
       window.pvfibletsDistances(renderer);
