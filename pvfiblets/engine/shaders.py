@@ -347,6 +347,10 @@ class Programs:
         self.note(self._switches[request])
         return self._programs[source]
 
+    def has_compute(self, name: str, features: Iterable[str] = ()) -> bool:
+        """Whether the program of a stage with some features on was asked for before."""
+        return (name, frozenset(features)) in self._requests
+
     def screen(self, name: str, features: Iterable[str] = ()) -> tuple[moderngl.Program, moderngl.VertexArray]:
         """Return the program of a fragment stage that runs on every pixel, and what to render three vertices of.
 

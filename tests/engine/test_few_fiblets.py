@@ -10,7 +10,7 @@ from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.fiblets.filter_textures import Filter
 from pvfiblets.engine.fiblets.pipelines import compute
 
-from .pictures import SIZE, read, unpacked_tangent
+from .pictures import SIZE, assert_same, read, unpacked_tangent
 
 PLANES = {"clip_planes": [(1.0, 0.0, 0.0, 5.0)]}
 REGION = {"region": regions.Box((-30.0, 30.0, -30.0, 30.0, -30.0, 30.0))}
@@ -87,6 +87,7 @@ def test_sums_are_the_same(gl, fabricate, random_lines, camera, monkeypatch):
 
 def test_fewer_programs_are_compiled(gl, fabricate, random_lines, camera, monkeypatch):
     fiblets = fabricate(random_lines(60, seed=8), kind=2)
+    monkeypatch.setattr(compute, "READ_LISTS", False)
     compiled = {}
     for few in (0, 10**6):
         monkeypatch.setattr(compute, "FEW", few)
@@ -95,3 +96,24 @@ def test_fewer_programs_are_compiled(gl, fabricate, random_lines, camera, monkey
         compiled[few] = len(renderer._programs._programs)
         renderer.release()
     assert compiled == {0: 4 + 3 * 3, 10**6: 4 + 3}
+
+
+def test_software_compiles_what_draws_something(gl, fabricate, random_lines, camera, monkeypatch):
+    """A program takes 0.3 s: that of a class is made when a picture first has fiblets of it."""
+    lists = False, True
+    lines = fabricate(random_lines(60, seed=8, longest=40), kind=2)
+    renderers = [FibletRenderer(gl, lines, culling=None) for _ in lists]
+    counts = []
+    for case in ("thin", "from inside"):  # beyond the picture's sides; before the near plane, too
+        pictures = []
+        for one, reads in zip(renderers, lists, strict=True):
+            monkeypatch.setattr(compute, "READ_LISTS", reads)
+            pictures.append(read(one.render(View(SIZE, camera(SIZE, **CASES[case][0])), FibletStyle())))
+        assert pictures[0].drawn.sum() > 500
+        assert_same(*pictures)
+        counts.append([len(one._programs._programs) for one in renderers])
+    for one in renderers:
+        one.release()
+    (every, some), later = counts
+    assert every == 4 + 3 * 3
+    assert some < later[1] <= later[0] == every

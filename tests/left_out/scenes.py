@@ -292,6 +292,8 @@ def drawn(scene: Scene, name: str, steps, watch, calls, before: set[str]) -> dic
     """Draw a scene's frames, say what it is made of, and close it."""
     plotter = scene.plotter
     plotter.show(auto_close=False)
+    if (compute := sys.modules.get("pvfiblets.engine.fiblets.pipelines.compute")) is not None:
+        compute.READ_LISTS = False  # as on a card
     for _ in steps:
         pass
     for _ in range(3):

@@ -78,6 +78,9 @@ TUBES_BY_RASTER = True
 """Whether tubes are left to the pipeline `geometry` where software OpenGL draws: how many pixels a tube near the camera
 takes is not known beforehand, and OpenGL's rasteriser has no such limit."""
 
+READ_LISTS = True
+"""Whether software OpenGL compiles programs of classes when they first have fiblets."""
+
 WIDEST_IN_SOFTWARE = 100
 """Pixels of line width with which one segment of each fiblet stays within that."""
 
@@ -309,8 +312,7 @@ class ComputePipeline:
         """Draw one round's fiblets, class by class."""
         refined = number == REST and request.occlusion is not None and request.occlusion.halfway
         self._plan(number, request.chunks, refined)
-        parts = [(self._program(stage, [*features, *self._int64]), part)
-                 for part, features in request.classes(one=self._one_class)]  # fmt: skip
+        parts = [(self._program(stage, features), part) for part, features in self._classes_of(stage, number, request)]
         shares = self._shares if request.line_width > 0.0 else self._shares[:1]
         for share in shares:
             for program, _ in parts:
@@ -319,6 +321,22 @@ class ComputePipeline:
             if len(shares) > 1:  # of two segments with the same depth the later one writes the pixel
                 self._barrier()
         self._barrier()
+
+    def _classes_of(self, stage: str, number: int, request: DrawRequest) -> list[tuple[int, list[str]]]:
+        """Return the classes whose programs run in a round that is planned, with their features.
+
+        Software OpenGL is through with the plan when the call returns, and takes 0.3 s to compile what runs for the
+        first time: while a class has no program, it is asked whether it has fiblets. Cards would have to be waited for.
+        """
+        classes = [(part, [*features, *self._int64]) for part, features in request.classes(one=self._one_class)]
+        name = f"fiblets/compute/{stage}.comp"
+        if not (READ_LISTS and self._software) or all(self._programs.has_compute(name, each) for _, each in classes):
+            return classes
+        size = self._round_arguments * ARGUMENT_BYTES
+        self._ctx.memory_barrier(moderngl.BUFFER_UPDATE_BARRIER_BIT)
+        lists = self._own["visibility_bits"].read(size, offset=4 * self._argument_base + number * size)
+        lengths = np.frombuffer(lists, np.uint32).reshape(-1, CLASSES, ARGUMENT_BYTES // 4)[..., -1]
+        return [one for one in classes if one[0] == 0 or lengths[:, one[0]].any()]
 
     def _run_listed(
         self, parts: Sequence[tuple[moderngl.ComputeShader, int]], number: int, request: DrawRequest
