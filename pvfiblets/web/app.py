@@ -99,6 +99,7 @@ class Explorer(TrameApp):
             failed=lambda error: self.complain(f"The picture could not be drawn: {error}"),
             drawn=self._drawn,
             elsewhere=lambda: self.browser.draws(),
+            left_out=lambda: self.browser.drawn_view(),
             pane_at=self.scene.slicing.pane_at,
         )
         self.browser = BrowserDrawing(self)

@@ -2,7 +2,8 @@
 
 A browser says once what it has (client/there.js). Before every picture it is asked here whether one is needed: where
 the browser draws, it is sent the scene and the camera instead, as far as they have changed, and says where it has moved
-the camera. The server's own plotter stays in step, so that picking, sessions, scripts and saved pictures know of it.
+the camera. Panes of slices beside the 3-D view are pictures of the server's, in which that view is left out. The
+server's own plotter stays in step, so that picking, sessions, scripts and saved pictures know of it.
 """
 
 from __future__ import annotations
@@ -97,7 +98,7 @@ class BrowserDrawing(Actions):
     # What the stream of pictures asks
 
     def draws(self) -> bool:
-        """Tell the browser what has changed, if it can draw that, and return whether it does."""
+        """Tell the browser what has changed, if it can draw that, and return whether it draws everything."""
         if self._asked == "here" or not (self._able or self._trouble):
             return False
         why = self._trouble
@@ -118,7 +119,11 @@ class BrowserDrawing(Actions):
             self._leave(why)
             return False
         self._tell(sent)
-        return True
+        return not self._app.scene.slicing.beside
+
+    def drawn_view(self) -> Any:
+        """Return the renderer that the browser draws in the server's place; None for none."""
+        return self._app.scene.slicing.view_3d if self.on else None
 
     def _tell(self, sent: SentScene) -> None:
         app = self._app

@@ -50,7 +50,9 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
 .pv-chosen-cell { box-shadow: 0 0 0 2px #3df, 0 0 0 3.5px #000 }
 .pv-view img { width: 100%; height: 100%; object-fit: contain; display: block;
   user-select: none; -webkit-user-drag: none }
-#pv-there { position: absolute; inset: 0; width: 100%; height: 100%; display: block; touch-action: none; outline: none }
+.pv-there-place { position: absolute; pointer-events: none }
+#pv-there { position: absolute; inset: 0; width: 100%; height: 100%; display: block; touch-action: none; outline: none;
+  pointer-events: auto }
 #pv-there-bars { position: absolute; right: 16px; bottom: 32px; display: flex; flex-direction: row-reverse; gap: 14px;
   align-items: flex-end;
   pointer-events: none; color: #fff; font: 12px/1.3 Roboto, sans-serif; font-variant-numeric: tabular-nums }
@@ -315,12 +317,13 @@ def _view(app: Any) -> None:
             style="position: absolute; inset: 0; width: 100%; height: 100%",
         )
         area.add_view_handler(app.stream)
-        html.Canvas(  # of client/there.js
-            id="pv-there", tabindex="0", role="img", style="visibility: hidden",
-            aria_label="The scene. Arrow keys turn it, plus and minus zoom, Shift with arrows moves it.",
-        )  # fmt: skip
-        html.Div(id="pv-there-distances")
-        html.Div(id="pv-there-bars")
+        with html.Div(classes="pv-there-place", style=(f"({OVER_3D})",)):
+            html.Canvas(  # of client/there.js
+                id="pv-there", tabindex="0", role="img", style="visibility: hidden",
+                aria_label="The scene. Arrow keys turn it, plus and minus zoom, Shift with arrows moves it.",
+            )  # fmt: skip
+            html.Div(id="pv-there-distances")
+            html.Div(id="pv-there-bars")
         with html.Div(  # over the 3-D view, wherever that is
             v_if="show_regions && marks.length && slicing.boxes.every((b) => b.name !== '3d') === !slicing.shown",
             classes="pv-marks", id="pv-marks", style=(f"({OVER_3D})",),

@@ -143,8 +143,8 @@ class _Remade(PageScene):
 def _views(scene: Scene) -> str | None:
     """Return what beside the 3-D view and its actors keeps a browser from drawing; None for nothing."""
     if scene.slicing.workspace is not None:
-        if scene.slicing.workspace.layout != "3d":
-            return "slices beside the 3-D view"
+        if scene.slicing.view_3d is None:
+            return "panes of slices"
         for layer in scene.layers:
             if layer.kind == "image" and layer.visible and layer.settings[GLYPHS] is not None:
                 return f"the glyphs of {layer.name!r}"

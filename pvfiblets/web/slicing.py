@@ -157,9 +157,9 @@ def to_3d_view(plotter: Any) -> None:
 def ready_views(plotter: Any) -> None:
     """Have a plotter of all views begin with the 3-D view alone, which is the active one."""
     for name, renderer in zip(NAMES, plotter.renderers, strict=False):
+        renderer.SetDraw(name == "3d")
+        renderer.SetInteractive(name == "3d")
         if name != "3d":
-            renderer.SetDraw(False)
-            renderer.SetInteractive(False)
             renderer.SetViewport(0.0, 0.0, 0.001, 0.001)
     to_3d_view(plotter)
     plotter.renderer.SetViewport(0.0, 0.0, 1.0, 1.0)
@@ -240,6 +240,17 @@ class Slicing:
         angles = angles_of(normal)
         if self._view.oblique is None or not np.allclose(normal, normal_of(self._view.oblique), atol=1e-9):
             self._turned(angles, self.workspace.oblique.drag)
+
+    @property
+    def beside(self) -> bool:
+        """Whether panes are shown, be it beside the 3-D view or in its place."""
+        return self.workspace is not None and self.workspace.layout != "3d"
+
+    @property
+    def view_3d(self) -> Any:
+        """The renderer of the 3-D view; None where it is not shown."""
+        found = self._plotter.renderer if self.workspace is None else self._plotter.renderers[_THREE_D]
+        return found if found.GetDraw() else None
 
     def boxes(self) -> list[dict[str, Any]]:
         """Return where views are in the picture, as shares of it from its upper left, and how wide a pixel is, mm."""

@@ -64,6 +64,8 @@ class PictureStream:
         Called after each frame.
     elsewhere : callable
         Asked before each frame: whether somebody else draws, so that no picture is needed.
+    left_out : callable
+        Then asked for the renderer that somebody else draws, while pictures are of all others; None for none.
     pane_at : callable
         From a pixel to the pane of slices that it is in, which two fingers move; None elsewhere.
     """
@@ -80,6 +82,7 @@ class PictureStream:
         failed: Callable[[Exception], None] = lambda _: None,
         drawn: Callable[[], None] = lambda: None,
         elsewhere: Callable[[], bool] = lambda: False,
+        left_out: Callable[[], Any] = lambda: None,
         pane_at: Callable[[float, float], Any] = lambda _x, _y: None,
     ) -> None:
         from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
@@ -100,6 +103,7 @@ class PictureStream:
         self._stale = False  # whether something has changed that was not drawn
         self._streamer: Any = None
         self._wanted = asyncio.Event()
+        self._left_out = left_out
         self._moved = 0.0
         self._size = (300, 300)  # of the whole picture
         self._scale = 1.0  # its pixels for one of the page
@@ -293,6 +297,8 @@ class PictureStream:
             try:
                 if self._elsewhere():
                     self.leave()
+                elif (renderer := self._left_out()) is not None:
+                    await self._frame_without(renderer)
                 else:
                     await self._frame()
             except Exception as error:  # the next is drawn all the same
@@ -389,6 +395,21 @@ class PictureStream:
             interactor.SetEventPosition(
                 *(int(k * now / then) for k, now, then in zip(at, self._pixels, before, strict=True))
             )
+
+    async def _frame_without(self, renderer: Any) -> None:
+        """Draw and send all other views; what is picked afterwards is of a picture that has yet to be drawn."""
+        coarse = self.moving
+        renderer.SetDraw(False)
+        try:
+            pixels = self._draw(self._pace.choose() if coarse else LEVELS[0])
+        finally:
+            renderer.SetDraw(True)
+            self._stale = True
+        self._after()
+        await self._send(pixels, self.moving_quality if coarse else self.still_quality)
+        await self._drained()
+        if coarse and await self._rests():
+            self.request()
 
     def _draw(self, level: Level = LEVELS[0]) -> NDArray[np.uint8]:
         pixels, seconds = self._show(level)

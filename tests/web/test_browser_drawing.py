@@ -193,27 +193,75 @@ def test_slices_in_the_view_are_drawn_and_moved_without_the_lines(here):
     here.page.click("[data-action=open-slices]")
     here.page.click("#dialog-open .v-list-item:has-text('head.nii.gz')")
     here.wait(lambda: here.state("slicing")["shown"], "slices")
-    here.told("The server draws: a browser cannot draw slices beside the 3-D view.")
     here.page.evaluate("trame.trigger('set_layout', ['3d'])")
-    here.wait(here.draws, "the browser to draw again")
-    here.wait(lambda: np.abs(here.drawn() - before).mean() > 2.0, "slices")
-    assert agrees(here)
+    here.wait(lambda: here.drawn().shape == before.shape and np.abs(here.drawn() - before).mean() > 2.0, "slices")
+    here.wait(lambda: agrees(here), "the server's slices")
     place = here.state("slicing")["position"]
+    known = len(here.requests)
     largest, fetched = here.sends(
         lambda: [
             here.page.evaluate("trame.trigger('step_slice', [0.5, 0.5, 0, 0, 2])"),
             here.wait(lambda: here.state("slicing")["position"] != place, "another slice"),
+            here.wait(lambda: any("/there/" in url for url in here.requests[known:]), "its pixels"),
         ]
     )
     assert largest < 20_000
     assert len(fetched) == 1  # of three slices one
-    assert agrees(here)
+    here.wait(lambda: agrees(here), "the server's slice")
     place = here.state("slicing")["position"]
     box = here.page.locator("#pv-there").bounding_box()
     here.page.mouse.click(box["x"] + 0.5 * box["width"], box["y"] + 0.45 * box["height"])
     here.wait(lambda: here.state("slicing")["position"] != place, "the place that was clicked on")
     here.drag()
     assert agrees(here)
+
+
+def test_panes_are_the_servers_beside_the_browsers_view(here):
+    here.tab("slices")
+    here.page.click("[data-action=open-slices]")
+    here.page.click("#dialog-open .v-list-item:has-text('head.nii.gz')")
+    here.wait(lambda: here.state("slicing")["shown"], "slices")
+    here.page.evaluate("trame.trigger('set_layout', ['beside'])")
+    names = {"3d", "axial", "coronal", "sagittal"}
+    here.wait(lambda: {one["name"] for one in here.state("slicing")["boxes"]} == names, "panes")
+
+    def part(picture, name):
+        height, width = picture.shape[:2]
+        (box,) = (one for one in here.state("slicing")["boxes"] if one["name"] == name)
+        x, y, w, h = (round(box[key] * size) for key, size in zip("xywh", (width, height, width, height), strict=True))
+        return picture[y : y + h, x : x + w]
+
+    def same():
+        view, server = here.drawn(), part(here.of_server(), "3d")
+        if view.shape != server.shape:
+            return False
+        wrong, drawn = differing(view, server)
+        return drawn > 0.1 and wrong < 0.02
+
+    def axial():
+        return part(here.picture(), "axial")
+
+    view = here.page.locator("#pv-there")
+    whole, image = here.page.locator("#pv-view").bounding_box(), here.page.locator("#pv-view img[src^=blob]")
+    here.wait(lambda: image.count() and axial().size and axial().max() > 60, "panes")
+    here.wait(lambda: view.bounding_box()["height"] < whole["height"], "the view beside them")
+    here.wait(same, "the view to be the server's")
+    assert here.state("frame") == "drawn by this browser"
+    before = axial()
+    largest, fetched = here.sends(lambda: here.drag((0.3, 0.3), (0.5, 0.3)))  # in the 3-D view
+    assert largest < 5000
+    assert not fetched
+    assert np.array_equal(axial(), before)
+    here.wait(same, "the server to know of the camera")
+    place = here.state("slicing")["position"]
+    (box,) = (one for one in here.state("slicing")["boxes"] if one["name"] == "coronal")
+    x, y = box["x"] + 0.6 * box["w"], box["y"] + 0.4 * box["h"]
+    here.page.mouse.click(whole["x"] + x * whole["width"], whole["y"] + y * whole["height"])
+    here.wait(lambda: here.state("slicing")["position"] != place, "another place")
+    here.wait(lambda: not np.array_equal(axial(), before), "its slices")
+    here.wait(same, "them in the view")
+    here.page.evaluate("trame.trigger('set_layout', ['axial'])")
+    here.told("The server draws: a browser cannot draw panes of slices.")
 
 
 def test_distances_lie_over_the_picture_where_the_server_has_them(here):

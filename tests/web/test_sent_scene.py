@@ -136,12 +136,13 @@ def sliced(folder):
     plotter.close()
 
 
-def test_slices_beside_the_view_and_glyphs_are_the_servers(sliced):
+def test_panes_and_glyphs_are_the_servers(sliced):
     scenes = SentScenes(sliced)
     for layout in LAYOUTS:
         sliced.slicing.view = replace(sliced.slicing.view, layout=layout)
-        beside = sliced.slicing.workspace.layout != "3d"
-        assert (scenes.make() == "slices beside the 3-D view") is beside
+        alone = sliced.slicing.workspace.layout in ("axial", "coronal", "sagittal")
+        assert (scenes.make() == "panes of slices") is alone
+        assert sliced.slicing.beside is (layout != "3d")
     sliced.set_slices(layout="3d")
     sent = scenes.make()
     assert [layer["kind"] for layer in sent.content["layers"]] == ["fiblets", "image", "image", "image"]

@@ -48,6 +48,16 @@ def test_an_image_is_shown_as_slices_beside_the_3d_view(scene):
     assert scene.slicing.workspace.values().images["head.nii.gz"] == pytest.approx(0.885, abs=0.02)
 
 
+def test_the_3d_view_is_there_again_when_the_last_image_goes_out_of_a_large_pane(scene):
+    scene.open("lines.trk")
+    image = scene.open("head.nii.gz", kind="image")
+    scene.set_slices(layout="axial")
+    assert shown(scene) == {"axial"}
+    scene.remove(image.id)
+    assert shown(scene) == {"3d"}
+    assert scene.plotter.renderer.GetInteractive()
+
+
 def test_settings_undo_and_order_are_those_of_layers(scene):
     history = History(scene, together=0.0)
     first = scene.open("head.nii.gz", "image")

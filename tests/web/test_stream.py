@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import io
 import time
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -59,6 +60,47 @@ def test_letters_are_as_large_on_screens_with_small_pixels(plotter):
         assert plotter.render_window.GetDPI() == ratio * usual
         stream.picture()
         assert plotter.render_window.GetSize() == (200 * ratio, 120 * ratio)
+
+
+def test_a_view_that_somebody_else_draws_is_left_out_until_it_is_asked_for():
+    plotter = pv.Plotter(off_screen=True, window_size=(200, 120), shape=(1, 2), border=False)
+    actors = []
+    for column in (0, 1):
+        plotter.subplot(0, column)
+        plotter.set_background("black", all_renderers=False)
+        actors.append(plotter.add_mesh(pv.Plane(i_size=9.0, j_size=9.0), color="white", lighting=False))
+        plotter.view_xy()
+    elsewhere, sent = [None], []
+    stream = PictureStream(plotter, "view", codec="png", left_out=lambda: elsewhere[0])
+    stream.update_size("", {"w": 200, "h": 120, "p": 1.0})
+
+    async def frame():
+        stream.set_streamer(SimpleNamespace(push_content=lambda _name, _meta, content: sent.append(content)))
+        known = len(sent)
+        stream.request()
+        async with asyncio.timeout(30):
+            while len(sent) == known:
+                await asyncio.sleep(0.01)
+
+    def middles(content):
+        pixels = np.asarray(Image.open(io.BytesIO(content)).convert("RGB"))
+        return [tuple(pixels[60, x].tolist()) for x in (50, 150)]
+
+    async def run():
+        await frame()
+        for actor in actors:
+            actor.prop.color = "red"
+        elsewhere[0] = plotter.renderers[0]
+        await frame()
+        await stream.close()
+
+    asyncio.run(run())
+    assert middles(sent[0]) == [(255, 255, 255)] * 2
+    assert middles(sent[-1]) == [(255, 255, 255), (255, 0, 0)]
+    assert plotter.renderers[0].GetDraw()
+    stream.settle()
+    assert middles(encode(stream._read(), "png", 100)) == [(255, 0, 0)] * 2
+    plotter.close()
 
 
 def slow_stream(plotter, seconds=1.0, **settings):

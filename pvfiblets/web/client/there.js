@@ -76,7 +76,9 @@
     };
     window.pvfibletsPage.attachMouse(renderer, (x, y) => {
       settle();
-      if (get("slicing")?.shown) call("go_to_slice", x / canvas.clientWidth, y / canvas.clientHeight);
+      if (!get("slicing")?.shown) return;
+      const box = canvas.getBoundingClientRect(), whole = document.querySelector("#pv-view").getBoundingClientRect();
+      call("go_to_slice", (box.left + x - whole.left) / whole.width, (box.top + y - whole.top) / whole.height);
     });
     new ResizeObserver(() => renderer?.canvas.isConnected && renderer.change()).observe(canvas);
     canvas.addEventListener("webglcontextlost", () => {
