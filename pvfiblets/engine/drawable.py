@@ -12,7 +12,7 @@ what that was made of, and gives everything back. A new drawable derives from `D
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Hashable, Iterator, Mapping
+from collections.abc import Callable, Generator, Hashable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any, ClassVar, Generic, Protocol, TypeVar, cast
 
@@ -94,6 +94,7 @@ class Drawable(ABC, Generic[AnyStyle]):
         self._made: tuple[View, Style] | None = None
         self._features: frozenset[str] = frozenset()
         self._generation = 0
+        self._attempt = 0
         self._released = False
 
     # What a drawable adds
@@ -140,22 +141,83 @@ class Drawable(ABC, Generic[AnyStyle]):
         self._check_alive()
         if self._buffer is not None and self._made == (view, style) and self._serves(outside):
             return self._buffer
-        self._made = None
+        self._start_picture()
         # One of our framebuffers must not stay bound when it is released.
         with self._gl.framebuffers_kept(), self._programs.noting() as features:
-            self._passes.begin()
-            self._ctx.scissor = None
             self._buffer = self._draw(view, style, outside)
-        self._features = frozenset(features)
-        self._generation += 1
-        self._buffer.generation = self._generation
+        self._finish_picture(self._buffer, features)
         if outside is None:
             self._made = view, style
         return self._buffer
 
+    def render_in_pieces(self, view: View, style: AnyStyle | None = None) -> Iterator[None]:
+        """Draw what :meth:`render` would, which then finds it drawn, and yield after each piece of about 50 ms.
+
+        Other things may be drawn in between, and this drawable too: then the rest of it is left. Nothing is drawn, nor
+        yielded, where that cannot be done in pieces.
+
+        Parameters
+        ----------
+        view, style
+            As of :meth:`render`.
+
+        Raises
+        ------
+        EngineError, TypeError
+            As :meth:`render`.
+        """
+        style = self._checked(style)
+        self._check_alive()
+        steps = None if self._buffer is not None and self._made == (view, style) else self._pieces(view, style)
+        if steps is None:
+            return
+        self._start_picture()
+        buffer, attempt = None, self._attempt
+        all_features: set[str] = set()
+        try:
+            while buffer is None:
+                with self._gl.framebuffers_kept(), self._programs.noting() as features:
+                    self._ctx.scissor = None
+                    try:
+                        next(steps)
+                    except StopIteration as end:
+                        buffer = end.value
+                all_features |= features
+                attempt = self._attempt
+                if buffer is None:
+                    yield
+                    if self._attempt != attempt or self._released:
+                        return
+            self._finish_picture(buffer, all_features)
+            self._buffer, self._made = buffer, (view, style)
+        finally:
+            steps.close()
+            if self._made != (view, style) and self._attempt == attempt and not self._released:
+                self._buffer = None
+                self._give_up()
+
+    def _start_picture(self) -> None:
+        self._made = None
+        self._attempt += 1
+        self._passes.begin()
+        self._ctx.scissor = None
+
+    def _finish_picture(self, buffer: GBuffer, features: set[str]) -> None:
+        self._features = frozenset(features)
+        self._generation += 1
+        buffer.generation = self._generation
+
+    def _pieces(self, view: View, style: AnyStyle) -> Generator[None, None, GBuffer] | None:  # noqa: ARG002
+        """Return what draws piece by piece; None where that cannot be done."""
+        return None
+
+    def _give_up(self) -> None:
+        """Forget a picture that was left before its end."""
+
     def forget_picture(self) -> None:
         """Draw anew the next time, as somebody else draws into what holds the picture."""
         self._buffer = self._made = None
+        self._attempt += 1
 
     def _serves(self, outside: moderngl.Texture | None) -> bool:  # noqa: ARG002
         """Say whether a picture that was drawn without an outside serves where there is one."""
@@ -187,6 +249,7 @@ class Drawable(ABC, Generic[AnyStyle]):
         held = self._targets.pop(name, None)
         if held is not None:
             self._buffer = self._made = None
+            self._attempt += 1
             held[1].release()
 
     # Memory

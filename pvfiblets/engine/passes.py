@@ -41,6 +41,7 @@ class Passes:
         self._software = is_software(ctx)
         self._clock: dict[str, float] = {}
         self._ran: list[str] = []
+        self._away = 0.0
 
     def begin(self) -> None:
         """Forget the last redraw."""
@@ -55,10 +56,23 @@ class Passes:
 
     @contextlib.contextmanager
     def _clocked(self, name: str) -> Iterator[None]:
-        started = time.perf_counter()
+        started = self.clock()
         yield
         self._ran.append(name)
-        self._clock[name] = (time.perf_counter() - started) * 1e3
+        self._clock[name] = (self.clock() - started) * 1e3
+
+    def clock(self) -> float:
+        """Return seconds, without those of :meth:`away`."""
+        return time.perf_counter() - self._away
+
+    @contextlib.contextmanager
+    def away(self) -> Iterator[None]:
+        """Leave out the time in which a picture waits for others."""
+        began = time.perf_counter()
+        try:
+            yield
+        finally:
+            self._away += time.perf_counter() - began
 
     def report(self) -> list[dict[str, object]]:
         """Wait for the last redraw and return its passes as ``{'name', 'ms'}``, in order."""

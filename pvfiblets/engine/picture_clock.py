@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Protocol, TypeAlias
 
@@ -36,17 +36,24 @@ class PictureClock(Protocol):
 
 
 class CallClock:
-    """Seconds until a call returns: where OpenGL works on the CPU before it returns."""
+    """Seconds until a call returns: where OpenGL works on the CPU before it returns.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    clock : callable
+        Seconds.
+    """
+
+    def __init__(self, clock: Callable[[], float] = time.perf_counter) -> None:
+        self._clock = clock
         self._found: list[tuple[Which, float]] = []
 
     @contextmanager
     def timed(self, what: Which) -> Iterator[None]:
         """Time a picture, and remember what it was."""
-        begin = time.perf_counter()
+        begin = self._clock()
         yield
-        self._found.append((what, time.perf_counter() - begin))
+        self._found.append((what, self._clock() - begin))
 
     def finished(self) -> list[tuple[Which, float]]:
         """Return what was timed since the last call, and its seconds."""

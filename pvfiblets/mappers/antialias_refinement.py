@@ -26,7 +26,7 @@ from typing import Any
 from pvfiblets.engine.effects.antialias_accumulation import Accumulation
 from pvfiblets.engine.effects.picture_passes import Attachment
 from pvfiblets.engine.effects.sample_positions import sample_positions
-from pvfiblets.mappers.shifted_cameras import exact_wanted, note_depths, note_sample, shift
+from pvfiblets.mappers.shifted_cameras import exact_wanted, note_depths, note_sample, shift, shifted_copy
 from pvfiblets.mappers.windows import Slot
 
 __all__ = ["SHOWN_FROM", "Refinement"]
@@ -97,6 +97,24 @@ class Refinement:
         """Begin anew with the next frame."""
         self._state = None
 
+    def sample_camera(self, renderer: Any) -> Any:
+        """Return a copy of a renderer's camera, shifted as for the next sample of an unfinished picture; None if none.
+
+        Who draws with it beforehand says by `spend` how long that took.
+        """
+        if not self._left or self._over or exact_wanted(renderer):
+            return None
+        return shifted_copy(renderer.GetActiveCamera(), _tile(renderer), self._left[0])
+
+    def spend(self, seconds: float) -> None:
+        """Count time that samples took outside of frames."""
+        self._spent += seconds
+
+    @property
+    def _over(self) -> bool:
+        """Whether samples have been drawn for as long as they may."""
+        return self.seconds is not None and self._spent >= self.seconds and self._taken > 0
+
     # Steps of a frame
 
     def start(self, renderer: Any, state: Hashable) -> None:
@@ -117,7 +135,7 @@ class Refinement:
             # What changes whenever a sample is to be drawn never comes to rest.
             self._left = [] if due or state is None else list(self.positions)
             return
-        if self.seconds is not None and self._spent >= self.seconds and self._taken:
+        if self._over:
             self._left = []
         if self._left and (due or self._taken) and not exact_wanted(renderer):
             self._frame = _Frame.SAMPLE

@@ -244,20 +244,11 @@ class EngineMapper(Attached, Readable, Connected, Questions, vtkOpenGLPolyDataMa
         if min(viewport[2:]) < 1:  # a tile of an enlarged picture in which the renderer has no part
             program.SetUniform2i("fibletSize", (0, 0))
             return
-        frame = frame_of(renderer, actor, viewport)
-        planes, region = self._cuts(renderer)
-        view = View(
-            viewport[2:],
-            frame.model_view_projection,
-            frame.planes_in_data(planes),
-            frame.region_in_data(region),
-            waits=region is None or not in_motion(renderer),
-        )
-        style = self._whole_style(renderer, viewport)
         smoother = smoothers.get(renderer.GetAddressAsString("")) if self._has_edges else None
+        frame = frame_of(renderer, actor, viewport)
+        view, style = self._wanted(renderer, frame, None if smoother is None else smoother.sample)
         narrower = self._narrower(pixel_scale(renderer, viewport))
-        if smoother is not None:  # edges in every frame: what wants them in some only would be made anew all the time
-            style = replace(style, edges=True, exact=smoother.sample)
+        if smoother is not None:
             smoother.widened |= smoother.sample and self._widened(style, frame)
         slot = context.slot(self)
         context.tell_lost(renderer)
@@ -296,6 +287,21 @@ class EngineMapper(Attached, Readable, Connected, Questions, vtkOpenGLPolyDataMa
         address = renderer.GetAddressAsString("")
         slot.drawn.pop(address, None)  # the last one stands last
         slot.drawn[address] = Drawn(weak(renderer), viewport, view, style)
+
+    def _wanted(self, renderer: vtkRenderer, frame: Frame, sample: bool | None) -> tuple[View, Style]:
+        """Return what the engine is to draw for a frame; `sample`, where edges are smoothed: whether it is one."""
+        planes, region = self._cuts(renderer)
+        view = View(
+            frame.viewport[2:],
+            frame.model_view_projection,
+            frame.planes_in_data(planes),
+            frame.region_in_data(region),
+            waits=region is None or not in_motion(renderer),
+        )
+        style = self._whole_style(renderer, frame.viewport)
+        if sample is not None:  # edges in every frame: what wants them in some only would be made anew all the time
+            style = replace(style, edges=True, exact=sample)
+        return view, style
 
     def _seen_through(self, buffer: Any) -> Any:
         """Return what depth of field is to know of a G-buffer of something translucent."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -15,8 +15,10 @@ from pvfiblets.mappers.engine_mapper import CutMapper
 from pvfiblets.mappers.engine_options import EngineOptions, engine_renderer
 from pvfiblets.mappers.line_data import SIDES
 from pvfiblets.mappers.picking import nearest_pixel
-from pvfiblets.mappers.scene import Frame, slack, wanted_share
+from pvfiblets.mappers.scene import Frame, frame_of, slack, smoothers, wanted_share
 from pvfiblets.mappers.windows import Slot, WindowContext, contexts_with
+
+_OVER = object()
 
 
 class FibletMapper(CutMapper[EngineOptions]):
@@ -201,6 +203,44 @@ class FibletMapper(CutMapper[EngineOptions]):
 
             return thinned_engine(context, slot, self._drawn, self._filtering, self._make)
         return engine
+
+    def draw_ahead(self, renderer: vtkRenderer, sample_camera: Any = None) -> Iterator[None]:
+        """Draw, piece by piece, what the next frame of a renderer needs; the frame then finds it drawn.
+
+        Yields after each piece (`pvfiblets.engine.drawable.Drawable.render_in_pieces`). Others may draw in between, and
+        anything may change: what is drawn then serves nobody. Nothing is drawn for a window that has not shown the
+        actor yet, while `vtkHardwareSelector` selects, or where VTK draws real lines.
+
+        Parameters
+        ----------
+        renderer : vtkRenderer
+            That shows the actor.
+        sample_camera : vtkCamera, optional
+            The camera of the next frame, if that is a sample (`antialias_refinement.py`).
+        """
+        window, actor = renderer.GetRenderWindow(), self.actor
+        address = window.GetAddressAsString("")
+        found = [context for context in contexts_with(self) if context.alive and context.address == address]
+        if not found or actor is None or self.is_readable or self._empty or renderer.GetSelector() is not None:
+            return
+        context, slot = found[0], found[0].slot(self)
+        origin, size = renderer.GetOrigin(), renderer.GetSize()
+        if slot.renderer is None or min(size) < 1:
+            return
+        steps = None
+        while True:
+            window.MakeCurrent()
+            with context.foreign():
+                if steps is None:
+                    smoothed = self._has_edges and renderer.GetAddressAsString("") in smoothers
+                    frame = frame_of(renderer, actor, (*origin, *size), sample_camera)
+                    wanted = self._wanted(renderer, frame, sample_camera is not None if smoothed else None)
+                    steps = self._engine(context, slot).render_in_pieces(*wanted)
+                if next(steps, _OVER) is _OVER:
+                    return
+            yield
+            if not context.alive or slot.renderer is None:
+                return
 
     def pick_at(
         self, x: float, y: float, *, renderer: vtkRenderer | None = None, tolerance: int = 2

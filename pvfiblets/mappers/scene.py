@@ -145,9 +145,12 @@ class Frame:
         return moved
 
 
-def frame_of(renderer: vtkRenderer, actor: Any, viewport: tuple[int, int, int, int]) -> Frame:
-    """Return viewport and matrices of an actor as a renderer draws it now, stereo eye included."""
-    camera = renderer.GetActiveCamera()
+def frame_of(renderer: vtkRenderer, actor: Any, viewport: tuple[int, int, int, int], camera: Any = None) -> Frame:
+    """Return viewport and matrices of an actor as a renderer draws it now, stereo eye included.
+
+    Or as it would by another camera.
+    """
+    camera = renderer.GetActiveCamera() if camera is None else camera
     model = vtkMatrix4x4()
     actor.GetModelToWorldMatrix(model)
     view = to_array(camera.GetModelViewTransformMatrix())

@@ -18,6 +18,7 @@ __all__ = [
     "note_sample",
     "shift",
     "shifted",
+    "shifted_copy",
     "with_exact_depths",
 ]
 
@@ -45,7 +46,7 @@ def shift(camera: Any, size: tuple[int, int], by: tuple[float, float]) -> Callab
     """
     kept, address = camera.GetWindowCenter(), camera.GetAddressAsString("")
     first = address not in _cameras
-    camera.SetWindowCenter(*(at + 2.0 * part / side for at, part, side in zip(kept, by, size, strict=True)))
+    _set_centre(camera, size, by)
     if any(by):
         _cameras.add(address)
     left = [kept]
@@ -57,6 +58,19 @@ def shift(camera: Any, size: tuple[int, int], by: tuple[float, float]) -> Callab
                 _cameras.discard(address)
 
     return back
+
+
+def shifted_copy(camera: Any, size: tuple[int, int], by: tuple[float, float]) -> Any:
+    """Return a camera that shows what another one would if it were shifted: see `shift`."""
+    copy = camera.NewInstance()
+    copy.DeepCopy(camera)
+    _set_centre(copy, size, by)
+    return copy
+
+
+def _set_centre(camera: Any, size: tuple[int, int], by: tuple[float, float]) -> None:
+    kept = camera.GetWindowCenter()
+    camera.SetWindowCenter(*(at + 2.0 * part / side for at, part, side in zip(kept, by, size, strict=True)))
 
 
 @contextmanager

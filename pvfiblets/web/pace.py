@@ -99,7 +99,7 @@ class Pace:
         """Choose the level of the next frame: the finest that the budget has time for."""
         finer = LEVELS.index(self.level)
         limits = (BUDGET * (ROOM if k < finer else 1.0) for k in range(len(LEVELS)))
-        fits = (level for level, limit in zip(LEVELS, limits, strict=True) if self._cost(level) <= limit)
+        fits = (level for level, limit in zip(LEVELS, limits, strict=True) if self.expected(level) <= limit)
         self.level = next(fits, LEVELS[-1])
         return self.level
 
@@ -108,8 +108,8 @@ class Pace:
         """Whether a moving frame would be drawn by a level that has drawn none yet."""
         return self.choose() not in self._costs
 
-    def _cost(self, level: Level) -> float:
-        """Return the seconds that a level is expected to take."""
+    def expected(self, level: Level) -> float:
+        """Return the seconds that a level is expected to take; 0 before the first frame."""
         expected = self._scale * level.cost
         known = self._costs.get(level, expected)
         return min(known, expected) if level in self._first and level is not LEVELS[0] else known

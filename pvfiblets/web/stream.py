@@ -4,7 +4,8 @@ Nothing is drawn and nothing is sent while nothing changes. While the pointer dr
 and the next is drawn only when the last one has left for the browser. Scenes that take long to draw are drawn with
 fewer pixels meanwhile, which the browser enlarges, with fewer points of their lines, which may be off by such a pixel,
 and large sets with fewer streamlines (:mod:`pvfiblets.web.pace`). As soon as the pointer rests, the whole picture comes
-at full quality; where it had all its pixels, without drawing again. If nothing happens then, the samples of the refined
+at full quality; where it had all its pixels, without drawing again. It is drawn in pieces, and given up if somebody
+acts before it is there (:mod:`pvfiblets.mappers.ahead`). If nothing happens then, the samples of the refined
 picture (``plotter.picture.antialias``) are drawn, one between any two events, and it is sent when it is finished.
 """
 
@@ -24,6 +25,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pvfiblets.engine.pieces import PIECE
+from pvfiblets.mappers.ahead import draw_ahead
 from pvfiblets.mappers.scene import hurry
 from pvfiblets.web.pace import LEVELS, Level, Pace
 from pvfiblets.web.rpc_allowlist import MOST_PIXELS
@@ -100,6 +103,8 @@ class PictureStream:
         self._failed = failed
         self._after = drawn
         self._elsewhere = elsewhere
+        self.given_up = 0  # whole pictures that somebody acted before the end of
+        self._drawn_ahead = 0.0  # seconds that pieces of the next frame have taken
         self._stale = False  # whether something has changed that was not drawn
         self._streamer: Any = None
         self._wanted = asyncio.Event()
@@ -282,9 +287,9 @@ class PictureStream:
     async def close(self) -> None:
         """Stop."""
         hurry(self._plotter.render_window, 0.0)
-        if self._task is not None:
-            self._task.cancel()
-            await asyncio.gather(self._task, return_exceptions=True)
+        while self._task is not None and not self._task.done():
+            self._task.cancel()  # `asyncio.wait_for` of Python 3.11 loses it when what it waits for has just come
+            await asyncio.wait([self._task], timeout=0.1)
         self._pool.shutdown(wait=False)
 
     # Drawing
@@ -310,6 +315,8 @@ class PictureStream:
     async def _frame(self) -> None:
         """Draw and send a frame, and what follows it when the camera rests."""
         moving = self.moving
+        if not moving and not await self._ahead():
+            return  # what has happened asks for a frame of its own
         pixels = self._draw(self._pace.choose() if moving else LEVELS[0])
         self._after()
         coarse = moving and self.codec != "png"
@@ -324,6 +331,35 @@ class PictureStream:
         if not self._wanted.is_set() and whole:
             await self._refine()
 
+    async def _ahead(self) -> bool:
+        """Draw what takes longest of the whole picture in pieces; ``False`` as soon as somebody acts meanwhile.
+
+        Then the picture that is shown stays, and the next one comes as soon as if nothing had been drawn.
+        """
+        if self._level is not LEVELS[0]:
+            self._resize(LEVELS[0])
+        moved = self._moved
+        if await self._pieces() or self._moved == moved:  # if others than the camera want a picture, it is this one
+            return True
+        self._drawn_ahead = 0.0
+        self.given_up += 1
+        return False
+
+    async def _pieces(self, *, refining: bool = False) -> bool:
+        """Draw of the next frame what can be drawn in pieces; ``False`` as soon as another one is wanted."""
+        if self._pace.expected(LEVELS[0]) <= PIECE:
+            return True
+        self._drawn_ahead, began = 0.0, time.perf_counter()
+        for _ in draw_ahead(self._plotter.render_window, refining=refining):
+            self._drawn_ahead += time.perf_counter() - began
+            with contextlib.suppress(TimeoutError):
+                await asyncio.wait_for(self._wanted.wait(), HEARD)
+            if self._wanted.is_set():
+                return False
+            began = time.perf_counter()
+        self._drawn_ahead += time.perf_counter() - began
+        return True
+
     async def _refine(self) -> None:
         """Draw the samples of the picture at rest and send it, unless something happens meanwhile.
 
@@ -336,12 +372,13 @@ class PictureStream:
             await asyncio.wait_for(self._wanted.wait(), max(REST, min(RESTS * heavy, LONGEST_REST)))
         await self._practise()
         before, fetching, sent = picture.samples, picture.fetching, time.monotonic()
-        while not self._wanted.is_set() and picture.refine():
+        while await self._pieces(refining=True) and not self._wanted.is_set() and picture.refine():
             with contextlib.suppress(TimeoutError):
                 await asyncio.wait_for(self._wanted.wait(), max(HEARD, heavy))
             if picture.fetching and time.monotonic() - sent > SO_FAR:
                 await self._send(self._read(), self.still_quality)
                 sent = time.monotonic()
+        self._drawn_ahead = 0.0
         if not self._wanted.is_set() and (picture.samples != before or fetching):
             await self._send(self._read(), self.still_quality)
 
@@ -354,7 +391,7 @@ class PictureStream:
             return
         self._show(self._pace.level)
         await asyncio.sleep(HEARD)
-        if not self._wanted.is_set():
+        if not self._wanted.is_set() and await self._ahead():
             self._show(LEVELS[0])
 
     async def _rests(self) -> bool:
@@ -425,7 +462,8 @@ class PictureStream:
         self._plotter.render()
         self._stale = False
         pixels = self._read()
-        seconds = time.perf_counter() - started
+        seconds = time.perf_counter() - started + self._drawn_ahead
+        self._drawn_ahead = 0.0
         camera = self._plotter.camera
         seen = camera.position, camera.focal_point, camera.up, camera.parallel_scale
         self._pace.took(level, seconds, moved=self.moving or seen != self._seen.get(level))

@@ -68,9 +68,9 @@ def plain(name):
     return text.replace("#extension GL_NV_shader_atomic_int64 : require", "")
 
 
-def again(self, program, number, *rest):
+def again(self, stage, parts, number, *rest, **uniforms):
     for _ in range(8 if number in (compute.SEEN, compute.PREDICTED, compute.REST) else 1):
-        once(self, program, number, *rest)
+        yield from once(self, stage, parts, number, *rest, **uniforms)
         self._barrier()
 
 

@@ -62,7 +62,7 @@ class CullingChoice:
         self._look()
         if key != self._key:
             self._key = key
-            self._start_over()
+            self.start_over()
         if not self._planned and not self._awaited:
             self._left -= 1
             if self._left <= 0:
@@ -103,8 +103,8 @@ class CullingChoice:
             self._period = min(2 * self._period, LONGEST)
         self._left = self._period
 
-    def _start_over(self) -> None:
-        """Try again soon."""
+    def start_over(self) -> None:
+        """Try again soon: what is drawn has changed, or a picture was given up."""
         self._planned, self._awaited, self._trial = [], 0, self._trial + 1
         self._period, self._left = SHORTEST, 4
 

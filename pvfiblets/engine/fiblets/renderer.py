@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Generator
 from contextlib import nullcontext
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import moderngl
@@ -16,13 +18,14 @@ from ..frame import local_frame
 from ..gbuffer import GBuffer
 from ..passes import is_software
 from ..picture_clock import CallClock, TimestampClock
+from ..pieces import Pieces, finish
 from ..view import Style, View
 from .census import Census, count_fiblets, no_counts
 from .chunks import Chunk
 from .filter_textures import Filter
 from .lines_behind import LinesBehind
 from .memory_fit import MemoryBudget
-from .pipelines import CONSTANTS, DrawRequest, Limits, Pipeline, make_measurer, make_pipeline
+from .pipelines import CONSTANTS, ComputePipeline, DrawRequest, Limits, Pipeline, make_measurer, make_pipeline
 from .point_values import ValueSources
 from .style import FibletStyle
 from .uniform_blocks import SharedBlocks, decoding_features
@@ -121,6 +124,7 @@ class FibletRenderer(LinesBehind):
         self._fiblets = fiblets
         self._chunks: list[Chunk] = []
         self._last: tuple[View, FibletStyle] | None = None
+        self._known_times: dict[str, tuple[float, int]] = {}
         self._query: RegionQuery | None = None
         self._choice: CullingChoice | None = None
         self._limits = limits = Limits.of(ctx, self._gl, pipeline, max_buffer_bytes, max_groups)
@@ -148,6 +152,12 @@ class FibletRenderer(LinesBehind):
             self._keep(self._values)
 
     def _draw(self, view: View, style: FibletStyle, outside: moderngl.Texture | None) -> GBuffer:
+        return finish(self._steps(view, style, outside, in_pieces=False))
+
+    def _steps(
+        self, view: View, style: FibletStyle, outside: moderngl.Texture | None, *, in_pieces: bool
+    ) -> Generator[None, None, GBuffer]:
+        """Draw; yield after each piece, or not at all."""
         target = self._fitting("gbuffer", view.size, lambda: GBuffer(self._ctx, view.size))
         try:
             target.want_relief(self._ctx, style.relief)
@@ -164,18 +174,36 @@ class FibletRenderer(LinesBehind):
                 self._occlusion.outside = outside
                 with self._passes.timed("last picture") if target.generation else nullcontext():
                     self._occlusion.before(target, view, style)
-            self._pipeline.draw(request)
+            if in_pieces and isinstance(self._pipeline, ComputePipeline):
+                again = partial(self._request, view, style, target)
+                yield from self._pipeline.steps(request, Pieces(self._passes, again, self._known_times))
+            else:
+                self._pipeline.draw(request)
             if self._occlusion is not None:
                 self._occlusion.after(target, view, style)
         self._features_behind = frozenset()
         self._last = view, style
         return target
 
+    def _pieces(self, view: View, style: FibletStyle) -> Generator[None, None, GBuffer] | None:
+        # A coverage buffer hides by the picture before, which must have been finished.
+        whole = self._occlusion is not None and not self._occlusion.halfway
+        if not self._works_at_once or style.radius is not None or whole:
+            return None
+        return self._steps(view, style, None, in_pieces=True)
+
+    def _give_up(self) -> None:
+        self._last = None
+        if self._choice is not None:
+            self._choice.start_over()
+
     def _make_choice(self) -> CullingChoice:
-        # Compute work of software OpenGL is done when a call returns; timestamps tell nothing of it.
-        at_once = self.pipeline == "compute" and is_software(self._ctx)
-        clock = CallClock() if at_once else TimestampClock(self._gl)
-        return CullingChoice(clock)
+        return CullingChoice(CallClock(self._passes.clock) if self._works_at_once else TimestampClock(self._gl))
+
+    @property
+    def _works_at_once(self) -> bool:
+        """Whether work is done when a call returns, as compute work of software OpenGL is: timestamps do not tell."""
+        return self.pipeline == "compute" and is_software(self._ctx)
 
     def _make_stage(self) -> tuple[Pipeline, Occlusion | None]:
         # The coverage buffer is made of the nearest lines alone, and loses some for a frame.
@@ -270,6 +298,7 @@ class FibletRenderer(LinesBehind):
     def filtering(self, wanted: Filter | None) -> None:
         self._check_alive()
         self._made = None  # also of one that fails, as everything is there again
+        self._attempt += 1
         if self._occlusion is not None:
             self._occlusion.forget()
         self._kept.filtering = wanted

@@ -35,9 +35,8 @@ The sources are in ``shaders/fiblets/compute``; what a program includes is decid
 
 from __future__ import annotations
 
-import itertools
-import math
-from collections.abc import Callable, Sequence
+import sys
+from collections.abc import Generator, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import moderngl
@@ -49,11 +48,13 @@ from ...errors import EngineError
 from ...gl_version import version_of
 from ...moderngl_extras import GLExtras
 from ...passes import GROUP_SIZE, dispatch, is_software
+from ...pieces import Pieces, finish
 from ...program_uniforms import set_uniforms
 from ...shaders import EXTENDED, Programs
 from ..chunks import Chunk, storage_buffer
 from .constants import GROUP_WORDS, VISIBILITY_WORDS
 from .draw_request import DrawRequest
+from .segment_shares import segment_shares
 
 if TYPE_CHECKING:
     from .geometry import GeometryPipeline
@@ -70,19 +71,12 @@ FEW = 2048
 """Fiblets that are drawn by one program, without classes. A frame takes a twentieth longer by that, one of a hundred
 thousand segments; the first one takes half as long, for there is less to compile."""
 
-SOFTWARE_ITERATIONS = 60_000
-"""What one invocation may loop under Mesa's software OpenGL, which leaves all loops of a shader for good after 65,535
-iterations in sum and says nothing."""
-
 TUBES_BY_RASTER = True
 """Whether tubes are left to the pipeline `geometry` where software OpenGL draws: how many pixels a tube near the camera
 takes is not known beforehand, and OpenGL's rasteriser has no such limit."""
 
 READ_LISTS = True
 """Whether software OpenGL compiles programs of classes when they first have fiblets."""
-
-WIDEST_IN_SOFTWARE = 100
-"""Pixels of line width with which one segment of each fiblet stays within that."""
 
 
 class ComputePipeline:
@@ -153,6 +147,16 @@ class ComputePipeline:
         EngineError
             If lines are so wide that software OpenGL would lose parts of them.
         """
+        finish(self.steps(request))
+
+    def steps(self, request: DrawRequest, pieces: Pieces | None = None) -> Generator[None, None, None]:
+        """Draw the same, and yield after each piece; in one without `pieces`. Pixels are the same in any case.
+
+        Raises
+        ------
+        EngineError
+            As :meth:`draw`.
+        """
         if self._software and request.tubes and TUBES_BY_RASTER:
             self._draw_by_raster(request)
             self.planned = False
@@ -160,15 +164,9 @@ class ComputePipeline:
         self._drop_raster()
         self.planned = True
         if self._software:
-            self._shares = _shares(request.line_width, request.segment)
-        target, occlusion = request.target, request.occlusion
-        for name, index in IMAGES.items():
-            if (texture := getattr(target, name)) is not None:
-                texture.bind_to_image(index, read=True, write=True)
-        self._own["visibility_bits"].bind_to_storage_buffer(STORAGE["visibility_bits"])
-        passes = request.passes
-        if self._int64:
-            self._bind_nearest(8 * target.size[0] * target.size[1])
+            self._shares = segment_shares(request.line_width, request.segment)
+        self._bind(request)
+        target, occlusion, passes = request.target, request.occlusion, request.passes
         with passes.timed("clear"):
             clear = self._program("clear", self._int64)
             count = ROUNDS * self._round_arguments * ARGUMENT_BYTES // 4
@@ -176,36 +174,46 @@ class ComputePipeline:
             dispatch(clear, target.size[1], self._max_groups)
         with passes.timed("cull"):
             features = self._planning(request)
-            if occlusion is not None and occlusion.predicts:
+            predicting = occlusion is not None and occlusion.predicts
+            if predicting and occlusion is not None:
                 features.append(occlusion.feature)
-                occlusion.bind(self._program("cull", features))
-            self._run("cull", features, request)
+            yield from self._run("cull", features, request, pieces, looks=predicting)
             self._barrier()
         if occlusion is not None and not occlusion.halfway:
             with passes.timed("occlusion"):
-                self._test("occlude", request)
+                yield from self._test("occlude", request, pieces)
         with passes.timed("visible"):
-            self._round("depth", SEEN, request)
+            yield from self._round("depth", SEEN, request, pieces)
         if occlusion is not None and occlusion.halfway:
             if occlusion.predicts:
                 with passes.timed("predicted"):
-                    self._round("depth", PREDICTED, request)
+                    yield from self._round("depth", PREDICTED, request, pieces)
             self._split(request, marking=False)
             with passes.timed("pyramid"):
                 occlusion.build(target)
             with passes.timed("occlusion"):
-                self._test("occlude", request)
+                yield from self._test("occlude", request, pieces)
             with passes.timed("refine"):
-                self._refine(request)
+                yield from self._refine(request, pieces)
         with passes.timed("depth"):
-            self._round("depth", REST, request)
+            yield from self._round("depth", REST, request, pieces)
         self._split(request, marking=True)
         with passes.timed("resolve_owner"):
-            self._round("resolve_ties" if self._int64 else "resolve_owner", CANDIDATES, request)
+            yield from self._round("resolve_ties" if self._int64 else "resolve_owner", CANDIDATES, request, pieces)
         if not self._int64:
             with passes.timed("resolve_ties"):
-                self._round("resolve_ties", TIED, request)
+                yield from self._round("resolve_ties", TIED, request, pieces)
         self._ctx.memory_barrier(moderngl.ALL_BARRIER_BITS)
+
+    def _bind(self, request: DrawRequest) -> None:
+        """Bind what all programs of a picture write to."""
+        target = request.target
+        for name, index in IMAGES.items():
+            if (texture := getattr(target, name)) is not None:
+                texture.bind_to_image(index, read=True, write=True)
+        self._own["visibility_bits"].bind_to_storage_buffer(STORAGE["visibility_bits"])
+        if self._int64:
+            self._bind_nearest(8 * target.size[0] * target.size[1])
 
     def gathers_words(self, request: DrawRequest) -> bool:
         """Say whether sums for such a request are words, not floats."""
@@ -225,7 +233,7 @@ class ComputePipeline:
             return
         self._drop_raster()
         if self._software:
-            self._shares = _shares(request.line_width, request.segment)
+            self._shares = segment_shares(request.line_width, request.segment)
         self._own["visibility_bits"].bind_to_storage_buffer(STORAGE["visibility_bits"])
         request.gather.bind_images()
         with request.passes.timed("gather"):
@@ -234,9 +242,9 @@ class ComputePipeline:
             size = ROUNDS * self._round_arguments * ARGUMENT_BYTES
             self._gl.clear_words(self._own["visibility_bits"], 4 * self._argument_base, size)
             features = self._planning(request)
-            self._run("cull", features, request)
+            finish(self._run("cull", features, request))
             self._barrier()
-            self._round("gather", REST, request)
+            finish(self._round("gather", REST, request))
         self._ctx.memory_barrier(moderngl.ALL_BARRIER_BITS)
 
     def _draw_by_raster(self, request: DrawRequest) -> None:
@@ -308,16 +316,16 @@ class ComputePipeline:
         arguments.run(1)
         self._barrier()
 
-    def _round(self, stage: str, number: int, request: DrawRequest) -> None:
+    def _round(
+        self, stage: str, number: int, request: DrawRequest, pieces: Pieces | None = None
+    ) -> Generator[None, None, None]:
         """Draw one round's fiblets, class by class."""
         refined = number == REST and request.occlusion is not None and request.occlusion.halfway
         self._plan(number, request.chunks, refined)
         parts = [(self._program(stage, features), part) for part, features in self._classes_of(stage, number, request)]
         shares = self._shares if request.line_width > 0.0 else self._shares[:1]
         for share in shares:
-            for program, _ in parts:
-                set_uniforms(program, share=share)
-            self._run_listed(parts, number, request)
+            yield from self._run_listed(stage, parts, number, request, pieces, share=share)
             if len(shares) > 1:  # of two segments with the same depth the later one writes the pixel
                 self._barrier()
         self._barrier()
@@ -339,52 +347,111 @@ class ComputePipeline:
         return [one for one in classes if one[0] == 0 or lengths[:, one[0]].any()]
 
     def _run_listed(
-        self, parts: Sequence[tuple[moderngl.ComputeShader, int]], number: int, request: DrawRequest
-    ) -> None:
+        self,
+        stage: str,
+        parts: Sequence[tuple[moderngl.ComputeShader, int]],
+        number: int,
+        request: DrawRequest,
+        pieces: Pieces | None,
+        **uniforms: object,
+    ) -> Generator[None, None, None]:
         """Run a program for each class of fiblets, chunk by chunk, of which each is bound once."""
         listed = self._own["visibility_bits"]
-        runs = []
-        for program, part in parts:
-            at = 4 * self._set_round(program, number) + ARGUMENT_BYTES * part
+
+        def tell(program: moderngl.ComputeShader) -> int:
             request.kept.bind(program)
             if request.peel is not None:
                 request.peel.bind(program)
             if request.gather is not None:
                 request.gather.bind(program)
-            runs.append((program, part, at))
-        for index, chunk in enumerate(request.chunks):
-            chunk.bind_storage()
-            request.kept.bind_chunk(index)
+            if number == TESTED and request.occlusion is not None:
+                request.occlusion.bind(program)
+            return 4 * self._set_round(program, number, **uniforms)
+
+        runs = [(program, part, tell(program) + ARGUMENT_BYTES * part) for program, part in parts]
+        for index in range(len(request.chunks)):
+            self._bind_chunk(index, request)
             for program, part, at in runs:
                 set_uniforms(program, part=part)  # which some have in common
-                program.run_indirect(listed, at + index * CLASSES * ARGUMENT_BYTES)
+                place = at + index * CLASSES * ARGUMENT_BYTES
+                if pieces is None:
+                    program.run_indirect(listed, place)
+                    continue
+                entries = int.from_bytes(listed.read(4, offset=place + 12), sys.byteorder)
+                for _ in self._in_pieces(stage, program, -(-entries // GROUP_WORDS), request, pieces):
+                    yield
+                    tell(program)
+                    set_uniforms(program, part=part)
+                    self._bind_chunk(index, request)
 
-    def _test(self, stage: str, request: DrawRequest) -> None:
+    def _test(self, stage: str, request: DrawRequest, pieces: Pieces | None) -> Generator[None, None, None]:
         """Run a pass over all fiblets that looks at the occlusion's texture."""
-        self._run(stage, self._looking(stage, request), request)
+        yield from self._run(stage, self._looking(request), request, pieces, looks=True)
         self._barrier()
 
-    def _looking(self, stage: str, request: DrawRequest) -> Sequence[str]:
+    def _looking(self, request: DrawRequest) -> Sequence[str]:
         assert request.occlusion is not None
-        features = [*request.decoding, *request.detail, *request.tubes, request.occlusion.feature]
-        request.occlusion.bind(self._program(stage, features))
-        return features
+        return [*request.decoding, *request.detail, *request.tubes, request.occlusion.feature]
 
-    def _refine(self, request: DrawRequest) -> None:
+    def _refine(self, request: DrawRequest, pieces: Pieces | None) -> Generator[None, None, None]:
         """Test what the occlusion pass left over more closely; the list of the rest leaves out what is hidden."""
-        program = self._program("refine", self._looking("refine", request))
+        program = self._program("refine", self._looking(request))
         self._plan(TESTED, request.chunks)
-        self._run_listed([(program, part) for part, _ in request.classes(one=self._one_class)], TESTED, request)
+        parts = [(program, part) for part, _ in request.classes(one=self._one_class)]
+        yield from self._run_listed("refine", parts, TESTED, request, pieces)
         self._barrier()
 
-    def _run(self, stage: str, features: Sequence[str], request: DrawRequest) -> None:
-        """Run a pass of one invocation for 32 fiblets."""
+    def _run(
+        self,
+        stage: str,
+        features: Sequence[str],
+        request: DrawRequest,
+        pieces: Pieces | None = None,
+        *,
+        looks: bool = False,
+    ) -> Generator[None, None, None]:
+        """Run a pass of one invocation for 32 fiblets, which may look at the occlusion's texture."""
         program = self._program(stage, features)
-        request.kept.bind(program)
+
+        def tell() -> None:
+            request.kept.bind(program)
+            if looks and request.occlusion is not None:
+                request.occlusion.bind(program)
+
+        tell()
         for index, chunk in enumerate(request.chunks):
-            chunk.bind_storage()
-            request.kept.bind_chunk(index)
-            dispatch(program, -(-chunk.n_fiblets // (32 * GROUP_SIZE)), self._max_groups)
+            self._bind_chunk(index, request)
+            groups = -(-chunk.n_fiblets // (32 * GROUP_SIZE))
+            if pieces is None:
+                dispatch(program, groups, self._max_groups)
+                continue
+            for _ in self._in_pieces(stage, program, groups, request, pieces):
+                yield
+                tell()
+                self._bind_chunk(index, request)
+
+    def _bind_chunk(self, index: int, request: DrawRequest) -> None:
+        request.chunks[index].bind_storage()
+        request.kept.bind_chunk(index)
+
+    def _in_pieces(
+        self, stage: str, program: moderngl.ComputeShader, groups: int, request: DrawRequest, pieces: Pieces
+    ) -> Iterator[None]:
+        """Run work groups of a program, some at a time; who goes on binds again what is the program's and the chunk's.
+
+        Which groups run together is of no consequence: no pass depends on the order of fiblets.
+        """
+        first = 0
+        while first < groups:
+            count = min(pieces.groups(stage, groups - first), self._max_groups)
+            set_uniforms(program, first_group=first)
+            with pieces.measured(stage, count):
+                program.run(count)
+            first += count
+            set_uniforms(program, first_group=0)
+            if pieces.due:
+                yield from pieces.pause()
+                self._bind(request)
 
     def release(self) -> None:
         """Give the pipeline's own buffers back; twice is harmless."""
@@ -405,23 +472,3 @@ def _has_int64_atomics(ctx: moderngl.Context) -> bool:
     if version_of(ctx) < EXTENDED or not wanted <= set(ctx.extensions):
         return False
     return GLExtras(ctx).get_integer("GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS") > STORAGE["nearest"]
-
-
-def _shares(line_width: float, segment: Callable[[], float]) -> list[tuple[int, int]]:
-    """Cut the segments of a fiblet into ranges whose pixels software OpenGL draws before it leaves the loops.
-
-    An invocation draws ``32 * GROUP_WORDS / GROUP_SIZE`` fiblets or fewer, and waits for its neighbours' segments.
-    Over each pixel of a segment's longer side stand at most sqrt(2) widths, 1.2 on average.
-    """
-    if line_width == 0.0:
-        return [(0, MAX_POINTS)]
-    fiblets = 32 * GROUP_WORDS // GROUP_SIZE
-    count = int(SOFTWARE_ITERATIONS / ((1.2 * line_width + 1.0) * fiblets * (segment() + line_width)))
-    if count < 1 and line_width > WIDEST_IN_SOFTWARE:
-        raise EngineError(
-            f"a line width of {line_width:g} pixels is more than software OpenGL draws whole; give at most "
-            f"{WIDEST_IN_SOFTWARE}"
-        )
-    ranges = math.ceil(MAX_POINTS / max(count, 1))
-    edges = [MAX_POINTS * i // ranges for i in range(ranges + 1)]
-    return list(itertools.pairwise(edges))

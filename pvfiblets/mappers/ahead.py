@@ -1,0 +1,65 @@
+"""What the next frame of a window shows, drawn before it and piece by piece.
+
+VTK draws a frame in one call, within which nobody is heard. Most of its time goes into the G-buffers of fiblets where
+OpenGL runs on the CPU. So whoever may have to leave a frame has those drawn beforehand by `draw_ahead`: the frame finds
+them drawn if nothing has changed since, and shows what it would have shown in any case.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from typing import Any
+
+from pvfiblets.mappers.antialias_windows import picture_of
+from pvfiblets.mappers.fiblets import FibletMapper
+from pvfiblets.mappers.scene import actors_in, items_of
+
+__all__ = ["draw_ahead"]
+
+
+def draw_ahead(window: Any, *, refining: bool = False) -> Iterator[None]:
+    """Draw the fiblets of a window's next frame, and yield after each piece.
+
+    Nothing is drawn of what cannot be drawn in pieces, such as by a GPU, and of what is not an ordinary frame: an
+    enlarged one, or one with a render pass.
+
+    Parameters
+    ----------
+    window : vtkRenderWindow
+        That has drawn a frame before.
+    refining : bool
+        Whether the frame will be drawn by `antialias_windows.refine`: the next sample of pictures that want one.
+    """
+    if tuple(window.GetTileScale()) != (1, 1) or window.GetStereoRender():
+        return
+    drawn: set[str] = set()
+    for renderer in items_of(window.GetRenderers()):
+        if not renderer.GetDraw() or renderer.GetPass() is not None:
+            continue
+        picture = picture_of(renderer) if refining else None
+        camera, refinement = None, None
+        if refining:
+            refinement = picture.refinement if picture is not None and picture.unfinished else None
+            camera = None if refinement is None else refinement.sample_camera(renderer)
+            if camera is None:
+                continue
+        for mapper in _mappers(renderer):
+            if mapper.GetAddressAsString("") in drawn:  # its engine holds one picture
+                continue
+            drawn.add(mapper.GetAddressAsString(""))
+            began = time.perf_counter()
+            for _ in mapper.draw_ahead(renderer, camera):
+                if refinement is not None:
+                    refinement.spend(time.perf_counter() - began)
+                yield
+                began = time.perf_counter()
+
+
+def _mappers(renderer: Any) -> Iterator[FibletMapper]:
+    """Yield those of a renderer that it shows."""
+    for prop in items_of(renderer.GetViewProps()):
+        for actor in actors_in(prop) if prop.GetVisibility() else ():
+            mapper = actor.GetMapper()
+            if actor.GetVisibility() and isinstance(mapper, FibletMapper):
+                yield mapper
