@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import logging
 import re
+import zlib
 from pathlib import Path
 from typing import Any
 
@@ -27,8 +28,8 @@ SOFTWARE = re.compile(r"swiftshader|llvmpipe|softpipe|software|basic render", re
 KEPT = 4
 """Scenes whose data can be fetched: what is on its way when the scene changes still arrives."""
 
-PACKED = 20_000
-"""Bytes from which pixels are packed beside the loop that answers browsers."""
+PACKED = 1
+"""How hard zlib tries on pixels: a third of a slice's bytes are left after 12 ms; a quarter, by 6, after 110."""
 
 
 class BrowserDrawing(Actions):
@@ -166,9 +167,7 @@ class BrowserDrawing(Actions):
         found = next((sent for sent in self._sent if name in sent.blobs), None)
         if found is None:
             raise web.HTTPNotFound
-        answer = web.Response(
-            body=found.blobs[name], content_type="application/octet-stream", zlib_executor_size=PACKED
-        )
-        if name in found.pixels:
-            answer.enable_compression()
-        return answer
+        body, headers = found.blobs[name], {}
+        if name in found.pixels and "deflate" in request.headers.get("Accept-Encoding", ""):
+            body, headers = zlib.compress(body, PACKED), {"Content-Encoding": "deflate"}
+        return web.Response(body=body, content_type="application/octet-stream", headers=headers)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import zlib
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -242,12 +243,28 @@ def test_only_data_of_the_scene_can_be_fetched(scene, folder):
     desk.drawing.draws()
 
     def fetch(name):
-        return asyncio.run(desk.drawing.send(SimpleNamespace(match_info={"name": name})))
+        return asyncio.run(desk.drawing.send(SimpleNamespace(match_info={"name": name}, headers={})))
 
     name = desk.page.there["scene"]["data"][0]["file"].rpartition("/")[2]
     assert len(fetch(name).body) == desk.page.there["scene"]["data"][0]["bytes"]
     with pytest.raises(web.HTTPNotFound):
         fetch("0" * len(name))
+
+
+@pytest.mark.parametrize("accepted", ["gzip, deflate, br", "identity"])
+def test_pixels_of_slices_are_packed_on_their_way(accepted, sliced, folder):
+    desk = drawing(sliced, folder)
+    desk.drawing.report(True, CARD)
+    assert desk.drawing.draws()
+    scene = desk.page.there["scene"]
+    at = next(layer["pixels"] for layer in scene["layers"] if layer["kind"] == "image")
+    asked = SimpleNamespace(
+        match_info={"name": scene["data"][at]["file"].rpartition("/")[2]}, headers={"Accept-Encoding": accepted}
+    )
+    answer = asyncio.run(desk.drawing.send(asked))
+    packed = answer.headers.get("Content-Encoding") == "deflate"
+    assert packed is ("deflate" in accepted)
+    assert len(zlib.decompress(answer.body) if packed else answer.body) == scene["data"][at]["bytes"]
 
 
 @pytest.mark.parametrize("other", [{"shared": True}, {"cluster": "tcp://127.0.0.1:8786"}])
