@@ -117,6 +117,8 @@ def _along(u: Any, k: int, enter: float, leave: float, reach: Any, kept: Any, ra
     if not widest <= WIDEST:
         return True, False
     longest, square = _longest(u, k), 0.0
+    if 0.5 * longest * (leave - enter) <= _free(steps, first, u, k, 0.5 * (enter + leave)) - 1 - widest:
+        return False, False  # no voxel is near to any of it, as below
     for axis in range(3):
         square += (kept[k + 1, axis] - kept[k, axis]) ** 2
     # So much of the part, at either end, may have no point of the fiblet across from it.
@@ -214,6 +216,22 @@ def _apart(pieces: Any, row: int, k: int, parts: int, centre: Any, box: Any, uni
     return False
 
 
+@kernel
+def _clear(mean: Any, k: int, leaves: Any, leaf: int, rows: Any, slack: float, box: Any, steps: Any, first: Any,
+           reach: Any) -> bool:  # fmt: skip
+    """Whether the capsule of part ``k`` of a leaf meets no voxel of a set in a box."""
+    for axis in range(3):
+        reach[axis] = float(leaves[leaf, 3 * len(mean) + k]) * rows[axis] * (1.0 + 1e-9) + slack
+    enter, leave = _cut(mean, k, reach, box)
+    widest, longest = max(reach[0], reach[1], reach[2]), _longest(mean, k)
+    while enter <= leave:
+        ahead = _free(steps, first, mean, k, enter) - 1 - widest
+        if ahead < STEP:
+            return False
+        enter = enter + ahead / longest if longest > 0.0 else np.inf
+    return True
+
+
 @parallel_kernel
 def close_parts(near: Any, leaves: Any, parts: int, linear: Any, corner: Any, rows: Any, box: Any, free: Any,
                 found: Any) -> None:  # fmt: skip
@@ -230,16 +248,8 @@ def close_parts(near: Any, leaves: Any, parts: int, linear: Any, corner: Any, ro
             slack = _mean(leaves, leaf, nodes, linear, corner, mean)
             found[j] = 0
             for k in range(parts):
-                for axis in range(3):
-                    reach[axis] = float(leaves[leaf, 3 * nodes + k]) * rows[axis] * (1.0 + 1e-9) + slack
-                enter, leave = _cut(mean, k, reach, box)
-                widest, longest = max(reach[0], reach[1], reach[2]), _longest(mean, k)
-                while enter <= leave:
-                    ahead = _free(steps, first, mean, k, enter) - 1 - widest
-                    if ahead < STEP:
-                        found[j] |= 1 << k
-                        break
-                    enter = enter + ahead / longest if longest > 0.0 else np.inf
+                if not _clear(mean, k, leaves, leaf, rows, slack, box, steps, first, reach):
+                    found[j] |= 1 << k
 
 
 @kernel
@@ -302,6 +312,9 @@ def settle(near: Any, bits: Any, leaves: Any, pieces: Any, parts: int, per_stret
             unit, radius = float(leaves[leaf, 3 * nodes + parts]), float(leaves[leaf, 3 * nodes + parts + 1])
             close = np.int64(bits[j])
             every_one = False  # a point of each fiblet lies so near to each mean position
+            none = asked == REMOVED  # where nothing of the region is near, no fiblet passes it any more
+            for k in range(parts):
+                none = none and _clear(mean, k, leaves, leaf, rows, slack, whole, whole_steps, whole_first, reach)
             for k in range(nodes):
                 for axis in range(3):
                     centre[k, axis] = float(leaves[leaf, 3 * k + axis])
@@ -314,8 +327,8 @@ def settle(near: Any, bits: Any, leaves: Any, pieces: Any, parts: int, per_stret
                 passed = states[at + i] & ANY != 0
                 if (asked == ADDED and passed) or (asked == REMOVED and not passed):
                     continue
-                if every_one:
-                    found[j, i] = SURE
+                if every_one or none:
+                    found[j, i] = SURE if every_one else GONE
                     continue
                 only = np.int64(0)
                 for k in range(parts):

@@ -32,24 +32,27 @@ class FreeSpace(NamedTuple):
     first: npt.NDArray[np.int64]
 
     @classmethod
-    def of(cls, there: npt.NDArray[np.bool_], box: npt.ArrayLike, *, beyond: bool = False) -> FreeSpace:
-        """Return it of a set within a box.
+    def of(cls, bits: npt.NDArray[np.uint8], bit: int, box: npt.ArrayLike, *, beyond: bool = False) -> FreeSpace:
+        """Return it of the voxels within a box that have a bit, or of all others.
 
         Parameters
         ----------
-        there : numpy.ndarray
-            ``(nx, ny, nz)`` bool: the set.
+        bits : numpy.ndarray
+            ``(nx, ny, nz)`` uint8 of all voxels; no more of it is read than the box.
+        bit : int
+            That voxels of the set have.
         box : array_like
             ``(6,)``: the box's first voxel, and that behind its last; without voxels it is far from the set.
         beyond : bool
-            Whether all that lies beyond the box is in the set; nothing otherwise.
+            Whether the set is that of the voxels without the bit, and of all that lies beyond the box.
         """
         low, high = np.asarray(box, float).reshape(2, 3)
         if not (low < high).all():
             return cls(np.full((1, 1, 1), FAR, np.uint8), np.zeros(3, np.int64))
         first, stop = low.astype(np.int64), high.astype(np.int64)
-        near = there[tuple(slice(a, b) for a, b in zip(first, stop, strict=True))]
-        near = np.pad(near, 1, constant_values=True) if beyond else near.copy()
+        near = bits[tuple(slice(a, b) for a, b in zip(first, stop, strict=True))] & bit != 0
+        if beyond:
+            near = np.pad(~near, 1, constant_values=True)
         steps = np.where(near, 0, 1).astype(np.uint8)
         reach = 0
         while reach + 1 < FAR:

@@ -115,14 +115,14 @@ class LiveRegion:
         prefer_kernels("decoding")
         mask[voxels] = np.where(inside, kernels.HERE, 0) | kernels.CHANGED
         changed, volume = _box(voxels, grid.shape), mask.reshape(grid.shape)
-        whole = changed if asked == coarse.ADDED else _box(np.flatnonzero(mask), grid.shape)
         in_mm = _in_mm(changed, grid)
         near = index.near(*in_mm)
-        within = about_changed = about_whole = FreeSpace.of(volume & kernels.CHANGED != 0, changed)
+        whole = self._region_about(near, volume) if asked == coarse.REMOVED else changed
+        within = about_changed = about_whole = FreeSpace.of(volume, kernels.CHANGED, changed)
         if asked == coarse.REMOVED:
-            about_whole = FreeSpace.of(volume & kernels.HERE != 0, whole)
+            about_whole = FreeSpace.of(volume, kernels.HERE, whole)
         elif asked == coarse.ADDED:
-            within = FreeSpace.of(volume & kernels.HERE == 0, changed, beyond=True)
+            within = FreeSpace.of(volume, kernels.HERE, changed, beyond=True)
         per, rows, bits = CHUNK // LEAF, np.linalg.norm(grid.linear, axis=1), np.empty(len(near), np.uint8)
         coarse.close_parts(near, index.leaves, index.parts, grid.linear, grid.corner, rows, changed, about_changed,
                            bits)  # fmt: skip
@@ -153,6 +153,20 @@ class LiveRegion:
             open_ = np.concatenate([open_[flipped], places[settled]])
             flags = np.concatenate([flags[flipped], (fates[settled] == coarse.SURE).astype(np.uint8)])
         self._apply(open_, flags)
+
+    def _region_about(self, leaves: Ints, volume: npt.NDArray[np.uint8]) -> npt.NDArray[np.float64]:
+        """Box of the region's voxels, and of changed ones, as far as fiblets of some leaves may meet them."""
+        if not len(leaves):
+            return _box(np.empty(0, np.int64), self.grid.shape)
+        boxes = self.index.boxes[leaves]
+        ends = np.stack([boxes[:, :3].min(axis=0), boxes[:, 3:].max(axis=0)]).astype(np.float64)
+        corners = np.stack(np.meshgrid(*ends.T, indexing="ij"), axis=-1).reshape(-1, 3)
+        at = (corners - self.grid.corner) @ self.grid.linear.T
+        low = np.clip(np.floor(at.min(axis=0)) - 1.0, 0, volume.shape).astype(np.int64)
+        high = np.clip(np.ceil(at.max(axis=0)) + 1.0, 0, volume.shape).astype(np.int64)
+        part = volume[tuple(slice(a, b) for a, b in zip(low, high, strict=True))]
+        found = _box(np.flatnonzero(part), part.shape)
+        return found + np.concatenate([low, low])
 
     def _apply(self, places: Ints, flags: npt.NDArray[np.uint8]) -> None:
         from . import walk_kernels as kernels

@@ -322,3 +322,24 @@ def test_what_is_settled_without_decoding_is_what_decoding_says(step):
     inside = painter.mask("a")[tuple(np.clip(at, 0, 179).T)] & ((at >= 0) & (at < 180)).all(axis=1)
     owners = np.repeat(np.arange(len(data)), np.diff(data.offsets()))
     assert region.passes()[np.unique(owners[inside])].all()
+
+
+def test_of_two_places_one_is_erased(fiblets):
+    """What passes the other, far or near, still does; the rest is told by leaves, as nothing is left near to them."""
+    painter = regions.RegionPainter((SHAPE, AFFINE))
+    painter.add("a")
+    live = regions.LiveRegions(fiblets, painter)
+    region = live.region("a")
+    points = fiblets.decompress(dtype=np.float64).points
+    points = points[np.abs(points).max(axis=1) < 11.0]
+    order = np.argsort(points @ [1.0, 0.3, 0.2])
+    for one, other in ((order[20], order[-20]), (order[len(order) // 2], order[len(order) // 2 + 40])):
+        painter.paint("a", points[one], 5.0)
+        painter.paint("a", points[other], 5.0)
+        both = region.count
+        painter.erase(points[one], 6.0)
+        expected = brute(fiblets, painter.mask("a"))[:, 0]
+        assert np.array_equal(region.passes(), expected)
+        assert 0 < region.count == expected.sum() < both
+        painter.clear("a")
+        assert region.count == 0
