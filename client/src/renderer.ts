@@ -196,7 +196,7 @@ export class Renderer {
     const { data: old } = this, lines = this.lines.splice(0), surfaces = this.surfaces.splice(0), images = this.images.splice(0);
     const sets = new Map(lines.map((one) => [old[one.layer.data], one.set] as const));
     const same = ({ layer }: Surface | ImageSlice): boolean =>
-      (layer.kind === "image" ? [layer.pixels] : [layer.places, layer.triangles, layer.normals, layer.colours, layer.values])
+      (layer.kind === "image" ? [layer.pixels] : [layer.places, layer.triangles, layer.normals, layer.colours, layer.values, layer.edges?.sides])
         .every((at) => at === undefined || old[at] === data[at]);
     this.frame = this.rest = null;
     this.scene = scene;
@@ -390,7 +390,7 @@ export class Renderer {
     const { gl, camera, scene } = this, moving = this.moving;
     this.dirty = false;
     const view = camera.view(), projection = camera.projection(this.width / this.height, scene.bounds);
-    const drawn: Drawn = { view, projection, parallel: camera.state.parallel, lights: (program) => this.setLights(program, view), planes: this.planes };
+    const drawn: Drawn = { view, projection, parallel: camera.state.parallel, lights: (program) => this.setLights(program, view), planes: this.planes, ratio: this.ratio };
     const frame: Frame = (this.frame = { jobs: [], next: 0, share: 1, drawn: 0, begun: performance.now(), shownAt: performance.now(), matrices: drawn, moving, through: new Set() });
     this.rest = null;
     this.stale = false;

@@ -75,6 +75,8 @@ export interface SurfaceLayer extends Layer {
   triangles: number;    // data: uint32
   normals?: number;     // data: float32
   colours?: number;     // data: RGBA
+  edges?: { sides: number; colour: [number, number, number, number]; width: number };  // data: a byte for each corner, of triangles' own (shaders/page/surface.vert)
+  culled?: ("front" | "back")[];  // faces that are left out
   values?: number;      // data: float32, through `table`
   table?: string;       // base64, RGBA: entries, then below, above, NaN
   clim?: [number, number];

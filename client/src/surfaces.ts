@@ -11,6 +11,7 @@ export interface Drawn {
   parallel: boolean;
   lights: (program: Program) => void;
   planes: number[][];
+  ratio: number;        // pixels of the picture to one of the page
 }
 
 function planesOf(program: Program, planes: number[][], model: Mat): void {
@@ -46,6 +47,7 @@ export class Surface {
       attribute(3, data[layer.values], 1, gl.FLOAT, false);
       [this.table, this.tableRange] = lookUpTable(gl, fromBase64(layer.table!), layer.clim!, !!layer.log);
     }
+    if (layer.edges) attribute(4, data[layer.edges.sides], 1, gl.UNSIGNED_BYTE, false);
     const index = gl.createBuffer()!;
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, index);
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, data[layer.triangles], gl.STATIC_DRAW);
@@ -65,6 +67,7 @@ export class Surface {
     program.use().set({
       clip_from_data: floats(product(drawn.projection, view)), view_from_data: floats(view), normal_to_view: normals,
       parallel: drawn.parallel ? 1 : 0, opacity: layer.opacity, reflects: layer.reflects, sheen: layer.sheen,
+      edge_width: layer.edges ? layer.edges.width * drawn.ratio : 0, edge_colour: layer.edges?.colour ?? [0, 0, 0, 0],
     });
     program.ints({ smooth_normals: layer.normals === undefined ? 0 : 1, lighting: layer.lighting ? 1 : 0, by_value: this.table ? 1 : 0, logarithm: layer.log ? 1 : 0 });
     program.textures({ table: this.table }).set({ table_range: this.tableRange });
@@ -73,7 +76,12 @@ export class Surface {
     gl.bindVertexArray(this.array);
     if (layer.normals === undefined) gl.vertexAttrib3f(1, 0, 0, 1);
     if (layer.colours === undefined) gl.vertexAttrib4f(2, layer.colour[0], layer.colour[1], layer.colour[2], 1);
+    if (layer.culled) {
+      gl.enable(gl.CULL_FACE);
+      gl.cullFace(layer.culled.length > 1 ? gl.FRONT_AND_BACK : layer.culled[0] === "front" ? gl.FRONT : gl.BACK);
+    }
     gl.drawElements(gl.TRIANGLES, this.count, gl.UNSIGNED_INT, 0);
+    gl.disable(gl.CULL_FACE);
     gl.bindVertexArray(null);
   }
 

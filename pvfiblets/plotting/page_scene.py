@@ -145,14 +145,8 @@ def _add_actor(scene: PageScene, name: str, actor: Any, unable: list[str], *, co
     elif isinstance(mapper, pv.mapper.DataSetMapper) or (mapper is not None and mapper.IsA("vtkPolyDataMapper")):
         if not mapper.GetNumberOfInputConnections(0):
             return
-        prop = actor.GetProperty()
         if not add_surface(scene, name, actor, mapper):
             unable.append(f"{name!r}")
-            return
-        if prop.GetEdgeVisibility():
-            unable.append(f"the edges of {name!r}")
-        if prop.GetFrontfaceCulling() or prop.GetBackfaceCulling():
-            unable.append(f"the culling of {name!r}")
     elif mapper is not None and hasattr(mapper, "GetInput"):
         unable.append(f"{name!r}")
 

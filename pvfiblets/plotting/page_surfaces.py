@@ -37,19 +37,22 @@ def add_surface(scene: PageScene, name: str, actor: Any, mapper: Any) -> bool:
         (surface.point_data if len(shade) == surface.n_points else surface.cell_data)["_page"] = shade
     if not isinstance(surface, pv.PolyData):
         surface = surface.extract_surface(algorithm=None)
-    surface = surface.triangulate()
+    outlined, surface = surface, surface.triangulate()
     triangles = surface.regular_faces if surface.n_cells and surface.is_all_triangles else np.zeros((0, 3), int)
     if not len(triangles):
         return False
-    points, colours = np.asarray(surface.points, np.float32), None
+    by_cell = "_page" in surface.cell_data
+    edges = _edges(prop, outlined, triangles) if prop.GetEdgeVisibility() else None
+    # Triangles get corners of their own where they have colours or edges of their own.
+    corners = triangles.ravel() if by_cell or edges is not None else slice(None)
+    points, colours = np.asarray(surface.points, np.float32)[corners], None
     smooth = prop.GetInterpolation() != _FLAT and "Normals" in surface.point_data
-    normals = np.asarray(surface.point_data["Normals"], np.float32) if smooth else None
-    if "_page" in surface.point_data:
-        colours = np.asarray(surface.point_data["_page"])
-    elif "_page" in surface.cell_data:  # each triangle gets corners of its own
+    normals = np.asarray(surface.point_data["Normals"], np.float32)[corners] if smooth else None
+    if by_cell:
         colours = np.repeat(np.asarray(surface.cell_data["_page"])[: len(triangles)], 3, axis=0)
-        points = points[triangles.ravel()]
-        normals = None if normals is None else normals[triangles.ravel()]
+    elif "_page" in surface.point_data:
+        colours = np.asarray(surface.point_data["_page"])[corners]
+    if not isinstance(corners, slice):
         triangles = np.arange(len(points)).reshape(-1, 3)
     matrix = to_array(actor.GetMatrix())
     reflects, sheen = reflects_of(prop)
@@ -68,11 +71,16 @@ def add_surface(scene: PageScene, name: str, actor: Any, mapper: Any) -> bool:
         "sheen": sheen,
         "bounds": bounds,
     }
+    if edges is not None:
+        layer["edges"] = edges | {"sides": scene.add_blob(np.repeat(edges["sides"], 3))}
+    culled = {"front": prop.GetFrontfaceCulling(), "back": prop.GetBackfaceCulling()}
+    if any(culled.values()):
+        layer["culled"] = [side for side, on in culled.items() if on]
     if normals is not None:
         layer["normals"] = scene.add_blob(normals)
     if "_values" in surface.point_data:
         table = mapper.GetLookupTable()
-        layer["values"] = scene.add_blob(np.asarray(surface.point_data["_values"], np.float32))
+        layer["values"] = scene.add_blob(np.asarray(surface.point_data["_values"], np.float32)[corners])
         layer |= {"table": encoded(_table(table)), "clim": tuple(table.GetTableRange()), "log": table.GetScale() == 1}
         _add_bar(scene, mapper)
     elif colours is not None:
@@ -85,6 +93,29 @@ def add_surface(scene: PageScene, name: str, actor: Any, mapper: Any) -> bool:
         layer["planes"] = planes.tolist()
     scene.add_layer(layer, bounds)
     return True
+
+
+def _edges(prop: Any, surface: pv.PolyData, triangles: np.ndarray) -> dict[str, Any]:
+    """Return how edges look, and of each triangle a bit for each side that has one, opposite the same corner."""
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    sides = np.full(len(triangles), 7, np.uint8)
+    if not surface.is_all_triangles and not surface.n_strips:  # what lies within a polygon is none of its sides
+
+        def keys(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+            return np.minimum(a, b).astype(np.int64) * surface.n_points + np.maximum(a, b)
+
+        offsets, at = (np.asarray(vtk_to_numpy(array), np.int64) for array in (
+            surface.GetPolys().GetOffsetsArray(), surface.GetPolys().GetConnectivityArray()
+        ))  # fmt: skip
+        some = np.diff(offsets) > 0
+        after = np.arange(1, len(at) + 1)
+        after[offsets[1:][some] - 1] = offsets[:-1][some]
+        a, b, c = triangles.T
+        has = np.isin(np.stack([keys(b, c), keys(c, a), keys(a, b)], axis=1), keys(at, at[after]))
+        sides = (has @ np.array([1, 2, 4])).astype(np.uint8)
+    width = prop.GetLineWidth() if prop.GetUseLineWidthForEdgeThickness() else prop.GetEdgeWidth()
+    return {"sides": sides, "colour": (*prop.GetEdgeColor(), prop.GetEdgeOpacity()), "width": width}
 
 
 def _colours_of(mapper: Any, data: Any) -> np.ndarray | None:

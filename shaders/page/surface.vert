@@ -6,6 +6,7 @@ layout(location = 0) in vec3 place;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 own;
 layout(location = 3) in float value;
+layout(location = 4) in float edges;   // of a triangle, whose corners are its own: a bit for each side, opposite the same corner
 
 uniform mat4 clip_from_data;
 uniform mat4 view_from_data;
@@ -16,6 +17,7 @@ out vec3 view_normal;
 out vec4 own_colour;
 out vec3 data_place;
 out float own_value;
+out vec3 sides;                        // 0 on a side that has an edge
 
 void main() {
     gl_Position = clip_from_data * vec4(place, 1.0);
@@ -24,4 +26,6 @@ void main() {
     own_colour = own;
     data_place = place;
     own_value = value;
+    int corner = gl_VertexID % 3, shown = int(edges);
+    sides = max(vec3(corner == 0, corner == 1, corner == 2), vec3((shown & 1) == 0, (shown & 2) == 0, (shown & 4) == 0));
 }

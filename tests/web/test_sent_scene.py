@@ -95,8 +95,6 @@ def test_the_camera_is_no_part_of_the_scene(scene):
             lambda scene: scene.set(scene.layers[0].id, "ambient_occlusion", True),
             "ambient occlusion of 'lines.fiblets'",
         ),
-        (lambda scene: scene.set(scene.open("ball.ply").id, "show_edges", True), "the edges of 'ball.ply'"),
-        (lambda scene: scene.set(scene.open("ball.ply").id, "culling", "front"), "the culling of 'ball.ply'"),
         (lambda scene: scene.add_clip("mesh", path="ball.ply"), "the cut of 'lines.fiblets' by a closed surface"),
         (lambda scene: scene.remove(scene.layers[0].id), ""),
     ],
