@@ -9,6 +9,7 @@ import type { Lines, Renderer } from "./renderer";
 import type { Bar } from "./scene";
 
 const SVG = "http://www.w3.org/2000/svg";
+const UNREAD = "This browser lets no page read what it draws, unless you allow it to:";
 
 type Child = Node | string;
 
@@ -141,6 +142,7 @@ export class Controls {
   private save(): void {
     const { renderer } = this;
     void renderer.settled().then(() => {
+      if (!renderer.reads()) return void (this.status.textContent = `${UNREAD} a picture cannot be saved.`);
       const canvas = make("canvas", { width: String(renderer.width), height: String(renderer.height) }) as HTMLCanvasElement;
       const context = canvas.getContext("2d")!, pixels = context.createImageData(renderer.width, renderer.height);
       pixels.data.set(renderer.pixels());
@@ -293,7 +295,7 @@ export class Controls {
 
   /** Say what lies at a place of the page, and mark it. */
   pick(x: number, y: number): void {
-    const { renderer } = this, found = renderer.pick(x, y);
+    const { renderer } = this, found = renderer.reads() ? renderer.pick(x, y) : null;
     this.unmark();
     if (found) {
       const { lines, streamline, value } = found, place = renderer.placeOf(lines, streamline, x, y), world = apply(lines.model, place).slice(0, 3);
@@ -301,6 +303,7 @@ export class Controls {
       this.picked = { lines, streamline, place };
       this.told?.({ layer: renderer.scene.layers.indexOf(lines.layer), streamline, place: world });
     } else this.told?.(null);
+    if (!renderer.reads()) this.status.textContent = `${UNREAD} a click tells nothing.`;
     renderer.change();
   }
 

@@ -4,13 +4,15 @@ import { blocks, shaders } from "./engine";
 
 export type GL = WebGL2RenderingContext;
 
-export const ROW = 4096;
+/** Texels in a row of a long array's texture: WebGL 2 promises half of them, and some browsers give no more, to be all alike. */
+export const rowOf = (gl: GL): number => Math.min(4096, gl.getParameter(gl.MAX_TEXTURE_SIZE));
 
 export class GraphicsError extends Error {}
 
-/** A stage with some of its switches on. */
-function stage(name: string, features: readonly string[]): string {
-  const text = features.includes("SPRITES") ? shaders[name].replace("const bool SPRITES=false", "const bool SPRITES=true") : shaders[name];
+/** A stage with some of its switches on, for rows as long as textures hold. */
+function stage(gl: GL, name: string, features: readonly string[]): string {
+  const row = Math.log2(rowOf(gl)), named = shaders[name].replace("ROW_BITS=12", `ROW_BITS=${row}`);
+  const text = features.includes("SPRITES") ? named.replace("const bool SPRITES=false", "const bool SPRITES=true") : named;
   const region = features.find((one) => one.startsWith("REGION "));
   return (region ? text.replace(/#define REGION .*/, `#define ${region}`) : text).replace(/#define FEATURE_(\w+) [01]/g, (_, feature) => `#define FEATURE_${feature} ${features.includes(feature) ? 1 : 0}`);
 }
@@ -24,7 +26,7 @@ export class Program {
     this.handle = gl.createProgram()!;
     const made = [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]].map(([kind, name]) => {
       const shader = gl.createShader(kind as number)!;
-      gl.shaderSource(shader, stage(name as string, features));
+      gl.shaderSource(shader, stage(gl, name as string, features));
       gl.compileShader(shader);
       gl.attachShader(this.handle, shader);
       return [name as string, shader] as const;
@@ -115,35 +117,35 @@ function plain(gl: GL): void {
   for (const name of ["TEXTURE_WRAP_S", "TEXTURE_WRAP_T"] as const) gl.texParameteri(gl.TEXTURE_2D, gl[name], gl.CLAMP_TO_EDGE);
 }
 
-/** Place for a long array, as rows of ROW texels. */
+/** Place for a long array, as rows of texels. */
 export function emptyRows(gl: GL, format: Format, texels: number, what: string): WebGLTexture {
-  const [internal] = FORMATS[format], height = Math.max(1, Math.ceil(texels / ROW)), most = gl.getParameter(gl.MAX_TEXTURE_SIZE);
-  if (height > most) throw new GraphicsError(`The ${what} have ${texels} texels; this device's textures hold ${most * ROW}. Make a page of fewer streamlines.`);
+  const [internal] = FORMATS[format], row = rowOf(gl), height = Math.max(1, Math.ceil(texels / row)), most = gl.getParameter(gl.MAX_TEXTURE_SIZE);
+  if (height > most) throw new GraphicsError(`The ${what} have ${texels} texels; this device's textures hold ${most * row}. Make a page of fewer streamlines.`);
   const texture = gl.createTexture()!;
   gl.bindTexture(gl.TEXTURE_2D, texture);
   plain(gl);
-  gl.texStorage2D(gl.TEXTURE_2D, 1, gl[internal], ROW, height);
+  gl.texStorage2D(gl.TEXTURE_2D, 1, gl[internal], row, height);
   return texture;
 }
 
 /** Put texels of an array into such rows, and what else is in them. What does not fill the last row is copied; the rest is not. */
 export function fillRows(gl: GL, texture: WebGLTexture, format: Format, data: Uint8Array | Uint16Array | Uint32Array, from: number, to: number): void {
-  const [, layout, type, components, Kind] = FORMATS[format], step = ROW * components;
-  const whole = Math.floor(data.length / step), last = Math.ceil(to / ROW);
+  const [, layout, type, components, Kind] = FORMATS[format], width = rowOf(gl), step = width * components;
+  const whole = Math.floor(data.length / step), last = Math.ceil(to / width);
   gl.bindTexture(gl.TEXTURE_2D, texture);
   gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
-  for (let row = Math.floor(from / ROW); row < Math.min(whole, last); row += 256) {
+  for (let row = Math.floor(from / width); row < Math.min(whole, last); row += 256) {
     const n = Math.min(256, whole - row, last - row);
-    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, row, ROW, n, gl[layout], gl[type], data.subarray(row * step, (row + n) * step));
+    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, row, width, n, gl[layout], gl[type], data.subarray(row * step, (row + n) * step));
   }
   if (last > whole) {
     const rest = new Kind(step);
     rest.set(data.subarray(whole * step));
-    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, whole, ROW, 1, gl[layout], gl[type], rest);
+    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, whole, width, 1, gl[layout], gl[type], rest);
   }
 }
 
-/** A long array as rows of ROW texels. */
+/** A long array as rows of texels. */
 export function rows(gl: GL, format: Format, data: Uint8Array | Uint16Array | Uint32Array, what: string): WebGLTexture {
   const texels = Math.ceil(data.length / FORMATS[format][3]), texture = emptyRows(gl, format, texels, what);
   fillRows(gl, texture, format, data, 0, texels);

@@ -28,6 +28,12 @@ const FARTHEST = 0x3f800000;  // 1.0
 const MODES = { direction: 0, solid: 1, streamline: 2, value: 3, point: 4 };
 const LIGHTS = { none: 0, line: 1, illuminated: 2 };
 
+/**
+ * Whether words that were read of a texture with one component are as WebGL would have the other three. Browsers that do not
+ * want users to be recognised by how their devices draw give noise instead, until a user allows more.
+ */
+const asDrawn = ([, g, b, a]: Uint32Array): boolean => g === 0 && b === 0 && a === 1;
+
 /** Fiblets of the scene, with what colours and hides them. */
 export class Lines {
   readonly set: FibletSet;
@@ -289,6 +295,7 @@ export class Renderer {
     if (!read) return null;
     const words = new Uint32Array(4 * columns * rows);
     gl.readPixels(0, 0, columns, rows, gl.RGBA_INTEGER, gl.UNSIGNED_INT, words);
+    if (!asDrawn(words)) words.fill(FARTHEST);  // nothing is known to be hidden
     return { size: FAR_TILE, columns, rows, depths: new Float32Array(words.buffer) };
   }
 
@@ -711,6 +718,14 @@ export class Renderer {
     if (translucent) translucent.finish(this.program("page/screen.vert", "page/mixed.frag").use(), this.buffers.drawn);
     gl.disable(gl.BLEND);
     gl.depthMask(true);
+  }
+
+  /** Whether what is read of pictures is what was drawn. */
+  reads(): boolean {
+    const { gl } = this, word = new Uint32Array(4);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.buffers.far);
+    gl.readPixels(0, 0, 1, 1, gl.RGBA_INTEGER, gl.UNSIGNED_INT, word);
+    return asDrawn(word);
   }
 
   /** What a pixel of the canvas shows, counted from its upper left corner in pixels of the page. */

@@ -2,13 +2,13 @@
 // textures. It stands for fiblets/data/culling.glsl and fiblets/data/decoding.glsl: the functions are the same, and everything
 // that decodes is the engine's own text.
 //
-// Rows are ROW texels long; words are as the file has them (pvfiblets/codec/layout.py).
+// Words are as the file has them (pvfiblets/codec/layout.py).
 
 #include "frame/blocks.glsl"
 #include "uniforms/Coding.glsl"
 #include "uniforms/Rotations.glsl"
+#include "page/rows.glsl"
 
-const int ROW_BITS = 12;
 const uint chunk_first_rank = 0u, chunk_pages = 0u;
 
 uniform highp usampler2D anchor_texels;      // rg32ui
@@ -16,8 +16,6 @@ uniform highp usampler2D page_texels;        // rgba32ui: rank, first code, firs
 uniform highp usampler2D decoding_texels;    // r32ui
 uniform highp usampler2D code_texels;        // r32ui
 uniform uint chunk_fiblets;
-
-ivec2 texel(uint index) { return ivec2(int(index & ((1u << uint(ROW_BITS)) - 1u)), int(index >> uint(ROW_BITS))); }
 
 uvec2 anchor_words(uint f) { return texelFetch(anchor_texels, texel(f), 0).xy; }
 uvec4 page_words(uint row) { return texelFetch(page_texels, texel(row), 0); }

@@ -11,7 +11,7 @@ uniform vec3 one_colour;
 // bits: of a value, or a colour.
 vec4 colour_of_line(uint streamline, vec3 tangent, uint bits) {
     if (mode == 0) return vec4(abs(tangent), 1.0);
-    if (mode == 2) return texelFetch(colours, ivec2(int(streamline & 4095u), int(streamline >> 12u)), 0);
+    if (mode == 2) return texelFetch(colours, texel(streamline), 0);
     if (mode == 3) return of_value(uintBitsToFloat(bits));
     if (mode == 4) return unpackUnorm4x8(bits);
     return vec4(one_colour, 1.0);

@@ -43,7 +43,7 @@ vec4 lit_line(ivec2 pixel, uvec4 word) {
     vec3 tangent = unpacked_tangent(word.y);
     vec4 own = colour_of_line(streamline, tangent, word.w);
     if (chosen_colour.a + faded.a > 0.0) {
-        uint is_chosen = texelFetch(chosen, ivec2(int(streamline & 4095u), int(streamline >> 12u)), 0).r;
+        uint is_chosen = texelFetch(chosen, texel(streamline), 0).r;
         vec4 mark = is_chosen != 0u ? chosen_colour : faded;
         own.rgb = mix(own.rgb, mark.rgb, mark.a);
     }

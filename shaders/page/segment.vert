@@ -11,9 +11,9 @@
 #include "fiblets/segments/joint.glsl"
 #include "fiblets/attributes/tangent.glsl"
 #include "page/far_tile_size.glsl"
+#include "page/rows.glsl"
 #include "page/segment_varyings.glsl"
 
-const int ROW_BITS = 12;
 const bool SPRITES = false;
 
 layout(location = 0) in uvec4 slot_from;    // point, tangent
@@ -34,20 +34,20 @@ uniform highp usampler2D kept_points;  // r32ui, a bit for each point: 1 where i
 
 bool point_kept(uint point) {
     uint word = point >> 5u;
-    return ((texelFetch(kept_points, ivec2(int(word & 4095u), int(word >> 12u)), 0).x >> (point & 31u)) & 1u) != 0u;
+    return ((texelFetch(kept_points, texel(word), 0).x >> (point & 31u)) & 1u) != 0u;
 }
 #endif
 #if FEATURE_VALUES_COLOUR
 uniform highp sampler2D point_colours; // rgba8, by point
 
-vec4 colour_of(uint point) { return texelFetch(point_colours, ivec2(int(point & 4095u), int(point >> 12u)), 0); }
+vec4 colour_of(uint point) { return texelFetch(point_colours, texel(point), 0); }
 #endif
 #if FEATURE_VALUES_STORED
 uniform highp usampler2D value_texels; // r8ui or r16ui, by point
 uniform vec3 value_code;               // value of code 0, value per code, the code of NaN
 
 float value_of(uint point) {
-    uint code = texelFetch(value_texels, ivec2(int(point & 4095u), int(point >> 12u)), 0).x;
+    uint code = texelFetch(value_texels, texel(point), 0).x;
     return float(code) == value_code.z ? uintBitsToFloat(0x7FC00000u) : value_code.x + value_code.y * float(code);
 }
 #endif
@@ -68,7 +68,7 @@ bool hidden(ClippedSegment piece) {
 
 void main() {
     int index = SPRITES ? gl_VertexID : gl_InstanceID, place = first_item + index / share_size;
-    uvec4 item = texelFetch(items, ivec2(place & ((1 << ROW_BITS) - 1), place >> ROW_BITS), 0);
+    uvec4 item = texelFetch(items, texel(uint(place)), 0);
     uint points = item.z & 63u, share = item.z >> 8u;
     bool begins = (item.z & 64u) != 0u, ends = (item.z & 128u) != 0u;
     uint k = share * uint(share_size) + uint(index % share_size), count = points - (ends && points > 1u ? 1u : 0u);
@@ -76,7 +76,7 @@ void main() {
     gl_PointSize = 1.0;
     if (k >= count) return;
 #if FEATURE_STREAMLINE_MASK
-    if (texelFetch(kept, ivec2(int(item.x & 4095u), int(item.x >> 12u)), 0).x == 0u) return;
+    if (texelFetch(kept, texel(item.x), 0).x == 0u) return;
 #endif
     bool start = k == 0u && begins, cap = k + 1u == count && ends;
     uint here = item.y + k, there = item.y + min(k + 1u, points - (ends ? 1u : 0u));

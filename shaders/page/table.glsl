@@ -1,5 +1,7 @@
 // A value through a look-up table, by vtkLookupTable's rules (shaders/resolve/colour_point_scalar.glsl).
 
+#include "page/rows.glsl"
+
 uniform highp sampler2D table;         // rgba8: entries, then below, above, NaN
 uniform vec4 table_range;              // low, high, entries per unit, entries
 uniform int logarithm;
@@ -13,5 +15,5 @@ vec4 of_value(float value) {
         else if (value > table_range.y) entry = n + 1;
         else entry = int(min((value - table_range.x) * table_range.z, float(n - 1)));
     }
-    return texelFetch(table, ivec2(entry & 4095, entry >> 12), 0);
+    return texelFetch(table, texel(uint(entry)), 0);
 }

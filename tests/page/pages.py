@@ -13,9 +13,11 @@ from tests.web.browsing import PATIENCE
 class Page:
     """A page that was opened from a file."""
 
-    def __init__(self, browser, path, *, size=(200, 160), **options):
+    def __init__(self, browser, path, *, size=(200, 160), before="", **options):
         self.context = browser.new_context(viewport={"width": size[0], "height": size[1]}, **options)
         self.page = self.context.new_page()
+        if before:
+            self.page.add_init_script(before)  # runs before what the page has
         self.page.set_default_timeout(PATIENCE)
         self.errors, self.requests = [], []
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))

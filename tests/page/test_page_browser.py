@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import base64
+import io
 import re
 
 import numpy as np
 import pytest
 import pyvista as pv
+from PIL import Image
 
 import pvfiblets
 from pvfiblets.page.scene import CameraPlace, PageScene, fiblet_layer
 from pvfiblets.page.writing import write_page
-from tests.page.pages import until
+from pvfiblets.synthetic import brain_streamlines
+from tests.page.pages import differing, until
 
 
 @pytest.fixture(scope="module")
@@ -101,6 +104,66 @@ def test_page_fills_small_and_large_windows(figure, visit):
         page = visit(figure, size=size)
         assert page.picture().shape == (size[1], size[0], 3)
         assert page.page.evaluate("document.documentElement.scrollWidth") == size[0]
+
+
+# Browsers that would have all users alike (Firefox where it resists fingerprinting, as the Tor Browser does) promise no
+# more than WebGL 2 does, and give noise for what is read of a picture.
+LEAST = """
+const own = WebGL2RenderingContext.prototype, {getParameter, texStorage2D} = own, most = 2048;
+own.getParameter = function (name) { return name === this.MAX_TEXTURE_SIZE ? most : getParameter.call(this, name); };
+own.texStorage2D = function (target, levels, format, width, height) {
+    if (Math.max(width, height) <= most) texStorage2D.call(this, target, levels, format, width, height);
+};
+"""
+NOISE = """
+const own = WebGL2RenderingContext.prototype, {readPixels} = own;
+own.readPixels = function (...given) {
+    readPixels.apply(this, given);
+    crypto.getRandomValues(given[6]);
+};
+"""
+
+
+@pytest.fixture(scope="module")
+def dense(tmp_path_factory):
+    """Return a page whose data take several rows of textures, of points with values."""
+    lines = list(brain_streamlines(200, seed=3))
+    values = np.concatenate([np.linspace(0.0, 1.0, len(line)) for line in lines])
+    fiblets = pvfiblets.compress(
+        pvfiblets.Streamlines.from_list(lines, per_point={"share": values}), per_point=["share"]
+    )
+    plotter = pv.Plotter(off_screen=True, window_size=(200, 160))
+    plotter.set_background("white")
+    plotter.add_fiblets(fiblets, scalars="share", show_scalar_bar=False)
+    path = plotter.fiblets.export_page(tmp_path_factory.mktemp("dense") / "dense.html")[0]
+    plotter.close()
+    return path
+
+
+def test_page_draws_with_the_least_that_browsers_have(dense, visit):
+    expected = visit(dense).picture()
+    assert (expected != 255).any(axis=2).mean() > 0.1
+    np.testing.assert_array_equal(visit(dense, before=LEAST).picture(), expected)
+
+
+def test_page_that_may_not_read_its_picture_shows_it_and_says_why_clicks_tell_nothing(dense, visit):
+    def shown(page):
+        page.settled()
+        for _ in range(2):  # what others hide is left out, by what was seen last
+            page.page.evaluate("[pvfiblets.few = 0, pvfiblets.change(), pvfiblets.settled()][2]")
+        data = page.page.locator("#view").screenshot()
+        return np.asarray(Image.open(io.BytesIO(data)).convert("RGB")).astype(np.int16)
+
+    page = visit(dense, before=NOISE)
+    wrong, drawn = differing(shown(page), shown(visit(dense)))
+    assert drawn > 0.1
+    assert wrong < 1e-3  # of two lines at the same depth either may be drawn
+    page.page.mouse.click(100, 80)
+    said = "This browser lets no page read what it draws, unless you allow it to: a click tells nothing."
+    assert page.page.locator("#status").inner_text() == said
+    page.page.click("#panel summary")
+    page.page.get_by_role("button", name="Save picture").click()
+    until(page.page, "document.getElementById('status').textContent.endsWith('a picture cannot be saved.')")
 
 
 def _ink(page, rows):

@@ -18,9 +18,10 @@ from tests.conftest import NO_FIREFOX
 from tests.display import display
 
 RELAY = Path(__file__).with_name("firefox_relay.py")
-# Files may not read other files, as users have it: what drives browsers would allow it.
+# Files may not read other files, as users have it: what drives browsers would allow it. Nothing opens over the page.
 PREFERENCES = {
     "webgl.force-enabled": True,
+    "browser.download.alwaysOpenPanel": False,
     "remote.prefs.recommended": False,
     "security.fileuri.strict_origin_policy": True,
 }

@@ -3,7 +3,8 @@
 Playwright speaks WebDriver BiDi to stock Firefox, and for each context asks for what only the newest ones know, such as
 overrides of media features, even where a test wants none. Distributions have releases with extended support: those
 answer "unknown command", with which all ends. Here commands of the module `emulation` that Firefox does not know are
-answered as if done; all else is passed on as it is.
+answered as if done, and downloads of what a page itself has made, which those releases do not number, go by their
+address. All else is passed on as it is.
 """
 
 from __future__ import annotations
@@ -20,11 +21,14 @@ LISTENS = re.compile(rb"WebDriver BiDi listening on (ws://\S+)")
 
 
 def forgiven(text: str, asked: dict[int, str]) -> str:
-    """Return Firefox's message, or what is said instead of "unknown command"."""
+    """Return Firefox's message, or what is said instead of it."""
     message = json.loads(text)
     method = asked.pop(message.get("id"), "")
     if message.get("error") == "unknown command" and method.startswith("emulation."):
         return json.dumps({"type": "success", "id": message["id"], "result": {}})
+    if message.get("method", "").startswith("browsingContext.download") and message["params"]["navigation"] is None:
+        message["params"]["navigation"] = message["params"]["url"]
+        return json.dumps(message)
     return text
 
 

@@ -145,3 +145,16 @@ def test_firefox_draws_by_itself(browser, served):
         assert not here.errors
     finally:
         here.close()
+
+
+def test_pictures_and_scripts_are_fetched(revisit):
+    """The last one: Firefox's own window of downloads takes the keys from the page's."""
+    here = revisit("lines.fiblets")
+    with here.page.expect_download() as download:
+        here.press("c")
+    assert download.value.path().read_bytes().startswith(b"\x89PNG")
+    here.page.click("[data-action=script]")
+    text = here.page.locator("#script").inner_text()
+    with here.page.expect_download() as download:
+        here.page.click("#dialog-script button:has-text('Download')")
+    assert download.value.path().read_text().split() == text.split()
