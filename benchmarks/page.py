@@ -195,6 +195,16 @@ def opened(browser: Any, url: str, turns: dict[str, str]) -> dict[str, float]:
     return {key: round(value, 3) for key, value in found.items()}
 
 
+def tried(browser: Any, url: str, turns: dict[str, str]) -> dict[str, Any]:
+    """Return what :func:`opened` finds, or why another program's page did not open: some take no large sets."""
+    from playwright.sync_api import Error
+
+    try:
+        return dict(opened(browser, url, turns))
+    except Error as error:
+        return {"failed": error.message.splitlines()[0]}
+
+
 def measure(points: float, browser: Any, folder: Path, base: str, most_vtk: float) -> list[dict[str, Any]]:
     """Return a row for each program."""
     lines = brain_streamlines(max(1, round(points / 188)), seed=4)
@@ -212,12 +222,12 @@ def measure(points: float, browser: Any, folder: Path, base: str, most_vtk: floa
         {"program": "niivue", "bytes": data + (folder / "niivue.js").stat().st_size, "data_bytes": data},
     ]
     rows[0] |= opened(browser, f"{base}/ours.html", OURS)
-    rows[1] |= opened(browser, f"{base}/niivue.html?file=lines.trk", {"turned": "(frames) => turn(frames)"})
+    rows[1] |= tried(browser, f"{base}/niivue.html?file=lines.trk", {"turned": "(frames) => turn(frames)"})
     if n <= most_vtk:
         export_vtk(lines, folder / "vtk.html")
         size = (folder / "vtk.html").stat().st_size
         rows.append({"program": "pyvista", "bytes": size, "data_bytes": size})
-        rows[-1] |= opened(browser, f"{base}/vtk.html", VTK)
+        rows[-1] |= tried(browser, f"{base}/vtk.html", VTK)
     for row in rows:
         row |= {"points": n, "data_bytes_per_point": round(row["data_bytes"] / n, 3)}
         print(row, flush=True)
