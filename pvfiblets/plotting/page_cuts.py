@@ -13,6 +13,9 @@ from pvfiblets.query.shapes import SPHERE, SURFACE
 
 __all__ = ["cuts_of"]
 
+OF_THE_READER = 2
+"""Planes of the slab that a page's reader may cut with, which shares the places of clip planes."""
+
 
 def cuts_of(planes: npt.NDArray[np.float64], region: Any) -> tuple[dict[str, Any], bool]:
     """Return what cuts streamlines.
@@ -32,7 +35,7 @@ def cuts_of(planes: npt.NDArray[np.float64], region: Any) -> tuple[dict[str, Any
         Whether that is all. Closed surfaces are left out, with what of the region is no plane: along a pixel's ray
         they begin and end any number of times, of which a page keeps no list.
     """
-    flat, rest = planes_of(region, max(MAX_CLIP_PLANES - len(planes), 0))
+    flat, rest = planes_of(region, max(MAX_CLIP_PLANES - OF_THE_READER - len(planes), 0))
     planes = np.concatenate([planes, flat])
     found: dict[str, Any] = {"planes": planes.tolist()} if len(planes) else {}
     if rest is None:

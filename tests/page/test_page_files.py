@@ -128,6 +128,10 @@ def test_cuts_go_along_but_for_closed_surfaces_which_are_named(fiblets, tmp_path
     np.testing.assert_allclose(ball["ball"], [[0.2, 0, 0, -0.2], [0, 0.2, 0, -0.4], [0, 0, 0.2, -0.6]])
     np.testing.assert_allclose(plane["planes"], [[1.0, 0.0, 0.0, -4.0]])
     assert (ball["centre"], layer["cut"]["program"]) == ([1.0, 2.0, 3.0], [0, 1, -1, -3])
+    actor.clip(regions.Box((0.0, 4.0, 0.0, 4.0, 0.0, 4.0)), name="any")
+    (layer,) = page_of(plotter).layers
+    assert len(layer["planes"]) == 1  # two of eight places are left for the reader's slab
+    assert len(layer["cut"]["leaves"][0]["planes"]) == 6
     actor.clip(pv.Sphere(radius=5.0), name="any")
     with pytest.warns(UserWarning, match="leaves out the cut of 'lines' by a closed surface: it cannot draw them"):
         plotter.fiblets.export_page(tmp_path / "figure.html")
