@@ -222,6 +222,7 @@ def measure(points: float, browser: Any, folder: Path, base: str, most_vtk: floa
         {"program": "niivue", "bytes": data + (folder / "niivue.js").stat().st_size, "data_bytes": data},
     ]
     rows[0] |= opened(browser, f"{base}/ours.html", OURS)
+    print(n, rows[0], flush=True)  # others may take minutes
     rows[1] |= tried(browser, f"{base}/niivue.html?file=lines.trk", {"turned": "(frames) => turn(frames)"})
     if n <= most_vtk:
         export_vtk(lines, folder / "vtk.html")

@@ -149,7 +149,7 @@ def main() -> None:
     small = brain(100, 0.5)
     small.clusters()
     small.similar([0])  # compiled
-    sets = [(path.stem, lambda path=path: pvfiblets.read(path).compress()) for path in options.file]
+    sets = [(path.stem, lambda path=path: pvfiblets.compress(pvfiblets.read(path))) for path in options.file]
     sets += [("brain", lambda n=int(n): brain(n, 0.5)) for n in options.streamlines]
     for name, make in sets:
         for row in measure(name, make(), options.repeats, int(options.reference)):
