@@ -119,7 +119,9 @@ def add_all(
     for name, actor in _actors(renderer):
         if name in besides:
             continue
+        bars = len(scene.bars)
         _add_actor(scene, name, actor, unable, controls=controls)
+        scene.bars[bars:] = _as_shown(plotter, actor, scene.bars[bars:])
         names += [name] * (len(scene.layers) - len(names))
     scene.lights = list(_lights(renderer))
     scene.letters = any(layer["kind"] == "fiblets" for layer in scene.layers)
@@ -132,6 +134,14 @@ def _actors(renderer: Any) -> Iterator[tuple[str, Any]]:
     for name, actor in renderer.actors.items():
         if actor.GetVisibility():
             yield name, actor
+
+
+def _as_shown(plotter: Any, actor: Any, bars: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Return an actor's colour bars with the title that the plotter's has, and none if that shows none."""
+    shown = plotter.scalar_bars
+    titles = [title for title, mappers in shown._scalar_bar_mappers.items()  # noqa: SLF001 - it has no other list
+              if actor.GetMapper() in mappers and shown[title].GetVisibility()]  # fmt: skip
+    return [{**bar, "title": titles[0]} for bar in bars if titles]
 
 
 def _add_actor(scene: PageScene, name: str, actor: Any, unable: list[str], *, controls: bool) -> None:

@@ -151,6 +151,20 @@ def test_a_plotter_that_was_never_shown_is_seen_as_its_first_picture_is(fiblets)
     plotter.close()
 
 
+def test_bars_are_those_that_the_plotter_shows(fiblets):
+    plotter = pv.Plotter(off_screen=True, window_size=(60, 40))
+    lengths = {"scalars": np.arange(3.0), "show_scalar_bar": True}
+    plotter.add_fiblets(fiblets, name="a", **lengths, scalar_bar_args={"title": "Length (mm)"})
+    plotter.add_fiblets(fiblets, name="b", **lengths | {"show_scalar_bar": False})
+    mesh = pv.Sphere()
+    mesh["height"] = mesh.points[:, 2]
+    plotter.add_mesh(mesh, scalars="height", scalar_bar_args={"title": "Height"})
+    assert [bar["title"] for bar in page_of(plotter).bars] == ["Length (mm)", "Height"]
+    plotter.remove_scalar_bar("Height")
+    assert [bar["title"] for bar in page_of(plotter).bars] == ["Length (mm)"]
+    plotter.close()
+
+
 def test_notebook_keeps_the_page(fiblets):
     plotter = pv.Plotter(off_screen=True, window_size=(100, 80))
     plotter.add_fiblets(fiblets)
