@@ -11,6 +11,7 @@ from vtkmodules.vtkCommonCore import vtkFloatArray
 
 from pvfiblets.antialias import VARIABLE
 from pvfiblets.engine.effects.sample_positions import sample_positions
+from pvfiblets.engine.fiblets.pipelines import compute
 from pvfiblets.mappers.shifted_cameras import shifted
 from tests.gl_calls import possible, recording
 
@@ -123,8 +124,9 @@ def test_any_change_begins_anew(scene):
 
 @pytest.mark.skipif(not possible(), reason="calls are recorded on x86-64 and Linux only")
 @pytest.mark.parametrize("style", ["lines", "density", "translucent"])
-def test_samples_do_not_wait_for_the_gpu(style):
+def test_samples_do_not_wait_for_the_gpu(style, monkeypatch):
     """Samples of sums go by the range of their picture, too: they are parts of one."""
+    monkeypatch.setattr(compute, "READ_LISTS", False)  # as on a card
     with recording() as calls, drawn() as scene:
         actor = ours(scene)
         if style == "translucent":

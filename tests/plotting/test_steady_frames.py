@@ -11,6 +11,7 @@ import pyvista as pv
 
 import pvfiblets.plotting  # noqa: F401 - registers the components
 from pvfiblets import compress
+from pvfiblets.engine.fiblets.pipelines import compute
 from pvfiblets.synthetic import brain_streamlines
 from tests.drivers import MESH
 from tests.gl_calls import possible, recording
@@ -21,6 +22,12 @@ SIZE = (160, 120)
 BALL = pv.Sphere(radius=30.0)
 LATER = 4
 """Frames after which numbers of a frame have come back."""
+
+
+@pytest.fixture(autouse=True)
+def as_on_a_card(monkeypatch):
+    """Software is asked which classes of fiblets it has while it has not compiled all."""
+    monkeypatch.setattr(compute, "READ_LISTS", False)
 
 
 @pytest.fixture(scope="module")

@@ -338,9 +338,10 @@ class ComputePipeline:
         """
         classes = [(part, [*features, *self._int64]) for part, features in request.classes(one=self._one_class)]
         name = f"fiblets/compute/{stage}.comp"
-        if not (READ_LISTS and self._software) or all(self._programs.has_compute(name, each) for _, each in classes):
+        made = all(self._programs.has_compute(name, each) for _, each in classes)
+        size = self._round_arguments * ARGUMENT_BYTES  # 0 without fiblets
+        if made or not (READ_LISTS and self._software and size):
             return classes
-        size = self._round_arguments * ARGUMENT_BYTES
         self._ctx.memory_barrier(moderngl.BUFFER_UPDATE_BARRIER_BIT)
         lists = self._own["visibility_bits"].read(size, offset=4 * self._argument_base + number * size)
         lengths = np.frombuffer(lists, np.uint32).reshape(-1, CLASSES, ARGUMENT_BYTES // 4)[..., -1]
