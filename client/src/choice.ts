@@ -1,7 +1,7 @@
 /** Which streamlines the reader has chosen. */
 
 import type { Region } from "./regions";
-import type { Lines } from "./renderer";
+import type { Lines } from "./lines";
 import type { Control } from "./scene";
 
 /** Of one set: those of the figure, within all ranges, regions and groups that the reader has set. */

@@ -4,8 +4,10 @@ import { Vec, apply, product, scaled } from "./camera";
 import { Choice } from "./choice";
 import { fromBase64 } from "./engine";
 import { asWords } from "./fiblets";
+import { ALL_ONES } from "./gl";
+import type { Lines } from "./lines";
 import { Region, outline } from "./regions";
-import type { Lines, Renderer } from "./renderer";
+import type { Renderer } from "./renderer";
 import type { Bar } from "./scene";
 
 const SVG = "http://www.w3.org/2000/svg";
@@ -320,7 +322,7 @@ export class Controls {
   }
 
   private unmark(): void {
-    for (const lines of this.renderer.lines) lines.marked = 0xffffffff;
+    for (const lines of this.renderer.lines) lines.marked = ALL_ONES;
     this.picked = null;
     this.status.textContent = "";
   }

@@ -7,6 +7,9 @@ export type GL = WebGL2RenderingContext;
 /** Texels in a row of a long array's texture: WebGL 2 promises half of them, and some browsers give no more, to be all alike. */
 export const rowOf = (gl: GL): number => Math.min(4096, gl.getParameter(gl.MAX_TEXTURE_SIZE));
 
+/** A word that names no streamline. */
+export const ALL_ONES = 0xffffffff;
+
 export class GraphicsError extends Error {}
 
 /** A stage with some of its switches on, for rows as long as textures hold. */

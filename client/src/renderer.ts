@@ -8,11 +8,11 @@
 import type { Archive } from "./archive";
 import { Bounds, Camera, Mat, Vec, apply, identity, inverse, linear, product } from "./camera";
 import { Cut, expression, raysOf } from "./cuts";
-import { fromBase64 } from "./engine";
-import { Block, FibletSet, PointValues, asCodes, asWords } from "./fiblets";
-import { GL, GraphicsError, Program, UniformBlock, framebuffer, lookUpTable, rows, target } from "./gl";
+import type { Block, FibletSet } from "./fiblets";
+import { ALL_ONES, GL, GraphicsError, Program, UniformBlock, framebuffer, target } from "./gl";
 import type { FarDepths } from "./hiding";
-import type { FibletLayer, Scene } from "./scene";
+import { Lines } from "./lines";
+import type { Scene } from "./scene";
 import { Drawn, ImageSlice, Surface } from "./surfaces";
 import { Translucent, floatBits } from "./translucent";
 
@@ -23,7 +23,6 @@ const LATER = 0.5;     // of the time that they have taken until then
 const TILE = 16;       // pixels; shaders/page/tile_size.glsl
 const FAR_TILE = 4;    // pixels; shaders/page/far_tile_size.glsl
 const LONGEST_SPRITE = 40; // pixels; squares of more are not drawn by every device
-const ALL_ONES = 0xffffffff;
 const FARTHEST = 0x3f800000;  // 1.0
 const MODES = { direction: 0, solid: 1, streamline: 2, value: 3, point: 4 };
 const LIGHTS = { none: 0, line: 1, illuminated: 2 };
@@ -33,53 +32,6 @@ const LIGHTS = { none: 0, line: 1, illuminated: 2 };
  * want users to be recognised by how their devices draw give noise instead, until a user allows more.
  */
 const asDrawn = ([, g, b, a]: Uint32Array): boolean => g === 0 && b === 0 && a === 1;
-
-/** Fiblets of the scene, with what colours and hides them. */
-export class Lines {
-  readonly set: FibletSet;
-  readonly model: Mat;
-  values: PointValues | null = null;      // that the G-buffer holds
-  colours: WebGLTexture | null = null;   // by streamline, or by point
-  table: WebGLTexture | null = null;
-  tableRange: number[] = [0, 1, 1, 1];
-  kept: WebGLTexture | null = null;
-  chosen: WebGLTexture | null = null;
-  opacities: WebGLTexture | null = null;
-  keptPoints: WebGLTexture | null = null;
-  shownValues: [number, number] = [1, 0];
-  marked = ALL_ONES;
-
-  constructor(private gl: GL, readonly layer: FibletLayer, readonly index: number, data: Uint8Array[], archive: Archive, set?: FibletSet) {
-    this.set = set ?? new FibletSet(gl, archive);
-    this.set.advance(archive.ready);
-    this.model = new Float64Array(layer.matrix ?? identity());
-    const { colours } = layer;
-    if (colours.codes) this.values = this.set.codedValues(colours.values!, asCodes(data[colours.codes.data], colours.codes.bits), colours.codes);
-    else if (colours.values !== undefined) this.values = this.set.pointValues(colours.values);
-    if (colours.data !== undefined) this.colours = rows(gl, "rgba8", data[colours.data], "colours");
-    if (colours.table !== undefined) [this.table, this.tableRange] = lookUpTable(gl, fromBase64(colours.table), colours.clim!, !!colours.log);
-    if (layer.kept !== undefined) this.keep(data[layer.kept]);
-    if (layer.chosen) this.chosen = rows(gl, "r8ui", data[layer.chosen.data], "streamlines");
-    if (layer.through?.opacities !== undefined) this.opacities = rows(gl, "r8ui", data[layer.through.opacities], "streamlines");
-    if (layer.kept_points !== undefined) this.keptPoints = rows(gl, "r32ui", asWords(data[layer.kept_points]), "points");
-  }
-
-  /** Give back all but the set. */
-  release(): void {
-    if (this.values) this.set.forget(this.values);
-    for (const texture of [this.colours, this.table, this.kept, this.chosen, this.opacities, this.keptPoints]) if (texture) this.gl.deleteTexture(texture);
-  }
-
-  get byPoint(): boolean {
-    return this.layer.colours.mode === "point";
-  }
-
-  /** Draw those streamlines alone whose byte is not 0; null: all. */
-  keep(bytes: Uint8Array | null): void {
-    if (this.kept) this.gl.deleteTexture(this.kept);
-    this.kept = bytes && rows(this.gl, "r8ui", bytes, "streamlines");
-  }
-}
 
 /** A block to be drawn: all of it, its items that are likely to be seen, those others that these leave in sight, or all behind these. */
 interface Job {

@@ -4,13 +4,12 @@
  */
 
 import { Vec, apply, inverse, product } from "./camera";
-import { GL, Program, framebuffer, target } from "./gl";
-import type { Lines } from "./renderer";
+import { ALL_ONES, GL, Program, framebuffer, target } from "./gl";
+import type { Lines } from "./lines";
 import type { Drawn } from "./surfaces";
 
 const SLICES = 4, GROWTH = 2.5, MOST_OPAQUE = 0.999;
 const EDGES = [1, 2, 3].map((k) => (GROWTH ** k - 1) / (GROWTH ** SLICES - 1));
-const ALL_ONES = 0xffffffff;
 const SHOULDER: Vec = [-1, 1, 1];   // whence light comes in view coordinates (shaders/resolve/line_light.glsl)
 
 /** The nearest lines of a layer, and the sums of those behind. */
