@@ -19,7 +19,6 @@ import time
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from io import BytesIO
 from typing import Any
 
 import numpy as np
@@ -28,6 +27,7 @@ from numpy.typing import NDArray
 from pvfiblets.engine.pieces import PIECE
 from pvfiblets.mappers.ahead import draw_ahead
 from pvfiblets.mappers.scene import hurry
+from pvfiblets.web.encoding import encode
 from pvfiblets.web.pace import LEVELS, Level, Pace
 from pvfiblets.web.rpc_allowlist import MOST_PIXELS
 from pvfiblets.web.touch import Fingers
@@ -287,9 +287,9 @@ class PictureStream:
     async def close(self) -> None:
         """Stop."""
         hurry(self._plotter.render_window, 0.0)
-        while self._task is not None and not self._task.done():
-            self._task.cancel()  # `asyncio.wait_for` of Python 3.11 loses it when what it waits for has just come
-            await asyncio.wait([self._task], timeout=0.1)
+        if self._task is not None:
+            self._task.cancel()
+            await asyncio.gather(self._task, return_exceptions=True)
         self._pool.shutdown(wait=False)
 
     # Drawing
@@ -352,9 +352,7 @@ class PictureStream:
         self._drawn_ahead, began = 0.0, time.perf_counter()
         for _ in draw_ahead(self._plotter.render_window, refining=refining):
             self._drawn_ahead += time.perf_counter() - began
-            with contextlib.suppress(TimeoutError):
-                await asyncio.wait_for(self._wanted.wait(), HEARD)
-            if self._wanted.is_set():
+            if await self._wanted_within(HEARD):
                 return False
             began = time.perf_counter()
         self._drawn_ahead += time.perf_counter() - began
@@ -368,13 +366,11 @@ class PictureStream:
         # Nobody is heard while a sample is drawn: where that takes long, they come when nobody has acted for a while.
         picture = self._plotter.picture
         heavy = self.times[-1] if self.times and self.times[-1] > HEAVY and not picture.fetching else 0.0
-        with contextlib.suppress(TimeoutError):
-            await asyncio.wait_for(self._wanted.wait(), max(REST, min(RESTS * heavy, LONGEST_REST)))
+        await self._wanted_within(max(REST, min(RESTS * heavy, LONGEST_REST)))
         await self._practise()
         before, fetching, sent = picture.samples, picture.fetching, time.monotonic()
         while await self._pieces(refining=True) and not self._wanted.is_set() and picture.refine():
-            with contextlib.suppress(TimeoutError):
-                await asyncio.wait_for(self._wanted.wait(), max(HEARD, heavy))
+            await self._wanted_within(max(HEARD, heavy))
             if picture.fetching and time.monotonic() - sent > SO_FAR:
                 await self._send(self._read(), self.still_quality)
                 sent = time.monotonic()
@@ -396,9 +392,15 @@ class PictureStream:
 
     async def _rests(self) -> bool:
         """Wait until the camera is at rest; ``False`` as soon as another frame is wanted."""
+        return not await self._wanted_within(max(0.0, self._moved + REST - time.monotonic()))
+
+    async def _wanted_within(self, seconds: float) -> bool:
+        """Wait, so that events are heard, until another frame is wanted; ``False`` if none is after some seconds."""
+        # Not `asyncio.wait_for`: that of Python 3.11 loses a cancelling when what it waits for has just come.
         with contextlib.suppress(TimeoutError):
-            await asyncio.wait_for(self._wanted.wait(), max(0.0, self._moved + REST - time.monotonic()))
-        return not self._wanted.is_set()
+            async with asyncio.timeout(seconds):
+                await self._wanted.wait()
+        return self._wanted.is_set()
 
     async def _drained(self) -> None:
         end = time.monotonic() + PATIENCE
@@ -493,29 +495,3 @@ class PictureStream:
         self._streamer.push_content(self.area_name, meta, content)
         self.sent += 1
         self.sent_bytes += len(content)
-
-
-def encode(pixels: NDArray[np.uint8], codec: str, quality: int) -> bytes:
-    """Return a picture's bytes.
-
-    Parameters
-    ----------
-    pixels : ndarray of uint8, shape (height, width, 3)
-        The first row is the top.
-    codec : {'jpeg', 'png', 'webp'}
-        The format.
-    quality : int
-        From 1 to 100; PNG is lossless whatever it says.
-    """
-    from PIL import Image
-
-    file = BytesIO()
-    settings: dict[str, Any] = {"quality": quality}
-    if codec == "png":
-        settings = {"compress_level": 1}
-    elif codec == "jpeg" and quality >= 90:
-        settings["subsampling"] = 0  # thin coloured lines lose their colour by it
-    elif codec == "webp":
-        settings["method"] = 1
-    Image.fromarray(pixels).save(file, codec, **settings)
-    return file.getvalue()

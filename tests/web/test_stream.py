@@ -13,13 +13,13 @@ import pyvista as pv
 from PIL import Image
 from scipy import ndimage
 
-from pvfiblets.engine.pieces import Pieces
-from pvfiblets.mappers.ahead import draw_ahead
 from pvfiblets.mappers.scene import hurry, slack
-from pvfiblets.synthetic import brain_streamlines
 from pvfiblets.web import stream as stream_module
+from pvfiblets.web.encoding import encode
 from pvfiblets.web.pace import LEVELS
-from pvfiblets.web.stream import REST, PictureStream, encode
+from pvfiblets.web.stream import REST, PictureStream
+
+from .streams import Streamer, drag, slow_stream
 
 
 def test_a_session_is_warm_before_anybody_looks(plotter):
@@ -104,53 +104,6 @@ def test_a_view_that_somebody_else_draws_is_left_out_until_it_is_asked_for():
     stream.settle()
     assert middles(encode(stream._read(), "png", 100)) == [(255, 0, 0)] * 2
     plotter.close()
-
-
-def slow_stream(plotter, seconds=1.0, **settings):
-    """Return a stream whose frames seem to take some time."""
-    stream = PictureStream(plotter, "view", **settings)
-    stream.update_size("", {"w": 200, "h": 120, "p": 1.0})
-    took = stream._pace.took
-    stream._pace.took = lambda level, _, **moved: took(level, seconds * level.cost, **moved)
-    return stream
-
-
-class Streamer:
-    """Notes what is sent."""
-
-    def __init__(self):
-        self.sizes = []
-        self.qualities = []
-
-    def push_content(self, _name, meta, _content):
-        self.sizes.append((meta["w"], meta["h"]))
-        self.qualities.append(meta["quality"])
-
-
-def drag(stream, streamer, moves=6):
-    """Drag over the picture, a frame a move, let go and wait until nothing more comes."""
-
-    def event(kind, x):
-        keys = {"ctrlKey": False, "altKey": False, "shiftKey": False}
-        return {"type": kind, "x": x, "y": 50, "w": 200, "h": 120, **keys}
-
-    async def run():
-        stream.set_streamer(streamer)
-        stream.on_interaction("", event("LeftButtonPress", 40))
-        for k in range(moves):
-            sent = len(streamer.sizes)
-            stream.on_interaction("", event("MouseMove", 40 + 4 * k))
-            async with asyncio.timeout(30):
-                while len(streamer.sizes) == sent:
-                    await asyncio.sleep(0.002)
-        stream.on_interaction("", event("LeftButtonRelease", 40 + 4 * moves))
-        async with asyncio.timeout(30):
-            while streamer.sizes[-1] != (200, 120) or streamer.qualities[-1] != stream.still_quality:
-                await asyncio.sleep(0.01)
-        await asyncio.sleep(2 * REST)
-        await stream.close()
-
-    asyncio.run(run())
 
 
 def test_slow_scenes_have_fewer_pixels_while_the_camera_moves_and_all_at_rest(plotter):
@@ -430,99 +383,6 @@ def test_haste_ends_at_rest(plotter):
         stream._resize(LEVELS[0])
     assert slack(plotter.renderer) == 0.0
     np.testing.assert_array_equal(stream._draw(), whole)
-
-
-@pytest.fixture
-def pieced(plotter, monkeypatch):
-    """A plotter of a brain whose pieces end after a group of fiblets each, and its stream, whose frames seem slow."""
-    monkeypatch.setattr(Pieces.__init__, "__defaults__", (0.0,))
-    plotter.add_fiblets(brain_streamlines(150, 0.5, seed=2))
-    return plotter, slow_stream(plotter, codec="png")
-
-
-def act_at(monkeypatch, stream, act):
-    """Have something happen after the second piece of the first whole picture; return the pieces of each."""
-    counts = []
-
-    def pieces(window, **how):
-        counts.append(0)
-        for _ in draw_ahead(window, **how):
-            counts[-1] += 1
-            if len(counts) == 1 and counts[0] == 2:
-                act()
-            yield
-
-    monkeypatch.setattr(stream_module, "draw_ahead", pieces)
-    return counts
-
-
-def pictures_of(stream, streamer):
-    """Let a picture be drawn for somebody who moves the camera, wait until it is whole, and return what was sent."""
-    sent = []
-
-    def push(name, meta, content):
-        Streamer.push_content(streamer, name, meta, content)
-        sent.append(np.asarray(Image.open(io.BytesIO(content))))
-
-    streamer.push_content = push
-
-    async def run():
-        stream.set_streamer(streamer)
-        stream.hasten()
-        async with asyncio.timeout(60):
-            while not sent or streamer.sizes[-1] != (200, 120):
-                await asyncio.sleep(0.002)
-        await asyncio.sleep(2 * REST)
-        await stream.close()
-
-    asyncio.run(run())
-    return sent
-
-
-def move(stream):
-    keys = {"ctrlKey": False, "altKey": False, "shiftKey": False}
-    for kind, x in (("LeftButtonPress", 40), ("MouseMove", 60)):
-        stream.on_interaction("", {"type": kind, "x": x, "y": 50, "w": 200, "h": 120, **keys})
-
-
-def test_a_whole_picture_is_given_up_when_somebody_acts_and_comes_later(pieced, monkeypatch):
-    plotter, stream = pieced
-    streamer = Streamer()
-    stream.warm()
-    counts = act_at(monkeypatch, stream, lambda: move(stream))
-    sent = pictures_of(stream, streamer)
-    assert stream.given_up == 1
-    assert counts[0] == 2
-    assert counts[1] > 3
-    assert [size[0] < 200 for size in streamer.sizes] == [True, True, False]  # before the move, after it, at rest
-    assert len(sent) == 3
-    plotter.camera.Azimuth(1.0)  # drawn anew, at once
-    plotter.render()
-    plotter.camera.Azimuth(-1.0)
-    plotter.render()
-    assert np.array_equal(sent[-1], stream._read())
-
-
-def test_a_whole_picture_is_finished_at_once_when_others_than_the_camera_want_one(pieced, monkeypatch):
-    _, stream = pieced
-    streamer = Streamer()
-    stream.warm()
-    counts = act_at(monkeypatch, stream, stream.request)
-    pictures_of(stream, streamer)
-    assert stream.given_up == 0
-    assert counts[0] == 2
-    assert streamer.sizes[0][0] < 200
-    assert streamer.sizes[1] == (200, 120)
-
-
-def test_quick_scenes_are_not_drawn_in_pieces(plotter, monkeypatch):
-    monkeypatch.setattr(Pieces.__init__, "__defaults__", (0.0,))
-    plotter.add_fiblets(brain_streamlines(150, 0.5, seed=2))
-    stream = slow_stream(plotter, 0.01)
-    stream.warm()
-    counts = act_at(monkeypatch, stream, lambda: None)
-    drag(stream, Streamer())
-    assert not counts
 
 
 def test_a_stream_is_closed_at_the_very_moment_of_an_event(plotter):
