@@ -81,13 +81,18 @@ def to_table(heads: str | Sequence[str], rows: Iterable[str]) -> list[str]:
 
 def write(name: str, facts: dict[str, Any], results: list[dict[str, Any]], page: str, plot: Any, folder: Path) -> None:
     """Write JSON, page and plot beside each other, named after the graphics card, and print the page."""
-    folder.mkdir(parents=True, exist_ok=True)
-    stem = folder / f"{name}-{slug(facts['card'].split('(')[0].split('/')[0])}"
-    stem.with_suffix(".json").write_text(json.dumps({**facts, "results": results}, indent=1) + "\n", encoding="utf-8")
-    stem.with_suffix(".md").write_text(page, encoding="utf-8")
-    plot(facts, results, stem.with_suffix(".png"))
+    name = f"{name}-{slug(facts['card'].split('(')[0].split('/')[0])}"
+    record(name, {**facts, "results": results}, page, folder)
+    plot(facts, results, folder / f"{name}.png")
     print(page)
-    print(f"wrote {stem}.json, .md and .png")
+    print(f"wrote {folder / name}.json, .md and .png")
+
+
+def record(name: str, content: dict[str, Any], page: str, folder: Path) -> None:
+    """Write JSON and page beside each other."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / f"{name}.json").write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+    (folder / f"{name}.md").write_text(page, encoding="utf-8")
 
 
 def pyplot() -> Any:

@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from common import machine, make_brain, on_machine
+from common import machine, make_brain, on_machine, record
 
 from pvfiblets.mappers.ahead import draw_ahead
 
@@ -146,9 +146,7 @@ def main() -> None:
     page = table(about, results)
     print(page)
     if options.output is not None:
-        (options.output / "pauses-llvmpipe.md").write_text(page, encoding="utf-8")
-        record = json.dumps({"about": about, "sets": results}, indent=1)
-        (options.output / "pauses-llvmpipe.json").write_text(record + "\n")
+        record("pauses-llvmpipe", {"about": about, "sets": results}, page, options.output)
 
 
 def table(about: dict[str, Any], results: list[dict[str, Any]]) -> str:

@@ -25,6 +25,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from common import record
 
 from pvfiblets import FibletSet, regions
 from pvfiblets.query.painting.live import LiveRegion
@@ -181,9 +182,7 @@ def main() -> None:
     page = to_page(facts, sets)
     print(page)
     if options.output is not None:
-        options.output.mkdir(parents=True, exist_ok=True)
-        (options.output / "regions.md").write_text(page, encoding="utf-8")
-        (options.output / "regions.json").write_text(json.dumps({"about": facts, "sets": sets}, indent=1) + "\n")
+        record("regions", {"about": facts, "sets": sets}, page, options.output)
 
 
 if __name__ == "__main__":

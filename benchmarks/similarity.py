@@ -22,6 +22,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from common import record
 
 import pvfiblets
 from pvfiblets import FibletSet, Streamlines
@@ -158,9 +159,7 @@ def main() -> None:
     page = to_page(facts, rows)
     print(page)
     if options.output is not None:
-        options.output.mkdir(parents=True, exist_ok=True)
-        (options.output / "similarity.md").write_text(page, encoding="utf-8")
-        (options.output / "similarity.json").write_text(json.dumps({"about": facts, "rows": rows}, indent=1) + "\n")
+        record("similarity", {"about": facts, "rows": rows}, page, options.output)
 
 
 if __name__ == "__main__":

@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from common import record
 
 from pvfiblets import formats
 from pvfiblets.formats.spool import gathered
@@ -156,10 +157,8 @@ def main() -> None:
     page = to_page(rows)
     print(page)
     if options.output is not None:
-        options.output.mkdir(parents=True, exist_ok=True)
-        (options.output / "streaming.md").write_text(page, encoding="utf-8")
         content = {"machine": about(SEED, quick=False), "rows": rows}
-        (options.output / "streaming.json").write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+        record("streaming", content, page, options.output)
 
 
 if __name__ == "__main__":
