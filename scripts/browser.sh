@@ -5,13 +5,7 @@ set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/wanted.sh"
 PACKAGES="chromium fonts-dejavu-core"
 
-opens() {
-    local name
-    for name in "${CHROMIUM:-}" /usr/bin/chromium /usr/bin/chromium-browser /usr/bin/google-chrome; do
-        if [ -n "$name" ] && [ -x "$name" ] && "$name" --version >/dev/null 2>&1; then return 0; fi
-    done
-    return 1
-}
+opens() { any_runs "${CHROMIUM:-}" /usr/bin/chromium /usr/bin/chromium-browser /usr/bin/google-chrome; }
 
 if wanted opens "the browser" "$PACKAGES"; then exit 0; fi
 {

@@ -6,13 +6,7 @@ set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/wanted.sh"
 PACKAGES="--no-install-recommends firefox-esr"
 
-opens() {
-    local name
-    for name in "${FIREFOX:-}" /usr/bin/firefox-esr /usr/bin/firefox; do
-        if [ -n "$name" ] && [ -x "$name" ] && "$name" --version >/dev/null 2>&1; then return 0; fi
-    done
-    return 1
-}
+opens() { any_runs "${FIREFOX:-}" /usr/bin/firefox-esr /usr/bin/firefox; }
 
 if wanted opens "Firefox" "$PACKAGES"; then exit 0; fi
 {

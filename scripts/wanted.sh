@@ -13,3 +13,12 @@ wanted() {
     fi
     return 1
 }
+
+# any_runs PATH...: does any of these programs run? Empty ones are passed over.
+any_runs() {
+    local path
+    for path in "$@"; do
+        if [ -x "$path" ] && "$path" --version >/dev/null 2>&1; then return 0; fi
+    done
+    return 1
+}
