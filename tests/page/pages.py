@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import base64
+import threading
 import time
+from contextlib import contextmanager
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 
 import numpy as np
 
@@ -47,6 +51,27 @@ class Page:
             }"""
         )
         return np.frombuffer(base64.b64decode(data), np.uint8).reshape(height, width, 4)[..., :3].astype(np.int16)
+
+
+class Silent(SimpleHTTPRequestHandler):
+    """Python's own server, which knows no ranges and tells nobody."""
+
+    def log_message(self, *_):
+        pass
+
+
+@contextmanager
+def serving(folder, handler=Silent):
+    """Serve a folder's files meanwhile, and give the address."""
+    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(handler, directory=str(folder)))
+    thread = threading.Thread(target=server.serve_forever, daemon=True)
+    thread.start()
+    try:
+        yield f"http://127.0.0.1:{server.server_port}"
+    finally:
+        server.shutdown()
+        server.server_close()
+        thread.join(PATIENCE / 1000)
 
 
 def until(page, expression):

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import re
 import threading
-from functools import partial
-from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from contextlib import ExitStack
 
 import numpy as np
 import pytest
@@ -13,20 +12,17 @@ import pytest
 import pvfiblets
 from pvfiblets.page.scene import CameraPlace, PageScene, encoded, fiblet_layer
 from pvfiblets.page.writing import write_page
-from tests.page.pages import Page, until
+from tests.page.pages import Page, Silent, serving, until
 
 SHORT = 70_000  # more fiblets than a page asks for together
 PATIENCE = 60.0
 
 
-class Whole(SimpleHTTPRequestHandler):
-    """Python's own server, which knows no ranges."""
+class Whole(Silent):
+    """Python's own server, which notes what is asked for."""
 
     asked: list[str]
     go_on: threading.Event
-
-    def log_message(self, *_):
-        pass
 
     def do_GET(self):
         self.asked.append(self.headers.get("Range", ""))
@@ -96,24 +92,19 @@ def folder(scene, tmp_path_factory):
 @pytest.fixture
 def serve(folder):
     """Return a function that serves the folder by a handler: the address, the handler."""
-    servers = []
+    handlers, servers = [], ExitStack()
 
     def start(kind, *, wait=False):
         handler = type(kind.__name__, (kind,), {"asked": [], "go_on": threading.Event(), "directory_path": folder})
         if not wait:
             handler.go_on.set()
-        server = ThreadingHTTPServer(("127.0.0.1", 0), partial(handler, directory=str(folder)))
-        thread = threading.Thread(target=server.serve_forever, daemon=True)
-        thread.start()
-        servers.append((server, thread, handler))
-        return f"http://127.0.0.1:{server.server_port}", handler
+        handlers.append(handler)
+        return servers.enter_context(serving(folder, handler)), handler
 
-    yield start
-    for server, thread, handler in servers:
-        handler.go_on.set()
-        server.shutdown()
-        server.server_close()
-        thread.join(PATIENCE)
+    with servers:
+        yield start
+        for handler in handlers:
+            handler.go_on.set()
 
 
 @pytest.fixture(scope="module")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import os
-import shutil
 import subprocess
 import sys
 import time
@@ -13,6 +12,7 @@ import numpy as np
 import pytest
 
 from pvfiblets.antialias import VARIABLE
+from tests.display import display
 
 from .refined_scene import Renders, drawn, grabbed, real_default, shot  # noqa: F401 - a fixture
 
@@ -127,12 +127,11 @@ plotter.close()
 
 
 def test_a_window_on_a_screen_refines_by_itself(tmp_path):
-    if shutil.which("Xvfb") is None:
-        pytest.skip("there is no Xvfb on this machine: scripts/display.sh installs it")
     without = (VARIABLE, "VTK_DEFAULT_OPENGL_WINDOW", "PYVISTA_OFF_SCREEN")
     environment = {name: value for name, value in os.environ.items() if name not in without}
-    command = ["xvfb-run", "-a", sys.executable, "-c", WINDOW]
-    done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment, timeout=120)
+    command = [sys.executable, "-c", WINDOW]
+    with display() as environment["DISPLAY"]:
+        done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment, timeout=120)
     told = [line for line in done.stdout.splitlines() if not line.startswith("\x1b")]
     # One more after the last sample: thin lines are drawn as wide as they are in samples only.
     assert told == ["turned 1", "finished 2 16"], done.stderr

@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-import threading
-from functools import partial
-from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
-
 import numpy as np
 import pytest
 import pyvista as pv
@@ -17,7 +13,7 @@ from pvfiblets.synthetic import brain_streamlines
 from tests.page import conftest as page_fixtures
 from tests.page import test_page_browser as in_use
 from tests.page import test_page_notebook as notebook
-from tests.page.pages import differing
+from tests.page.pages import differing, serving
 from tests.web import test_browser as served_pages
 from tests.web.firefox import launched_firefox
 from tests.web.test_browser_drawing import There, agrees
@@ -46,13 +42,6 @@ def browser(tmp_path_factory):
     """Return Firefox, or skip where there is none."""
     with launched_firefox(tmp_path_factory.mktemp("firefox")) as found:
         yield found
-
-
-class Silent(SimpleHTTPRequestHandler):
-    """Python's server, which tells nobody."""
-
-    def log_message(self, *_):
-        pass
 
 
 def test_page_of_all_kinds_shows_what_the_engine_shows(visit, tmp_path):
@@ -93,13 +82,8 @@ def test_data_beside_a_page_come_from_a_server_and_not_from_files(visit, tmp_pat
     lines = [np.array([[0.0, 10.0 * i, 0.0], [30.0, 10.0 * i, 0.0]]) for i in range(2)]
     fiblet_layer(scene, pvfiblets.compress(pvfiblets.Streamlines.from_list(lines)), line_width=4.0)
     path, _ = write_page(scene, tmp_path / "figure.html", largest_file=100)
-    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(Silent, directory=str(tmp_path)))
-    threading.Thread(target=server.serve_forever, daemon=True).start()
-    try:
-        assert (visit(f"http://127.0.0.1:{server.server_port}/figure.html").picture() != 255).any()
-    finally:
-        server.shutdown()
-        server.server_close()
+    with serving(tmp_path) as address:
+        assert (visit(f"{address}/figure.html").picture() != 255).any()
     page = visit(path)
     page.page.wait_for_selector("body[data-state=failed]")
     assert 'Files beside a page need one; "python -m http.server" is enough' in page.message
