@@ -68,10 +68,9 @@ def held_to(most: str | None) -> Iterator[None]:
             raise FibletsError("--max-memory: only Linux can hold a program to a limit; leave it out")
         yield
         return
-    size = memory.parse(most) if chosen or memory.of_machine() else None
-    if size is not None and not chosen:
-        size += memory.taken()
-    if size is not None and size < (least := memory.taken() + LEAST_MEMORY):
+    has = memory.taken()
+    size = memory.parse(most) + (0 if chosen else has) if chosen or memory.of_machine() else None
+    if size is not None and size < (least := has + LEAST_MEMORY):
         raise FibletsError(f"--max-memory {most}: {memory.shown(least)} are needed to begin with; give as much or more")
     try:
         with memory.limited(size):

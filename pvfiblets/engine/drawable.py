@@ -197,8 +197,7 @@ class Drawable(ABC, Generic[AnyStyle]):
                 self._give_up()
 
     def _start_picture(self) -> None:
-        self._made = None
-        self._attempt += 1
+        self._outdate()
         self._passes.begin()
         self._ctx.scissor = None
 
@@ -214,10 +213,15 @@ class Drawable(ABC, Generic[AnyStyle]):
     def _give_up(self) -> None:
         """Forget a picture that was left before its end."""
 
+    def _outdate(self) -> None:
+        """Draw anew the next time, and leave the rest of what is being drawn in pieces."""
+        self._made = None
+        self._attempt += 1
+
     def forget_picture(self) -> None:
         """Draw anew the next time, as somebody else draws into what holds the picture."""
-        self._buffer = self._made = None
-        self._attempt += 1
+        self._buffer = None
+        self._outdate()
 
     def _serves(self, outside: moderngl.Texture | None) -> bool:  # noqa: ARG002
         """Say whether a picture that was drawn without an outside serves where there is one."""
@@ -248,8 +252,7 @@ class Drawable(ABC, Generic[AnyStyle]):
         """Give a target back; nothing if there is none."""
         held = self._targets.pop(name, None)
         if held is not None:
-            self._buffer = self._made = None
-            self._attempt += 1
+            self.forget_picture()
             held[1].release()
 
     # Memory

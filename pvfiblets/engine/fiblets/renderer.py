@@ -297,8 +297,7 @@ class FibletRenderer(LinesBehind):
     @filtering.setter
     def filtering(self, wanted: Filter | None) -> None:
         self._check_alive()
-        self._made = None  # also of one that fails, as everything is there again
-        self._attempt += 1
+        self._outdate()  # also by one that fails, as everything is there again
         if self._occlusion is not None:
             self._occlusion.forget()
         self._kept.filtering = wanted
