@@ -22,6 +22,7 @@ from .jit import kernel
 __all__ = ["CELLS", "EXTENT", "Candidates", "candidates"]
 
 CELLS = 256
+TILE = 16  # cells along an edge of those whose candidates are first chosen together
 EXTENT = 1.25  # turns a little beyond the cap angle are common in closed loop
 
 
@@ -44,28 +45,64 @@ def _direction(u: float, v: float, ratio: float) -> Any:
 
 
 @kernel
+def _squared(a: Any, b: Any) -> float:
+    return (a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 + (a[2] - b[2]) ** 2
+
+
+@kernel
+def _cell(i: int, j: int, ratio: float) -> Any:
+    """Direction of a cell's middle, and the largest chord from there to one of its corners."""
+    size = 2.0 * EXTENT / CELLS
+    x, y, z = _direction((i + 0.5) * size - EXTENT, (j + 0.5) * size - EXTENT, ratio)
+    radius = 0.0
+    for corner in range(4):
+        a, b, c = _direction((i + (corner & 1)) * size - EXTENT, (j + (corner >> 1)) * size - EXTENT, ratio)
+        radius = max(radius, math.sqrt((a - x) ** 2 + (b - y) ** 2 + (c - z) ** 2))
+    return x, y, z, radius
+
+
+@kernel
 def _list_candidates(table: Any, ratio: float, start: Any, codes: Any) -> int:
-    cell = 2.0 * EXTENT / CELLS
+    tiles = CELLS // TILE
+    cells = np.empty((CELLS, CELLS, 4))
+    for j in range(CELLS):
+        for i in range(CELLS):
+            cells[j, i, 0], cells[j, i, 1], cells[j, i, 2], cells[j, i, 3] = _cell(i, j, ratio)
+    # A code that a cell lists is no farther from the tile's middle m than the nearest code is, plus 2 max|cell - m| and
+    # 2.2 radii.
+    listed, count = np.empty((tiles, tiles, CODES), np.uint8), np.zeros((tiles, tiles), np.int64)
     distance = np.empty(CODES)
-    tx, ty, tz = table[:, 0].copy(), table[:, 1].copy(), table[:, 2].copy()
+    for q in range(tiles):
+        for p in range(tiles):
+            middle = cells[q * TILE + TILE // 2, p * TILE + TILE // 2]
+            reach = radius = 0.0
+            for j in range(q * TILE, (q + 1) * TILE):
+                for i in range(p * TILE, (p + 1) * TILE):
+                    reach = max(reach, math.sqrt(_squared(cells[j, i], middle)))
+                    radius = max(radius, cells[j, i, 3])
+            nearest = 9.0
+            for code in range(CODES):
+                distance[code] = _squared(table[code], middle)
+                nearest = min(nearest, distance[code])
+            bound = (math.sqrt(nearest) + 2.0 * reach + 2.2 * radius + 2e-6) ** 2
+            for code in range(CODES):
+                if distance[code] <= bound:
+                    listed[q, p, count[q, p]] = code
+                    count[q, p] += 1
     total = 0
     for j in range(CELLS):
         for i in range(CELLS):
             start[j * CELLS + i] = total
-            x, y, z = _direction((i + 0.5) * cell - EXTENT, (j + 0.5) * cell - EXTENT, ratio)
-            radius = 0.0
-            for corner in range(4):
-                a, b, c = _direction((i + (corner & 1)) * cell - EXTENT, (j + (corner >> 1)) * cell - EXTENT, ratio)
-                radius = max(radius, math.sqrt((a - x) ** 2 + (b - y) ** 2 + (c - z) ** 2))
+            q, p = j // TILE, i // TILE
             nearest = 9.0
-            for code in range(CODES):
-                distance[code] = (tx[code] - x) ** 2 + (ty[code] - y) ** 2 + (tz[code] - z) ** 2
-                nearest = min(nearest, distance[code])
+            for k in range(count[q, p]):
+                distance[k] = _squared(table[listed[q, p, k]], cells[j, i])
+                nearest = min(nearest, distance[k])
             # 2.2 radii instead of 2: the map from disc to sphere is not quite linear within a cell.
-            bound = (math.sqrt(nearest) + 2.2 * radius + 1e-6) ** 2
-            for code in range(CODES):
-                if distance[code] <= bound:
-                    codes[total] = code
+            bound = (math.sqrt(nearest) + 2.2 * cells[j, i, 3] + 1e-6) ** 2
+            for k in range(count[q, p]):
+                if distance[k] <= bound:
+                    codes[total] = listed[q, p, k]
                     total += 1
     start[CELLS * CELLS] = total
     return total
