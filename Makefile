@@ -1,33 +1,39 @@
-# One command each: `make demo`, `make serve`, `make test`, `make test-all`, `make lint`, `make fuzz`, `make soak`, `make bench`, `make drivers`.
+# One command each: `make demo`, `make serve`, `make test`, `make test-more`, `make test-all`, `make lint`, `make fuzz`,
+# `make soak`, `make bench`, `make drivers`.
 # A new machine needs only make and Python >= 3.11 with its venv module.
 
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
-READY := $(VENV)/.ready
 DEMO ?= .demo
 SHELL := /bin/bash
+.NOTPARALLEL:
 # Files in the order in which conftest.py puts them, the longest first: pytest-xdist would go by numbers of tests.
 # Compiled modules are kept, for the many processes that tests start.
 PYTEST := env -u PYTHONDONTWRITEBYTECODE $(BIN)/python -m pytest --numprocesses=auto --maxprocesses=8 --dist=loadfile --no-loadscope-reorder
 
-.PHONY: demo serve test test-all lint fuzz soak bench docs check-wheel drivers drivers-part wheel client environment gl shaders browser display proxy clean
+.PHONY: demo serve test test-more test-all lint fuzz soak bench docs check-wheel drivers drivers-part wheel client environment gl shaders browser display proxy clean
 
-demo: environment gl
+demo: $(VENV)/.ready-user gl
 	$(BIN)/pvfiblets demo --output $(DEMO)
 
-serve: demo
+serve: $(VENV)/.ready-web demo
 	$(BIN)/pvfiblets serve $(DEMO)/*.fiblets --root $(DEMO)
 
 # Mesa's software OpenGL compiles a shader's machine code anew on every new machine, which takes longer than to draw
 # small pictures: here without optimising it, by `make test-all` as users have it.
-test: export GALLIVM_PERF = nopt
-test: export LEAST = 4.3
-test: environment gl shaders browser display proxy lint
+test test-more: export GALLIVM_PERF = nopt
+test test-more test-all: export LEAST = 4.3
+test: environment lint gl
 	$(PYTEST)
 
-test-all: export LEAST = 4.3
-test-all: environment gl shaders browser display proxy lint
+# What `make test` leaves out: browsers, windows, proxies, workflows, the docs' pages and the examples as programs, soak, the
+# wheel and other drivers.
+test-more: $(VENV)/.ready-more gl shaders browser display proxy
+	$(PYTEST) -m 'more and not exhaustive'
+	@$(MAKE) check-wheel drivers-part
+
+test-all: $(VENV)/.ready-more lint gl shaders browser display proxy
 	PVFIBLETS_FUZZ=1000 $(PYTEST) -m '' --hypothesis-profile=exhaustive --timeout=3600
 
 lint: environment
@@ -65,13 +71,13 @@ client: environment
 wheel: environment
 	$(BIN)/python -m pip wheel --no-deps --wheel-dir dist .
 
-environment: $(READY)
+environment: $(VENV)/.ready-dev
 
-$(READY): pyproject.toml scripts/environment.sh
-	@PYTHON=$(PYTHON) VENV=$(VENV) scripts/environment.sh
-	@touch $@
+# For whom: a user, one who serves pages, who runs `make test`, and who runs the rest.
+$(VENV)/.ready-%: pyproject.toml scripts/environment.sh
+	@PYTHON=$(PYTHON) VENV=$(VENV) scripts/environment.sh $*
 
-gl: environment
+gl:
 	@PYTHON=$(BIN)/python scripts/gl_libraries.sh
 
 browser:
@@ -81,7 +87,7 @@ browser:
 display:
 	@scripts/display.sh
 
-proxy: environment
+proxy:
 	@VENV=$(VENV) scripts/proxy.sh
 
 shaders:

@@ -199,8 +199,8 @@ def demo(*, output: str, streamlines: int, step: float, seed: int, json: bool) -
     say(f"Making a whole-brain-like tractogram of {streamlines:,} streamlines ...")
     brain = brain_streamlines(streamlines, step, seed)
     formats.write(original, brain)
-    say("Compressing it (the very first time, this compiles the codec) ...")
-    result = compress_file(original, compressed, progress=False)
+    say("Compressing it ...")
+    result = compress_file(original, compressed, progress=not json)
 
     say("Drawing it ...")
     begin = time.perf_counter()

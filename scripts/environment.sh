@@ -1,9 +1,17 @@
 #!/usr/bin/env bash
-# Makes the virtual environment $VENV with the package, its web extra and the tools for tests.
+# Makes the virtual environment $VENV: `environment.sh user` with the package, `web` with what serves pages, `dev` with what
+# `make test` needs besides, `more` with what the rest of the tests needs. Each holds the ones before it.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 PYTHON=${PYTHON:-python3}
 VENV=${VENV:-.venv}
+case "${1:-dev}" in
+    user) extras="" kinds="user" ;;
+    web) extras="[web]" kinds="user web" ;;
+    dev) extras="[web,dev]" kinds="user web dev" ;;
+    more) extras="[web,dev,more]" kinds="user web dev more" ;;
+    *) echo "environment.sh: '$1' is no kind of environment; use user, web, dev or more" >&2; exit 1 ;;
+esac
 
 if ! command -v "$PYTHON" >/dev/null; then
     echo "There is no $PYTHON here: install Python 3.11 or newer, or name one with PYTHON=..." >&2
@@ -28,7 +36,11 @@ if [ ! -x "$VENV/bin/python" ] || ! "$VENV/bin/python" -m pip --version >/dev/nu
     echo "Making the environment in $VENV ..."
     "$PYTHON" -m venv --clear "$VENV"
 fi
-echo "Installing pvfiblets and what it needs into $VENV ..."
-"$VENV/bin/python" -m pip install --quiet --disable-pip-version-check --editable '.[web,dev]'
-echo "Compiling what codes streamlines and tells those of painted regions ..."
-"$VENV/bin/python" -m pvfiblets.precompile
+echo "Installing pvfiblets$extras and its dependencies into $VENV ..."
+# Python compiles the modules that are used when they are first imported: pip would compile all of them.
+"$VENV/bin/python" -m pip install --quiet --no-compile --disable-pip-version-check --editable ".$extras"
+if [ "$kinds" != user ]; then
+    echo "Compiling the kernels of codec and painted regions (a minute, once per machine) ..."
+    env -u PYTHONDONTWRITEBYTECODE "$VENV/bin/python" -m pvfiblets.precompile
+fi
+for kind in $kinds; do touch "$VENV/.ready-$kind"; done

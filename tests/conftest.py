@@ -6,8 +6,9 @@ Four rules live here:
 * A test that leaves an OpenGL error behind, or starts with one, fails: the ``gl`` fixture.
 * On continuous integration (``PVFIBLETS_CI`` is set) a check cannot vanish unseen: every test function
   must run with some of its parameters, unless the real data is not on that machine, or Firefox is not to be had there.
-* ``make test`` takes minutes: what is marked ``exhaustive``, or is left over of a product of parameters marked
-  ``every``, runs by ``make test-all`` only.
+* ``make test`` takes minutes: tests marked ``more``, and most parameters of those marked ``few``, run by
+  ``make test-more``; tests marked ``exhaustive``, and what a product of parameters marked ``every`` has besides every
+  value or pair, by ``make test-all`` only.
 """
 
 from __future__ import annotations
@@ -210,16 +211,25 @@ def pytest_collection_modifyitems(items):
 
 
 def thin(items):
-    """Mark as exhaustive what products of parameters have besides every value, or every pair of values."""
-    products = defaultdict(list)
+    """Mark as `exhaustive` or `more` the parameters that ``make test`` leaves out of tests marked `every` or `few`."""
+    products, lists = defaultdict(list), defaultdict(list)
     for item in items:
+        function = item.nodeid.partition("[")[0]
         if (mark := item.get_closest_marker("every")) is not None and hasattr(item, "callspec"):
-            products[item.nodeid.partition("[")[0], SIZES[mark.args[0]]].append(item)
+            products[function, SIZES[mark.args[0]]].append(item)
+        if (mark := item.get_closest_marker("few")) is not None:
+            lists[function, mark.args[0]].append(item)
     for (_, size), product in products.items():
         taken = covering([item.callspec._idlist for item in product], size)
         for row, item in enumerate(product):
             if row not in taken:
                 item.add_marker(pytest.mark.exhaustive)
+    for (_, count), rows in lists.items():
+        rest = [item for item in rows if item.get_closest_marker("exhaustive") is None]
+        taken = {place * len(rest) // count for place in range(count)}
+        for row, item in enumerate(rest):
+            if row not in taken:
+                item.add_marker(pytest.mark.more)
 
 
 class _SkipRule:

@@ -66,11 +66,19 @@ def test_it(a, b, c, d):
 @pytest.mark.exhaustive
 def test_other():
     pathlib.Path("other").touch()
+@pytest.mark.few(2)
+@pytest.mark.parametrize("e", range(5))
+def test_list(e):
+    pathlib.Path(f"list{e}").touch()
 """
 
 
-@pytest.mark.parametrize(("arguments", "fewest", "most"), [([], 12, 15), (["-m", ""], 24, 24)], ids=["some", "all"])
-def test_products_are_thinned_but_every_pair_is_there(tmp_path, arguments, fewest, most):
+@pytest.mark.parametrize(
+    ("arguments", "fewest", "most", "few"),
+    [([], 12, 15, [0, 2]), (["-m", ""], 24, 24, [*range(5)])],
+    ids=["some", "all"],
+)
+def test_products_are_thinned_but_every_pair_is_there(tmp_path, arguments, fewest, most, few):
     shutil.copy(CONFTEST, tmp_path / "conftest.py")
     shutil.copy(CONFTEST.parents[1] / "pyproject.toml", tmp_path)
     (tmp_path / "tests").mkdir()
@@ -84,10 +92,13 @@ def test_products_are_thinned_but_every_pair_is_there(tmp_path, arguments, fewes
     for i, j in combinations(range(3), 2):
         assert len({(row[i], row[j]) for row in rows}) == (3, 4, 2)[i] * (3, 4, 2)[j]
     assert (tmp_path / "other").exists() == bool(arguments)
+    assert sorted(tmp_path.glob("list*")) == [tmp_path / f"list{e}" for e in few]
 
 
 @pytest.mark.skipif(shutil.which("make") is None, reason="make is not installed")
-@pytest.mark.parametrize("goal", ["demo", "test", "test-all", "check-wheel", "drivers-part", "client", "docs"])
+@pytest.mark.parametrize(
+    "goal", ["demo", "test", "test-more", "test-all", "check-wheel", "drivers-part", "client", "docs"]
+)
 def test_commands_of_the_makefile_can_be_read(goal):
     read = subprocess.run(["make", "--dry-run", goal], cwd=CONFTEST.parents[1], capture_output=True, text=True)
     assert read.returncode == 0, read.stderr

@@ -59,7 +59,7 @@ class _Notice:
     def _tell(self) -> None:
         if self._begun and not self._told:
             self._told = True
-            logger.warning("compiling kernels for this machine; this happens once, and takes up to a minute")
+            logger.warning("compiling kernels with numba: once per machine, up to a minute")
 
 
 NOTICE = _Notice()

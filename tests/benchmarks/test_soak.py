@@ -15,6 +15,8 @@ from pvfiblets.streamlines import Streamlines
 
 from .scripts import imported
 
+pytestmark = pytest.mark.more
+
 FRAMES = int(os.environ.get("PVFIBLETS_SOAK", "60"))
 PER_ROUND = max(FRAMES // 5, 10)
 
@@ -38,7 +40,6 @@ def walked(bench):
     return bench.soak.walk(FRAMES, PER_ROUND, seed=3, size=100)
 
 
-@pytest.mark.slow
 def test_most_kinds_of_acts_were_done(bench, walked):
     soak, rounds = walked
     assert soak.frames == FRAMES
@@ -46,7 +47,6 @@ def test_most_kinds_of_acts_were_done(bench, walked):
     assert sum(soak.refused.values()) <= 0.05 * sum(soak.acts.values()), soak.refused
 
 
-@pytest.mark.slow
 def test_all_objects_of_opengl_are_given_back(bench, walked):
     kinds = [kind for kind in bench.soak.KINDS if kind != "Program"]  # VTK keeps programs as long as the window is
     for row in walked[1]:
@@ -56,14 +56,12 @@ def test_all_objects_of_opengl_are_given_back(bench, walked):
         assert row["after"]["bytes"] <= row["before"]["bytes"] + 200 * row["size"] ** 2, row
 
 
-@pytest.mark.slow
 def test_nothing_is_kept_of_actors(walked):
     for row in walked[1]:
         assert row["contexts"] == 0
         assert row["actors"] == 0
 
 
-@pytest.mark.slow
 def test_resident_memory_stays_after_the_first_rounds(walked):
     memory = [row["resident_mb"] for row in walked[1]]
     assert memory[-1] - memory[1] < MOST_GROWTH, memory

@@ -24,6 +24,8 @@ from pvfiblets.cluster import batch
 from pvfiblets.query.profile import mean_profile
 from tests.cluster.conftest import SUBJECTS
 
+pytestmark = pytest.mark.more
+
 PATTERN = "sub-0[123]/ses-a/dwi/*.trx"
 
 

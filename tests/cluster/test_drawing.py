@@ -28,6 +28,8 @@ from pvfiblets.web.scene import Scene
 from pvfiblets.web.slicing import ready_views
 from tests.engine.pictures import SIZE, assert_alike, read
 
+pytestmark = pytest.mark.more
+
 VIEW = View(SIZE, camera(SIZE, eye=(0, -300, 40), target=(0, -10, 20), far=900.0))
 CLOSE = View(SIZE, camera(SIZE, eye=(60, -60, 90), target=(20, 0, 40), far=900.0))
 

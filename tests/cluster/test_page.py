@@ -9,11 +9,14 @@ from pathlib import Path
 import nibabel as nib
 import numpy as np
 import pyarrow.parquet
+import pytest
 
 import pvfiblets as pf
 from pvfiblets.cli import main
 from pvfiblets.synthetic import brain_streamlines
 from tests.cluster.conftest import AFFINE
+
+pytestmark = pytest.mark.more
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "clusters.md"
 

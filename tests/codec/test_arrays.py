@@ -176,7 +176,7 @@ def test_compilation_is_told_and_waiting_is_not(
         assert jit.kernel(_slow(1))(2) == 3
         assert jit.kernel(_slow(2))(2) == 4
     assert [record.getMessage() for record in caplog.records] == [
-        "compiling kernels for this machine; this happens once, and takes up to a minute"
+        "compiling kernels with numba: once per machine, up to a minute"
     ]
 
 

@@ -13,6 +13,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
+pytestmark = pytest.mark.more
+
 
 def _pages():
     spec = importlib.util.spec_from_file_location("docs_pages", Path(__file__).with_name("pages.py"))

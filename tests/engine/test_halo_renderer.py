@@ -293,7 +293,6 @@ def test_thresholds_of_infinity_let_all_numbers_pass(gl, view):
 # --------------------------------------------------------------------------------------------------- 10^7 vertices
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("n", [1_000_000, pytest.param(10_000_000, marks=pytest.mark.exhaustive)])
 def test_millions_of_vertices(gl, camera, n):
     """They are built and drawn, and take what few of them take each: with one number, no more than 20 bytes."""

@@ -20,6 +20,8 @@ from tests.reference_compiler import check, complaints
 from . import shader_programs
 from .shader_programs import KINDS, rows, varied
 
+pytestmark = pytest.mark.more
+
 ROOT = Path(__file__).resolve().parents[2]
 SPV_14 = "FEATURE_MESH_EXT 1"  # the compiler has no such stages but where it makes SPIR-V
 

@@ -75,7 +75,6 @@ print(int(status["VmHWM"].split()[0]) / 1024)
 """
 
 
-@pytest.mark.slow
 @pytest.mark.exhaustive  # every other conversion is held to less by tests/stability/test_load.py
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="peak memory is read from /proc")
 @pytest.mark.parametrize("suffix", [".tck", ".trk", ".trx"])

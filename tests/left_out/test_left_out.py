@@ -41,8 +41,8 @@ EXACT_AT_ONCE = {
 EACH = [pytest.param(name, marks=[pytest.mark.exhaustive] if name in ALIKE else []) for name in SCENES]
 
 pytestmark = [
+    pytest.mark.more,
     pytest.mark.skipif(not hasattr(os, "fork"), reason="processes are forked, which this system cannot"),
-    pytest.mark.slow,
     pytest.mark.timeout(1200),  # the first test waits for all scenes
 ]
 

@@ -17,6 +17,8 @@ from pvfiblets.page.writing import write_page
 from pvfiblets.synthetic import brain_streamlines
 from tests.page.pages import differing, until
 
+pytestmark = pytest.mark.more
+
 
 @pytest.fixture(scope="module")
 def figure(tmp_path_factory):

@@ -17,6 +17,8 @@ import pvfiblets
 from pvfiblets.plotting.notebook_view import Picked, page_view, show
 from tests.page.pages import until
 
+pytestmark = pytest.mark.more
+
 ROOT = Path(__file__).resolve().parents[2]
 SIZE = (200, 160)
 

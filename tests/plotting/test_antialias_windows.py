@@ -126,6 +126,7 @@ plotter.close()
 """
 
 
+@pytest.mark.more
 def test_a_window_on_a_screen_refines_by_itself(tmp_path):
     without = (VARIABLE, "VTK_DEFAULT_OPENGL_WINDOW", "PYVISTA_OFF_SCREEN")
     environment = {name: value for name, value in os.environ.items() if name not in without}

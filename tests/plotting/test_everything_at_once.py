@@ -9,6 +9,8 @@ import pyvista as pv
 from pvfiblets import compress, regions
 from pvfiblets.synthetic import brain_streamlines
 
+pytestmark = pytest.mark.more
+
 SIZE = (160, 120)
 
 

@@ -90,6 +90,7 @@ def seen(tmp_path, kind, extra):
     return np.load(path)
 
 
+@pytest.mark.more
 def test_a_qt_window_shows_the_same_scene(environment, tmp_path):
     window = seen(tmp_path, "qt", environment)
     headless = seen(tmp_path, "headless", {"VTK_DEFAULT_OPENGL_WINDOW": "vtkEGLRenderWindow"})

@@ -7,6 +7,8 @@ import pytest
 from pvfiblets.report.stability import MODULES, all_cases
 from pvfiblets.report.stability.case import Setting
 
+pytestmark = pytest.mark.more
+
 CASES = all_cases()
 
 

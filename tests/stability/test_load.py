@@ -14,6 +14,8 @@ from pvfiblets import formats
 from pvfiblets.formats.mapped import forget
 from pvfiblets.streamlines import Streamlines
 
+pytestmark = pytest.mark.more
+
 ROOT = Path(__file__).resolve().parents[2]
 LINUX = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="resident memory is read from /proc")
 
@@ -62,7 +64,6 @@ def conversions(streaming, tmp_path_factory):
 
 
 @LINUX
-@pytest.mark.slow
 @pytest.mark.timeout(900)
 @pytest.mark.parametrize("pair", PAIRS, ids="-".join)
 def test_peak_memory_is_alike_for_many_times_the_points(streaming, conversions, pair):

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
+
+pytestmark = pytest.mark.more
 
 
 def test_a_page_opens_turns_and_rests(revisit):

@@ -11,6 +11,8 @@ import pytest
 import pvfiblets
 from pvfiblets.streamlines import Streamlines
 
+pytestmark = pytest.mark.more
+
 NAMES = (
     '<img src=x onerror="window.hacked=1">',
     "{{ constructor.constructor('window.hacked=1')() }}",

@@ -5,6 +5,9 @@ from __future__ import annotations
 import csv
 
 import numpy as np
+import pytest
+
+pytestmark = pytest.mark.more
 
 
 def rows(here):

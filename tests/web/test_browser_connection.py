@@ -19,6 +19,8 @@ from pvfiblets.synthetic import brain_streamlines
 from tests.web.browsing import Visit
 from tests.web.cable import Cable
 
+pytestmark = pytest.mark.more
+
 
 @pytest.fixture(scope="module")
 def cable(served):

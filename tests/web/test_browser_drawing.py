@@ -16,6 +16,8 @@ from tests.page.pages import differing
 from tests.web.browsing import FLAGS, Visit, launched
 from tests.web.cable import Cable
 
+pytestmark = pytest.mark.more
+
 
 class There(Visit):
     """A page that draws by itself."""

@@ -11,6 +11,8 @@ from PIL import Image
 
 import pvfiblets
 
+pytestmark = pytest.mark.more
+
 
 def text_of(download):
     return download.value.path().read_text(encoding="utf-8")

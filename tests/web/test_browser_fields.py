@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import pytest
+
+pytestmark = pytest.mark.more
+
 # Replies wait in the browser while window.late is a list.
 LATE = """
 window.late = null;

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+pytestmark = pytest.mark.more
+
 
 def lit(picture):
     """Return how many pixels something is drawn in."""

@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.more
+
 FAULTS = Path(__file__).with_name("layout_faults.js").read_text(encoding="utf-8")
 SIZES = [(1280, 720), (800, 600), (320, 640)]
 DIALOGS = ("open", "session", "picture", "script", "help", "rename", "end")

@@ -10,6 +10,8 @@ import pytest
 from pvfiblets import memory
 from tests.web import bombs
 
+pytestmark = pytest.mark.more
+
 
 @pytest.mark.skipif(not memory.CAN_LIMIT, reason="only Linux limits the data of a process")
 def test_bombs_are_refused_on_the_page_and_the_session_goes_on(visit):

@@ -6,6 +6,9 @@ import json
 import shutil
 
 import numpy as np
+import pytest
+
+pytestmark = pytest.mark.more
 
 
 def told(here):

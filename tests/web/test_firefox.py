@@ -18,6 +18,8 @@ from tests.web import test_browser as served_pages
 from tests.web.firefox import launched_firefox
 from tests.web.test_browser_drawing import There, agrees
 
+pytestmark = pytest.mark.more
+
 visit = page_fixtures.visit  # opens pages from files
 
 figure, rich = in_use.figure, in_use.rich

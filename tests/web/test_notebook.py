@@ -12,6 +12,8 @@ from PIL import Image
 
 from tests.web.browsing import FLAGS, chromium
 
+pytestmark = pytest.mark.more
+
 CELLS = (
     """
 import pyvista as pv

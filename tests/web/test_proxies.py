@@ -27,6 +27,7 @@ NAME = "lab.example"
 # Not where a user's programs are: where the system's are, and what was unpacked for the tests.
 PLACES = os.pathsep.join([os.environ.get("PATH", ""), "/usr/sbin", "/usr/local/sbin", str(Path(sys.executable).parent)])
 pytestmark = [
+    pytest.mark.more,
     pytest.mark.skipif(sys.platform != "linux", reason="a second address of loopback"),
     pytest.mark.skipif(shutil.which("openssl") is None, reason="openssl makes the certificate"),
 ]

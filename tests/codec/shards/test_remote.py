@@ -21,6 +21,8 @@ from pvfiblets.codec.shards.write import write_shards
 
 from ..samples import smooth
 
+pytestmark = pytest.mark.more
+
 
 class Server(ThreadingHTTPServer):
     """Files of a folder, by ranges; it can lose connections and serve other bytes."""
