@@ -16,6 +16,9 @@ logger = logging.getLogger("pvfiblets.web")
 
 # What a browser sends is small: state changes, pointer events. Files come by POST.
 LARGEST_MESSAGE = MEBIBYTE
+LARGEST_SESSION = 256 * MEBIBYTE
+"""Bytes of a session file: no larger one is written or read."""
+REFUSED = "The server refused what this page sent"
 # wslink cuts messages into chunks with a header each: an identifier, an offset, and the size of the whole message, as
 # little-endian uint32 (wslink/chunking.py). Its receiver allocates that size at once, so it is looked at here first.
 CHUNK_HEADER = 12
@@ -152,6 +155,6 @@ def announced_size(chunk: bytes) -> int:
 def check_message(chunk: bytes) -> None:
     """Refuse chunks that are too large, or that announce a message that is."""
     if len(chunk) > LARGEST_MESSAGE or announced_size(chunk) > LARGEST_MESSAGE:
-        raise RefusedError(413, f"a message above {LARGEST_MESSAGE} bytes")
+        raise RefusedError(413, f"a message above {LARGEST_MESSAGE:,} bytes")
     if unpack_from("<I", chunk, 4)[0] + len(chunk) - CHUNK_HEADER > announced_size(chunk):
         raise RefusedError(400, "a chunk beyond the end of its message")

@@ -126,6 +126,7 @@ class Explorer(TrameApp):
         self._register_keys()
         self.ui = layout.build(self)
         self.scene.watch(lambda _: self.refresh())
+        self.scene.watch(lambda _: self.files.keep_soon())
         self.state.change("tab")(lambda tab, **_: self._show_info() if tab == "info" else None)
         self.refresh()
         self.server.controller.on_server_ready.add(lambda **_: self.files.open_given())
@@ -151,7 +152,6 @@ class Explorer(TrameApp):
             "remove_chosen": self.remove_chosen,
             "point": self.selecting.point,
             "save_session": self.files.save_session,
-            "load_session": lambda text: self.files.load_session(text),  # a browser names no folder
             "picture": self.camera.picture,
             "save_picture": self.camera.save_picture,
             "selection_csv": lambda: selection_csv(self.scene),
@@ -186,6 +186,7 @@ class Explorer(TrameApp):
 
         router.add_get("/index.html", index)
         router.add_post("/upload", self.files.receive)
+        router.add_post("/session", self.files.receive_session)
         router.add_get("/download/{number}", self.exports.send)
         router.add_get(f"{URL}/page.js", self.browser.send_script)
         router.add_get(f"{URL}/{{name}}", self.browser.send)
@@ -356,6 +357,7 @@ class Explorer(TrameApp):
 
     def _drawn(self) -> None:
         """Show what goes with a frame; nothing is sent where it is as before."""
+        self.files.keep_soon()  # cameras are no part of what is watched
         with self.state:
             self.camera.refresh()
             self.slices.refresh()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from pvfiblets.web.access import LARGEST_SESSION
 from pvfiblets.web.elements import html, v3
 
 KEYS = (
@@ -34,6 +35,9 @@ POINTER = (
 )
 
 
+SAVE = (  # of a session that is too large the page has nothing but why
+    "trigger('save_session').then((text) => text && utils.download('session.json', text, 'application/json'))"
+)
 LABEL = "cursor: pointer; background: rgba(128,128,128,.2)"  # of files to choose: labels that look like buttons
 
 
@@ -41,7 +45,8 @@ def build(app: Any) -> None:
     """Build all of them."""
     # Beside the dialogs: what is in one that is closed meanwhile, by another who looks at the page, hears of no file.
     html.Input(type="file", hidden=True, id="pv-upload", multiple=True, data_upload=True, data_limit=("upload_limit",))
-    html.Input(type="file", accept=".json,application/json", hidden=True, id="pv-session", data_session=True)
+    html.Input(type="file", accept=".json,application/json", hidden=True, id="pv-session", data_session=True,
+               data_limit=LARGEST_SESSION)  # fmt: skip
     _files(app)
     _sessions(app)
     _picture(app)
@@ -144,10 +149,7 @@ def _sessions(app: Any) -> None:
             html.Div("A session file keeps layers, camera, cuts, filters and selections; the data stays where it is.",
                      classes="pv-small mb-3")  # fmt: skip
             with html.Div(classes="d-flex flex-wrap", style="gap: 8px"):
-                v3.VBtn(
-                    "Save", color="primary", classes="text-none", data_action="save-session",
-                    click="utils.download('session.json', trigger('save_session'), 'application/json')",
-                )  # fmt: skip
+                v3.VBtn("Save", color="primary", classes="text-none", data_action="save-session", click=SAVE)
                 with html.Label(classes="v-btn v-btn--density-default v-btn--size-default v-btn--variant-tonal px-4 "
                                 "text-none", style=LABEL, **{"for": "pv-session"}):  # fmt: skip
                     html.Span("Load…")

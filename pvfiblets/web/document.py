@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from pvfiblets.web.painting import Painting
+from pvfiblets.web.runs import numbers_in, pack, runs_of
 from pvfiblets.web.values import shown
 
 __all__ = [
@@ -70,13 +71,7 @@ class Ids:
     @classmethod
     def of(cls, ids: Any) -> Ids:
         """Make them of numbers in any order."""
-        numbers = np.unique(np.asarray(ids, np.int64))
-        if not len(numbers):
-            return cls(np.zeros((0, 2), np.int64))
-        breaks = np.flatnonzero(np.diff(numbers) > 1)
-        first = numbers[np.concatenate([[0], breaks + 1])]
-        last = numbers[np.concatenate([breaks, [len(numbers) - 1]])]
-        return cls(np.stack([first, last + 1], axis=1))
+        return cls(runs_of(np.unique(np.asarray(ids, np.int64))))
 
     def __len__(self) -> int:
         return int((self.runs[:, 1] - self.runs[:, 0]).sum())
@@ -98,9 +93,12 @@ class Ids:
 
     def array(self) -> np.ndarray:
         """``(n,)`` int64: the numbers."""
-        lengths = self.runs[:, 1] - self.runs[:, 0]
-        ends = np.cumsum(lengths)
-        return np.arange(int(lengths.sum())) + np.repeat(self.runs[:, 0] - ends + lengths, lengths)
+        return numbers_in(self.runs)
+
+    @cached_property
+    def packed(self) -> str:
+        """The numbers as text; see :func:`.pack`."""
+        return pack(self.runs)
 
 
 @dataclass(frozen=True)

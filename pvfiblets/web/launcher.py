@@ -29,6 +29,9 @@ logger = logging.getLogger("pvfiblets.web")
 
 GRACE = 5.0  # seconds that a process has to end by itself
 START = 600.0  # seconds to open the files it was started with
+RESCUED = 3600.0  # seconds that the session of a dead process can be restored
+MOST_RESCUED = 32
+MOST_WAITING = 1 << 16  # bytes of what a process was told and has not read
 SHARED = "shared"
 WORKER = (sys.executable, "-m", "pvfiblets.web.worker")
 
@@ -75,6 +78,15 @@ class Session:
     last_lines: deque[str] = field(default_factory=lambda: deque(maxlen=50), repr=False)
 
 
+@dataclass
+class Rescued:
+    """What a process that died had kept of its session, in a folder of the scratch folder."""
+
+    folder: Path
+    since: float = field(default_factory=time.monotonic)
+    wanted: bool = False  # by the browser, for the next process of its session
+
+
 class Launcher:
     """Starts and ends the sessions of one server.
 
@@ -94,6 +106,7 @@ class Launcher:
         self._command = tuple(command)
         self.sessions: dict[str, Session] = {}
         self._failed: deque[Session] = deque(maxlen=32)
+        self._rescued: dict[str, Rescued] = {}
         self._spare: Session | None = None
         self._reaper: asyncio.Task[None] | None = None
         self._scratch: scratch.Scratch | None = None
@@ -138,12 +151,46 @@ class Launcher:
         if session is spare:
             self._spare = None
         session.seen = time.monotonic()
+        rescued = self._rescued.get(identifier)
+        if rescued is not None and rescued.wanted and session.folder is not None and not session.ended:
+            del self._rescued[identifier]
+            await asyncio.to_thread(scratch.hand_over, rescued.folder, session.folder)
+            self.tell(session, restore=True)
         return session
 
-    def forgive(self, session: Session) -> None:
-        """Forget that a session failed, so that another may be begun in its place."""
+    def can_restore(self, session: Session) -> bool:
+        """Return whether the last state of a session that failed is there."""
+        return session.ended and session.id in self._rescued
+
+    async def forgive(self, session: Session, *, restore: bool = False) -> None:
+        """Forget that a session failed, so that another may begin in its place, with its last state or without."""
         if session in self._failed:
             self._failed.remove(session)
+        if not restore:
+            await self._discard(session.id)
+        elif session.id in self._rescued:
+            self._rescued[session.id].wanted = True
+
+    def tell(self, session: Session, **told: object) -> None:
+        """Send a message to a session's process: ``restore=True``, or a sentence for its page, ``say=...``."""
+        stdin = None if session.ended or session.process is None else session.process.stdin
+        if stdin is not None and stdin.transport.get_write_buffer_size() < MOST_WAITING:
+            stdin.write((json.dumps(told) + "\n").encode())
+
+    async def _rescue(self, session: Session) -> None:
+        """Keep what a dead process had kept of its session."""
+        if self._scratch is None or session.folder is None or session is self._spare:
+            return
+        folder = await asyncio.to_thread(self._scratch.rescue, session.folder)
+        await self._discard(session.id)
+        if folder is not None:
+            self._rescued[session.id] = Rescued(folder)
+        while len(self._rescued) > MOST_RESCUED:
+            await self._discard(next(iter(self._rescued)))
+
+    async def _discard(self, identifier: str) -> None:
+        if (rescued := self._rescued.pop(identifier, None)) is not None:
+            await asyncio.to_thread(scratch.remove, rescued.folder)
 
     async def _launch(self, identifier: str) -> Session:
         session = Session(identifier, folder=None if self._scratch is None else self._scratch.session())
@@ -201,6 +248,8 @@ class Launcher:
                 session.doing = str(told["doing"])
         code = await process.wait()
         await errors
+        if not session.ended:
+            await self._rescue(session)
         if session.folder is not None:
             await asyncio.to_thread(scratch.remove, session.folder)
         if not session.ended:
@@ -255,8 +304,10 @@ class Launcher:
             await self.end_idle()
 
     async def end_idle(self) -> None:
-        """End sessions whose browser has not come back in time."""
+        """End sessions whose browser has not come back in time, and forget states that nobody has restored."""
         now = time.monotonic()
+        for identifier in [one for one, rescued in self._rescued.items() if now - rescued.since > RESCUED]:
+            await self._discard(identifier)
         for session in list(self.sessions.values()):
             if session is self._spare or session.connections or session.ended:
                 continue

@@ -42,8 +42,8 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
 .pv-cells img { width: 100%; height: 100%; display: block; image-rendering: pixelated; user-select: none }
 @media (max-width: 759.9px) { .pv-cells { max-width: min(460px, 33vh) } } /* what it tells stays in view */
 @media (pointer: coarse) {
-  :is(#tab-bundles, #pv-matrix) .v-btn--size-x-small:not(.v-btn--icon) { height: 36px; padding-inline: 12px }
-  :is(#tab-bundles, #pv-matrix) .v-btn--size-x-small.v-btn--icon { width: 36px; height: 36px }
+  :is(.pv-bundles, .pv-matrix) .v-btn--size-x-small:not(.v-btn--icon) { height: 36px; padding-inline: 12px }
+  :is(.pv-bundles, .pv-matrix) .v-btn--size-x-small.v-btn--icon { width: 36px; height: 36px }
   .pv-grip { display: none } /* fingers scroll: there are buttons */
 }
 .pv-cross, .pv-chosen-cell { position: absolute; pointer-events: none; box-shadow: 0 0 0 1.5px #fff, 0 0 0 3px #000 }
@@ -51,15 +51,15 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
 .pv-view img { width: 100%; height: 100%; object-fit: contain; display: block;
   user-select: none; -webkit-user-drag: none }
 .pv-there-place { position: absolute; pointer-events: none }
-#pv-there { position: absolute; inset: 0; width: 100%; height: 100%; display: block; touch-action: none; outline: none;
+.pv-there { position: absolute; inset: 0; width: 100%; height: 100%; display: block; touch-action: none; outline: none;
   pointer-events: auto }
-#pv-there-bars { position: absolute; right: 16px; bottom: 32px; display: flex; flex-direction: row-reverse; gap: 14px;
+.pv-there-bars { position: absolute; right: 16px; bottom: 32px; display: flex; flex-direction: row-reverse; gap: 14px;
   align-items: flex-end;
   pointer-events: none; color: #fff; font: 12px/1.3 Roboto, sans-serif; font-variant-numeric: tabular-nums }
-.pv-view[data-ground=light] #pv-there-bars { color: #000 }
-#pv-there-distances, #pv-there-distances svg { position: absolute; inset: 0; width: 100%; height: 100%;
+.pv-view[data-ground=light] .pv-there-bars { color: #000 }
+.pv-there-distances, .pv-there-distances svg { position: absolute; inset: 0; width: 100%; height: 100%;
   overflow: hidden; pointer-events: none; stroke: #fc0; stroke-width: 2 }
-#pv-there-distances text { font: 14px Roboto, sans-serif; fill: #fc0; stroke: none; text-shadow: 1px 1px 1px #000 }
+.pv-there-distances text { font: 14px Roboto, sans-serif; fill: #fc0; stroke: none; text-shadow: 1px 1px 1px #000 }
 .pv-there-bar div { display: flex; gap: 6px } .pv-there-bar { margin: 0 }
 .pv-there-bar canvas { width: 14px; height: min(220px, 30vh); border: .5px solid #8888; image-rendering: pixelated }
 .pv-there-bar ol { list-style: none; margin: 0; padding: 0; display: flex; flex-direction: column;
@@ -319,11 +319,11 @@ def _view(app: Any) -> None:
         area.add_view_handler(app.stream)
         with html.Div(classes="pv-there-place", style=(f"({OVER_3D})",)):
             html.Canvas(  # of client/there.js
-                id="pv-there", tabindex="0", role="img", style="visibility: hidden",
+                id="pv-there", classes="pv-there", tabindex="0", role="img", style="visibility: hidden",
                 aria_label="The scene. Arrow keys turn it, plus and minus zoom, Shift with arrows moves it.",
             )  # fmt: skip
-            html.Div(id="pv-there-distances")
-            html.Div(id="pv-there-bars")
+            html.Div(id="pv-there-distances", classes="pv-there-distances")
+            html.Div(id="pv-there-bars", classes="pv-there-bars")
         with html.Div(  # over the 3-D view, wherever that is
             v_if="show_regions && marks.length && slicing.boxes.every((b) => b.name !== '3d') === !slicing.shown",
             classes="pv-marks", id="pv-marks", style=(f"({OVER_3D})",),

@@ -49,7 +49,7 @@ class FileActions(SessionActions):
         options = self._app.options
         given = [(path, "tractogram" if _is_lines(path) else None) for path in options.files]
         given += [(path, "volume") for path in options.volume] + [(path, "mesh") for path in options.mesh]
-        self._app.later(self._open_all(given))
+        self._starting = self._app.later(self._open_all(given))
 
     async def _open_all(self, given: list[tuple[str, str | None]]) -> None:
         for path, kind in given:
@@ -168,7 +168,7 @@ class FileActions(SessionActions):
         elif purpose == "labels":
             app.slices.name_labels(path)
         elif path.lower().endswith(SESSION):
-            self.load_session(self._text(path), app.confined.resolve(path).parent)
+            self.open_session(path)
         else:
             app.later(self.open(path))
 

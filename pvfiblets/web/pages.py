@@ -92,10 +92,14 @@ def full(limit: int) -> str:
     )
 
 
-def ended(reason: str | None) -> str:
+def ended(reason: str | None, restorable: bool = False) -> str:
     """Return the page of a session that is over."""
     why = "<p>The session was closed.</p>" if reason is None else f"<p>The session failed: {escape(reason)}</p>"
-    return page("Session ended", f'{why}<form method="post" action="/new"><button>Open a new one</button></form>')
+    why += "<p>Its last state is kept for an hour.</p>" if restorable else ""
+    restore = '<button formaction="/new?restore=1">Restore</button>' if restorable else ""
+    return page(
+        "Session ended", f'{why}<form method="post" action="/new">{restore}<button>Open a new one</button></form>'
+    )
 
 
 def refused(reason: str) -> str:

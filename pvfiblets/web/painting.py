@@ -13,10 +13,12 @@ from typing import Any
 import numpy as np
 
 from pvfiblets.query.painting.painter import Stroke
+from pvfiblets.web.runs import numbers_in, pack, runs_of, unpack
 from pvfiblets.web.values import colour, mapping, numbers, shown, text, truth, whole
 
 __all__ = [
-    "MOST_REGIONS", "USES", "Painted", "Painting", "Strokes", "as_json", "check_painting", "path_between", "runs_of",
+    "LONGEST", "MOST_REGIONS", "MOST_VOXELS", "USES", "Painted", "Painting", "Strokes", "as_json", "check_painting",
+    "path_between",
 ]  # fmt: skip
 
 USES = {
@@ -29,9 +31,9 @@ USES = {
 }
 """What streamlines that are shown do at a region."""
 
+LONGEST = 60  # characters of a name
 MOST_REGIONS = 32
 MOST_VOXELS = 1 << 28
-_MOST_RUNS = 2_000_000
 
 
 @dataclass(frozen=True)
@@ -114,16 +116,6 @@ def path_between(now: Strokes | None, wanted: Strokes | None) -> tuple[list[Stro
 # Sessions -------------------------------------------------------------------------------------------
 
 
-def runs_of(places: np.ndarray) -> list[int]:
-    """Return rising whole numbers as the first of each run and the one behind its last, one after the other."""
-    if not len(places):
-        return []
-    breaks = np.flatnonzero(np.diff(places) != 1)
-    first = places[np.concatenate([[0], breaks + 1])]
-    last = places[np.concatenate([breaks, [len(places) - 1]])]
-    return [int(one) for one in np.stack([first, last + 1], axis=1).ravel()]
-
-
 def check_painting(value: Any) -> Painting:
     """Return painted regions, of what a session says.
 
@@ -144,20 +136,20 @@ def check_painting(value: Any) -> Painting:
     listed = given["regions"]
     if not isinstance(listed, list) or not 1 <= len(listed) <= MOST_REGIONS:
         raise ValueError(f"regions of painting are {shown(listed)}; give a list of 1 to {MOST_REGIONS}")
-    regions, voxels, labels = [], [], []
-    for number, one in enumerate(listed, 1):
-        regions.append(_region(one, number))
-        found = _places(one["runs"], nx * ny * nz)
-        voxels.append(found)
-        labels.append(np.full(len(found), number, np.uint16))
+    regions = tuple(_region(one, number) for number, one in enumerate(listed, 1))
     if len({one.name for one in regions}) < len(regions):
         raise ValueError("two painted regions have the same name; give each its own")
-    places = np.concatenate(voxels)
-    if len(np.unique(places)) < len(places):
+    runs = [unpack(one["runs"], "runs of a painted region", nx * ny * nz, "voxel") for one in listed]
+    spans = np.concatenate(runs)
+    spans = spans[np.argsort(spans[:, 0])]
+    if (spans[1:, 0] < spans[:-1, 1]).any():
         raise ValueError("a voxel is in two painted regions; it is in one at most")
-    stroke = Stroke(places, np.zeros(len(places), np.uint16), np.concatenate(labels))
+    places = np.concatenate([numbers_in(one) for one in runs])
+    counts = [int((one[:, 1] - one[:, 0]).sum()) for one in runs]
+    labels = np.repeat(np.arange(1, len(runs) + 1, dtype=np.uint16), counts)
+    stroke = Stroke(places, np.zeros(len(places), np.uint16), labels)
     strokes = Strokes.after(None, stroke) if len(places) else None
-    return Painting((nx, ny, nz), tuple(affine), tuple(regions), strokes)
+    return Painting((nx, ny, nz), tuple(affine), regions, strokes)
 
 
 def _region(value: Any, label: int) -> Painted:
@@ -166,24 +158,12 @@ def _region(value: Any, label: int) -> Painted:
     if not isinstance(use, str) or use not in USES:
         raise ValueError(f"use of a painted region is {shown(use)}; choose one of {', '.join(filter(None, USES))}")
     return Painted(
-        text(value["name"], "name of a painted region", 60),
+        text(value["name"], "name of a painted region", LONGEST),
         label,
         colour(value["color"], "colour of a painted region"),
         truth(value.get("visible", True), "visible"),
         use,
     )
-
-
-def _places(runs: Any, most: int) -> np.ndarray:
-    fine = isinstance(runs, list) and len(runs) % 2 == 0 and len(runs) <= 2 * _MOST_RUNS
-    if not fine or not all(type(item) is int and 0 <= item <= most for item in runs):
-        raise ValueError(f"runs of a painted region are {shown(runs)}; give first and behind the last of each")
-    ends = np.array(runs, np.int64).reshape(-1, 2)
-    lengths = ends[:, 1] - ends[:, 0]
-    if (lengths < 1).any() or (ends[1:, 0] < ends[:-1, 1]).any():
-        raise ValueError("runs of a painted region are not rising; give [first, behind the last, ...] from 0 on")
-    after = np.cumsum(lengths)
-    return np.arange(int(lengths.sum())) + np.repeat(ends[:, 0] - after + lengths, lengths)
 
 
 def as_json(painting: Painting, labels: np.ndarray) -> Mapping[str, Any]:
@@ -194,7 +174,7 @@ def as_json(painting: Painting, labels: np.ndarray) -> Mapping[str, Any]:
         "affine": list(painting.affine),
         "regions": [
             {"name": one.name, "color": one.color, "visible": one.visible, "use": one.use,
-             "runs": runs_of(np.flatnonzero(flat == one.label))}
+             "runs": pack(runs_of(np.flatnonzero(flat == one.label)))}
             for one in painting.regions
         ],
     }  # fmt: skip

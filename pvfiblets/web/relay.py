@@ -160,6 +160,8 @@ class Relay:
         refused: Callable[[str], None],
     ) -> None:
         async for message in browser:
+            if getattr(message.data, "code", None) == aiohttp.WSCloseCode.MESSAGE_TOO_BIG:  # an error of aiohttp's
+                refused(f"a message above {LARGEST_MESSAGE:,} bytes")
             if message.type is not aiohttp.WSMsgType.BINARY:
                 break
             try:
@@ -169,8 +171,6 @@ class Relay:
                 await browser.close(code=aiohttp.WSCloseCode.MESSAGE_TOO_BIG, message=refusal.reason.encode())
                 return
             await inner.send_bytes(message.data)
-        if browser.close_code == aiohttp.WSCloseCode.MESSAGE_TOO_BIG:
-            refused(f"a message above {LARGEST_MESSAGE} bytes")
 
     async def _downwards(self, inner: aiohttp.ClientWebSocketResponse, browser: web.WebSocketResponse) -> None:
         async for message in inner:

@@ -15,11 +15,12 @@ from typing import Any
 
 from pvfiblets.errors import FibletsError
 from pvfiblets.memory import TooLargeError, limited_to, shown
+from pvfiblets.web.access import REFUSED
 from pvfiblets.web.log_limiter import printable
 
 logger = logging.getLogger("pvfiblets.web")
 
-LONGEST_TEXT = 600_000  # a session file is the longest
+LONGEST_TEXT = 20_000  # files come by HTTP
 LONGEST_STATE = 1000  # characters of a text that is kept
 LARGEST_SIDE = 8192  # pixels of a picture
 MOST_PIXELS = 4096 * 2304
@@ -150,8 +151,8 @@ def check_call(call: object) -> None:
         raise MalformedError("a call with arguments that are no list")
 
 
-def guard_messages(handler: Any) -> None:
-    """Close connections that send what is no message, with one line in the log; wslink would write a traceback."""
+def guard_messages(handler: Any, complain: Callable[[str], None]) -> None:
+    """Close connections that send what is no message, and say so; wslink would write a traceback."""
     receive, complete = handler.onMessage, handler.onCompleteMessage
 
     async def on_complete(call: object, client: str) -> None:
@@ -170,6 +171,7 @@ def guard_messages(handler: Any) -> None:
         except UNREADABLE as error:  # what is called has a net of its own
             reason = str(error) if isinstance(error, MalformedError) else type(error).__name__
             logger.warning("refused a message: %s", reason)
+            complain(f"{REFUSED}: {reason}.")
             handler.unchunkers[client].release_pending_messages()
             await handler.connections[client].close(code=1007, message=b"malformed message")
 
@@ -227,6 +229,7 @@ class AllowedCalls:
             except (MalformedError, TypeError) as error:
                 reason = error if isinstance(error, MalformedError) else "wrong arguments"
                 logger.warning("refused a call of %s: %s", name, reason)
+                self._complain(f"{REFUSED}: {reason}.")
                 return None
             if checked is None:
                 return None

@@ -6,7 +6,7 @@ groups of the file, and a document says nothing of them.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +16,7 @@ from pvfiblets.query.bundles.bundle_list import Bundles, group_colours, hidden_g
 from pvfiblets.query.bundles.colours import distinct_colour, distinct_colours, hex_colour
 from pvfiblets.web.document import Bundle, Ids, Layer, Source, State, free_name, named
 from pvfiblets.web.layers import changed
+from pvfiblets.web.runs import unpack
 from pvfiblets.web.values import colour, mapping, shown, text, truth
 
 if TYPE_CHECKING:
@@ -307,17 +308,16 @@ def _mask(bundles: Iterable[Bundle], count: int) -> np.ndarray:
 # Sessions -------------------------------------------------------------------------------------------
 
 
-def check_bundles(value: Any, ids_of: Callable[[Any, str], Ids], count: int) -> tuple[Bundle, ...]:
-    """Return the bundles of one source, of what a session says; ``count`` is how many streamlines it has."""
+def check_bundles(value: Any, count: int, own: Collection[str]) -> tuple[Bundle, ...]:
+    """Return the bundles that a session has for a file of ``count`` streamlines with groups of some names."""
     if not isinstance(value, list) or len(value) > MOST:
         raise ValueError(f"bundles are {shown(value)}; give a list of {MOST} at most")
     found: list[Bundle] = []
     for one in value:
         mapping(one, "bundle", ("name", "ids", "color"), ("visible",))
-        ids = ids_of(one["ids"], "ids of a bundle")
-        if ids.highest >= count:
-            raise ValueError(f"streamline {ids.highest} is in a bundle, of {count}")
-        name = text(one["name"], "name of a bundle", LONGEST)
+        ids = Ids(unpack(one["ids"], "ids of a bundle", count))
+        given = one["name"]
+        name = given if isinstance(given, str) and given in own else text(given, "name of a bundle", LONGEST)
         if any(name == other.name for other in found):
             raise ValueError(f"two bundles are called {shown(name)}")
         found.append(Bundle(name, ids, colour(one["color"], "colour"), truth(one.get("visible", True), "visible")))

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 __all__ = ["SceneLayers"]
 
 MOST_LAYERS = 64
+MOST_VALUES = 64  # files of values of one layer
+LONGEST_NAME = 1024
+"""Characters of a layer's name: a file's, and what it is a part of."""
 
 
 class SceneLayers:
@@ -101,6 +104,8 @@ class SceneLayers:
         source = (layer if layer.kind == "mesh" else self._lines(layer_id)).source
         name = self.files.name(self.files.resolve(path))
         values = tuple(dict.fromkeys([*source.values, name]))
+        if len(values) > MOST_VALUES:
+            raise ValueError(f"{layer.name} has {MOST_VALUES} files of values, which is the most; open it again")
         twin = self.store.fork()
         return twin.data(replace(layer, source=replace(source, values=values), settings={}))
 
@@ -211,7 +216,7 @@ class SceneLayers:
         settings: dict[str, Any] = dict(layer.settings)
         for key, value in (("tube_radius", None), ("opacity", 1.0)):
             settings = layers.changed(layer.kind, settings, key, value, self.data(layer).data)
-        name = self._free_name(f"{len(layer.selected):,} of {layer.name}")
+        name = self._free_name(f"{len(layer.selected):,} of {layer.name}"[: LONGEST_NAME - 10])
         return self._add(Layer(self._fresh_id(), "selection", name, source, settings=settings), f"keep {name}")
 
     # Inside -------------------------------------------------------------------------------------

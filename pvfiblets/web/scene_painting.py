@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import tempfile
 from collections.abc import Callable
 from dataclasses import replace
@@ -14,7 +15,7 @@ from pvfiblets.plotting.fiblets.filter_state import unique_name
 from pvfiblets.query.bundles.colours import distinct_colour, hex_colour
 from pvfiblets.query.painting.painter import Stroke
 from pvfiblets.web.document import Layer, State
-from pvfiblets.web.painting import MOST_REGIONS, USES, Painted, Painting, Strokes
+from pvfiblets.web.painting import LONGEST, MOST_REGIONS, MOST_VOXELS, USES, Painted, Painting, Strokes
 from pvfiblets.web.values import colour, number, numbers, shown, text, truth
 
 if TYPE_CHECKING:
@@ -73,8 +74,7 @@ class ScenePainting:
         chosen: Layer | None = next((one for one in images if one.id == layer_id), images[0] if images else None)
         if chosen is None:
             raise ValueError("regions are painted on slices; open an image as slices first")
-        image = self.data(chosen).data
-        return Painting(image.shape, tuple(float(part) for part in image.affine.ravel()))
+        return _on(self.data(chosen))
 
     def set_painted(self, region: str, /, **changes: Any) -> Painted:
         """Change a region's ``name``, ``color``, ``visible`` or ``use`` (of :data:`.painting.USES`).
@@ -91,7 +91,7 @@ class ScenePainting:
         wanted: dict[str, Any] = {}
         for key, value in changes.items():
             if key == "name":
-                wanted[key] = text(value, "name", 60)
+                wanted[key] = text(value, "name", LONGEST)
                 if any(one.name == value for one in painting.regions if one is not old):
                     raise ValueError(f"there is a painted region {shown(value)} already; give another name")
             elif key == "color":
@@ -222,7 +222,7 @@ class ScenePainting:
         found = self._labels_in(loaded)
         painting = self.state.painting
         if painting is None:
-            painting = Painting(image.shape, tuple(float(part) for part in image.affine.ravel()))
+            painting = _on(loaded)
         elif image.shape != painting.shape or not np.allclose(image.affine, painting.matrix, atol=1e-4):
             raise ValueError(
                 f"{loaded.name} has {image.shape} voxels that lie elsewhere than those that are painted, "
@@ -237,7 +237,8 @@ class ScenePainting:
         names, table = [one.name for one in painting.regions], image.table
         made, labels = [], np.zeros(image.shape, np.uint16)
         for new, old in enumerate(found, first):
-            called = (table.name(old) if table is not None else str(old))[:60].strip() or str(old)
+            named = "".join(filter(str.isprintable, table.name(old))) if table is not None else ""
+            called = named[: LONGEST - 10].strip() or str(old)
             name = unique_name(names, called) if called in names else called
             colours = None if table is None else table.colours.get(old)
             rgb = distinct_colour(new - 1) if colours is None else tuple(part / 255.0 for part in colours[:3])
@@ -293,3 +294,11 @@ class ScenePainting:
         if self.canvas.painter is None:
             raise ValueError("there are no painted regions; add one first")
         return self.canvas.painter
+
+
+def _on(loaded: Loaded) -> Painting:
+    """Return an empty painting on the voxels of an image."""
+    shape, affine = loaded.data.shape, loaded.data.affine
+    if (voxels := math.prod(shape)) > MOST_VOXELS:
+        raise ValueError(f"{loaded.name} has {voxels:,} voxels; regions are painted on {MOST_VOXELS:,} at most")
+    return Painting(shape, tuple(float(part) for part in affine.ravel()))

@@ -26,6 +26,7 @@ PREFIX = "pvfiblets-serve-"
 PRIVATE = ".pvfiblets-"
 """How names begin of what sessions note: nothing else is ever removed."""
 _LOCK, _NOTES = "lock", "notes"
+_SESSION, _RESTORE = "session.json", "restore.json"
 
 
 class Scratch:
@@ -43,6 +44,15 @@ class Scratch:
     def session(self) -> Path:
         """Make a folder for a session."""
         return Path(tempfile.mkdtemp(dir=self.folder))
+
+    def rescue(self, folder: Path) -> Path | None:
+        """Move the session that a dead process kept to a folder of its own, and return that; None if it kept none."""
+        for name in (_RESTORE, _SESSION):  # what was to be restored counts more than the files of the start
+            if (folder / name).is_file():
+                found = self.session()
+                (folder / name).replace(found / _SESSION)
+                return found
+        return None
 
     def close(self) -> None:
         """Remove everything; twice is harmless."""
@@ -65,6 +75,7 @@ class Notes:
 
     def __init__(self, folder: Path | None) -> None:
         self._file = None if folder is None else folder / _NOTES
+        self.session = None if folder is None else folder / _SESSION
         self._open: list[Path] = []
 
     @contextlib.contextmanager
@@ -84,9 +95,28 @@ class Notes:
             self._open.remove(found)
             self._write()
 
+    def keep(self, session: str) -> None:
+        """Keep a session in the private folder, in case this process dies."""
+        assert self.session is not None
+        part = self.session.with_suffix(".part")
+        part.write_text(session, encoding="utf-8")
+        part.replace(self.session)
+
+    def restored(self) -> bytes:
+        """Return the session that :func:`hand_over` put here, which this process keeps from now on."""
+        assert self.session is not None
+        self.session.with_name(_RESTORE).replace(self.session)
+        return self.session.read_bytes()
+
     def _write(self) -> None:
         if self._file is not None:
             self._file.write_text("\n".join(map(str, self._open)), encoding="utf-8")
+
+
+def hand_over(rescued: Path, folder: Path) -> None:
+    """Move a rescued session to the folder of the process that is to restore it."""
+    (rescued / _SESSION).replace(folder / _RESTORE)
+    rescued.rmdir()
 
 
 def remove(folder: Path) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import builtins
+import keyword
 import re
 from collections.abc import Mapping
 from dataclasses import replace
@@ -18,7 +20,7 @@ from pvfiblets.web.glyph_layers import GLYPHS
 from pvfiblets.web.glyph_layers import arguments as glyph_arguments
 from pvfiblets.web.script_code import Python, code
 from pvfiblets.web.script_slices import bundle_lines, has_images, image_arguments, painting_lines, slicing_lines
-from pvfiblets.web.script_writer import ViewWriter
+from pvfiblets.web.script_writer import ViewWriter, free_variable, names_in
 from pvfiblets.web.shapes import condition_code, mesh_code, planes_of, shape_code, shapes_in
 from pvfiblets.web.slicing import image_looks
 
@@ -32,6 +34,17 @@ def labels_of(path, labels):
     """Return the region of some labels of a volume."""
     image = as_slice_image(path)
     return regions.Labels(np.rint(image.values[..., 0]).astype(np.int64), image.affine, labels=labels)
+'''
+
+_UNPACKED = '''
+def unpacked(text):
+    """Return whole numbers that are packed as bits, or as the lengths of gaps and runs in turns."""
+    kind, data = text.split(":")
+    data = base64.b64decode(data)
+    if kind == "bits":
+        return np.flatnonzero(np.unpackbits(np.frombuffer(data, np.uint8), bitorder="little"))
+    ends = np.cumsum(np.frombuffer(data, f"<{kind}"), dtype=np.int64).reshape(-1, 2)
+    return np.concatenate([np.arange(*run) for run in ends])
 '''
 
 
@@ -50,7 +63,14 @@ def as_script(scene: Scene, picture: str | None = None) -> str:
     str
         Python. Where the scene has a root, the script takes paths from a ``FOLDER`` that stands at its top.
     """
-    return _Writer(scene).write(picture)
+    shown = scene.state.layers
+    draft = _Writer(scene, {layer.id: f"_{k}" for k, layer in enumerate(shown)}).write(picture)
+    taken = {*dir(builtins), *keyword.kwlist, *keyword.softkwlist, *names_in(draft)}
+    names: dict[str, str] = {}
+    for layer in shown:  # a file print.tck is no function of the script
+        names[layer.id] = free_variable(layer.name, taken)
+        taken.add(names[layer.id])
+    return _Writer(scene, names).write(picture)
 
 
 class _Writer(ViewWriter):
@@ -58,8 +78,6 @@ class _Writer(ViewWriter):
 
     def write(self, picture: str | None) -> str:
         state = self._scene.state
-        for layer in state.layers:
-            self._names[layer.id] = self._variable(layer.name)
         self._start(picture is not None)
         for layer in state.layers:
             self._layer(layer)
@@ -81,14 +99,16 @@ class _Writer(ViewWriter):
 
     def _head(self) -> list[str]:
         order = sorted(self._imports, key=lambda line: (line.split()[1].startswith("pvfiblets"), line.split()[1]))
-        standard = ["import dataclasses"] if "import dataclasses" in self._imports else []
+        standard: list[str] = sorted({"import base64", "import dataclasses"} & self._imports)
         standard += ["from pathlib import Path"] if self._uses_folder else []
         standard += [""] if standard else []
         order = [line for line in order if line not in standard]
         found = ['"""Made by pvfiblets."""', "", *standard, *order, ""]
         if self._uses_folder:
             found += ['FOLDER = Path(".")  # where the files are', ""]
-        return [*found, *_LABELS.splitlines(), "", ""] if self._uses_labels else found
+        for used, helper in ((self._uses_labels, _LABELS), (self._uses_packed, _UNPACKED)):
+            found += [*helper.splitlines(), "", ""] if used else []
+        return found
 
     def _start(self, off_screen: bool) -> None:
         width, height = self._plotter.window_size

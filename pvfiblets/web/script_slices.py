@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pvfiblets.web.document import LINES
-from pvfiblets.web.painting import runs_of
+from pvfiblets.web.runs import runs_of
 from pvfiblets.web.script_code import Python
 from pvfiblets.web.slicing import normal_of
 
@@ -68,7 +68,7 @@ def painting_lines(scene: Scene, names: Mapping[str, str], ids: Callable[[Any], 
     flat = painter.labels.reshape(-1)
     for one in painting.regions:
         found += [f"painter.add({one.name!r}, {one.color!r})"]
-        runs = np.array(runs_of(np.flatnonzero(flat == one.label)), np.int64).reshape(-1, 2)
+        runs = runs_of(np.flatnonzero(flat == one.label))
         if len(runs) == 1:
             found += [f"painter.set_voxels({one.name!r}, np.arange({runs[0, 0]}, {runs[0, 1]}))"]
         elif len(runs):

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import ast
+import itertools
 import keyword
 import re
 import textwrap
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from typing import TYPE_CHECKING, Any
 
 from pvfiblets.web.distance_label import LABELS, NEAREST
 from pvfiblets.web.distance_label import LINES as LINE_LOOKS
+from pvfiblets.web.runs import pack
 from pvfiblets.web.scalar_bars import bar_arguments, bar_calls, bars_of
 from pvfiblets.web.script_code import code
 
@@ -17,24 +20,47 @@ if TYPE_CHECKING:
     from pvfiblets.web.document import Source
     from pvfiblets.web.scene import Scene
 
-__all__ = ["ScriptWriter", "ViewWriter"]
+__all__ = ["ScriptWriter", "ViewWriter", "free_variable", "names_in"]
 
 _WIDEST = 110
+_MOST_RUNS = 200  # of streamlines or voxels that a script lists one by one
+
+
+def free_variable(name: str, taken: Container[str]) -> str:
+    """Return a variable that is called after a file or layer and is not taken."""
+    stem = re.sub(r"\W+", "_", name.lower().split(".")[0], flags=re.ASCII).strip("_")[:24] or "layer"
+    if stem[0].isdigit() or keyword.iskeyword(stem):
+        stem = f"layer_{stem}"
+    return next(found for k in itertools.count(1) if (found := stem if k == 1 else f"{stem}_{k}") not in taken)
+
+
+def names_in(script: str) -> set[str]:
+    """Return all names that a script uses, but attributes of others."""
+    found: set[str] = set()
+    for node in ast.walk(ast.parse(script)):
+        if isinstance(node, ast.Name):
+            found.add(node.id)
+        elif isinstance(node, ast.alias):
+            found.add((node.asname or node.name).partition(".")[0])
+        elif isinstance(node, ast.FunctionDef):
+            found.add(node.name)
+    return found
 
 
 class ScriptWriter:
-    """Collects lines, and what they need to be imported."""
+    """Collects lines, and what they need to be imported; ``names`` are variables of layers, by their ids."""
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, names: Mapping[str, str]) -> None:
         self._scene = scene
         self._plotter = scene.plotter
         self._lines: list[str] = []
         self._imports: set[str] = {"import pyvista as pv"}
-        self._names: dict[str, str] = {}
+        self._names = names
         self._wholes: dict[Source, str] = {}
         self._volumes: dict[str, str] = {}  # of parcels, by path
         self._uses_folder = False
         self._uses_labels = False
+        self._uses_packed = False
         self._sliced = False
 
     def _file(self, path: str) -> str:
@@ -48,6 +74,10 @@ class ScriptWriter:
         if len(runs) == 1:
             return f"slice({runs[0, 0]}, {runs[0, 1]})"
         self._imports.add("import numpy as np")
+        if len(runs) > _MOST_RUNS:
+            self._imports.add("import base64")
+            self._uses_packed = True
+            return "\n    ".join(["unpacked(", *map(repr, textwrap.wrap(pack(runs), _WIDEST))]) + "\n)"
         parts = [str(first) if after == first + 1 else f"{first}:{after}" for first, after in runs.tolist()]
         line = f"np.r_[{', '.join(parts)}]"
         if len(line) <= _WIDEST:
@@ -56,36 +86,8 @@ class ScriptWriter:
         return "\n    ".join(["np.r_[", *lines]) + "\n]"
 
     def _variable(self, name: str) -> str:
-        """Return a name that Python takes and that is not taken."""
-        stem = re.sub(r"\W+", "_", name.lower().split(".")[0], flags=re.ASCII).strip("_")[:24] or "layer"
-        if stem[0].isdigit() or keyword.iskeyword(stem):
-            stem = f"layer_{stem}"
-        reserved = {"plotter", "pv", "np", "nib", "regions", "region", "actor", "plane", "pvfiblets", "as_region"}
-        reserved |= {
-            "scaled",
-            "dataclasses",
-            "bar",
-            "volume",
-            "as_raycast_volume",
-            "cut_surface",
-            "ends",
-            "segments",
-            "line",
-            "workspace",
-            "painter",
-            "bundle",
-            "live",
-            "matrix",
-            "as_label_table",
-            "end_labels",
-            "as_slice_image",
-        }
-        reserved |= {"brain_like", "brain_streamlines", "labels_of", "slice", "list", "tuple", "path", "folder"}
-        taken = {*reserved, *self._names.values(), *self._wholes.values(), *self._volumes.values()}
-        found, count = stem, 2
-        while found in taken:
-            found, count = f"{stem}_{count}", count + 1
-        return found
+        """Return a variable of the script's own."""
+        return free_variable(name, {*self._names.values(), *self._wholes.values(), *self._volumes.values()})
 
     def _call(self, function: str, first: str, *parts: Mapping[str, Any] | str) -> None:
         """Write a call, over several lines where it is long."""

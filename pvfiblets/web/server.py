@@ -18,7 +18,7 @@ from urllib.parse import parse_qs, urlencode
 from aiohttp import web
 
 from pvfiblets.web import pages
-from pvfiblets.web.access import Access, RefusedError
+from pvfiblets.web.access import LARGEST_SESSION, REFUSED, Access, RefusedError
 from pvfiblets.web.connections import BACKLOG, Connection, Connections, room
 from pvfiblets.web.launcher import SHARED, WORKER, Launcher, Session
 from pvfiblets.web.log_limiter import LogLimiter
@@ -32,7 +32,7 @@ PATIENCE = 30.0  # seconds for a whole request to come, and for a body that stop
 WRONG_TOKEN = 1.0  # seconds that a wrong token waits for its answer
 # Pages and files of the application, and what it sends away.
 PASSED_ON = frozenset({"GET", "HEAD"})
-UPLOAD = "/upload"
+UPLOAD, SESSION = "/upload", "/session"
 DOWNLOAD = "/download/"
 LOGS = ("pvfiblets.web", "aiohttp.server", "asyncio")
 
@@ -80,6 +80,7 @@ class FrontServer:
         app.router.add_post("/end", self._end)
         app.router.add_post("/paraview/", self._connection)
         app.router.add_post(UPLOAD, self._upload)
+        app.router.add_post(SESSION, self._upload)
         app.router.add_get("/begin", self._begin)
         app.router.add_get("/status", self._status)
         app.router.add_get("/ws", self._socket)
@@ -240,14 +241,16 @@ class FrontServer:
         return self.launcher.find(request.cookies.get(self._session_name))
 
     async def _new(self, request: web.Request) -> web.StreamResponse:
-        """Forget the browser's session, so that it begins another."""
+        """Forget the browser's session, so that it begins another: with the last state of one that failed, if asked."""
         session = self._session(request)
+        restore = request.query.get("restore") == "1"
         if session is not None and session.ended:
-            self.launcher.forgive(session)
+            await self.launcher.forgive(session, restore=restore)
         elif session is not None and not self.options.shared:
             await self.launcher.end(session)
         response = web.Response(status=303, headers=HEADERS | {"Location": "/"})
-        response.del_cookie(self._session_name, path="/")
+        if not restore:
+            response.del_cookie(self._session_name, path="/")
         return response
 
     async def _end(self, request: web.Request) -> web.StreamResponse:
@@ -270,7 +273,7 @@ class FrontServer:
         session = self._session(request)
         told: dict[str, object] = {"state": "none"}
         if session is not None and session.ended:
-            told = {"state": "ended", "reason": session.failure}
+            told = {"state": "ended", "reason": session.failure, "restore": self.launcher.can_restore(session)}
         elif session is not None:
             session.seen = time.monotonic()
             told = {"state": "running" if session.port is not None else "starting", "connected": session.connections}
@@ -286,7 +289,7 @@ class FrontServer:
             self._log(request, "the limit of sessions")
             return self._page(pages.full(self.options.limit), 503)
         if session is not None and session.ended:
-            return self._page(pages.ended(session.failure), 410)
+            return self._page(pages.ended(session.failure, self.launcher.can_restore(session)), 410)
         if session is not None:
             session.seen = time.monotonic()
         if session is not None and session.port is not None:
@@ -347,15 +350,21 @@ class FrontServer:
             raise RefusedError(404, "no session")
         if request.content_length is None:
             raise RefusedError(411, "an upload without its length")
-        if request.content_length > self.options.upload:
-            raise RefusedError(413, f"an upload above {self.options.upload} bytes")
+        most = LARGEST_SESSION if request.path == SESSION else self.options.upload
+        if request.content_length > most:
+            raise RefusedError(413, f"an upload above {most:,} bytes")
         return await self._relay.upload(request, session)
 
     async def _socket(self, request: web.Request) -> web.StreamResponse:
         session = self._session(request)
         if session is None or session.ended or session.port is None:
             raise RefusedError(404, "no session")
-        return await self._relay.connect(request, session, lambda reason: self._log(request, reason))
+
+        def refused(reason: str) -> None:
+            self._log(request, reason)
+            self.launcher.tell(session, say=f"{REFUSED}: {reason}.")
+
+        return await self._relay.connect(request, session, refused)
 
 
 async def serve(options: Options, ready: Callable[[FrontServer], None]) -> None:

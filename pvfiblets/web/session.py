@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 from pvfiblets.errors import FibletsError
 from pvfiblets.web import scene_matrix
-from pvfiblets.web.document import Filters, Layer, Source, State, volumes_of
+from pvfiblets.web.access import LARGEST_SESSION
+from pvfiblets.web.document import LINES, Filters, Layer, Source, State, volumes_of
 from pvfiblets.web.painting import as_json
 from pvfiblets.web.session_reading import VERSION, Prepared, read_session
 
@@ -23,9 +24,10 @@ if TYPE_CHECKING:
     from pvfiblets.web.loading import Cancel, Progress
     from pvfiblets.web.scene import Scene
 
-__all__ = ["Prepared", "SessionError", "apply", "from_dict", "load", "prepare", "save", "to_dict"]
-
-LARGEST = 64_000_000  # bytes of a file
+__all__ = [
+    "Prepared", "SessionError", "apply", "from_dict", "from_text", "load", "prepare", "read", "save", "to_dict",
+    "to_text",
+]  # fmt: skip
 
 
 class SessionError(FibletsError, ValueError):
@@ -33,20 +35,9 @@ class SessionError(FibletsError, ValueError):
 
 
 def to_dict(scene: Scene, folder: Path | None = None) -> dict[str, Any]:
-    """Return a scene as JSON.
+    """Return a scene as JSON, whose numbers are finite; programs from before there were some of its parts refuse these.
 
-    Parameters
-    ----------
-    scene : Scene
-    folder : Path, optional
-        Of the file that it is for: paths are relative to it where files lie in it. By default they are relative to the
-        scene's root where they lie in that, and absolute elsewhere.
-
-    Returns
-    -------
-    dict
-        ``version``, ``layers``, ``clips``, ``background``, ``camera``, and ``measurements``, ``slices``,
-        ``painting``, ``bundles`` and ``matrix`` where there are any; no numbers but finite ones.
+    Paths are relative to the folder of the file that it is for where files lie in it; without one, to the scene's root.
     """
     state = scene.state
 
@@ -60,7 +51,6 @@ def to_dict(scene: Scene, folder: Path | None = None) -> dict[str, Any]:
     def shape_of(shape: Mapping[str, Any]) -> dict[str, Any]:
         return {**shape, "path": path_of(shape["path"])} if "path" in shape else dict(shape)
 
-    # Programs from before there were any refuse what they do not know.
     pairs = [[list(one.begin), list(one.end)] for one in state.measurements]
     measured = {"measurements": pairs} if pairs else {}
     return {
@@ -89,15 +79,7 @@ def to_dict(scene: Scene, folder: Path | None = None) -> dict[str, Any]:
 
 
 def from_dict(scene: Scene, data: Any, folder: Path | None = None) -> None:
-    """Make a scene what a session says; one step for its history.
-
-    Parameters
-    ----------
-    scene : Scene
-    data : dict
-        Of :func:`to_dict`; not trusted.
-    folder : Path, optional
-        Of the file that it is from: paths are looked for there first, then under the scene's root.
+    """Make a scene what a session says, in one step for its history; the session is not trusted.
 
     Raises
     ------
@@ -114,10 +96,7 @@ def prepare(
     progress: Progress | None = None,
     cancel: Cancel | None = None,
 ) -> Prepared:
-    """Read and check all that a session names; nothing is drawn, so that it may run in a thread of its own.
-
-    Arguments and errors as of :func:`from_dict` and :meth:`.Scene.load`.
-    """
+    """Read and check all that a session names, in any thread; paths are looked for in its folder, then in the root."""
     with _as_session_error():
         return read_session(scene, data, folder, progress, cancel)
 
@@ -146,10 +125,26 @@ def _as_session_error() -> Iterator[None]:
         raise SessionError(f"the session cannot be opened: {said}") from error
 
 
+def to_text(scene: Scene, folder: Path | None = None) -> str:
+    """Return a scene as the text of a session file; SessionError where that is too large to be read again."""
+    found = json.dumps(to_dict(scene, folder), allow_nan=False, indent=1)  # of ASCII
+    _check_size("the session", len(found))
+    return found
+
+
+def from_text(content: str | bytes, name: str = "this") -> Any:
+    """Return what a session file holds, for :func:`prepare`."""
+    _check_size(name, len(content))
+    try:
+        return json.loads(content)
+    except (ValueError, RecursionError) as error:
+        raise SessionError(f"{name} is no session file: it is no JSON ({error})") from error
+
+
 def save(scene: Scene, path: str) -> Path:
     """Write a session to a file under the scene's root; return its place."""
     target = scene.files.resolve(path, new=True)
-    content = json.dumps(to_dict(scene, target.parent), allow_nan=False, indent=1)
+    content = to_text(scene, target.parent)
     fresh = target.with_name(target.name + ".part")
     fresh.write_text(content, encoding="utf-8")
     fresh.replace(target)
@@ -159,29 +154,34 @@ def save(scene: Scene, path: str) -> Path:
 def load(scene: Scene, path: str) -> None:
     """Make a scene what a file under its root says; see :func:`from_dict`."""
     place = scene.files.resolve(path)
-    if place.stat().st_size > LARGEST:
-        raise SessionError(f"{path} has {place.stat().st_size:,} bytes; sessions have {LARGEST:,} at most")
-    try:
-        data = json.loads(place.read_text(encoding="utf-8"))
-    except (ValueError, RecursionError) as error:
-        raise SessionError(f"{path} is no session: it is no JSON ({error})") from error
-    from_dict(scene, data, place.parent)
+    from_dict(scene, from_text(read(place), path), place.parent)
+
+
+def read(place: Path) -> bytes:
+    """Return the content of a session file that is not too large."""
+    _check_size(place.name, place.stat().st_size)
+    return place.read_bytes()
+
+
+def _check_size(name: str, size: int) -> None:
+    if size > LARGEST_SESSION:
+        raise SessionError(f"{name} has {size:,} bytes; session files have {LARGEST_SESSION:,} at most")
 
 
 # To JSON --------------------------------------------------------------------------------------------
 
 
 def _bundles_to_dict(state: State, path_of: Any) -> dict[str, Any]:
-    used = {layer.source for layer in state.layers}
+    used = {layer.source for layer in state.layers if layer.kind in LINES}
     found = []
     for source, bundles in state.bundles:
         if source not in used:
             continue
         place = _place_of(source, path_of)
         if source.ids is not None:
-            place["ids"] = source.ids.runs.ravel().tolist()
+            place["ids"] = source.ids.packed
         rows = [
-            {"name": one.name, "color": one.color, "visible": one.visible, "ids": one.ids.runs.ravel().tolist()}
+            {"name": one.name, "color": one.color, "visible": one.visible, "ids": one.ids.packed}
             for one in bundles
         ]
         found.append({"source": place, "bundles": rows})
@@ -203,14 +203,14 @@ def _layer_to_dict(layer: Layer, path_of: Any, shape_of: Any) -> dict[str, Any]:
     found: dict[str, Any] = {"id": layer.id, "kind": layer.kind, "name": layer.name, "visible": layer.visible}
     found["source"] = _place_of(source, path_of)
     if source.ids is not None:
-        found["source"]["ids"] = source.ids.runs.ravel().tolist()
+        found["source"]["ids"] = source.ids.packed
     found["settings"] = dict(layer.settings)
     for name, volume in volumes_of(layer.settings).items():
         found["settings"][name] = {"volume": _place_of(volume, path_of)}
     if layer.filters.active:
         found["filters"] = _filters_to_dict(layer.filters, shape_of)
     if layer.selected is not None:
-        found["selected"] = layer.selected.runs.ravel().tolist()
+        found["selected"] = layer.selected.packed
     return found
 
 
@@ -238,7 +238,7 @@ def _filters_to_dict(filters: Filters, shape_of: Any) -> dict[str, Any]:
 
 
 def _connection(filters: Filters, shape_of: Any) -> dict[str, Any]:
-    if filters.connection is None:  # programs from before there were any refuse what they do not know
+    if filters.connection is None:
         return {}
     path = shape_of({"path": filters.connection["labels"]})["path"]
     return {"connection": {**filters.connection, "labels": path}}

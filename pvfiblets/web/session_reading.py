@@ -8,8 +8,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from pvfiblets.web import layers, scene_matrix
 from pvfiblets.web.actors import split_cuts
 from pvfiblets.web.cameras import check_camera
@@ -27,8 +25,10 @@ from pvfiblets.web.document import (
     as_volume_choice,
 )
 from pvfiblets.web.painting import check_painting
+from pvfiblets.web.runs import unpack
 from pvfiblets.web.scene_bundles import check_bundles
 from pvfiblets.web.scene_filters import MOST_CLIPS, check_filters
+from pvfiblets.web.scene_layers import LONGEST_NAME, MOST_LAYERS, MOST_VALUES
 from pvfiblets.web.scene_measurements import check_measurements
 from pvfiblets.web.shapes import CUTTING, check_shape, make_predicate, make_region
 from pvfiblets.web.slicing import SliceView, check_view
@@ -42,9 +42,6 @@ if TYPE_CHECKING:
 __all__ = ["VERSION", "Prepared", "read_session"]
 
 VERSION = 1
-_MOST_LAYERS = 64
-_MOST_RUNS = 4_000_000
-_MOST_VALUES = 64
 _ID = re.compile(r"[a-z]+[0-9]{1,9}")
 
 
@@ -74,12 +71,11 @@ def read_session(
         raise ValueError(f"its version is {shown(version)}; this program reads version {VERSION}")
     optional = ("clips", "background", "camera", "measurements", "slices", "painting", "bundles", "matrix")
     mapping(data, "session", ("program", "version", "layers"), optional)
-    for name, most in (("layers", _MOST_LAYERS), ("clips", MOST_CLIPS)):
+    for name, most in (("layers", MOST_LAYERS), ("clips", MOST_CLIPS)):
         if not isinstance(data.get(name, []), list) or len(data.get(name, [])) > most:
             raise ValueError(f"{name} is {shown(data.get(name))}; give a list of {most} at most")
-    paths = _Paths(scene, folder)
-    reading = _Reading(scene.store.fork(), paths, progress, cancel, _listed(data.get("bundles", []), paths),
-                       scene.own_groups)  # fmt: skip
+    reading = _Reading(scene.store.fork(), _Paths(scene, folder), progress, cancel, {}, scene.own_groups)
+    reading.bundles.update(_listed(data.get("bundles", []), reading))
     found = [_layer_from_dict(item, reading) for item in data["layers"]]
     clips = [_clip_from_dict(item, reading.paths) for item in data.get("clips", [])]
     ids = [layer.id for layer in found] + [clip.id for clip in clips]
@@ -132,17 +128,40 @@ class _Reading:
     paths: _Paths
     progress: Progress | None
     cancel: Cancel | None
-    bundles: Mapping[Source, list[Any]]  # as they were sent
+    bundles: dict[Source, list[Any]]  # unchecked
     own: Callable[[Source, Any], Any]  # names of a file's groups, however they were edited since
+
+    def source(self, value: Any, kind: str | None = None) -> Source:
+        """Return a source, for a layer of some kind; the file is read where ids must be among its streamlines."""
+        ids = mapping(value, "source", (), ("path", "demo", "size", "ids", "values")).get("ids")
+        if kind is not None and (kind == "selection") != (ids is not None):
+            raise ValueError(f"a layer of kind {kind!r} has {'no ' if ids is None else ''}ids in its source")
+        values = value.get("values", [])
+        if not isinstance(values, list) or len(values) > MOST_VALUES:
+            raise ValueError(f"values of a source is {shown(values)}; give a list of {MOST_VALUES} paths at most")
+        if (value.get("path") is None) == (value.get("demo") is None):
+            raise ValueError("a source has either a path or a demo")
+        if value.get("path") is not None:
+            found = Source(self.paths(value["path"]))
+        elif value["demo"] in ("tracts", "head"):
+            most = 100_000 if value["demo"] == "tracts" else 256
+            found = Source(demo=value["demo"], size=whole(value.get("size"), "size of a demo", 2, most))
+        else:
+            raise ValueError(f"demo is {shown(value['demo'])}; choose one of tracts, head")
+        found = replace(found, values=tuple(self.paths(path) for path in values))
+        if ids is None:
+            return found
+        count = self.store.whole(found, self.progress, self.cancel).n_streamlines
+        return replace(found, ids=Ids(unpack(ids, "ids", count)))
 
     def volume(self, setting: Any) -> list[tuple[Any, str]]:
         """Return the one volume that a setting names, as a choice; none if it names none."""
         if not isinstance(setting, Mapping):
             return []
         mapping(setting, "volume of a setting", ("volume",))
-        source = _source_from_dict(setting["volume"], self.paths)
-        if source.ids is not None or source.values:
-            raise ValueError("a volume that colours lines has ids or values; volumes have no streamlines")
+        source = self.source(setting["volume"], "volume")
+        if source.values:
+            raise ValueError("a volume that colours lines has values; volumes have no streamlines")
         self.store.colours(source, self.progress, self.cancel)
         return [(as_volume_choice(source), "volume")]
 
@@ -153,13 +172,11 @@ def _layer_from_dict(value: Any, reading: _Reading) -> Layer:
     kind = value["kind"]
     if kind not in KINDS:
         raise ValueError(f"the kind of a layer is {shown(kind)}; choose one of {', '.join(KINDS)}")
-    source = _source_from_dict(value["source"], paths)
+    source = reading.source(value["source"], kind)
     if source.values and kind not in (*LINES, "image", "mesh"):
         raise ValueError(f"a layer of kind {kind!r} has values in its source; tractograms, images and meshes have")
-    if (kind == "selection") != (source.ids is not None):
-        raise ValueError(f"a layer of kind {kind!r} has {'no ' if source.ids is None else ''}ids in its source")
     visible = truth(value.get("visible", True), "visible")
-    layer = Layer(_id(value["id"]), kind, text(value["name"], "name"), source, visible)
+    layer = Layer(_id(value["id"]), kind, text(value["name"], "name", LONGEST_NAME), source, visible)
     data = store.data(layer, reading.progress, reading.cancel).data
     settings = layers.defaults(kind)
     for name, setting in mapping(value.get("settings", {}), "settings", (), tuple(settings)).items():
@@ -186,24 +203,22 @@ def _layer_from_dict(value: Any, reading: _Reading) -> Layer:
             filters = replace(filters, regions=regions)
         layer = replace(layer, filters=filters)
     if value.get("selected") is not None:
-        selected = _ids(value["selected"], "selected")
-        if selected.highest >= data.n_streamlines:
-            raise ValueError(f"streamline {selected.highest} is selected, of {data.n_streamlines} in {layer.name!r}")
+        selected = Ids(unpack(value["selected"], "selected", data.n_streamlines))
         layer = replace(layer, selected=selected if len(selected) else None)
     return layer
 
 
-def _listed(value: Any, paths: _Paths) -> dict[Source, list[Any]]:
+def _listed(value: Any, reading: _Reading) -> dict[Source, list[Any]]:
     """Return bundles by their source, of which no more is known yet than that they have names."""
-    if not isinstance(value, list) or len(value) > _MOST_LAYERS:
-        raise ValueError(f"bundles are {shown(value)}; give a list of {_MOST_LAYERS} at most")
+    if not isinstance(value, list) or len(value) > MOST_LAYERS:
+        raise ValueError(f"bundles are {shown(value)}; give a list of {MOST_LAYERS} at most")
     found: dict[Source, list[Any]] = {}
     for one in value:
         mapping(one, "bundles", ("source", "bundles"))
         rows = one["bundles"]
         if not isinstance(rows, list) or not all(isinstance(row, Mapping) and "name" in row for row in rows):
             raise ValueError(f"bundles of a source are {shown(rows)}; give a list of bundles")
-        found[_source_from_dict(one["source"], paths)] = rows
+        found[reading.source(one["source"])] = rows
     return found
 
 
@@ -213,7 +228,8 @@ def _bundles_from(reading: _Reading, state: State) -> tuple[tuple[Source, tuple[
         layer = next((one for one in state.layers if one.kind in LINES and one.source == source), None)
         if layer is None:
             raise ValueError("there are bundles of what no layer shows")
-        found.append((source, check_bundles(rows, _ids, reading.store.data(layer).data.n_streamlines)))
+        data = reading.store.data(layer).data
+        found.append((source, check_bundles(rows, data.n_streamlines, reading.own(source, data))))
     return tuple(found)
 
 
@@ -225,23 +241,6 @@ def _matrix_from(value: Any, reading: _Reading, state: State) -> Matrix | None:
         return reading.store.data(layer).data
 
     return None if value is None else scene_matrix.check_matrix(value, data_of, reading.paths)
-
-
-def _source_from_dict(value: Any, paths: _Paths) -> Source:
-    mapping(value, "source", (), ("path", "demo", "size", "ids", "values"))
-    ids = None if value.get("ids") is None else _ids(value["ids"], "ids")
-    values = value.get("values", [])
-    if not isinstance(values, list) or len(values) > _MOST_VALUES:
-        raise ValueError(f"values of a source is {shown(values)}; give a list of {_MOST_VALUES} paths at most")
-    held = tuple(paths(path) for path in values)
-    if (value.get("path") is None) == (value.get("demo") is None):
-        raise ValueError("a source has either a path or a demo")
-    if value.get("path") is not None:
-        return Source(paths(value["path"]), ids=ids, values=held)
-    if value["demo"] not in ("tracts", "head"):
-        raise ValueError(f"demo is {shown(value['demo'])}; choose one of tracts, head")
-    most = 100_000 if value["demo"] == "tracts" else 256
-    return Source(demo=value["demo"], size=whole(value.get("size"), "size of a demo", 2, most), ids=ids, values=held)
 
 
 def _clip_from_dict(value: Any, paths: _Paths) -> Clip:
@@ -274,11 +273,3 @@ def _id(value: Any) -> str:
     if not isinstance(value, str) or not _ID.fullmatch(value):
         raise ValueError(f"an id is {shown(value)}; ids are letters and a number, such as 'layer1'")
     return value
-
-
-def _ids(value: Any, name: str) -> Ids:
-    """Return streamlines of a flat list of runs."""
-    fine = isinstance(value, list) and len(value) % 2 == 0 and len(value) <= 2 * _MOST_RUNS
-    if not fine or not all(type(item) is int and 0 <= item < 2**62 for item in value):
-        raise ValueError(f"{name} is {shown(value)}; give first and behind the last of each run of streamlines")
-    return Ids(np.array(value, np.int64).reshape(-1, 2))

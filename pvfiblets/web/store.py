@@ -94,6 +94,13 @@ class Store:
             self.colours(volume, progress, cancel)
         return self.loaded[key]
 
+    def whole(self, source: Source, progress: Progress | None = None, cancel: Cancel | None = None) -> Any:
+        """Return all streamlines of a source's file, a :class:`.FibletSet`."""
+        found = self._read("tractogram", source.bare, progress, cancel)
+        if found.kind not in LINES:
+            raise ValueError(f"{found.name} is of kind {found.kind} and has no streamlines")
+        return found.data
+
     def colours(self, source: Source, progress: Progress | None = None, cancel: Cancel | None = None) -> Any:
         """Return the volume, a :class:`.VolumeSource`, that colours lines where they run."""
         return self._read("colours", source, progress, cancel).data

@@ -32,7 +32,7 @@ def build(app: Any) -> None:
                 _filter(app)
             with html.Div(v_if="tab === 'selection'", id="tab-selection"):
                 _selection(app)
-            with html.Div(v_if="tab === 'bundles'", id="tab-bundles"):
+            with html.Div(v_if="tab === 'bundles'", id="tab-bundles", classes="pv-bundles"):
                 bundles_tab.build(app)
             with html.Div(v_if="tab === 'slices'", id="tab-slices"):
                 slices_tab.build(app)

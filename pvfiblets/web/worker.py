@@ -70,12 +70,12 @@ def _run(told: dict[str, Any], speaker: TextIO) -> None:
         # wslink offers no other way to its table of methods, which is what must be guarded.
         for handler in web_server._ws_handlers:  # noqa: SLF001
             app.doors.guard(handler.functionMap)
-            guard_messages(handler)
+            guard_messages(handler, app.complain)
         web_server.app.middlewares.append(key_check(told["key"]))
         app.add_routes(web_server.app.router)
 
     def ready(**_: Any) -> None:
-        threading.Thread(target=_wait_for_end, args=(loop, server), daemon=True).start()
+        threading.Thread(target=_obey, args=(loop, app), daemon=True).start()
         print(json.dumps({"port": server.port}), file=speaker)
 
     server.controller.on_server_bind.add(bind)
@@ -146,10 +146,15 @@ def key_check(key: str) -> Callable[..., Awaitable[Any]]:
     return check
 
 
-def _wait_for_end(loop: asyncio.AbstractEventLoop, server: Any) -> None:
-    while sys.stdin.readline():
-        pass
-    asyncio.run_coroutine_threadsafe(server.stop(), loop)
+def _obey(loop: asyncio.AbstractEventLoop, app: Any) -> None:
+    """Do what the front server says, a line of JSON each, until it says no more."""
+    while line := sys.stdin.readline():
+        told = json.loads(line)
+        if "say" in told:
+            loop.call_soon_threadsafe(app.complain, told["say"])
+        elif told.get("restore"):
+            loop.call_soon_threadsafe(app.files.restore)
+    asyncio.run_coroutine_threadsafe(app.server.stop(), loop)
 
 
 if __name__ == "__main__":

@@ -33,6 +33,7 @@ FINE = 90  # the least quality of pictures at rest
 QUALITY = re.compile(rb"\xa7quality([\x00-\x7f]|\xcc.)", re.DOTALL)  # of a picture, an integer of msgpack
 # What the page has sent is taken, and what is drawn is drawn, when this comes back: the server does one after another.
 SESSION = "window.trame.trigger('save_session')"
+LOAD = "(text) => fetch('/session', {method: 'POST', body: text}).then((answer) => answer.status)"
 ANSWER = f"""() => Promise.race([
     {SESSION}, new Promise((done) => setTimeout(done, 20000)),
 ])"""
@@ -221,7 +222,7 @@ class Visit:
         """Have the session as it was remembered, without another process for it; what can be undone stays."""
         self.page.evaluate("document.activeElement?.blur()")
         self.page.evaluate("(panels) => window.trame.state.update(panels)", self.panels)
-        self.page.evaluate("(text) => window.trame.trigger('load_session', [text])", self.begun)
+        self.page.evaluate(LOAD, self.begun)
         self.wait(lambda: self.page.evaluate(SESSION) == self.begun, "the session as it was")
         self.rests()
         return self

@@ -30,6 +30,10 @@ async def page(request):
         noise = (request.app["root"] / "noise").read_text()
         for _ in range(500):
             print(noise, file=sys.stderr, flush=True)
+    if request.path == "/told":
+        return web.json_response(request.app["told"])
+    if request.path == "/kept":
+        return web.Response(text=(request.app["folder"] / "restore.json").read_text())
     return web.json_response({"pid": os.getpid(), "path": request.raw_path, "cookie": request.headers.get("Cookie")})
 
 
@@ -56,15 +60,17 @@ async def main(told):
     (Path(told["folder"]) / "session.tmp").write_text(str(os.getpid()))
     (Path(told["folder"]) / "notes").write_text(str(Path(told["options"]["root"]) / ".pvfiblets-part"))
     app = web.Application(middlewares=[key_check(told["key"])], client_max_size=2**30)
-    app["root"] = Path(told["options"]["root"])
+    app["root"], app["folder"], app["told"] = Path(told["options"]["root"]), Path(told["folder"]), []
     app.router.add_get("/ws", socket)
     app.router.add_post("/upload", upload)
+    app.router.add_post("/session", upload)
     app.router.add_get("/{path:.*}", page)
     runner = web.AppRunner(app)
     await runner.setup()
     await web.TCPSite(runner, "127.0.0.1", 0).start()
     print(json.dumps({"port": runner.addresses[0][1]}), flush=True)
-    await asyncio.to_thread(sys.stdin.read)
+    while line := await asyncio.to_thread(sys.stdin.readline):
+        app["told"].append(json.loads(line))
     await runner.cleanup()
 
 

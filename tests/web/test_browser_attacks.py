@@ -10,6 +10,7 @@ import pytest
 
 import pvfiblets
 from pvfiblets.streamlines import Streamlines
+from tests.web.browsing import LOAD
 
 pytestmark = pytest.mark.more
 
@@ -98,8 +99,7 @@ def test_names_in_sessions_are_text_wherever_they_are_shown(revisit):
     region["name"] = NAMES[0][:40]
     saved["layers"] = [{**layer, "id": f"layer{k + 1}", "name": name} for k, name in enumerate(NAMES)]
     saved["clips"] = [{**saved["clips"][0], "id": f"clip{k + 1}", "name": name} for k, name in enumerate(NAMES)]
-    load = "(text) => window.trame.trigger('load_session', [text])"
-    here.page.evaluate(load, json.dumps(saved))
+    here.page.evaluate(LOAD, json.dumps(saved))
     here.wait(lambda: here.layers() == len(NAMES), "the layers")
     names = [here.page.locator("[data-layer]").nth(k).inner_text() for k in range(len(NAMES))]
     assert all(any(name in text for text in names) for name in NAMES)
@@ -118,10 +118,10 @@ def test_names_in_sessions_are_text_wherever_they_are_shown(revisit):
     # Writing that turns what is beside it round, lines that break, and what moves a terminal's cursor.
     for bad in ("a\u202ebdp.exe", "a\nb", "a\x1b[2Jb", "\u2066x\u2069"):
         here.page.evaluate("window.trame.state.set('toast_open', false)")
-        here.page.evaluate(load, json.dumps({**saved, "layers": [{**layer, "name": bad}]}))
+        here.page.evaluate(LOAD, json.dumps({**saved, "layers": [{**layer, "name": bad}]}))
         here.wait(lambda: here.state("toast_open") and "printable" in here.toast(), "that it was refused")
         assert here.layers() == len(NAMES)
-    here.page.evaluate(load, json.dumps({**saved, "layers": [{**layer, "source": {"path": NAMES[0]}}]}))
+    here.page.evaluate(LOAD, json.dumps({**saved, "layers": [{**layer, "source": {"path": NAMES[0]}}]}))
     here.wait(lambda: "onerror" in here.toast(), "why it was not opened")
     unharmed(here)
     assert "\x1b" not in here.served.log.read_text()

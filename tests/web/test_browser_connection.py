@@ -7,6 +7,7 @@ import os
 import re
 import signal
 import sys
+import tempfile
 import time
 from pathlib import Path
 from urllib.parse import urlsplit
@@ -154,19 +155,33 @@ def chromium_processes():
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals")
-def test_a_dead_session_says_so_at_once_and_another_begins(visit):
+def test_a_dead_session_says_so_at_once_and_is_restored(visit):
     here = visit("lines.fiblets", opened=False)
     here.open()
+    here.choose("scalars", "length")
+    here.wait(lambda: "scalars" in here.state("undo_label"), "another colour")
+    places = """(within) => ['.v-toolbar', '.pv-tools', '.pv-row', '.pv-edge', '[data-tab=clip]'].map((what) => {
+        const {x, y, width, height} = document.querySelector(`${within} ${what}`).getBoundingClientRect();
+        return [x, y, width, height].map(Math.round);
+    })"""
+    before = here.page.evaluate(places, "#app")
+    kept = "pvfiblets-serve-*/*/session.json"
+    here.wait(
+        lambda: any('"scalars": "length"' in one.read_text() for one in Path(tempfile.gettempdir()).glob(kept)),
+        "the session to be kept",
+    )
     process = int(re.findall(r"started as process (\d+)", here.served.log.read_text())[-1])
     os.kill(process, signal.SIGKILL)
     lost = here.page.locator("#pv-lost")
     here.wait(lambda: lost.count() and "The session has ended" in lost.inner_text(), "that it has ended")
     assert "It failed" in lost.inner_text()
     assert lost.locator("img[src^=blob]").count() == 1
-    lost.locator("button:has-text('Open a new one')").click()
+    assert here.page.evaluate(places, "#pv-lost") == before  # nothing of the page has moved
+    lost.locator("button:has-text('Restore')").click()
     here.page.wait_for_selector("#pv-lost", state="detached")
-    here.page.wait_for_selector("#pv-view img[src^=blob]")
-    assert "The session failed" not in here.page.content()
+    here.ready()
+    here.wait(lambda: here.state("undo_label") == "open a session", "the session as it was")
+    assert "length" in here.page.locator("[data-property=scalars]").inner_text()
     here.errors.clear()
 
 

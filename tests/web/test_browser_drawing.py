@@ -13,7 +13,7 @@ from PIL import Image
 
 from tests.page.conftest import WEBGL
 from tests.page.pages import differing
-from tests.web.browsing import FLAGS, Visit, launched
+from tests.web.browsing import FLAGS, LOAD, Visit, launched
 from tests.web.cable import Cable
 
 pytestmark = pytest.mark.more
@@ -108,7 +108,7 @@ def here(_page):
     yield _page
     errors, _page.errors[:] = list(_page.errors), []
     assert not errors
-    _page.page.evaluate("(text) => trame.trigger('load_session', [text])", _page.begun)
+    _page.page.evaluate(LOAD, _page.begun)
     _page.page.evaluate("trame.state.update({tool: 'rotate', dialog: ''})")
 
 
@@ -271,7 +271,7 @@ def test_panes_are_the_servers_beside_the_browsers_view(here):
 
 def test_distances_lie_over_the_picture_where_the_server_has_them(here):
     session = here.session() | {"measurements": [[[0, 0, 0], [60, 36, 20]], [[20, 18, 2], [20, 18, 40]]]}
-    here.page.evaluate("(text) => trame.trigger('load_session', [text])", json.dumps(session))
+    here.page.evaluate(LOAD, json.dumps(session))
     here.page.wait_for_selector("#pv-there-distances text >> nth=1")
     for _ in range(2):  # then from elsewhere
         assert here.page.locator("#pv-there-distances text").all_text_contents() == ["72.77 mm", "38 mm"]
@@ -287,7 +287,7 @@ def test_distances_lie_over_the_picture_where_the_server_has_them(here):
             assert yellow.mean() > 0.8  # the rest is beneath letters and their shadows
         here.drag()
     assert here.state("drawing") == ""
-    here.page.evaluate("(text) => trame.trigger('load_session', [text])", here.begun)
+    here.page.evaluate(LOAD, here.begun)
     here.page.wait_for_selector("#pv-there-distances svg", state="detached")
 
 

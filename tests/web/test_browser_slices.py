@@ -10,6 +10,8 @@ import pytest
 
 pytestmark = pytest.mark.more
 
+from tests.web.browsing import LOAD
+
 
 def told(here):
     """Return the cross-hair in mm."""
@@ -100,7 +102,7 @@ def test_a_t1_is_opened_gone_through_and_found_again(revisit):
     assert json.loads(text)["slices"]["position"] == [20.0, 24.0, 28.0]
     here.press("Control+z")
     here.wait(lambda: not here.state("slicing")["shown"], "no slices")
-    here.page.evaluate("(text) => window.trame.trigger('load_session', [text])", text)
+    here.page.evaluate(LOAD, text)
     here.wait(lambda: here.state("slicing")["shown"], "slices again")
     assert told(here) == [20.0, 24.0, 28.0]
 

@@ -159,7 +159,8 @@ def test_malformed_messages_close_their_connection_with_a_line_in_the_log(caplog
     async def test():
         protocol = ServerProtocol()
         handler = AioHttpWsHandler(protocol, WebAppServer({}))
-        guard_messages(handler)
+        said = []
+        guard_messages(handler, said.append)
         packed = msgpack.packb({"a": 1})
         bad = [
             message(b"\xc1"), message(packed + b"more"), message(packed[:-1]), message(b"\x91" * 5000),
@@ -173,6 +174,7 @@ def test_malformed_messages_close_their_connection_with_a_line_in_the_log(caplog
             handler.unchunkers["one"].set_max_message_size(2**20)
             await handler.onMessage(True, Told(data), "one")
             assert connection.closed, data
+        assert len(said) == len(bad)  # the page says why it was cut off
         connection = handler.connections["one"] = Connection()
         await handler.onConnect(None, "one")
         handler.unchunkers["one"].set_max_message_size(2**20)

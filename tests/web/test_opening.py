@@ -10,6 +10,7 @@ from dataclasses import replace
 import pytest
 
 from pvfiblets.web import session
+from pvfiblets.web.access import LARGEST_SESSION
 from pvfiblets.web.document import Source
 from pvfiblets.web.session import SessionError
 from tests.web.desk import Desk
@@ -94,9 +95,9 @@ def test_a_session_that_is_stopped_or_wrong_changes_nothing(desk, scene):
 
     with pytest.raises(SessionError, match="opacity"):
         asyncio.run(wrong())
-    for text in ("{", "[" * 100_000):
-        with pytest.raises(ValueError, match="no session file"):
-            desk.files.load_session(text)
+    for text in ("{", b"[" * 100_000, b"\xff"):
+        with pytest.raises(SessionError, match="no session file"):
+            desk.run(lambda text=text: desk.files.load_session(text))
     assert scene.state is state
     assert scene.store.loaded == kept
     assert desk.page.job == {}
@@ -166,8 +167,9 @@ def test_sessions_in_the_served_folder_are_files_like_others(desk, scene, folder
     asyncio.run(test())
     assert desk.said[0] == ("success", "The session is saved in the served folder as study/mine.json.")
     assert [layer.path for layer in scene.layers] == ["study/ball.ply", "lines.fiblets"]
-    (folder / "long.json").write_bytes(b" " * (session.LARGEST + 1))
-    with pytest.raises(ValueError, match="sessions have"):
+    with (folder / "long.json").open("wb") as file:
+        file.truncate(LARGEST_SESSION + 1)
+    with pytest.raises(SessionError, match="at most"):
         desk.files.take("long.json", False)
 
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import builtins
+import keyword
+import re
 import subprocess
 import sys
 
@@ -9,6 +12,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
+import pvfiblets
 from pvfiblets.volumes import RaycastVolume
 from pvfiblets.volumes.raycast_options import INTEGRATORS
 from pvfiblets.web import layers
@@ -130,6 +134,43 @@ def test_a_script_can_be_read(scene):
     assert "\nclass_arcuate_left_1 = plotter.add_fiblets(" in script
     assert "\nclass_arcuate_left_1_2 = plotter.add_fiblets(" in script
     assert script.rstrip().endswith("plotter.show()")
+
+
+HOSTILE = (
+    "print.tck", "float.trk", "class.trk", "pv.tck", "np.trk", "plotter.tck", "match.tck", "1.tck", "path.tck",
+    "it's \"quoted\".tck", "matrix.trk", "range.tck", "folder.tck", "region.tck", "_.tck", "twice/lines.trk",
+    "lines.trk", "end_labels.tck", "as_slice_image.tck", "parcels.tck", "fiblets.tck", "bundle.tck",
+)  # fmt: skip
+
+
+def test_no_file_is_called_as_what_the_script_uses(scene, folder, lines):
+    (folder / "twice").mkdir()
+    for name in HOSTILE:
+        if not (folder / name).exists():
+            pvfiblets.write(folder / name, lines)
+    made = [scene.open(name) for name in HOSTILE]
+    one = made[0]
+    scene.set_filter(made[1].id, "length", 20, None)  # float('inf')
+    scene.add_bundle(made[1].id, [1, 2, 3], "for")
+    scene.select(one.id, [3, 4])
+    scene.keep_selection(one.id)
+    scene.remove(one.id)  # of which the selection is a part: fiblets
+    scene.show_matrix(scene.prepare_matrix(layer=made[1].id, labels="atlas.nii.gz"))  # print(matrix), parcels
+    scene.set_connection(made[2].id, [3, 5], "atlas.nii.gz")  # ends
+    scene.add_measurement([0, 0, 0], [1, 2, 3])
+    scene.add_clip("plane")
+    script = as_script(scene)
+    variables = re.findall(r"^(\w+) = plotter\.add_fiblets\(", script, re.MULTILINE)
+    assert len(set(variables)) == len(HOSTILE)
+    assert not set(variables) & {*dir(builtins), *keyword.kwlist}
+    assert {"layer_class", "layer_1", "lines", "lines_2"} <= set(variables)
+    shown = "print('drawn:', len(plotter.actors))\nplotter.close()"
+    (folder / "again.py").write_text(script.replace("plotter.show()", shown))
+    done = subprocess.run(
+        [sys.executable, "again.py"], cwd=folder, capture_output=True, text=True, timeout=240, check=False
+    )
+    assert done.returncode == 0, done.stderr + script
+    assert "drawn:" in done.stdout
 
 
 def test_demos_are_made_in_a_script(scene):

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import io
+import json
 import os
 import signal
 import socket
@@ -34,8 +36,6 @@ async def gone(pid, seconds=10.0):
 
 
 def test_the_state_of_a_session_is_told_to_its_browser_alone(tmp_path):
-    import json
-
     async def main():
         async with gate(tmp_path) as server, Browser(server) as browser, Browser(server) as stranger:
             await browser.enter()
@@ -162,6 +162,36 @@ def test_a_browser_that_sends_too_much_is_cut_off_and_may_come_back(tmp_path, ba
     run(test())
 
 
+def test_what_is_cut_off_is_said_on_the_page(tmp_path):
+    async def test():
+        async with gate(tmp_path) as server, Browser(server) as browser:
+            await browser.enter()
+            for bad in (message(b"x" * LARGEST_MESSAGE), message(b"x", 2**32 - 1)):
+                async with browser.socket() as socket:
+                    await socket.send_bytes(bad)
+                    await socket.receive()
+            said = []
+            while len(said) < 2:
+                said = [told["say"] for told in json.loads((await browser.get("/told"))[1])]
+            assert all("refused" in one and f"{LARGEST_MESSAGE:,} bytes" in one for one in said)
+
+    run(test())
+
+
+def test_sessions_are_larger_than_messages_and_where_nothing_may_be_uploaded(tmp_path, monkeypatch):
+    monkeypatch.setattr("pvfiblets.web.server.LARGEST_SESSION", 8 * LARGEST_MESSAGE)
+
+    async def test():
+        async with gate(tmp_path, upload=0) as server, Browser(server) as browser:
+            await browser.enter()
+            most = 8 * LARGEST_MESSAGE
+            assert await browser.post("/session", data=io.BytesIO(b"x" * most)) == (200, str(most))
+            assert (await browser.post("/session", data=io.BytesIO(b"x" * (most + 1))))[0] == 413
+            assert (await browser.post("/upload?name=a.trk", data=b"x"))[0] == 413
+
+    run(test())
+
+
 def test_uploads_have_a_limit(tmp_path):
     async def test():
         async with gate(tmp_path, upload=1000) as server, Browser(server) as browser:
@@ -240,6 +270,57 @@ def test_a_failing_session_touches_no_other_and_says_so(tmp_path):
             assert (await other.pid()) == kept
             await one.post("/new")
             assert (await one.enter()) not in (pid, kept)
+
+    run(test())
+
+
+async def died(browser, server, state):
+    """Kill the process of a browser's session, which had kept a state, and wait until that is known."""
+    pid = await browser.pid()
+    session = server.launcher.find(next(one.value for one in browser.http.cookie_jar if "session" in one.key))
+    if state is not None:
+        (session.folder / "session.json").write_text(state)
+    os.kill(pid, signal.SIGKILL)
+    while not session.ended:
+        await asyncio.sleep(0.02)
+    return json.loads((await browser.get("/status"))[1])
+
+
+def test_the_last_state_of_a_dead_session_is_restored_to_its_browser_alone(tmp_path, monkeypatch):
+    async def test():
+        async with gate(tmp_path) as server, Browser(server) as one, Browser(server) as other:
+            first, kept = await one.enter(), await other.enter()
+            assert (await died(one, server, "mine"))["restore"]
+            status, text = await one.get("/")
+            assert status == 410
+            assert "Restore" in text
+            await one.post("/new?restore=1")
+            assert (await one.enter()) not in (first, kept)
+            while not json.loads((await one.get("/told"))[1]):
+                await asyncio.sleep(0.02)
+            assert json.loads((await one.get("/told"))[1]) == [{"restore": True}]
+            assert (await one.get("/kept"))[1] == "mine"
+            await other.post("/new?restore=1")  # its own, which is whole, ends
+            await other.enter()
+            assert json.loads((await other.get("/told"))[1]) == []
+            # A process that dies of what it restores takes nothing along; of one that kept nothing there is nothing.
+            assert (await died(one, server, "of the start"))["restore"]
+            await one.post("/new?restore=1")
+            await one.enter()
+            assert (await one.get("/kept"))[1] == "mine"
+            assert not (await died(other, server, None))["restore"]
+            # Without, and after its time, it goes.
+            scratch = server.launcher._scratch
+            assert (await died(one, server, "of the start"))["restore"]
+            await one.post("/new")
+            assert not list(scratch.folder.rglob("*.json"))
+            await one.enter()
+            assert (await died(one, server, "late"))["restore"]
+            assert len(list(scratch.folder.rglob("*.json"))) == 1
+            monkeypatch.setattr("pvfiblets.web.launcher.RESCUED", -1.0)
+            await server.launcher.end_idle()
+            assert not list(scratch.folder.rglob("*.json"))
+            assert not json.loads((await one.get("/status"))[1])["restore"]
 
     run(test())
 

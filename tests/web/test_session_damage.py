@@ -42,6 +42,7 @@ def test_damaged_session_files_are_refused_or_shown(folder, damage):
         lines = scene.open("lines.fiblets")
         scene.set_filter(lines.id, "length", 20, None)
         scene.select(lines.id, [20, 21, 40])
+        scene.add_bundle(lines.id, np.flatnonzero(np.random.default_rng(0).random(60) < 0.5), "half")
         scene.add_clip("plane", normal=[0, 0, 1], origin=[0, 0, 4], layers=[lines.id])
         whole = session.save(scene, "a.json").read_bytes()
         session.load(scene, "a.json")
@@ -77,6 +78,20 @@ BOMBS = {
     "many layers": lambda layer: {"layers": [{**layer, "id": f"layer{k}"} for k in range(5000)]},
     "many cuts": lambda layer: {"layers": [layer], "clips": 100_000 * [{}]},
     "many runs": lambda layer: {"layers": [{**layer, "selected": list(range(2, 8_000_000, 7))}]},
+    "many packed runs": lambda layer: {"layers": [{**layer, "selected": "u1:" + "AQEB" * 4_000_000}]},
+    "many bits": lambda layer: {"layers": [{**layer, "selected": "bits:" + "////" * 4_000_000}]},
+    "far packed runs": lambda layer: {"layers": [{**layer, "selected": "u8:AAAAAAAAAAD///////8f"}]},
+    "a huge selection": lambda layer: {
+        "layers": [{**layer, "kind": "selection", "source": {**layer["source"], "ids": "u8:AAAAAAAAAAD///////8f"}}]
+    },
+    "huge painted regions": lambda layer: {
+        "layers": [layer],
+        "painting": {
+            "shape": [640, 640, 640],
+            "affine": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1],
+            "regions": [{"name": f"{k}", "color": "red", "runs": "u4:AAAAAAAAoA8="} for k in range(32)],
+        },
+    },
     "far runs": lambda layer: {"layers": [{**layer, "selected": [0, 2**61]}]},
     "huge numbers": lambda layer: {"layers": [{**layer, "settings": {"opacity": 10**400}}]},
     "long names": lambda layer: {"layers": [{**layer, "name": "x" * 10_000_000}]},

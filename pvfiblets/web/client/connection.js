@@ -20,17 +20,23 @@
   const frozen = () => {
     const app = document.querySelector("#app");
     const copy = app.cloneNode(true);
-    const typed = app.querySelectorAll("input");
-    copy.querySelectorAll("input").forEach((input, k) => { input.value = typed[k].value; });
+    const pairs = (what, act) => {
+      const copies = copy.querySelectorAll(what);
+      app.querySelectorAll(what).forEach((one, k) => act(one, copies[k]));
+    };
+    pairs("input", (one, other) => { other.value = one.value; });
+    pairs("canvas:not(#pv-there)", (one, other) => one.width && one.height && other.getContext("2d").drawImage(one, 0, 0));
     const here = window.pvfibletsThere, canvas = copy.querySelector("#pv-there");
     if (here?.canvas.isConnected && canvas?.style.visibility === "visible") { // a copy of it is empty
       Object.assign(canvas, { width: here.width, height: here.height });
       canvas.getContext("2d").putImageData(new ImageData(new Uint8ClampedArray(here.pixels()), here.width), 0, 0);
     }
     for (const one of [copy, ...copy.querySelectorAll("[id]")]) one.removeAttribute("id");
+    // With its components trame takes away their style sheets.
+    copy.append(...[...document.querySelectorAll("style")].map((sheet) => sheet.cloneNode(true)));
     copy.inert = true;
     copy.style.cssText = "position:absolute;inset:0;filter:brightness(.4) saturate(.5)";
-    return copy;
+    return [copy, () => pairs("*", (one, other) => one.scrollTop && other.scrollTo(one.scrollLeft, one.scrollTop))];
   };
 
   const show = () => {
@@ -45,8 +51,10 @@
     title.style.cssText = "font-size:18px;font-weight:600;margin-bottom:6px";
     buttons.style.cssText = "display:flex;gap:8px;margin-top:14px;justify-content:flex-end";
     card.append(title, text, buttons);
-    over.append(frozen(), card);
+    const [copy, scroll] = frozen();
+    over.append(copy, card);
     document.body.append(over);
+    scroll();
     return { over, title, text, buttons };
   };
 
@@ -64,10 +72,10 @@
     lost.shown = title;
   };
 
-  const again = () => {
+  const again = (query = "") => {
     const form = part("form");
     form.method = "post";
-    form.action = "/new";
+    form.action = `/new${query}`;
     document.body.append(form);
     form.submit();
   };
@@ -112,7 +120,9 @@
     lost.over = true;
     const why = said.reason ? `It failed: ${said.reason}.` : said.state === "none" ? "No browser was there for too long, or the server was started again."
       : "It was closed.";
-    tell("The session has ended", why, button("Open a new one", again));
+    const kept = said.restore ? " Its last state is kept for an hour." : "";
+    const restore = said.restore ? [button("Restore", () => again("?restore=1"))] : [];
+    tell("The session has ended", why + kept, ...restore, button("Open a new one", () => again()));
   };
 
   const resume = async (one) => {

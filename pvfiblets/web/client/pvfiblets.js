@@ -216,10 +216,18 @@
     if (event.target.closest?.("[data-action=cancel-upload]")) uploading?.abort();
   }, true);
 
+  const mebibytes = (bytes) => `${(bytes / 2 ** 20).toFixed(0)} MB`;
+
+  const loadSession = async (file, limit) => {
+    if (file.size > limit) return say(`${file.name} has ${mebibytes(file.size)}; session files have ${mebibytes(limit)} at most.`);
+    set("dialog", "");
+    const answer = await fetch("/session", { method: "POST", body: file }).catch(() => null);
+    if (!answer?.ok) say(`${file.name} was not opened (${answer?.status || "connection lost"}).`);
+  };
+
   const upload = (file, limit) => new Promise((done) => {
     if (file.size > limit) {
-      say(`${file.name} has ${(file.size / 2 ** 20).toFixed(0)} MB; ` +
-        `${(limit / 2 ** 20).toFixed(0)} MB is the most that this server takes.`);
+      say(`${file.name} has ${mebibytes(file.size)}; ${mebibytes(limit)} is the most that this server takes.`);
       return done();
     }
     const request = new XMLHttpRequest();
@@ -248,13 +256,7 @@
       input.value = "";
       for (const one of files) await upload(one, Number(input.dataset.limit));
     }
-    else if (input.dataset.session !== undefined) {
-      if (file.size > 512 * 1024) say(`${file.name} is too large for a session file.`);
-      else {
-        set("dialog", "");
-        call("load_session", await file.text());
-      }
-    }
+    else if (input.dataset.session !== undefined) await loadSession(file, Number(input.dataset.limit));
     input.value = "";
   }, true);
 })();
