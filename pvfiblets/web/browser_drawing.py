@@ -93,6 +93,7 @@ class BrowserDrawing(Actions):
         self.rests = rests is True
         app.stream.leave()
         if self.rests:
+            app.files.keep_soon()
             with app.state:
                 app.page.there_camera = {"camera": self._camera, "from": str(origin)[:40]}
 

@@ -152,13 +152,19 @@ def test_sessions_are_saved_loaded_and_survive_a_reload(revisit):
     here.choose("scalars", "orientation")
     here.press("2")
     other = here.changed(kept)
+    file.write_text(file.read_text() + " " * 1_500_000)  # more than a message may have
     here.press("s")
     here.page.set_input_files("[data-session]", file)
     assert np.abs(here.changed(other) - kept).mean() < 0.5
     file.write_text('{"version": 1, "layers": "none"}')
     here.press("s")
     here.page.set_input_files("[data-session]", file)
-    here.wait(lambda: here.state("toast_open") and here.toast(), "why it is no session")
+    here.wait(lambda: here.state("toast_open") and "program" in here.toast(), "why it is no session")
+    here.page.evaluate("document.querySelector('[data-session]').dataset.limit = 20")
+    here.press("s")
+    here.page.set_input_files("[data-session]", file)
+    here.wait(lambda: "session files have" in here.toast(), "that it is too large")
+    here.press("Escape")
     assert np.abs(here.rests() - kept).mean() < 0.5
 
 

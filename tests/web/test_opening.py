@@ -12,6 +12,7 @@ import pytest
 from pvfiblets.web import session
 from pvfiblets.web.access import LARGEST_SESSION
 from pvfiblets.web.document import Source
+from pvfiblets.web.scratch import Notes
 from pvfiblets.web.session import SessionError
 from tests.web.desk import Desk
 
@@ -101,6 +102,34 @@ def test_a_session_that_is_stopped_or_wrong_changes_nothing(desk, scene):
     assert scene.state is state
     assert scene.store.loaded == kept
     assert desk.page.job == {}
+
+
+def test_what_a_process_keeps_is_restored_by_the_next_after_its_first_files(desk, scene, tmp_path, monkeypatch):
+    monkeypatch.setattr("pvfiblets.web.session_actions.QUIET", 0.0)
+    desk.notes = Notes(tmp_path)
+    layer = scene.open("lines.trk")
+    scene.select(layer.id, [4, 5, 9])
+
+    async def dies():
+        desk.files.keep_soon()
+        while not (tmp_path / "session.json").exists():
+            await asyncio.sleep(0.001)
+
+    async def next_one():
+        desk.options = replace(desk.options, files=["ball.ply"])
+        desk.files.open_given()
+        desk.files.restore()
+        scene.watch(lambda _: desk.files.keep_soon())
+        await desk.done()
+
+    asyncio.run(dies())
+    state = scene.state
+    (tmp_path / "session.json").rename(tmp_path / "restore.json")
+    scene.remove(layer.id)
+    asyncio.run(next_one())
+    assert scene.state == state
+    assert (tmp_path / "session.json").read_text() == session.to_text(scene)
+    assert desk.history.undo_label == "open a session"
 
 
 def test_what_changes_while_a_session_is_read_is_one_step_before_it(desk, scene):

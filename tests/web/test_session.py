@@ -107,6 +107,20 @@ def test_random_halves_of_many_streamlines_are_saved_small_and_come_back(scene, 
     np.testing.assert_array_equal(eval(call, names), halves[1])
 
 
+def test_names_that_files_have_are_saved_and_come_back(scene, other, folder, lines):
+    name = "x" * 240 + ".fiblets"
+    groups = {"of\ntwo lines": np.arange(5), "long" * 50: np.arange(3, 9)}
+    pvfiblets.compress(Streamlines(lines.points, lines.offsets, groups=groups)).save(folder / "a.fiblets")
+    (folder / "a.fiblets").rename(folder / name)
+    layer = scene.open(name)
+    scene.set_bundle(layer.id, "long" * 50, visible=False)
+    for _ in range(3):
+        scene.select(layer.id, [0, 1, 2, 3])
+        layer = scene.keep_selection(layer.id)
+    session.from_dict(other, session.from_text(session.to_text(scene)))
+    assert other.state == scene.state
+
+
 @given(st.sets(st.integers(0, 3000), max_size=400), st.integers(0, 2000))
 def test_runs_are_packed_and_unpacked(numbers, more):
     numbers = np.array(sorted(numbers), np.int64)
