@@ -38,13 +38,7 @@ class LineActions(Actions):
     async def _beside(
         self, layer: Any, fiblets: Any, work: Callable[[Watch], Any], what: str, *, cancelled: str, again: str
     ) -> Any:
-        """Do work on a layer's streamlines beside everything else; None if it was cancelled.
-
-        Raises
-        ------
-        ValueError
-            If the layer has other streamlines by then.
-        """
+        """Do work on a layer's streamlines beside everything else; None if it was cancelled."""
         app = self._app
         try:
             found = await app.files.beside(layer.name, lambda progress, cancel: work(Watch(progress, cancel)), what)

@@ -82,13 +82,7 @@ def put_in_order(renderer: Any, actors: Sequence[Any]) -> None:
 
 
 def look_as(plotter: Any, actor: Any, old: Layer, new: Layer, loaded: Loaded, colours: Colours) -> Any:
-    """Bring an actor's looks in step with its layer; return the actor, which of meshes is another one.
-
-    Raises
-    ------
-    ValueError
-        If the actor refuses a value; it looks as before.
-    """
+    """Bring an actor's looks in step with its layer; return the actor, which of meshes is another one."""
     before, after = looks(old.kind, old.settings), looks(new.kind, new.settings)
     if before != after:
         if new.kind == "mesh":
@@ -145,11 +139,6 @@ def filter_as(actor: Any, old: Filters, new: Filters, load: Load, ends: Ends) ->
         Gives meshes and labels that regions are made of.
     ends : callable
         From fiblets, a label volume's path and a radius to the parcels in which streamlines end, ``(n, 2)``.
-
-    Raises
-    ------
-    ValueError, KeyError
-        If there are no such values or groups, or a region is none.
     """
     for name in old.criteria:
         if name not in new.criteria:
@@ -202,11 +191,6 @@ def split_cuts(layer: Layer, clips: Sequence[Clip]) -> tuple[Planes, list[Clip]]
         Normals and origins of planes, which VTK cuts by.
     others : list of Clip
         Of meshes: those whose shapes the triangles are cut by.
-
-    Raises
-    ------
-    ValueError
-        If something else than planes would cut tubes, or too many planes.
     """
     planes: Planes = []
     others: list[Clip] = []

@@ -54,13 +54,6 @@ class Beside(Actions):
         -------
         object
             What `work` returned.
-
-        Raises
-        ------
-        TooLargeError
-            If memory does not suffice; nothing of what was done stays.
-        ValueError
-            If too much waits already.
         """
         app = self._app
         loop = asyncio.get_running_loop()

@@ -75,11 +75,6 @@ class CameraActions(Actions):
             Pixels per inch that the file is to say; empty for none.
         transparent : bool
             Leave the background out.
-
-        Raises
-        ------
-        ValueError
-            If a number is none, or the picture is too large.
         """
         from PIL import Image
 

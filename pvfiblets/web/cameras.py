@@ -158,13 +158,7 @@ def _depths(window: Any, left: int, below: int, right: int, above: int) -> np.nd
 
 
 def check_camera(value: Any) -> dict[str, Any]:
-    """Return where a camera is, checked.
-
-    Raises
-    ------
-    ValueError
-        If a number is missing or makes no sense.
-    """
+    """Return where a camera is, checked."""
     mapping(value, "camera", ("position", "focal_point", "up", "view_angle", "parallel", "parallel_scale"))
     found: dict[str, Any] = {
         key: numbers(value[key], f"camera's {key}", 3) for key in ("position", "focal_point", "up")

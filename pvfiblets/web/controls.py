@@ -45,13 +45,7 @@ def controls(shape: Mapping[str, Any], bounds: Sequence[float]) -> list[dict[str
 
 
 def moved(shape: Mapping[str, Any], name: str, value: Any) -> dict[str, Any]:
-    """Return the parts of a shape that a slider of :func:`controls` changes.
-
-    Raises
-    ------
-    ValueError
-        If the shape has no such slider, or the value is not of its kind.
-    """
+    """Return the parts of a shape that a slider of :func:`controls` changes."""
     kind = shape["kind"]
     if kind == "box" and name in ("x", "y", "z"):
         low, high = _two(value)
@@ -76,13 +70,7 @@ def moved(shape: Mapping[str, Any], name: str, value: Any) -> dict[str, Any]:
 
 
 def typed_value(shape: Mapping[str, Any], bounds: Sequence[float], name: str, end: int, text: str) -> Any:
-    """Return what a slider of :func:`controls` is moved to by a number that was typed for it, or for one of its ends.
-
-    Raises
-    ------
-    ValueError
-        If the shape has no such slider, or the text is no number.
-    """
+    """Return what a slider of :func:`controls` is moved to by a number typed for it or for one of its ends."""
     found = next((one for one in controls(shape, bounds) if one["name"] == name), None)
     if found is None:
         raise ValueError(f"a {shape['kind']} has no {str(name)[:40]!r}")

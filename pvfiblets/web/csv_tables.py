@@ -18,13 +18,7 @@ _FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n")
 
 
 def selection_csv(scene: Scene) -> str:
-    """Return the selected streamlines of all layers, a row each.
-
-    Raises
-    ------
-    ValueError
-        If nothing is selected, or too many are.
-    """
+    """Return the selected streamlines of all layers, a row each."""
     total = scene.count()
     if not total:
         raise ValueError("nothing is selected; pick streamlines first")

@@ -351,13 +351,7 @@ class State:
         return next((listed for one, listed in self.bundles if one == source), None)
 
     def layer(self, layer_id: str) -> Layer:
-        """Return a layer.
-
-        Raises
-        ------
-        KeyError
-            If there is none of that id.
-        """
+        """Return a layer."""
         return named(self.layers, layer_id, "layer", by="id")
 
     def clip(self, clip_id: str) -> Clip:
@@ -387,11 +381,6 @@ def named(things: Iterable[Any], wanted: Any, what: str, *, by: str = "name") ->
         What they are, for people.
     by : str
         The attribute that is asked for.
-
-    Raises
-    ------
-    KeyError
-        If there is none.
     """
     things = list(things)
     found = next((thing for thing in things if getattr(thing, by) == wanted), None)

@@ -30,13 +30,7 @@ _RADII = ("radius", "Radius", "MaximumInscribedSphereRadius")
 
 
 def kind_of(path: Path) -> str:
-    """Return the kind of layer that a file is for.
-
-    Raises
-    ------
-    UnknownFormatError
-        If no format has its suffix.
-    """
+    """Return the kind of layer that a file is for."""
     name = path.name.lower()
     if name.endswith(VOLUMES):
         return "volume"

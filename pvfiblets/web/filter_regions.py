@@ -236,13 +236,7 @@ def _index(rows: list[Any], row: Any) -> int:
 
 
 def flat(condition: Any) -> tuple[str, list[Row]]:
-    """Return a condition as the word that joins it and its rows.
-
-    Raises
-    ------
-    ValueError
-        If it is nested deeper than that.
-    """
+    """Return a condition as the word that joins it and its rows."""
     if condition is None:
         return "and", []
     parts, join = [condition], "and"

@@ -19,13 +19,7 @@ _FETCHED = re.compile(r'<div id="app"></div>\s*<script>.*?</script>', re.DOTALL)
 
 
 def first_document() -> str:
-    """Return the document.
-
-    Raises
-    ------
-    RuntimeError
-        If trame's has another form than the one that is known.
-    """
+    """Return the document."""
     from trame_client.module import vue3
 
     text = (Path(vue3.www) / "index.html").read_text(encoding="utf-8")

@@ -78,13 +78,7 @@ class History:
         return len(self._done)
 
     def undo(self) -> str | None:
-        """Take the last step back; return what it was, None if there is none.
-
-        Raises
-        ------
-        Exception
-            If a file that the scene had is not there any more; nothing has changed.
-        """
+        """Take the last step back; return what it was, None if there is none."""
         return self._move(self._done, self._undone, back=True)
 
     def redo(self) -> str | None:

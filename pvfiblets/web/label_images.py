@@ -56,15 +56,7 @@ def read_labels(place: Path) -> LabelVolume:
 
 
 def with_table(image: LabelledImage, place: Path) -> LabelledImage:
-    """Return an image whose labels have the names and colours of a file.
-
-    Raises
-    ------
-    FormatError
-        If the file holds no table of labels.
-    ValueError
-        If it is larger than tables are.
-    """
+    """Return an image whose labels have the names and colours of a file."""
     if place.stat().st_size > LARGEST:
         raise ValueError(f"{place.name} has {place.stat().st_size:,} bytes; tables of labels have {LARGEST:,} at most")
     return replace(image, table=as_label_table(place))

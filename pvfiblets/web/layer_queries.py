@@ -78,11 +78,6 @@ class LayerQueries:
         dict
             ``name``; ``edges``: ``bins + 1`` numbers; ``counts``; ``missing``: how many have no value; ``share`` of the
             data that was looked at.
-
-        Raises
-        ------
-        ValueError
-            If there are no such values.
         """
         layer = self.layer(layer_id)
         count = whole(bins, "bins", 1, 4096)

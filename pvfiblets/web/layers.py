@@ -146,11 +146,6 @@ def check(kind: str, name: Any, value: Any, data: Any, volumes: Choices = ()) ->
         What the layer draws: choices and limits may depend on it.
     volumes : sequence of (value, label)
         Volumes that lines may be coloured by.
-
-    Raises
-    ------
-    ValueError
-        If there is no such setting or it cannot be that.
     """
     prop = _BY_NAME[kind].get(name) if isinstance(name, str) else None
     if prop is None:

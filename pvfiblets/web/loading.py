@@ -98,15 +98,6 @@ class Files:
             Relative to the root, or absolute.
         new : bool
             Whether it is to be written, and only its folder must be there.
-
-        Raises
-        ------
-        PermissionError
-            If it lies outside of the root.
-        FileNotFoundError
-            If there is no such file.
-        ValueError
-            If it is no path.
         """
         text = str(path) if isinstance(path, (str, Path)) else ""
         if not text or not text.isprintable() or len(text) > 4096:
@@ -176,13 +167,6 @@ class Files:
             Called with what is being done and the share of it that is, 0 to 1.
         cancel : callable, optional
             Asked from time to time whether to stop.
-
-        Raises
-        ------
-        Cancelled
-            If `cancel` said so.
-        FormatError, ValueError, OSError
-            If the file is damaged, of another kind, outside of the root or not there.
         """
         watch = Watch(progress, cancel)
         watch("reading", 0.0)
@@ -237,13 +221,7 @@ class Files:
         return Loaded("mesh", source, name, mesh, {"points": mesh.n_points, "faces": mesh.n_cells})
 
     def with_values(self, loaded: Loaded, paths: tuple[str, ...]) -> Loaded:
-        """Return a tractogram or a mesh with the values of files more, or an image with names of labels.
-
-        Raises
-        ------
-        FormatError, ValueError, OSError
-            If a file is damaged, has values for other streamlines, is outside of the root or not there.
-        """
+        """Return a tractogram or a mesh with the values of files more, or an image with names of labels."""
         add: Callable[[Any, Path], Any]
         if loaded.kind == "image":
             from pvfiblets.web.label_images import with_table as add

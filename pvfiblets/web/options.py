@@ -93,15 +93,7 @@ class Options:
         return is_loopback(self.host)
 
     def checked(self) -> Options:
-        """Return these options.
-
-        Raises
-        ------
-        ValueError
-            If one of them cannot be; the message names it and says what can.
-        OSError
-            If a file or the root is missing.
-        """
+        """Return these options."""
         if not 0 <= self.port <= 65535:
             raise ValueError(f"--port {self.port}: a port is from 0 to 65535")
         if self.limit < 1:

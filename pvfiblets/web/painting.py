@@ -117,13 +117,7 @@ def path_between(now: Strokes | None, wanted: Strokes | None) -> tuple[list[Stro
 
 
 def check_painting(value: Any) -> Painting:
-    """Return painted regions, of what a session says.
-
-    Raises
-    ------
-    ValueError
-        If something in it makes no sense.
-    """
+    """Return painted regions, of what a session says."""
     given = mapping(value, "painting", ("shape", "affine", "regions"))
     if not isinstance(given["shape"], list) or len(given["shape"]) != 3:
         raise ValueError(f"shape of painting is {shown(given['shape'])}; give three whole numbers")

@@ -69,13 +69,7 @@ class Property(Row):
         return self.limits(data) if callable(self.limits) else self.limits
 
     def check(self, value: Any, data: Any, volumes: Choices = ()) -> Any:
-        """Return a value in its plain form.
-
-        Raises
-        ------
-        ValueError
-            If it is of another type, out of range, none of the choices, or cannot be set.
-        """
+        """Return a value in its plain form."""
         if self.read_only:
             raise ValueError(f"{self.name} can only be read; it was to become {shown(value)}")
         if self.type == "choice":

@@ -37,13 +37,6 @@ def check_references(place: Path, folders: list[Path]) -> None:
         The file, free of links.
     folders : list of Path
         Free of links.
-
-    Raises
-    ------
-    PermissionError
-        If it does; what it names is not said, nor whether that is there.
-    FormatError
-        If its header cannot be read.
     """
     beside = [one for one in fixels.files_beside(place) if one != place]
     named = [one.name for one in beside] + _named(place)

@@ -98,13 +98,7 @@ def mark(shape: Mapping[str, Any], sight: Sight) -> dict[str, Any] | None:
 
 
 def dragged(shape: Mapping[str, Any], handle: str, place: Sequence[float], sight: Sight) -> dict[str, Any]:
-    """Return what a region changes when one of its handles is dragged to a place in the picture.
-
-    Raises
-    ------
-    ValueError
-        If it has no such handle.
-    """
+    """Return what a region changes when one of its handles is dragged to a place in the picture."""
     if shape["kind"] == "sphere" and handle == "center":
         return {"center": sight.beneath(place, shape["center"]).tolist()}
     if shape["kind"] == "sphere" and handle == "radius":

@@ -49,13 +49,7 @@ def pack(runs: np.ndarray) -> str:
 
 
 def unpack(value: Any, name: str, count: int, of: str = "streamline") -> np.ndarray:
-    """Return the runs that a session file holds for some of ``count`` things; of older files, a list of their ends.
-
-    Raises
-    ------
-    ValueError
-        If they are damaged, or not all below ``count``.
-    """
+    """Return the runs that a session file holds for some of ``count`` things; of older files, a list of their ends."""
     ends = _ends(value, count)
     if ends is None:
         raise ValueError(f"{name}: {shown(value)} is damaged, or has runs of more than {count:,} {of}s; save it again")

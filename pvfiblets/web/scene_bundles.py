@@ -63,11 +63,6 @@ class SceneBundles:
         what : {"selected", "shown"} or array of int
             What is selected, what filters leave, or numbers of streamlines.
         name : str, optional
-
-        Raises
-        ------
-        ValueError
-            If it would have no streamlines, or the name is taken.
         """
         layer = self._lines(layer_id)
         if isinstance(what, str) and what == "selected":
@@ -92,13 +87,7 @@ class SceneBundles:
         return made
 
     def add_bundles(self, layer_id: str, groups: Mapping[str, Any], what: str) -> list[Bundle]:
-        """Add a bundle for each of some arrays of streamlines by name, in one step; names get a number where need be.
-
-        Raises
-        ------
-        ValueError
-            If one has no streamlines, or one that the set does not have.
-        """
+        """Add a bundle for each of some arrays of streamlines by name, in one step; taken names get a number."""
         layer, there = self._lines(layer_id), list(self.bundles(layer_id))
         colours, total = distinct_colours(len(there) + len(groups)), self.data(layer).data.n_streamlines
         made: list[Bundle] = []

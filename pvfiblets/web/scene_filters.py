@@ -66,11 +66,6 @@ class SceneFilters:
         Returns
         -------
         Clip
-
-        Raises
-        ------
-        ValueError
-            If the shape is none, or cannot cut one of the layers.
         """
         if len(self.state.clips) >= MOST_CLIPS:
             raise ValueError(f"there are {MOST_CLIPS} cuts, which is the most; remove one first")
@@ -92,13 +87,6 @@ class SceneFilters:
         clip_id : str
         **changes
             ``inside``, ``enabled``, ``name``, ``layers``, or parts of the shape such as ``origin``.
-
-        Raises
-        ------
-        KeyError
-            If there is no such cut.
-        ValueError
-            If a value makes no sense; nothing has changed.
         """
         clip = self.state.clip(clip_id)
         wanted: dict[str, Any] = {}
@@ -173,13 +161,6 @@ class SceneFilters:
             Name of the values: ``"length"``, or any other number per streamline or per point.
         low, high : float, optional
             Least and greatest value that is shown; ``None`` leaves that end open.
-
-        Raises
-        ------
-        KeyError
-            If there is no such layer.
-        ValueError
-            If there are no such values, or the range is none.
         """
         layer = self._lines(layer_id)
         limits = check_range(low, high, criterion)
@@ -276,11 +257,6 @@ def check_filters(
     """Return filters of a session file that fit some fiblets; ``groups`` are names of these by another list.
 
     ``place`` gives a path as documents hold it, of a file that is there.
-
-    Raises
-    ------
-    ValueError
-        If they do not.
     """
     from pvfiblets.web.layer_properties import value_names
 

@@ -185,13 +185,6 @@ class SceneLayers:
             Of :data:`pvfiblets.web.layers.TABLES`.
         value : JSON value
             As a browser sent it.
-
-        Raises
-        ------
-        KeyError
-            If there is no such layer.
-        ValueError
-            If there is no such property, or it cannot be that; nothing has changed.
         """
         layer = self.layer(layer_id)
         checked = layers.check(layer.kind, name, value, self.data(layer).data, self.volume_choices(layer))
@@ -199,13 +192,7 @@ class SceneLayers:
         self._change(replace(layer, settings=settings), f"{name} of {layer.name}", ("set", layer_id, name))
 
     def keep_selection(self, layer_id: str) -> Layer:
-        """Add a layer of what is selected of another, drawn on its own.
-
-        Raises
-        ------
-        ValueError
-            If nothing is selected.
-        """
+        """Add a layer of what is selected of another, drawn on its own."""
         layer = self._lines(layer_id)
         if layer.selected is None:
             raise ValueError(f"nothing of {layer.name!r} is selected; pick streamlines first")

@@ -41,13 +41,7 @@ class SceneMatrix:
         _filter_by: Callable[..., None]
 
     def prepare_matrix(self, **wanted: Any) -> Matrix:
-        """Check what a matrix is to be of; arguments as of :class:`.Matrix`, paths of files under the root.
-
-        Raises
-        ------
-        ValueError
-            If a value makes no sense.
-        """
+        """Check what a matrix is to be of; arguments as of :class:`.Matrix`, paths of files under the root."""
         layer = self._lines(wanted.get("layer", ""))
         return check_matrix(wanted, lambda _: self.data(layer).data, self._place)
 
@@ -64,11 +58,6 @@ class SceneMatrix:
         store : Store
             With all that was read for it.
         Connectome
-
-        Raises
-        ------
-        ValueError
-            If the volume holds no labels, or too many.
         """
         from pvfiblets.query.connectome import connectome
         from pvfiblets.slices.labels import as_label_table
@@ -105,11 +94,6 @@ class SceneMatrix:
             The volume's file.
         radius : float, default: 4.0
             mm about an end in which its parcel is looked for.
-
-        Raises
-        ------
-        ValueError
-            If there are no such labels.
         """
         layer = self._lines(layer_id)
         connection = None
@@ -139,11 +123,6 @@ def check_matrix(value: Any, data_of: Callable[[str], Any], place: Callable[[str
         From a layer's id to its fiblets; it raises an error if there is none.
     place : callable
         From a path to how documents hold it; it raises an error if there is no such file.
-
-    Raises
-    ------
-    ValueError
-        If it is none.
     """
     optional = ("names", "weights", "contrast", "statistic", "radius")
     mapping(value, "matrix", ("layer", "labels"), optional)

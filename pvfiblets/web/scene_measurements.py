@@ -46,13 +46,7 @@ class SceneMeasurements:
         return {"mm": float(np.linalg.norm(np.subtract(begin, end))), "from": begin, "to": end}
 
     def add_measurement(self, begin: Any, end: Any) -> Measurement:
-        """Keep the distance between two places, mm, in the picture; it can be undone.
-
-        Raises
-        ------
-        ValueError
-            If a place is none, or there are too many.
-        """
+        """Keep the distance between two places, mm, in the picture; it can be undone."""
         before = self.state.measurements
         (found,) = check_measurements([[begin, end]])
         if len(before) >= MOST_MEASUREMENTS:
@@ -75,13 +69,7 @@ class SceneMeasurements:
 
 
 def check_measurements(value: Any) -> tuple[Measurement, ...]:
-    """Return measurements of pairs of places, mm.
-
-    Raises
-    ------
-    ValueError
-        If they are none, too many or too far away.
-    """
+    """Return measurements of pairs of places, mm."""
     if not isinstance(value, list) or len(value) > MOST_MEASUREMENTS:
         raise ValueError(f"measurements is {shown(value)}; give a list of {MOST_MEASUREMENTS} at most")
     found = []

@@ -53,11 +53,6 @@ class ScenePainting:
         ----------
         layer_id : str, optional
             An image, on whose voxels regions are painted if there are none yet; the lowest by default.
-
-        Raises
-        ------
-        ValueError
-            If there is no image, or there are as many regions as there may be.
         """
         painting = self.state.painting or self._begun(layer_id)
         if len(painting.regions) >= MOST_REGIONS:
@@ -77,15 +72,7 @@ class ScenePainting:
         return _on(self.data(chosen))
 
     def set_painted(self, region: str, /, **changes: Any) -> Painted:
-        """Change a region's ``name``, ``color``, ``visible`` or ``use`` (of :data:`.painting.USES`).
-
-        Raises
-        ------
-        KeyError
-            If there is no such region.
-        ValueError
-            If a value makes no sense, or the name is taken.
-        """
+        """Change a region's ``name``, ``color``, ``visible`` or ``use`` (of :data:`.painting.USES`)."""
         painting = self._painting
         old = painting.region(region)
         wanted: dict[str, Any] = {}
@@ -212,11 +199,6 @@ class ScenePainting:
         ----------
         loaded : Loaded
             Of the kind ``"image"``.
-
-        Raises
-        ------
-        ValueError
-            If it holds no labels, more than there may be regions, or lies on other voxels than what is painted.
         """
         image = loaded.data
         found = self._labels_in(loaded)

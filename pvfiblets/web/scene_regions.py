@@ -86,11 +86,6 @@ class SceneRegions:
             What it is called now.
         shape : mapping
             Of :mod:`pvfiblets.web.shapes`, with the name that it has then.
-
-        Raises
-        ------
-        ValueError
-            If there is none of that name, or the shape is none.
         """
         if not self.sharing(name):
             there = ", ".join(self.region_names()) or "none"
@@ -113,13 +108,7 @@ class SceneRegions:
         self.become(replace(self.state, layers=layers), f"region {name}", ("region", name, *parts))
 
     def share_region(self, shape: Mapping[str, Any], how: str, negated: bool, layer_ids: Sequence[str]) -> None:
-        """Have some layers filtered by a region, and no others.
-
-        Raises
-        ------
-        ValueError
-            If it has no name, or a layer that is to lose it has nested conditions.
-        """
+        """Have some layers filtered by a region, and no others."""
         name = text(shape.get("name"), "the name of a region", 40)
         for layer_id in layer_ids:
             self._lines(layer_id)

@@ -106,13 +106,7 @@ class SceneSelection:
         return self._area(np.array(corners), mode, through, "select by lasso")
 
     def select(self, layer_id: str, ids: Any, *, mode: str = "replace") -> int:
-        """Select streamlines of one layer by their numbers; return how many are selected now.
-
-        Raises
-        ------
-        ValueError
-            If there is no such streamline.
-        """
+        """Select streamlines of one layer by their numbers; return how many are selected now."""
         layer = self._lines(layer_id)
         total = self.actor(layer_id).fiblets.n_streamlines
         given = np.atleast_1d(np.asarray(ids))
@@ -222,15 +216,6 @@ class SceneSelection:
         -------
         dict
             ``path``, and what :func:`~pvfiblets.web.writing.write` returns.
-
-        Raises
-        ------
-        ValueError
-            If nothing is selected, or there is no such format.
-        FileExistsError
-            If there is such a file.
-        PermissionError
-            If the path lies outside of the root.
         """
         layer = self._lines(layer_id)
         if not isinstance(path, str) or not path.lower().endswith(EXPORTS):
@@ -244,13 +229,7 @@ class SceneSelection:
         return {"path": self.files.name(target), **found}
 
     def chosen(self, layer_id: str, what: str) -> tuple[Any, np.ndarray]:
-        """Return a layer's fiblets and the numbers of streamlines; `what` as of :meth:`export`.
-
-        Raises
-        ------
-        ValueError
-            If nothing is selected.
-        """
+        """Return a layer's fiblets and the numbers of streamlines; `what` as of :meth:`export`."""
         layer = self._lines(layer_id)
         actor = self.actor(layer_id)
         if what == "selected":

@@ -79,13 +79,7 @@ def to_dict(scene: Scene, folder: Path | None = None) -> dict[str, Any]:
 
 
 def from_dict(scene: Scene, data: Any, folder: Path | None = None) -> None:
-    """Make a scene what a session says, in one step for its history; the session is not trusted.
-
-    Raises
-    ------
-    SessionError
-        If anything in it is malformed, its files are not there or not allowed, or do not fit; the scene is as it was.
-    """
+    """Make a scene what a session says, in one step for its history; the session is not trusted."""
     apply(scene, prepare(scene, data, folder))
 
 

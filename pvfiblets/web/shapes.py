@@ -45,13 +45,7 @@ DEEPEST, MOST = 8, 32  # of a condition
 
 
 def check_shape(value: Any, name: str = "shape", kinds: tuple[str, ...] = SHAPES) -> dict[str, Any]:
-    """Return a shape with its numbers checked.
-
-    Raises
-    ------
-    ValueError
-        If it is none; the message names what is wrong.
-    """
+    """Return a shape with its numbers checked."""
     kind = value.get("kind") if isinstance(value, Mapping) else None
     if kind not in kinds:
         raise ValueError(f"the kind of {name} is {shown(kind)}; choose one of {', '.join(kinds)}")
@@ -128,13 +122,7 @@ def shapes_in(condition: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
 
 
 def make_region(shape: Mapping[str, Any], load: Load) -> Region:
-    """Return the region of a shape that was checked.
-
-    Raises
-    ------
-    ValueError
-        If a mesh is open or labels are none.
-    """
+    """Return the region of a shape that was checked."""
     from pvfiblets import regions
     from pvfiblets.plotting.region_sources import as_region
 

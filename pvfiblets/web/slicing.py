@@ -90,13 +90,7 @@ class SliceView:
 
 
 def check_view(value: Any) -> SliceView:
-    """Return how slices are looked at, of what somebody sent.
-
-    Raises
-    ------
-    ValueError
-        If something in it makes no sense.
-    """
+    """Return how slices are looked at, of what somebody sent."""
     usual = SliceView()
     given = mapping(value, "slices", (), tuple(asdict(usual)))
     found: dict[str, Any] = {}
@@ -307,13 +301,7 @@ class Slicing:
         return found
 
     def look(self, image: Any, old: Layer, new: Layer, data: LabelledImage, colours: Colours) -> Any:
-        """Bring an image in step with its layer; return its layer of the stack, which may be another one.
-
-        Raises
-        ------
-        ValueError
-            If a value is refused; all is as it was.
-        """
+        """Bring an image in step with its layer; return its layer of the stack, which may be another one."""
         if any(old.settings[name] != new.settings[name] for name in (MEANING, WEIGHTS)):
             found = self.add(new, data, colours)
             self._glyphs.remove(self.workspace.slices, image)

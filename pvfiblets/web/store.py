@@ -71,13 +71,7 @@ class Store:
         self.loaded[loaded.kind, loaded.source] = loaded
 
     def data(self, layer: Layer, progress: Progress | None = None, cancel: Cancel | None = None) -> Loaded:
-        """Return what a layer draws; it is read if it must be.
-
-        Raises
-        ------
-        ValueError
-            If the layer is of streamlines that its file does not have; others as of :meth:`.Files.load`.
-        """
+        """Return what a layer draws; it is read if it must be."""
         kind = _family(layer.kind)
         key = kind, layer.source
         if key not in self.loaded:

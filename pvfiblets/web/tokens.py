@@ -27,13 +27,6 @@ def chosen_token(choice: str, file: str | None = None, environment: Mapping[str,
         A file with the token; it is made, with a new token, where there is none.
     environment : mapping, optional
         Of this process: ``PVFIBLETS_TOKEN`` is the token where no file is named.
-
-    Raises
-    ------
-    ValueError
-        If the choice is neither, contradicts a file, or the file is not one for a token.
-    OSError
-        If the file cannot be read or made.
     """
     if choice not in ("auto", "none"):
         raise ValueError(

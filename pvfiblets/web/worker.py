@@ -103,13 +103,7 @@ def listen(server: Any) -> None:
 
 
 def hold_to(most: int | None) -> None:
-    """Let this process have no more memory than it may.
-
-    Raises
-    ------
-    FibletsError
-        If hardly any of it is left already.
-    """
+    """Let this process have no more memory than it may."""
     if most is None:
         return
     from pvfiblets import memory

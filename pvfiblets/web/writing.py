@@ -49,11 +49,6 @@ def write(
     dict
         ``streamlines``, ``bytes``, ``lost``: what the format cannot hold, and ``error_mm``: how far points may be from
         the source's, 0 where they are the source's.
-
-    Raises
-    ------
-    Cancelled
-        If `cancel` said so; there is no file then.
     """
     watch = Watch(progress, cancel)
     watch("choosing", 0.0)
