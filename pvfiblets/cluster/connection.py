@@ -85,7 +85,7 @@ def connected(cluster: Any, workers: int, size: int | None, *, dashboard: bool =
         distributed.LocalCluster(
             n_workers=workers, threads_per_worker=1, processes=True, memory_limit=size or 0,
             dashboard_address=_dashboard() if dashboard else "127.0.0.1:0",  # with None dask takes the usual port
-            env={"NUMBA_NUM_THREADS": str(threads), **memory.ENVIRONMENT}, silence_logs=logging.ERROR,
+            env={"NUMBA_NUM_THREADS": str(threads), **memory.ENVIRONMENT}, silence_logs=logging.CRITICAL,
             preload=["pvfiblets.cluster.worker_setup"],
         ) as local,
         distributed.Client(local, set_as_default=False) as client,

@@ -167,17 +167,19 @@ PICKERS = {
 @pytest.mark.parametrize("picking", PICKERS)
 def test_pyvista_picking_survives_fiblets(scene, tools, picking):
     plotter, mapper, _, display = scene
-    plotter.add_mesh(pv.Sphere(radius=3, center=(20, -10, 24)), reset_camera=False)
+    ball = (20, -10, 24)
+    plotter.add_mesh(pv.Sphere(radius=3, center=ball), reset_camera=False)
     PICKERS[picking](plotter)
     before = tools.picture(plotter, mapper)
     assert tools.covered(before).any()
-    for point in ((20, 0, 16), (20, 0, 12), (20, -10, 24)):
+    for point in ((20, 0, 16), (20, 0, 12), ball):
         x, y = (int(value) for value in display(point))
         interactor = plotter.iren.interactor
         interactor.SetEventInformation(x, y)
         for event in ("LeftButtonPress", "LeftButtonRelease", "RightButtonPress", "RightButtonRelease"):
             interactor.InvokeEvent(event + "Event")
-        if picking != "horizon":  # whose own callback fails on fewer points than a line has
+        # PyVista's own callback of a horizon fails on fewer points than a line has, that of a geodesic on lines.
+        if picking != "horizon" and (picking != "geodesic" or point == ball):
             interactor.SetKeyEventInformation(0, 0, "p", 0, "p")
             interactor.InvokeEvent("CharEvent")
         plotter.render()
