@@ -84,6 +84,12 @@ def add_convert(commands: Any) -> None:
         "streamlines at once (without it, it is made when a region is first painted); info says its size",
     )
     convert.add_argument(
+        "--double",
+        action="store_true",
+        help="write the points of a .tck file as float64, which MRtrix reads, and nibabel, DIPY and scilpy do not "
+        "(default: float32)",
+    )
+    convert.add_argument(
         "--verify",
         choices=("all", "sample"),
         default="all",
@@ -100,7 +106,8 @@ def add_info(commands: Any) -> None:
     info = commands.add_parser(
         "info",
         help="say what a file holds",
-        description="Print size, counts, arrays, groups and affine of FILE; of a .fiblets file, step and promise too.",
+        description="Read FILE, and print size, counts, arrays, groups, affine and what reading leaves out; of a "
+        ".fiblets file, step and promise too.",
     )
     info.add_argument("path", metavar="FILE", help="a tractogram of any format, or -")
     add_format_option(info, reads=["path"])

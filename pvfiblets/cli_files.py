@@ -5,6 +5,7 @@ from __future__ import annotations
 import json as json_
 import math
 import sys
+from collections import Counter
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -36,6 +37,7 @@ def convert(
     exact: bool | None,
     shards: int | None,
     index: bool,
+    double: bool,
     verify: Literal["all", "sample"],
     quiet: bool,
     json: bool,
@@ -49,6 +51,8 @@ def convert(
             f"--index is for a {COMPRESSED} file; shards are put together when they are opened, and other formats have "
             "no place for it: leave it out"
         )
+    if double and formats.registry.suffix_of(target) != ".tck":
+        raise ValueError(f"--double is for .tck files; {target} is of another format: leave it out")
     if Path(target).suffix.lower() == COMPRESSED:
         indexed: list[FibletIndex] = []
         if shards is None:
@@ -83,7 +87,7 @@ def convert(
                 "--step, --max-error, --max-angle, --exact, --per-point, --verify and --shards are for "
                 f"{COMPRESSED} files; {target} is of another format"
             )
-        result = rewrite(source, target)
+        result = rewrite(source, target, double=double)
     if json:
         print_json(result)
     else:
@@ -111,15 +115,30 @@ def info(path: str, *, json: bool) -> None:
     """Print what a file holds."""
     facts: dict[str, Any] = {"file": path, "bytes": None, **formats.info(path)}
     facts.pop("path", None)
+    if "dropped" not in facts:  # the header may be wrong of counts, and knows nothing of damage
+        facts |= _counted(path)
     if not is_url(path):
         facts["bytes"] = bytes_of(path)
     if json:
         print_json(facts)
         return
+    dropped = facts.pop("dropped", None) or {}
     for key, value in facts.items():
         if value is None or (isinstance(value, (list, dict, tuple)) and not value):
             continue
         print(f"{key:<16} {readable(value)}")
+    for reason, count in dropped.items():
+        print(f"{'dropped':<16} {count:,}: {reason}")
+
+
+def _counted(path: str) -> dict[str, Any]:
+    """Return the counts of streamlines and points in a file, and of what reading leaves out."""
+    streamlines = points = 0
+    dropped: Counter[str] = Counter()
+    for chunk in formats.iter_chunks(path):
+        streamlines, points = streamlines + len(chunk), points + chunk.n_points
+        dropped.update(chunk.dropped)
+    return {"streamlines": streamlines, "points": points, "dropped": dict(dropped)}
 
 
 def verify(path: str, original: str | None, *, max_angle: float | None, quiet: bool, json: bool) -> None:

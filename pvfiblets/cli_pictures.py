@@ -103,7 +103,8 @@ def fill(
     **wishes: Any,
 ) -> Any:
     """Put files into a plotter's scene and point the camera; of a session, return the scene that keeps it."""
-    from pvfiblets.cli_scene import cut_and_filter, open_session, options_of, read_mesh
+    from pvfiblets.cli_scene import cut_and_filter, open_session, options_of
+    from pvfiblets.plotting.meshes import read_mesh
     from pvfiblets.plotting.viewpoints import point_camera
 
     if antialias is not None:

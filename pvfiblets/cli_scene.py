@@ -14,7 +14,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-__all__ = ["Wishes", "add_options", "cut_and_filter", "open_session", "options_of", "read_mesh"]
+__all__ = ["Wishes", "add_options", "cut_and_filter", "open_session", "options_of"]
 
 KINDS = ("lines", "volumes", "meshes")
 """What ``--clip`` cuts, by ``of=``."""
@@ -202,14 +202,3 @@ def open_session(plotter: Any, path: str) -> Any:
         raise
     plotter.renderer.reset_camera_clipping_range()
     return scene
-
-
-def read_mesh(path: str) -> Any:
-    """Read a surface of any format, GIFTI included."""
-    import pyvista
-
-    if not path.lower().endswith((".gii", ".gii.gz")):
-        return pyvista.read(path)
-    from pvfiblets.plotting.gifti import read_surface
-
-    return read_surface(path)

@@ -5,17 +5,22 @@ And those so far away that float32, which is what graphics cards compute with, e
 
 from __future__ import annotations
 
-from typing import Any, Literal, get_args
+from collections.abc import Callable
+from typing import Literal, get_args
 
 import numpy as np
 
+from .ragged import Array, Ints, cut_offsets
 from .streamlines import Streamlines
 
-__all__ = ["LARGEST", "Invalid", "refuse_beyond", "valid_points"]
+__all__ = ["CUT", "LARGEST", "NONFINITE", "Invalid", "refuse_beyond", "valid_points", "without_points"]
 
 Invalid = Literal["error", "drop", "split"]
 
-COUNTED = "non-finite points"
+NONFINITE = "non-finite points"
+"""The reason under which `dropped` counts points with NaN or infinity among the coordinates."""
+CUT = "streamlines added where others were cut at non-finite points"
+"""The reason under which `dropped` counts the pieces, less one, of each line that such points divide."""
 LARGEST = 1e35  # mm
 
 
@@ -46,14 +51,15 @@ def valid_points(streamlines: Streamlines, nan: Invalid) -> Streamlines:
     streamlines : Streamlines
         Stay as they are.
     nan : {'error', 'drop', 'split'}
-        ``'error'`` returns them as they are: what looks at points refuses them. ``'drop'`` leaves points out with their
-        data, so that the line goes on from the point before to the point after. ``'split'`` ends the line there: each
-        piece is a streamline, with the data and the groups of the whole.
+        ``'split'`` ends lines at such points: each piece is a streamline, with the data and the groups of the whole.
+        ``'drop'`` joins the point before to the point after. ``'error'`` returns the streamlines as they are;
+        :func:`pvfiblets.compress` refuses them then.
 
     Returns
     -------
     Streamlines
-        ``dropped`` counts the points. A streamline of which none is left stays as one without points.
+        ``dropped`` counts the points and the added streamlines. A streamline that loses all of its points stays, as one
+        without points.
 
     Raises
     ------
@@ -64,33 +70,35 @@ def valid_points(streamlines: Streamlines, nan: Invalid) -> Streamlines:
         raise ValueError(f"nan is {nan!r}; choose one of {get_args(Invalid)}")
     if nan == "error":
         return streamlines
-    good: Any = np.isfinite(streamlines.points).all(axis=1)
-    if good.all():
-        return streamlines
-    offsets = np.asarray(streamlines.offsets)
-    owners = np.repeat(np.arange(len(streamlines)), np.diff(offsets))
-    if nan == "drop":
-        pieces = np.arange(len(streamlines))
-        counts = np.bincount(owners[good], minlength=len(streamlines))
+    rows = np.flatnonzero(~np.isfinite(streamlines.points).all(axis=1))
+    return without_points(streamlines, rows, cut=nan == "split") if len(rows) else streamlines
+
+
+def _delete(values: Array, rows: Ints) -> Array:
+    return np.delete(values, rows, axis=0)
+
+
+def without_points(
+    streamlines: Streamlines, rows: Ints, *, cut: bool = True, delete: Callable[[Array, Ints], Array] = _delete
+) -> Streamlines:
+    """Return the streamlines without some of their points (ascending), which end lines if `cut`."""
+    if cut:
+        offsets, pieces = cut_offsets(streamlines.offsets, rows)
     else:
-        begins = good.copy()
-        begins[1:] &= ~(good[:-1] & (owners[1:] == owners[:-1]))
-        of_points = owners[begins]
-        counts = np.diff(np.flatnonzero(begins[good]), append=int(good.sum()))
-        gone = np.setdiff1d(np.arange(len(streamlines)), of_points)
-        pieces = np.concatenate([of_points, gone])
-        order = np.argsort(pieces, kind="stable")
-        pieces, counts = pieces[order], np.concatenate([counts, np.zeros(len(gone), np.int64)])[order]
-    first = np.searchsorted(pieces, np.arange(len(streamlines) + 1))
-    groups = {name: _of_pieces(np.asarray(members), first) for name, members in streamlines.groups.items()}
-    dropped = {**streamlines.dropped}
-    dropped[COUNTED] = dropped.get(COUNTED, 0) + int(np.count_nonzero(~good))
+        offsets = streamlines.offsets - np.searchsorted(rows, streamlines.offsets)
+        pieces = np.ones(len(streamlines), np.int64)
+    lines = np.repeat(np.arange(len(streamlines)), pieces)
+    first = np.concatenate([[0], np.cumsum(pieces)])
+    dropped = dict(streamlines.dropped)
+    for reason, count in ((NONFINITE, len(rows)), (CUT, len(lines) - len(streamlines))):
+        if count:
+            dropped[reason] = dropped.get(reason, 0) + count
     return Streamlines(
-        np.asarray(streamlines.points)[good],
-        np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
-        {name: np.asarray(rows)[good] for name, rows in streamlines.per_point.items()},
-        {name: np.asarray(rows)[pieces] for name, rows in streamlines.per_streamline.items()},
-        groups,
+        delete(streamlines.points, rows),
+        offsets,
+        {name: delete(values, rows) for name, values in streamlines.per_point.items()},
+        {name: np.asarray(values)[lines] for name, values in streamlines.per_streamline.items()},
+        {name: _of_pieces(members, first) for name, members in streamlines.groups.items()},
         streamlines.per_group,
         streamlines.affine,
         streamlines.space,
@@ -98,7 +106,7 @@ def valid_points(streamlines: Streamlines, nan: Invalid) -> Streamlines:
     )
 
 
-def _of_pieces(members: Any, first: Any) -> Any:
+def _of_pieces(members: Ints, first: Ints) -> Ints:
     """Return the numbers of the pieces of some streamlines, which follow each other."""
     counts = first[members + 1] - first[members]
     begins = np.cumsum(counts) - counts

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pvfiblets.ragged import Array, Ints
+from pvfiblets.vtk_space import FIELD, OURS, Space, space_of_dataset, to_ras
 
 if TYPE_CHECKING:
     import pyvista
@@ -48,6 +49,7 @@ def parts_of_polydata(polydata: Any) -> dict[str, Any]:
         {k: np.array(v)[first_line : first_line + n] for k, v in mesh.cell_data.items()},
         other_cells=mesh.GetNumberOfCells() - n,
         field={k: np.array(v) for k, v in mesh.field_data.items()},
+        space_name=space_of_dataset(mesh),
     )
 
 
@@ -69,6 +71,7 @@ def polydata_of(streamlines: Streamlines) -> pyvista.PolyData:
                 data[name] = np.ascontiguousarray(_vtk_values(values))
     for name, array in field_of(streamlines).items():
         mesh.field_data[name] = array
+    mesh.field_data[FIELD] = [OURS]
     return mesh
 
 
@@ -99,6 +102,7 @@ def parts_of_cells(
     *,
     other_cells: int = 0,
     field: Mapping[str, Array] | None = None,
+    space_name: Space | None = None,
 ) -> dict[str, Any]:
     """Return arguments of `Streamlines` of cells that refer to points by index; parameters as of `from_cells`."""
     dropped: dict[str, int] = {}
@@ -112,6 +116,7 @@ def parts_of_cells(
             dropped["points of no line"] = unused
         points = points[connectivity]
         point_data = {k: v[connectivity] for k, v in point_data.items()}
+    points = to_ras(points, space_name)
     groups: dict[str, Array] = {}
     per_group: dict[str, dict[str, Array]] = {}
     affine = None

@@ -14,6 +14,7 @@ from pvfiblets.invalid_points import refuse_beyond
 from pvfiblets.other_libraries import lines_of_grid, streamlines_of
 from pvfiblets.ragged import offsets_from_counts
 from pvfiblets.streamlines import Streamlines
+from pvfiblets.vtk_space import space_of_dataset, to_ras
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
@@ -208,6 +209,7 @@ def _from_vtk(mesh: Any, noun: str, keep_single: bool) -> Lines:
         return numbers
 
     points = np.array(_floats(vtk_to_numpy(mesh.GetPoints().GetData()), keep_single))
+    points = to_ras(points, space_of_dataset(mesh))
     ids = vtk_to_numpy(cells.GetConnectivityArray()).astype(np.int64)
     offsets = vtk_to_numpy(cells.GetOffsetsArray()).astype(np.int64)
     point_data = {k: v for k, v in data(mesh.GetPointData()).items() if len(v) == n_points}

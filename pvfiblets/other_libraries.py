@@ -7,7 +7,7 @@ centres at integer indices, wherever the object says where it is.
 from __future__ import annotations
 
 import copy
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -65,6 +65,10 @@ def streamlines_of(source: Any) -> Streamlines | None:
             source.streamlines, source.data_per_vertex, source.data_per_streamline, affine=header["VOXEL_TO_RASMM"],
             space={"dimensions": tuple(int(n) for n in header["DIMENSIONS"])},
             groups={name: np.asarray(ids, np.int64) for name, ids in source.groups.items()},
+            per_group={
+                group: {name: np.array(values).reshape(-1) for name, values in arrays.items()}
+                for group, arrays in source.data_per_group.items()
+            },
         )  # fmt: skip
     if hasattr(source, "tractogram") and hasattr(source, "header"):  # nibabel's TrkFile, TckFile
         found = _of_tractogram(source.tractogram)
@@ -101,7 +105,7 @@ def _of_tractogram(tractogram: Any) -> Streamlines:
     if all(hasattr(held, "get_data") for held in (tractogram.streamlines, *tractogram.data_per_point.values())):
         found = _sequences(tractogram.streamlines, tractogram.data_per_point, tractogram.data_per_streamline)
     else:
-        found = _of_items(tractogram)
+        found = _of_generators(tractogram)
     affine = np.asarray(affine, np.float64)
     if not np.array_equal(affine, np.eye(4)):
         kind = found.points.dtype
@@ -109,22 +113,18 @@ def _of_tractogram(tractogram: Any) -> Streamlines:
     return found
 
 
-def _of_items(tractogram: Iterable[Any]) -> Streamlines:
-    """From a tractogram that makes its items one by one."""
-    lines: list[npt.NDArray[Any]] = []
-    per_point: dict[str, list[Any]] = {}
-    per_streamline: dict[str, list[Any]] = {}
-    for item in tractogram:
-        lines.append(np.asarray(item.streamline))
-        for name, values in item.data_for_points.items():
-            per_point.setdefault(name, []).append(np.asarray(values))
-        for name, values in item.data_for_streamline.items():
-            per_streamline.setdefault(name, []).append(np.asarray(values))
+def _of_generators(tractogram: Any) -> Streamlines:
+    """From a lazy tractogram, whose `streamlines` have its pending affine applied and whose items may lack it."""
     return Streamlines.from_list(
-        lines,
-        per_point={name: _flat(np.concatenate(parts)) for name, parts in per_point.items()},
-        per_streamline={name: _flat(np.stack(parts)) for name, parts in per_streamline.items()},
+        [np.asarray(line) for line in tractogram.streamlines],
+        per_point=_joined(tractogram.data_per_point, np.concatenate),
+        per_streamline=_joined(tractogram.data_per_streamline, np.stack),
     )
+
+
+def _joined(columns: Mapping[str, Any], join: Callable[[Any], npt.NDArray[Any]]) -> dict[str, npt.NDArray[Any]]:
+    rows = {name: [np.asarray(values) for values in parts] for name, parts in columns.items()}
+    return {name: _flat(join(parts)) for name, parts in rows.items() if parts}
 
 
 def _sequences(
@@ -154,7 +154,10 @@ def _of_vtk(source: Any) -> Streamlines:
     if isinstance(dataset, pv.PolyData):
         return Streamlines.from_polydata(dataset)
     if isinstance(dataset, pv.UnstructuredGrid):
-        return Streamlines.from_polydata(lines_of_grid(dataset))
+        found = Streamlines.from_polydata(lines_of_grid(dataset))
+        if others := dataset.n_cells - len(found):
+            found.dropped["cells that are not lines"] = others
+        return found
     if isinstance(dataset, pv.MultiBlock):
         return _of_blocks(dataset)
     raise TypeError(
@@ -168,18 +171,23 @@ def _of_blocks(blocks: Any) -> Streamlines:
     import pyvista as pv
 
     parts: list[Streamlines] = []
+    taken = {blocks.get_block_name(i) for i in range(len(blocks))}
     for i, block in enumerate(blocks):
         if isinstance(block, pv.MultiBlock) or (block is not None and block.n_points):
-            part = _of_vtk(block)
+            part, name = _of_vtk(block), blocks.get_block_name(i) or f"block {i}"
+            if isinstance(block, pv.MultiBlock):  # whose blocks may be called as others are
+                part.groups = {f"{name}/{g}" if g in taken else g: ids for g, ids in part.groups.items()}
+                taken |= part.groups.keys()
             if len(part):
-                part.groups[blocks.get_block_name(i) or f"block {i}"] = np.arange(len(part))
-                parts.append(part)
+                part.groups[name] = np.arange(len(part))
+            parts.append(part)
     dropped: set[str] = set()
+    full = [part for part in parts if len(part)]
     for held in ("per_point", "per_streamline"):
-        names = [set(getattr(part, held)) for part in parts]
+        names = [set(getattr(part, held)) for part in full]
         common = set.intersection(*names) if names else set()
         dropped |= set().union(*names) - common
-        for part in parts:
+        for part in full:
             setattr(part, held, {name: values for name, values in getattr(part, held).items() if name in common})
     whole = Streamlines.concatenate(parts)
     if dropped:

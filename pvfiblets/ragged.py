@@ -24,6 +24,16 @@ def offsets_from_counts(counts: ArrayLike) -> Ints:
     return offsets
 
 
+def cut_offsets(offsets: Ints, rows: Ints) -> tuple[Ints, Ints]:
+    """Return the offsets once ascending `rows` are gone and lines end there, and how many pieces each line has."""
+    left = offsets - np.searchsorted(rows, offsets)
+    cuts = np.unique(rows - np.arange(len(rows)))
+    owner = np.searchsorted(left, cuts, side="right") - 1
+    inner = left[owner] < cuts  # a row at a line's end shortens the line and cuts nothing
+    cuts, owner = cuts[inner], owner[inner]
+    return np.insert(left, owner + 1, cuts), 1 + np.bincount(owner, minlength=len(offsets) - 1)
+
+
 def blocks(offsets: Ints, max_points: int) -> Iterator[tuple[int, int]]:
     """Consecutive ranges of streamlines of at most `max_points` points (see Streamlines.blocks)."""
     if max_points < 1:

@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from pvfiblets.query.bundles.clusters import Clusters
     from pvfiblets.query.bundles.similar import Similar
     from pvfiblets.query.table import Table
+    from pvfiblets.vtk_space import Space
 
 __all__ = ["Streamlines", "blocks", "from_cells", "offsets_from_counts"]
 
@@ -343,6 +344,8 @@ class Streamlines:
             Point data becomes `per_point`, cell data of the lines `per_streamline`. Points
             shared by several lines are repeated. Groups, their data and the affine come back
             from the field data that :meth:`to_polydata` writes, groups only if no filter of VTK's has taken lines away.
+            Points are RAS+ mm, or LPS+ where a field array of strings called ``SPACE`` says ``LPS``, as 3D Slicer
+            writes it: then x and y change sign.
 
         Returns
         -------
@@ -359,7 +362,8 @@ class Streamlines:
         Per-point data becomes point data, per-streamline data cell data. Groups
         (``groups/NAME``; ``groups_of``, of how many streamlines), their data (``per_group/NAME/KEY``), an affine that
         is not the identity (``affine``) and the rest of the header (``space/KEY``; text as its UTF-8 bytes, since
-        VTK loses arrays of text in some of its formats) are kept as field data.
+        VTK loses arrays of text in some of its formats) are kept as field data. The field array ``SPACE`` says ``RAS``,
+        for 3D Slicer.
         """
         return polydata_of(self)
 
@@ -377,6 +381,7 @@ def from_cells(
     *,
     other_cells: int = 0,
     field: Mapping[str, Array] | None = None,
+    space_name: Space | None = None,
 ) -> Streamlines:
     """Streamlines from cells that refer to points by index, as VTK stores lines.
 
@@ -393,7 +398,12 @@ def from_cells(
         Cells that are not lines, reported in `dropped`.
     field : mapping of str to array, optional
         Field data in the naming of :meth:`Streamlines.field_data`; other names are ignored.
+    space_name : {'RAS', 'LPS'}, optional
+        Space of the points; RAS+ if the source names none.
     """
     return Streamlines(
-        **parts_of_cells(points, offsets, connectivity, point_data, cell_data, other_cells=other_cells, field=field)
-    )
+        **parts_of_cells(
+            points, offsets, connectivity, point_data, cell_data,
+            other_cells=other_cells, field=field, space_name=space_name,
+        )
+    )  # fmt: skip

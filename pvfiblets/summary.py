@@ -1,8 +1,10 @@
-"""What streamlines look like in a notebook: a small table of what they hold."""
+"""Summaries of streamlines for people: a small table for notebooks, and a warning of what reading left out."""
 
 from __future__ import annotations
 
 import html
+import warnings
+from collections.abc import Mapping
 from typing import Any
 
 
@@ -28,3 +30,10 @@ def summary_html(title: str, data: Any, more: dict[str, str] | None = None) -> s
         rows["Dropped"] = ", ".join(f"{count:,} {reason}" for reason, count in data.dropped.items())
     cells = (f"<tr><th>{html.escape(k)}</th><td>{html.escape(v)}</td></tr>" for k, v in rows.items())
     return f"<table><tr><th colspan='2'>{html.escape(title)}</th></tr>{''.join(cells)}</table>"
+
+
+def warn_of_losses(name: str, dropped: Mapping[str, int], *, stacklevel: int) -> None:
+    """Warn once of what reading a source left out or changed, if anything."""
+    if dropped:
+        parts = "; ".join(f"{reason}: {count:,}" for reason, count in dropped.items())
+        warnings.warn(f"{name}: reading left out or changed parts ({parts})", UserWarning, stacklevel=stacklevel + 1)

@@ -7,7 +7,7 @@ import pytest
 import pyvista as pv
 
 import pvfiblets
-from pvfiblets.invalid_points import valid_points
+from pvfiblets.invalid_points import CUT, NONFINITE, valid_points
 
 NAN, INF = np.nan, np.inf
 
@@ -49,18 +49,18 @@ def test_split_where_they_were(lines):
     np.testing.assert_array_equal(kept.groups["some"], [5, 0, 1])
     np.testing.assert_array_equal(kept.groups["bad"], [4, 2])
     assert kept.per_group["some"]["n"] == 2
-    assert kept.dropped == {"non-finite points": 5}
+    assert kept.dropped == {NONFINITE: 5, CUT: 1}
 
 
 def test_compress_says_so_or_does_so(lines):
     with pytest.raises(ValueError, match=r"point 1 is \[nan.*nan='drop' or nan='split'"):
-        pvfiblets.compress(lines)
+        pvfiblets.compress(lines, nan="error")
     with pytest.raises(ValueError, match="nan is 'skip'; choose one of"):
         pvfiblets.compress(lines, nan="skip")
     whole = pvfiblets.compress(lines[[4]], nan="split")
     assert "non-finite points" not in whole.dropped
-    for nan, count in (("drop", 5), ("split", 6)):
-        fiblets = pvfiblets.compress(lines, nan=nan, per_point="all")
+    for options, count in (({"nan": "drop"}, 5), ({}, 6)):
+        fiblets = pvfiblets.compress(lines, **options, per_point="all")
         assert len(fiblets) == count
         assert fiblets.dropped["non-finite points"] == 5
         finite = lines.points[[0, 2, 3, 4, 6, 7, 11, 12]]
@@ -76,6 +76,6 @@ def test_scalars_of_plotters_follow(lines, nan):
     actor = plotter.add_fiblets(lines, nan=nan, scalars=np.arange(13.0))
     np.testing.assert_allclose(actor.fiblets.decompress().per_point["Data"], [0, 2, 3, 4, 6, 7, 11, 12], atol=0.05)
     with pytest.raises(ValueError, match="finite coordinates"):
-        plotter.add_fiblets(lines)
+        plotter.add_fiblets(lines, nan="error")
     assert lines.to_polydata().fiblets.compress(nan=nan).n_points == 8
     plotter.close()

@@ -60,7 +60,7 @@ def compress(
     per_point: PerPoint = (),
     per_point_bits: int = 8,
     exact: bool | None = None,
-    nan: Invalid = "error",
+    nan: Invalid = "split",
     progress: bool = False,
 ) -> FibletSet:
     """Compress streamlines into fiblets.
@@ -106,9 +106,10 @@ def compress(
         Keep every bit of the points. By default so where they take less than a megabyte and nothing is said of `step`,
         `max_error`, `max_angle`, `effort` or `order`; and where coding would take more bytes than the points do, up to
         a gigabyte of them. False codes in any case.
-    nan : {'error', 'drop', 'split'}
-        What becomes of points that are not finite: an error, none, so that the line goes straight on, or the end of the
-        line, which goes on as another streamline with the same data. ``dropped`` counts them.
+    nan : {'split', 'drop', 'error'}
+        Treatment of points that are not finite. ``'split'``, as :func:`pvfiblets.read` does: the line ends there and
+        goes on behind them as another streamline with the same data. ``'drop'``: the line goes straight across the gap.
+        ``'error'``: a ValueError. ``dropped`` counts the points and the added streamlines.
     progress : bool
         Show a progress bar.
 
@@ -120,7 +121,7 @@ def compress(
     Raises
     ------
     ValueError
-        For points that are not finite, unless `nan` says otherwise, a step or promise that is not a positive number, an
+        For points that are not finite if `nan` is ``'error'``, a step or promise that is not a positive number, an
         angle that is not between 0 and 90, an unknown effort or order, or a per-point name that the streamlines do not
         have (the error lists those they have).
 

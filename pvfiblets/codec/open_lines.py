@@ -6,6 +6,7 @@ from os import PathLike, fspath
 from typing import TYPE_CHECKING
 
 from .. import formats
+from ..summary import warn_of_losses
 
 if TYPE_CHECKING:
     from ..streamlines import Streamlines
@@ -15,7 +16,7 @@ __all__ = ["open_lines"]
 
 
 def open_lines(path: str | PathLike[str]) -> FibletSet | Streamlines:
-    """Map a ``.fiblets`` file, or read one of another format.
+    """Map a ``.fiblets`` file, or read one of another format, with a warning of what reading left out.
 
     Parameters
     ----------
@@ -28,4 +29,8 @@ def open_lines(path: str | PathLike[str]) -> FibletSet | Streamlines:
     """
     from .fibletset import FibletSet
 
-    return FibletSet.open(path) if fspath(path).lower().endswith(".fiblets") else formats.read(path)
+    if fspath(path).lower().endswith(".fiblets"):
+        return FibletSet.open(path)
+    streamlines = formats.read(path)
+    warn_of_losses(fspath(path), streamlines.dropped, stacklevel=3)
+    return streamlines

@@ -117,7 +117,7 @@ def _place(path: str | PathLike[str]) -> str | Path:
     return fspath(path) if is_url(path) and suffix_of(path) == ".fiblets" else path_of(path)
 
 
-def write(path: str | PathLike[str], streamlines: Streamlines) -> list[str]:
+def write(path: str | PathLike[str], streamlines: Streamlines, *, double: bool = False) -> list[str]:
     """Write a tractogram file; it appears under its name only when it is complete.
 
     Parameters
@@ -125,6 +125,10 @@ def write(path: str | PathLike[str], streamlines: Streamlines) -> list[str]:
     path : str or PathLike
         Its suffix chooses the format.
     streamlines : Streamlines
+    double : bool
+        Write the points of a ``.tck`` file as float64 (Float64LE). MRtrix reads such files; nibabel, DIPY and scilpy
+        refuse them. Otherwise they are float32, and a warning states the error where it is over a micrometre. The other
+        formats take no such option: ``.trk`` holds float32 only, ``.trx``, ``.vtk`` and ``.vtp`` keep the type.
 
     Returns
     -------
@@ -147,7 +151,9 @@ def write(path: str | PathLike[str], streamlines: Streamlines) -> list[str]:
             f"write takes a path and Streamlines, got {type(streamlines).__name__}; Streamlines.from_list(arrays) "
             "makes some, and a FibletSet has save(path)"
         )
-    module.write(path, streamlines)
+    if double and suffix_of(path) != ".tck":
+        raise ValueError(f"{path}: double is an option of .tck files; leave it out")
+    module.write(path, streamlines, **({"double": True} if double else {}))
     holds = getattr(module, "HOLDS", None)
     parts = ("per_point", "per_streamline", "groups", "per_group")
     if holds is None:

@@ -28,8 +28,8 @@ from numpy.typing import NDArray
 from pvfiblets.errors import FormatError
 from pvfiblets.formats.mapped import MappedFile
 from pvfiblets.formats.registry import UnknownFormatError
-from pvfiblets.formats.rows import NONFINITE
 from pvfiblets.formats.tck import Data, write_rows
+from pvfiblets.invalid_points import NONFINITE
 from pvfiblets.streamlines import Streamlines, offsets_from_counts
 
 Array = NDArray[Any]

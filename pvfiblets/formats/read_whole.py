@@ -47,5 +47,6 @@ def facts(streamlines: Streamlines) -> dict[str, Any]:
         "per_streamline": list(streamlines.per_streamline),
         "groups": list(streamlines.groups),
         "affine": streamlines.affine,
+        "dropped": streamlines.dropped,
         **streamlines.space,
     }

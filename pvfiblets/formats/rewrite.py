@@ -18,7 +18,7 @@ __all__ = ["rewrite"]
 PIECE = 1 << 20  # points; larger pieces are no faster
 
 
-def rewrite(source: str, target: str, max_points: int = PIECE) -> dict[str, Any]:
+def rewrite(source: str, target: str, max_points: int = PIECE, *, double: bool = False) -> dict[str, Any]:
     """Write a tractogram in another format, holding `max_points` at a time; return the keys of ``convert --json``."""
     begin = time.perf_counter()
     folder = Path(target).resolve().parent
@@ -32,7 +32,7 @@ def rewrite(source: str, target: str, max_points: int = PIECE) -> dict[str, Any]
 
     # Once in parts, once put together.
     with naming_target(target, lambda: 2 * gone[0]), gathered(counted(), folder) as streamlines:
-        lost = formats.write(target, streamlines)
+        lost = formats.write(target, streamlines, double=double)
         n_streamlines, n_points = len(streamlines), streamlines.n_points
         dropped = dict(streamlines.dropped)
         for part in lost:

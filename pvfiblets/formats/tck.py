@@ -2,8 +2,8 @@
 
 Format: https://mrtrix.readthedocs.io/en/latest/getting_started/image_data.html#tracks-file-format-tck
 
-A row of NaN ends a streamline, a row of infinity ends the data. What is made of input that
-breaks these rules:
+A row whose x is NaN ends a streamline, a row whose x is infinite ends the data: MRtrix reads
+no more of these rows. What is made of input that breaks these rules:
 
 ================================================  =================================================
 the file                                          the result
@@ -16,13 +16,15 @@ last streamline not closed before the infinity    kept: the end closes it
 count in the header differs from the data         read; ``dropped`` tells by how many (tools that
                                                   stop early leave such counts)
 bytes after the infinity row                      left out and counted
-a row with some NaN or infinity, not all          the point is left out and counted
+a row of a finite x with NaN or infinity          the point is left out, the line cut there, and
+                                                  both are counted
 two NaN rows in succession                        a streamline without points, kept
 ================================================  =================================================
 """
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator
 from os import PathLike
 from typing import Any, NamedTuple
@@ -32,8 +34,10 @@ from numpy.typing import NDArray
 
 from pvfiblets.errors import FormatError
 from pvfiblets.formats.mapped import MappedFile, forget
-from pvfiblets.formats.rows import NONFINITE, finite_rows, without_rows
+from pvfiblets.formats.rows import finite_rows, without_rows
 from pvfiblets.formats.scratch import is_long, spans
+from pvfiblets.invalid_points import CUT, NONFINITE
+from pvfiblets.ragged import cut_offsets
 from pvfiblets.streamlines import Streamlines, offsets_from_counts
 from pvfiblets.whole_files import replacing
 
@@ -46,6 +50,9 @@ _HEADER_LIMIT = 1 << 24
 
 _BLOCK_POINTS = 1 << 20
 """Points written at a time."""
+
+_TOLD_ROUNDING = 1e-3
+"""Error of float32 (mm) from which the writer warns."""
 
 HOLDS: tuple[str, ...] = ()
 """Parts of Streamlines besides the points that the format can carry."""
@@ -153,10 +160,13 @@ class Window(NamedTuple):
     first_end: int
     """Rows up to and with the first delimiter; 0 where there is none."""
     dropped: int
+    """Points left out."""
+    cuts: int
+    """Streamlines added where lines are cut at these points."""
 
 
 def parse_rows(rows: Array, dtype: np.dtype[Any], last: bool) -> Window:
-    """Split rows at their NaN rows.
+    """Split rows at their delimiters.
 
     Parameters
     ----------
@@ -168,8 +178,8 @@ def parse_rows(rows: Array, dtype: np.dtype[Any], last: bool) -> Window:
         Whether the data end with these rows: then what follows the last delimiter is taken too.
     """
     finite, special, values = finite_rows(rows, dtype)
-    is_nan: Array = np.asarray(np.isnan(values).all(axis=1))
-    is_end: Array = np.asarray(np.isinf(values).all(axis=1))
+    is_nan: Array = np.asarray(np.isnan(values[:, 0]))
+    is_end: Array = np.asarray(np.isinf(values[:, 0]))
     ended = bool(is_end.any())
     n = len(rows)
     if ended:
@@ -182,16 +192,18 @@ def parse_rows(rows: Array, dtype: np.dtype[Any], last: bool) -> Window:
     special, is_nan = (a[special < take] for a in (special, is_nan))
     bad = special[~is_nan]
     edges = np.concatenate([delimiters, [take]]) if take > tail_from else delimiters
-    # The points before edge i: its row number, less the delimiters and the bad rows before it.
-    ends = edges - np.arange(len(edges)) - np.searchsorted(bad, edges)
+    # The points before edge i, bad ones included: its row number, less the delimiters before it.
+    offsets = np.concatenate([[0], edges - np.arange(len(edges))])
+    offsets, _ = cut_offsets(offsets, bad - np.searchsorted(delimiters, bad))
     return Window(
         finite[: take - len(special)],
-        np.diff(ends, prepend=0),
+        np.diff(offsets),
         take + 1 if ended else take,
         ended,
         take - tail_from,
         int(delimiters[0]) + 1 if len(delimiters) else 0,
         len(bad),
+        len(offsets) - 1 - len(edges),
     )
 
 
@@ -226,8 +238,8 @@ class Data:
             stride = self.header.dtype.itemsize * self.columns
             self.file.forget(self.header.data_position + position * stride, window.used * stride)
             position += window.used
-            found += len(window.counts)
-            dropped = {NONFINITE: window.dropped} if window.dropped else {}
+            found += len(window.counts) - window.cuts
+            dropped = {reason: n for reason, n in ((NONFINITE, window.dropped), (CUT, window.cuts)) if n}
             if window.ended or last:
                 yield window, dropped | self._closing(window, position, found)
                 return
@@ -241,21 +253,24 @@ class Data:
             rows = self.rows[position + a : position + b]
             odd = np.flatnonzero(~np.isfinite(rows).all(axis=1))
             values = rows[odd]
-            closing = np.flatnonzero(np.isnan(values).all(axis=1) | np.isinf(values).all(axis=1))
+            closing = np.flatnonzero(~np.isfinite(values[:, 0]))
             self.file.forget(0, self.header.data_position + (position + b) * self.rows.strides[0])
             n = b
             if len(closing):
                 at = int(closing[0])
-                n, last, ended = a + int(odd[at]), False, bool(np.isinf(values[at]).all())
+                n, last, ended = a + int(odd[at]), False, bool(np.isinf(values[at, 0]))
                 odd = odd[:at]
             special += (odd + a).tolist()
             if len(closing):
                 break
         points = self.rows[position : position + n]
+        bad = np.array(special, np.int64)
         if special or points.dtype != kind or not points.flags.aligned:
-            points = without_rows(points, np.array(special, np.int64), kind, long=True)
+            points = without_rows(points, bad, kind, long=True)
         used = n if last else n + 1
-        return Window(points, np.array([len(points)]), used, ended, n if ended or last else 0, used, len(special)), last
+        counts = np.diff(cut_offsets(np.array([0, n]), bad)[0])
+        tail = n if ended or last else 0
+        return Window(points, counts, used, ended, tail, used, len(bad), len(counts) - 1), last
 
     def _closing(self, window: Window, position: int, found: int) -> dict[str, int]:
         """Judge the end of the data: what to report, or FormatError."""
@@ -312,23 +327,38 @@ def info(path: str | PathLike[str]) -> dict[str, Any]:
     }
 
 
-def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
-    """Write a tck file (see :func:`pvfiblets.formats.write`).
+def write(path: str | PathLike[str], streamlines: Streamlines, *, double: bool = False) -> None:
+    """Write a tck file of float32, or of float64 if `double` (see :func:`pvfiblets.formats.write`).
 
-    float32, or float64 where rounding to float32 would move a point by more than a micrometre
-    (coordinates beyond 16 m); few other programs read such a file.
+    Raises
+    ------
+    ValueError
+        If a coordinate is beyond float32.
     """
-    kind: np.dtype[Any] = np.dtype("<f4")
-    if streamlines.points.dtype == np.float64 and _reach(streamlines.points) * 2.0**-24 > 1e-3:
-        kind = np.dtype("<f8")
-    write_rows(path, MAGIC_TRACKS, streamlines, streamlines.points, kind)
+    points = streamlines.points
+    if double or points.dtype == np.float32:
+        write_rows(path, MAGIC_TRACKS, streamlines, points, np.dtype("<f8" if double else "<f4"))
+        return
+    rounding = _rounding(points)
+    if not np.isfinite(rounding):
+        raise ValueError(f"{path}: float32 cannot hold some coordinates; check the units, or write doubles")
+    write_rows(path, MAGIC_TRACKS, streamlines, points, np.dtype("<f4"))
+    if rounding > _TOLD_ROUNDING:
+        warnings.warn(
+            f"{path}: float32 moves points by up to {rounding:.2g} mm; doubles (--double, double=True) keep them, and "
+            "MRtrix reads such a file, but nibabel, DIPY and scilpy do not",
+            UserWarning,
+            stacklevel=3,
+        )
 
 
-def _reach(points: Array) -> float:
-    """Return the largest coordinate, whatever its sign; of mapped points nothing stays in memory."""
+def _rounding(points: Array) -> float:
+    """Return by how much float32 changes a coordinate at most; of mapped points nothing stays in memory."""
     most = 0.0
     for first in range(0, len(points), _BLOCK_POINTS):
-        most = max(most, float(np.abs(points[first : first + _BLOCK_POINTS]).max()))
+        block = points[first : first + _BLOCK_POINTS]
+        with np.errstate(over="ignore"):
+            most = max(most, float(np.abs(block - block.astype(np.float32)).max()))
         forget(points, 0, min(first + _BLOCK_POINTS, len(points)))
     return most
 

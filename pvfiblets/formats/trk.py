@@ -17,8 +17,10 @@ data end inside a record, or before the        FormatError at the end of the fil
 header's count is met
 more data than the header's count              left out, its bytes counted
 header's count 0                               means "not recorded": records up to the end
-affine not recorded (version 1, or zero)       identity, as nibabel; ``space`` says so
-a point with NaN or infinity                   left out with its scalars and counted
+affine not recorded (version 1, or zero)       that of the voxel sizes and order, with a warning;
+                                               ``space`` says so
+a point with NaN or infinity                   left out with its scalars, the line cut there; both
+                                               are counted
 a record of no points                          a streamline without points, kept
 =============================================  ====================================================
 """

@@ -96,8 +96,19 @@ def _geometry(path: str, fields: Any, version: int) -> tuple[NDArray[np.float64]
         raise FormatError(path, 12, f"voxel size {sizes.tolist()}", "three positive numbers (mm)")
     affine = fields["voxel_to_rasmm"].astype(np.float64)
     recorded = version != 1 and affine[3, 3] != 0
+    voxel_order = fields["voxel_order"].decode("latin-1").strip("\0 ").upper() or "LPS"
+    if len(voxel_order) != 3 or {frozenset("LR"), frozenset("PA"), frozenset("SI")} != {
+        pair for c in voxel_order for pair in map(frozenset, ("LR", "PA", "SI")) if c in pair
+    }:
+        raise FormatError(path, 948, f"voxel order {voxel_order!r}", "one of L/R, one of P/A and one of S/I")
     if not recorded:
-        affine = np.eye(4)
+        affine = unrecorded_affine(sizes, voxel_order)
+        warnings.warn(
+            f"{path}: the header has no voxel-to-RAS matrix; its voxel size {' x '.join(f'{n:g}' for n in sizes)} mm "
+            f"and voxel order {voxel_order} are used, with the first voxel in RAS order at the origin",
+            UserWarning,
+            stacklevel=2,
+        )
     axes = None
     if np.isfinite(affine).all() and np.abs(affine).max() < 1e30:
         with np.errstate(all="ignore"):
@@ -105,11 +116,6 @@ def _geometry(path: str, fields: Any, version: int) -> tuple[NDArray[np.float64]
         axes = aff2axcodes(affine) if invertible else None
     if axes is None or None in axes or not np.array_equal(affine[3], [0, 0, 0, 1]):
         raise FormatError(path, 440, f"voxel-to-RAS matrix {affine.tolist()}", "an invertible affine")
-    voxel_order = fields["voxel_order"].decode("latin-1").strip("\0 ").upper() or "LPS"
-    if len(voxel_order) != 3 or {frozenset("LR"), frozenset("PA"), frozenset("SI")} != {
-        pair for c in voxel_order for pair in map(frozenset, ("LR", "PA", "SI")) if c in pair
-    }:
-        raise FormatError(path, 948, f"voxel order {voxel_order!r}", "one of L/R, one of P/A and one of S/I")
     if not sizes.all():
         sizes = _sizes_of(path, sizes, affine, voxel_order)
     dimensions = fields["dimensions"].astype(int)
@@ -126,6 +132,16 @@ def _geometry(path: str, fields: Any, version: int) -> tuple[NDArray[np.float64]
     if original := fields["pad2"].decode("latin-1").strip("\0 "):
         space["original_voxel_order"] = original
     return affine, to_ras, space
+
+
+def unrecorded_affine(sizes: NDArray[np.float64], voxel_order: str) -> NDArray[np.float64]:
+    """Return the voxel-to-RAS matrix for a header without one: voxel sizes (1 mm for 0) along R, A and S."""
+    from nibabel import orientations as orient
+
+    axes = orient.axcodes2ornt(voxel_order)[:, 0].astype(int)
+    scale = np.ones(4)
+    scale[axes] = np.where(sizes > 0, sizes, 1.0)
+    return np.diag(scale)
 
 
 def _sizes_of(

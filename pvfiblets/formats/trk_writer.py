@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from pvfiblets.formats.mapped import forget
 from pvfiblets.formats.rows import transformed
-from pvfiblets.formats.trk_header import trackvis_to_ras
+from pvfiblets.formats.trk_header import trackvis_to_ras, unrecorded_affine
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.whole_files import replacing
 
@@ -25,7 +25,7 @@ def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
 
     The format holds float32 only. ``affine`` and ``space`` give the geometry; what `space` lacks
     follows from the affine. An affine that was not recorded where the streamlines come from is not
-    recorded here either: such a file means the identity.
+    recorded here either.
 
     Raises
     ------
@@ -80,7 +80,7 @@ def _header(streamlines: Streamlines) -> tuple[Any, Array]:
     header["voxel_order"] = voxel_order.encode("ascii")
     header["image_orientation_patient"] = space.get("image_orientation_patient", 0.0)
     header["pad2"] = space.get("original_voxel_order", "").encode("latin-1")
-    recorded = space.get("affine_recorded", True) or not np.array_equal(affine, np.eye(4))
+    recorded = space.get("affine_recorded", True) or not np.array_equal(affine, unrecorded_affine(sizes, voxel_order))
     header["voxel_to_rasmm"] = affine if recorded else 0.0
     # From the header's own rounded numbers: a reader has nothing else to go by.
     to_ras = trackvis_to_ras(header["voxel_sizes"].astype(np.float64), dimensions, voxel_order, affine)

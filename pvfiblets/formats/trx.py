@@ -16,7 +16,8 @@ offsets that decrease or leave the points
 a count of the header that is one off, where all   read by the arrays, with a warning
 arrays agree about it
 a group that names streamlines that do not exist   FormatError at the entry
-a point with NaN or infinity                       left out with its data and counted
+a point with NaN or infinity                       left out with its data, the line cut there; both
+                                                   are counted
 entries outside the specification's folders        left out and counted
 =================================================  ================================================
 """

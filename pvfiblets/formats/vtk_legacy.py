@@ -2,15 +2,16 @@
 
 Format: https://docs.vtk.org/en/latest/vtk_file_formats/vtk_legacy_file_format.html. Read by
 :class:`LegacyParser`, which checks every size against the file, since VTK's own reader trusts a
-damaged header and may end the process; written by VTK. Coordinates are taken as RAS+ mm, unless
-the title line says ``SPACE=LPS`` as 3D Slicer writes it: then x and y change sign.
+damaged header and may end the process; written by VTK. Coordinates are RAS+ mm, or LPS+ if the
+title line or the field data say so (:mod:`pvfiblets.vtk_space`): then x and y change sign.
 
 The file must be read whole: the data of a streamline lie in several places of it.
 
 Damage (a missing or unknown keyword, sizes that contradict each other or the file, point indices
 outside the points) is a FormatError at the keyword or the number. Cells that are not lines,
-points of no line, points with NaN or infinity and arrays of text are left out and counted. A file
-cut off exactly between two sections is a valid file: nothing in it tells that more was meant.
+points of no line, points with NaN or infinity and arrays of text are left out and counted; lines
+are cut at the points with NaN or infinity. A file cut off exactly between two sections is a valid
+file: nothing in it tells that more was meant.
 """
 
 from __future__ import annotations
@@ -19,13 +20,12 @@ from collections.abc import Iterator
 from os import PathLike
 from typing import Any
 
-import numpy as np
-
 from pvfiblets.errors import FormatError
 from pvfiblets.formats.read_whole import facts, only_finite, pieces
 from pvfiblets.formats.vtk_parser import LegacyParser
 from pvfiblets.formats.vtk_writer import write_with
 from pvfiblets.streamlines import Streamlines, from_cells
+from pvfiblets.vtk_space import OURS, Space, space_in_header, space_named
 
 __all__ = ["HOLDS", "info", "iter_chunks", "read", "write"]
 
@@ -35,27 +35,31 @@ HOLDS = ("per_point", "per_streamline", "groups", "per_group")
 
 def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:  # noqa: ARG001
     """Read a legacy vtk file (see :func:`pvfiblets.formats.read`)."""
+    return _read(path)[0]
+
+
+def _read(path: str | PathLike[str]) -> tuple[Streamlines, Space | None]:
+    """Read the streamlines, and the space that the file names."""
     parser = LegacyParser(path)
     parser.parse()
-    points = parser.points
-    if "SPACE=LPS" in parser.title.upper():
-        points = points * np.array([-1, -1, 1], points.dtype)
+    space = space_in_header(parser.title, parser.path) or space_named(parser.space, parser.path)
     offsets, ids = parser.lines
     n = len(offsets) - 1
     first = parser.cells_before_lines
     try:
         streamlines = from_cells(
-            points,
+            parser.points,
             offsets,
             ids,
             parser.point_data,
             {k: v[first : first + n] for k, v in parser.cell_data.items()},
             other_cells=parser.n_cells - n,
             field=parser.field,
+            space_name=space,
         )
     except ValueError as error:  # groups in the field data that name no streamlines
         raise FormatError(parser.path, None, str(error), "data that agree with each other") from error
-    return only_finite(streamlines, parser.notes)
+    return only_finite(streamlines, parser.notes), space
 
 
 def iter_chunks(path: str | PathLike[str], max_points: int) -> Iterator[Streamlines]:
@@ -65,7 +69,8 @@ def iter_chunks(path: str | PathLike[str], max_points: int) -> Iterator[Streamli
 
 def info(path: str | PathLike[str]) -> dict[str, Any]:
     """Facts of the file, which is read whole (see :func:`pvfiblets.formats.info`)."""
-    return facts(read(path))
+    streamlines, space = _read(path)
+    return {**facts(streamlines), "space": space}
 
 
 def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
@@ -77,6 +82,7 @@ def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
 
     writer = vtkPolyDataWriter()
     writer.SetFileTypeToBinary()
+    writer.SetHeader(f"pvfiblets SPACE={OURS}")
     words = streamlines.n_points + len(streamlines)
     writer.SetFileVersion(42 if words < 2**31 else 51)
     write_with(writer, path, streamlines)

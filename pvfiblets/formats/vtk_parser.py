@@ -16,6 +16,7 @@ from pvfiblets.errors import FormatError
 from pvfiblets.formats.mapped import MappedFile
 from pvfiblets.formats.read_whole import TEXT_ARRAYS
 from pvfiblets.streamlines import offsets_from_counts
+from pvfiblets.vtk_space import FIELD
 
 Array = NDArray[Any]
 Ints = NDArray[np.int64]
@@ -58,6 +59,8 @@ class LegacyParser:
     n_cells, cells_before_lines : int
         All cells of all kinds; vertices, which come before the lines.
     point_data, cell_data, field : dict of str to array
+    space : str or None
+        First text of the field array ``SPACE``.
     notes : dict of str to int
         What to report: arrays of strings passed over, a last number that may be cut short.
     """
@@ -72,6 +75,7 @@ class LegacyParser:
         self.point_data: dict[str, Array] = {}
         self.cell_data: dict[str, Array] = {}
         self.field: dict[str, Array] = {}
+        self.space: str | None = None
         self.notes: dict[str, int] = {TEXT_ARRAYS: 0}
         self._rows: int | None = None
         self._target: dict[str, Array] = self.field
@@ -261,8 +265,11 @@ class LegacyParser:
                 raise FormatError(self.path, self._line_at, f"the array {name!r}", "POINT_DATA or CELL_DATA first")
             rows = self._rows
         if kind.lower() == "string":
-            self._skip_strings(rows * columns)
-            self.notes[TEXT_ARRAYS] += 1
+            texts = self._strings(rows * columns)
+            if name == FIELD and self._target is self.field and texts:
+                self.space = texts[0]
+            else:
+                self.notes[TEXT_ARRAYS] += 1
             return
         values = self._values(rows * columns, kind)
         if columns != 1:
@@ -361,16 +368,18 @@ class LegacyParser:
         self._at += len(text)
         return bytes(text)
 
-    def _skip_strings(self, n: int) -> None:
+    def _strings(self, n: int) -> list[str]:
         self.file.check(self._at, n, f"{n} strings")
+        texts = []
         for _ in range(n):
             if self._ascii:
-                self._line("a string")
+                texts.append(unquote_to_bytes(self._line("a string")).decode("utf-8", "replace"))
                 continue
             # The two high bits of the first byte tell how many bytes hold the length.
             head = self.file.bytes(self._at, 1, "a string's length")[0]
             width = (8, 4, 2, 1)[head >> 6]
             raw = int.from_bytes(self.file.bytes(self._at, width, "a string's length"), "big")
             length = raw & ((1 << (8 * width - 2)) - 1)
-            self.file.check(self._at + width, length, "a string")
+            texts.append(self.file.bytes(self._at + width, length, "a string").decode("utf-8", "replace"))
             self._at += width + length
+        return texts

@@ -29,6 +29,7 @@ _TYPES = {
 MOST_TIMES = 10_000
 """What a file can hold, in its own size: no compressor of VTK's packs more densely, but for nothing but zeros."""
 
+_MOST_TEXT = 1 << 16  # bytes
 _COMPRESSORS = {"": None, "vtkZLibDataCompressor": "zlib", "vtkLZMADataCompressor": "lzma"}
 
 
@@ -125,7 +126,7 @@ class XmlFile:
             stack.pop()
 
         def text(data: str) -> None:
-            if stack and stack[-1].tag == "DataArray":
+            if stack and stack[-1].tag in ("DataArray", "Array"):
                 stack[-1].text.append(data)
 
         def refuse(*_args: Any) -> None:
@@ -189,6 +190,17 @@ class XmlFile:
         if len(values) != rows * k:
             raise self.error(element, f"{len(values)} values", f"{rows} rows of {k} as the piece promises")
         return values.reshape(rows, k) if k > 1 else values
+
+    def strings(self, element: Element) -> list[str]:
+        """Return the texts of a small Array of strings."""
+        if element.attributes.get("format", "ascii") == "ascii":
+            raw = self._from_text(element, np.dtype(np.uint8)).tobytes()
+        else:
+            size = self.stated(element, 0)
+            if size > _MOST_TEXT:
+                raise self.error(element, f"{size} bytes of text", f"at most {_MOST_TEXT}")
+            raw = self._binary(element, element.attributes["format"] == "appended", size)
+        return raw.decode("utf-8", "replace").split("\0")[:-1]
 
     def check_sizes(self, element: Element, rows: int) -> None:
         """Compare the size that a DataArray says with what the file promises elsewhere, before VTK spends memory on it.

@@ -3,8 +3,10 @@
 Format: https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html. Read by a parser
 of our own for the reason given in :mod:`pvfiblets.formats.vtk_legacy`, written by VTK. The file
 must be read whole: the data of a streamline lie in several places of it. Several pieces are
-joined. Damage is a FormatError at the array; cells that are not lines, points of no line, points
-with NaN or infinity and arrays of text are left out and counted.
+joined. Coordinates are RAS+ mm, or LPS+ if the field data say so (:mod:`pvfiblets.vtk_space`).
+Damage is a FormatError at the array; cells that are not lines, points of no line, points
+with NaN or infinity and arrays of text are left out and counted; lines are cut at the points with
+NaN or infinity.
 """
 
 from __future__ import annotations
@@ -21,6 +23,7 @@ from pvfiblets.formats.read_whole import TEXT_ARRAYS, facts, only_finite, pieces
 from pvfiblets.formats.vtk_writer import write_with
 from pvfiblets.formats.vtk_xml import Element, XmlFile
 from pvfiblets.streamlines import Streamlines, from_cells
+from pvfiblets.vtk_space import FIELD, Space, space_named
 
 Array = NDArray[Any]
 
@@ -32,36 +35,38 @@ _CELLS = ("Verts", "Lines", "Polys", "Strips")
 
 def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:  # noqa: ARG001
     """Read a vtp file (see :func:`pvfiblets.formats.read`)."""
+    return _read(path)[0]
+
+
+def _read(path: str | PathLike[str]) -> tuple[Streamlines, Space | None]:
+    """Read the streamlines, and the space that the file names."""
     file = XmlFile(path)
-    field, text = _arrays(file, file.content.child("FieldData"), None)
+    holder = file.content.child("FieldData")
+    field, text = _arrays(file, holder, None)
+    named = [e for e in holder.children("Array") if e.attributes.get("Name") == FIELD] if holder else []
+    texts = file.strings(named[0]) if named else []
+    space = space_named(texts[0] if texts else None, file.path)
     parts = []
     for piece in file.content.children("Piece"):
         streamlines, more_text = _piece(file, piece)
         parts.append(streamlines)
         text += more_text
-    if not parts:
-        parts.append(Streamlines(np.zeros((0, 3), np.float32), np.zeros(1, np.int64)))
+    joined = Streamlines.concatenate(parts)
     try:
-        joined = parts[0] if len(parts) == 1 else Streamlines.concatenate(parts)
         # The field data belong to the file, not to a piece, and name streamlines by number.
-        if field:
-            joined = _with_field(joined, field)
+        whole = from_cells(
+            joined.points,
+            joined.offsets,
+            np.arange(joined.n_points),
+            joined.per_point,
+            joined.per_streamline,
+            field=field,
+            space_name=space,
+        )
     except ValueError as error:
         raise FormatError(file.path, None, str(error), "data that agree with each other") from error
-    return only_finite(joined, {TEXT_ARRAYS: text})
-
-
-def _with_field(s: Streamlines, field: dict[str, Array]) -> Streamlines:
-    whole = from_cells(
-        s.points,
-        s.offsets,
-        np.arange(s.n_points),
-        s.per_point,
-        s.per_streamline,
-        field=field,
-    )
-    whole.dropped = s.dropped
-    return whole
+    whole.dropped |= joined.dropped
+    return only_finite(whole, {TEXT_ARRAYS: text - len(named)}), space
 
 
 def _piece(file: XmlFile, piece: Element) -> tuple[Streamlines, int]:
@@ -129,7 +134,8 @@ def iter_chunks(path: str | PathLike[str], max_points: int) -> Iterator[Streamli
 
 def info(path: str | PathLike[str]) -> dict[str, Any]:
     """Facts of the file, which is read whole (see :func:`pvfiblets.formats.info`)."""
-    return facts(read(path))
+    streamlines, space = _read(path)
+    return {**facts(streamlines), "space": space}
 
 
 def write(path: str | PathLike[str], streamlines: Streamlines) -> None:

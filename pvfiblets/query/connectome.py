@@ -343,14 +343,9 @@ def _offsets(linear: Floats, reach: float) -> tuple[Ints, Floats]:
 def _opened(data: Any) -> Any:
     if not isinstance(data, (str, os.PathLike)):
         return data
-    path = Path(data).expanduser()
-    if path.suffix.lower() == ".fiblets":
-        from ..codec.fibletset import FibletSet
+    from ..codec.open_lines import open_lines
 
-        return FibletSet.open(path)
-    from ..formats import read
-
-    return read(path)
+    return open_lines(Path(data).expanduser())
 
 
 def _end_points(data: Any) -> Floats:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,7 +18,9 @@ from ..codec.fibletset import FibletSet
 from ..codec.progress import Progress, shown
 from ..codec.quantised import QuantisedPoints
 from ..codec.stored_parts import stored_parts
+from ..invalid_points import valid_points
 from ..streamlines import Streamlines
+from ..summary import warn_of_losses
 from .measures import Distance, Values, decoded_by_rank, measure
 
 if TYPE_CHECKING:
@@ -104,7 +107,7 @@ def as_source(source: Any, weights: Any, wanted: Wanted) -> Source:
     if isinstance(source, FibletSet):
         return _Compressed(source, weights, wanted)
     if isinstance(source, Streamlines):
-        lines = source
+        lines = valid_points(source, "split")
         spans = list(lines.blocks(CHUNK))
         known = len(lines), lines.n_points
         return _Plain(lambda: (lines[a:b] for a, b in spans), "the streamlines", known, weights, wanted)
@@ -229,7 +232,9 @@ class _Plain:
             wanted = np.asarray(wanted)
             self.per_point = _is_per_point(wanted, *self._survey[2:])
         line = point = 0
+        dropped: Counter[str] = Counter()
         for chunk in shown(self._chunks(), self._known[1], "adding up", progress):
+            dropped.update(chunk.dropped)
             lines, points = slice(line, line + len(chunk)), slice(point, point + chunk.n_points)
             own = np.ones(len(chunk))
             if isinstance(weights, str):
@@ -243,6 +248,7 @@ class _Plain:
                 values = np.array(wanted[points if self.per_point else lines], np.float64)
             yield Part(_writable(chunk.points, np.float64), _writable(chunk.offsets, np.int64), own, values)
             line, point = lines.stop, points.stop
+        warn_of_losses(self._place, dropped, stacklevel=3)
 
     def _named(self, chunk: Streamlines, name: str) -> tuple[bool, Floats]:
         """Whether an array is of points, and its numbers."""

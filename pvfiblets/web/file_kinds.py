@@ -55,10 +55,10 @@ def kind_of(path: Path) -> str:
 
 def read_vtk(place: Path) -> Any:
     """Read a file with one of VTK's readers, which end the process where memory does not suffice."""
-    import pyvista as pv
+    from pvfiblets.plotting.meshes import read_mesh
 
     vtk_sizes.check_memory(place)
     try:
-        return pv.read(place)
+        return read_mesh(place)
     except RuntimeError:  # by which PyVista says that VTK's reader gave nothing
         raise FormatError(place, None, "what VTK's reader cannot read", "a whole file of this kind") from None

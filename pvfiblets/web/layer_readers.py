@@ -7,7 +7,7 @@ from typing import Any
 
 from pvfiblets import formats
 from pvfiblets.formats.registry import UnknownFormatError
-from pvfiblets.web.file_kinds import GIFTI, MESHES, VOLUMES, VTK_SUFFIXES, read_vtk
+from pvfiblets.web.file_kinds import MESHES, VOLUMES, VTK_SUFFIXES, read_vtk
 
 __all__ = ["read_colours", "read_fixels", "read_mesh", "read_several", "read_tubes", "volume_facts"]
 
@@ -54,10 +54,6 @@ def read_mesh(place: Path) -> Any:
 
     if not place.name.lower().endswith(MESHES):  # VTK has readers of its own for volumes, which follow other names
         raise UnknownFormatError(f"{place.name}: surfaces are in files of {', '.join(MESHES)}; convert it")
-    if place.name.lower().endswith(GIFTI):
-        from pvfiblets.plotting.gifti import read_surface
-
-        return read_surface(place)
     data = read_vtk(place)
     if isinstance(data, pv.MultiBlock):
         data = data.combine().extract_surface() if data.n_blocks else pv.PolyData()

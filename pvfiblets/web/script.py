@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 from pvfiblets.mappers.scene import USUAL_DPI
 from pvfiblets.plotting.fiblets.volume_sources import SUFFIXES as SAMPLED
 from pvfiblets.plotting.slices.settings import MEANING
-from pvfiblets.volumes.gifti_files import SUFFIXES as GIFTI
 from pvfiblets.web import layers
 from pvfiblets.web.actors import split_cuts
 from pvfiblets.web.document import LINES, Clip, Layer, Matrix, Source, volumes_of
@@ -231,8 +230,7 @@ class _Writer(ViewWriter):
 
     def _mesh(self, path: str) -> str:
         """Return Python that reads a surface."""
-        if path.lower().endswith(GIFTI):
-            self._imports.add("from pvfiblets.plotting.gifti import read_surface")
+        self._imports.add("from pvfiblets.plotting.meshes import read_mesh")
         return mesh_code(path, self._file)
 
     def _colours(self, source: Source) -> Python:

@@ -19,7 +19,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
-from pvfiblets.volumes.gifti_files import SUFFIXES as GIFTI
 from pvfiblets.web.values import mapping, number, numbers, shown, text, whole
 
 if TYPE_CHECKING:
@@ -220,8 +219,8 @@ def shape_code(shape: Mapping[str, Any], file: Callable[[str], str]) -> str:
 
 
 def mesh_code(path: str, file: Callable[[str], str]) -> str:
-    """Return Python that reads a surface: of GIFTI by ``pvfiblets.plotting.gifti.read_surface``."""
-    return f"{'read_surface' if path.lower().endswith(GIFTI) else 'pv.read'}({file(path)})"
+    """Return Python that reads a surface."""
+    return f"read_mesh({file(path)})"
 
 
 def condition_code(condition: Mapping[str, Any], file: Callable[[str], str]) -> str:

@@ -95,11 +95,11 @@ def big_endian(path: Path, target: Path) -> Path:
 
 
 def holes(path: Path, target: Path) -> Path:
-    """Write the same .tck with points that are no numbers among those of the long line."""
+    """Write the same .tck with points of the long line that are no numbers; those at its end cut nothing."""
     raw = bytearray(path.read_bytes())
     offset = int(bytes(raw).split(b"file: . ")[1].split()[0])
-    for point in (91 + 5, 91 + 2222):
-        raw[offset + 12 * point : offset + 12 * point + 4] = np.float32(np.nan).tobytes()
+    for point in (91, 92, 91 + 2998):
+        raw[offset + 12 * point + 4 : offset + 12 * point + 8] = np.float32(np.nan).tobytes()
     target.write_bytes(raw)
     return target
 

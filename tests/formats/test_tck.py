@@ -12,6 +12,7 @@ from pvfiblets import formats
 from pvfiblets.errors import FormatError
 from pvfiblets.formats import rows as row_tools
 from pvfiblets.formats import tck
+from pvfiblets.invalid_points import CUT, NONFINITE
 from pvfiblets.streamlines import Streamlines
 
 from .samples import rich, same, tck_bytes
@@ -114,12 +115,19 @@ def test_small_blocks_give_the_same(load, monkeypatch):
     same(load(rows), expected)
 
 
-@pytest.mark.parametrize("bad", [[np.nan, 1, 2], [1, np.inf, 2], [1, 2, -np.inf], [np.nan, np.inf, 1]])
-def test_a_partly_nonfinite_point_is_dropped_and_counted(bad, load):
-    s = load([A, bad, B, NAN, bad, NAN, C, NAN, INF])
-    assert s.dropped == {"non-finite points": 2}
-    assert s.counts.tolist() == [2, 0, 1]
+@pytest.mark.parametrize("bad", [[1, np.nan, 2], [1, np.inf, 2], [1, 2, -np.inf]])
+def test_a_line_is_cut_at_a_partly_nonfinite_point(bad, load):
+    s = load([A, bad, bad, B, NAN, bad, NAN, bad, C, bad, NAN, INF], header="count: 3\n")
+    assert s.dropped == {NONFINITE: 5, CUT: 1}
+    assert s.counts.tolist() == [1, 1, 0, 1]
     assert s.points.tolist() == np.array([A, B, C], np.float32).tolist()
+
+
+def test_x_alone_delimits_as_in_mrtrix(load):
+    """MRtrix reads no more of these rows than x (mrtrix3#1131)."""
+    s = load([A, B, [np.nan, 0, 0], C, [np.nan, 5, 6], [-np.inf, 0, 0], A])
+    assert s.counts.tolist() == [2, 1]
+    assert s.dropped == {tck.AFTER_END: 12}
 
 
 def test_any_nan_pattern_ends_a_streamline(load):
@@ -218,14 +226,23 @@ def test_no_file_line_and_windows_newlines(tmp_path):
     assert formats.info(path)["header"]["step_size"] == "0.5"
 
 
-def test_float64_is_written_only_where_float32_is_too_coarse(tmp_path):
+def test_points_are_written_as_float32_unless_doubles_are_asked_for(tmp_path):
+    path = tmp_path / "a.tck"
     near = Streamlines(np.array([A, B]), [0, 2])
-    far = Streamlines(np.array([A, B]) + 1e6, [0, 2])
-    below = Streamlines(np.array([A, B]) - 1e6, [0, 2])
-    for s, kind in ((near, "float32"), (far, "float64"), (below, "float64")):
-        formats.write(tmp_path / "a.tck", s)
-        assert formats.info(tmp_path / "a.tck")["dtype"] == kind
-        assert np.abs(formats.read(tmp_path / "a.tck").points - s.points).max() < 1e-3
+    formats.write(path, near)
+    assert formats.info(path)["dtype"] == "float32"
+    far = Streamlines(np.array([A, B]) * 1.1 - 1e6, [0, 2])
+    error = np.abs(far.points.astype(np.float32) - far.points).max()
+    with pytest.warns(UserWarning, match=rf"float32 moves points by up to {error:.2g} mm; doubles .*double=True"):
+        formats.write(path, far)
+    assert np.array_equal(nibabel.streamlines.load(path).streamlines[0], far.points.astype(np.float32))
+    formats.write(path, far, double=True)
+    assert formats.info(path)["dtype"] == "float64"
+    assert np.array_equal(formats.read(path).points, far.points)
+    with pytest.raises(ValueError, match=r"double is an option of \.tck files"):
+        formats.write(tmp_path / "a.trk", far, double=True)
+    with pytest.raises(ValueError, match="float32 cannot hold some coordinates"):
+        formats.write(path, Streamlines(np.full((2, 3), 1e39), [0, 2]))
 
 
 def test_info_counts_without_reading(tmp_path):

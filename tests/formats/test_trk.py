@@ -17,6 +17,7 @@ from nibabel.streamlines.trk import TrkFile
 from pvfiblets import formats
 from pvfiblets.errors import FormatError
 from pvfiblets.formats import trk
+from pvfiblets.invalid_points import CUT, NONFINITE
 from pvfiblets.streamlines import Streamlines
 
 from .samples import rich, same
@@ -31,8 +32,13 @@ def nibabel_load(path):
 
 
 def assert_agrees(path) -> Streamlines:
-    theirs, ours = nibabel_load(path), formats.read(path)
+    theirs = nibabel_load(path)
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "voxel size|.*no voxel-to-RAS matrix")
+        ours = formats.read(path)
     points = np.reshape(theirs.streamlines.get_data(), (-1, 3))
+    if not ours.space["affine_recorded"]:  # nibabel takes voxels of 1 mm then
+        points = points * ours.affine.diagonal()[:3]
     assert ours.counts.tolist() == [len(t) for t in theirs.streamlines]
     assert np.allclose(ours.points, points, rtol=0, atol=2e-5 * max(1, np.abs(points).max(initial=0) / 100))
     for part, columns in (
@@ -222,7 +228,7 @@ def test_voxels_of_size_0_and_no_matrix_are_of_1_mm(file):
     file.write_bytes(patched(data, 12, "<3f", 1.0, 1.0, 1.0))
     want = assert_agrees(file)
     file.write_bytes(patched(data, 12, "<3f", 0.0, 0.0, 0.0))
-    with pytest.warns(UserWarning, match="voxel size"):
+    with pytest.warns(UserWarning, match="voxel size is"), pytest.warns(UserWarning, match="no voxel-to-RAS matrix"):
         np.testing.assert_array_equal(formats.read(file).points, want.points)
 
 
@@ -267,13 +273,14 @@ def test_count_zero_reads_to_the_end(file):
     same(formats.read(file), s)
 
 
-def test_nonfinite_points_are_dropped_with_their_scalars(file):
+def test_lines_are_cut_at_nonfinite_points(file):
     s = formats.read(file)
     # First streamline: 5 points of 7 numbers after its count.
     file.write_bytes(patched(file.read_bytes(), 1000 + 4 + 2 * 28, "<f", np.nan))
     bad = formats.read(file)
-    assert bad.dropped == {"non-finite points": 1}
-    assert bad.counts.tolist() == [4, *s.counts[1:]]
+    assert bad.dropped == {NONFINITE: 1, CUT: 1}
+    assert bad.counts.tolist() == [2, 2, *s.counts[1:]]
+    assert np.array_equal(bad.per_streamline["weight"], s.per_streamline["weight"][[0, *range(len(s))]])
     assert np.array_equal(bad.per_point["fa"], np.delete(s.per_point["fa"], 2))
 
 
@@ -284,15 +291,25 @@ def test_nan_among_scalars_is_data(file):
     assert np.isnan(s.per_point["fa"][0])
 
 
-def test_version_1_and_missing_affine_mean_identity(file):
+def test_a_missing_matrix_is_that_of_the_voxels(file):
+    """Voxels of 2 x 2.5 x 3 mm in the order LAS; nibabel's identity counts voxels where these are millimetres."""
     for data in (
         patched(file.read_bytes(), 992, "<i", 1),
         patched(file.read_bytes(), 440, "<16f", *[0.0] * 16),
     ):
         file.write_bytes(data)
-        s = assert_agrees(file)
-        assert np.array_equal(s.affine, np.eye(4))
+        told = r"has no voxel-to-RAS matrix; its voxel size 2 x 2\.5 x 3 mm and voxel order LAS are used"
+        with pytest.warns(UserWarning, match=told):
+            s = formats.read(file)
+        with pytest.warns(nibabel.streamlines.tractogram_file.HeaderWarning):
+            voxels = nibabel.streamlines.load(file).streamlines.get_data()
+        np.testing.assert_allclose(s.points, voxels * [2.0, 2.5, 3.0], atol=1e-3)
+        assert np.array_equal(s.affine, np.diag([2.0, 2.5, 3.0, 1.0]))
         assert s.space["affine_recorded"] is False
+        formats.write(file, s)
+        with pytest.warns(UserWarning, match=told):  # written, it has none either
+            again = formats.read(file)
+        np.testing.assert_allclose(again.points, s.points, atol=1e-4)
 
 
 def test_damaged_gzip(file, tmp_path):
@@ -346,4 +363,4 @@ def test_a_signalling_nan_is_left_out_without_a_warning(tmp_path):
     path.write_bytes(data)
     s = formats.read(path)
     assert s.n_points == 3
-    assert sum(s.dropped.values()) == 1
+    assert s.dropped == {NONFINITE: 1, CUT: 1}

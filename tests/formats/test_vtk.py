@@ -13,6 +13,8 @@ from hypothesis import strategies as st
 from pvfiblets import formats
 from pvfiblets.errors import FormatError
 from pvfiblets.formats import vtk_parser
+from pvfiblets.invalid_points import CUT, NONFINITE
+from pvfiblets.lines import gather
 from pvfiblets.streamlines import Streamlines
 
 from .samples import rich, same
@@ -88,10 +90,81 @@ def test_a_file_made_by_hand(tmp_path):
     }  # fmt: skip
 
 
-def test_slicers_lps_space_is_turned_to_ras(tmp_path):
+RAS_POINTS = [[10, 20, 30], [11, 21, 31], [12, 23, 33]]
+
+
+def slicers_file(path, space, where, mode):
+    """Write a line with its space in the title or the field data, as 3D Slicer does."""
+    from vtkmodules.vtkIOLegacy import vtkPolyDataWriter
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+
+    flip = np.float32([-1, -1, 1]) if space == "LPS" else np.float32(1)
+    mesh = pv.PolyData(np.array(RAS_POINTS, np.float32) * flip, lines=[3, 0, 1, 2])
+    if where == "field":
+        mesh.field_data["SPACE"] = [space]
+    if path.suffix == ".vtp":
+        writer = vtkXMLPolyDataWriter()
+        getattr(writer, f"SetDataModeTo{mode}")()
+    else:
+        writer = vtkPolyDataWriter()
+        writer.SetFileVersion(mode)
+        writer.SetFileType(2 if mode == 51 else 1)
+        writer.SetHeader(f"3D Slicer output. SPACE={space}" if where == "title" else "vtk output")
+    writer.SetFileName(str(path))
+    writer.SetInputData(mesh)
+    writer.Write()
+
+
+@pytest.mark.parametrize(
+    ("suffix", "where", "mode"),
+    [
+        *((".vtk", where, version) for where in ("title", "field") for version in (42, 51)),
+        *((".vtp", "field", mode) for mode in ("Ascii", "Binary", "Appended")),
+    ],
+)
+@pytest.mark.parametrize("space", ["LPS", "RAS"])
+def test_the_space_that_slicer_names(space, suffix, where, mode, tmp_path):
+    path = tmp_path / f"a{suffix}"
+    slicers_file(path, space, where, mode)
+    s = formats.read(path)
+    assert s[0].tolist() == RAS_POINTS
+    assert s.dropped == {}
+    assert formats.info(path)["space"] == space
+    if where == "field":
+        assert by_vtk(path)[0].tolist() == RAS_POINTS
+        assert gather(pv.read(path)).points.tolist() == RAS_POINTS
+
+
+@pytest.mark.parametrize("suffix", [".vtk", ".vtp"])
+def test_our_files_name_their_space(suffix, tmp_path):
+    s = Streamlines(np.array(RAS_POINTS, np.float32), [0, 3])
+    formats.write(tmp_path / f"ours{suffix}", s)
+    s.to_polydata().save(tmp_path / f"pyvistas{suffix}")
+    for path in tmp_path.iterdir():
+        assert pv.read(path).field_data["SPACE"][0] == "RAS"
+        assert formats.read(path)[0].tolist() == RAS_POINTS
+
+
+def test_an_unknown_space_is_a_warning(tmp_path):
     path = tmp_path / "a.vtk"
-    path.write_bytes(OLD % b" SPACE=LPS")
-    assert formats.read(path)[0].tolist() == [[0, 0, 0], [-1, 0, 0], [-1, -1, 0]]
+    slicers_file(path, "XYZ", "field", 42)
+    with pytest.warns(UserWarning, match="names the space 'XYZ'; RAS or LPS is expected"):
+        assert formats.read(path)[0].tolist() == RAS_POINTS
+
+
+def test_a_line_is_cut_at_a_nan_in_files_and_in_objects(tmp_path):
+    mesh = pv.PolyData(np.arange(36.0).reshape(12, 3), lines=[12, *range(12)])
+    mesh.points[5] = np.nan
+    mesh.save(tmp_path / "a.vtp")
+    s = formats.read(tmp_path / "a.vtp")
+    assert (s.counts.tolist(), s.dropped) == ([5, 6], {NONFINITE: 1, CUT: 1})
+    assert formats.info(tmp_path / "a.vtp")["dropped"] == s.dropped
+    plotter = pv.Plotter(off_screen=True)
+    for source in (mesh, tmp_path / "a.vtp"):
+        with pytest.warns(UserWarning, match="non-finite points: 1; streamlines added"):
+            actor = plotter.add_fiblets(source)
+        assert actor.fiblets.decompress().counts.tolist() == [5, 6]
+    plotter.close()
 
 
 @given(st.lists(st.integers(0, 5), max_size=8), st.sampled_from([".vtk", ".vtp"]))
@@ -170,7 +243,8 @@ def test_nonfinite_points(tmp_path):
     path.write_bytes((OLD % b"").replace(b"1 1 0", b"1 nan 0"))
     s = formats.read(path)
     assert s.counts.tolist() == [2, 2]
-    assert s.dropped["non-finite points"] == 1
+    assert s.dropped[NONFINITE] == 1
+    assert CUT not in s.dropped
 
 
 def test_a_last_number_without_newline_is_reported(tmp_path):

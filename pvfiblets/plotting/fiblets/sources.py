@@ -17,13 +17,14 @@ from pvfiblets.codec.point_arrays import unit_colours, with_coded_values, with_p
 from pvfiblets.codec.point_arrays import with_point_values as add_values
 from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
 from pvfiblets.formats.attachments import is_values_file, name_of, values_for
-from pvfiblets.invalid_points import valid_points
+from pvfiblets.invalid_points import Invalid, valid_points
 from pvfiblets.lines import refuse_words, rows_of
 from pvfiblets.other_libraries import EXPECTED, streamlines_of
 from pvfiblets.plotting.fiblets.scalars import UNNAMED, are_colours, magnitudes, refuse_unknown
 from pvfiblets.plotting.fiblets.volume_sources import as_volume
 from pvfiblets.query.measures import Distance, measure
 from pvfiblets.streamlines import Streamlines
+from pvfiblets.summary import warn_of_losses
 
 if TYPE_CHECKING:
     from pvfiblets.codec.compress import PerPoint
@@ -82,6 +83,7 @@ def as_fiblets(
     """
     volume = as_volume(scalars)
     scalars = scalars if volume is None else volume
+    name = os.fspath(source) if isinstance(source, (str, os.PathLike)) else type(source).__name__
     if isinstance(source, (str, os.PathLike)):
         if os.fspath(source).lower().endswith(".fiblets"):
             source = FibletSet.open(source)
@@ -104,8 +106,8 @@ def as_fiblets(
         scalars = name_of(scalars)
     if isinstance(scalars, str):
         refuse_unknown(streamlines, scalars)
-    names = per_point if isinstance(per_point, str) else tuple(per_point)
-    keep = list(choose_per_point(streamlines, names, options.get("per_point_bits", 8)))
+    kept = per_point if isinstance(per_point, str) else tuple(per_point)
+    keep = list(choose_per_point(streamlines, kept, options.get("per_point_bits", 8)))
     if isinstance(opacity, str) and opacity in streamlines.per_point:
         keep.append(opacity)
     if isinstance(scalars, str):
@@ -130,16 +132,20 @@ def as_fiblets(
                 streamlines.per_point = {**streamlines.per_point, UNNAMED: values}
                 keep.append(UNNAMED)
             scalars = UNNAMED
-    nan = options.pop("nan", "error")
+    chosen = options.pop("nan", None)
+    nan: Invalid = "split" if chosen is None else chosen
     per_line = isinstance(scalars, np.ndarray) and len(scalars) == len(streamlines) and scalars.dtype.kind in "buif"
-    if nan == "split" and per_line:  # there may be more streamlines then
+    if nan == "split" and per_line and not np.isfinite(streamlines.points).all():  # lines are cut, values follow
         streamlines.per_streamline = {**streamlines.per_streamline, UNNAMED: scalars}
         scalars = UNNAMED
+    read_as = streamlines.dropped
     streamlines = valid_points(streamlines, nan)
+    warn_of_losses(name, streamlines.dropped if chosen is None else read_as, stacklevel=6)
     fiblets = compress(
         streamlines,
         max_error=max_error,
         per_point=tuple(dict.fromkeys(keep)),
+        nan=nan,
         progress=progress,
         **options,
     )

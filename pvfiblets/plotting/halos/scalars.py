@@ -110,9 +110,9 @@ def read_points(source: Any) -> Any:
     """Return the data of a file of PyVista's; anything else as it is."""
     if not isinstance(source, (str, os.PathLike)):
         return source
-    import pyvista as pv
+    from pvfiblets.plotting.meshes import read_mesh
 
-    return pv.read(source)
+    return read_mesh(source)
 
 
 def coloured(held: Held, scalars: Any, *, rgb: bool | None = None) -> Held:

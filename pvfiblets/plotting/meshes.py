@@ -1,0 +1,72 @@
+"""Surfaces of every format that PyVista or this package reads, in RAS+ mm."""
+
+from __future__ import annotations
+
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import pyvista as pv
+
+from pvfiblets.volumes.gifti_files import SUFFIXES as GIFTI
+from pvfiblets.vtk_space import FIELD, OURS, Space, space_in_header, space_of_dataset
+
+__all__ = ["read_mesh", "space_of_file"]
+
+_HEAD = 1 << 16  # bytes in which titles and comments are looked for
+
+
+def read_mesh(path: str | PathLike[str]) -> Any:
+    """Read a surface of any format, GIFTI included, in RAS+ mm.
+
+    Parameters
+    ----------
+    path : str or PathLike
+
+    Returns
+    -------
+    pyvista.DataSet or pyvista.MultiBlock
+        A mesh whose file names LPS+ as its space, as 3D Slicer writes it (the header of ``.stl``, a comment of ``.ply``
+        and ``.obj``, the title of ``.vtk``, field data), has x and y negated, with its normals and vectors, and the
+        field array ``SPACE`` says ``RAS``. Of files without a name, coordinates are as they are.
+
+    Raises
+    ------
+    ValueError
+        If the file holds no points.
+    """
+    place = Path(path).expanduser()
+    if place.name.lower().endswith(GIFTI):
+        from pvfiblets.plotting.gifti import read_surface
+
+        return read_surface(place)
+    mesh = pv.read(place)
+    if isinstance(mesh, pv.DataSet) and not mesh.n_points:
+        raise ValueError(f"{path} holds no points: there is nothing to draw; check what wrote it")
+    if isinstance(mesh, (pv.PolyData, pv.UnstructuredGrid, pv.StructuredGrid)) and space_of_file(place, mesh) == "LPS":
+        mesh = mesh.transform([[-1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]], inplace=False)
+        mesh.field_data[FIELD] = [OURS]
+    return mesh
+
+
+def space_of_file(path: str | PathLike[str], mesh: pv.DataSet) -> Space | None:
+    """Return the space that a file names for its points, in its header or in the mesh's field data; None if none."""
+    return space_in_header(_header(Path(path)), str(path)) or space_of_dataset(mesh)
+
+
+def _header(place: Path) -> str:
+    """Return the title or the comments of a file."""
+    with place.open("rb") as file:
+        head = file.read(_HEAD).decode("latin-1")
+    lines = head.splitlines()
+    match place.suffix.lower():
+        case ".stl":
+            return lines[0] if head.startswith("solid") and lines else head[:80]
+        case ".vtk":
+            return "".join(lines[1:2])
+        case ".ply":
+            lines = head.partition("end_header")[0].splitlines()
+            return "\n".join(line for line in lines if line.startswith("comment"))
+        case ".obj":
+            return "\n".join(line for line in lines if line.startswith("#"))
+    return ""
