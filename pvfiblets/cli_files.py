@@ -193,7 +193,8 @@ def summary(source: str, target: str, result: dict[str, Any]) -> str:
 def bytes_of(path: str | Path) -> int:
     """Return the size of a file, or of a folder's files."""
     place = path_of(path)
-    return sum(part.stat().st_size for part in place.iterdir()) if place.is_dir() else place.stat().st_size
+    files = [part for part in place.rglob("*") if part.is_file()] if place.is_dir() else [place]
+    return sum(part.stat().st_size for part in files)
 
 
 def show_progress(quiet: bool, json: bool) -> bool:

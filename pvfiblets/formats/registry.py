@@ -13,6 +13,7 @@ import os
 from collections.abc import Iterator
 from importlib import import_module
 from os import PathLike, fspath
+from pathlib import Path
 from types import ModuleType
 
 import pvfiblets
@@ -68,11 +69,19 @@ def suffix_of(path: str | PathLike[str]) -> str:
         if name.endswith(suffix):
             return suffix
     known = ", ".join(sorted(_MODULES))
+    if is_trx_folder(path):
+        return ".trx"
     if os.path.isdir(path):  # noqa: PTH112 - of what is no path at all, too
         raise UnknownFormatError(f"{fspath(path)} is a folder; give a file of one of {known}")
     raise UnknownFormatError(
         f"{fspath(path)}: no format has this suffix; rename the file or convert it to one of {known}"
     )
+
+
+def is_trx_folder(path: str | PathLike[str]) -> bool:
+    """Return whether a path is a folder of the arrays of a TRX file."""
+    place = Path(path)
+    return (place / "header.json").is_file() and any(place.glob("positions.*"))
 
 
 def module_for(path: str | PathLike[str], *needs: str) -> ModuleType:

@@ -1,8 +1,8 @@
-"""TRX (``.trx``): a zip of plain arrays, RAS+ mm.
+"""TRX (``.trx``): a zip, or a folder, of plain arrays, RAS+ mm.
 
 Format: https://github.com/tee-ar-ex/trx-spec. Entries are named ``folder/name.columns.dtype``;
-one column is not named. Stored entries are memory-mapped, deflated ones inflated from front to
-back, so either kind streams.
+one column is not named. Files of a folder and stored entries are memory-mapped, deflated entries
+inflated from front to back, so all stream. A folder of this content is read under any name.
 
 What is made of input that breaks the rules:
 
@@ -29,6 +29,7 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from os import PathLike
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -39,7 +40,7 @@ from pvfiblets.formats.mapped import forget
 from pvfiblets.formats.rows import finite, without_rows
 from pvfiblets.formats.scratch import is_long
 from pvfiblets.formats.trk_header import along_affine
-from pvfiblets.formats.ziparrays import ArrayEntry, ZipArrays
+from pvfiblets.formats.ziparrays import ArrayEntry, FolderArrays, ZipArrays
 from pvfiblets.streamlines import Streamlines, blocks
 from pvfiblets.whole_files import replacing
 
@@ -268,7 +269,7 @@ def _floats(rows: Array, long: bool) -> Array:
 
 @contextmanager
 def _opened(path: str | PathLike[str]) -> Iterator[_Trx]:
-    archive = ZipArrays(path)
+    archive = FolderArrays(path) if Path(path).is_dir() else ZipArrays(path)
     try:
         yield _Trx(archive)
     finally:

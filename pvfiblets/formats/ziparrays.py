@@ -1,12 +1,13 @@
-"""Arrays in a zip archive: stored ones through a memory map, deflated ones front to back."""
+"""Arrays in a zip archive, or in a folder of the same files: mapped, or inflated front to back where deflated."""
 
 from __future__ import annotations
 
 import struct
 import zlib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from os import PathLike
+from os import PathLike, fspath
+from pathlib import Path
 from typing import IO, Any
 from zipfile import ZIP_DEFLATED, ZIP_STORED, BadZipFile, ZipFile, ZipInfo
 
@@ -82,8 +83,11 @@ class ZipArrays:
         self.archive.close()
 
     def _list(self) -> None:
+        self._sort(self.archive.infolist())
+
+    def _sort(self, infos: Iterable[ZipInfo]) -> None:
         self._infos: dict[str, ZipInfo] = {}
-        for info in self.archive.infolist():
+        for info in infos:
             if info.filename in self._infos or not info.filename:
                 raise FormatError(
                     self.path,
@@ -155,6 +159,53 @@ class ZipArrays:
         """Open a file in the archive for reading from its beginning."""
         with self.damage(info.header_offset, info.filename):
             return self.archive.open(info)
+
+    def stored(self, info: ZipInfo) -> tuple[MappedFile, int]:
+        """Return where an uncompressed file lies: what is mapped, and its first byte in it."""
+        file, at = self.file, info.header_offset
+        head = file.bytes(at, 30, f"the local header of {info.filename}")
+        if head[:4] != b"PK\x03\x04":
+            raise FormatError(file.path, at, repr(head[:4]), "a local header b'PK\\x03\\x04'")
+        name_size, extra_size = struct.unpack("<HH", head[26:30])
+        return file, at + 30 + name_size + extra_size
+
+
+class FolderArrays(ZipArrays):
+    """The arrays of a folder that holds what an archive would."""
+
+    def __init__(self, path: str | PathLike[str]) -> None:
+        self.path = fspath(path)
+        self.entries, self.odd_names = [], 0
+        self._files: dict[str, MappedFile] = {}
+        place = Path(path)
+        self._sort(self._info(place, file) for file in sorted(place.rglob("*")) if file.is_file())
+
+    def _info(self, folder: Path, file: Path) -> ZipInfo:
+        if not file.resolve().is_relative_to(folder.resolve()):
+            raise FormatError(self.path, None, f"{file.name}, a link that leads out of the folder", "a file")
+        info = ZipInfo(file.relative_to(folder).as_posix())
+        info.file_size = info.compress_size = file.stat().st_size
+        info.header_offset = 0
+        return info
+
+    def close(self) -> None:
+        """Nothing is open; arrays that were read stay valid."""
+
+    def raw(self, name: str) -> tuple[bytes, int]:
+        """Return the content of a small file in the folder, and where it begins."""
+        if name not in self._infos:
+            raise FormatError(self.path, None, f"no {name} in the folder", f"a file {name}")
+        check_room(self._infos[name].file_size)
+        return (Path(self.path) / name).read_bytes(), 0
+
+    def check_size(self, info: ZipInfo) -> None:
+        """Accept every size: it is that of a file."""
+
+    def stored(self, info: ZipInfo) -> tuple[MappedFile, int]:
+        """Return a file, and its first byte."""
+        if info.filename not in self._files:
+            self._files[info.filename] = MappedFile(Path(self.path) / info.filename)
+        return self._files[info.filename], 0
 
 
 class ArrayEntry:
@@ -265,12 +316,7 @@ class ArrayEntry:
         return data
 
     def _mapped(self, first: int, last: int) -> Array:
-        file, at = self._home.file, self.position
-        head = file.bytes(at, 30, f"the local header of {self._info.filename}")
-        if head[:4] != b"PK\x03\x04":
-            raise FormatError(file.path, at, repr(head[:4]), "a local header b'PK\\x03\\x04'")
-        name_size, extra_size = struct.unpack("<HH", head[26:30])
-        begin = at + 30 + name_size + extra_size
+        file, begin = self._home.stored(self._info)
         stride = self.columns * self.dtype.itemsize
         file.forget(begin, first * stride)
         values = file.array(self.dtype, begin + first * stride, (last - first) * self.columns, self._info.filename)

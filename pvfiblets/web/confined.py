@@ -6,7 +6,7 @@ import os
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
-from pvfiblets.codec.shards.manifest import is_set_in_shards
+from pvfiblets.web.file_kinds import is_tractogram_folder
 
 LONGEST_PATH = 4096
 LONGEST_NAME = 255  # bytes, as file systems have it
@@ -80,7 +80,7 @@ class Confined:
     def existing(self, text: object) -> Path:
         """Return the path of a file that is there."""
         path = self.resolve(text)
-        if not (path.is_file() or is_set_in_shards(path)):
+        if not (path.is_file() or is_tractogram_folder(path)):
             raise ConfinedError(f"there is no file {text!r} in the served folder")
         return path
 
@@ -120,9 +120,9 @@ class Confined:
                 status = path.stat()
                 folder_too, size = path.is_dir(), status.st_size
                 if folder_too:
-                    shards = is_set_in_shards(path)
-                    size = sum(file.stat().st_size for file in os.scandir(path)) if shards else 0
-                    folder_too = not shards
+                    whole = is_tractogram_folder(path)
+                    size = sum(file.stat().st_size for file in path.rglob("*") if file.is_file()) if whole else 0
+                    folder_too = not whole
                 entries.append(Entry(item.name, relative, folder_too, size, status.st_mtime))
             except (ConfinedError, OSError):
                 continue

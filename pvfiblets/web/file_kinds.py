@@ -5,14 +5,18 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from pvfiblets.codec.shards.manifest import is_set_in_shards
 from pvfiblets.errors import FormatError
 from pvfiblets.formats import vtk_sizes
-from pvfiblets.formats.registry import UnknownFormatError, suffix_of, suffixes
+from pvfiblets.formats.registry import UnknownFormatError, is_trx_folder, suffix_of, suffixes
 from pvfiblets.volumes.gifti_files import SUFFIXES as GIFTI
 from pvfiblets.volumes.gifti_files import VALUES as OF_VERTICES
 from pvfiblets.volumes.sources import SUFFIXES as VOLUMES
 
-__all__ = ["GIFTI", "MESHES", "OF_VERTICES", "TABLES", "VALUES", "VOLUMES", "VTK_SUFFIXES", "kind_of", "read_vtk"]
+__all__ = [
+    "GIFTI", "MESHES", "OF_VERTICES", "TABLES", "VALUES", "VOLUMES", "VTK_SUFFIXES", "is_tractogram_folder", "kind_of",
+    "read_vtk",
+]  # fmt: skip
 
 MESHES = (".ply", ".stl", ".obj", ".vtu", ".vtp", ".vtk", ".off", ".glb", ".gltf", *GIFTI)
 """Suffixes of surfaces; those of VTK's formats may hold lines instead."""
@@ -51,6 +55,11 @@ def kind_of(path: Path) -> str:
         known = ", ".join(dict.fromkeys([*suffixes(), *VOLUMES, *MESHES]))
         raise UnknownFormatError(f"{path.name}: no layer can be made of such a file; there are {known}") from None
     return "tractogram"
+
+
+def is_tractogram_folder(path: Path) -> bool:
+    """Return whether a folder is opened as one tractogram: a set in shards, or the arrays of a TRX file."""
+    return is_set_in_shards(path) or is_trx_folder(path)
 
 
 def read_vtk(place: Path) -> Any:

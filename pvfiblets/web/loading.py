@@ -14,12 +14,21 @@ from pathlib import Path
 from typing import Any
 
 from pvfiblets import formats
-from pvfiblets.codec.shards.manifest import MANIFEST, is_set_in_shards
+from pvfiblets.codec.shards.manifest import MANIFEST
 from pvfiblets.formats.gzipped import check_ratio
-from pvfiblets.formats.registry import UnknownFormatError, suffix_of, suffixes
+from pvfiblets.formats.registry import UnknownFormatError, is_trx_folder, suffix_of, suffixes
 from pvfiblets.volumes.sources import NIBABEL
 from pvfiblets.web.document import LINES, Source
-from pvfiblets.web.file_kinds import MESHES, TABLES, VALUES, VOLUMES, VTK_SUFFIXES, kind_of, read_vtk
+from pvfiblets.web.file_kinds import (
+    MESHES,
+    TABLES,
+    VALUES,
+    VOLUMES,
+    VTK_SUFFIXES,
+    is_tractogram_folder,
+    kind_of,
+    read_vtk,
+)
 from pvfiblets.web.layer_readers import read_colours, read_fixels, read_mesh, read_several, read_tubes, volume_facts
 from pvfiblets.web.values import shown
 
@@ -108,7 +117,7 @@ class Files:
         )
         if not inside:
             raise PermissionError(f"{text}: outside of the folder that is open to you; give a path in it")
-        if not (found.parent.is_dir() if new else found.is_file() or is_set_in_shards(found)):
+        if not (found.parent.is_dir() if new else found.is_file() or is_tractogram_folder(found)):
             raise FileNotFoundError(f"{text}: there is no such {'folder' if new else 'file'}")
         if self.root is not None and not new:
             from pvfiblets.web.references import check_references
@@ -128,7 +137,9 @@ class Files:
     @staticmethod
     def stamp(place: Path) -> Stamp:
         """Return what tells whether a file has changed."""
-        found = (place / MANIFEST if place.is_dir() else place).stat()
+        if place.is_dir():
+            place = place / ("header.json" if is_trx_folder(place) else MANIFEST)
+        found = place.stat()
         return found.st_mtime_ns, found.st_size
 
     def remember(self, place: Path, fiblets: Any) -> None:

@@ -7,9 +7,9 @@ from ipaddress import ip_address
 from pathlib import Path
 from typing import Any
 
-from pvfiblets.codec.shards.manifest import is_set_in_shards
 from pvfiblets.memory import CAN_LIMIT, of_machine, parse, shown
 from pvfiblets.plotting.fiblets.looks import check_look
+from pvfiblets.web.file_kinds import is_tractogram_folder
 
 MEBIBYTE = 1024 * 1024
 SMALLEST_MEMORY = 640 * MEBIBYTE
@@ -134,7 +134,7 @@ class Options:
                 20, "not a folder; --root names the one that browsers may open files from", self.root
             )
         for path in (*self.files, *self.volume, *self.mesh):
-            if not (Path(path).is_file() or is_set_in_shards(path)):
+            if not (Path(path).is_file() or is_tractogram_folder(Path(path))):
                 raise FileNotFoundError(2, "No such file", path)
         return self
 

@@ -9,6 +9,7 @@ from zipfile import ZIP_BZIP2, ZIP_DEFLATED, ZIP_STORED, ZipFile
 
 import numpy as np
 import pytest
+import pyvista as pv
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -290,3 +291,29 @@ def test_what_trx_cannot_hold(part, name, values, words, tmp_path):
     with pytest.raises(ValueError, match=words):
         formats.write(tmp_path / "a.trx", s)
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("name", ["a.trx", "unpacked"])
+def test_a_folder_is_read_as_its_archive(name, tmp_path, capsys):
+    """The format allows both; trx-python opens both."""
+    from trx.trx_file_memmap import load_from_directory
+
+    from pvfiblets.cli import main
+
+    formats.write(tmp_path / "packed.trx", rich(counts=(5, 1, 12, 3, 2, 7)))
+    folder = tmp_path / name
+    with ZipFile(tmp_path / "packed.trx") as archive:
+        archive.extractall(folder)
+    s, packed = formats.read(folder), formats.read(tmp_path / "packed.trx")
+    same(s, packed, ("per_point", "per_streamline", "groups", "per_group"))
+    assert np.array_equal(s.points, load_from_directory(str(folder)).streamlines.get_data())
+    same(Streamlines.concatenate(list(formats.iter_chunks(folder, 4))), packed)
+    assert formats.info(folder)["points"] == 30
+    assert main(["info", str(folder), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["streamlines"] == 6
+    plotter = pv.Plotter(off_screen=True)
+    assert plotter.add_fiblets(folder).fiblets.n_points == 30
+    plotter.close()
+    (folder / "positions.3.float32").write_bytes(b"short")
+    with pytest.raises(FormatError, match="positions"):
+        formats.read(folder)
