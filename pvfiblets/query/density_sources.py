@@ -18,7 +18,7 @@ from ..codec.fibletset import FibletSet
 from ..codec.progress import Progress, shown
 from ..codec.quantised import QuantisedPoints
 from ..codec.stored_parts import stored_parts
-from ..invalid_points import valid_points
+from ..invalid_points import CUT, NONFINITE, valid_points
 from ..streamlines import Streamlines
 from ..summary import warn_of_losses
 from .measures import Distance, Values, decoded_by_rank, measure
@@ -102,12 +102,15 @@ def as_source(source: Any, weights: Any, wanted: Wanted) -> Source:
         if formats.registry.suffix_of(path) != ".fiblets":
             facts = formats.info(path)
             known = facts.get("streamlines"), facts.get("points")
-            return _Plain(lambda: formats.iter_chunks(path, CHUNK), path, known, weights, wanted)
+            return _Plain(lambda: _chunks_of(path), path, known, weights, wanted)
         source = FibletSet.open(path)
     if isinstance(source, FibletSet):
         return _Compressed(source, weights, wanted)
     if isinstance(source, Streamlines):
         lines = valid_points(source, "split")
+        if lines is not source:
+            cut = {reason: lines.dropped[reason] for reason in (NONFINITE, CUT) if reason in lines.dropped}
+            warn_of_losses("the streamlines", cut, stacklevel=3)
         spans = list(lines.blocks(CHUNK))
         known = len(lines), lines.n_points
         return _Plain(lambda: (lines[a:b] for a, b in spans), "the streamlines", known, weights, wanted)
@@ -115,6 +118,15 @@ def as_source(source: Any, weights: Any, wanted: Wanted) -> Source:
         f"source is a {type(source).__name__}; give a FibletSet, Streamlines, or the path of a tractogram; "
         "lines of PyVista are lines.fiblets.to_streamlines()"
     )
+
+
+def _chunks_of(path: str) -> Iterator[Streamlines]:
+    """Yield a file's streamlines, and warn of what reading left out."""
+    dropped: Counter[str] = Counter()
+    for chunk in formats.iter_chunks(path, CHUNK):
+        dropped.update(chunk.dropped)
+        yield chunk
+    warn_of_losses(path, dropped, stacklevel=3)
 
 
 class _Compressed:
@@ -219,8 +231,6 @@ class _Plain:
         self._progress = progress
         low, high, lines, points = self._survey
         self._known = lines, points
-        if not (np.isfinite(low).all() and np.isfinite(high).all()):
-            raise ValueError(f"{self._place}: some points are not finite; remove them first")
         return low, high
 
     def parts(self, progress: Progress) -> Iterator[Part]:
@@ -232,9 +242,7 @@ class _Plain:
             wanted = np.asarray(wanted)
             self.per_point = _is_per_point(wanted, *self._survey[2:])
         line = point = 0
-        dropped: Counter[str] = Counter()
         for chunk in shown(self._chunks(), self._known[1], "adding up", progress):
-            dropped.update(chunk.dropped)
             lines, points = slice(line, line + len(chunk)), slice(point, point + chunk.n_points)
             own = np.ones(len(chunk))
             if isinstance(weights, str):
@@ -248,7 +256,6 @@ class _Plain:
                 values = np.array(wanted[points if self.per_point else lines], np.float64)
             yield Part(_writable(chunk.points, np.float64), _writable(chunk.offsets, np.int64), own, values)
             line, point = lines.stop, points.stop
-        warn_of_losses(self._place, dropped, stacklevel=3)
 
     def _named(self, chunk: Streamlines, name: str) -> tuple[bool, Floats]:
         """Whether an array is of points, and its numbers."""

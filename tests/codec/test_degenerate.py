@@ -121,7 +121,7 @@ def test_a_degenerate_set_is_kept_within_its_promise_and_told_of(
         ("mixed in a line", 100, 2000), ("a NaN", 100, 2000),
     ],
 )  # fmt: skip
-@pytest.mark.filterwarnings("default:the source holds no points")
+@pytest.mark.filterwarnings("default:the source holds no points", "default:.*non-finite points")
 def test_a_degenerate_set_is_drawn(
     name: str, least: int, most: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -33,6 +33,7 @@ def angles(lines: Streamlines, *, begun: bool = True, **options: object) -> np.n
     return direction_angles(lines.points, decoded, offsets, fiblets.fiblet_points() if begun else None)
 
 
+@pytest.mark.filterwarnings("ignore:.*no voxel-to-RAS matrix")
 @pytest.mark.parametrize("name", FILES)
 def test_every_real_file_keeps_its_directions(shared_data: Path, name: str) -> None:
     found = angles(pf.read(shared_data / name))

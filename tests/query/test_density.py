@@ -444,10 +444,13 @@ def test_other_sources_are_refused():
         pf.density([np.zeros((3, 3))], 1.0)
     with pytest.raises(TypeError, match="a Distance, which is for compressed sets"):
         pf.density(LINES, 1.0, contrast=Distance((0, 0, 0)))
-    with pytest.raises(ValueError, match="not finite"):
-        pf.density(lone((0, 0, 0), (np.nan, 0, 0)), 1.0)
-    with pytest.raises(ValueError, match="1 points are not finite"):
-        pf.density(lone((0, 0, 0), (np.nan, 0, 0), (0, 0, 0)), like=UNIT)
+
+
+def test_a_line_is_not_joined_across_a_point_that_is_no_number():
+    with pytest.warns(UserWarning, match="the streamlines: .*non-finite points: 1; streamlines added"):
+        found = pf.density(lone((0, 0, 0), (1, 0, 0), (np.nan, 0, 0), (3, 0, 0)), like=UNIT, contrast="length")
+    wanted = pf.density(lone((0, 0, 0), (1, 0, 0)), like=UNIT, contrast="length")
+    np.testing.assert_array_equal(found.values, wanted.values)
 
 
 def test_damaged_images_are_told(tmp_path):

@@ -84,6 +84,7 @@ def as_fiblets(
     volume = as_volume(scalars)
     scalars = scalars if volume is None else volume
     name = os.fspath(source) if isinstance(source, (str, os.PathLike)) else type(source).__name__
+    known = source.dropped if isinstance(source, Streamlines) else {}
     if isinstance(source, (str, os.PathLike)):
         if os.fspath(source).lower().endswith(".fiblets"):
             source = FibletSet.open(source)
@@ -140,7 +141,8 @@ def as_fiblets(
         scalars = UNNAMED
     read_as = streamlines.dropped
     streamlines = valid_points(streamlines, nan)
-    warn_of_losses(name, streamlines.dropped if chosen is None else read_as, stacklevel=6)
+    found = streamlines.dropped if chosen is None else read_as
+    warn_of_losses(name, {reason: n for reason, n in found.items() if known.get(reason) != n}, stacklevel=6)
     fiblets = compress(
         streamlines,
         max_error=max_error,
