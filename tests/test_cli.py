@@ -172,6 +172,38 @@ def test_convert_out_of_the_compressed_form_is_read_by_nibabel(compressed, tract
     np.testing.assert_allclose(loaded.get_data(), tractogram[1].points, atol=0.06)
 
 
+@pytest.mark.filterwarnings("default:.*reading left out")
+def test_info_and_table_state_what_a_header_gets_wrong(tmp_path, capsys):
+    """Counts of the file, and the bytes that a .trk header leaves out (988: number of streamlines)."""
+    lines = Streamlines(np.random.default_rng(0).random((9, 3)).astype(np.float32), [0, 3, 6, 9])
+    for name in ("a.trk", "a.tck"):
+        formats.write(tmp_path / name, lines)
+    data = bytearray((tmp_path / "a.trk").read_bytes())
+    data[988:992] = (2).to_bytes(4, "little")
+    (tmp_path / "a.trk").write_bytes(data)
+    (tmp_path / "a.tck").write_bytes((tmp_path / "a.tck").read_bytes().replace(b"count: 3", b"count: 9"))
+    for name, found, dropped in (
+        ("a.trk", (2, 6), {"bytes after the last streamline": 40}),
+        ("a.tck", (3, 9), {"streamlines that the header's count promises and the file lacks": 6}),
+    ):
+        assert main(["info", str(tmp_path / name), "--json"]) == 0
+        facts = json.loads(capsys.readouterr().out)
+        assert ((facts["streamlines"], facts["points"]), facts["dropped"]) == (found, dropped)
+        assert main(["info", str(tmp_path / name)]) == 0
+        (reason, count), = dropped.items()
+        assert f"{count}: {reason}" in capsys.readouterr().out
+        assert main(["table", str(tmp_path / name), str(tmp_path / "a.csv")]) == 0
+        assert f"{reason}: {count}" in capsys.readouterr().err
+
+
+def test_convert_writes_doubles_if_asked(tmp_path, capsys):
+    source, target = tmp_path / "a.trx", tmp_path / "a.tck"
+    formats.write(source, Streamlines(np.full((2, 3), 1e6 + 0.1), [0, 2]))
+    assert main(["convert", str(source), str(target), "--double"]) == 0
+    assert formats.info(target)["dtype"] == "float64"
+    assert "--double is for .tck files" in fails(capsys, "convert", source, tmp_path / "a.trk", "--double")
+
+
 def test_info_of_both_forms_agrees(compressed, tractogram, capsys):
     facts = []
     for path in (compressed, tractogram[0]):

@@ -57,6 +57,34 @@ def test_tractograms_of_nibabel(tractogram, lazy):
     np.testing.assert_allclose(found.per_point["fa"], tractogram.data_per_point["fa"].get_data()[:, 0])
 
 
+@pytest.mark.parametrize("name", ["dipy_tracks300.trk", "nib_complex_big_endian.trk", "nib_standard.LPS.trk"])
+def test_files_opened_lazily_are_where_they_are_opened_whole(shared_data, name):
+    """Items of such a tractogram come before its affine, half a voxel off."""
+    whole = nib.streamlines.load(shared_data / name)
+    for source in (nib.streamlines.load(shared_data / name, lazy_load=True),) * 2:  # once more, by the same object
+        for lazy in (source, source.tractogram):
+            found = streamlines_of(lazy)
+            check(found, list(whole.streamlines), atol=0.0)
+            for theirs, ours in (
+                (whole.tractogram.data_per_point, found.per_point),
+                (whole.tractogram.data_per_streamline, found.per_streamline),
+            ):
+                assert list(ours) == list(theirs)
+                for key, values in theirs.items():
+                    rows = values.get_data() if hasattr(values, "get_data") else values
+                    np.testing.assert_array_equal(ours[key].reshape(rows.shape), rows)
+
+
+def test_lazy_tractograms_with_pending_affines_and_generators_that_run_once(tractogram):
+    moved = LazyTractogram.from_data_func(lambda: iter(tractogram)).apply_affine(np.diag([2.0, 3.0, 4.0, 1.0]))
+    moved.affine_to_rasmm = AFFINE
+    check(streamlines_of(moved), in_ras([line * [2, 3, 4] for line in tractogram.streamlines]))
+    once = iter(list(tractogram.streamlines))
+    check(streamlines_of(LazyTractogram(lambda: once, affine_to_rasmm=np.eye(4))), list(tractogram.streamlines))
+    empty = LazyTractogram(lambda: iter(()), data_per_point={"fa": lambda: iter(())}, affine_to_rasmm=np.eye(4))
+    assert len(streamlines_of(empty)) == 0
+
+
 def test_a_tractogram_that_is_nowhere_is_refused(tractogram):
     tractogram.affine_to_rasmm = None
     with pytest.raises(ValueError, match="affine_to_rasmm is None"):
@@ -111,12 +139,14 @@ def test_files_that_trx_python_opened(tmp_path):
     from trx.trx_file_memmap import load
 
     given = Streamlines.from_list(lines(), per_streamline={"weight": np.arange(7.0)}, groups={"some": np.array([1, 4])})
+    given.per_group = {"some": {"volume": np.array([3.5])}}
     pf.write(tmp_path / "a.trx", given)
     opened = load(str(tmp_path / "a.trx"))
     found = streamlines_of(opened)
     check(found, list(given))
     np.testing.assert_array_equal(found.per_streamline["weight"], np.arange(7.0))
     assert found.groups["some"].tolist() == [1, 4]
+    assert found.per_group["some"]["volume"].tolist() == [3.5]
     opened.close()
 
 
@@ -140,6 +170,7 @@ def test_lines_among_the_cells_of_a_grid():
     check(found, list(Streamlines.from_polydata(mesh)), atol=0.0)
     np.testing.assert_array_equal(found.per_streamline["weight"], [2.0, 5.0])
     np.testing.assert_array_equal(found.per_point["fa"], mesh.point_data["fa"])
+    assert found.dropped == {"cells that are not lines": 3}
     taken = gather(grid)
     assert taken.counts.tolist() == [3, 5]
 
@@ -170,6 +201,14 @@ def test_groups_that_a_filter_passed_on_with_fewer_lines(counted):
     found = streamlines_of(grid.extract_cells([1]))
     assert (len(found), found.groups, found.per_group) == (1, {}, {})
     assert found.dropped["groups of other lines"] == 2
+
+
+def test_blocks_of_blocks_and_of_triangles():
+    """Blocks of one name in two places are two groups, and what is no line is counted."""
+    inner = pv.MultiBlock({"a": a_mesh(1)})
+    found = streamlines_of(pv.MultiBlock({"a": a_mesh(0), "n": inner, "ball": pv.Sphere()}))
+    assert {name: ids.tolist() for name, ids in found.groups.items()} == {"a": [0, 1], "n/a": [2, 3], "n": [2, 3]}
+    assert found.dropped["cells that are not lines"] == pv.Sphere().n_cells
 
 
 def test_blocks_are_groups():

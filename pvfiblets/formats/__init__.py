@@ -6,7 +6,7 @@ suffix     reads writes streams in small memory carries
 .tck       yes   yes    yes (memory map)        points
 .trk       yes   yes    yes (memory map)        points, per point, per streamline, affine
 .trk.gz    yes   no     yes (inflates on)       as trk
-.trx       yes   yes    yes (memory map, or     everything
+.trx       yes   yes    yes (memory map, or     everything; a folder is read too
                         inflates on)
 .vtk       yes   yes    after reading the file  points, per point, per streamline
 .vtp       yes   yes    after reading the file  points, per point, per streamline
