@@ -15,6 +15,7 @@ from pvfiblets.errors import FormatError
 from pvfiblets.formats import vtk_parser
 from pvfiblets.invalid_points import CUT, NONFINITE
 from pvfiblets.lines import gather
+from pvfiblets.other_libraries import streamlines_of
 from pvfiblets.streamlines import Streamlines
 
 from .samples import rich, same
@@ -132,7 +133,9 @@ def test_the_space_that_slicer_names(space, suffix, where, mode, tmp_path):
     assert formats.info(path)["space"] == space
     if where == "field":
         assert by_vtk(path)[0].tolist() == RAS_POINTS
-        assert gather(pv.read(path)).points.tolist() == RAS_POINTS
+        grid = pv.read(path).cast_to_unstructured_grid()
+        for source in (pv.read(path), grid, pv.MultiBlock([grid])):
+            assert gather(source).points.tolist() == streamlines_of(source).points.tolist() == RAS_POINTS
 
 
 @pytest.mark.parametrize("suffix", [".vtk", ".vtp"])
