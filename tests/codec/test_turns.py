@@ -19,7 +19,7 @@ from .samples import extremes, noisy, smooth, wandering
 
 FILES = [
     "dipy_EuDX_small_25.trk", "dipy_hist_tractogram.trk", "dipy_tracks300.trk", "gen_fibercup_det_0.25mm.tck",
-    "nib_complex_big_endian.trk", "nib_matlab_nan.tck", "nib_standard.LPS.trk", "nv_colby.trk", "nv_colby.trx",
+    "nib_complex_big_endian.trk", "nib_matlab_nan.tck", "nib_standard.LPS.trk", "nv_colby.trx",
     "nv_stroke.trk.gz", "nv_tract.FAT_R.vtk", "nv_tract.IFOF_R.trk", "nv_tract.SLF1_R.tck", "trxpy_small.trx",
     "trxpy_small_compressed.trx", "trxrs_tinytrack_small.tt.gz", "ukf_2T_fw_fiber.vtk",
     "vtk_Coastlines_Los_Alamos.vtp", "wholebrain_eudx_0.5mm_fifth.tck", "wma_brain_0002.vtk",
@@ -33,7 +33,6 @@ def angles(lines: Streamlines, *, begun: bool = True, **options: object) -> np.n
     return direction_angles(lines.points, decoded, offsets, fiblets.fiblet_points() if begun else None)
 
 
-@pytest.mark.filterwarnings("ignore:.*no voxel-to-RAS matrix")
 @pytest.mark.parametrize("name", FILES)
 def test_every_real_file_keeps_its_directions(shared_data: Path, name: str) -> None:
     found = angles(pf.read(shared_data / name))
