@@ -8,7 +8,6 @@ camera, viewport and pass of that very moment, and hands the program its uniform
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any, ClassVar, Generic, TypeVar
@@ -44,7 +43,15 @@ from pvfiblets.mappers.scene import (
 from pvfiblets.mappers.shader_effects import Draw, MapperEffect, prepare_effects, set_effect_uniforms, styled
 from pvfiblets.mappers.shifted_cameras import is_shifted
 from pvfiblets.mappers.uniforms import resolve_textures, set_uniforms
-from pvfiblets.mappers.windows import Slot, WindowContext, context_of, contexts_with, gl_viewport, weak
+from pvfiblets.mappers.windows import (
+    Slot,
+    WindowContext,
+    context_of,
+    contexts_with,
+    gl_viewport,
+    make_current_again,
+    weak,
+)
 
 _ONE_ACTOR = "give each actor a mapper of its own (mapper.ShallowCopy(other) shares the data)"
 
@@ -58,7 +65,7 @@ class EngineMapper(Attached, Readable, Connected, Questions, vtkOpenGLPolyDataMa
     """Mapper that draws through VTK's own lights, passes and selection what an engine puts into a G-buffer.
 
     ``actor.SetMapper(mapper)`` gives it to an actor, or `attach`. One mapper serves one actor, in any number of
-    renderers of one window; another window needs another mapper and actor, as with all of VTK's.
+    renderers and windows; each window has GPU memory of its own.
 
     Parameters
     ----------
@@ -232,14 +239,6 @@ class EngineMapper(Attached, Readable, Connected, Questions, vtkOpenGLPolyDataMa
         self._watch(renderer)
         self._check_alone(renderer)
         context = context_of(renderer.GetRenderWindow())
-        if any(other is not context and other.shows(self) for other in contexts_with(self)):
-            error = RuntimeError(
-                "VTK can show an actor in one window only; add a copy to the second one (actor.copy()), or make "
-                f"another {self._NAME} of the same data, with an actor of its own"
-            )
-            # Of the second window's plotter nobody may ask for the error.
-            warnings.warn(str(error), RuntimeWarning, stacklevel=2)
-            raise error
         viewport = gl_viewport(context.window)
         if min(viewport[2:]) < 1:  # a tile of an enlarged picture in which the renderer has no part
             program.SetUniform2i("fibletSize", (0, 0))
@@ -430,6 +429,7 @@ def _update_shader(mapper: EngineMapper[Any], _event: str, program: Any) -> None
 
 
 def _begin(mapper: EngineMapper[Any], _event: str) -> None:
+    make_current_again(mapper)
     mapper._begin()  # noqa: SLF001
 
 

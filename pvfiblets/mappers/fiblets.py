@@ -25,7 +25,7 @@ class FibletMapper(CutMapper[EngineOptions]):
     """Mapper that draws a `FibletSet`, or lines that it compresses, through VTK's own lights, passes and selection.
 
     ``actor.SetMapper(mapper)`` gives it to an actor, or `attach`. One mapper serves one actor, in any number of
-    renderers of one window; another window needs another mapper and actor, as with all of VTK's.
+    renderers and windows; each window has GPU memory of its own.
 
     Parameters
     ----------

@@ -290,13 +290,7 @@ class WindowContext:
         """Whether this window lives and the actor of a mapper is in it."""
         if not self.alive:
             return False
-        actor = None if mapper is None else mapper.actor
-        if actor is None:
-            return False
-        return any(
-            renderer.GetRenderWindow() is not None and renderer.GetRenderWindow().GetAddressAsString("") == self.address
-            for renderer in renderers_of(actor)
-        )
+        return mapper is not None and self.address in _windows_of(mapper)
 
     def _close(self) -> None:
         """Give back what the context itself holds in a living window."""
@@ -320,6 +314,24 @@ class WindowContext:
         self.slots.clear()
         if _contexts.get(self.address) is self:
             del _contexts[self.address]
+
+
+def _windows_of(mapper: Any) -> dict[str, Any]:
+    """Return the windows that the actor of a mapper is in, by their addresses."""
+    renderers = [] if mapper.actor is None else renderers_of(mapper.actor)
+    windows = [renderer.GetRenderWindow() for renderer in renderers]
+    return {window.GetAddressAsString(""): window for window in windows if window is not None}
+
+
+def make_current_again(mapper: Any) -> None:
+    """Make the window current that draws a mapper whose actor is in several.
+
+    VTK has just deleted what it had in another of them, and on EGL leaves that one current.
+    """
+    windows = _windows_of(mapper)
+    for window in windows.values() if len(windows) > 1 else ():
+        if window.CheckInRenderStatus():
+            window.MakeCurrent()
 
 
 def context_of(window: Any) -> WindowContext:

@@ -146,7 +146,7 @@ class ActorRegistry(Generic[A]):
     def __init__(self, plotter: pv.BasePlotter) -> None:
         self._plotter: Any = weakref.proxy(plotter)
         self._actors: list[A] = []
-        self._renderers: dict[str, tuple[Any, int]] = {}
+        self._renderers: dict[str, tuple[Any, int, set[str]]] = {}
         self._bars: dict[str, _Bar] = {}
 
     def add(self, /, source: Any, **arguments: Any) -> A:
@@ -259,17 +259,24 @@ class ActorRegistry(Generic[A]):
 
     def _track(self, actor: A, renderer: Any) -> None:
         self._actors.append(actor)
+        for other in self._plotter.renderers:
+            self._observe(other)
         self._follow(actor, renderer)
         # Registered current here, since `clear_on_render_callbacks` drops what others registered.
         self._plotter.add_on_render_callback(self._raise_pending)
 
-    def _follow(self, actor: A, renderer: Any) -> None:
-        actor.entered(renderer)
+    def _observe(self, renderer: Any) -> set[str]:
+        """Have changes of a renderer's actors noticed; return the addresses of those of ours that it shows."""
         address = renderer.GetAddressAsString("")
         if address not in self._renderers:
-            # `Renderer.remove_actor` and its kin end in Modified(): no other sign is given.
-            tag = renderer.AddObserver("ModifiedEvent", self._release_removed)
-            self._renderers[address] = (renderer, tag)
+            # `Renderer.add_actor`, `remove_actor` and their kin end in Modified(): no other sign is given.
+            tag = renderer.AddObserver("ModifiedEvent", self._actors_changed)
+            self._renderers[address] = (renderer, tag, set())
+        return self._renderers[address][2]
+
+    def _follow(self, actor: A, renderer: Any) -> None:
+        self._observe(renderer).add(actor.memory_address)
+        actor.entered(renderer)
         self._smooth(renderer)
 
     def _meet_vtk(self) -> None:
@@ -281,13 +288,17 @@ class ActorRegistry(Generic[A]):
 
             follow(picker)
 
-    def _release_removed(self, *_: Any) -> None:
-        """Give back the GPU memory of actors that are in none of the plotter's renderers."""
+    def _actors_changed(self, _renderer: Any, _event: str) -> None:
+        """Follow actors into other renderers, and give back the GPU memory of those that are in none of them."""
         for actor in self:
-            if not any(renderer.HasViewProp(actor) for renderer, _ in self._renderers.values()):
+            showing = [one for one, _, _ in self._renderers.values() if one.HasViewProp(actor)]
+            for renderer in showing:
+                if actor.memory_address not in self._observe(renderer):
+                    self._follow(actor, renderer)
+            if not showing:
                 self._forget(actor)
-                for followed, _tag in self._renderers.values():
-                    self._smooth(followed)
+                for renderer, _, _ in self._renderers.values():
+                    self._smooth(renderer)
 
     def _smooth(self, renderer: Any) -> None:
         """Have edges smoothed, by default, in what shows an actor of ours; nothing is loaded where they are not."""
@@ -297,6 +308,8 @@ class ActorRegistry(Generic[A]):
 
     def _forget(self, actor: A) -> None:
         self._actors.remove(actor)
+        for _renderer, _tag, shown in self._renderers.values():
+            shown.discard(actor.memory_address)
         self._bars.pop(actor.memory_address, None)
         actor.watch(None)
         actor.release(self._plotter.render_window)
@@ -307,7 +320,7 @@ class ActorRegistry(Generic[A]):
 
     def __plotter_close__(self) -> None:
         """Release everything; PyVista calls this before the render window goes."""
-        for renderer, tag in self._renderers.values():
+        for renderer, tag, _ in self._renderers.values():
             renderer.RemoveObserver(tag)
         self._renderers.clear()
         for actor in self:
@@ -318,7 +331,7 @@ class ActorRegistry(Generic[A]):
     def _recoloured(self, actor: A) -> None:
         """Have scalar bar and legend say what the picture shows."""
         self._update_bar(actor)
-        for renderer, _tag in self._renderers.values():
+        for renderer, _, _ in self._renderers.values():
             entry = renderer._labels.get(actor.memory_address)  # noqa: SLF001
             if entry is not None:
                 self._set_label(actor, entry[1], renderer)

@@ -300,18 +300,6 @@ def test_gpu_memory_is_given_back(make_plotter, tools):
     assert not windows._contexts
 
 
-def test_a_second_window_is_refused_in_words(make_plotter, tools):
-    mapper, actor = made(tubes_of())
-    first, second = make_plotter(), make_plotter()
-    first.add_actor(actor)
-    second.add_actor(actor)
-    tools.picture(first, mapper)
-    with pytest.warns(RuntimeWarning, match="in one window only"):
-        second.show(auto_close=False)
-    with pytest.raises(RuntimeError, match="another TubeMapper"):
-        mapper.raise_pending()
-
-
 def test_a_failing_engine_is_raised_by_the_caller(make_plotter):
     def broken(ctx, tubes, **options):
         raise OSError("no memory")

@@ -232,6 +232,24 @@ def test_subplots_are_refined_each_by_itself():
     plotter.close()
 
 
+def test_an_actor_in_two_subplots_is_smooth_in_both():
+    plotter = pv.Plotter(off_screen=True, shape=(1, 2), border=False, window_size=(400, 200))
+    t = np.linspace(-10, 10, 50)
+    actor = plotter.add_fiblets([np.c_[t, 0.3 * t + y, 0 * t] for y in (-3, 3)])
+    plotter.subplot(0, 1)
+    plotter.add_actor(actor)
+    plotter.link_views()
+    plotter.view_xy()
+    both = shot(plotter)
+    assert np.array_equal(both[:, 200:], both[:, :200])
+    assert plotter.picture.samples == 16
+    plotter.renderer.remove_actor(actor)
+    assert len(plotter.fiblets) == 1
+    plotter.renderers[0].remove_actor(actor)
+    assert not len(plotter.fiblets)
+    plotter.close()
+
+
 def moved_in_tiles(renderer, position):
     """Have a renderer's camera moved by a part of a pixel in each tile; returns what undoes it.
 

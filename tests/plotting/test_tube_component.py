@@ -187,15 +187,15 @@ def test_each_subplot_has_its_own_actors():
     plotter.close()
 
 
-def test_a_second_window_is_refused_in_words(plotter):
+def test_an_actor_is_drawn_in_a_second_window(plotter):
     actor = add(plotter)
-    other = pv.Plotter(off_screen=True)
+    other = pv.Plotter(off_screen=True, window_size=plotter.window_size)
+    other.set_background("black")
     other.add_actor(actor)
-    shot(plotter)
-    with pytest.warns(RuntimeWarning, match="in one window only; add a copy"):
-        other.show(auto_close=False)
-    with pytest.raises(RuntimeError, match="in one window only"):
-        actor.raise_pending()
+    other.camera_position = plotter.camera_position
+    for _ in range(2):
+        assert lit(shot(plotter)) > 50
+        assert lit(other.screenshot(None)) > 50
     other.close()
 
 
