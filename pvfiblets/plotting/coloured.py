@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 import pyvista as pv
 
-from pvfiblets.plotting.colours import ColourSettings, make_colouring, update_table
+from pvfiblets.plotting.colours import ColourSettings, make_colouring, shared_limits, update_table
 from pvfiblets.plotting.linked_property import LinkedProperty, own_writes
 from pvfiblets.plotting.linked_table import LinkedTable
 from pvfiblets.plotting.mapper_words import LinesWords
@@ -305,7 +305,7 @@ class Plotted:
     @scalar_range.setter
     def scalar_range(self, clim: tuple[float, float]) -> None:
         actor = cast("Any", self._shown_by())
-        actor.clim = clim
+        actor.clim = shared_limits(clim, actor._settings, actor._scalars)  # noqa: SLF001
         if actor._scalars is None and not actor._hidden:  # noqa: SLF001
             warnings.warn(
                 f"the range {tuple(clim)} changes nothing yet: the actor has one colour and no scalars",

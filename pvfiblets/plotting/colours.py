@@ -136,14 +136,23 @@ def limits(settings: ColourSettings, scalars: Scalars) -> tuple[float, float]:
         # A table of the user's own has a range, which `add_mesh` takes, too.
         own = isinstance(settings.cmap, pv.LookupTable)
         low, high = settings.cmap.scalar_range if own else scalars.range
-        if settings.log_scale and low <= 0.0:
-            low = min(scalars.positive, high) if high > 0.0 else 1e-6
-            high = max(high, low)
-        return float(low), float(high)
+        return _above_zero(low, high, scalars) if settings.log_scale else (float(low), float(high))
     low, high = as_limits(settings.clim)
     if settings.log_scale and low <= 0.0:
         raise ValueError(f"clim begins at {low:g}; a logarithmic scale needs values above zero")
     return low, high
+
+
+def shared_limits(clim: Any, settings: ColourSettings, scalars: Scalars | None) -> tuple[float, float]:
+    """Return the limits to take on from a scalar bar that several actors share: a logarithmic scale begins above 0."""
+    low, high = as_limits(clim)
+    return _above_zero(low, high, scalars) if settings.log_scale and scalars is not None else (low, high)
+
+
+def _above_zero(low: float, high: float, scalars: Scalars) -> tuple[float, float]:
+    if low <= 0.0:
+        low = min(scalars.positive, high) if high > 0.0 else 1e-6
+    return float(low), float(max(high, low))
 
 
 def update_table(

@@ -53,6 +53,23 @@ def test_a_removed_bar_stays_removed(plotter, mesh, change):
     assert plotter.add_scalar_bar("again").GetLookupTable() is actor.lookup_table
 
 
+@pytest.mark.parametrize("first_log", [True, False])
+@pytest.mark.parametrize("add", [*ADDERS, "add_raycast_volume"])
+def test_a_logarithmic_scale_shares_a_bar_with_a_linear_one(plotter, mesh, add, first_log):
+    """As in `add_mesh`: both are drawn over the range of the data, the logarithmic one from above zero."""
+    mesh["height"] = mesh["height"] * 68.5 - 28.5
+    source, name = mesh, {"scalars": "height"}
+    if add == "add_raycast_volume":
+        source, name = pv.ImageData(dimensions=(4, 4, 4)), {}
+        source["height"] = np.linspace(-28.5, 40.0, 64)
+    actors = [getattr(plotter, add)(source, log_scale=log, **name) for log in (first_log, not first_log)]
+    logarithmic, linear = actors if first_log else actors[::-1]
+    assert len(plotter.scalar_bars) == 1
+    assert linear.clim == pytest.approx((-28.5, 40.0), abs=0.2)
+    assert 0.0 < logarithmic.clim[0] < 2.0
+    assert logarithmic.clim[1] == pytest.approx(40.0, abs=0.2)
+
+
 def test_a_bar_that_two_actors_share_has_the_range_of_both(plotter, mesh):
     other = mesh.copy()
     other["height"] = mesh["height"] * 3.0 - 1.0
