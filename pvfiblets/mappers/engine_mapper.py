@@ -32,8 +32,10 @@ from pvfiblets.mappers.proxy import proxy_polydata
 from pvfiblets.mappers.readable_lines import Readable
 from pvfiblets.mappers.scene import (
     Frame,
+    actors_in,
     frame_of,
     in_motion,
+    items_of,
     lenses,
     others_before,
     pixel_scale,
@@ -392,6 +394,12 @@ class EngineMapper(Attached, Readable, Connected, Questions, vtkOpenGLPolyDataMa
         for context in contexts_with(self):
             if address in (None, context.address):
                 context.release(self)
+
+
+def shows_engine(renderer: vtkRenderer) -> bool:
+    """Return True if a renderer has an actor that an engine draws."""
+    actors = [actor for prop in items_of(renderer.GetViewProps()) for actor in actors_in(prop)]
+    return any(isinstance(actor.GetMapper(), EngineMapper) for actor in actors)
 
 
 class CutMapper(EngineMapper[AnyOptions]):

@@ -17,7 +17,7 @@ from pvfiblets.antialias import check_antialias, default_antialias, samples_of
 from pvfiblets.engine.effects.tone import Tone
 from pvfiblets.mappers.antialias_refinement import Refinement
 from pvfiblets.mappers.antialias_windows import refine
-from pvfiblets.mappers.engine_mapper import EngineMapper
+from pvfiblets.mappers.engine_mapper import shows_engine
 from pvfiblets.mappers.picture import DepthOfField, Picture
 from pvfiblets.plotting.antialias_pacing import Pacer
 from pvfiblets.plotting.setting_places import OWN, Place
@@ -242,7 +242,7 @@ class PictureComponent:
         address = renderer.GetAddressAsString("")
         value = self._antialias.get(address)
         if value is None:
-            value = default_antialias() if _shows_ours(renderer) else "off"
+            value = default_antialias() if shows_engine(renderer) else "off"
         if value == "off" and address not in self._pictures:
             return
         picture, samples = self._picture(renderer), samples_of(value)
@@ -369,13 +369,6 @@ class PictureComponent:
         for picture in self._pictures.values():
             picture.release()
         self._pictures.clear()
-
-
-def _shows_ours(renderer: Any) -> bool:
-    """Say whether an actor in a renderer is drawn by an engine of this package."""
-    props = renderer.GetViewProps()
-    actors = [props.GetItemAsObject(index) for index in range(props.GetNumberOfItems())]
-    return any(isinstance(actor.GetMapper(), EngineMapper) for actor in actors if hasattr(actor, "GetMapper"))
 
 
 def _wanted(picture: Picture) -> Any:

@@ -25,7 +25,7 @@ def _register(name: str) -> None:
 
     def enable(plotter: Any, arguments: tuple[Any, ...], named: dict[str, Any]) -> Any:
         through = name == "enable_cell_picking" and named.get("through", arguments[1] if len(arguments) > 1 else True)
-        if not through:
+        if not through and _shows_engine(plotter):
             warnings.warn(
                 f"PyVista's {name} of what is visible finds triangles, not lines; "
                 "plotter.fiblets.enable_picking(mode='box') finds the streamlines that are seen in a rectangle, and "
@@ -38,6 +38,12 @@ def _register(name: str) -> None:
     component = method_of_plotters(name, enable, inspect.cleandoc(original.__doc__ or ""), inspect.signature(original))
     component.__module__ = __name__
     pv.register_plotter_component(name, owner, override=True)(component)
+
+
+def _shows_engine(plotter: Any) -> bool:
+    from pvfiblets.mappers.engine_mapper import shows_engine
+
+    return any(shows_engine(renderer) for renderer in plotter.renderers)
 
 
 for _name in METHODS:

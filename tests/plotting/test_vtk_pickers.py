@@ -191,6 +191,10 @@ def test_rectangles_find_lines_that_run_through_them(plotter, scene, three_lines
             getattr(plotter, method)(**arguments)
         plotter.disable_picking()
     plotter.enable_cell_picking()
+    meshes = pv.Plotter(off_screen=True)
+    meshes.add_mesh(pv.Sphere())
+    meshes.enable_rectangle_visible_picking()
+    meshes.close()
 
 
 @pytest.mark.parametrize("mode", ["mesh", "point"])
