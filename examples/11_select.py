@@ -26,7 +26,7 @@ def main(folder: Path) -> None:
     _, y, z = streamlines.points.T
     streamlines.per_point = {"fa": (0.5 + 0.3 * np.cos(z / 20) * np.cos(y / 30)).astype(np.float32)}
     plotter = pv.Plotter(off_screen=True, window_size=(900, 700))
-    actor = plotter.add_fiblets(streamlines, per_point=["fa"])
+    actor = plotter.add_fiblets(streamlines)
     plotter.view_vector((-1, 0.3, 0.3), viewup=(0, 0, 1))
     plotter.camera.zoom(1.4)
     plotter.show(auto_close=False)

@@ -11,7 +11,7 @@ import pytest
 import pyvista as pv
 from PIL import Image
 
-from pvfiblets import formats, regions
+from pvfiblets import Streamlines, formats, regions
 from pvfiblets.cli import main
 from pvfiblets.plotting.cut_surfaces import cut_surface
 from pvfiblets.plotting.viewpoints import point_camera
@@ -172,6 +172,20 @@ def test_filters(shot, files, middle):
         assert found.sum() > 0
         # The camera looks at all that is visible.
         assert_same(found, drawn(lambda p, change=change: change(lines(files)(p))), whole)
+
+
+def test_an_array_that_does_not_colour_filters(shot, files):
+    x = np.linspace(-18.0, 18.0, 181)
+    line = Streamlines.from_list([np.c_[x, 0 * x, 0 * x]])
+    line.per_point = {"fa": np.abs(x), "q": x}
+    formats.write(files / "q.trx", line)
+    words = ["--view", "axial", "--scalars", "fa", "--lines", "show_scalar_bar=false"]
+    whole, found = (
+        np.nonzero(shot("q.trx", *words, *more).max(axis=(0, 2)))[0] for more in ([], ["--criterion", "q", 5, 10])
+    )
+    # From x = -18 to 18 mm; of these, 5 to 10.
+    expected = np.interp([5.0, 10.0], [-18.0, 18.0], [whole[0], whole[-1]])
+    assert np.abs(found[[0, -1]] - expected).max() <= 1.5
 
 
 def test_groups(shot, files, tmp_path):

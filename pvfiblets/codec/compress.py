@@ -256,7 +256,7 @@ def choose_per_point(streamlines: Streamlines, per_point: PerPoint, bits: int) -
         kept, room = [], {"all": math.inf, "fit": LARGEST_FIT, "none": -1}[per_point]
         for name, values in streamlines.per_point.items():
             size = int(np.prod(values.shape[1:])) * bits // 8
-            if size <= room:
+            if size <= room and (per_point == "all" or values.dtype.kind in "biuf"):
                 kept.append(name)
                 room -= size
         return tuple(kept)

@@ -32,7 +32,7 @@ __all__ = ["Plotter"]
 class _AddFiblets(Protocol):
     def __call__(
         self, source: FibletsSource, *, scalars: str | np.ndarray | pv.ImageData | tuple[Any, Any] | None = None,
-        per_point: Iterable[str] = (), max_error: float | None = None, progress: bool = False,
+        per_point: PerPoint | Iterable[str] = "fit", max_error: float | None = None, progress: bool = False,
         look: str | None = None, color: ColorLike | None = None, rgb: bool | None = None,
         cmap: ColormapOptions | pv.LookupTable | None = None, clim: float | Sequence[float] | None = None,
         n_colors: int = 256, log_scale: bool = False, nan_color: ColorLike | None = None,

@@ -195,7 +195,13 @@ def _measured(fiblets: FibletSet, what: str | Distance | npt.ArrayLike, original
         return Values("streamline", np.asarray(rows, np.float64).reshape(len(rows)), what)
     if what in fiblets.per_point:
         return Values("point", fiblets.per_point[what], what)
-    raise KeyError(f"there is no measure {what!r}; there are {', '.join(measure_names(fiblets))}")
+    kept = f". Compression left it out: keep it by per_point=[{what!r}]" if _is_left_out(fiblets, what) else ""
+    raise KeyError(f"there is no measure {what!r}; there are {', '.join(measure_names(fiblets))}{kept}")
+
+
+def _is_left_out(fiblets: FibletSet, name: str) -> bool:
+    said = next((reason for reason in fiblets.dropped if reason.startswith("per-point arrays not kept (")), "()")
+    return name in said[said.index("(") + 1 : -1].split(", ")
 
 
 def _own(fiblets: FibletSet, given: npt.ArrayLike) -> Values:

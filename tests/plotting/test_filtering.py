@@ -67,6 +67,25 @@ def test_numbers_per_streamline(shown, tract):
     assert actor.mapper.filtering is None
 
 
+def test_any_array_of_a_source_filters_whichever_colours(plotter):
+    """A source that is compressed as it is added; `q` is x, and 5 to 10 of it are left of three lines along x."""
+    x = np.linspace(-18.0, 18.0, 181)
+    lines = Streamlines.from_list([np.c_[x, np.full(181, y), 0 * x] for y in (-8.0, 0.0, 8.0)])
+    lines.per_point = {"fa": np.tile(x, 3), "q": np.tile(x, 3), "code": np.array(["a"] * 543)}
+    lines.per_streamline = {"w": np.array([1.0, 2.0, 3.0])}
+    actor = plotter.add_fiblets(lines, scalars="fa", line_width=3, show_scalar_bar=False, lighting=False)
+    actor.criterion("q", (5.0, 10.0))
+    actor.criterion("w", (2.0, 2.0))
+    plotter.view_xy()
+    plotter.show(auto_close=False)
+    width, height = plotter.window_size
+    hits = [actor.pick_at(x, y) for x in range(width) for y in range(height)]
+    places = [hit for hit in hits if hit is not None]
+    assert {line for line, _ in places} == {1}
+    at = np.interp([along for _, along in places], np.arange(181), x)
+    assert (at.min(), at.max()) == pytest.approx((5.0, 10.0), abs=0.3)
+
+
 def test_numbers_per_point(shown, tract):
     _, actor = shown
     actor.criterion("fa", (0.2, 0.9))

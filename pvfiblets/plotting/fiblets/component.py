@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from os import PathLike
     from pathlib import Path
 
+    from pvfiblets.codec.compress import PerPoint
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.engine.capabilities import PipelineTable
     from pvfiblets.plotting.fiblets.actor import FibletActor
@@ -68,7 +69,7 @@ class FibletsComponent(ActorRegistry["FibletActor"], Picking, Widgets):
         settings: Given,
         *,
         scalars: str | np.ndarray | pv.ImageData | tuple[Any, Any] | None = None,
-        per_point: Iterable[str] = (),
+        per_point: PerPoint | Iterable[str] = "fit",
         max_error: float | None = None,
         progress: bool = False,
         **options: Any,
@@ -99,8 +100,9 @@ class FibletsComponent(ActorRegistry["FibletActor"], Picking, Widgets):
             :class:`pyvista.ImageData`, ``(array, affine)``, or a NIfTI image or its path. It is
             sampled on the GPU at every point: floats trilinear, integers (labels) by the nearest
             voxel; ``nan_color`` shows outside of it.
-        per_point : iterable of str
-            Per-point arrays of ``source`` to keep besides ``scalars``.
+        per_point : iterable of str, or {'all', 'fit', 'none'}
+            Per-point arrays of ``source`` to keep besides ``scalars``, for criteria and other colours: by default
+            those that fit into 16 bytes a point. They take no GPU memory until they colour.
         max_error : float, optional
             Greatest distance (mm) of a drawn from a given point; by default as :func:`pvfiblets.compress` has it.
         progress : bool, default: False

@@ -37,7 +37,7 @@ def as_fiblets(
     source: Any,
     *,
     scalars: Any = None,
-    per_point: PerPoint | Iterable[str] = (),
+    per_point: PerPoint | Iterable[str] = "fit",
     max_error: float | None = None,
     progress: bool = False,
     rgb: bool | None = None,
@@ -55,7 +55,7 @@ def as_fiblets(
         (:mod:`pvfiblets.formats.attachments`). For volumes see
         :func:`~pvfiblets.plotting.fiblets.volume_sources.as_volume`.
     per_point : iterable of str, or {'all', 'fit', 'none'}
-        Further per-point arrays to keep, for a later change of the actor's ``scalars``, as in
+        Further per-point arrays to keep, for criteria and a later change of the actor's ``scalars``, as in
         :func:`pvfiblets.compress`.
     max_error : float, optional
         Greatest distance (mm) between a given and a drawn point; by default as :func:`pvfiblets.compress` has it.
