@@ -24,6 +24,7 @@ KNOWN = {
     "ColormapOptions": "from pyvista.plotting._typing import ColormapOptions",
     "Displacement": "from pvfiblets.halos.displacement import Displacement",
     "Iterable": "from collections.abc import Iterable",
+    "PerPoint": "from pvfiblets.codec.compress import PerPoint",
     "Sequence": "from collections.abc import Sequence",
     "Threshold": "from pvfiblets.plotting.halos.style import Threshold",
     "TransformLike": "from pyvista.core._typing_core import TransformLike",

@@ -135,7 +135,7 @@ def limits(settings: ColourSettings, scalars: Scalars) -> tuple[float, float]:
     if settings.clim is None:
         # A table of the user's own has a range, which `add_mesh` takes, too.
         own = isinstance(settings.cmap, pv.LookupTable)
-        low, high = settings.cmap.scalar_range if own else scalars.range
+        low, high = settings.cmap.scalar_range if own else scalars.colour_range
         return _above_zero(low, high, scalars) if settings.log_scale else (float(low), float(high))
     low, high = as_limits(settings.clim)
     if settings.log_scale and low <= 0.0:

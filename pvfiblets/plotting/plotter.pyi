@@ -8,6 +8,7 @@ import pyvista as pv
 from pyvista.core._typing_core import TransformLike
 from pyvista.plotting._typing import ColorLike, ColormapOptions
 
+from pvfiblets.codec.compress import PerPoint
 from pvfiblets.halos.displacement import Displacement
 from pvfiblets.plotting.fiblets.actor import FibletActor
 from pvfiblets.plotting.fiblets.component import FibletsComponent

@@ -81,3 +81,30 @@ def test_parcels_at_both_ends(plotter, atlas, tmp_path):
         fiblets.end_parcels((np.zeros((2, 2)), np.eye(4)))
     with pytest.raises(ValueError, match="affine"):
         fiblets.end_parcels((np.zeros((2, 2, 2), int), np.zeros((4, 4))))
+
+
+@pytest.mark.parametrize("add", ["add_fiblets", "add_spline_tubes", "add_halo_lines"])
+@pytest.mark.parametrize("kind", [np.float64, np.float32])
+def test_equal_values_with_rounding_have_one_colour(plotter, add, kind):
+    """Values that differ in the last place only, as those of equal lines do."""
+    x = np.linspace(0.0, 10.0, 21)
+    lines = [np.c_[x, np.full(21, y), 0 * x] for y in (0.0, 2.0, 4.0)]
+    values = kind(76.8262314628991) + np.arange(3, dtype=kind) * np.spacing(kind(76.8262314628991))
+    lit = {} if add == "add_halo_lines" else {"lighting": False}
+    actor = getattr(plotter, add)(lines, scalars=values, **lit)
+    assert actor.clim == pytest.approx((76.8262314,) * 2, rel=1e-3)
+    indices = [actor.lookup_table.GetIndex(float(value)) for value in values]
+    assert len(set(indices)) == 1
+    hours = kind(1.7e9) + 3600 * np.arange(3, dtype=kind)
+    seconds = getattr(plotter, add)(lines, scalars=hours, show_scalar_bar=False, **lit)
+    assert seconds.clim == pytest.approx((1.7e9, 1.7e9 + 7200), abs=130)
+
+
+def test_lines_of_one_length_have_one_colour(plotter):
+    rng = np.random.default_rng(0)
+    turns = np.linalg.qr(rng.normal(size=(60, 3, 3)))[0]
+    bow = np.c_[np.linspace(-36, 36, 200), 12.0 * np.cos(np.linspace(-2, 2, 200)), np.zeros(200)]
+    actor = plotter.add_fiblets([bow @ turn.T for turn in turns], scalars="length", exact=True)
+    lengths = actor.fiblets.lengths()
+    assert np.ptp(lengths) > 0.0
+    assert {actor.lookup_table.GetIndex(length) for length in lengths} == {0}

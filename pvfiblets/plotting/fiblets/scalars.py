@@ -80,6 +80,9 @@ class Scalars:
         Whether some of the colours of points have an alpha below 1.
     percentile : float, optional
         Of the values, at which the range ends where it does not end at the largest.
+    rounding : float
+        By how much equal values may differ; a range that is no wider is that of one value. By default that of their
+        storage.
     """
 
     name: str
@@ -92,6 +95,17 @@ class Scalars:
     category_colours: tuple[Any, ...] | None = None
     has_alpha: bool = False
     percentile: float | None = None
+    rounding: float = 0.0
+
+    @property
+    def colour_range(self) -> tuple[float, float]:
+        """The range, or one of which equal values that differ by rounding all have the first colour."""
+        low, high = self.range
+        stored_single = bool(np.float32(low) == low and np.float32(high) == high)
+        relative = 2.0 * float(np.finfo(np.float32).eps) if stored_single else 64.0 * float(np.finfo(np.float64).eps)
+        if high - low <= max(self.rounding, relative * max(abs(low), abs(high))):
+            high = low + 1000.0 * (high - low)
+        return low, high
 
     @property
     def mapped(self) -> bool:
@@ -179,15 +193,16 @@ def find_scalars(
     if scalars == ORIENTATION:
         return Scalars(ORIENTATION, "orientation")
     if scalars == "length":
-        return per_streamline("length", fiblets.lengths(), fiblets.n_streamlines)
+        return _measured(per_streamline("length", fiblets.lengths(), fiblets.n_streamlines), fiblets)
     if scalars == "arc_length":
         longest = _longest(fiblets)
         return Scalars("arc_length", "point_scalar", None, (0.0, longest or 1.0), positive=fiblets.step)
     if scalars == "curvature":
         least, most = _curvature_range(fiblets)
-        return Scalars("curvature", "point_scalar", None, (least, most), most / 1e3, percentile=MOST)
+        found = Scalars("curvature", "point_scalar", None, (least, most), most / 1e3, percentile=MOST)
+        return _measured(found, fiblets)
     if scalars in COMPUTED["streamline"]:
-        found = per_streamline(scalars, measure(fiblets, scalars).array(), fiblets.n_streamlines)
+        found = _measured(per_streamline(scalars, measure(fiblets, scalars).array(), fiblets.n_streamlines), fiblets)
         return without_outliers(found) if scalars == "mean_curvature" else found
     if scalars == GROUP:
         return by_group(fiblets)
@@ -205,6 +220,16 @@ def find_scalars(
             "scalars='coding_error' to add_fiblets(streamlines), or run `pvfiblets verify`"
         )
     raise KeyError(missing_message(fiblets, scalars))
+
+
+def _measured(scalars: Scalars, fiblets: FibletSet) -> Scalars:
+    """Return numbers that were computed of points, with the rounding that these have as float32."""
+    if scalars.name == "n_points" or not fiblets.n_points:
+        return scalars
+    bounds = np.asarray(fiblets.bounds)
+    position = 2.0 * float(np.finfo(np.float32).eps) * float((bounds[1::2] - bounds[0::2]).max())  # mm
+    curvature = scalars.name in ("curvature", "mean_curvature")
+    return replace(scalars, rounding=position / fiblets.step**2 if curvature and fiblets.step > 0.0 else position)
 
 
 def _of_colours(name: str, columns: list[QuantisedPoints]) -> Scalars:
