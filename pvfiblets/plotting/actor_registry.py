@@ -207,8 +207,9 @@ class ActorRegistry(Generic[A]):
 
         Where an argument is refused, the actor is not left behind.
         """
-        if label is not None and not isinstance(label, str):
-            raise TypeError(f"label is a {type(label).__name__}; give a string")
+        for word, text in (("name", name), ("label", label)):
+            if text is not None and not isinstance(text, str):
+                raise TypeError(f"{word} is {text!r}; give a string")
         if scalar_bar_args is not None and not isinstance(scalar_bar_args, dict):
             raise TypeError(f"scalar_bar_args is {scalar_bar_args!r}; give a dict of arguments of add_scalar_bar")
         if user_matrix is not None:

@@ -146,6 +146,15 @@ def test_vectors_and_colours_of_tubes_and_halos(plotter, add):
         getattr(plotter, add)(mesh, scalars="h", rgb=True)
 
 
+@pytest.mark.parametrize("add", ["add_fiblets", "add_spline_tubes", "add_halo_lines"])
+@pytest.mark.parametrize("scalars", ["height", "weight", "length", np.arange(3.0), np.arange(123.0)])
+def test_numbers_are_no_colours(plotter, three_lines, add, scalars):
+    """`add_mesh` says: RGB array must be n_points/n_cells by 3/4 in shape."""
+    with pytest.raises(ValueError, match="rgb=True asks for colours, but .* one number"):
+        getattr(plotter, add)(three_lines, scalars=scalars, rgb=True)
+    assert not plotter.actors
+
+
 def named_lines():
     """Three lines with a word for each line and each point, as VTK keeps text."""
     mesh = pv.PolyData()

@@ -81,7 +81,7 @@ def test_unknown_names_list_what_there_is():
         ({"iterations": float("inf")}, ValueError, "iterations is inf"),
         ({"min_width": None}, ValueError, "min_width is None"),
         ({"scalars": "arc_length", "scalar_slopes": np.ones(15)}, ValueError, "scalar_slopes came with 'arc_length'"),
-        ({"label": 3}, TypeError, "label is a int"),
+        ({"label": 3}, TypeError, "label is 3; give a string"),
     ],
 )
 def test_nonsense_is_refused_in_words(plotter, arguments, error, message):

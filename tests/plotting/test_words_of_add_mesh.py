@@ -91,6 +91,15 @@ def add(request, plotter, three_lines):
 
 
 EVERY = [*ADDS, "add_halo_points", "add_raycast_volume"]
+
+
+@pytest.mark.parametrize("add", EVERY, indirect=True)
+def test_a_name_is_a_string(plotter, add):
+    with pytest.raises(TypeError, match="name is 3; give a string"):
+        add(name=3)
+    assert not plotter.actors
+
+
 WORDS = sorted(set(inspect.signature(pv.Plotter.add_mesh).parameters) - {"self", "mesh", "kwargs"})
 
 

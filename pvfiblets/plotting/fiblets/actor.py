@@ -18,7 +18,7 @@ from pvfiblets.plotting.colours import limits
 from pvfiblets.plotting.fiblets.filtering import Filtering
 from pvfiblets.plotting.fiblets.looks import PLAIN, look_of, settings_of
 from pvfiblets.plotting.fiblets.opacities import Opacities, apply_transfer, find_opacities
-from pvfiblets.plotting.fiblets.scalars import Scalars, find_scalars, mean_direction
+from pvfiblets.plotting.fiblets.scalars import Scalars, find_scalars, mean_direction, refuse_numbers
 from pvfiblets.plotting.fiblets.selection import Selecting
 from pvfiblets.plotting.fiblets.settings import ALL, THINNEST, TONES, WIDEST, FibletSettings
 from pvfiblets.plotting.fiblets.sources import as_fiblets, with_point_values
@@ -431,4 +431,6 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
     def _find(self, fiblets: FibletSet, choice: str | np.ndarray | VolumeSource | None) -> Scalars | None:
         if choice is None and self._settings.color is not None:
             return None
-        return find_scalars(fiblets, choice, self._rgb)
+        found = find_scalars(fiblets, choice, self._rgb)
+        refuse_numbers(found.title if found.mapped else None, self._rgb)
+        return found

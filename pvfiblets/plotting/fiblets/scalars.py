@@ -232,6 +232,14 @@ def _measured(scalars: Scalars, fiblets: FibletSet) -> Scalars:
     return replace(scalars, rounding=position / fiblets.step**2 if curvature and fiblets.step > 0.0 else position)
 
 
+def refuse_numbers(title: str | None, rgb: bool | None) -> None:
+    """Refuse numbers, by what their scalar bar says, where colours are asked for, as `add_mesh` does."""
+    if rgb and title is not None:
+        raise ValueError(
+            f"rgb=True asks for colours, but {title!r} has one number in each row; drop rgb, or give 3 or 4 columns"
+        )
+
+
 def _of_colours(name: str, columns: list[QuantisedPoints]) -> Scalars:
     """Colours of points, of which the fiblets hold each channel."""
     low, high = min(column.lo for column in columns), max(column.hi for column in columns)

@@ -124,6 +124,7 @@ class HaloLinesComponent(Printing, ActorRegistry["HaloLineActor"]):
         """
         from pvfiblets.mappers.halos import HaloOptions
         from pvfiblets.plotting.colours import active_scalars
+        from pvfiblets.plotting.fiblets.scalars import refuse_numbers
         from pvfiblets.plotting.halos.actors import HaloLineActor
         from pvfiblets.plotting.halos.scalars import as_lines
 
@@ -133,7 +134,9 @@ class HaloLinesComponent(Printing, ActorRegistry["HaloLineActor"]):
         held = as_lines(source, scalars=scalars, rgb=rgb, filter_by=filter_by)
         if not getattr(held.drawn, "n_segments", 0):
             warnings.warn("the source holds no lines: nothing is drawn", UserWarning, stacklevel=5)
-        return HaloLineActor(held, settings=settings, theme=self._plotter.theme)
+        actor = HaloLineActor(held, settings=settings, theme=self._plotter.theme)
+        refuse_numbers(actor.scalars_title, rgb)
+        return actor
 
 
 AddHaloLines = plotter_method(HaloLinesComponent)

@@ -140,6 +140,7 @@ class SplineTubesComponent(ActorRegistry["TubeActor"]):
         """
         from pvfiblets.mappers.tubes import TubeOptions
         from pvfiblets.plotting.colours import active_scalars
+        from pvfiblets.plotting.fiblets.scalars import refuse_numbers
         from pvfiblets.plotting.tubes.actor import TubeActor
         from pvfiblets.plotting.tubes.scalars import as_tubes
 
@@ -162,7 +163,9 @@ class SplineTubesComponent(ActorRegistry["TubeActor"]):
         renderer = self._plotter.renderer
         if choice is None and settings["color"] is None and renderer._color_cycle is not None:  # noqa: SLF001
             settings["color"] = renderer.next_color  # as `add_mesh` does after `set_color_cycler`
-        return TubeActor(tubes, scalars=choice, settings=settings, theme=self._plotter.theme)
+        actor = TubeActor(tubes, scalars=choice, settings=settings, theme=self._plotter.theme)
+        refuse_numbers(actor.scalars_title, rgb)
+        return actor
 
 
 AddSplineTubes = plotter_method(SplineTubesComponent)
