@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyvista as pv
 
+from pvfiblets.query.image_samples import three_axes
+
 if TYPE_CHECKING:
     from pvfiblets.regions import Region
 
@@ -57,7 +59,7 @@ def as_region(what: Any) -> Region:
         from pvfiblets.slices.image import as_slice_image
 
         image = as_slice_image(what)
-        return regions.Labels(_whole_numbers(image.values.squeeze(-1)), image.affine)
+        return regions.Labels(_whole_numbers(image.values), image.affine)
     if isinstance(what, (str, Path)):
         import nibabel
 
@@ -125,6 +127,7 @@ def _image_labels(image: pv.ImageData) -> Region:
 
 def _whole_numbers(volume: np.ndarray) -> np.ndarray:
     """Return labels as integers, as which files that scale their data do not always give them."""
+    volume = three_axes(volume)
     if volume.ndim != 3:
         raise ValueError(f"labels have shape {volume.shape}; expected three axes")
     if volume.dtype.kind in "biu":

@@ -7,9 +7,15 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["sample_image"]
+__all__ = ["sample_image", "three_axes"]
 
 Floats = npt.NDArray[np.float64]
+
+
+def three_axes(values: npt.ArrayLike) -> npt.NDArray[Any]:
+    """Return an array without axes of length 1 behind the third."""
+    whole: npt.NDArray[Any] = np.asarray(values)
+    return whole.reshape(whole.shape[:3]) if whole.ndim > 3 and set(whole.shape[3:]) == {1} else whole
 
 
 def sample_image(volume: npt.ArrayLike, affine: npt.ArrayLike, points: npt.ArrayLike) -> Floats:
@@ -35,7 +41,7 @@ def sample_image(volume: npt.ArrayLike, affine: npt.ArrayLike, points: npt.Array
     ValueError
         If the image has not three axes.
     """
-    values: npt.NDArray[Any] = np.asarray(volume)
+    values = three_axes(volume)
     if values.ndim != 3:
         raise ValueError(f"the image has shape {values.shape}; give one of three axes (i, j, k)")
     to_voxel = np.linalg.inv(np.asarray(affine, np.float64))

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from .image_samples import three_axes
 from .placement import Bounds, invert_affine
 from .placement import affine as checked
 from .shapes import LABELS, Shape
@@ -89,7 +90,7 @@ class Labels(Shape):
     """
 
     def __init__(self, volume: npt.ArrayLike, affine: npt.ArrayLike, labels: npt.ArrayLike | None = None) -> None:
-        values = np.asarray(volume)
+        values = three_axes(volume)
         if values.ndim != 3 or not values.size or values.dtype.kind not in "biuf":
             raise ValueError(
                 f"the volume has shape {values.shape} and type {values.dtype}; give (i, j, k) integers, one time step"

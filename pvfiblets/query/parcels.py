@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .endpoints import end_points
+from .image_samples import three_axes
 
 if TYPE_CHECKING:
     from ..codec.fibletset import FibletSet
@@ -77,7 +78,7 @@ def read_atlas(given: Any) -> tuple[npt.NDArray[Any], npt.NDArray[np.float64]]:
         given = np.asanyarray(given.dataobj), given.affine
     if not isinstance(given, (tuple, list)) or len(given) != 2:
         raise TypeError(f"atlas is a {type(given).__name__}; give a NIfTI image, its path, or (array, affine)")
-    labels, affine = np.asarray(given[0]), np.asarray(given[1], np.float64)
+    labels, affine = three_axes(given[0]), np.asarray(given[1], np.float64)
     if labels.ndim != 3:
         raise ValueError(f"the atlas has shape {labels.shape}; give whole numbers on three axes (i, j, k)")
     if labels.dtype.kind not in "bui" and not bool((labels == np.rint(labels)).all()):

@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 import pvfiblets
-from pvfiblets import Streamlines, compress
+from pvfiblets import Streamlines, compress, regions
 from pvfiblets.cli import main
+from pvfiblets.plotting.region_sources import as_region
 from pvfiblets.query.connectome import connectome, end_labels
 
 SHEARED = np.array([[2.0, 0.4, 0.0, -30.0], [0.0, -1.5, 0.3, 22.0], [0.2, 0.0, 2.5, -28.0], [0.0, 0.0, 0.0, 1.0]])
@@ -63,6 +64,22 @@ def test_ends_have_the_nearest_parcel(streamlines, atlas, radius):
     assert (found != 0).any()
     assert (found[:-1] == 0).any() or radius > 3.0
     assert (found[-1] == 0).all()
+
+
+@pytest.mark.parametrize("more", [(1,), (1, 1)])
+def test_axes_of_one_behind_the_third_are_none(streamlines, atlas, more, tmp_path):
+    """Many programs write labels as a series of one volume."""
+    volume, affine = atlas
+    longer = nibabel.Nifti1Image(volume.reshape(volume.shape + more), affine)
+    nibabel.save(longer, tmp_path / "labels.nii")
+    expected = end_labels(streamlines, atlas, 3.0)
+    for given in (longer, tmp_path / "labels.nii", (longer.get_fdata(), affine)):
+        np.testing.assert_array_equal(end_labels(streamlines, given, 3.0), expected)
+    fiblets, parcel = compress(streamlines, exact=True), regions.Labels(volume, affine, labels=[5])
+    whole = fiblets.select(regions.passes(parcel))
+    for region in (regions.Labels(longer.get_fdata(), affine, labels=[5]), as_region(longer) & parcel):
+        np.testing.assert_array_equal(fiblets.select(regions.passes(region)), whole)
+    assert set(np.unique(regions.RegionPainter.open(tmp_path / "labels.nii").labels)) == {0, 3, 5, 8, 11}
 
 
 def test_progress_is_told_and_can_end_the_work(streamlines, atlas, monkeypatch):

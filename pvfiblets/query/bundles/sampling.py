@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..image_samples import three_axes
 from ..voxel_grid import grid_like
 
 __all__ = ["Image", "as_image"]
@@ -94,17 +95,12 @@ def as_image(given: Any) -> Image | None:
 
         given = nibabel.load(given)
     if hasattr(given, "dataobj") and hasattr(given, "affine"):
-        return Image(_three(np.asanyarray(given.dataobj)), np.asarray(given.affine, np.float64))
+        return Image(three_axes(np.asanyarray(given.dataobj)), np.asarray(given.affine, np.float64))
     if isinstance(given, tuple) and len(given) == 2 and np.shape(given[1]) == (4, 4):
-        return Image(_three(np.asarray(given[0])), np.asarray(given[1], np.float64))
+        return Image(three_axes(np.asarray(given[0])), np.asarray(given[1], np.float64))
     if hasattr(given, "IsA") and given.IsA("vtkImageData"):
         grid = grid_like(given)
         return Image(np.asarray(given.active_scalars).reshape(grid.shape, order="F"), grid.affine)
     if hasattr(given, "affine") and hasattr(given, "values"):
-        return Image(_three(np.asarray(given.values)), np.asarray(given.affine, np.float64))
+        return Image(three_axes(np.asarray(given.values)), np.asarray(given.affine, np.float64))
     return None
-
-
-def _three(values: npt.NDArray[Any]) -> npt.NDArray[Any]:
-    """Without axes of one behind the third."""
-    return values.reshape(values.shape[:3]) if values.ndim > 3 and all(n == 1 for n in values.shape[3:]) else values

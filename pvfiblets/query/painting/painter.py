@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from ...errors import FormatError
 from ..bundles.colours import as_colour, distinct_colour, hex_colour
+from ..image_samples import three_axes
 from ..labels import Labels
 from ..placement import finite_vector, positive
 from ..voxel_grid import VoxelGrid, grid_like
@@ -313,7 +314,7 @@ class RegionPainter:
         target = Path(path).expanduser()
         table = _table_of(target)
         image = nibabel.load(target)
-        values = np.asanyarray(image.dataobj)
+        values = three_axes(image.dataobj)
         found = np.unique(values)
         if values.ndim != 3 or not ((found >= 0) & (found <= 65535) & (found == np.floor(found))).all():
             raise FormatError(target, None, f"values of shape {values.shape} from {found.min()} to {found.max()}",
