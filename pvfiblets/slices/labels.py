@@ -1,11 +1,12 @@
-"""Names and colours of labels: tables of FreeSurfer, ITK-SNAP, BIDS and GIFTI."""
+"""Names and colours of labels: tables of FreeSurfer, MRtrix, ITK-SNAP, BIDS and GIFTI."""
 
 from __future__ import annotations
 
 import csv
 import os
 import re
-from collections.abc import Mapping
+import warnings
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -19,9 +20,11 @@ __all__ = ["LabelTable", "as_label_table", "distinct_colours", "table_of_gifti"]
 
 SUFFIXES = (".txt", ".ctab", ".label", ".lbl", ".tsv", ".gii", ".gii.gz")
 
-_SHARE = r"((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)"
-_ITKSNAP = re.compile(r'^\s*(\d{1,18})' + 3 * r"\s+(\d{1,18})" + rf'\s+{_SHARE}\s+([01])\s+([01])\s+"(.*)"\s*$')
-_FREESURFER = re.compile(r"^\s*(-?\d{1,18})\s+(\S.*?)" + 3 * r"\s+(\d{1,18})" + r"(?:\s+\d+)?\s*$")
+_NUMBER = r"((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)"
+_ITKSNAP = re.compile(r'^\s*(\d{1,18})' + 4 * rf"\s+{_NUMBER}" + r'\s+([01])\s+([01])\s+"(.*)"\s*$')
+_FREESURFER = re.compile(r"^\s*(-?\d{1,18})\s+(\S.*?)" + 3 * rf"\s+{_NUMBER}" + rf"(?:\s+{_NUMBER})?\s*$")
+_WORD = r"""("[^"]*"|'[^']*'|\S+)"""
+_MRTRIX = re.compile(rf"^\s*(\d{{1,18}})\s+{_WORD}\s+{_WORD}" + 4 * rf"\s+{_NUMBER}" + r"\s*$")
 
 
 @dataclass
@@ -70,7 +73,8 @@ def as_label_table(given: Any) -> LabelTable:
     Parameters
     ----------
     given : path, LabelTable or mapping
-        - A colour table of FreeSurfer (``FreeSurferColorLUT.txt``, ``.ctab``).
+        - A colour table of FreeSurfer (``FreeSurferColorLUT.txt``, ``.ctab``), or of MRtrix (``fs_default.txt``), which
+          has an abbreviation before the name and an opacity. Colours are 0 to 255, or fractions up to 1.
         - A description of labels of ITK-SNAP (``.label``, ``.txt``).
         - A table of BIDS (``.tsv``), with the columns ``index``, ``name`` and maybe ``color`` (``#rrggbb``).
         - A file of GIFTI with a table of labels (``.label.gii``).
@@ -91,19 +95,19 @@ def as_label_table(given: Any) -> LabelTable:
         return _of_mapping(given)
     if not isinstance(given, (str, os.PathLike)):
         raise TypeError(
-            f"labels is a {type(given).__name__}; give the path of a table of FreeSurfer, ITK-SNAP, BIDS or GIFTI, or "
-            "a dict such as {17: 'hippocampus'}"
+            f"labels is a {type(given).__name__}; give the path of a table of FreeSurfer, MRtrix, ITK-SNAP, BIDS or "
+            "GIFTI, or a dict such as {17: 'hippocampus'}"
         )
     path = Path(given).expanduser()
     if path.name.lower().endswith((".gii", ".gii.gz")):
         return _of_gifti(path)
     text = path.read_text(encoding="utf-8", errors="replace")
-    table = _of_bids(path, text) if path.name.lower().endswith(".tsv") else _of_lines(text)
+    table = _of_bids(path, text) if path.name.lower().endswith(".tsv") else _of_lines(path, text)
     if not table.names and not table.colours:
         raise FormatError(
             path, None, "no line of a table of labels",
-            "lines 'number name R G B A' (FreeSurfer), 'number R G B A visible mesh \"name\"' (ITK-SNAP), or a .tsv "
-            "with the columns index and name (BIDS)",
+            "lines 'number name R G B A' (FreeSurfer), 'number abbreviation name R G B A' (MRtrix), 'number R G B A "
+            "visible mesh \"name\"' (ITK-SNAP), or a .tsv with the columns index and name (BIDS)",
         )  # fmt: skip
     return table
 
@@ -124,26 +128,54 @@ def _of_mapping(given: Mapping[Any, Any]) -> LabelTable:
     return table
 
 
-def _of_lines(text: str) -> LabelTable:
-    """Return a table of FreeSurfer or of ITK-SNAP, whichever its lines are."""
-    table = LabelTable()
-    for line in text.splitlines():
-        if line.lstrip().startswith("#") or not line.strip():
-            continue
+def _of_lines(path: Path, text: str) -> LabelTable:
+    """Return a table of FreeSurfer, MRtrix or ITK-SNAP, whichever its lines are."""
+    lines = [(n, line) for n, line in enumerate(text.splitlines(), 1) if line.strip() and line.lstrip()[0] != "#"]
+    with_abbreviation = _have_abbreviations([line for _, line in lines])
+    table, unread = LabelTable(), []
+    for number, line in lines:
         if found := _ITKSNAP.match(line):
-            label, (red, green, blue) = int(found[1]), (int(found[n]) for n in (2, 3, 4))
-            table.names[label] = found[8]
-            alpha = round(255 * min(max(float(found[5]), 0.0), 1.0)) if found[6] == "1" else 0
-            table.colours[label] = _bytes(red, green, blue, alpha)
+            label, name, colour = int(found[1]), found[8], found.group(2, 3, 4)
+            opacity = float(found[5]) if found[6] == "1" else 0.0
+        elif with_abbreviation and (found := _MRTRIX.match(line)):
+            label, name, colour = int(found[1]), found[3].strip("\"'"), found.group(4, 5, 6)
+            opacity = float(found[7]) / (1.0 if _is_share(found.group(4, 5, 6, 7)) else 255.0)
         elif found := _FREESURFER.match(line):
             # Its last column is 255 less the opacity in some versions and 0 for opaque in all that are used.
-            table.names[int(found[1])] = found[2]
-            table.colours[int(found[1])] = _bytes(int(found[3]), int(found[4]), int(found[5]), 255)
+            label, name, colour = int(found[1]), found[2], found.group(3, 4, 5)
+            opacity = 1.0
+        else:
+            unread.append(number)
+            continue
+        table.names[label] = name
+        full = 255.0 if _is_share(colour) else 1.0
+        red, green, blue = (float(part) * full for part in colour)
+        table.colours[label] = _bytes(red, green, blue, 255.0 * opacity)
+    if unread and table.names:
+        which = ", ".join(map(str, unread[:5])) + (f" and {len(unread) - 5} more" if len(unread) > 5 else "")
+        first = text.splitlines()[unread[0] - 1].strip()
+        warnings.warn(
+            f"{path}: left out line {which}, which names no label: {first[:60]!r}; give 'number name R G B A'",
+            UserWarning,
+            stacklevel=3,
+        )
     return table
 
 
-def _bytes(*parts: int) -> tuple[int, int, int, int]:
-    red, green, blue, alpha = (min(max(part, 0), 255) for part in parts)
+def _have_abbreviations(lines: list[str]) -> bool:
+    """Return True for a table of MRtrix, by MRtrix's rule: two names in each line, the first of which are shorter."""
+    found = [match for line in lines if (match := _MRTRIX.match(line))]
+    opaque = any(float(match[7]) > 0.0 for match in found)  # FreeSurfer has 0 there, and names of two words
+    return opaque and 2 * len(found) > len(lines) and sum(len(m[2]) - len(m[3]) for m in found) < 0
+
+
+def _is_share(colour: Sequence[str]) -> bool:
+    """Return True for fractions of 1, not numbers up to 255."""
+    return any("." in part for part in colour) and all(float(part) <= 1.0 for part in colour)
+
+
+def _bytes(*parts: float) -> tuple[int, int, int, int]:
+    red, green, blue, alpha = (min(max(round(part), 0), 255) for part in parts)
     return red, green, blue, alpha
 
 

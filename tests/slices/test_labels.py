@@ -1,4 +1,4 @@
-"""Tables of labels of four programs."""
+"""Tables of labels of five programs."""
 
 from __future__ import annotations
 
@@ -20,6 +20,25 @@ def test_a_colour_table_of_freesurfer(tmp_path):
     assert table.colours[17] == (220, 216, 20, 255)
     assert table.name(1002) == "ctx-lh-caudal anterior"
     assert table.rows(np.array([0, 17]))[:, 3].tolist() == [0, 255]
+
+
+def test_a_table_of_mrtrix(tmp_path):
+    """Lines of its own ``fs_default.txt``; `labelconvert` takes the second name."""
+    (tmp_path / "fs_default.txt").write_text(
+        "# Lookup table\n\n0     ???     Unknown                         0   0   0   0\n\n"
+        "1     L.BSTS  ctx-lh-bankssts                 25  100 40  255\n36    L.TH    Left-Thalamus   0   118 14  128\n"
+        '50    R.X     "Right X"                       1   2   3   255\n'
+    )
+    table = as_label_table(tmp_path / "fs_default.txt")
+    assert table.names == {0: "Unknown", 1: "ctx-lh-bankssts", 36: "Left-Thalamus", 50: "Right X"}
+    assert table.colours == {0: (0, 0, 0, 0), 1: (25, 100, 40, 255), 36: (0, 118, 14, 128), 50: (1, 2, 3, 255)}
+
+
+def test_fractions_are_colours_and_other_lines_are_named(tmp_path):
+    (tmp_path / "lut.txt").write_text("# names\n1 V1 0.5 0.25 1.0 0\n2 V2 127.6 20.0 3 0\n3 V3 red\n\n4 V4 1 0 255 0\n")
+    with pytest.warns(UserWarning, match=r"lut.txt: left out line 4, which names no label: '3 V3 red'"):
+        table = as_label_table(tmp_path / "lut.txt")
+    assert table.colours == {1: (128, 64, 255, 255), 2: (128, 20, 3, 255), 4: (1, 0, 255, 255)}
 
 
 def test_a_description_of_itk_snap(tmp_path):
