@@ -32,10 +32,14 @@ def screenshot(paths: list[str], *, output: str, size: tuple[int, int], transpar
         with replacing(output) as file:
             made = file.name + suffix
             try:
-                if scene is None:
-                    plotter.screenshot(made, transparent_background=transparent, return_img=False)
+                if transparent:
+                    from pvfiblets.plotting.transparent import screenshot as without_background
+
+                    without_background(plotter, made, return_img=False)
+                elif scene is None:
+                    plotter.screenshot(made, return_img=False)
                 else:
-                    scene.screenshot(made, transparent=transparent)
+                    scene.screenshot(made)
                 file.write(Path(made).read_bytes())
             finally:
                 Path(made).unlink(missing_ok=True)

@@ -174,6 +174,18 @@ def test_filters(shot, files, middle):
         assert_same(found, drawn(lambda p, change=change: change(lines(files)(p))), whole)
 
 
+@pytest.mark.parametrize("name", ["lines.tck", "ball.vtp"])
+def test_a_transparent_picture_has_the_colours_of_what_is_drawn(files, tmp_path, monkeypatch, name):
+    monkeypatch.setenv("PVFIBLETS_ANTIALIAS", "4")
+    picture = tmp_path / "shot.png"
+    looks = ["--color", "lime"] if name == "lines.tck" else ["--meshes", "color=lime", "lighting=false", "opacity=0.5"]
+    words = [*looks, "--no-lighting", "--transparent", "--size", "120x90", "-o", str(picture)]
+    assert main(["screenshot", str(files / name), *words]) == 0
+    found = np.asarray(Image.open(picture))
+    assert ((found[..., 3] > 0) & (found[..., 3] < 255)).any()
+    assert (found[found[..., 3] > 0][:, :3] == [0, 255, 0]).all()
+
+
 def test_an_array_that_does_not_colour_filters(shot, files):
     x = np.linspace(-18.0, 18.0, 181)
     line = Streamlines.from_list([np.c_[x, 0 * x, 0 * x]])

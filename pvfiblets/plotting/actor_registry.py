@@ -19,7 +19,7 @@ import pyvista as pv
 from vtkmodules.vtkRenderingCore import vtkPicker
 
 from pvfiblets.antialias import default_antialias
-from pvfiblets.plotting import exports, visible_picking  # noqa: F401 - of which plotters are to know
+from pvfiblets.plotting import exports, transparent, visible_picking  # noqa: F401 - of which plotters are to know
 from pvfiblets.plotting.call_signature import document
 from pvfiblets.plotting.settings import Given, Setting, Settings
 from pvfiblets.plotting.settings import arguments as settings_of_call

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from pvfiblets.plotting.settings import Argument
 
-__all__ = ["document", "method_of_plotters", "plotter_method"]
+__all__ = ["document", "plotter_method", "replace_method"]
 
 _WIDEST = 100
 
@@ -59,12 +59,44 @@ def plotter_method(component: Any) -> Any:
     def add(plotter: Any, arguments: tuple[Any, ...], named: dict[str, Any]) -> Any:
         return getattr(plotter, component.NAME).add(*arguments, **named)
 
-    adder = method_of_plotters(component.ADD, add, target.__doc__ or "", inspect.signature(target))
+    adder = _method_of_plotters(component.ADD, add, target.__doc__ or "", inspect.signature(target))
     adder.__module__ = component.__module__
     return pv.register_plotter_component(component.ADD)(adder)
 
 
-def method_of_plotters(
+def replace_method(
+    name: str,
+    call: Callable[[Any, Callable[..., Any], tuple[Any, ...], dict[str, Any]], Any],
+    module: str,
+    more: str = "",
+) -> None:
+    """Put a function in the place of a method of plotters, as PyVista provides for.
+
+    ``pyvista.unregister_plotter_component(name)`` undoes it.
+
+    Parameters
+    ----------
+    name : str
+    call : callable
+        Takes a plotter, the method that it replaces, and its arguments as a tuple and a dict.
+    module : str
+        Where the function is defined.
+    more : str
+        What follows the method's own documentation.
+    """
+    owner = next(kind for kind in pv.Plotter.__mro__ if name in vars(kind))
+    original = vars(owner)[name]
+
+    def replaced(plotter: Any, arguments: tuple[Any, ...], named: dict[str, Any]) -> Any:
+        return call(plotter, original, arguments, named)
+
+    doc = inspect.cleandoc(original.__doc__ or "") + more
+    component = _method_of_plotters(name, replaced, doc, inspect.signature(original))
+    component.__module__ = module
+    pv.register_plotter_component(name, owner, override=True)(component)
+
+
+def _method_of_plotters(
     name: str, call: Callable[[Any, tuple[Any, ...], dict[str, Any]], Any], doc: str, signature: inspect.Signature
 ) -> Any:
     """Return a component that is a method: ``help(plotter.NAME)`` and ``plotter.NAME?`` say what it does.

@@ -135,3 +135,50 @@ def test_depth_peeling_that_fails_under_multi_sampling_is_told_once(three_lines,
     assert found["mesh"] == found["fiblets"]
     assert len(said) == int(not found["mesh"])
     assert all("plotter.disable_anti_aliasing()" in one for one in said)
+
+
+DRAWN = {
+    "lines": ("add_fiblets", {"line_width": 3.0}),
+    "translucent": ("add_fiblets", {"line_width": 8.0, "opacity": 0.4, "transparency": "all"}),
+    "ink": ("add_fiblets", {"line_width": 5.0, "look": "ink", "color": "red"}),
+    "tubes": ("add_spline_tubes", {"radius": 0.5}),
+    "halos": ("add_halo_lines", {"halo_color": "background"}),
+}
+
+
+@pytest.mark.parametrize("kind", list(DRAWN))
+@pytest.mark.parametrize(("background", "ground"), [("black", (40, 90, 160)), ("white", (200, 250, 180))])
+def test_a_picture_without_background_lies_on_any_ground(kind, background, ground):
+    """PNG's opacity: laid over a colour it is the picture that is drawn on that colour."""
+    add, look = DRAWN[kind]
+    x = np.linspace(-10, 10, 61)
+    lines = [np.c_[x, 0.3 * x + y, 0 * x + z] for z, y in ((0.0, 0.0), (-5.0, 1.5), (-9.0, -3.0))]
+    lines.append(np.c_[0.2 * x, x, 0 * x + 3.0])
+    plotter = pv.Plotter(off_screen=True, window_size=(200, 150))
+    plotter.set_background(background)
+    actor = getattr(plotter, add)(lines, **look)
+    if add == "add_fiblets":
+        actor.halos = True
+    plotter.picture.antialias = 4
+    plotter.set_background(background, top="grey" if background == "black" else None)  # no gradient is left of it
+    plotter.view_xy()
+    found = plotter.screenshot(None, transparent_background=True).astype(float)
+    share = found[..., 3:] / 255.0
+    assert ((share > 0.05) & (share < 0.95)).any()
+    assert (found[0, 0] == 0).all()
+    plotter.set_background(np.array(ground) / 255.0)
+    plotter.render()
+    drawn = plotter.screenshot(None)[..., :3].astype(float)
+    off = np.abs(share * found[..., :3] + (1.0 - share) * ground - drawn)
+    assert off.max() <= 3.0
+    assert plotter.screenshot(None).shape[-1] == 3
+    plotter.close()
+
+
+def test_a_picture_of_meshes_is_pyvistas():
+    plotter = pv.Plotter(off_screen=True, window_size=(60, 60))
+    plotter.set_background("green")
+    plotter.add_mesh(pv.Sphere(), color="white", opacity=0.5, lighting=False)
+    picture = plotter.screenshot(None, transparent_background=True)
+    assert picture[30, 30].tolist() == [191, 223, 191, 191]
+    plotter.close()

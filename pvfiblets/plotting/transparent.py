@@ -1,0 +1,100 @@
+"""Pictures whose background is transparent: ``plotter.screenshot(transparent_background=True)``.
+
+VTK blends smooth edges and whatever is translucent with the background's colour, and its picture keeps that. So the
+scene is drawn on two grounds: by how much a pixel differs, the ground shows through, and the rest is the colour of what
+is drawn. Halos, fog and other things of the background's colour become transparent, too.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pyvista as pv
+
+from pvfiblets.plotting.call_signature import replace_method
+
+__all__ = ["screenshot"]
+
+# Red and blue differ. Both of a pair are dark, or light: what contrasts with the background stays as it is.
+_DARK = (0.0, 0.0, 0.0), (1.0, 0.0, 1.0)
+_LIGHT = (1.0, 1.0, 1.0), (0.0, 1.0, 0.0)
+
+_METHOD: Any = next(vars(kind)["screenshot"] for kind in pv.Plotter.__mro__ if "screenshot" in vars(kind))
+
+
+def screenshot(plotter: Any, filename: Any = None, *, return_img: bool = True, **options: Any) -> Any:
+    """Take a picture without the background, as PNG has it: colours are not multiplied by the opacity.
+
+    Parameters
+    ----------
+    plotter : pyvista.BasePlotter
+    filename : str, path, file object or None
+    return_img : bool
+    **options
+        ``window_size`` and ``scale`` of :meth:`pyvista.Plotter.screenshot`.
+
+    Returns
+    -------
+    pyvista_ndarray or None
+        ``(height, width, 4)`` uint8.
+    """
+    pictures = []
+    for ground in range(2):
+        with _on_ground(plotter, ground):
+            if not plotter._first_time:  # noqa: SLF001 - else the method renders
+                plotter.render()
+            pictures.append(np.asarray(_METHOD(plotter, None, transparent_background=False, **options)))
+    whole = _unmixed(*(picture[..., :3].astype(np.int32) for picture in pictures)).view(pv.pyvista_ndarray)
+    return plotter._save_image(whole, filename, return_img)  # noqa: SLF001 - as the method does
+
+
+def _unmixed(on_first: npt.NDArray[np.int32], on_second: npt.NDArray[np.int32]) -> npt.NDArray[np.uint8]:
+    """Return colours and opacities of two pictures, on the first and the second ground of a pair."""
+    gap = (on_second - on_first)[..., ::2].sum(axis=-1)
+    opacity = 255 - (np.abs(gap) + 1) // 2
+    ground = np.where(gap < 0, 255 - opacity, 0)  # of the first, white or black
+    colour = (255 * (on_first - ground[..., None]) + opacity[..., None] // 2) // np.maximum(opacity, 1)[..., None]
+    colour[opacity == 0] = 0
+    return np.concatenate([np.clip(colour, 0, 255), opacity[..., None]], axis=-1).astype(np.uint8)
+
+
+@contextmanager
+def _on_ground(plotter: Any, number: int) -> Iterator[None]:
+    """Have all renderers of a plotter draw on the first or the second of their grounds meanwhile."""
+    from pvfiblets.mappers.shading import LUMINANCE, background
+
+    renderers = list(plotter.renderers)
+    before = [(one.GetBackground(), one.GetGradientBackground(), one.GetTexturedBackground()) for one in renderers]
+    for renderer in renderers:
+        light = float(np.mean(background(renderer), axis=0) @ LUMINANCE) > 0.5
+        renderer.SetBackground((_LIGHT if light else _DARK)[number])
+        renderer.SetGradientBackground(False)
+        renderer.SetTexturedBackground(False)
+    try:
+        yield
+    finally:
+        for renderer, (colour, gradient, textured) in zip(renderers, before, strict=True):
+            renderer.SetBackground(colour)
+            renderer.SetGradientBackground(gradient)
+            renderer.SetTexturedBackground(textured)
+
+
+def _screenshot(plotter: Any, original: Any, arguments: tuple[Any, ...], named: dict[str, Any]) -> Any:
+    from pvfiblets.mappers.engine_mapper import shows_engine
+
+    given = inspect.signature(original).bind(plotter, *arguments, **named).arguments
+    transparent = given.get("transparent_background")
+    if transparent is None:
+        transparent = plotter._theme.transparent_background  # noqa: SLF001 - as the method does
+    if not transparent or plotter.render_window is None or not any(map(shows_engine, plotter.renderers)):
+        return original(plotter, *arguments, **named)
+    options = {name: value for name, value in given.items() if name not in ("self", "transparent_background")}
+    return screenshot(plotter, **options)
+
+
+replace_method("screenshot", _screenshot, __name__)
