@@ -24,6 +24,7 @@ from pvfiblets.plotting.call_signature import document
 from pvfiblets.plotting.settings import Given, Setting, Settings
 from pvfiblets.plotting.settings import arguments as settings_of_call
 from pvfiblets.plotting.shared_settings import Common
+from pvfiblets.plotting.source_changes import SourceChanges
 from pvfiblets.plotting.words_of_add_mesh import why_not
 
 
@@ -148,6 +149,7 @@ class ActorRegistry(Generic[A]):
         self._actors: list[A] = []
         self._renderers: dict[str, tuple[Any, int, set[str]]] = {}
         self._bars: dict[str, _Bar] = {}
+        self._sources: dict[str, SourceChanges] = {}
 
     def add(self, /, source: Any, **arguments: Any) -> A:
         """Make an actor and add it to the plotter."""
@@ -156,7 +158,10 @@ class ActorRegistry(Generic[A]):
         given = Given(self._SETTINGS, arguments)
         own = {name: value for name, value in arguments.items() if name not in known}
         self._check_known(own)
-        return self._add_actor(self._make(source, given, **own), **common)
+        actor = self._add_actor(self._make(source, given, **own), **common)
+        if hasattr(source, "IsA") and source.IsA("vtkDataSet"):
+            self._sources[actor.memory_address] = SourceChanges(source, actor)
+        return actor
 
     def _make(self, *source: Any, **own: Any) -> A:
         """Return an actor; its doc and its arguments are those of ``add``."""
@@ -312,12 +317,16 @@ class ActorRegistry(Generic[A]):
         for _renderer, _tag, shown in self._renderers.values():
             shown.discard(actor.memory_address)
         self._bars.pop(actor.memory_address, None)
+        self._sources.pop(actor.memory_address, None)
         actor.watch(None)
         actor.release(self._plotter.render_window)
 
     def _raise_pending(self, _plotter: Any = None) -> None:
         for actor in self:
             actor.raise_pending()
+            changes = self._sources.get(actor.memory_address)
+            if changes is not None and changes.warn(actor, self.ADD):
+                del self._sources[actor.memory_address]
 
     def __plotter_close__(self) -> None:
         """Release everything; PyVista calls this before the render window goes."""

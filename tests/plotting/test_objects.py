@@ -84,3 +84,31 @@ def test_tables_of_selections(plotter, three_lines):
     assert table["streamline"].tolist() == [0, 2]
     assert table["weight"].tolist() == [1.0, 100.0]
     np.testing.assert_allclose(table["length"], 20.0, atol=0.2)
+
+
+@pytest.mark.parametrize("add", ["add_fiblets", "add_spline_tubes", "add_halo_lines", "add_raycast_volume"])
+def test_changes_in_place_are_told_once(plotter, three_lines, add):
+    mesh = three_lines.to_polydata()
+    if add == "add_raycast_volume":
+        mesh = pv.ImageData(dimensions=(4, 4, 4))
+        mesh["height"] = np.arange(64.0)
+    actor = getattr(plotter, add)(mesh, scalars="height")
+    plotter.show(auto_close=False)
+    mesh["other"] = np.zeros(mesh.n_points)  # is nobody's business
+    mesh.set_active_scalars("other")
+    plotter.render()
+    mesh["height"][:3] = 0.25
+    how = r"actor.update\(mesh\)" if hasattr(actor, "update") else rf"{add}\(mesh, name="
+    with pytest.warns(UserWarning, match=rf"array 'height' of the .* changed after {add}\(\) had copied it.*{how}"):
+        plotter.render()
+    plotter.render()
+    if add == "add_fiblets":
+        actor = plotter.add_fiblets(mesh, scalars="height", name="anew")
+        mesh.points[:, 2] += 5.0
+        with pytest.warns(UserWarning, match="points of the PolyData changed"):
+            plotter.render()
+        actor = plotter.add_fiblets(mesh, scalars="height", name="anew")
+        mesh.points[:, 2] += 5.0
+        actor.update(mesh)
+        plotter.render()
+        assert actor.fiblets.bounds[4] == pytest.approx(mesh.bounds[4], abs=0.01)
