@@ -48,19 +48,22 @@ def screenshot(plotter: Any, filename: Any = None, *, return_img: bool = True, *
         with _on_ground(plotter, ground):
             if not plotter._first_time:  # noqa: SLF001 - else the method renders
                 plotter.render()
-            pictures.append(np.asarray(_METHOD(plotter, None, transparent_background=False, **options)))
-    whole = _unmixed(*(picture[..., :3].astype(np.int32) for picture in pictures)).view(pv.pyvista_ndarray)
+            taken = _METHOD(plotter, None, transparent_background=True, **options)
+            pictures.append(np.asarray(taken, np.float64))
+    whole = _unmixed(*pictures).view(pv.pyvista_ndarray)
     return plotter._save_image(whole, filename, return_img)  # noqa: SLF001 - as the method does
 
 
-def _unmixed(on_first: npt.NDArray[np.int32], on_second: npt.NDArray[np.int32]) -> npt.NDArray[np.uint8]:
+def _unmixed(on_first: npt.NDArray[np.float64], on_second: npt.NDArray[np.float64]) -> npt.NDArray[np.uint8]:
     """Return colours and opacities of two pictures, on the first and the second ground of a pair."""
-    gap = (on_second - on_first)[..., ::2].sum(axis=-1)
-    opacity = 255 - (np.abs(gap) + 1) // 2
-    ground = np.where(gap < 0, 255 - opacity, 0)  # of the first, white or black
-    colour = (255 * (on_first - ground[..., None]) + opacity[..., None] // 2) // np.maximum(opacity, 1)[..., None]
-    colour[opacity == 0] = 0
-    return np.concatenate([np.clip(colour, 0, 255), opacity[..., None]], axis=-1).astype(np.uint8)
+    gap = (on_second - on_first)[..., :3:2].mean(axis=-1)
+    empty = on_first[..., 3] == 0.0
+    most = max(float(np.abs(gap)[empty].mean()), 1.0) if empty.any() else 255.0  # less where tones are mapped
+    opacity = np.clip(np.rint(255.0 * (1.0 - np.abs(gap) / most)), 0.0, 255.0)
+    through = np.where(gap < 0.0, most * (1.0 - opacity / 255.0), 0.0)  # of the first ground: white, or black
+    colour = (on_first[..., :3] - through[..., None]) * 255.0 / np.maximum(opacity, 1.0)[..., None]
+    colour[opacity == 0.0] = 0.0
+    return np.concatenate([np.clip(np.rint(colour), 0.0, 255.0), opacity[..., None]], axis=-1).astype(np.uint8)
 
 
 @contextmanager

@@ -23,7 +23,7 @@ def scene():
     with drawn() as plotter:
         yield plotter
 
-def mean_of_pictures(plotter, n, *, renderer=None, size=SIZE, **how):
+def mean_of_pictures(plotter, n, *, renderer=None, size=SIZE, of=np.asarray, **how):
     """Draw the pictures apart, with a camera that is moved by hand, and let NumPy say their mean."""
     plotter.picture.antialias = "off"
     camera = (renderer or plotter.renderer).GetActiveCamera()
@@ -31,7 +31,7 @@ def mean_of_pictures(plotter, n, *, renderer=None, size=SIZE, **how):
     for position in sample_positions(n):
         with shifted(camera, size, position):
             plotter.render_window.Render()
-            total = total + shot(plotter, **how)
+            total = total + of(shot(plotter, **how))
     plotter.render()
     return total / n
 
@@ -368,12 +368,17 @@ def gradient(folder):
     return str(path)
 
 
+def multiplied(picture):
+    """Return a picture whose colours are multiplied by its opacity, as means are."""
+    share = picture[..., 3:] / 255.0
+    return np.concatenate([share * picture[..., :3], picture[..., 3:]], axis=-1)
+
+
 def test_transparent_backgrounds_have_the_mean_of_alpha(scene):
     scene.picture.antialias = 8
     scene.render()
-    found = shot(scene, transparent_background=True)
-    assert found.shape[2] == 4
-    wanted = mean_of_pictures(scene, 8, transparent_background=True)
+    found = multiplied(shot(scene, transparent_background=True))
+    wanted = mean_of_pictures(scene, 8, of=multiplied, transparent_background=True)
     assert np.abs(found - wanted).max() <= 1.0
     assert len(np.unique(found[..., 3])) > 4
 

@@ -175,6 +175,15 @@ def test_a_picture_without_background_lies_on_any_ground(kind, background, groun
     plotter.close()
 
 
+def test_mapped_tones_leave_no_background(plotter, lines):
+    plotter.set_background("white")
+    plotter.add_fiblets(lines, **FLAT | {"color": "lime"})
+    plotter.picture.tone = {"operator": "reinhard", "exposure": 1.5}
+    picture = plotter.screenshot(None, transparent_background=True)
+    assert (picture[0, 0] == 0).all()
+    assert set(np.unique(picture[..., 3])) == {0, 255}
+
+
 def test_a_picture_of_meshes_is_pyvistas():
     plotter = pv.Plotter(off_screen=True, window_size=(60, 60))
     plotter.set_background("green")
