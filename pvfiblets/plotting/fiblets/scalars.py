@@ -101,7 +101,8 @@ class Scalars:
     def colour_range(self) -> tuple[float, float]:
         """The range, or one of which equal values that differ by rounding all have the first colour."""
         low, high = self.range
-        stored_single = bool(np.float32(low) == low and np.float32(high) == high)
+        with np.errstate(over="ignore"):
+            stored_single = bool(np.float32(low) == low and np.float32(high) == high)
         relative = 2.0 * float(np.finfo(np.float32).eps) if stored_single else 64.0 * float(np.finfo(np.float64).eps)
         if high - low <= max(self.rounding, relative * max(abs(low), abs(high))):
             high = low + 1000.0 * (high - low)
