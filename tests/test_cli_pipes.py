@@ -142,6 +142,7 @@ def test_terminals_are_neither_read_nor_filled_with_bytes(monkeypatch, capsys, f
     assert "a terminal here" in capsys.readouterr().err
 
 
+@pytest.mark.more
 def test_programs_joined_by_a_shell(files, brain, tmp_path):
     """Through three processes and real pipes; and into one that does not read, without a word."""
     command = f"{sys.executable} -m pvfiblets"

@@ -37,6 +37,7 @@ def within(lines):
     return same
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", HALO_SETS)
 def test_sizes_are_the_papers(name, made):
     drawn = made(name)
@@ -127,6 +128,7 @@ def test_points_lie_evenly_on_surfaces(made):
     assert radius.max() < 160.0
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", ["shape-small", "fibres-subset", "office"])
 def test_a_seed_fixes_every_number(name):
     first, again, other = halo_set(name, 3), halo_set(name, 3), halo_set(name, 4)

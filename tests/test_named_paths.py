@@ -9,6 +9,8 @@ import tokenize
 from collections.abc import Iterator
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).resolve().parents[1]
 KINDS = ("glsl", "comp", "frag", "vert", "geom", "tesc", "tese", "task", "mesh", "py")
 NAMED = re.compile(
@@ -70,6 +72,7 @@ def test_a_dead_pointer_is_seen():
     ]
 
 
+@pytest.mark.more
 def test_every_named_path_is_there():
     kinds = (*(f".{kind}" for kind in KINDS), ".md", ".rst")
     sources = [name for name in FILES if name.endswith(kinds) and not name.startswith("docs/benchmarks/")]

@@ -18,6 +18,7 @@ from tests.web.firefox import launched_firefox
 CONFTEST = Path(__file__).with_name("conftest.py")
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("body", "on_ci", "passes"),
     [
@@ -73,6 +74,7 @@ def test_list(e):
 """
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("arguments", "fewest", "most", "few"),
     [([], 12, 15, [0, 2]), (["-m", ""], 24, 24, [*range(5)])],

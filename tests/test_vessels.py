@@ -25,6 +25,7 @@ def distances(points, segments):
     return radius - away, radius
 
 
+@pytest.mark.more
 def test_brightness_is_that_of_the_nearest_vessels(tree):
     volume, segments = tree
     rng = np.random.default_rng(0)

@@ -180,6 +180,7 @@ def too_small(request, tmp_path):
     subprocess.run(["umount", tmp_path], check=True)
 
 
+@pytest.mark.few(1)
 def test_every_writer_says_what_was_needed_and_leaves_the_old_file(too_small, tmp_path_factory):
     """VTK's own included, which do not tell, print pages, and delete what they could not finish."""
     from pvfiblets import formats

@@ -152,6 +152,7 @@ def test_data_that_cannot_be_made_is_a_row(card, tmp_path):
     assert row["unmeasured"].startswith("its data was not made: ")
 
 
+@pytest.mark.more
 def test_a_bare_machine_draws_cells_without_what_users_have(tmp_path):
     """Libraries beside moderngl, NumPy and numba are named as missing, and a cell is drawn all the same."""
     missing = ("vtk", "vtkmodules", "pyvista", "matplotlib", "nibabel", "tqdm", "platformdirs", "PIL", "scipy")

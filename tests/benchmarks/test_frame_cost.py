@@ -13,6 +13,7 @@ from .scripts import imported
 pytestmark = pytest.mark.skipif(not possible(), reason="calls are recorded on x86-64 and Linux only")
 
 
+@pytest.mark.more
 @pytest.mark.parametrize(("pipeline", "most"), [("compute", 90), ("geometry", 12)])
 def test_a_chunk_more_asks_little_of_opengl(gl, pipeline, most):
     """Whatever the graphics card, the processor makes these calls in every picture for each chunk."""

@@ -35,6 +35,7 @@ def ball(bench):
     return tubes, dataclasses.replace(near, eye=1.5 * near.eye - 0.5 * near.centre, far=2.0 * near.far)
 
 
+@pytest.mark.more
 def test_one_command_measures_and_says_what_it_left_out(tmp_path):
     command = ["--sets", "helices-3", "--size", *SIZE, "--frames", "3", "--views", "far"]
     command += ["--methods", "tube-6", "tube-90x40", "tessellated", "--limit", "60", "0.71"]

@@ -82,6 +82,7 @@ def test_what_takes_too_long_is_left_out_and_said(bench, tmp_path):
     assert bench.tables.line(rows[0]).startswith("| mip | engine | unmeasured: takes more than 0.01 s here |")
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("mode", MODES)
 def test_the_plotter_shows_the_engines_picture(bench, mode):
     volume = ball()

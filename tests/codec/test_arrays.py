@@ -42,6 +42,7 @@ def assert_same(lines: Streamlines, **options: object) -> None:
         np.testing.assert_array_equal(mine, theirs)
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("name", SAMPLES)
 def test_numpy_writes_the_kernels_codes(name: str) -> None:
     assert_same(SAMPLES[name])
@@ -58,6 +59,7 @@ def test_numpy_writes_the_kernels_codes_on_real_files(shared_data: Path, name: s
     assert_same(lines[:100], max_error=0.02, max_angle=2.0)
 
 
+@pytest.mark.more
 @settings(max_examples=25)
 @given(st.data())
 def test_numpy_writes_the_kernels_codes_for_any_lines(data: st.DataObject) -> None:
@@ -113,6 +115,7 @@ def decoded(fiblets: FibletSet, way: str) -> tuple[np.ndarray, str]:
     return points, ""
 
 
+@pytest.mark.more
 def test_small_sets_are_shown_and_decoded_without_a_compiler(tmp_path: Path) -> None:
     script = tmp_path / "small.py"
     script.write_text(

@@ -57,6 +57,7 @@ def assert_capsules_are_right(fiblets: FibletSet) -> None:
     assert max(spheres) - slack <= fiblets.largest_radius <= max(spheres) * (1 + 1e-6) + slack
 
 
+@pytest.mark.few(11)
 @pytest.mark.parametrize("effort", ["fast", "high"])
 @pytest.mark.parametrize("name", extremes())
 def test_capsules_hold_extreme_lines(name: str, effort: str) -> None:
@@ -71,6 +72,7 @@ def test_capsules_hold_lines_of_all_kinds() -> None:
     assert_capsules_are_right(pf.compress(lines, max_error=1e-7))  # 32-bit anchors
 
 
+@pytest.mark.more
 @settings(max_examples=40)
 @given(st.data())
 def test_capsules_hold_any_lines(data: st.DataObject) -> None:
@@ -111,6 +113,7 @@ def test_kernels_compute_what_the_reference_says() -> None:
         assert [capsule_kernels.end_part(word, axis) for axis in range(3)] == levels.tolist()
 
 
+@pytest.mark.more
 def test_a_mapped_file_has_the_same_bounds(tmp_path) -> None:
     lines = wandering(30, 100)
     pf.write(tmp_path / "a.trx", lines)

@@ -89,12 +89,14 @@ def assert_matches_reference(streamlines: Streamlines, fiblets: FibletSet, most:
 SAMPLES = {"smooth": smooth, "noisy": noisy, "wandering": wandering}
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("name", SAMPLES)
 def test_kernels_write_the_references_codes(name: str) -> None:
     streamlines = SAMPLES[name]()
     assert_matches_reference(streamlines, pf.compress(streamlines))
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     "name",
     [
@@ -142,6 +144,7 @@ def test_kernels_decode_what_the_reference_decodes(name: str) -> None:
     np.testing.assert_array_equal(fiblets.decompress(dtype=np.float32).points, expected.astype(np.float32))
 
 
+@pytest.mark.few(7)
 @pytest.mark.parametrize("effort", ["fast", "high"])
 @pytest.mark.parametrize("name", extremes())
 def test_extreme_lines_keep_the_promise(name: str, effort: str) -> None:
@@ -158,6 +161,7 @@ def test_extreme_lines_keep_the_promise(name: str, effort: str) -> None:
     assert error.max_mm <= fiblets.promise
 
 
+@pytest.mark.more
 @settings(max_examples=60)
 @given(st.data())
 def test_any_lines_keep_any_promise(data: st.DataObject) -> None:
@@ -181,6 +185,7 @@ def test_any_lines_keep_any_promise(data: st.DataObject) -> None:
         assert np.linalg.norm(decoded.points - points, axis=1).max() <= fiblets.promise
 
 
+@pytest.mark.more
 def test_figures_on_smooth_and_noisy_constant_steps() -> None:
     """The issue's figures in steps (the paper: max 0.17, mean 0.05), at the bytes of a full fiblet.
 

@@ -81,6 +81,7 @@ def streamlines(name: str, kind: type) -> Streamlines:
 NONSENSE = re.compile(r"\bnan\b|\binf\b|\bNone\b|e[-+][0-9]{3}|Traceback")
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("kind", [np.float32, np.float64])
 @pytest.mark.parametrize("name", lines_of(np.float32))
 def test_a_degenerate_set_is_kept_within_its_promise_and_told_of(
@@ -113,6 +114,7 @@ def test_a_degenerate_set_is_kept_within_its_promise_and_told_of(
     np.testing.assert_array_equal(whole.decompress().points, want.points)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("name", "least", "most"),
     [

@@ -14,6 +14,7 @@ from pvfiblets.streamlines import Streamlines
 from .samples import smooth, wandering
 
 
+@pytest.mark.more
 def test_errors_are_those_of_a_plain_computation(monkeypatch: pytest.MonkeyPatch) -> None:
     lines = Streamlines.concatenate([wandering(30, 50), Streamlines(np.empty((0, 3)), [0, 0]), smooth(30, 100)])
     fiblets = pf.compress(lines, max_error=0.03)
@@ -78,6 +79,7 @@ def test_a_zero_length_streamline_resamples_to_its_ends() -> None:
     assert fresh.points.tolist() == [[0, 0, 0], [0, 0, 0]]
 
 
+@pytest.mark.more
 def test_compress_resamples_only_when_asked() -> None:
     lines = smooth(5, 50)
     assert pf.compress(lines).n_points == lines.n_points

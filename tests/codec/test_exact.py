@@ -45,6 +45,7 @@ def same_points(fiblets, lines):
     np.testing.assert_array_equal(back.offsets, lines.offsets)
 
 
+@pytest.mark.few(9)
 @pytest.mark.parametrize("name", CASES)
 def test_every_bit_is_kept_in_memory_and_in_files(name, tmp_path):
     lines = CASES[name]
@@ -121,6 +122,7 @@ def test_small_sets_are_exact_unless_something_is_asked_of_coding():
     assert pf.compress(large).exact is None
 
 
+@pytest.mark.more
 @pytest.mark.usefixtures("usual_limits")
 def test_sets_that_coding_would_enlarge_are_kept_as_they_are(tmp_path, capsys):
     rng = np.random.default_rng(0)

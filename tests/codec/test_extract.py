@@ -33,6 +33,7 @@ def with_groups() -> Streamlines:
     )  # fmt: skip
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("order", ["input", "hilbert"])
 @pytest.mark.parametrize("mapped", [False, True])
 def test_parts_of_every_kind(order: str, mapped: bool, tmp_path: Path) -> None:
@@ -79,6 +80,7 @@ def test_a_part_without_points_is_a_set_and_can_be_saved(ids: object, tmp_path: 
         assert len(pf.read(tmp_path / name)) == len(part), name
 
 
+@pytest.mark.few(7)
 @pytest.mark.parametrize("name", extremes())
 def test_extreme_lines(name: str) -> None:
     whole = pf.compress(extremes()[name])
@@ -92,6 +94,7 @@ def test_anchors_of_32_bits() -> None:
     assert_equal(whole[[19, 2]], whole.decompress([19, 2], dtype=np.float64), whole)
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("suffix", [".trk", ".tck", ".trx", ".vtk", ".vtp"])
 def test_a_part_is_saved_in_any_format(suffix: str, tmp_path: Path) -> None:
     whole = pf.compress(every_kind(), per_point=["height"])

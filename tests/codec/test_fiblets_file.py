@@ -79,6 +79,7 @@ def test_a_rich_set_survives_the_disk(tmp_path: Path) -> None:
     assert os.listdir(tmp_path) == ["a.fiblets"], "nothing else may be left behind"
 
 
+@pytest.mark.few(8)
 @pytest.mark.parametrize("name", extremes())
 def test_every_extreme_survives_the_disk(tmp_path: Path, name: str) -> None:
     fiblets = pf.compress(extremes()[name])
@@ -200,6 +201,7 @@ def test_selection_keeps_everything_that_belongs() -> None:
         fiblets.decompress([1.5])
 
 
+@pytest.mark.more
 def test_a_few_streamlines_are_found_as_many_are(monkeypatch: pytest.MonkeyPatch) -> None:
     """Over several pages, with streamlines that cross from one into the next, and with empty ones."""
     rng = np.random.default_rng(0)

@@ -42,6 +42,7 @@ def test_sums_and_histograms_are_those_of_numpy(up: bool) -> None:
     assert largest == values[4:].max()
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("step", ["auto", 0.7])
 def test_a_sample_is_of_every_so_many_th_streamline(
     step: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

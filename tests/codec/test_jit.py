@@ -25,6 +25,7 @@ def run(folder: Path, **more: str) -> list[str]:
     ).stdout.split()
 
 
+@pytest.mark.more
 def test_a_change_in_another_module_compiles_anew(tmp_path: Path) -> None:
     shutil.copytree(
         Path(pvfiblets.__file__).parent, tmp_path / "pvfiblets", ignore=shutil.ignore_patterns("__pycache__", "shaders")
@@ -37,6 +38,7 @@ def test_a_change_in_another_module_compiles_anew(tmp_path: Path) -> None:
     assert run(tmp_path) == ["3.0", "0"]
 
 
+@pytest.mark.more
 @pytest.mark.skipif(sys.platform != "linux", reason="the user's folder for such things is set for Linux")
 def test_another_copy_of_the_same_sources_finds_them_compiled(tmp_path: Path) -> None:
     home = {"XDG_CACHE_HOME": str(tmp_path / "home"), "NUMBA_CACHE_DIR": ""}
@@ -55,6 +57,7 @@ def test_another_copy_of_the_same_sources_finds_them_compiled(tmp_path: Path) ->
     assert not list(tmp_path.glob("o*/pvfiblets/**/*.nbi"))
 
 
+@pytest.mark.more
 @pytest.mark.skipif(sys.platform != "linux", reason="the user's folder for such things is set for Linux")
 def test_a_home_that_cannot_be_written_to_is_no_error(tmp_path: Path) -> None:
     shutil.copytree(
@@ -87,6 +90,7 @@ print("done")
 """
 
 
+@pytest.mark.more
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="processes are forked, which this system cannot")
 def test_processes_that_were_forked_after_kernels_ran_do_the_same(tmp_path: Path) -> None:
     """GNU's OpenMP ended or hung them; pools of processes then waited for ever."""
@@ -99,6 +103,7 @@ def test_processes_that_were_forked_after_kernels_ran_do_the_same(tmp_path: Path
     assert done.stdout.split() == ["done"], done.stderr
 
 
+@pytest.mark.more
 def test_all_that_codes_is_compiled_beforehand() -> None:
     """A part that lacks a kernel would leave it to the first large set."""
     environment = {**os.environ, "PYTHONPATH": str(Path(pvfiblets.__file__).parents[1])}

@@ -125,6 +125,7 @@ def test_small_caps_keep_their_digits() -> None:
     assert direction_codebook.cap_ratios()[0] == pytest.approx(closed, rel=1e-6)
 
 
+@pytest.mark.few(7)
 @pytest.mark.parametrize("cap", range(layout.CAPS))
 def test_candidates_always_hold_the_nearest_code(cap: int) -> None:
     rng = np.random.default_rng(cap)

@@ -47,6 +47,7 @@ def assert_same(a: Streamlines, b: Streamlines) -> None:
     assert a.groups["some"].tolist() == b.groups["some"].tolist()
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("mapped", [False, True])
 def test_everything_comes_back_in_the_order_of_the_input(mapped: bool, tmp_path: Path) -> None:
     lines = lines_with_everything()
@@ -86,6 +87,7 @@ def test_streamlines_of_one_cell_keep_their_order() -> None:
     assert (np.diff(order)[np.diff(cells) == 0] > 0).all()
 
 
+@pytest.mark.few(6)
 @pytest.mark.parametrize("name", extremes())
 def test_extreme_lines_can_be_ordered(name: str) -> None:
     lines = extremes()[name]

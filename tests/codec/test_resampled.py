@@ -62,6 +62,7 @@ CASES = {
 }
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", CASES)
 @pytest.mark.parametrize("options", [{"step": 1.0, "max_error": 0.01}, {"step": 2.0}, {"step": 0.3, "max_error": 0.1}])
 def test_lines_stay_within_the_promise(name, options):

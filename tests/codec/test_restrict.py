@@ -53,6 +53,7 @@ def every_kind() -> Streamlines:
     )  # fmt: skip
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("order", ["input", "hilbert"])
 @pytest.mark.parametrize("mapped", [False, True])
 def test_of_every_kind_the_same_points_come_back(order: str, mapped: bool, tmp_path: Path) -> None:
@@ -75,6 +76,7 @@ def test_of_every_kind_the_same_points_come_back(order: str, mapped: bool, tmp_p
     assert_restricted(whole, np.array([3, 70]), pf.FibletSet.open(tmp_path / "b.fiblets"))
 
 
+@pytest.mark.few(8)
 @pytest.mark.parametrize("name", extremes())
 def test_extreme_lines_survive(name: str) -> None:
     whole = pf.compress(extremes()[name])
@@ -112,6 +114,7 @@ def paged() -> pf.FibletSet:
     return whole
 
 
+@pytest.mark.more
 def test_streamlines_that_cross_pages(paged: pf.FibletSet) -> None:
     rng = np.random.default_rng(9)
     for ids in (
@@ -124,6 +127,7 @@ def test_streamlines_that_cross_pages(paged: pf.FibletSet) -> None:
         assert_restricted(paged, ids, restrict(paged, ids))
 
 
+@pytest.mark.more
 @given(st.lists(st.integers(0, 18000), max_size=30), st.booleans())
 def test_any_choice(paged: pf.FibletSet, ids: list[int], rest: bool) -> None:
     few = np.unique(np.array(ids, np.int64))

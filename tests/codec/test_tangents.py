@@ -57,6 +57,7 @@ def test_a_line_that_turns_back_has_no_tangent_there() -> None:
     np.testing.assert_allclose(measured(straight, back, [0, 3]), [0.0, 0.0, 0.0, 180.0], atol=1e-6)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("name", [*extremes(), "smooth", "noisy", "wandering"])
 def test_the_kernel_agrees_with_numpy(name: str) -> None:
     lines = {"smooth": smooth(), "noisy": noisy(), "wandering": wandering(), **extremes()}[name]

@@ -33,6 +33,7 @@ def angles(lines: Streamlines, *, begun: bool = True, **options: object) -> np.n
     return direction_angles(lines.points, decoded, offsets, fiblets.fiblet_points() if begun else None)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", FILES)
 def test_every_real_file_keeps_its_directions(shared_data: Path, name: str) -> None:
     found = angles(pf.read(shared_data / name))
@@ -40,6 +41,7 @@ def test_every_real_file_keeps_its_directions(shared_data: Path, name: str) -> N
     assert np.quantile(found, 0.99) < 5.0
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("effort", ["fast", "high"])
 @pytest.mark.parametrize(("make", "kept"), [(smooth, 1.0), (noisy, 1.3), (wandering, 15.0)])
 def test_any_angle_is_kept_and_none_leaves_directions_alone(make, kept: float, effort: str) -> None:
@@ -52,6 +54,7 @@ def test_any_angle_is_kept_and_none_leaves_directions_alone(make, kept: float, e
     assert bound <= kept < free
 
 
+@pytest.mark.few(6)
 @pytest.mark.parametrize("name", extremes())
 def test_directions_cost_no_extreme_line_its_promise(name: str) -> None:
     lines = extremes()[name]

@@ -46,6 +46,7 @@ def in_view(fiblets, view, slack):
     return int(inside.sum())
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", ["compute", "tessellation", "geometry", *MESH])
 @pytest.mark.parametrize("planes", [[], PLANES], ids=["no planes", "planes"])
 def test_counts_are_those_of_the_records(gl, brain, camera, name, planes):
@@ -84,6 +85,7 @@ def test_pipelines_count_alike_and_without_culling_all_in_view_is_drawn(gl, brai
         assert counts["visible"] == pytest.approx(found[0]["visible"], rel=0.01)
 
 
+@pytest.mark.more
 def test_counting_changes_nothing(gl, fabricate, random_lines, camera):
     """Chunks, other renderers between, values measured with another frame: the next pictures are as without."""
     fiblets = fabricate(random_lines(700, seed=12, longest=230), kind=2, per_fiblet=2)

@@ -64,6 +64,7 @@ CUTS = {
 }
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("parallel", [False, True], ids=["perspective", "parallel"])
 @pytest.mark.parametrize("name", CUTS)
 def test_planes_cut_as_opengl_and_numpy_cut(gl, fabricate, random_lines, camera, name, parallel):
@@ -133,6 +134,7 @@ def test_scales(gl, fabricate, random_lines, camera, scale):
     assert heights(planes, shown_points(picture, fiblets.lines)[0]).min() > -2e-3 * scale
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("normal", [(0.0, 1.0, 0.0), (1.0, 0.2, 0.0)], ids=["across", "along the view"])
 def test_plane_through_the_camera_inside_the_data(gl, fabricate, random_lines, camera, normal):
     eye = np.array([3.0, -2.0, 1.0])
@@ -217,6 +219,7 @@ def test_wide_lines_at_a_cut(gl, fabricate, camera):
     assert disc.sum() == pytest.approx(np.pi * 4.5**2, rel=0.1)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "style",
     [FibletStyle(), FibletStyle(6.0), FibletStyle(values="arc_length"), FibletStyle(2.0, values="curvature")],

@@ -61,6 +61,7 @@ def state(region, view, picture):
     return found
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("pipeline", PIPELINES)
 @pytest.mark.parametrize("name", REGIONS)
 def test_a_picture_shows_what_lies_in_the_region(gl, fabricate, random_lines, camera, name, pipeline):
@@ -80,6 +81,7 @@ def test_a_picture_shows_what_lies_in_the_region(gl, fabricate, random_lines, ca
     assert (picture.depth[picture.drawn] >= whole.depth[picture.drawn].astype(np.int64) - 2048).all()
 
 
+@pytest.mark.few(1)
 @pytest.mark.every("value")
 @pytest.mark.parametrize("pipeline", PIPELINES)
 @pytest.mark.parametrize("name", ["ball", "torus", "box without a ball"])
@@ -102,6 +104,7 @@ def test_tubes_are_cut_and_are_else_as_they_were(gl, fabricate, random_lines, ca
     np.testing.assert_array_equal(first.depth[kept], whole.depth[kept])
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("pipeline", PIPELINES[1:])
 @pytest.mark.parametrize("style", [FibletStyle(), FibletStyle(6.0)], ids=["thin", "wide"])
 def test_pipelines_agree(gl, fabricate, random_lines, camera, pipeline, style):
@@ -120,6 +123,7 @@ def test_wide_lines_are_cut_by_their_pixels(gl, fabricate, random_lines, camera)
     assert (state(BALL, view, picture) >= 0).all()
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("pipeline", PIPELINES)
 def test_fiblets_outside_are_culled_and_hidden_ones_stay_exact(gl, camera, pipeline):
     fiblets = compress(brain_streamlines(1500 if pipeline == "compute" else 400, seed=3))

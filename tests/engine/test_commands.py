@@ -66,6 +66,7 @@ CASES = [
 ]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("pipeline", "culling", "style"), CASES)
 def test_fiblets_take_so_many_a_chunk(recorded, camera, sets, pipeline, culling, style):
     """As many for one page as for another; for 1, 2, 3 and more chunks a number that grows evenly.
@@ -93,6 +94,7 @@ def test_fiblets_take_so_many_a_chunk(recorded, camera, sets, pipeline, culling,
     assert [count for _, count in others] == [least + each * (n - 1) for n, _ in others]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("culling", [None, "two-phase"])
 def test_tubes_and_halos_take_as_many_whatever_the_data(recorded, camera, culling):
     ctx, calls = recorded

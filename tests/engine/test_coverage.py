@@ -123,6 +123,7 @@ def to_window(points, matrix, size=SIZE):
     return np.concatenate([window * [*size, 1.0], clip[:, 3:]], axis=1)
 
 
+@pytest.mark.more
 @pytest.mark.parametrize(
     ("dense", "size", "parallel", "hidden"),
     [
@@ -179,6 +180,7 @@ def test_a_teleport_through_the_data_is_repaired_by_the_next_picture(gl, brain, 
     assert max(lost[3::2]) < 2e-3
 
 
+@pytest.mark.few(1)
 @pytest.mark.every("value")
 @pytest.mark.parametrize("parallel", [False, True], ids=["perspective", "parallel"])
 @pytest.mark.parametrize("low", [False, True], ids=["anchors16", "anchors32"])
@@ -274,6 +276,7 @@ def test_radius_is_between_the_thick_and_the_long(thinner):
     assert radius < 60 * 0.5, "the paper's radius is the length of a fiblet"
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("then", "now"),
     [

@@ -13,6 +13,7 @@ from .visibility_bits import planned
 TEST = "outside = outside || max(a, b) < -c.r;"
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("tolerance", [0.0, 0.5])
 def test_culling_never_shows(gl, fabricate, random_lines, camera, monkeypatch, tolerance):
     """A picture drawn by a cull pass that lets everything through is the same, byte for byte."""

@@ -91,6 +91,7 @@ def test_times_of_a_trial_that_was_given_up_do_not_count():
     assert not choice.culling
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("pipeline", ["compute", "geometry", *MESH])
 def test_no_pixel_changes_by_the_choice(gl, camera, pipeline, monkeypatch):
     monkeypatch.setattr("pvfiblets.engine.fiblets.renderer.FEW_FIBLETS", 1)

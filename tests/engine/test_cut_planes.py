@@ -71,6 +71,7 @@ def test_as_many_planes_as_there_is_room_for():
 STYLES = {"thin": FibletStyle(), "wide": FibletStyle(5.0), "tubes": FibletStyle(radius=0.8)}
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("style", STYLES)
 @pytest.mark.parametrize("name", ["plane", "box turned and stretched", "slab without a ball"])
 def test_pictures_are_those_of_regions_but_at_the_cut(gl, fabricate, random_lines, camera, name, style):

@@ -131,12 +131,14 @@ def assert_points_agree(fiblets, points):
     assert worst > 0.0  # float32 cannot be exact: zero would mean that nothing was compared
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("source", "threads"), [(SEQUENTIAL, 64), (PARALLEL, 1)], ids=["sequential", "parallel"])
 def test_direction_codes_decode_like_the_reference(gl, source, threads):
     fiblets = random_directions(800, np.random.default_rng(1))
     assert_points_agree(fiblets, decoded_by_shader(gl, fiblets, source, threads))
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("kind", [1, 2, 3, 4])
 @pytest.mark.parametrize("low", [False, True], ids=["anchors16", "anchors32"])
 @pytest.mark.parametrize(("source", "threads"), [(SEQUENTIAL, 64), (PARALLEL, 1)], ids=["sequential", "parallel"])

@@ -49,6 +49,7 @@ def sorted_layers(depths, count):
     return np.take_along_axis(depths, order, 0), order
 
 
+@pytest.mark.few(1)
 @pytest.mark.every("pair")
 @pytest.mark.parametrize("tolerance", [0.0, 0.5])
 @pytest.mark.parametrize("width", [1.0, 5.0])
@@ -212,6 +213,7 @@ def test_a_picture_of_another_size(gl, fabricate, camera):
     renderer.release()
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("pipeline", ["compute", "tessellation", "geometry"])
 def test_tubes_are_one_surface_each(gl, fabricate, camera, pipeline):
     lines = bent_lines(5, seed=5, points=40)

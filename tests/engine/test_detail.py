@@ -79,6 +79,7 @@ def simplified(fiblets, single):
     return [np.concatenate(line) for line in lines], [np.concatenate(i) for i in index]
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("tolerance", [0.5, 2.0])
 @pytest.mark.parametrize("view", VIEWS)
 def test_pixels_are_those_of_the_simplified_lines(gl, fabricate, random_lines, camera, view, tolerance):
@@ -136,6 +137,7 @@ def test_nothing_leads_far_away(gl, camera, distance):
     assert near(picture.drawn, 3)[whole.drawn].all()
 
 
+@pytest.mark.more
 def test_ends_stay_where_they_are(gl, camera):
     """Straight streamlines are one segment however near they are: it must not stick out where they end."""
     rng = np.random.default_rng(1)

@@ -44,6 +44,7 @@ def assert_drawn_as_decompressed(gl, camera, fiblets, **limits):
     assert near(far.drawn)[picture.drawn].mean() >= 0.99
 
 
+@pytest.mark.more
 def test_a_made_up_brain(gl, camera):
     fiblets = compress(brain_streamlines(1500, step=0.5))
     assert layout.Kind.DIRECTION in layout.unpack("kind", fiblets.decoding)
@@ -80,6 +81,7 @@ def test_gpu_bytes_per_point(gl):
     assert (sum(buffers.values()) - buffers["rotations"]) / fiblets.n_points <= 1.4
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "name",
     ["dipy_hist_tractogram.trk", "nv_stroke.trk.gz", "gen_fibercup_det_0.25mm.tck", "vtk_Coastlines_Los_Alamos.vtp"],
@@ -112,6 +114,7 @@ def test_streamlines_without_points(gl, camera):
     renderer.release()
 
 
+@pytest.mark.more
 def test_a_camera_on_a_point_looking_along_a_line(gl, camera):
     """Points in the centre of projection and in the plane through it (w = 0) neither stop nor spoil a picture."""
     line = np.stack([np.linspace(-50, 50, 101), np.zeros(101), np.zeros(101)], axis=1)

@@ -90,6 +90,7 @@ CASES = {
 }
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("name", CASES)
 def test_of_fiblets(gl, fiblets, camera, ran, name):
     options, style, of_view, some = CASES[name]

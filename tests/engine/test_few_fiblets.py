@@ -44,6 +44,7 @@ def assert_alike(one, other):
     assert np.abs(one.position - other.position)[same].max() <= 0.05
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("culling", ["two-phase", "coverage", None])
 @pytest.mark.parametrize("name", CASES)
 def test_the_picture_is_the_same(gl, fabricate, random_lines, camera, monkeypatch, name, culling):

@@ -44,6 +44,7 @@ def same_pixels(a, b):
     np.testing.assert_array_equal(a.position[drawn], b.position[drawn])
 
 
+@pytest.mark.more
 @pytest.mark.every("value")
 @pytest.mark.parametrize("pipeline", PIPELINES)
 @pytest.mark.parametrize("style", STYLES)
@@ -80,6 +81,7 @@ def kept_segments(picture, lines, bits):
     return kept
 
 
+@pytest.mark.few(1)
 @pytest.mark.every("pair")
 @pytest.mark.parametrize("pipeline", PIPELINES)
 @pytest.mark.parametrize("style", STYLES)
@@ -114,6 +116,7 @@ def test_segments_between_kept_points_are_drawn_and_no_others(
         assert (picture.ids[sure] == whole.ids[sure]).all(axis=-1).mean() > 0.995
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("pipeline", PIPELINES)
 def test_keeping_everything_changes_nothing(gl, fabricate, random_lines, camera, pipeline):
     fiblets = fabricate(random_lines(60, seed=7), kind=2)
@@ -129,6 +132,7 @@ def test_keeping_everything_changes_nothing(gl, fabricate, random_lines, camera,
     assert report["fiblets"]["in_frustum"] == 0
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("culling", ["two-phase", "coverage", None])
 def test_filters_change_live_and_culling_stays_right(gl, camera, culling):
     fiblets = compress(brain_streamlines(3000, seed=3))
@@ -152,6 +156,7 @@ def test_filters_change_live_and_culling_stays_right(gl, camera, culling):
         reference.release()
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("pipeline", PIPELINES)
 def test_sets_in_many_chunks(gl, camera, pipeline):
     fiblets = compress(brain_streamlines(4000, seed=5))

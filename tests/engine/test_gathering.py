@@ -36,6 +36,7 @@ def one_by_one(renderer, fiblets, view, style):
     return pictures
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("height", [None, 120.0])
 @pytest.mark.parametrize("pipeline", PIPELINES)
 def test_lines_are_counted_as_numpy_counts_them(gl, fabricate, random_lines, camera, pipeline, height):
@@ -52,6 +53,7 @@ def test_lines_are_counted_as_numpy_counts_them(gl, fabricate, random_lines, cam
     assert abs(found.sum() - expected.sum()) < 0.002 * expected.sum()
 
 
+@pytest.mark.more
 def test_all_pipelines_add_up_the_same(gl, fabricate, random_lines, camera):
     fiblets = fabricate(random_lines(200, seed=4), kind=2, per_fiblet=20)
     view = View(SIZE, camera(SIZE, eye=(30, -120, 40)))
@@ -74,6 +76,7 @@ STYLES = {
 }
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("name", "reciprocals"), [("thin", 0), ("wide", 0), ("tube", 0), ("tube", 1)])
 @pytest.mark.parametrize("pipeline", ["compute", "geometry"])
 def test_sums_are_those_of_streamlines_drawn_alone(gl, fabricate, camera, pipeline, name, reciprocals, monkeypatch):
@@ -148,6 +151,7 @@ def test_distances_are_those_of_the_camera(camera, height):
     assert found.far == pytest.approx(slope * far + offset, rel=1e-6)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("pipeline", PIPELINES)
 def test_filters_planes_and_others_leave_lines_out(gl, fabricate, random_lines, camera, pipeline):
     lines = random_lines(80, seed=6)

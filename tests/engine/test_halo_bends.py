@@ -68,6 +68,7 @@ LOOKS = {
 # ----------------------------------------------------------------------------------------------------- slight and sharp
 
 
+@pytest.mark.few(12)
 @pytest.mark.parametrize("name", LOOKS)
 @pytest.mark.parametrize("seed", range(2))
 def test_lines_that_turn_at_random(shows, view, seed, name):

@@ -24,6 +24,7 @@ def crowd(kind):
     return wandering(90, 30, seed=6, wander=0.3, step=1.5) if kind == "lines" else scattered(4000, spread=9.0)
 
 
+@pytest.mark.few(1)
 @pytest.mark.usefixtures("few_are_many")
 @pytest.mark.parametrize("name", EYES)
 @pytest.mark.parametrize("kind", ["lines", "points"])

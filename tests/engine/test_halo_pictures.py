@@ -70,6 +70,7 @@ LOOKS = {
 }
 
 
+@pytest.mark.few(22)
 @pytest.mark.parametrize("name", LOOKS)
 @pytest.mark.parametrize("kind", ["lines", "points"])
 def test_every_look(shows, view, kind, name):
@@ -134,6 +135,7 @@ def test_ends_of_lines_with_few_vertices(shows, above, count, n, t):
 # ---------------------------------------------------------------------------------------------------------- filtering
 
 
+@pytest.mark.few(15)
 @pytest.mark.parametrize("taper", [0.0, 2.0, 30.0])
 @pytest.mark.parametrize(("low", "high"), [(0.4, np.inf), (-np.inf, 0.55), (0.3, 0.6), (0.0, 1.0), (2.0, 3.0)])
 def test_filters(shows, view, low, high, taper):

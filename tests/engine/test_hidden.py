@@ -190,6 +190,7 @@ def found_and_seen(gl, camera, size, name, width, rng, count=2000):
     return found[asked], np.array(seen)
 
 
+@pytest.mark.few(1)
 @pytest.mark.every("value")
 @pytest.mark.parametrize("width", [1.0, 5.0])
 @pytest.mark.parametrize("name", VIEWS)

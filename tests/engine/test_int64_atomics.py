@@ -113,6 +113,7 @@ assert ctx.error == "GL_NO_ERROR"
 """
 
 
+@pytest.mark.more
 def test_pictures_are_the_same_bit_by_bit(tmp_path):
     script = tmp_path / "draw.py"
     script.write_text(DRAW)

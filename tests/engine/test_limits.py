@@ -24,6 +24,7 @@ ONE_PAGE = 12 * layout.PAGE + 4
 """Bytes of the largest buffer of a chunk of one page of short fiblets."""
 
 
+@pytest.mark.few(5)
 @pytest.mark.parametrize("buffer_bytes", [limits.LARGEST, 2**27, 2**21])
 @pytest.mark.parametrize("codes_and_points", [(58, 60), (0, 1), (0, 2), (256, 60)])
 def test_chunks_of_sets_beyond_32_bits(buffer_bytes, codes_and_points):
@@ -165,6 +166,7 @@ def several_pages(fabricate, random_lines):
     return fiblets
 
 
+@pytest.mark.more
 @pytest.mark.every("value")
 @pytest.mark.parametrize("name", ["compute", "tessellation", "geometry", *MESH])
 @pytest.mark.parametrize("culling", ["two-phase", None])
@@ -198,6 +200,7 @@ def test_one_work_group_an_axis_less_is_an_error(gl, several_pages, camera):
     made.release()
 
 
+@pytest.mark.more
 def test_streamlines_through_many_chunks_keep_their_places(gl, fabricate, camera):
     """One streamline of 49,000 points in three chunks: a pixel's place is that of the point nearest to it."""
     s = np.linspace(0.0, 1.0, 49_152)

@@ -82,6 +82,7 @@ def pictured(gl, fiblets, view, style, **options):
         renderer.release()
 
 
+@pytest.mark.few(1)
 @pytest.mark.every("pair")
 @pytest.mark.parametrize("pipeline", PIPELINES)
 @pytest.mark.parametrize("radius", [2.5, 6.0])
@@ -115,6 +116,7 @@ def test_every_pixel_shows_where_its_ray_enters(gl, knots, known, really, camera
     assert (normals < 0.1).all()
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", ["perspective", "parallel", "close"])
 def test_planes_cut_tubes_as_solids(gl, few, known, really, camera, name):
     """A cut is closed by a flat disc with the plane's normal, and nothing of a tube shows beyond a plane."""
@@ -137,6 +139,7 @@ def test_planes_cut_tubes_as_solids(gl, few, known, really, camera, name):
         assert (normals[faces] < 1e-3).mean() > 0.97
 
 
+@pytest.mark.more
 @pytest.mark.every("value")
 @pytest.mark.parametrize("pipeline", PIPELINES)
 @pytest.mark.parametrize("culling", ["two-phase", "coverage"])
@@ -158,6 +161,7 @@ def test_culling_loses_no_pixel(gl, really, fabricate, random_lines, camera, cul
     renderer.release()
 
 
+@pytest.mark.more
 def test_culling_hides_what_tubes_hide(gl, really, fabricate, camera):
     """Behind a wall of thick tubes nothing is drawn in the second picture."""
     wall = [np.array([[x, 0.0, -60.0], [x, 0.0, 60.0]]) for x in np.arange(-60.0, 61.0, 2.0)]
@@ -173,6 +177,7 @@ def test_culling_hides_what_tubes_hide(gl, really, fabricate, camera):
     assert counts[1]["in_frustum"] == len(wall) + len(behind)
 
 
+@pytest.mark.few(1)
 @pytest.mark.every("value")
 @pytest.mark.parametrize("pipeline", PIPELINES)
 @pytest.mark.parametrize("tolerance", [0.0, 0.5])
@@ -207,6 +212,7 @@ def test_a_camera_inside_a_tube_looks_through(gl, really, fabricate, camera, pip
         assert not (picture.ids[..., 0][picture.drawn] == 0).any()
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
 def test_any_scale_and_far_from_the_origin(gl, really, fabricate, camera, scale):
     """Tubes of nanometres and of kilometres, a million millimetres away: as exact as at the origin."""
@@ -230,6 +236,7 @@ def test_any_scale_and_far_from_the_origin(gl, really, fabricate, camera, scale)
     assert (np.abs(picture.window_depth - expected.depth)[both] < 2e-5).mean() > 0.99
 
 
+@pytest.mark.few(1)
 @pytest.mark.every("value")
 @pytest.mark.parametrize("pipeline", PIPELINES)
 @pytest.mark.parametrize("width", [2.0, 9.0])
@@ -327,6 +334,7 @@ ASKED = {
 RECORDS = ["DIRECTION", "LATTICE", "WIDE_LATTICE", "ANCHORS_LOW", "RANK_TO_ID"]
 
 
+@pytest.mark.few(6)
 @pytest.mark.parametrize("kind", ["together", "serial"])
 @pytest.mark.parametrize("asked", ASKED)
 def test_mesh_stages_link(tmp_path, kind, asked):
@@ -341,6 +349,7 @@ def test_mesh_stages_link(tmp_path, kind, asked):
     assert done.returncode == 0, done.stdout
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("serial", [False, True], ids=["together", "serial"])
 @pytest.mark.parametrize("planes", [[], SLAB], ids=["whole", "cut"])
 @pytest.mark.parametrize("name", ["perspective", "close"])
@@ -393,6 +402,7 @@ def test_software_opengl_draws_the_largest_tubes_whole(gl, fabricate, camera):
         assert (np.isfinite(expected.depth) ^ picture.drawn).sum() <= 2
 
 
+@pytest.mark.more
 def test_what_software_opengl_draws_otherwise(gl, fabricate, random_lines, camera):
     """Lines, tubes with values, lines again: pictures and counts are those of renderers of their own."""
     fiblets = fabricate(random_lines(60, seed=5), kind=2, per_fiblet=20)
@@ -416,6 +426,7 @@ def test_a_radius_that_is_none_is_told(radius):
         FibletStyle(radius=radius)
 
 
+@pytest.mark.more
 def test_matrices_without_depth_draw_nothing_and_no_nan(gl, really, knots):
     for matrix in (np.zeros((4, 4)), np.diag([0.01, 0.01, 0.0, 1.0]), np.diag([0.01, 0.0, 0.01, 1.0])):
         for pipeline in PIPELINES:

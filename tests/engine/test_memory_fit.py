@@ -74,6 +74,7 @@ def test_a_set_that_just_fits_is_drawn_whole(gl, brain):
         made.release()
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("kilobytes", [100, 250, 500])
 def test_a_sample_is_an_even_share_and_fits(gl, brain, camera, kilobytes):
     view, limit = View(SIZE, camera(SIZE, **WHOLE_BRAIN)), 1000 * kilobytes
@@ -295,6 +296,7 @@ print(resident("VmHWM") - before, resident("VmRSS") - before, held, renderer.sha
 """
 
 
+@pytest.mark.more
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="peaks of memory are read from /proc")
 @pytest.mark.parametrize("pipeline", ["compute", "geometry"])
 def test_a_mapped_file_is_not_in_memory_beside_its_copy(gl, tmp_path, pipeline):

@@ -110,6 +110,7 @@ def assert_alike(picture, expected):
 
 
 # Every two of kind, camera and width meet; all three would take twice as long.
+@pytest.mark.more
 @pytest.mark.parametrize(
     ("kind", "where", "width"),
     [
@@ -150,6 +151,7 @@ def brain():
     return compress(synthetic.brain_streamlines(300, 0.5, seed=5, fa=True), per_point=("fa",))
 
 
+@pytest.mark.few(1)
 @pytest.mark.every("value")
 @pytest.mark.parametrize("serial", [False, True], ids=["together", "serial"])
 @pytest.mark.parametrize("values", [None, "fa", "arc_length", "curvature"])
@@ -167,6 +169,7 @@ def test_pictures_of_directions_and_their_values(gl, monkeypatch, brain, camera,
     assert np.nanmax(np.abs(ours - theirs)) < 2e-3 * scale
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("serial", [False, True], ids=["together", "serial"])
 def test_meshes_against_float64(gl, monkeypatch, fabricate, lines, camera, serial):
     """A vertex a point, in the middle of its pixel, and a line a segment, in their order; nothing more."""
@@ -227,6 +230,7 @@ def survivors(tasks):
     return np.concatenate(found)
 
 
+@pytest.mark.more
 def test_tasks_keep_what_the_compute_pipeline_plans(gl, monkeypatch, fabricate, random_lines, camera):
     fiblets = fabricate(random_lines(400, seed=9), kind=2, per_fiblet=12)
     view = View(SIZE, camera(SIZE, eye=(20, -40, 10), target=(0, 30, 0), near=5.0, far=70.0))
@@ -244,6 +248,7 @@ def test_tasks_keep_what_the_compute_pipeline_plans(gl, monkeypatch, fabricate, 
     assert np.array_equal(kept, wanted)
 
 
+@pytest.mark.more
 @pytest.mark.every("value")
 @pytest.mark.parametrize("serial", [False, True], ids=["together", "serial"])
 @pytest.mark.parametrize("culling", ["two-phase", "coverage"])
@@ -267,6 +272,7 @@ def test_culling_in_the_task_stage(gl, monkeypatch, camera, serial, culling):
     assert drawn[1] < 0.98 or culling == "coverage"  # of which so small a picture has few texels
 
 
+@pytest.mark.more
 def test_chunks_and_calls_of_limited_length(gl, monkeypatch, fabricate, random_lines, camera):
     fiblets = fabricate(random_lines(900, seed=3), kind=1, per_fiblet=3)
     assert fiblets.n_fiblets > 20_000

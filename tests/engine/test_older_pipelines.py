@@ -61,6 +61,7 @@ Path(sys.argv[4]).write_bytes(pickle.dumps([tuple(p) for p in pictures]))
 """
 
 
+@pytest.mark.more
 @pytest.mark.parametrize(
     ("version", "pipeline"),
     [

@@ -63,6 +63,7 @@ def another(gl, fiblets):
     renderer.release()
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("culling", "style"),
     [

@@ -44,6 +44,7 @@ def compared(gl, fiblets, view, style, pipeline, **options):
     return picture
 
 
+@pytest.mark.few(1)
 @pytest.mark.every("value")
 @pytest.mark.parametrize("pipeline", RASTER)
 @pytest.mark.parametrize("name", VIEWS)
@@ -54,6 +55,7 @@ def test_pictures_are_those_of_compute(gl, fabricate, random_lines, camera, name
         compared(gl, fiblets, view, style, pipeline)
 
 
+@pytest.mark.few(1)
 @pytest.mark.every("value")
 @pytest.mark.parametrize("pipeline", RASTER)
 @pytest.mark.parametrize("kind", [1, 2, 3, 4])
@@ -65,6 +67,7 @@ def test_lattice_kinds_and_fine_anchors(gl, fabricate, random_lines, camera, kin
     assert set(picture.ids[picture.drawn][:, 0].tolist()) <= set(ids.tolist())
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("pipeline", RASTER)
 def test_a_made_up_brain(gl, camera, pipeline):
     """Direction codes, and more of them than Mesa's evaluation stage can number in one call."""
@@ -90,6 +93,7 @@ def test_clip_planes(gl, fabricate, random_lines, camera, planes, width, pipelin
         compared(gl, fiblets, View(SIZE, camera(SIZE, **more), planes), FibletStyle(width), pipeline)
 
 
+@pytest.mark.more
 @pytest.mark.every("value")
 @pytest.mark.parametrize("pipeline", RASTER)
 @pytest.mark.parametrize("values", ["arc_length", "curvature", "bytes", "words"])
@@ -132,6 +136,7 @@ def test_one_point_streamlines_are_dots(gl, fabricate, camera, width, pipeline):
         assert picture.drawn.sum() == len(np.unique(cells, axis=0))
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("pipeline", RASTER)
 def test_segments_longer_than_the_picture(gl, fabricate, camera, pipeline):
     rng = np.random.default_rng(8)
@@ -141,6 +146,7 @@ def test_segments_longer_than_the_picture(gl, fabricate, camera, pipeline):
             compared(gl, fiblets, View(SIZE, camera(SIZE, **more)), style, pipeline)
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("pipeline", RASTER)
 def test_paging_changes_nothing(gl, fabricate, random_lines, camera, pipeline):
     fiblets = fabricate(random_lines(700, seed=12, longest=230), kind=2, per_fiblet=2)
@@ -170,6 +176,7 @@ def jumps(camera):
     return [*views, View(SIZE, camera(SIZE), BOX), View(SIZE, camera(SIZE), BOX[:1]), View(SIZE, camera(SIZE))]
 
 
+@pytest.mark.more
 @pytest.mark.every("value")
 @pytest.mark.parametrize("pipeline", RASTER)
 @pytest.mark.parametrize("width", [1.0, 4.0])
@@ -231,6 +238,7 @@ def test_only_owners_are_seen(gl, fabricate, random_lines, camera, pipeline):
     renderer.release()
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("pipeline", RASTER)
 def test_coverage_culling_keeps_a_still_picture(gl, camera, pipeline):
     fiblets = compress(brain_streamlines(1000, step=0.5, seed=4))

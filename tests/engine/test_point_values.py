@@ -46,6 +46,7 @@ def interpolated(values, place):
     return values[i] + (place - i) * (values[j] - values[i])
 
 
+@pytest.mark.few(2)
 @pytest.mark.every("value")
 @pytest.mark.parametrize("per_fiblet", [1, 2, 7, 60])
 @pytest.mark.parametrize(("name", "truth"), [("arc_length", arc_length), ("curvature", curvature)])
@@ -60,6 +61,7 @@ def test_built_in_values(gl, fabricate, random_lines, camera, name, truth, per_f
     assert np.allclose(found_range, (every.min(), every.max()), rtol=1e-3, atol=1e-3)
 
 
+@pytest.mark.few(1)
 @pytest.mark.every("value")
 @pytest.mark.parametrize("name", ["arc_length", "curvature"])
 @pytest.mark.parametrize("tolerance", [0.0, 0.5])

@@ -42,6 +42,7 @@ def entries(folder):
     return {path.relative_to(folder): path.stat().st_size for path in folder.rglob("*") if path.is_file()}
 
 
+@pytest.mark.more
 def test_the_second_process_compiles_nothing(gl, tmp_path):
     """Whatever seeds its hashes; Mesa keeps hardly anything beyond what it kept for the first."""
     said, kept = [], []

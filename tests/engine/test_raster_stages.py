@@ -36,6 +36,7 @@ STAGES = {
 }  # fmt: skip
 
 
+@pytest.mark.few(6)
 @pytest.mark.every("pair")
 @pytest.mark.parametrize("name", STAGES)
 @pytest.mark.parametrize("clipping", [(), ("CLIPPING", "CLIPPING_DEPTH", "CLIP_PLANES")])

@@ -193,6 +193,7 @@ SHAPES = {
 }
 
 
+@pytest.mark.few(5)
 @pytest.mark.parametrize("name", SHAPES)
 def test_shapes_and_expressions(gl, cutter, camera, name):
     for view in cameras(camera):
@@ -436,6 +437,7 @@ def draw_all(ctx, wrapped):
     programs.release()
 
 
+@pytest.mark.more
 def test_opengl_3_3_suffices(older_opengl):
     here = Path(__file__).resolve().parent
     environment = {**older_opengl("3.3"), "PYTHONPATH": os.pathsep.join([str(here.parents[1]), *sys.path])}

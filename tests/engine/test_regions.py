@@ -93,6 +93,7 @@ def within(a, b, radii, count, rng):
     return a[:, None] + t * (b - a)[:, None] + 0.999999 * radii[:, None, None] * d
 
 
+@pytest.mark.few(12)
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize(("centre", "size"), [(0.0, 1.0), (1e6, 100.0), (-3e4, 1e-3)])
 def test_never_against_what_is_in_it(gl, name, centre, size):
@@ -203,6 +204,7 @@ def test_fields_are_copied_once_and_go_with_the_region(gl):
     assert block.nbytes == 0
 
 
+@pytest.mark.more
 def test_many_fields_share_a_texture(gl):
     points, triangles = torus(1.0, 0.4)
     rng = np.random.default_rng(7)

@@ -13,6 +13,7 @@ PASSES = ["clear", "cull", "visible", "pyramid", "occlusion", "refine", "depth",
 LATER_PASSES = ["last picture", *PASSES[:3], "predicted", *PASSES[3:]]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("tolerance", [0.0, 0.5])
 def test_ties_go_to_the_first_and_pictures_repeat(gl, fabricate, random_lines, camera, tolerance):
     """Every line four times over: ties in every pixel, and still the same bytes every time."""
@@ -25,6 +26,7 @@ def test_ties_go_to_the_first_and_pictures_repeat(gl, fabricate, random_lines, c
         assert_same(draw(gl, fiblets, view, style), first)
 
 
+@pytest.mark.more
 def test_paging_changes_nothing(gl, fabricate, random_lines, camera):
     """40,000 short fiblets in three pages: one chunk, three chunks, and dispatches folded into rows."""
     fiblets = fabricate(random_lines(700, seed=12, longest=230), kind=2, per_fiblet=2)
@@ -133,6 +135,7 @@ def test_streamlines_without_points_keep_their_numbers(gl, fabricate, random_lin
     assert (b.ids[a.drawn][:, 0] == ids[a.ids[a.drawn][:, 0]]).all()
 
 
+@pytest.mark.more
 def test_all_optional_buffers_at_once(gl, fabricate, random_lines, camera):
     """Fine anchors, numbered streamlines and a per-point value, in several chunks."""
     lines = random_lines(700, seed=12, longest=230)

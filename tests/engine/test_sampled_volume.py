@@ -88,6 +88,7 @@ def lines(fabricate, random_lines):
     return fabricate(random_lines(60, seed=31), kind=2, per_fiblet=7)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("width", [1.0, 3.0])
 @pytest.mark.parametrize("pipeline", ["compute", "tessellation", "geometry"])
 def test_trilinear_in_every_pipeline(gl, lines, camera, pipeline, width):
@@ -97,6 +98,7 @@ def test_trilinear_in_every_pipeline(gl, lines, camera, pipeline, width):
     compare(lines, volume, affine, drawn, unsure=2e-3)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("serial", [False, True])
 def test_trilinear_by_the_mesh_stages(gl, lines, camera, monkeypatch, serial):
     volume, affine = smooth_volume(), affine_of()
@@ -105,6 +107,7 @@ def test_trilinear_by_the_mesh_stages(gl, lines, camera, monkeypatch, serial):
     compare(lines, volume, affine, drawn, unsure=2e-3)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("pipeline", ["compute", "tessellation", "geometry"])
 def test_far_fiblets_take_values_along_their_segment(gl, fabricate, camera, pipeline):
     """A straight line is one segment for a fiblet; points lie evenly on it, so that values are those of all points."""
@@ -138,6 +141,7 @@ def test_across_chunks(gl, fabricate, camera):
     compare(fiblets, volume, affine, drawn, unsure=2e-3)
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize(
     ("dtype", "low", "high"),
     [
@@ -157,6 +161,7 @@ def test_labels_are_those_of_the_nearest_voxel(gl, lines, camera, dtype, low, hi
     compare(lines, volume.astype(float), affine, drawn, nearest=True, atol=1e-7 * abs(float(high)), unsure=2e-3)
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("dtype", [np.float16, np.float32, np.float64, np.uint8, np.int16])
 def test_numbers_of_any_type_can_be_interpolated(gl, lines, camera, dtype):
     volume = np.random.default_rng(3).integers(0, 200, SHAPE).astype(dtype)

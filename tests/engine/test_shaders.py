@@ -42,6 +42,7 @@ CONSTANTS = {**OF_HALOS, **OF_PIPELINES}
 ALWAYS = {"tubes/cull.comp": ("TUBES",)}  # rays are what it is about
 
 
+@pytest.mark.few(14)
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("features", [(), tuple(EVERYTHING)], ids=["plain", "all"])
 def test_every_program_compiles(gl, name, features):

@@ -86,6 +86,7 @@ def made(gl, together):
         renderer.release()
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("share", [0.9, 0.35])
 def test_a_complete_picture_is_that_of_the_whole_set(made, camera, folder, share, monkeypatch):
     unread = pf.FibletSet.open(folder)
@@ -108,6 +109,7 @@ def test_what_fits_is_put_together(gl, folder):
     renderer.release()
 
 
+@pytest.mark.more
 def test_cuts_and_filters_are_those_of_the_whole_set(made, camera, folder, together):
     whole, parts = made(pf.FibletSet.open(folder))
     rng = np.random.default_rng(0)

@@ -48,6 +48,7 @@ def made(gl, brain):
         renderer.release()
 
 
+@pytest.mark.more
 @pytest.mark.parametrize(
     "pipeline", ["compute", "geometry", pytest.param("tessellation", marks=pytest.mark.exhaustive)]
 )
@@ -62,6 +63,7 @@ def test_a_complete_picture_is_that_of_the_whole_set(made, camera, pipeline):
             assert not parts.unfinished
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("style", [FibletStyle(radius=0.5, across=True), FibletStyle(tolerance=2.0),
                                    FibletStyle(values="curvature"), FibletStyle(values="arc_length")])  # fmt: skip
 def test_styles_are_those_of_the_whole_set(made, camera, style):
@@ -70,6 +72,7 @@ def test_styles_are_those_of_the_whole_set(made, camera, style):
     assert_alike(read(parts.render(view, style)), read(whole.render(view, style)))
 
 
+@pytest.mark.more
 def test_cuts_and_filters_are_those_of_the_whole_set(made, camera, brain):
     whole, parts = made()
     rng = np.random.default_rng(0)
@@ -170,6 +173,7 @@ def test_what_needs_all_lines_says_so(made, camera):
         parts.render_layers(view)
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("sliced", [False, True])
 @pytest.mark.parametrize(
     "pipeline", ["compute", "geometry", pytest.param("tessellation", marks=pytest.mark.exhaustive)]

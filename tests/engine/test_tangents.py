@@ -70,6 +70,7 @@ def directions():
     return fiblets, [line.astype(float) for line in fiblets.decompress().to_list()]
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("pipeline", PIPELINES)
 @pytest.mark.parametrize("width", [1.0, 5.0])
 def test_tangents_of_direction_codes(drawn, directions, camera, width, pipeline):
@@ -78,6 +79,7 @@ def test_tangents_of_direction_codes(drawn, directions, camera, width, pipeline)
     assert_tangents(drawn(fiblets, view, FibletStyle(width, tolerance=0.0), pipeline), lines)
 
 
+@pytest.mark.few(9)
 @pytest.mark.every("pair")
 @pytest.mark.parametrize("pipeline", PIPELINES)
 @pytest.mark.parametrize("kind", [1, 2, 3])
@@ -90,6 +92,7 @@ def test_tangents_of_lattice_codes(drawn, fabricate, camera, kind, pipeline):
     assert_tangents(picture, fiblets.lines, per_fiblet=per_fiblet)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("pipeline", PIPELINES)
 def test_points_that_coincide_have_the_direction_before_them(drawn, fabricate, camera, pipeline):
     """Segments of no length, at the start, in the middle, at the end, and a line that has no other."""
@@ -162,6 +165,7 @@ def feet(window, size):
     return nearest, place
 
 
+@pytest.mark.few(8)
 @pytest.mark.parametrize("pipeline", PIPELINES)
 @pytest.mark.parametrize("slope", [-0.7, 0.0, 0.7])
 def test_wide_lines_show_the_place_beside_each_pixel(drawn, fabricate, camera, slope, pipeline):

@@ -20,6 +20,7 @@ VIEWS = {
 }
 
 
+@pytest.mark.few(2)
 @pytest.mark.every("value")
 @pytest.mark.parametrize("kind", [1, 2, 3, 4])
 @pytest.mark.parametrize("view", VIEWS)
@@ -102,6 +103,7 @@ def test_agrees_with_opengl_lines(gl, fabricate, random_lines, camera, parallel)
     assert picture.drawn.sum() < 1.1 * mask.sum()
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("parallel", [False, True], ids=["perspective", "parallel"])
 @pytest.mark.parametrize("kind", [1, 2, 3])
 def test_pixels_say_what_they_show(gl, fabricate, random_lines, camera, kind, parallel):

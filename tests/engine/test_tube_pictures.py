@@ -62,6 +62,7 @@ def expected(tubes, view):
     return seen(tubes, view)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_every_pixel_shows_what_its_ray_meets(gl, tubes, view, expected, solver):
     for silhouettes in SILHOUETTES:
@@ -126,6 +127,7 @@ USER = {
 }
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("name", ["parallel", "oblique", "oblique parallel", *USER])
 def test_any_matrix(gl, camera, tubes, name):
     matrix = camera(SIZE, **EYE, **({"height": 46.0} if "parallel" in name else {}))
@@ -173,6 +175,7 @@ def test_silhouettes_give_one_picture(gl, camera, tubes, parallel):
 # ------------------------------------------------------------------------------------------ cut by planes of the view
 
 
+@pytest.mark.few(1)
 @pytest.mark.every("value")
 @pytest.mark.parametrize("parallel", [False, True])
 @pytest.mark.parametrize(("near_plane", "far_plane"), [(57.0, 120.0), (20.0, 62.0), (60.0, 66.0)])
@@ -185,6 +188,7 @@ def test_near_and_far_plane_cut_tubes(gl, camera, tubes, near_plane, far_plane, 
         assert (shown.kind == EXIT).sum() > 20
 
 
+@pytest.mark.more
 def test_from_inside_of_a_tube(gl, camera):
     """Nodes and halves go on into each other: of their spheres no wall is seen."""
     tube = winding()
@@ -198,6 +202,7 @@ def test_from_inside_of_a_tube(gl, camera):
     assert (shown.kind == EXIT).mean() > 0.5
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("solver", ["auto", "newton"])
 def test_tubes_around_the_eye_and_behind_it(gl, camera, solver):
     """The eye is in the boxes of some segments but in no tube; some tubes are partly behind it."""
@@ -214,6 +219,7 @@ PLANES = {
 }
 
 
+@pytest.mark.few(1)
 @pytest.mark.every("value")
 @pytest.mark.parametrize("parallel", [False, True])
 @pytest.mark.parametrize("planes", PLANES)
@@ -231,6 +237,7 @@ def test_planes_cut_and_close(gl, camera, tubes, planes, parallel):
     assert (np.abs(height) > 1e-3).mean() < 0.01
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_planes_cut_with_every_solver(gl, camera, tubes, solver):
     view = View(SIZE, camera(SIZE, **EYE), PLANES["two"])
@@ -285,6 +292,7 @@ def holes(mask):
     return int((free & ~out).sum())
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("radius", [0.0, 1e-7, 1e-3, 0.2])
 def test_thin_tubes_have_the_least_width(gl, camera, radius):
     """A pixel wide however far: one line without a gap. With a width of 0 they are as thin as they are."""
@@ -335,6 +343,7 @@ def test_corners_forks_and_balls(gl, camera):
         assert normals.max() < 0.5
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("angle", range(0, 180, 30))
 def test_no_holes_between_segments(gl, camera, angle):
     """A line of many segments without a background pixel inside, from all around, and along itself."""

@@ -385,6 +385,7 @@ Path(sys.argv[3]).write_bytes(pickle.dumps({s: [tuple(p) for p in pictures] for 
 """
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("version", ["3.3", pytest.param("4.1", marks=pytest.mark.exhaustive)])
 def test_older_opengl_draws_the_same(gl, camera, older_opengl, tmp_path, version):
     """In a process whose OpenGL has nothing newer: storage buffers, images and compute do not even compile there."""

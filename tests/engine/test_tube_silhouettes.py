@@ -192,6 +192,7 @@ VIEWS = {
 }
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", VIEWS)
 def test_rectangles_hold_every_pixel_of_their_segment(vertices, camera, name):
     tubes = bundle(radius=1.2)

@@ -58,6 +58,7 @@ BOUNDS = {
 }  # fmt: skip
 
 
+@pytest.mark.few(1)
 @pytest.mark.every("value")
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize(("solver", "chain"), WAYS)
@@ -121,6 +122,7 @@ def test_any_number_of_steps_is_allowed(gl, sample, solver, chain, iterations):
         assert (((kind > 0) != (expected.kind[:500] > 0)) & ~graze).sum() == 0
 
 
+@pytest.mark.few(1)
 @pytest.mark.every("value")
 @pytest.mark.parametrize("solver", SOLVERS)
 @pytest.mark.parametrize("kind", ["usual", "bent", "thick", "cone"])
@@ -284,6 +286,7 @@ def table():
     return rows
 
 
+@pytest.mark.few(2)
 @pytest.mark.every("value")
 @pytest.mark.parametrize("scale", [1.0, 1e-6, 1e6])
 @pytest.mark.parametrize(("solver", "chain"), WAYS)

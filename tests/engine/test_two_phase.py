@@ -119,6 +119,7 @@ def orbit(angle, radius=200.0, height=60.0):
     return {"eye": (radius * np.sin(angle), -radius * np.cos(angle), height)}
 
 
+@pytest.mark.more
 @pytest.mark.every("value")
 @pytest.mark.parametrize("style", STYLES)
 @pytest.mark.parametrize("parallel", [False, True], ids=["perspective", "parallel"])
@@ -130,6 +131,7 @@ def test_turns(both, brain, camera, style, parallel):
     assert pair.hidden > 0.02 * pair.tested
 
 
+@pytest.mark.more
 @pytest.mark.every("value")
 @pytest.mark.parametrize("guess", [True, False])
 @pytest.mark.parametrize("style", STYLES)
@@ -143,6 +145,7 @@ def test_much_is_hidden(both, onion, camera, request, style, guess):
     assert pair.hidden > (0.6 if style == "three pixels" else 0.15) * pair.tested
 
 
+@pytest.mark.few(1)
 @pytest.mark.usefixtures("unpredicted")
 @pytest.mark.parametrize("tolerance", [0.0, 0.5])
 def test_dollies_through_the_data(both, brain, camera, tolerance):
@@ -154,6 +157,7 @@ def test_dollies_through_the_data(both, brain, camera, tolerance):
     assert pair.hidden > 0
 
 
+@pytest.mark.more
 @pytest.mark.usefixtures("unpredicted")
 @pytest.mark.parametrize("near_plane", [0.01, 1.0])
 def test_teleports(both, brain, onion, camera, near_plane):
@@ -168,6 +172,7 @@ def test_teleports(both, brain, onion, camera, near_plane):
         assert pair.hidden > 0
 
 
+@pytest.mark.more
 @pytest.mark.usefixtures("unpredicted")
 def test_clipping_ranges(both, loose_onion, camera):
     """Near and far planes that cut the data, down to slices of a millimetre, where depth is coarse in float32."""
@@ -180,6 +185,7 @@ def test_clipping_ranges(both, loose_onion, camera):
     assert pair.hidden > 0.2 * pair.tested
 
 
+@pytest.mark.more
 @pytest.mark.usefixtures("unpredicted")
 def test_sizes(both, onion, camera):
     """Windows of any shape, of one pixel, and of powers of two and one more."""
@@ -190,6 +196,7 @@ def test_sizes(both, onion, camera):
     assert pair.hidden > 0.2 * pair.tested
 
 
+@pytest.mark.more
 @pytest.mark.usefixtures("unpredicted")
 def test_line_widths(both, loose_onion, camera):
     pair = both(loose_onion)
@@ -198,6 +205,7 @@ def test_line_widths(both, loose_onion, camera):
     assert pair.hidden > 0.3 * pair.tested
 
 
+@pytest.mark.more
 @pytest.mark.usefixtures("unpredicted")
 @pytest.mark.parametrize(("width", "shape"), [(1.0, "onion"), (4.0, "loose_onion")])
 def test_clip_planes(both, camera, request, width, shape):
@@ -209,6 +217,7 @@ def test_clip_planes(both, camera, request, width, shape):
     assert pair.hidden > 0.01 * pair.tested
 
 
+@pytest.mark.more
 def test_data_swapped(both, brain, onion, camera):
     """A renderer that has seen nothing yet draws the same picture as one with a past."""
     view = View(SMALL, camera(SMALL, **orbit(20.0)))
@@ -221,6 +230,7 @@ def test_data_swapped(both, brain, onion, camera):
     assert differences(pictures[0], pictures[1])
 
 
+@pytest.mark.more
 @pytest.mark.every("value")
 @pytest.mark.usefixtures("unpredicted")
 @pytest.mark.parametrize("low", [False, True], ids=["anchors16", "anchors32"])
@@ -235,6 +245,7 @@ def test_lattices_and_duplicates(both, fabricate, random_lines, camera, kind, lo
         assert (picture.ids[picture.drawn][:, 0] < len(lines)).all()
 
 
+@pytest.mark.more
 @pytest.mark.usefixtures("unpredicted")
 def test_several_chunks(both, fabricate, random_lines, camera):
     fiblets = fabricate(random_lines(700, seed=12, longest=230), kind=2, per_fiblet=2)
@@ -265,6 +276,7 @@ def random_views(rng, count, camera):
             far += rng.choice([0.0, 10.0])
 
 
+@pytest.mark.more
 @pytest.mark.usefixtures("unpredicted")
 @pytest.mark.parametrize(("seed", "count"), [(0, 3), pytest.param(1, 24, marks=pytest.mark.exhaustive)])
 def test_random_cameras(both, brain, onion, camera, seed, count):

@@ -85,6 +85,7 @@ def read(buffer):
     return Shown(buffer)
 
 
+@pytest.mark.few(9)
 @pytest.mark.every("pair")
 @pytest.mark.parametrize("dtype", [np.uint8, np.int16, np.uint16, np.float32])
 @pytest.mark.parametrize("refine", ["regula-falsi", "newton"])
@@ -120,6 +121,7 @@ def test_filters(cast, camera, filter):  # noqa: A002
     assert np.median(np.abs(shown.depth - wanted.depth)[both] / per_mm) < 0.01
 
 
+@pytest.mark.few(1)
 def test_peaks(cast, matrix):
     volume = blobs()
     shown, _ = cast(volume, RaycastOptions("mip", step=0.1), matrix)
@@ -158,6 +160,7 @@ def ramp(k=64, most=0.4):
     return table.astype(np.float32)
 
 
+@pytest.mark.few(1)
 @pytest.mark.every("value")
 @pytest.mark.parametrize(
     ("integrator", "bound"),
@@ -197,6 +200,7 @@ def test_without_skipping_there_is_no_octree(cast, matrix, monkeypatch, mode):
     assert renderer.explain()["octree"]["bytes"] == 0
 
 
+@pytest.mark.few(2)
 @pytest.mark.every("value")
 @pytest.mark.parametrize(
     "casting",
@@ -243,6 +247,7 @@ def test_a_plane_is_as_deep_at_the_pictures_edges_as_without_sparse_rays(cast, c
     np.testing.assert_allclose(sparse.depth, plain.depth, atol=2e-6)
 
 
+@pytest.mark.few(4)
 @pytest.mark.every("pair")
 @pytest.mark.parametrize("stride", [2, 4])
 @pytest.mark.parametrize("mode", ["isosurface", "mip", "composite"])

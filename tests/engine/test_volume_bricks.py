@@ -86,6 +86,7 @@ LOOKS = {
 }
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("limits", SMALL)
 @pytest.mark.parametrize("look", LOOKS)
 def test_bricks_show_what_one_texture_shows(gl, camera, monkeypatch, look, limits):
@@ -120,6 +121,7 @@ def test_gradients_shading_and_occlusion_have_no_seams(gl, camera, monkeypatch):
         assert_alike(found, right)
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize(
     ("shape", "eye"),
     [((200, 5, 5), (0.1, -0.4, 0.2)), ((5, 5, 200), (0.1, -0.4, 0.2)), ((150, 150, 150), (1.1, -1.7, 0.8))],

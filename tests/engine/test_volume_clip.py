@@ -85,6 +85,7 @@ def overlap(through, span):
     return np.maximum(np.minimum(span[1], far) - np.maximum(span[0], near), 0.0)
 
 
+@pytest.mark.few(2)
 @pytest.mark.every("value")
 @pytest.mark.parametrize("shapes", ["spheres", "meshes"])
 @pytest.mark.parametrize("inside", [True, False])
@@ -158,6 +159,7 @@ def test_the_first_peak_may_lie_in_a_later_part(cast, camera):
         assert np.abs(shown["place"][20:28, 28:36, 1] - value).max() < 0.05
 
 
+@pytest.mark.few(1)
 def test_the_octree_and_sparse_rays_agree(cast, matrix):
     ball = volume(lambda p: np.maximum(10.0 - np.linalg.norm(p, axis=-1), 0.0), 41)
     region = icosphere((3.0, -4.0, 2.0), 8.0) - regions.Sphere((3.0, -4.0, 2.0), 4.0)

@@ -29,6 +29,7 @@ def on_a_coarse_card(monkeypatch):
     monkeypatch.setattr(volume_renderer, "interpolates_finely", lambda *_: False)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("limits", [ONE, SMALL["bricks"], SMALL["pages"]], ids=["one", "bricks", "pages"])
 @pytest.mark.parametrize("mode", CASTINGS)
 def test_weighing_in_the_shader_shows_the_same(gl, camera, monkeypatch, mode, limits):

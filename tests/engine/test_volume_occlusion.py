@@ -93,6 +93,7 @@ def around(camera, volume, how="perspective", *, near=0.02):
 # ------------------------------------------------------------------------------------------------------- closed forms
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("filter", ["trilinear", "tricubic"])
 @pytest.mark.parametrize("affine", [np.eye(4), AFFINE], ids=["plain", "oblique"])
 def test_nothing_stands_over_a_half_space(occluded, camera, affine, filter):  # noqa: A002
@@ -232,6 +233,7 @@ CASES = {
 }
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("case", CASES.values(), ids=CASES)
 def test_as_the_reference(occluded, camera, case):
     case = {"how": "perspective", "near": 0.02, "values": (0.35,), "planes": (), "slack": 0.02, **case}

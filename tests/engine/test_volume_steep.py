@@ -74,6 +74,7 @@ def matrix_of(camera, volume):
     return camera(SIZE, eye=middle + [20, -27, 15], target=middle, near=3, far=120)
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("name", ["slope", "ball"])
 def test_light_is_within_a_hundredth_from_thin_to_dense(gl, camera, name):
     volume = field(name)
@@ -90,6 +91,7 @@ def test_light_is_within_a_hundredth_from_thin_to_dense(gl, camera, name):
     renderer.release()
 
 
+@pytest.mark.more
 def test_the_same_of_noise_but_for_few_pixels(gl, camera):
     volume = field("noise")
     matrix = matrix_of(camera, volume)
@@ -105,6 +107,7 @@ def test_the_same_of_noise_but_for_few_pixels(gl, camera):
     renderer.release()
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", ["mask", "sheets", "noise"])
 @pytest.mark.parametrize("kappa_step", [0.1, 1.0])
 def test_light_is_within_a_hundredth_at_edges_from_voxel_to_voxel(gl, camera, name, kappa_step):
@@ -141,6 +144,7 @@ def test_rays_along_an_axis_look_as_closely(gl, camera):
     renderer.release()
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("filter", "most"), [("tricubic", 0.01), ("nearest", 0.2)])
 def test_the_same_of_other_fields(gl, camera, filter, most):  # noqa: A002
     """That of nearest voxels jumps, within parts as well: what a ray passes of a corner may not be seen at all."""
@@ -175,6 +179,7 @@ def test_edges_where_a_step_ends_a_ray_or_lies_beside_what_was_skipped(gl, camer
     renderer.release()
 
 
+@pytest.mark.more
 def test_lines_between_samples_are_the_nearest_ones(gl, camera):
     """Of thin things in gentle colours, at no sample more, light is as right as by samples in the middles of steps."""
     volume = field("tubes", 32)
@@ -238,6 +243,7 @@ def test_only_what_is_steep_pays_for_it(gl, camera):
     renderer.release()
 
 
+@pytest.mark.more
 def test_no_table_costs_much_more_than_its_neighbour(gl, camera):
     """One entry of a table makes no volume dense: each ray looks closer where its own values ask for it."""
     if not is_software(gl):

@@ -37,6 +37,7 @@ def test_wide_lines(gl, fabricate, camera, width):
     assert not drawn[nearest > width / 2 + 0.01].any()
 
 
+@pytest.mark.few(1)
 @pytest.mark.every("value")
 @pytest.mark.parametrize("tolerance", [0.0, 0.5])
 @pytest.mark.parametrize("width", [2.0, 12.0, 25.0, 60.0])

@@ -69,6 +69,7 @@ def fuzzed(reader: str, path: Path, folder: Path, count: int = N, seed: str = SE
     return outcomes
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(("reader", "variant", "share"), DAMAGED)
 def test_damaged_files_give_errors_or_results(reader, variant, share, healthy, tmp_path):
     outcomes = fuzzed(reader, healthy[variant], tmp_path)
@@ -77,6 +78,7 @@ def test_damaged_files_give_errors_or_results(reader, variant, share, healthy, t
         assert outcomes["refused"] > N // share
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("how", ["hang", "hang in C", "crash", "memory", "memory of C", "other error"])
 def test_what_must_not_be_is_found(how, tmp_path):
     """The harness itself: readers that do each of these."""

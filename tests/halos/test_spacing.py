@@ -175,6 +175,7 @@ def test_one_far_away_does_not_change_what_is_near():
     assert line_spacing(far) == pytest.approx(line_spacing(lines), rel=0.25)
 
 
+@pytest.mark.more
 def test_what_is_too_dense_is_asked_at_fewer_places_or_not_at_all(monkeypatch):
     rng = np.random.default_rng(1)
     fan = np.stack([np.zeros((3000, 3)), rng.random((3000, 3))], axis=1).reshape(-1, 3)

@@ -57,6 +57,7 @@ def turn(plotter, angle):
     plotter.reset_camera_clipping_range()
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("antialias", ["off", "coverage"])
 def test_a_frame_finds_its_fiblets_drawn_and_shows_the_same(shown, antialias):
     (ahead, engine, _), (usual, _, _) = shown(antialias), shown(antialias)

@@ -45,6 +45,7 @@ CUTS = {
 }
 
 
+@pytest.mark.few(3)
 @pytest.mark.every("value")
 @pytest.mark.parametrize("cut", CUTS)
 @pytest.mark.parametrize("parallel", [False, True], ids=["perspective", "parallel"])

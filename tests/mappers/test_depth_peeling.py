@@ -63,6 +63,7 @@ def holds_layers(mapper):
     return engine_of(mapper)._layers is not None
 
 
+@pytest.mark.few(2)
 @pytest.mark.every("pair")
 @pytest.mark.parametrize("peeling", [False, True])
 @pytest.mark.parametrize("layers", [2, 4, 5, 8])
@@ -239,6 +240,7 @@ def test_a_number_of_layers_that_makes_no_sense(count):
         Layers(count)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("kind", ["tubes", "tube shading"])
 def test_every_layer_has_its_own_surface(scene, tools, kind):
     """Crossing lines with bodies, each lit on its own: the crossing is made of both pictures."""

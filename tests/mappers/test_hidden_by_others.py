@@ -39,6 +39,7 @@ def turn(plotter, degrees):
     return plotter.screenshot(None, return_img=True)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("samples", [0, 4])
 @pytest.mark.parametrize("wall_first", [True, False])
 def test_pictures_are_those_without_culling(fiblets, wall_first, samples):

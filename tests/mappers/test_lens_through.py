@@ -58,6 +58,7 @@ def shot(plotter):
     return np.array(plotter.screenshot(return_img=True)).astype(int)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("look", LOOKS)
 def test_what_is_in_focus_is_sharp_and_the_rest_is_not(scene, look):
     plotter, actor = scene(**LOOKS[look])
@@ -81,6 +82,7 @@ def test_the_focus_follows_what_one_looks_at(scene, look):
     assert plotter.picture.focal_distance == pytest.approx(NEAREST[look], abs=1.5)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("look", ["light", "peaks"])
 def test_what_hardly_shows_is_not_looked_at(scene, look):
     """A mesh behind a box of air stays as it was with the same box of nothing at all."""

@@ -57,6 +57,7 @@ def share(direction, towards):
     return 0.6 + 0.4 * (1.0 - (unit(*direction) @ towards) ** 4)
 
 
+@pytest.mark.few(5)
 @pytest.mark.parametrize("direction", RODS)
 @pytest.mark.parametrize("lighting", ["light kit", "headlight"])
 def test_lights_of_the_camera_come_over_the_shoulder(rod, direction, lighting):
@@ -100,6 +101,7 @@ def test_highlights_are_added(rod, lighting):
     assert (rod((1, 0, 0), *lights, lighting=kind, specular=0.5) > rod((1, 0, 0), *lights, lighting=kind) + 5)[1:].all()
 
 
+@pytest.mark.few(5)
 @pytest.mark.parametrize("lighting", ["light kit", "headlight"])
 @pytest.mark.parametrize("direction", RODS)
 def test_colours_of_a_legend_stay_as_they_are(rod, direction, lighting):

@@ -62,6 +62,7 @@ def test_the_older_opengl_of_these_tests_really_lacks_what_is_newer(older_opengl
     assert result.stdout.split() == ["plain"], result.stderr
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("version", [pytest.param("4.1", marks=pytest.mark.exhaustive), "3.3"])
 def test_mapper_windows_and_picking_run_there(older_opengl, version):
     """The mapper's own tests, with the renderer of plain lines."""
@@ -72,6 +73,7 @@ def test_mapper_windows_and_picking_run_there(older_opengl, version):
     assert int(result.stdout.rsplit(" passed", 1)[0].split()[-1]) > 20
 
 
+@pytest.mark.more
 def test_the_scene_of_the_next_tests_is_drawn_by_this_opengl():
     """Without this, a mistake in the scene would look like a missing pipeline."""
     result = run(None, "-c", SCENE, "auto")
@@ -79,6 +81,7 @@ def test_the_scene_of_the_next_tests_is_drawn_by_this_opengl():
 
 
 # The pipeline is forced: that the picture is right shows that it drew, for compute shaders do not compile here.
+@pytest.mark.more
 @pytest.mark.parametrize(
     ("version", "pipeline"),
     [

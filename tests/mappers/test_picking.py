@@ -164,6 +164,7 @@ PICKERS = {
 }
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("picking", PICKERS)
 def test_pyvista_picking_survives_fiblets(scene, tools, picking):
     plotter, mapper, _, display = scene

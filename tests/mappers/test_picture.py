@@ -65,6 +65,7 @@ PLACEMENTS = {
 }
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("placement", PLACEMENTS)
 def test_an_actor_is_placed_as_vtk_places_it(compare, tools, placement):
     def scene(plotter, actor, mapper):
@@ -214,6 +215,7 @@ plotter.close()
 """
 
 
+@pytest.mark.more
 def test_below_opengl_33_the_error_says_so():
     import os
     import subprocess

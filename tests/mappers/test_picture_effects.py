@@ -76,6 +76,7 @@ def modes(plotter, mode):
         plotter.render_window.SetStereoTypeToLeft()
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("mode", ["plain", "msaa", "peeling", "ssao", "eye-dome lighting", "ssaa", "stereo"])
 def test_tones_are_those_of_the_picture_that_vtk_draws(make_plotter, mode):
     plotter = make_plotter()
@@ -123,6 +124,7 @@ def test_what_lies_over_the_picture_is_left_alone(make_plotter, mode, first):
     assert np.abs(image[2, 2] - 255.0 * (105 / 255.0) ** 0.5).max() <= 1
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("parallel", "mode"), [(False, "plain"), (True, "plain"), (False, "stereo")])
 def test_depth_of_field_is_numpys_of_vtks_own_depths(make_plotter, parallel, mode):
     plotter = make_plotter(window_size=(100, 80))

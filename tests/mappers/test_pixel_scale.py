@@ -99,6 +99,7 @@ def across(plotter, mapper, scale):
     return image[:, image.shape[1] // 2].max(axis=-1).sum() / 255.0 / scale
 
 
+@pytest.mark.few(2)
 @pytest.mark.every("pair")
 @pytest.mark.parametrize("scale", [1, 2, 3])
 @pytest.mark.parametrize("supersampled", [False, True], ids=["plain", "ssaa"])

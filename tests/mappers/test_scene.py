@@ -90,6 +90,7 @@ def test_renderers_are_found_through_assemblies():
     assert list(renderers_of(actor)) == []
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("parallel", [False, True])
 def test_the_rectangle_holds_every_point_and_little_else(parallel: bool) -> None:
     rng = np.random.default_rng(5)

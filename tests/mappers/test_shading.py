@@ -400,6 +400,7 @@ print("drawn")
 """
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("version", [pytest.param("4.1", marks=pytest.mark.exhaustive), "3.3"])
 def test_older_opengl_suffices(older_opengl, version):
     """A process of its own: Mesa reads how old it has to be when it is loaded."""

@@ -89,6 +89,7 @@ def shown(make_plotter, actor, place=None, view=lit):
     return view(plotter)
 
 
+@pytest.mark.more
 @pytest.mark.parametrize(
     "place",
     [

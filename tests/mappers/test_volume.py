@@ -33,6 +33,7 @@ from .visible_volumes import (
 )
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     ("eye", "parallel"),
     [((0.0, -100.0, 0.0), True), ((30.0, -70.0, 25.0), True), ((30.0, -50.0, 20.0), False), ((4.0, -9.0, 3.0), False)],
@@ -62,6 +63,7 @@ def passes(name):
     return setup
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("name", ["default", "peeling", "blended", "msaa", "ssaa"])
 @pytest.mark.parametrize("mesh_first", [True, False], ids=["mesh-first", "mesh-last"])
 def test_rays_end_at_meshes(make_plotter, tools, name, mesh_first):
@@ -201,6 +203,7 @@ def test_peaks_look_as_vtks(make_plotter, tools):
     assert (np.abs(one - other)[both] <= 6).mean() > 0.98
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "place",
     [
@@ -266,6 +269,7 @@ def test_surfaces_cut_into_meshes_and_have_the_colour_of_their_value(make_plotte
     assert middle(tools.picture(plotter, mapper)).tolist() == [255, 0, 0]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("y", "front"), [(-25.0, True), (25.0, False)])
 def test_translucent_lines_lie_in_order_under_depth_peeling(make_plotter, tools, y, front):
     """Three wide lines, one behind the other, of which all show: the volume is behind all of them, or in front."""

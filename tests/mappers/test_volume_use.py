@@ -82,6 +82,7 @@ def test_vtk_selects_volumes(make_plotter, tools, casting):
     mapper.raise_pending()
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("ssaa", [False, True])
 def test_places_are_picked_as_the_picture_shows_them(make_plotter, tools, ssaa):
     ball = volume(lambda p: 16.0 - np.linalg.norm(p, axis=-1), 33)

@@ -140,6 +140,7 @@ def test_a_surface_of_an_image_covers_what_vtks_contour_covers(tools):
     mapper.raise_pending()
 
 
+@pytest.mark.more
 def test_a_shallow_copy_draws_the_same_data():
     mapper = FibletMapper(line_width=2.0)
     mapper.SetInputData(lines())
@@ -241,6 +242,7 @@ def test_empty_lines_draw_nothing_and_say_nothing():
     assert not said
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("make", [FibletMapper, TubeMapper, HaloMapper])
 def test_mapper_and_data_go_when_nobody_has_them(make):
     mapper = make()

@@ -78,6 +78,7 @@ def labels(mapper):
 COLOURS = (labels, rainbow, logarithm, function, magnitude, component, by_cells, tints, hidden)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("settle", COLOURS)
 def test_colours_are_those_of_vtks_mapper(settle, tools):
     data = lines()
@@ -89,6 +90,7 @@ def test_colours_are_those_of_vtks_mapper(settle, tools):
     alike(ours, vtks(data, settle, wide), tools)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("make", [TubeMapper, HaloMapper])
 def test_tubes_and_halos_are_coloured_point_by_point(make, tools):
     """Of the nearest pixels of VTK's lines: tubes and strips have widths of their own."""

@@ -171,6 +171,7 @@ def test_regions_choose_among_streamlines_that_come_later(serve, visit):
     assert first < 0.96 * last
 
 
+@pytest.mark.more
 def test_what_is_wrong_with_data_beside_a_page_is_said(serve, visit, folder, tmp_path):
     address, _ = serve(Ranged)
     data = folder / "figure_data" / "0.fiblets"

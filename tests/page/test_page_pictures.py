@@ -52,6 +52,7 @@ CASES = {
 }
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("case", CASES)
 def test_page_shows_what_the_engine_shows(case, plotter, fiblets, visit, tmp_path):
     settings = dict(CASES[case])
@@ -158,6 +159,7 @@ CUTS = {
 }
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("case", CUTS)
 @pytest.mark.parametrize("near", [False, True])
 def test_regions_cut_lines_where_the_engine_cuts_them(near, case, plotter, fiblets, visit, tmp_path):
@@ -189,6 +191,7 @@ def test_a_page_without_regions_has_nothing_of_them(plotter, fiblets, visit, tmp
     assert not any("REGION" in key for key in programs)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("width", [1.0, 4.0])
 def test_page_draws_the_points_that_are_chosen(width, plotter, fiblets, visit, tmp_path):
     actor = plotter.add_fiblets(fiblets, line_width=width)
@@ -249,6 +252,7 @@ def test_surfaces_hide_lines_and_are_hidden(plotter, fiblets, visit, tmp_path):
     assert wrong < 0.02  # of which most are edges of surfaces
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("width", [1.0, 3.0])
 def test_lines_that_others_hide_are_left_out_and_no_pixel_with_them(width, visit, tmp_path):
     """From far, from near, and from within, where lines pass the eye on both sides."""

@@ -47,6 +47,7 @@ def test_edges_of_triangles_and_of_polygons(plotter, visit, tmp_path):
     _agrees(plotter, visit, tmp_path)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("case", CULLING)
 def test_culled_faces(case, plotter, visit, tmp_path):
     shell = pv.Sphere(radius=1.0, theta_resolution=24, phi_resolution=18).clip("z", value=0.4)

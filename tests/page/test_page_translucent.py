@@ -60,6 +60,7 @@ CASES = {
 }  # fmt: skip
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("case", CASES)
 def test_opacity(case, plotter, fiblets, visit, tmp_path):
     more = {"show_scalar_bar": False} if "scalars" in CASES[case] else {}
@@ -76,6 +77,7 @@ def test_only_the_nearest_line_where_nothing_else_is_to_show_through(plotter, fi
     assert page.page.evaluate("[...pvfiblets.translucent.held.values()].map((held) => held.sums.length)") == [0]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("width", [1.0, 3.0])
 def test_what_is_opaque_and_what_is_translucent_before_and_behind(width, plotter, fiblets, visit, tmp_path):
     """Two sets of lines, one of which is opaque and cut, a mesh that hides lines and two that show them."""
@@ -142,6 +144,7 @@ def test_opaque_scenes_make_no_program_and_no_texture_for_it(plotter, fiblets, v
     assert not [name for name in programs if "sum" in name or "through" in name or "mixed" in name]
 
 
+@pytest.mark.more
 def test_layers_that_are_asked_for_are_named(plotter, fiblets, tmp_path):
     actor = plotter.add_fiblets(fiblets, opacity=0.2, name="lines")
     actor.transparency = "layers"

@@ -131,6 +131,7 @@ more = {"mode": "isosurface", "values": 0.3}
 """
 
 
+@pytest.mark.more
 @pytest.mark.parametrize(
     ("drawable", "names"),
     [

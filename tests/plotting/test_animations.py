@@ -33,6 +33,7 @@ ADDED = {
 }
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("what", ADDED)
 def test_frames_are_screenshots(plotter, tmp_path, what):
     ADDED[what](plotter)

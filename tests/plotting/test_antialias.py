@@ -88,6 +88,7 @@ def test_nothing_is_refined_when_the_last_of_our_actors_has_gone(scene):
     assert scene.picture._picture().refinement is not None
 
 
+@pytest.mark.more
 def test_any_change_begins_anew(scene):
     renders = Renders(scene)
     changes = [
@@ -122,6 +123,7 @@ def test_any_change_begins_anew(scene):
         assert (renders.since(), scene.picture.samples) == (16, 16)
 
 
+@pytest.mark.few(1)
 @pytest.mark.skipif(not possible(), reason="calls are recorded on x86-64 and Linux only")
 @pytest.mark.parametrize("style", ["lines", "density", "translucent"])
 def test_samples_do_not_wait_for_the_gpu(style, monkeypatch):
@@ -271,6 +273,7 @@ def moved_in_tiles(renderer, position):
     return renderer.AddObserver("StartEvent", move)
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("effect", [None, "depth_of_field"])
 def test_enlarged_pictures_of_tiles_are_refined(effect):
     """Of two subplots, one of which the tiles' edges cut; every tile is the mean of its own samples."""
@@ -301,6 +304,7 @@ def test_enlarged_pictures_of_tiles_are_refined(effect):
     plotter.close()
 
 
+@pytest.mark.more
 def test_what_lies_over_the_picture_is_drawn_once(plotter):
     plotter.add_fiblets([[(-9, 0, 0), (0, 4, 0), (9, 9, 0)]], color="red", lighting=False)
     mesh = pv.Plane(i_size=10, j_size=10)
@@ -331,6 +335,7 @@ def test_what_lies_over_the_picture_is_drawn_once(plotter):
     assert not np.array_equal(after, before)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     "how", ["msaa", "ssaa", "peeling", "ssao", "edl", "background", "tone", "depth of field", "parallel"]
 )

@@ -107,6 +107,7 @@ def lines_with(kind):
     return mesh
 
 
+@pytest.mark.few(6)
 @pytest.mark.parametrize("add", ["add_spline_tubes", "add_halo_lines", "add_halo_points"])
 @pytest.mark.parametrize("kind", ["points", "cells", "vectors", "vectors of cells", "named", "none"])
 def test_active_scalars_colour_as_in_add_mesh(add, kind):
@@ -165,6 +166,7 @@ def named_lines():
     return mesh
 
 
+@pytest.mark.few(5)
 @pytest.mark.parametrize("scalars", ["side", ["right", "left", "right"], np.array(["right", "left", "right"])])
 @pytest.mark.parametrize("add", ["add_fiblets", "add_spline_tubes", "add_halo_lines"])
 def test_words_of_lines_are_categories_as_in_add_mesh(plotter, add, scalars):

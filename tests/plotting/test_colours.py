@@ -171,6 +171,7 @@ WRONG = {
 }
 
 
+@pytest.mark.few(5)
 @pytest.mark.parametrize("add", ["add_fiblets", "add_spline_tubes", "add_halo_lines"])
 @pytest.mark.parametrize("name", WRONG)
 def test_wrong_settings_fail_at_once_though_one_colour_is_shown(plotter, three_lines, add, name):

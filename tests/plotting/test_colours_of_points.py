@@ -43,6 +43,7 @@ def ramp(x):
     return np.stack([np.interp(x, X, RAMP[:, k]) for k in range(3)], axis=1)
 
 
+@pytest.mark.few(5)
 @pytest.mark.parametrize("pipeline", ["compute", "tessellation", "geometry"])
 @pytest.mark.parametrize("kind", ["floats", "bytes", "name", "columns"])
 def test_a_colour_at_every_point(plotter, pipeline, kind):
@@ -74,6 +75,7 @@ def test_as_add_mesh_shows_them(plotter, line_width):
     np.testing.assert_allclose(found[ours], wanted[theirs], atol=3.0 / 255.0)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("transparency", ["all", "layers", None])
 @pytest.mark.parametrize("how", ["alpha", "opacity"])
 def test_what_shows_through_has_the_colours_of_its_points(plotter, transparency, how):

@@ -27,6 +27,7 @@ def shot(plotter):
     return plotter.screenshot(None)
 
 
+@pytest.mark.more
 def test_no_import_of_the_package_is_needed():
     code = (
         "import pyvista as pv\n"

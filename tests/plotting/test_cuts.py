@@ -91,6 +91,7 @@ LOOKS = {
 }
 
 
+@pytest.mark.few(1)
 @pytest.mark.every("value")
 @pytest.mark.parametrize("look", [*LOOKS, "volume"])
 @pytest.mark.parametrize("name", SAME)
@@ -151,6 +152,7 @@ def test_planes_of_vtk_and_cuts_add_up_beyond_what_there_is_room_for(scene, brai
     assert (boxed != both).any(axis=2).mean() < 0.02
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("pipeline", "detail"), [("compute", 0.0), ("compute", 0.5), ("geometry", 0.0), ("tessellation", 0.0)]
 )
@@ -172,6 +174,7 @@ def test_tubes_end_in_closed_faces_where_planes_cut(scene, pipeline, detail):
     assert by_region.sum() < 0.6 * by_plane.sum(), "a region keeps what of the surface is inside, and closes nothing"
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("pipeline", ["compute", "geometry", "tessellation"])
 def test_a_region_that_holds_all_of_bent_tubes_leaves_no_crack(scene, pipeline):
     """Half spheres at joints show on the outer side of bends alone; what a region keeps is as it is without one."""

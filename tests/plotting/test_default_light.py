@@ -26,6 +26,7 @@ def brain():
     return compress(streamlines, per_point=("height",))
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("camera", ["xy", "xz", "yz", "iso"])
 @pytest.mark.parametrize("lights", ["light kit", "three lights", "headlight"])
 def test_direction_colours_are_true_from_every_side(brain, camera, lights):
@@ -53,6 +54,7 @@ def test_direction_colours_are_true_from_every_side(brain, camera, lights):
     assert np.abs(dim - true).max() < 0.02  # no channel loses more than another
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("scalars", ["height", "bundle", "length"])
 @pytest.mark.parametrize("lights", ["light kit", "three lights"])
 def test_colours_match_their_bar(brain, scalars, lights):

@@ -47,6 +47,7 @@ def test_tones_are_the_same_for_actors_and_mappers():
     assert tuple(TONES) == settings.TONES == density.TONES
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("tone", TONES)
 @pytest.mark.parametrize("peeling", [False, True])
 def test_brightness_tells_the_number_of_lines(plotter, bundles, tone, peeling):

@@ -19,6 +19,7 @@ def with_outlier(value):
     return lines
 
 
+@pytest.mark.few(5)
 @pytest.mark.parametrize("add", ADDS)
 @pytest.mark.parametrize("lines", [brain(1e30), with_outlier(-1e30), brain(1e18)], ids=["1e30", "outlier", "1e18"])
 def test_coordinates_beyond_the_cameras_reach_are_named_once(plotter, add, lines):

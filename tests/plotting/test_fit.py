@@ -124,6 +124,7 @@ def test_what_parts_cannot_show_is_said_in_one_sentence(plotter, too_large, litt
         plotter.show(auto_close=False)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("look", [{"opacity": 0.2}, {"style": "density"}, {"opacity": "linear", "scalars": "length"}])
 def test_what_all_lines_add_up_to_is_that_of_the_whole_set(plotter, too_large, monkeypatch, request, look):
     plotter.picture.antialias = "coverage"

@@ -37,6 +37,7 @@ def shot(plotter):
     return plotter.screenshot(None)
 
 
+@pytest.mark.more
 def test_no_import_of_the_package_is_needed():
     code = (
         "import pyvista as pv\n"
@@ -272,6 +273,7 @@ print("drawn", int(picture.min() < 100))
 """
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("version", [pytest.param("4.1", marks=pytest.mark.exhaustive), "3.3"])
 def test_older_opengl_draws_halos_too(older_opengl, version):
     """A process of its own: Mesa reads how old it has to be when it is loaded."""

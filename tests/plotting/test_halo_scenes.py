@@ -154,6 +154,7 @@ def test_halos_of_fiblets_are_nearly_the_same(parallel, least):
     assert ((fiblets_ == 0) & (halos > 0)).sum() < 0.05 * either.sum()
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("effect", ["peeling", "ssao", "eye dome", "shadows"])
 def test_passes_of_vtk_leave_lines_and_halos_what_they_are(effect):
     plotter = opened()

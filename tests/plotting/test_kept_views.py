@@ -83,6 +83,7 @@ def light(four, _):
     four.renderer.lights[0].intensity = 0.4
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("change", "expected"),
     [
@@ -118,6 +119,7 @@ def test_hidden_views_that_come_back_are_drawn(four, workspace):
     np.testing.assert_array_equal(four.screenshot(return_img=True), first)
 
 
+@pytest.mark.more
 def test_enlarged_pictures_leave_nothing_behind(four, workspace):
     first = whole(four, workspace)
     for samples in ("off", 2):  # a tile has no part of some views

@@ -75,6 +75,7 @@ CASES += [(add_halos, "strips"), (add_spline_tubes, "rays")]
 ONE_PIPELINE = [CASES[0], CASES[3], *CASES[6:]]
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("width", [0.6, 1.0, 4.0])
 @pytest.mark.parametrize(("add", "pipeline"), [*CASES[3:6], CASES[7]])
 def test_tubes_that_are_slanted_to_the_view_are_as_wide(plotter, add, pipeline, width):
@@ -133,12 +134,14 @@ def hold(found, add, width, pipeline, antialias, angles=ANGLES):
     assert shown == pytest.approx(wanted, rel=0.04)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("width", [0.5, 1.0, 3.0, 8.0])
 @pytest.mark.parametrize(("add", "pipeline"), CASES, ids=[f"{add.__name__[4:]}-{name}" for add, name in CASES])
 def test_a_pixel_shows_the_share_that_a_line_covers_while_the_camera_moves(found, add, pipeline, width):
     hold(found, add, width, pipeline, "coverage")
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("width", [0.5, 1.0])
 @pytest.mark.parametrize(("add", "pipeline"), ONE_PIPELINE, ids=["lines", "tubes", "halos", "splines"])
 def test_pictures_at_rest_are_as_strong(found, add, pipeline, width):

@@ -68,6 +68,7 @@ CHANGES = (
 )  # fmt: skip
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("change", CHANGES, ids=lambda change: change.__name__)
 @pytest.mark.parametrize("add", ADDS)
 def test_as_with_add_mesh(plotter, three_lines, colours_in, add, change):
@@ -114,6 +115,7 @@ def test_what_was_written_is_kept_as_settings(plotter, three_lines):
     assert (actor.lookup_table.values[:, 3] == 100).all()
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("mode", ["composite", "mip", "isosurface"])
 def test_volumes(plotter, mode):
     image = pv.ImageData(dimensions=(12, 12, 12), origin=(-6, -6, -6))

@@ -44,6 +44,7 @@ def handle_of(workspace, name):
     return middle, middle + 0.36 * min(pane.pixels) * line_of(workspace.oblique.normal, pane)
 
 
+@pytest.mark.more
 def test_its_pane_shows_what_lies_in_its_plane(five, workspace):
     workspace.cross_hair, workspace.told = False, False
     workspace.position = (3.0, -5.0, 9.0)
@@ -63,6 +64,7 @@ def test_its_pane_shows_what_lies_in_its_plane(five, workspace):
     assert np.abs(found - wanted)[inside].max() <= 4.0
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", ["axial", "coronal", "sagittal"])
 @pytest.mark.parametrize("angle", [25.0, -70.0])
 def test_a_drag_of_a_handle_turns_its_line_as_far_as_the_mouse(five, workspace, name, angle):

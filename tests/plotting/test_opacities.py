@@ -44,6 +44,7 @@ def test_one_opacity_per_streamline(plotter):
     assert np.abs(columns(plotter)[:, 1, 0] - 255).max() <= 1
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("transparency", ["all", "layers", None])
 def test_one_opacity_per_point(plotter, transparency):
     fade = np.tile(np.linspace(0.0, 1.0, N), 3)
@@ -66,6 +67,7 @@ def test_opacity_by_the_name_of_an_array(plotter):
     assert actor.scalars == "fa"
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("opacity", ["linear", "sigmoid", "geom_r", [0.0, 0.8, 0.4, 0.0]])
 @pytest.mark.parametrize("transparency", ["all", None])
 def test_a_transfer_function_fades_along_the_map(plotter, opacity, transparency):

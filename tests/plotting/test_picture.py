@@ -244,6 +244,7 @@ def test_memory_is_known_and_given_back(plotter):
     assert not windows._contexts
 
 
+@pytest.mark.more
 def test_no_import_is_needed_and_nothing_is_imported_before():
     code = (
         "import sys, pyvista as pv\n"

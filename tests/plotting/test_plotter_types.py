@@ -67,6 +67,7 @@ def test_the_stub_is_as_its_script_writes_it():
     assert STUB.read_text() == script.stub(), "run: python scripts/plotter_stub.py"
 
 
+@pytest.mark.more
 def test_a_checker_knows_what_comes_back(tmp_path):
     script = tmp_path / "use.py"
     script.write_text(USE)

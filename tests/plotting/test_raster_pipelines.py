@@ -51,6 +51,7 @@ def lines():
     return [np.cumsum(step, axis=0) + rng.uniform(-20, 20, 3) for step in steps]
 
 
+@pytest.mark.few(1)
 @pytest.mark.every("value")
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("pipeline", ["tessellation", "geometry"])

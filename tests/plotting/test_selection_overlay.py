@@ -50,6 +50,7 @@ def drawn_by(actor):
     return type(actor._standout.mapper)
 
 
+@pytest.mark.more
 def test_tubes_follow_what_their_actor_does_by_whichever_way_can(scene):
     actor, front = scene
     actor.selection_style(as_tubes=False)
@@ -109,6 +110,7 @@ def test_tubes_follow_what_their_actor_does_by_whichever_way_can(scene):
     assert rows(front(), 10) == 1
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("scalars", [None, "weight", "along", "arc_length", "curvature", "colours"])
 def test_tubes_have_their_actors_colours(scene, scalars):
     actor, front = scene

@@ -26,6 +26,7 @@ def test_all_is_off_at_first(actor):
     assert set(actor.mapper.effects) == {"light"}
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("name", EFFECTS)
 @pytest.mark.parametrize("off", [False, None])
 def test_an_effect_is_set_and_taken_away_while_it_is_shown(plotter, actor, name, off):

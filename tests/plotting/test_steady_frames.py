@@ -85,6 +85,7 @@ def test_a_turning_camera_never_waits(turned, brain, pipeline, culling):
     assert actor.pipeline == pipeline
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     "arguments", [{"style": "density"}, {"opacity": 0.5}, {"opacity": 0.5, "transparency": 3}, {"line_width": 3}],
     ids=["density", "translucent", "layers", "wide"],

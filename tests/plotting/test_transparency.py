@@ -99,10 +99,12 @@ def draws(environment, pipeline):
     assert result.stdout.split()[-1:] == ["drawn"], result.stderr[-3000:]
 
 
+@pytest.mark.more
 def test_layers_of_a_volumes_values_by_this_opengl():
     draws(None, "auto")
 
 
+@pytest.mark.more
 @pytest.mark.parametrize(("version", "pipeline"), [("4.1", "tessellation"), ("4.1", "geometry"), ("3.3", "geometry")])
 def test_layers_of_a_volumes_values_by_older_opengl(older_opengl, version, pipeline):
     draws(older_opengl(version), pipeline)

@@ -31,6 +31,7 @@ def add(plotter, **arguments):
     return plotter.add_spline_tubes(LINES, radius=1.0, **arguments)
 
 
+@pytest.mark.more
 def test_no_import_of_the_package_is_needed():
     code = (
         "import pyvista as pv\n"
@@ -237,6 +238,7 @@ print("drawn")
 """
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("version", [pytest.param("4.1", marks=pytest.mark.exhaustive), "3.3"])
 def test_older_opengl_draws_tubes_too(older_opengl, version):
     """A process of its own: Mesa reads how old it has to be when it is loaded."""

@@ -44,6 +44,7 @@ def lamp(plotter, *, positional):
     plotter.add_mesh(pv.Plane(center=(0, 0, -15), i_size=100, j_size=100), color="white")
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("positional", [True, False])
 def test_shadows_fall_as_those_of_meshes(both, positional):
     def dark(plotter, _actor):
@@ -72,6 +73,7 @@ def test_culling_of_front_faces_leaves_tubes_as_they_are(both):
 SHEAR = np.array([(1, 0.2, 0.5, 3), (-0.3, 1, 0, 0), (0, 0.4, 0.7, -2), (0, 0, 0, 1)], float)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("effect", ["shear", "ssao", "eye dome", "stereo", "parallel", "volume"])
 def test_other_passes_and_places_show_the_same_as_for_meshes(both, effect):
     grid = pv.ImageData(dimensions=(9, 9, 9), spacing=(4, 4, 4), origin=(-16, -16, -16))

@@ -76,6 +76,7 @@ def test_a_file_of_other_lines_is_refused(files, shared_data):
         pv.Plotter(off_screen=True).add_fiblets(shared_data / "nv_tract.IFOF_R.trk", scalars=files[1])
 
 
+@pytest.mark.more
 def test_the_command_line_takes_it(files, tmp_path, capsys):
     picture = tmp_path / "a.png"
     arguments = ["screenshot", str(files[0]), "-o", str(picture), "--scalars", str(files[1]), "--size", "120x90"]

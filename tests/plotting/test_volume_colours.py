@@ -58,6 +58,7 @@ def source_of(kind, tmp_path):
     return str(path) if kind == "text" else path
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("kind", ["image", "cells", "array", "nibabel", "text", "path"])
 def test_a_ramp_runs_through_the_colour_map(plotter, line, kind, tmp_path):
     actor = plotter.add_fiblets([line], scalars=source_of(kind, tmp_path), cmap="gray", nan_color="red", **FLAT)

@@ -54,6 +54,7 @@ def image():
     return grid
 
 
+@pytest.mark.more
 def test_no_import_of_the_package_is_needed():
     if "add_raycast_volume" not in entry_points(group="pyvista.plotter_components").names:
         pytest.skip("the package was installed before it had these entry points; install it again")
@@ -303,6 +304,7 @@ def test_labels_stand_in_the_legend(plotter):
     assert shot(plotter).any()
 
 
+@pytest.mark.few(21)
 @pytest.mark.parametrize(
     ("source", "arguments", "error", "told"),
     [

@@ -47,6 +47,7 @@ def both(image, opacity, view="xy", **look):
     return shot(lambda p: p.add_raycast_volume(image, opacity=table, **look), view), shot(theirs, view)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("opacity", "unit", "spacing", "view"),
     [

@@ -48,6 +48,7 @@ def plain():
 # Numbers -------------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize(
     "dtype", ["i1", "u1", "u2", "i2", "i4", "u4", "i8", "u8", "f2", "f8", "g", ">i2", ">u2", ">f4", ">f8"]
 )
@@ -57,6 +58,7 @@ def test_every_type_of_number_gives_the_same_picture(plain, dtype):
         assert (off > 3).sum() <= 12  # pixels at edges; samples of bytes are of 16 bits
 
 
+@pytest.mark.more
 def test_every_order_of_memory_gives_the_same_picture(plain, tmp_path):
     for mode in ("isosurface", "composite"):
         for order in (
@@ -145,6 +147,7 @@ def test_volumes_far_away_look_the_same(plain, far):
         assert (np.abs(picture((WHOLE, moved), mode) - plain[mode]).max(-1) > 3).sum() <= 5
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("axes", [(0, 1, 2), (1, 2, 0), (2, 1, 0)])
 @pytest.mark.parametrize("flips", [(1, 1, -1), (-1, -1, -1)])
 def test_the_order_of_voxels_does_not_matter(plain, axes, flips):
@@ -184,6 +187,7 @@ def test_matrices_that_flatten_show_nothing():
     assert not shows(picture((BALL, PLACE), user_matrix=np.diag([1.0, 0.0, 1.0, 1.0]))).any()
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("box", [(30, 40, 0, 5, 0, 5), (-5, -1, 0, 20, 0, 20), (0, 20, 21, 30, 0, 20)])
 def test_boxes_beside_the_volume_show_nothing(box):
     for mode in MODES:
@@ -347,6 +351,7 @@ def _two_fogs(shift, peeling, order):
     return colour
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("order", [(0, 1), (1, 0)])
 def test_two_volumes_in_a_pixel_are_what_the_docs_say(order):
     """Without depth peeling right in one place, with it one behind the other; whatever the order."""

@@ -60,6 +60,7 @@ def vtks(image, **look):
     return add
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("lights", "reflection"),
     [
@@ -105,6 +106,7 @@ def test_a_matrix_of_the_actor_turns_the_gradients():
     assert np.abs(found - shot(ours(image, specular=0.3), ["beside", "near"])).max() <= 4
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("integrator", ["exponential", "simpson", "preintegrated"])
 def test_all_integrators_shade(integrator):
     image = bulge()

@@ -54,6 +54,7 @@ def picture(plotter):
     return np.asarray(plotter.screenshot(), int)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("made", MODES, ids=str)
 def test_each_setting_changes_the_picture_or_says_why_not(plotter, ball, made):
     for name, value in SETTINGS.items():
@@ -92,6 +93,7 @@ def test_what_was_said_is_forgotten_with_the_mode(plotter, ball):
     plotter.render()
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("made", MODES, ids=str)
 @pytest.mark.parametrize("light", [{"ambient": 0.6}, {"diffuse": 0.2}, {"specular": 0.9}, {"shade": True}], ids=str)
 def test_each_argument_of_light_changes_the_picture_or_says_why_not(plotter, ball, made, light):

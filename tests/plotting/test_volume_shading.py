@@ -66,6 +66,7 @@ SPARSE = (1, 2, 4)
 STRETCHED = np.diag([1.0, 1.0, 2.2, 1.0])
 
 
+@pytest.mark.few(2)
 @pytest.mark.every("pair")
 @pytest.mark.parametrize("parallel", [False, True], ids=["perspective", "parallel"])
 @pytest.mark.parametrize("sparse", SPARSE)

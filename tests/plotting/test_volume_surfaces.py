@@ -170,6 +170,7 @@ def powers():
     return image
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("blending", ["composite", "maximum"])
 def test_log_scale_looks_as_in_add_volume(shot, blending):
     look = {"opacity": [0.3, 1.0], "opacity_unit_distance": 3.0, "blending": blending, "cmap": "viridis", **LOOK}
@@ -270,6 +271,7 @@ def test_rgba_shows_its_own_colours_and_alpha(shot, unit):
             assert np.abs(found[row, column] - light_of_rgba(x, y, unit)).max() <= 4
 
 
+@pytest.mark.more
 def test_rgba_is_light_and_nothing_else():
     plotter = pv.Plotter(off_screen=True)
     actor = plotter.add_raycast_volume(rgba())

@@ -59,6 +59,7 @@ class Mouse:
             self.send(event, key=key, symbol=symbol, **at)
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("convention", ["radiological", "neurological"])
 def test_every_pixel_of_a_pane_shows_what_lies_at_its_position(four, workspace, convention):
     workspace.convention, workspace.cross_hair, workspace.told = convention, False, False

@@ -119,6 +119,7 @@ def split(rows: np.ndarray, lines: list[np.ndarray]) -> list[np.ndarray]:
     return np.split(rows, np.cumsum([len(line) for line in lines])[:-1])
 
 
+@pytest.mark.more
 def test_every_contrast_is_the_reference(whole):
     lines = whole.decompress(dtype=np.float64)
     points = lines.to_list()
@@ -139,6 +140,7 @@ def test_every_contrast_is_the_reference(whole):
             assert np.isfinite(found.values).all()
 
 
+@pytest.mark.few(1)
 def test_values_of_streamlines_are_their_means(whole):
     age = np.asarray(LINES.per_streamline["age"])
     points = whole.decompress(dtype=np.float64).to_list()
@@ -151,6 +153,7 @@ def test_values_of_streamlines_are_their_means(whole):
     assert (whole.density(15.0, contrast=Distance((0.0, 0.0, 0.0), per="point")).values >= 0.0).all()
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("kind", ["nibabel", "pyvista", "cells", "shape", "array", "map"])
 def test_grids_of_images_may_be_sheared_and_cover_a_part(part_of, kind):
     coded, exact, everything = part_of
@@ -304,6 +307,7 @@ def test_sums_do_not_depend_on_threads(whole):
     np.testing.assert_array_equal(found[0], found[-1])
 
 
+@pytest.mark.few(1)
 def test_end_points_alone(whole):
     points = whole.decompress(dtype=np.float64).to_list()
     ends = [line[[0, -1]] if len(line) > 1 else line for line in points]
@@ -326,6 +330,7 @@ def test_end_points_alone(whole):
     assert part.share_outside == pytest.approx(1.0 - part.values.sum() / len(of))
 
 
+@pytest.mark.more
 def test_files_and_memory_give_the_same(tmp_path):
     trx, fiblets = tmp_path / "a.trx", tmp_path / "a.fiblets"
     formats.write(trx, LINES)

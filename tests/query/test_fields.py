@@ -88,6 +88,7 @@ def test_balls_are_never_misjudged(affine):
     assert (sides == 1).sum() >= 4
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", ["plain", "turned", "flipped"])
 @pytest.mark.parametrize("most", [10**9, 60])
 def test_the_field_bounds_the_distance_to_the_nearest_change(name, most, monkeypatch):

@@ -121,6 +121,7 @@ def mixed():
     return Streamlines.concatenate([smooth(25, 130), noisy(25, 130), wandering(25, 100)])
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("parallel", [False, True])
 @pytest.mark.parametrize("tolerance", [0.0, 3.0])
 @pytest.mark.parametrize("polygon", [LASSO, LASSO[:1], LASSO[:2], [[100, 80], [180, 80], [180, 150], [100, 150]]])

@@ -204,6 +204,7 @@ def test_distances_of_simple_shapes():
             region.distance(POINTS)
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("name", ["ellipsoid", "sheared box"])
 def test_distances_of_stretched_shapes(name):
     """The nearest point by projected gradients in the solid's own frame, started from the nearest of many samples."""

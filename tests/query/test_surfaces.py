@@ -182,6 +182,7 @@ def test_a_moved_surface_is_the_surface_of_moved_points(matrix):
     assert moved != made
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("offset", "size"), [(1e6, 1.0), (0.0, 1e-6), (1e6, 1e-3), (0.0, 1e6)])
 def test_extreme_places_and_sizes(offset, size):
     ball = pv.Icosphere(radius=1.0, nsub=3)
@@ -214,6 +215,7 @@ def test_balls_near_a_surface(concave):
     assert (sides != 0)[settled].mean() > 0.98
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("loss", [0.0, 0.03])
 def test_the_field_is_a_lower_bound_at_every_grid_point(concave, loss, monkeypatch):
     monkeypatch.setattr(surfaces, "FEW", 0 if loss else 10**9)

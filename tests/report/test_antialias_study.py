@@ -29,6 +29,7 @@ def measured(small):
     return {(record.group, record.setting): record for record in records}
 
 
+@pytest.mark.more
 def test_refined_pictures_are_the_nearest_to_the_mean_and_cost_as_many_frames(measured):
     groups = {group for group, _ in measured}
     assert groups == {"whole-brain", "bundle", "tubes", "bundle-and-surface", "lines-drawn-by-VTK"}

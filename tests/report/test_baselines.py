@@ -71,6 +71,7 @@ def test_what_is_beyond_the_cap_goes_to_its_edge_at_its_azimuth():
     assert octahedral.from_cap(1.0, 0.0, 0.0, ratio, 2.0, 2.0) == (1.0, 0.0, 0.0)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("noisy", [False, True])
 def test_directions_follow_constant_steps(noisy):
     streamlines = synthetic_tracking(0.2, noisy, 12_000, 3)

@@ -109,6 +109,7 @@ def test_lines_are_counted_by_the_rule(polylines):
         counted([polylines[0] * 100.0], matrix, SIZE)
 
 
+@pytest.mark.more
 def test_lines_that_are_not_where_they_should_be_differ(gl, monkeypatch):
     """The whole way, with a reference that is a millimetre aside."""
     about = card_fiblets.brain()
@@ -199,6 +200,7 @@ def test_verdicts_are_counted_each_by_its_own_word():
     assert totals([*found[:1] * 12, replace(found[0], verdict=MISSING)]) == "12 work, 1 is missing in this OpenGL"
 
 
+@pytest.mark.more
 def test_the_command_checks_this_driver(gl, tmp_path, capfd):
     target = tmp_path / "check.zip"
     assert main(["gl", "--check", "--only", "halos", "--segments", "-o", str(target)]) == 0
@@ -210,6 +212,7 @@ def test_the_command_checks_this_driver(gl, tmp_path, capfd):
     assert zipfile.is_zipfile(target)
 
 
+@pytest.mark.more
 @pytest.mark.parametrize(
     "part",
     [

@@ -53,6 +53,7 @@ def more(found, *name):
     return 1e6 * found[name].costs["more memory"].value
 
 
+@pytest.mark.more
 def test_every_subject_is_beside_its_plain_self(measured):
     plain = {key: record for key, record in measured.items() if record.default}
     assert {key[0] for key in plain} == {"streamlines", "spline-tubes", "lines-with-halos", "volume", "window"}
@@ -111,6 +112,7 @@ def test_no_feature_is_better_for_being_cheaper(measured):
     assert not any(record.front for record in measured.values())
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("wanted", PICTURE_EFFECTS, ids=lambda wanted: wanted.name)
 def test_whole_pictures_are_changed(gl, wanted):
     """The plain scene's picture, by each effect; focus spreads light, and loses none."""

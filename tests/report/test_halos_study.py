@@ -31,6 +31,7 @@ def small(monkeypatch):
     monkeypatch.delenv("PVFIBLETS_DATA", raising=False)
 
 
+@pytest.mark.more
 def test_all_variants_are_measured_on_every_scene(gl, small, tmp_path):
     formats.write(tmp_path / "some.tck", data_sets.synthetic_tracking(0.5, False, 1500, 3))
     left = []

@@ -155,6 +155,7 @@ def decoded(made, dtype, how):
 EVERY = [(order, algebra, source) for order in (0, 1) for algebra in (0, 1) for source in (0, 1, 2)]
 
 
+@pytest.mark.more
 @pytest.mark.parametrize(
     "cap", [pytest.param(0, marks=pytest.mark.exhaustive), 7, pytest.param(15, marks=pytest.mark.exhaustive)]
 )

@@ -16,6 +16,7 @@ def small(monkeypatch):
     monkeypatch.setattr(translucency, "QUICK_SIZE", (120, 90))
 
 
+@pytest.mark.more
 def test_all_lines_are_nearer_to_the_exact_picture_than_few_layers(small):
     left = []
     records = {(r.group, r.setting): r for r in translucency.STUDY.run(little(), left)}

@@ -28,6 +28,7 @@ def small(monkeypatch):
     monkeypatch.setattr(tubes, "TUBES", 2)
 
 
+@pytest.mark.more
 def test_all_parts_are_measured_and_exact_solvers_are_exact(gl, small):
     left = []
     options = little()

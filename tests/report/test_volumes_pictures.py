@@ -26,6 +26,7 @@ def ball(n=24):
     return RaycastVolume(np.maximum(1.0 - away, 0.0).astype(np.float32), affine)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("mode", MODES)
 def test_the_engine_comes_near_what_is_right(gl, mode):
     volume = ball()

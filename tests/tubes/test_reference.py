@@ -293,6 +293,7 @@ DEGENERATE = {
 }
 
 
+@pytest.mark.few(6)
 @pytest.mark.parametrize("name", DEGENERATE)
 def test_degenerate_halves(name):
     half = DEGENERATE[name]

@@ -39,6 +39,7 @@ def sampled(method, profile, n, dtype=np.float64):
 # --------------------------------------------------------------------------------------------------------- profiles
 
 
+@pytest.mark.few(10)
 @pytest.mark.parametrize("depth", [0.01, 1.0, 30.0])
 @pytest.mark.parametrize("name", ["constant", "fade", "ramp", "edge", "peak", "haze", "teeth"])
 def test_the_closed_forms_are_the_integral(name, depth):

@@ -16,6 +16,7 @@ from .noise import PLAIN, SHAPE, SIZE, VIEWS, along, haze, noise, straight, tril
 # --------------------------------------------------------------------------------------------------------------- rays
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("name", VIEWS)
 @pytest.mark.parametrize("grid", GRIDS)
 def test_rays_go_through_the_centres_of_pixels_and_the_box_of_the_voxels(grid, name):

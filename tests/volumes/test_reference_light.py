@@ -30,6 +30,7 @@ def test_the_greatest_value_of_a_ball_is_where_the_ray_is_nearest_to_its_centre(
     assert np.abs(found.t - t)[seen].max() < 1e-5
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("how", FILTERS)
 def test_the_greatest_value_in_noise(how):
     volume = noise(seed=3, affine=GRIDS["oblique"])

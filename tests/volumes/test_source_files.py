@@ -324,6 +324,7 @@ def test_what_metaimages_say_is_not_taken_at_their_word(tmp_path, change, messag
         read_metaimage(tmp_path / "a.mhd")
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("packing", ["gzip", "bzip2", "zlib"])
 @pytest.mark.parametrize("where", ["nrrd", "mha", "nii.gz"])
 def test_small_files_that_swell_take_no_memory(tmp_path, packing, where):

@@ -102,6 +102,7 @@ def test_preintegration_against_thin_layers(step):
         np.testing.assert_allclose(pre[front, back], expected, atol=2e-5)
 
 
+@pytest.mark.more
 @hypothesis.settings(max_examples=12)
 @hypothesis.given(st.integers(2, 40), st.integers(0, 10**6), st.floats(1e-6, 1e6))
 def test_preintegrated_light_is_within_its_colours(k, seed, step):

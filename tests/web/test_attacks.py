@@ -125,6 +125,7 @@ def test_a_reader_that_never_reads_takes_no_memory_and_is_given_up(tmp_path, mon
     run(test())
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     ("lines", "body"),
     [
@@ -184,6 +185,7 @@ def test_no_answer_can_be_framed_sniffed_or_kept(tmp_path, known):
     run(test())
 
 
+@pytest.mark.more
 def test_a_flood_of_calls_lets_others_through(tmp_path):
     async def test():
         async with gate(tmp_path) as server, Browser(server) as browser, Browser(server) as other:
@@ -211,6 +213,7 @@ def test_a_flood_of_calls_lets_others_through(tmp_path):
     run(test())
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(
     "change",
     [

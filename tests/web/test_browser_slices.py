@@ -8,9 +8,9 @@ import shutil
 import numpy as np
 import pytest
 
-pytestmark = pytest.mark.more
-
 from tests.web.browsing import LOAD
+
+pytestmark = pytest.mark.more
 
 
 def told(here):

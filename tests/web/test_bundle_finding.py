@@ -142,6 +142,7 @@ def brain(folder):
     return folder
 
 
+@pytest.mark.more
 def test_models_of_a_folder_are_recognised(desk, brain):
     pytest.importorskip("dipy")
     desk.choose(desk.scene.open("brain.fiblets"))

@@ -165,6 +165,7 @@ def test_a_cancelled_export_leaves_nothing(desk, folder, monkeypatch, suffix, to
         assert list(Path(desk.exports._folder.name).iterdir()) == []
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("suffix", EXPORTS)
 def test_whenever_writing_is_stopped_no_file_is_left(desk, tmp_path, suffix):
     home = tmp_path / "apart"

@@ -39,6 +39,7 @@ async def answered(browser, path="/", seconds=2.0):
     return status
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("limits", [{"connections": 40, "by_address": 400}, {"connections": 400, "by_address": 40}])
 def test_unfinished_requests_keep_nobody_out_and_fill_no_log(tmp_path, caplog, limits):
     async def test():

@@ -26,6 +26,7 @@ def history(scene, clock):
     history.close()
 
 
+@pytest.mark.more
 def test_everything_that_was_done_is_undone_and_done_again(scene, history, clock):
     done = []
 

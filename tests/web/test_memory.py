@@ -67,6 +67,7 @@ def opened(tmp_path_factory, lines):
     return {one["name"]: one for one in found}
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", BOMBS)
 def test_a_bomb_is_refused_in_one_sentence_and_leaves_nothing(opened, name):
     found = opened[name]
@@ -185,6 +186,7 @@ async def _ending(server, browser):
     raise AssertionError("the session did not end")
 
 
+@pytest.mark.more
 def test_a_session_that_cannot_have_what_it_needs_says_so(tmp_path):
     async def test():
         server = FrontServer(Options(port=0, root=str(tmp_path), memory=300 << 20), WORKER)
@@ -199,6 +201,7 @@ def test_a_session_that_cannot_have_what_it_needs_says_so(tmp_path):
     assert re.search(r"--max-memory 300 MB: a session takes \d+ MB on this machine .* with \d+ MB or more<", page)
 
 
+@pytest.mark.more
 def test_a_file_with_which_vtk_ends_the_process_is_named(tmp_path):
     bombs.gltf(tmp_path / "points.gltf", 1000)
 

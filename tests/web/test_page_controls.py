@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 
 def test_a_slider_acts_while_it_is_held_and_is_one_step(visit):
@@ -62,6 +63,7 @@ def test_light_or_dark_and_sessions_outlive_the_page(visit):
     here.page.wait_for_selector("[data-property=scalars]:has-text('length')")
 
 
+@pytest.mark.more
 def test_streamlines_are_exported_to_this_computer_alone(visit):
     import pvfiblets
 

@@ -68,6 +68,7 @@ class Bars:
         return found[1], found[0]
 
 
+@pytest.mark.more
 @pytest.mark.parametrize(
     ("size", "dpi"),
     [*((size, 72) for size in SIZES[:1]), ((320, 276), 144),
@@ -95,6 +96,7 @@ def test_nothing_of_a_bar_touches_anything(scene, size, dpi):
         assert apart(whole[one], whole[other], 6 * dpi // 72), f"{one} at {whole[one]}, {other} at {whole[other]}"
 
 
+@pytest.mark.more
 def test_bars_follow_the_size_of_the_window(scene):
     bars = Bars(scene)
     scene.plotter.window_size = 800, 600
@@ -112,6 +114,7 @@ def test_bars_follow_the_size_of_the_window(scene):
     assert [rectangle(bars.alone(bar)) for bar in bars.shown.values()] == wide
 
 
+@pytest.mark.more
 def test_half_as_many_pixels_show_the_same_bars(scene):
     """As they are drawn while the camera moves: letters have half the size, too."""
     scene.plotter.window_size = 800, 600
@@ -157,6 +160,7 @@ def test_names_that_find_no_room_are_left_out():
     assert place(["a name that is much longer than the picture is wide"], (320, 600)) is None
 
 
+@pytest.mark.more
 def test_enlarged_pictures_have_their_bars_where_the_page_has_them(scene):
     bars = Bars(scene, ["length"])
     scene.plotter.window_size = 400, 320

@@ -275,6 +275,7 @@ def test_bars_are_of_visible_layers_and_say_their_values(scene):
     assert list(scene.plotter.scalar_bars.keys()) == []
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("size", [(320, 240), (640, 690), (1600, 400)])
 def test_bars_leave_the_places_of_letters_free(scene, size):
     """Letters stand at the middles of the edges, 16 pixels high, the left one behind the tools."""
@@ -377,6 +378,7 @@ def test_layers_are_drawn_in_their_order_whenever_they_came(flat):
     assert flat.info(second.id)["gpu_bytes"] >= bytes_before > 0
 
 
+@pytest.mark.more
 def test_documents_need_no_server():
     code = (
         "import sys; from pvfiblets.web import history, layers, scene, script, session\n"

@@ -145,6 +145,7 @@ def test_paths_that_climb_never_reach_a_session(tmp_path):
     run(test())
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("bad", [message(b"x" * LARGEST_MESSAGE), message(b"x", 2**32 - 1), b"short", "text"])
 def test_a_browser_that_sends_too_much_is_cut_off_and_may_come_back(tmp_path, bad):
     async def test():

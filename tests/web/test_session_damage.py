@@ -103,6 +103,7 @@ BOMBS = {
 }
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("name", BOMBS)
 def test_session_files_that_are_bombs_are_refused_soon(scene, folder, name):
     scene.open("lines.fiblets")

@@ -50,6 +50,7 @@ def test_options_take_a_folder_of_shards(folder, shards):
         Options(root=str(folder), files=[str(folder)], token=None, host="127.0.0.1").checked()
 
 
+@pytest.mark.more
 @pytest.mark.usefixtures("_apart")
 def test_a_session_of_shards_brings_everything_back(scene, shards, tmp_path):
     layer = scene.open("many.fiblets")

@@ -240,6 +240,7 @@ def glyph_image(folder, n):
     nibabel.save(nibabel.Nifti1Image(values, np.diag([4.0, 4.0, 4.0, 1.0])), folder / "glyphs.nii.gz")
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("n", "kind"), [(3, "peaks"), (6, "tensor"), (15, "sh")])
 def test_glyphs_of_an_image_are_those_of_python(scene, folder, n, kind):
     glyph_image(folder, n)

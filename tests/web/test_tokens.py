@@ -136,6 +136,7 @@ def stopped(process):
     return out + err
 
 
+@pytest.mark.more
 @POSIX
 def test_what_is_no_terminal_is_told_where_the_token_is(tmp_path):
     runtime = tmp_path / "run"
@@ -154,6 +155,7 @@ def test_what_is_no_terminal_is_told_where_the_token_is(tmp_path):
     assert not list(runtime.iterdir())
 
 
+@pytest.mark.more
 @POSIX
 def test_a_terminal_is_told_the_token_and_the_environment_keeps_its_own(tmp_path):
     import pty

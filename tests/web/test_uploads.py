@@ -52,6 +52,7 @@ async def until(condition):
             await asyncio.sleep(0.05)
 
 
+@pytest.mark.more
 @pytest.mark.skipif(not memory.CAN_LIMIT, reason="only Linux limits the data of a process")
 def test_uploads_by_a_real_session(tmp_path):
     root, apart = tmp_path / "root", tmp_path / "apart"

@@ -81,6 +81,7 @@ def test_sessions_keep_files_of_values(scene, heights):
     assert len(scene.layers) == 1
 
 
+@pytest.mark.more
 @pytest.mark.usefixtures("usual_limits")  # which the script has
 def test_scripts_attach_files_of_values(scene, folder, heights):
     scene.plotter.window_size = 420, 360

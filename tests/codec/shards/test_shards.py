@@ -52,6 +52,7 @@ def test_all_shards_together_are_the_set(whole: pf.FibletSet, sharded: Path) -> 
     }
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("max_points", [150, 1000, 100_000])
 def test_chunks_join_to_the_set(whole: pf.FibletSet, sharded: Path, max_points: int) -> None:
     chunks = list(pf.iter_chunks(sharded, max_points))
@@ -136,6 +137,7 @@ def test_a_box_chooses_shards(whole: pf.FibletSet, sharded: Path) -> None:
         shards.manifest.meeting([1, 0, 0, 1, 0, 1])
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("exact", [True, False, None])
 def test_a_file_becomes_shards(tmp_path: Path, exact: bool | None) -> None:
     lines = smooth(60, 100)
@@ -156,6 +158,7 @@ def test_a_file_becomes_shards(tmp_path: Path, exact: bool | None) -> None:
     assert sorted(p.name for p in tmp_path.iterdir()) == ["a.tck", "b.fiblets"], "nothing else is left"
 
 
+@pytest.mark.more
 def test_a_set_is_divided_as_it_is(whole: pf.FibletSet, tmp_path: Path) -> None:
     whole.save(tmp_path / "a.fiblets")
     whole.save(tmp_path / "b.fiblets", shards=4000)
@@ -217,6 +220,7 @@ def test_foreign_shards_are_refused(sharded: Path) -> None:
         pf.read(sharded)
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize(
     ("change", "told"),
     [

@@ -83,6 +83,7 @@ def test_points_are_those_of_the_set(unread, together, ids):
         assert_equal_streamlines(unread[ids].decompress(), together[ids].decompress())
 
 
+@pytest.mark.more
 def test_chunks_are_those_of_the_set(unread, together):
     chunks = list(unread.iter_chunks(200))
     assert len(chunks) > 3
@@ -90,6 +91,7 @@ def test_chunks_are_those_of_the_set(unread, together):
     np.testing.assert_array_equal(points, together.decompress().points)
 
 
+@pytest.mark.more
 def test_questions_have_the_same_answers(unread, together):
     middle = np.reshape(together.bounds, (3, 2)).mean(axis=1)
     ball = regions.Sphere(middle, float(np.ptp(np.reshape(together.bounds, (3, 2)), axis=1).max()) / 4)

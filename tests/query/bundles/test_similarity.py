@@ -34,6 +34,7 @@ def distance(a, b, m=12):
     return min(np.linalg.norm(a - b, axis=1).mean(), np.linalg.norm(a - b[::-1], axis=1).mean())
 
 
+@pytest.mark.more
 def test_distances_are_dipys_and_numpys(lines):
     from dipy.tracking.distances import bundles_distances_mdf
     from dipy.tracking.streamline import set_number_of_points

@@ -7,6 +7,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 import pvfiblets
 from pvfiblets.query.painting import kernels
 
@@ -51,6 +53,7 @@ print("done")
 """
 
 
+@pytest.mark.more
 def test_strokes_compile_nothing_after_all_is_compiled(tmp_path):
     environment = {**os.environ, "PYTHONPATH": str(Path(pvfiblets.__file__).parents[1])}
     done = subprocess.run(
