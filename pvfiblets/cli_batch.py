@@ -92,12 +92,13 @@ def _density(parser: argparse.ArgumentParser, positive: Any, angle: Any, count: 
 def _select(parser: argparse.ArgumentParser, positive: Any, angle: Any, count: Any) -> None:  # noqa: ARG001
     add = parser.add_argument
     for option, what in (
-        ("--passes", "streamlines with a point in"), ("--avoids", "streamlines without a point in"),
+        ("--passes", "streamlines that pass through"), ("--avoids", "streamlines that do not pass through"),
         ("--ends-in", "streamlines with an end in"), ("--both-ends-in", "streamlines with both ends in"),
-        ("--stays-in", "streamlines with all points in"),
+        ("--stays-in", "streamlines that never leave"),
     ):  # fmt: skip
         add(option, action="append", default=[], metavar="REGION", help=f"{what} {_REGION}")
-    add("--sampling", type=positive, metavar="MM", help="look between points too, at this distance")
+    add("--sampling", choices=("lines", "points"), default="lines",
+        help="points: what lies between points does not count, as for MRtrix's tckedit (default: %(default)s)")
     add("--to", default=".fiblets", metavar="SUFFIX", help="format to write (default: %(default)s)")
 
 

@@ -45,8 +45,9 @@ def add_options(parser: Any) -> None:
     parser.add_argument("--clip-away", metavar="WORD", help="show only what is outside; words as of --clip", **words)
     parser.add_argument(
         "--include", metavar="WORD",
-        help="only streamlines that pass through a shape of --clip, or labels path=FILE labels=N,N; passes, ends_in, "
-        "both_ends_in or stays_in before it says otherwise. May be given several times: all must hold",
+        help="only streamlines that pass through a shape of --clip, or labels path=FILE labels=N,N; passes, "
+        "ends_in, both_ends_in or stays_in before it says otherwise; with sampling=points, what lies between points does not count. "
+        "May be given several times: all must hold",
         **words,
     )  # fmt: skip
     parser.add_argument("--exclude", metavar="WORD", help="no streamlines that do; words as of --include", **words)
@@ -139,8 +140,8 @@ def _condition(words: Sequence[str], option: str, load: Load) -> Any:
     how, rest = (words[0], words[1:]) if words[0] in HOWS else ("passes", words)
     if not rest:
         raise ValueError(f"{option} says {how} and no shape; give one, such as sphere center=0,0,0 radius=20")
-    shape, _ = shape_of(rest, option)
-    return make_predicate(check_condition({"how": how, "region": shape}, option), load)
+    shape, sampling = shape_of(rest, option, ("sampling",))
+    return make_predicate(check_condition({"how": how, "region": shape, **sampling}, option), load)
 
 
 def _region(shape: Mapping[str, Any], load: Load) -> Any:

@@ -21,6 +21,7 @@ from pvfiblets.formats import registry
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
+    from pvfiblets.query.point_flags import Sampling
     from pvfiblets.streamlines import Streamlines
 
     from .tables import Columns
@@ -115,7 +116,7 @@ def select(
     ends_in: Sequence[str] = (),
     both_ends_in: Sequence[str] = (),
     stays_in: Sequence[str] = (),
-    sampling: float | None = None,
+    sampling: Sampling = "lines",
 ) -> Columns:
     """Write the streamlines for which all conditions hold; regions as :func:`.query.region_text.parse_region`."""
     from pvfiblets.query import predicates

@@ -17,6 +17,7 @@ from pvfiblets.mappers.line_data import SIDES
 from pvfiblets.mappers.picking import nearest_pixel
 from pvfiblets.mappers.scene import Frame, frame_of, slack, smoothers, wanted_share
 from pvfiblets.mappers.windows import Slot, WindowContext, contexts_with
+from pvfiblets.query.point_flags import Sampling
 
 _OVER = object()
 
@@ -265,7 +266,7 @@ class FibletMapper(CutMapper[EngineOptions]):
         found = nearest_pixel(self, (x, y), ("ids", "position"), renderer=renderer, tolerance=tolerance)
         return None if found is None else (int(found.texels["ids"][0]), float(found.texels["position"][0]))
 
-    def region_flags(self, region: Any, sampling: float | None = None) -> Any:
+    def region_flags(self, region: Any, sampling: Sampling = "lines") -> Any:
         """Say how each streamline lies to a region, by the GPU of a window that draws it, else by the CPU.
 
         Parameters

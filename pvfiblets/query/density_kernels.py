@@ -1,12 +1,8 @@
 """Compiled kernels: segments cut at the faces of voxels, and sums over voxels; see :mod:`.density`.
 
-The walk is that of Amanatides and Woo 1987, "A fast voxel traversal algorithm for ray tracing", with two changes. How
-many faces of each axis a segment crosses is known from the voxels of its ends, so that the walk ends where it must.
-And where it crosses face ``m`` is computed as ``(m - u0) / (u1 - u0)`` each time instead of being added up, so that a
-long segment is cut as exactly as a short one.
-
-Positions ``u`` are in voxels from the grid's corner: faces are at whole numbers, and voxel ``floor(u)`` holds ``u``.
-An *item* is a point and the segment that begins there, if it is not the last of its streamline.
+Positions ``u`` are in voxels from the grid's corner: faces are at whole numbers, and voxel ``floor(u)`` holds ``u``
+(:mod:`.voxel_walk_kernels`). An *item* is a point and the segment that begins there, if it is not the last of its
+streamline.
 """
 
 from __future__ import annotations
@@ -18,6 +14,7 @@ import numba
 import numpy as np
 
 from ..codec.jit import kernel, parallel_kernel
+from .voxel_walk_kernels import clip, end_voxels, walk, within
 
 __all__ = ["AMOUNT", "COUNT", "DIRECTION", "VALUE", "add_up", "count_pieces", "cut", "cut_ends", "place"]
 
@@ -54,82 +51,22 @@ def place(points: Any, line: Any, corner: Any, linear: Any, u: Any, lengths: Any
     return int(bad.sum())
 
 
-@kernel
-def _within(u: Any, i: int, shape: Any) -> bool:
-    """Whether point ``i`` lies in the grid."""
-    return (
-        u[i, 0] >= 0.0 and u[i, 0] < shape[0]
-        and u[i, 1] >= 0.0 and u[i, 1] < shape[1]
-        and u[i, 2] >= 0.0 and u[i, 2] < shape[2]
-    )  # fmt: skip
-
-
-@kernel
-def _clip(u: Any, i: int, shape: Any) -> Any:
-    """From which to which share of segment ``i`` it lies in the grid; (1, 0) if nowhere."""
-    enter, leave = 0.0, 1.0
-    for k in range(3):
-        a, d = u[i, k], u[i + 1, k] - u[i, k]
-        if d == 0.0:
-            if not (a >= 0.0 and a < shape[k]):
-                return 1.0, 0.0
-            continue
-        low, high = -a / d, (shape[k] - a) / d
-        if d < 0.0:
-            low, high = high, low
-        enter, leave = max(enter, low), min(leave, high)
-    if not enter < leave:
-        return 1.0, 0.0
-    return enter, leave
-
-
-@kernel
-def _voxel(x: float, n: int) -> int:
-    """Voxel of a position in, or within rounding of, the grid."""
-    return int(min(max(math.floor(x), 0.0), n - 1.0))
-
-
-@kernel
-def _ends(u: Any, i: int, shape: Any, enter: float, leave: float) -> Any:
-    """Voxels in which the part of segment ``i`` within the grid begins and ends."""
-    ax = u[i, 0] if enter == 0.0 else u[i, 0] + enter * (u[i + 1, 0] - u[i, 0])
-    ay = u[i, 1] if enter == 0.0 else u[i, 1] + enter * (u[i + 1, 1] - u[i, 1])
-    az = u[i, 2] if enter == 0.0 else u[i, 2] + enter * (u[i + 1, 2] - u[i, 2])
-    bx = u[i + 1, 0] if leave == 1.0 else u[i, 0] + leave * (u[i + 1, 0] - u[i, 0])
-    by = u[i + 1, 1] if leave == 1.0 else u[i, 1] + leave * (u[i + 1, 1] - u[i, 1])
-    bz = u[i + 1, 2] if leave == 1.0 else u[i, 2] + leave * (u[i + 1, 2] - u[i, 2])
-    nx, ny, nz = shape
-    return _voxel(ax, nx), _voxel(ay, ny), _voxel(az, nz), _voxel(bx, nx), _voxel(by, ny), _voxel(bz, nz)
-
-
 @parallel_kernel
 def count_pieces(u: Any, line: Any, shape: Any, out: Any) -> None:
     """At most how many pieces :func:`cut` makes of each item: ``out`` (n,) int64."""
     n = len(u)
     for block in numba.prange((n + BLOCK - 1) // BLOCK):
         for i in range(block * BLOCK, min((block + 1) * BLOCK, n)):
-            inside = _within(u, i, shape)
+            inside = within(u, i, shape)
             out[i] = 1 if inside else 0
             if i + 1 < n and line[i + 1] == line[i]:
                 enter, leave = 0.0, 1.0
-                if not (inside and _within(u, i + 1, shape)):
-                    enter, leave = _clip(u, i, shape)
+                if not (inside and within(u, i + 1, shape)):
+                    enter, leave = clip(u, i, shape)
                     if enter > leave:
                         continue
-                x, y, z, ex, ey, ez = _ends(u, i, shape, enter, leave)
+                x, y, z, ex, ey, ez = end_voxels(u, i, shape, enter, leave)
                 out[i] = 1 + abs(ex - x) + abs(ey - y) + abs(ez - z)
-
-
-@kernel
-def _faces(u: Any, i: int, k: int, first: int, last: int) -> Any:
-    """Of one axis: the first face that is crossed, the step to the next, how many there are, and the segment's extent.
-
-    ``first`` and ``last`` are rounded where the segment enters and leaves the grid; they never make it turn back.
-    """
-    d = u[i + 1, k] - u[i, k]
-    if d > 0.0:
-        return first + 1, 1, max(last - first, 0), d
-    return first, -1, max(first - last, 0), d
 
 
 @parallel_kernel
@@ -158,54 +95,31 @@ def cut(
         mm of the segments that lie within the grid.
     """
     nx, ny, nz = shape
+    strides = (1, nx, nx * ny)
     n_blocks = (b - a + BLOCK - 1) // BLOCK
-    within = np.zeros(n_blocks)
+    within_grid = np.zeros(n_blocks)
     for block in numba.prange(n_blocks):
+        on, stops = np.empty(nx + ny + nz + 4, np.int64), np.empty(nx + ny + nz + 4)
         for i in range(a + block * BLOCK, min(a + (block + 1) * BLOCK, b)):
             r, stop = starts[i] - starts[a], starts[i + 1] - starts[a]
             if r == stop:
                 continue
-            inside = _within(u, i, shape)
-            enter, leave, drawn = 0.0, 1.0, i + 1 < len(u) and line[i + 1] == line[i]
-            if drawn and not (inside and _within(u, i + 1, shape)):
-                enter, leave = _clip(u, i, shape)
-                drawn = enter < leave
-            if not drawn:
-                x, y, z = _voxel(u[i, 0], nx), _voxel(u[i, 1], ny), _voxel(u[i, 2], nz)
-                voxel[r], item[r], part[r], middle[r] = x + nx * (y + ny * z), i, 0.0, 0.0
+            n, now = 0, 0.0
+            if i + 1 < len(u) and line[i + 1] == line[i]:
+                n, now = walk(u, i, shape, strides, False, on, stops)
+            if n == 0:
+                voxel[r] = int(u[i, 0]) + nx * (int(u[i, 1]) + ny * int(u[i, 2]))
+                item[r], part[r], middle[r] = i, 0.0, 0.0
                 continue
-            within[block] += lengths[i] * (leave - enter)
-            x, y, z, ex, ey, ez = _ends(u, i, shape, enter, leave)
-            fx, sx, mx, dx = _faces(u, i, 0, x, ex)
-            fy, sy, my, dy = _faces(u, i, 1, y, ey)
-            fz, sz, mz, dz = _faces(u, i, 2, z, ez)
-            tx = (fx - u[i, 0]) / dx if mx else math.inf
-            ty = (fy - u[i, 1]) / dy if my else math.inf
-            tz = (fz - u[i, 2]) / dz if mz else math.inf
-            now, holds_point = enter, inside
-            while True:
-                last = mx + my + mz == 0
-                then = leave if last else min(max(min(tx, ty, tz), now), leave)
-                if then > now or holds_point:
-                    voxel[r], item[r] = x + nx * (y + ny * z), i
-                    part[r], middle[r] = then - now, 0.5 * (now + then)
-                    r += 1
-                holds_point = False
-                now = then
-                if last:
-                    break
-                if tx <= ty and tx <= tz:
-                    x, mx, fx = x + sx, mx - 1, fx + sx
-                    tx = (fx - u[i, 0]) / dx if mx else math.inf
-                elif ty <= tz:
-                    y, my, fy = y + sy, my - 1, fy + sy
-                    ty = (fy - u[i, 1]) / dy if my else math.inf
-                else:
-                    z, mz, fz = z + sz, mz - 1, fz + sz
-                    tz = (fz - u[i, 2]) / dz if mz else math.inf
+            within_grid[block] += lengths[i] * (stops[n - 1] - now)
+            for k in range(n):
+                voxel[r], item[r] = on[k], i
+                part[r], middle[r] = stops[k] - now, 0.5 * (now + stops[k])
+                now = stops[k]
+                r += 1
             for rest in range(r, stop):
                 voxel[rest], item[rest], part[rest], middle[rest] = -1, i, 0.0, 0.0
-    return float(within.sum())
+    return float(within_grid.sum())
 
 
 @kernel
@@ -220,7 +134,7 @@ def cut_ends(u: Any, offsets: Any, shape: Any, voxel: Any, item: Any, part: Any,
         for end in range(2):
             r, i = 2 * s + end, last if end else first
             voxel[r], item[r], part[r], middle[r] = -1, first, 1.0, 0.0
-            if last < first + end or not _within(u, i, shape):
+            if last < first + end or not within(u, i, shape):
                 continue
             voxel[r] = int(u[i, 0]) + nx * (int(u[i, 1]) + ny * int(u[i, 2]))
             if end:

@@ -126,6 +126,13 @@ class Labels(Shape):
         look_up(self.mask, self._linear, self._centre, np.ascontiguousarray(points), found)
         return found
 
+    def spans(self, a: Array, b: Array) -> tuple[npt.NDArray[np.int64], Array]:
+        """See :meth:`.Shape.spans`."""
+        from .segment_kernels import label_spans
+        from .segments import counted_spans
+
+        return counted_spans(label_spans, (self.mask, self._linear, self._centre), a, b)
+
     def apart(self, points: Array) -> Array:
         """Exact up to rounding, under any matrix: to the nearest chosen voxel's box."""
         from .surfaces import Mesh

@@ -1,10 +1,11 @@
 """Which streamlines pass through a region, end in it, or stay in it: asked of the compressed data.
 
-What is tested are the decoded points, in the float64 arithmetic of ``decompress(dtype=float64)``: the answer is that of
-``region.contains`` on those points, exactly. Most fiblets need no decoding. All points of a fiblet, and the segment
-that joins it to the next, lie in the capsule about its chord (:mod:`..capsules`), hence in a ball about the middle of
-the chord. A ball that lies in the region, or apart from it, settles its fiblet (:mod:`.classify`); the others are
-decoded where their streamline's answer is still open, and only there.
+What is tested are the decoded points, in the float64 arithmetic of ``decompress(dtype=float64)``, and the segments
+between them: of a point the answer is that of ``region.contains``, of a segment that of :mod:`.segments`. Most fiblets
+need no decoding. All points of a fiblet, and the segment that joins it to the next, lie in the capsule about its chord
+(:mod:`..capsules`), hence in a ball about the middle of the chord. A ball that lies in the region, or apart from it,
+settles its fiblet (:mod:`.classify`); the others are decoded where their streamline's answer is still open, and only
+there. Of these, segments are looked at where points leave the answer open, and the ball about a segment as well.
 
 Sets of any size are gone through by a few pages at a time; of a mapped one, the memory of what was read is given back.
 """
@@ -23,10 +24,12 @@ from ..codec.decompress import decode_fiblets, select_streamlines
 from ..codec.layout import PAGE, unpack
 from ..codec.stored_parts import in_parts, stored_parts
 from . import passing_kernels as kernels
-from .classify import classify
+from .classify import classify, pack
 from .endpoints import anchor_points
-from .point_flags import ALL, check_sampling
-from .shapes import SURFACE
+from .labels import Labels
+from .point_flags import ALL, ANY, Sampling, check_sampling
+from .segments import segment_flags
+from .shapes import NOT, Plane
 
 if TYPE_CHECKING:
     from ..codec.fibletset import FibletSet
@@ -40,10 +43,7 @@ Floats = npt.NDArray[np.float64]
 
 PAGES = 8  # looked at together
 FIBLETS = 1 << 13  # decoded together: at most 12 MB of points
-RUN = 8  # consecutive points that a mesh is asked about together
-SAMPLES = 1 << 20  # positions tested together
-MOST_SAMPLES = 1 << 28
-"""Positions on one fiblet, beyond which a sampling is refused."""
+SEGMENTS = 1 << 16  # tested together
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ class FibletBalls:
 
 
 def region_flags(
-    fiblets: FibletSet, region: Region, sampling: float | None = None, ids: Any = None, *, bits: int = 15
+    fiblets: FibletSet, region: Region, sampling: Sampling = "lines", ids: Any = None, *, bits: int = 15
 ) -> npt.NDArray[np.uint8]:
     """Say how each streamline lies to a region.
 
@@ -80,9 +80,8 @@ def region_flags(
         In memory or mapped.
     region : Region
         Positions in mm of the set.
-    sampling : float, optional
-        mm: positions in between are tested too, so that no two on a segment are farther apart than that. For
-        linearised streamlines, whose points are far apart. By default only points are tested.
+    sampling : {'lines', 'points'}
+        Whether a streamline is all of the line through its points, tested exactly, or the points alone.
     ids : array_like, optional
         Streamlines to ask about, as for :meth:`.FibletSet.decompress`; the others' flags are 0. All by default.
     bits : int
@@ -91,24 +90,25 @@ def region_flags(
     Returns
     -------
     numpy.ndarray
-        ``(n_streamlines,)`` uint8: the sum of ``ANY = 1`` (some point lies in the region), ``ALL = 2`` (every point
+        ``(n_streamlines,)`` uint8: the sum of ``ANY = 1`` (some of it lies in the region), ``ALL = 2`` (all of it
         does), ``FIRST = 4`` and ``LAST = 8`` (the first, the last point does). 0 for a streamline without points.
 
     Raises
     ------
     ValueError
-        If the sampling is not a length above 0, or so short that a fiblet would take more than 2^28 positions.
+        If the sampling is neither.
     IndexError
         If an id is out of range.
     FormatError
         If the file is damaged.
     """
-    spacing = check_sampling(sampling)
+    lines = check_sampling(sampling) == "lines"
     if in_parts(fiblets):
         return _flags_of_parts(fiblets, region, sampling, ids, bits)
     n = fiblets.n_ranks
     wanted = np.ones(n, bool) if ids is None else _wanted(fiblets, ids)
     flags = np.full(n, ALL, np.uint8)
+    test = _Test(fiblets, region, lines, bits)
     try:
         for balls in iter_balls(fiblets, wanted):
             states = classify(region, balls.centres, balls.radii)
@@ -120,9 +120,8 @@ def region_flags(
             kernels.settle(states, balls.anchors, ranks, wanted[part], bits, flags[part], still_open)
             which = np.flatnonzero(still_open)
             for i in range(0, len(which), FIBLETS):
-                some = which[i : i + FIBLETS]
-                for rows, found in _tested(fiblets, region, spacing, balls, some):
-                    kernels.merge(found, rows, balls.anchors, ranks, flags[part])
+                rows = which[i : i + FIBLETS]
+                test.take(balls, rows, ranks, flags[part])
     except IndexError:
         fiblets.verify()  # a damaged file says so itself; whatever else is wrong is raised as it is
         raise
@@ -134,8 +133,67 @@ def region_flags(
     return out
 
 
+class _Test:
+    """Decodes fiblets and takes in what their points, and the segments between them, say of their streamlines."""
+
+    def __init__(self, fiblets: FibletSet, region: Region, lines: bool, bits: int) -> None:
+        self._fiblets, self._region, self._bits = fiblets, region, bits
+        # A segment between two points on one side of a plane is on that side.
+        only = region.leaves[0] if len(region.leaves) == 1 else None
+        self._one_plane = isinstance(only, Plane)
+        plain = region.program in ((0,), (0, NOT))
+        self._labels = only if isinstance(only, Labels) and plain else None
+        self._lines = lines and not self._one_plane
+        self._packed = pack(region).arrays
+
+    def take(self, balls: FibletBalls, rows: Ints, ranks: Ints, flags: npt.NDArray[np.uint8]) -> None:
+        """Change the flags of the streamlines ``ranks`` of the fiblets ``rows``."""
+        points, starts = self._decoded(balls, rows)
+        n, region, labels = len(points), self._region, self._labels
+        sides, inside, open_ = np.empty(n, np.int8), np.empty(n, np.bool_), np.empty(n, np.bool_)
+        if labels is not None:
+            # To look up a point's voxel takes less than to look up where a run of points lies.
+            kernels.label_points(points, starts, labels.mask, labels.linear, labels.centre, inside, open_)
+            inside ^= len(region.program) > 1  # ~labels
+        elif self._one_plane:
+            inside = region.contains(points)
+        else:
+            kernels.run_sides(points, starts, self._packed, sides)
+            inside = sides > 0
+            near = np.flatnonzero(sides == 0)
+            inside[near] = region.contains(points[near])
+        found = np.empty(len(rows), np.uint8)
+        kernels.reduce_fiblets(inside, starts, found)
+        kernels.merge(found, rows, balls.anchors, ranks, flags)
+        if not self._lines:
+            return
+        known = flags[ranks[rows]]
+        asked = (known & ANY == 0) & bool(self._bits & ANY) | (known & ALL != 0) & bool(self._bits & ALL)
+        if labels is None:
+            kernels.open_segments(points, starts, sides, asked, self._packed, open_)
+        segments = np.flatnonzero(open_)
+        owners = np.searchsorted(starts, segments, side="right") - 1
+        segments, owners = segments[asked[owners]], rows[owners[asked[owners]]]
+        for i in range(0, len(segments), SEGMENTS):
+            some = segments[i : i + SEGMENTS]
+            passed = segment_flags(region, points[some], points[some + 1])
+            kernels.merge_segments(passed, owners[i : i + SEGMENTS], ranks, flags)
+
+    def _decoded(self, balls: FibletBalls, rows: Ints) -> tuple[Floats, Ints]:
+        """Points of fiblets, and where each one's begin; of lines each goes on to the next fiblet's first point."""
+        fiblets, which = self._fiblets, rows + balls.first
+        counts = unpack("last", np.asarray(fiblets.decoding[which])).astype(np.int64) + 1
+        joined = unpack("end", balls.anchors[rows]) == 0 if self._lines else np.zeros(len(rows), bool)
+        starts = np.concatenate([[0], np.cumsum(counts + joined)])
+        points = np.empty((int(starts[-1]), 3))
+        decode_fiblets(fiblets, which, starts[:-1], points)
+        if self._lines:
+            points[starts[1:][joined] - 1] = anchor_points(fiblets, which[joined] + 1)
+        return points, starts
+
+
 def _flags_of_parts(
-    fiblets: FibletSet, region: Region, sampling: float | None, ids: Any, bits: int
+    fiblets: FibletSet, region: Region, sampling: Sampling, ids: Any, bits: int
 ) -> npt.NDArray[np.uint8]:
     out = np.zeros(fiblets.n_streamlines, np.uint8)
     asked = np.ones(len(out), bool)
@@ -213,56 +271,3 @@ def iter_balls(fiblets: FibletSet, wanted: Mask | None = None) -> Iterator[Fible
                 forget(array, a, b)
         forget(fiblets.codes, int(table[page, 1]), int(table[stop, 1]))
         page = stop
-
-
-def _tested(
-    fiblets: FibletSet, region: Region, spacing: float, balls: FibletBalls, rows: Ints
-) -> Iterator[tuple[Ints, npt.NDArray[np.uint8]]]:
-    """Decode some fiblets and test their points; yield them in portions, with flags of each by itself."""
-    which = rows + balls.first
-    counts = unpack("last", np.asarray(fiblets.decoding[which])).astype(np.int64) + 1
-    starts = np.concatenate([[0], np.cumsum(counts)])
-    points = np.empty((int(starts[-1]), 3))
-    decode_fiblets(fiblets, which, starts[:-1], points)
-    if not spacing:
-        yield rows, _reduced(region, points, starts)
-        return
-    joined = unpack("end", balls.anchors[rows]) == 0
-    joints = np.zeros((len(rows), 3))
-    joints[joined] = anchor_points(fiblets, which[joined] + 1)
-    sizes = np.empty(len(rows))
-    kernels.count_samples(points, starts, joints, joined, spacing, sizes)
-    if sizes.max() > MOST_SAMPLES:
-        raise ValueError(
-            f"sampling is {spacing} mm; a fiblet of a step of {fiblets.step_hi:g} mm or more would take "
-            f"{sizes.max():.0f} positions, more than 2^28: use a longer sampling"
-        )
-    totals = np.concatenate([[0], np.cumsum(sizes.astype(np.int64))])
-    first = 0
-    while first < len(rows):
-        last = max(int(np.searchsorted(totals, totals[first] + SAMPLES, side="right")) - 1, first + 1)
-        at = totals[first : last + 1] - totals[first]
-        out = np.empty((int(at[-1]), 3))
-        kernels.fill_samples(points, starts[first : last + 1], joints[first:last], joined[first:last], spacing, at, out)
-        yield rows[first:last], _reduced(region, out, at)
-        first = last
-
-
-def _reduced(region: Region, points: Floats, starts: Ints) -> npt.NDArray[np.uint8]:
-    found = np.empty(len(starts) - 1, np.uint8)
-    kernels.reduce_fiblets(_inside(region, points), starts, found)
-    return found
-
-
-def _inside(region: Region, points: Floats) -> Mask:
-    """``region.contains(points)``; for a mesh, whose rays cost more, points are settled by runs where they can be."""
-    if all(leaf.kind != SURFACE for leaf in region.leaves):
-        return region.contains(points)
-    n = -(-len(points) // RUN)
-    centres, radii = np.empty((n, 3)), np.empty(n)
-    kernels.run_balls(points, RUN, centres, radii)
-    sides = classify(region, centres, radii).repeat(RUN)[: len(points)]
-    inside = sides > 0
-    near = np.flatnonzero(sides == 0)
-    inside[near] = region.contains(points[near])
-    return inside

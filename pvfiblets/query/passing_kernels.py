@@ -10,9 +10,13 @@ import numpy as np
 
 from ..codec.capsule_kernels import end_part
 from ..codec.jit import kernel, parallel_kernel
+from .classify import classify_ball
 from .point_flags import ALL, ANY, FIRST, LAST
 
-__all__ = ["balls", "count_samples", "fill_samples", "merge", "reduce_fiblets", "run_balls", "settle"]
+__all__ = ["balls", "label_points", "merge", "merge_segments", "open_segments", "reduce_fiblets", "run_sides",
+           "settle"]  # fmt: skip
+
+RUN = 8  # consecutive segments that are settled together
 
 
 @parallel_kernel
@@ -161,81 +165,101 @@ def merge(found: Any, which: Any, anchors: Any, ranks: Any, flags: Any) -> None:
         flags[ranks[f]] = together
 
 
-@parallel_kernel
-def run_balls(points: Any, run: int, centres: Any, radii: Any) -> None:
-    """Balls about runs of consecutive points, ``(n_points, 3)`` float64; the last run may be shorter.
-
-    ``centres`` ``(n, 3)`` and ``radii`` ``(n,)`` float64 are filled, mm.
-    """
-    for k in numba.prange(len(radii)):
-        first, last = run * k, min(run * (k + 1), len(points))
-        for axis in range(3):
-            low = high = points[first, axis]
-            for i in range(first + 1, last):
-                low, high = min(low, points[i, axis]), max(high, points[i, axis])
-            centres[k, axis] = 0.5 * low + 0.5 * high
-        widest = 0.0
-        for i in range(first, last):
-            squares = 0.0
-            for axis in range(3):
-                squares += (points[i, axis] - centres[k, axis]) ** 2
-            widest = max(widest, squares)
-        radii[k] = math.sqrt(widest) * (1.0 + 2.0**-40)
+@kernel
+def _ball_side(points: Any, first: int, last: int, packed: Any) -> int:
+    """Side of the ball that holds points ``first`` to ``last``, about the middle of their chord."""
+    x = 0.5 * points[first, 0] + 0.5 * points[last, 0]
+    y = 0.5 * points[first, 1] + 0.5 * points[last, 1]
+    z = 0.5 * points[first, 2] + 0.5 * points[last, 2]
+    widest = 0.0
+    for i in range(first, last + 1):
+        dx, dy, dz = points[i, 0] - x, points[i, 1] - y, points[i, 2] - z
+        widest = max(widest, dx * dx + dy * dy + dz * dz)
+    ops, rows, grids, values = packed
+    return classify_ball(ops, rows, grids, values, x, y, z, math.sqrt(widest) * (1.0 + 2.0**-40))
 
 
 @parallel_kernel
-def count_samples(points: Any, starts: Any, joints: Any, joined: Any, sampling: float, counts: Any) -> None:
-    """Positions that each fiblet is looked at: its points, and those between them and up to the next fiblet.
+def run_sides(points: Any, starts: Any, packed: Any, sides: Any) -> None:
+    """Sides of runs of :data:`RUN` segments of fiblets, each by a ball about it: ``sides`` (n_points,) int8.
 
-    Parameters
-    ----------
-    points : (n_points, 3) float64
-    starts : (n + 1,) int64
-    joints : (n, 3) float64
-        First point of the next fiblet, read where ``joined`` ``(n,)`` bool.
-    sampling : float
-        No two positions on a segment are farther apart, mm.
-    counts : (n,) float64
-        Filled; a float, because a step of 10^6 mm and a sampling of 10^-6 mm are no whole number of 32 bits.
+    Fiblet f has the points ``starts[f]`` to ``starts[f + 1]``. The side of a run is given to the first points of its
+    segments, that of a fiblet's last run to its last point too. ``packed`` is the region
+    (:class:`.classify.Packed`).
     """
-    for f in numba.prange(len(counts)):
-        total = 0.0
-        for i in range(starts[f], starts[f + 1]):
-            total += _pieces(points, i, starts[f + 1], joints, joined, f, sampling)
-        counts[f] = total
+    for f in numba.prange(len(starts) - 1):
+        last = starts[f + 1] - 1
+        for first in range(starts[f], last + 1, RUN):
+            end = min(first + RUN, last)
+            if first < last or first == starts[f]:
+                side = _ball_side(points, first, end, packed)
+                for i in range(first, end + 1):
+                    sides[i] = side
+
+
+@parallel_kernel
+def open_segments(points: Any, starts: Any, sides: Any, asked: Any, packed: Any, open_: Any) -> None:
+    """Mark the segments of fiblets ``asked`` (n,) bool that balls leave undecided: ``open_`` (n_points,) bool.
+
+    The other arguments are those of :func:`run_sides`.
+    """
+    for f in numba.prange(len(asked)):
+        last = starts[f + 1] - 1
+        open_[last] = False
+        for i in range(starts[f], last):
+            open_[i] = asked[f] and sides[i] == 0 and _ball_side(points, i, i + 1, packed) == 0
 
 
 @kernel
-def _pieces(points: Any, i: int, stop: int, joints: Any, joined: Any, f: int, sampling: float) -> float:
-    """Pieces that the segment from point ``i`` is cut into, 1 where there is none: positions at its beginning."""
-    squares = 0.0
-    for axis in range(3):
-        if i + 1 < stop:
-            apart = points[i + 1, axis] - points[i, axis]
-        elif joined[f]:
-            apart = joints[f, axis] - points[i, axis]
-        else:
-            apart = 0.0
-        squares += apart * apart
-    return max(1.0, math.ceil(math.sqrt(squares) / sampling))
+def _alike(mask: Any, ax: float, ay: float, az: float, bx: float, by: float, bz: float) -> bool:
+    """Whether all voxels of the box between two of them are chosen, or none is; what is beyond the grid is not."""
+    ni, nj, nk = mask.shape
+    count = total = 0
+    for i in range(int(min(ax, bx)), int(max(ax, bx)) + 1):
+        for j in range(int(min(ay, by)), int(max(ay, by)) + 1):
+            for k in range(int(min(az, bz)), int(max(az, bz)) + 1):
+                total += 1
+                if 0 <= i < ni and 0 <= j < nj and 0 <= k < nk and mask[i, j, k]:
+                    count += 1
+    return count == 0 or count == total
 
 
 @parallel_kernel
-def fill_samples(points: Any, starts: Any, joints: Any, joined: Any, sampling: float, at: Any, out: Any) -> None:
-    """Write the positions that :func:`count_samples` counted.
+def label_points(points: Any, starts: Any, mask: Any, linear: Any, centre: Any, inside: Any, open_: Any) -> None:
+    """Say of fiblets' points whether they lie in chosen voxels, and mark the segments to test: both (n_points,) bool.
 
-    ``at`` ``(n + 1,)`` int64: where each fiblet's go in ``out`` ``(at[n], 3)`` float64. The last position of a fiblet
-    that ends its streamline is its last point.
+    The voxels of ``mask`` (i, j, k) are those nearest to ``linear (points - centre)``. A segment needs no test that
+    crosses one face of voxels at most, and so lies in those of its ends, or whose way all voxels are alike about.
     """
-    for f in numba.prange(len(joined)):
-        k = at[f]
-        for i in range(starts[f], starts[f + 1]):
-            pieces = int(_pieces(points, i, starts[f + 1], joints, joined, f, sampling))
-            for piece in range(pieces):
-                for axis in range(3):
-                    p = points[i, axis]
-                    if piece:
-                        q = points[i + 1, axis] if i + 1 < starts[f + 1] else joints[f, axis]
-                        p += (q - p) * (piece / pieces)
-                    out[k, axis] = p
-                k += 1
+    ni, nj, nk = mask.shape
+    # Read once: what is written might be these arrays, for all that the compiler knows.
+    cx, cy, cz = centre[0], centre[1], centre[2]
+    a0, a1, a2 = linear[0, 0], linear[0, 1], linear[0, 2]
+    b0, b1, b2 = linear[1, 0], linear[1, 1], linear[1, 2]
+    c0, c1, c2 = linear[2, 0], linear[2, 1], linear[2, 2]
+    for f in numba.prange(len(starts) - 1):
+        first, last = starts[f], starts[f + 1] - 1
+        bx = by = bz = 0.0
+        for i in range(first, last + 1):
+            ax, ay, az = bx, by, bz
+            x, y, z = points[i, 0] - cx, points[i, 1] - cy, points[i, 2] - cz
+            bx = np.floor(a0 * x + a1 * y + a2 * z + 0.5)
+            by = np.floor(b0 * x + b1 * y + b2 * z + 0.5)
+            bz = np.floor(c0 * x + c1 * y + c2 * z + 0.5)
+            within = 0.0 <= bx < ni and 0.0 <= by < nj and 0.0 <= bz < nk  # false for NaN
+            inside[i] = mask[int(bx), int(by), int(bz)] if within else False
+            if i > first:
+                steps = abs(bx - ax) + abs(by - ay) + abs(bz - az)
+                open_[i - 1] = not (steps <= 1.0 or (steps <= 3.0 and _alike(mask, ax, ay, az, bx, by, bz)))
+        open_[last] = False
+
+
+@kernel
+def merge_segments(found: Any, rows: Any, ranks: Any, flags: Any) -> None:
+    """Take in segments of fiblets ``rows``: ``found`` (m,) is 1 where some of it is in, plus 2 where some is not."""
+    for m in range(len(found)):
+        rank = ranks[rows[m]]
+        if found[m] & 1:
+            flags[rank] |= ANY
+        if found[m] & 2:
+            flags[rank] &= ~ALL

@@ -1,20 +1,24 @@
-"""What a region's flags say of a streamline's points, and the spacing of positions between them."""
+"""What a region's flags say of a streamline, and whether of all of it or of its points."""
 
 from __future__ import annotations
 
-import math
+from typing import Any, Literal, get_args
 
-__all__ = ["ALL", "ANY", "FIRST", "LAST", "check_sampling"]
+__all__ = ["ALL", "ANY", "FIRST", "LAST", "Sampling", "check_sampling"]
 
 ANY, ALL, FIRST, LAST = 1, 2, 4, 8
-"""Flags of a streamline for a region: some point lies in it, every point does, the first does, the last does."""
+"""Flags of a streamline for a region: some of it lies in it, all of it does, the first point does, the last does."""
+
+Sampling = Literal["lines", "points"]
+"""What of a streamline counts: its points and all places between them, or the points alone."""
 
 
-def check_sampling(sampling: float | None) -> float:
-    """Return the sampling, 0 for None, or raise a ValueError that names it."""
-    if sampling is None:
-        return 0.0
-    spacing = float(sampling)
-    if not (math.isfinite(spacing) and spacing > 0.0):
-        raise ValueError(f"sampling is {spacing}; a length in mm above 0 is needed, or None to test the points only")
-    return spacing
+def check_sampling(sampling: Any) -> Sampling:
+    """Return the sampling, or raise a ValueError that names it."""
+    if sampling not in get_args(Sampling):
+        raise ValueError(
+            f"sampling is {sampling!r}; give 'lines' (points and all places between them, exactly) or 'points' (the "
+            "points alone, as MRtrix's tckedit)"
+        )
+    found: Sampling = sampling
+    return found

@@ -1,7 +1,7 @@
-"""What is asked of streamlines: conditions on where their points lie, joined by ``&``, ``|`` and ``~``.
+"""What is asked of streamlines: conditions on where they lie, joined by ``&``, ``|`` and ``~``.
 
-A condition is about the *points* of the decoded streamlines. Where these are far apart, as in linearised streamlines, a
-streamline may cross a small region without a point in it; ``sampling`` then tests positions in between as well.
+A streamline is the line through its decoded points: it passes a region that it crosses between two of them, however
+far apart they are (:mod:`.segments`). With ``sampling="points"`` only the points count, as for MRtrix's ``tckedit``.
 
 A streamline without points passes nothing, ends nowhere and stays nowhere; ``~passes(region)`` therefore holds for it.
 """
@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 import numpy as np
 import numpy.typing as npt
 
-from .point_flags import ALL, ANY, FIRST, LAST, check_sampling
+from .point_flags import ALL, ANY, FIRST, LAST, Sampling, check_sampling
 from .region import Region
 
 if TYPE_CHECKING:
@@ -36,10 +36,10 @@ __all__ = [
 Mask = npt.NDArray[np.bool_]
 Flags = npt.NDArray[np.uint8]
 Ends = Literal["any", "both", "first", "last"]
-FlagsOf = Callable[[Region, float | None], Flags]
+FlagsOf = Callable[[Region, Sampling], Flags]
 """What gives a region's flags of every streamline, as :func:`.passing.region_flags` does."""
 
-_Key = tuple[Region, float | None]
+_Key = tuple[Region, Sampling]
 
 
 class Predicate:
@@ -81,14 +81,14 @@ class Condition(Predicate):
         Flags of :mod:`.passing`.
     every : bool
         Whether all of these flags must be set, or any one.
-    sampling : float or None
-        mm.
+    sampling : {'lines', 'points'}
+        What of the streamline counts.
     """
 
     region: Region
     needed: int
     every: bool = False
-    sampling: float | None = None
+    sampling: Sampling = "lines"
 
     def conditions(self) -> Iterator[Condition]:  # noqa: D102 - Predicate's
         yield self
@@ -143,29 +143,35 @@ class Listed(Predicate):
         return self.mask
 
 
-def passes(region: Region, *, sampling: float | None = None) -> Predicate:
-    """Streamlines of which some point lies in the region.
+def passes(region: Region, *, sampling: Sampling = "lines") -> Predicate:
+    """Streamlines that pass through the region: some point, or some place between two points, lies in it.
 
     Parameters
     ----------
     region : Region
         mm.
-    sampling : float, optional
-        mm: test positions between points too, so that no two on a segment are farther apart than that.
+    sampling : {'lines', 'points'}
+        ``'points'``: places between points do not count, as for MRtrix's ``tckedit``.
 
     Raises
     ------
     TypeError
         If the region is none.
     ValueError
-        If the sampling is not a length above 0.
+        If the sampling is neither.
+
+    Notes
+    -----
+    For each segment the parts that lie in each shape are computed as shares of it, in float64, and joined as the
+    region joins its shapes: a segment passes ``a & b`` if one of its places lies in both. A voxel of labels is passed
+    if some length of the segment lies in it; of all other shapes, to touch the boundary is to pass.
     """
-    return Condition(_region(region, "passes"), ANY, sampling=_sampling(sampling))
+    return Condition(_region(region, "passes"), ANY, sampling=check_sampling(sampling))
 
 
-def stays_in(region: Region, *, sampling: float | None = None) -> Predicate:
-    """Streamlines all of whose points lie in the region; parameters and errors as for :func:`passes`."""
-    return Condition(_region(region, "stays_in"), ALL, sampling=_sampling(sampling))
+def stays_in(region: Region, *, sampling: Sampling = "lines") -> Predicate:
+    """Streamlines all of which lies in the region; parameters and errors as for :func:`passes`."""
+    return Condition(_region(region, "stays_in"), ALL, sampling=check_sampling(sampling))
 
 
 def ends_in(region: Region, which: Ends = "any") -> Predicate:
@@ -269,7 +275,3 @@ def _region(region: Any, name: str) -> Region:
     if not isinstance(region, Region):
         raise TypeError(f"{name} needs a region such as pvfiblets.regions.Sphere(center, radius), got {region!r}")
     return region
-
-
-def _sampling(sampling: float | None) -> float | None:
-    return check_sampling(sampling) or None

@@ -135,6 +135,13 @@ class Shape(Region):
         """Return ``(n,)`` bool: which points are in; None of shapes that the kernels of :mod:`.shape_kernels` know."""
         return None
 
+    def spans(self, a: Array, b: Array) -> tuple[npt.NDArray[np.int64], Array] | None:  # noqa: ARG002 - of other shapes
+        """Return where segments from ``a`` to ``b`` (m, 3) are in: (m + 1,) firsts of (n, 2) shares from 0 to 1.
+
+        None of shapes that the kernels of :mod:`.segment_kernels` know.
+        """
+        return None
+
     def apart(self, points: Array) -> Array:
         """Return ``(n,)`` mm: distances of finite points ``(n, 3)`` from the shape, 0 inside."""
         raise NotImplementedError

@@ -21,7 +21,7 @@ import numpy as np
 
 from ..codec.jit import kernel, parallel_kernel
 
-__all__ = ["build_cells", "build_tree", "distances", "nodes_of_grid", "winding"]
+__all__ = ["build_cells", "build_tree", "distances", "nodes_of_grid", "segment_crossings", "winding", "winding_number"]
 
 _BLOCK = 1024
 _FEW = 4  # triangles of a leaf of the tree
@@ -82,8 +82,9 @@ def _crossing(points: Any, a: int, b: int, x: float, y: float) -> int:
 
 
 @kernel
-def _winding(points: Any, triangles: Any, first: Any, members: Any, low: Any, high: Any, steps: Any, nx: int, ny: int,
-             x: float, y: float, z: float) -> int:  # fmt: skip
+def winding_number(points: Any, triangles: Any, first: Any, members: Any, low: Any, high: Any, steps: Any, nx: int,
+                   ny: int, x: float, y: float, z: float) -> int:  # fmt: skip
+    """Winding number of a mesh, by its cells of :func:`build_cells`, about a position."""
     if not (low[0] <= x <= high[0] and low[1] <= y <= high[1] and low[2] <= z <= high[2]):
         return 0
     cell = _cell(y, low[1], steps[1], ny) * nx + _cell(x, low[0], steps[0], nx)
@@ -124,7 +125,7 @@ def winding(points: Any, triangles: Any, first: Any, members: Any, low: Any, hig
             u = linear[0, 0] * x + linear[0, 1] * y + linear[0, 2] * z
             v = linear[1, 0] * x + linear[1, 1] * y + linear[1, 2] * z
             w = linear[2, 0] * x + linear[2, 1] * y + linear[2, 2] * z
-            out[i] = _winding(points, triangles, first, members, low, high, steps, nx, ny, u, v, w)
+            out[i] = winding_number(points, triangles, first, members, low, high, steps, nx, ny, u, v, w)
 
 
 @kernel
@@ -181,6 +182,69 @@ def _box_square(boxes: Any, node: int, x: float, y: float, z: float) -> float:
     dy = max(boxes[node, 1] - y, y - boxes[node, 4], 0.0)
     dz = max(boxes[node, 2] - z, z - boxes[node, 5], 0.0)
     return dx * dx + dy * dy + dz * dz
+
+
+@kernel
+def _meets_box(boxes: Any, node: int, p: Any, q: Any) -> bool:
+    """Whether a segment meets a box, or comes as near to it as rounding could hide."""
+    enter, leave = -1e-9, 1.0 + 1e-9
+    for axis in range(3):
+        low, high, d = boxes[node, axis] - p[axis], boxes[node, axis + 3] - p[axis], q[axis] - p[axis]
+        slack = 1e-12 * (abs(low) + abs(high) + abs(d) + abs(p[axis]))
+        low, high = low - slack, high + slack
+        if (low > 0.0 and low > d) or (high < 0.0 and high < d):
+            return False
+        if d != 0.0:
+            enter = max(enter, low / d if d > 0.0 else high / d)
+            leave = min(leave, high / d if d > 0.0 else low / d)
+    return enter <= leave + 1e-9
+
+
+@kernel
+def segment_crossings(points: Any, triangles: Any, boxes: Any, links: Any, order: Any, p: Any, q: Any, stack: Any,
+                      ts: Any) -> Any:  # fmt: skip
+    """How many triangles a segment meets, and at which shares of it from 0 to 1: ``ts``, made longer where it must be.
+
+    Triangles are taken a billionth larger than they are, so that none is missed on the edge of two; one met too often
+    is harmless. Those that the segment lies in the plane of are not met: their neighbours are.
+    """
+    n, waiting = 0, 1
+    stack[0] = 0
+    dx, dy, dz = q[0] - p[0], q[1] - p[1], q[2] - p[2]
+    while waiting > 0:
+        waiting -= 1
+        node = stack[waiting]
+        if not _meets_box(boxes, node, p, q):
+            continue
+        left, right = links[node, 0], links[node, 1]
+        if left >= 0:
+            stack[waiting], stack[waiting + 1] = left, right
+            waiting += 2
+            continue
+        for i in range(-1 - left, right):
+            a, b, c = triangles[order[i], 0], triangles[order[i], 1], triangles[order[i], 2]
+            ux, uy, uz = points[b, 0] - points[a, 0], points[b, 1] - points[a, 1], points[b, 2] - points[a, 2]
+            vx, vy, vz = points[c, 0] - points[a, 0], points[c, 1] - points[a, 1], points[c, 2] - points[a, 2]
+            wx, wy, wz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+            fall = dx * wx + dy * wy + dz * wz
+            if fall == 0.0:
+                continue
+            x, y, z = p[0] - points[a, 0], p[1] - points[a, 1], p[2] - points[a, 2]
+            t = -(x * wx + y * wy + z * wz) / fall
+            if not -1e-9 <= t <= 1.0 + 1e-9:
+                continue
+            x, y, z = x + t * dx, y + t * dy, z + t * dz
+            # Barycentric coordinates, times the squared length of the normal.
+            squares = (wx * wx + wy * wy + wz * wz) * (1.0 + 1e-9)
+            beta = (y * vz - z * vy) * wx + (z * vx - x * vz) * wy + (x * vy - y * vx) * wz
+            gamma = (uy * z - uz * y) * wx + (uz * x - ux * z) * wy + (ux * y - uy * x) * wz
+            if min(beta, gamma) < -1e-9 * squares or beta + gamma > squares:
+                continue
+            if n == len(ts):
+                ts = np.concatenate((ts, np.empty(n)))
+            ts[n] = min(max(t, 0.0), 1.0)
+            n += 1
+    return n, ts
 
 
 @kernel
@@ -280,5 +344,5 @@ def nodes_of_grid(points: Any, triangles: Any, first: Any, members: Any, low: An
             x = origin[0] + step * i
             best, last = nearest(points, triangles, boxes, links, order, last, share, stack, reach, x, y, z)
             best *= share
-            turns = _winding(points, triangles, first, members, low, high, steps, nx, ny, x, y, z)
+            turns = winding_number(points, triangles, first, members, low, high, steps, nx, ny, x, y, z)
             out[k, j, i] = math.sqrt(best) if turns != 0 else -math.sqrt(best)

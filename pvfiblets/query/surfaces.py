@@ -213,6 +213,14 @@ class Surface(Shape):
         found: npt.NDArray[np.bool_] = self._mesh.windings(self._linear, self._centre, points) != 0
         return found
 
+    def spans(self, a: Array, b: Array) -> tuple[npt.NDArray[np.int64], Array]:
+        """See :meth:`.Shape.spans`."""
+        from .segment_kernels import surface_spans
+        from .segments import counted_spans
+
+        mesh = self._mesh
+        return counted_spans(surface_spans, (mesh.cells, mesh.tree, self._linear, self._centre), a, b)
+
     def apart(self, points: Array) -> Array:
         """See :meth:`.Shape.apart`."""
         found = np.zeros(len(points))

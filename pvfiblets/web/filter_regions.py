@@ -17,7 +17,7 @@ from pvfiblets.web.distance_label import hidden_distances
 from pvfiblets.web.document import LINES
 from pvfiblets.web.region_marks import Sight, dragged, mark
 from pvfiblets.web.rpc_allowlist import number
-from pvfiblets.web.shapes import HOWS
+from pvfiblets.web.shapes import HOWS, SAMPLED
 from pvfiblets.web.values import text
 
 Row = dict[str, Any]
@@ -248,7 +248,7 @@ def flat(condition: Any) -> tuple[str, list[Row]]:
         inner = part["of"][0] if negated else part
         if "op" in inner:
             raise ValueError("these regions are nested deeper than this panel shows; they stay as they are")
-        rows.append({"not": negated, "how": inner["how"], "region": dict(inner["region"])})
+        rows.append({**inner, "not": negated, "region": dict(inner["region"])})
     return join, rows
 
 
@@ -257,5 +257,7 @@ def condition(join: str, rows: list[Row]) -> dict[str, Any] | None:
     parts: list[dict[str, Any]] = []
     for row in rows:
         part = {"how": row["how"], "region": row["region"]}
+        if "sampling" in row and row["how"] in SAMPLED:
+            part["sampling"] = row["sampling"]
         parts.append({"op": "not", "of": [part]} if row["not"] else part)
     return None if not parts else {"op": join, "of": parts}

@@ -220,7 +220,7 @@ def _filters_to_dict(filters: Filters, shape_of: Any) -> dict[str, Any]:
     def condition_of(condition: Mapping[str, Any]) -> dict[str, Any]:
         if "op" in condition:
             return {"op": condition["op"], "of": [condition_of(part) for part in condition["of"]]}
-        return {"how": condition["how"], "region": shape_of(condition["region"])}
+        return {**condition, "region": shape_of(condition["region"])}
 
     return {
         "criteria": {name: [end(low), end(high)] for name, (low, high) in filters.criteria.items()},

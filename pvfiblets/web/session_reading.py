@@ -117,7 +117,7 @@ class _Paths:
     def condition(self, condition: Mapping[str, Any]) -> dict[str, Any]:
         if "op" in condition:
             return {"op": condition["op"], "of": [self.condition(part) for part in condition["of"]]}
-        return {"how": condition["how"], "region": self.shape(condition["region"])}
+        return {**condition, "region": self.shape(condition["region"])}
 
 
 @dataclass(frozen=True)

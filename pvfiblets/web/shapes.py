@@ -11,7 +11,8 @@ A *shape* is one of::
 
 A *condition* on streamlines is ``{"how": how, "region": shape}`` with one of `HOWS`, or
 ``{"op": "and" | "or" | "not", "of": [conditions]}``. All positions are mm. The shape of a condition may have a
-``"name"``: layers with one of the same name share it.
+``"name"``: layers with one of the same name share it. ``passes`` and ``stays_in`` may have ``"sampling": "points"``:
+what lies between a streamline's points does not count.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
     """From kind, ``"mesh"`` or ``"labels"``, and path to data."""
 
 __all__ = [
-    "CUTTING", "HOWS", "SHAPES", "check_condition", "check_shape", "condition_code", "make_predicate",
+    "CUTTING", "HOWS", "SAMPLED", "SHAPES", "check_condition", "check_shape", "condition_code", "make_predicate",
     "make_region", "mesh_code", "planes_of", "shape_code", "shapes_in",
 ]  # fmt: skip
 
@@ -39,6 +40,9 @@ CUTTING = ("plane", "slab", "box", "sphere", "mesh")
 
 HOWS = {"passes": "pass through", "ends_in": "end in", "both_ends_in": "have both ends in", "stays_in": "stay in"}
 """What streamlines may do in a region."""
+
+SAMPLED = ("passes", "stays_in")
+"""What depends on whether places between points count."""
 
 DEEPEST, MOST = 8, 32  # of a condition
 
@@ -101,14 +105,28 @@ def _checked(value: Any, name: str, depth: int) -> dict[str, Any]:
         if not isinstance(parts, (list, tuple)) or not 1 <= len(parts) <= most:
             raise ValueError(f"{op!r} of {name} joins {shown(parts)}; give a list of 1 to {most} conditions")
         return {"op": op, "of": [_checked(part, name, depth + 1) for part in parts]}
-    mapping(value, name, ("how", "region"))
+    mapping(value, name, ("how", "region"), ("sampling",))
     if value["how"] not in tuple(HOWS):
         raise ValueError(f"how of {name} is {shown(value['how'])}; choose one of {', '.join(HOWS)}")
     region = value["region"]
     if not isinstance(region, Mapping) or "name" not in region:
-        return {"how": value["how"], "region": check_shape(region, name)}
-    found = check_shape({key: part for key, part in region.items() if key != "name"}, name)
-    return {"how": value["how"], "region": {**found, "name": text(region["name"], f"{name}'s name", 40)}}
+        found = check_shape(region, name)
+    else:
+        found = check_shape({key: part for key, part in region.items() if key != "name"}, name)
+        found["name"] = text(region["name"], f"{name}'s name", 40)
+    return {"how": value["how"], "region": found, **_sampling(value, name)}
+
+
+def _sampling(condition: Mapping[str, Any], name: str) -> dict[str, str]:
+    """The sampling of a condition, if it is another than that of all others."""
+    sampling = condition.get("sampling", "lines")
+    if sampling not in ("lines", "points"):
+        raise ValueError(f"the sampling of {name} is {shown(sampling)}; choose lines or points")
+    if sampling == "lines":
+        return {}
+    if condition["how"] not in SAMPLED:
+        raise ValueError(f"{name} say {condition['how']} with sampling=points; ends are points: leave sampling out")
+    return {"sampling": sampling}
 
 
 def shapes_in(condition: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
@@ -187,7 +205,8 @@ def make_predicate(condition: Mapping[str, Any], load: Load) -> Predicate:
             return regions.ends_in(region, "both")
         if condition["how"] == "ends_in":
             return regions.ends_in(region)
-        return regions.passes(region) if condition["how"] == "passes" else regions.stays_in(region)
+        question = regions.passes if condition["how"] == "passes" else regions.stays_in
+        return question(region, sampling=condition.get("sampling", "lines"))
     parts = [make_predicate(part, load) for part in condition["of"]]
     if condition["op"] == "not":
         return ~parts[0]
@@ -229,7 +248,8 @@ def condition_code(condition: Mapping[str, Any], file: Callable[[str], str]) -> 
         region = shape_code(condition["region"], file)
         if condition["how"] == "both_ends_in":
             return f"regions.ends_in({region}, 'both')"
-        return f"regions.{condition['how']}({region})"
+        sampling = ", sampling='points'" if "sampling" in condition else ""
+        return f"regions.{condition['how']}({region}{sampling})"
     parts = [condition_code(part, file) for part in condition["of"]]
     if condition["op"] == "not":
         return f"~{parts[0]}"

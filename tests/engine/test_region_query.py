@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
-
 import numpy as np
 import pytest
 
@@ -42,22 +40,10 @@ def packed(lines, **options):
     return pvfiblets.compress(pvfiblets.Streamlines.from_list(lines), **options)
 
 
-def sampled(line, sampling):
-    """Points of a line and as few places between them, evenly, as leave none farther from the next than `sampling`."""
-    parts = [line[:1]]
-    for a, b in itertools.pairwise(line):
-        n = max(int(np.ceil(np.linalg.norm(b - a) / sampling)), 1)
-        parts += [a + (b - a) * (np.arange(1, n)[:, None] / n), b[None]]
-    return np.concatenate(parts)
-
-
-def by_numpy(fiblets, region, sampling=None):
+def by_numpy(fiblets, region):
     """Flags of every streamline from its decoded points."""
     lines = fiblets.decompress(dtype=np.float64)
     points, offsets = lines.points, np.asarray(lines.offsets)
-    if sampling is not None:
-        parts = [sampled(points[a:b], sampling) for a, b in itertools.pairwise(offsets)]
-        points, offsets = np.concatenate(parts), np.cumsum([0, *map(len, parts)])
     inside, some = region.contains(points), np.diff(offsets) > 0
     counts = np.diff(np.concatenate([[0], np.cumsum(inside)])[offsets])
     found = np.zeros(len(fiblets), np.uint8)
@@ -78,8 +64,10 @@ def test_every_shape(gl, plain, name):
     wanted = 0
     for size in (10.0, 60.0, 200.0):
         region = made((3.0, -2.0, 4.0), size)[name]
-        found = renderer.query(region)
+        found = renderer.query(region, "points")
         assert (found == by_numpy(plain, region)).all()
+        assert renderer._query.unsure < 80
+        assert (renderer.query(region) == region_flags(plain, region)).all()
         assert renderer._query.unsure < 80
         wanted |= np.bitwise_or.reduce(found)
     assert wanted & ANY
@@ -113,7 +101,8 @@ def test_every_kind_of_fiblet(gl, kind):
     assert set(np.unique(unpack("kind", fiblets.decoding))) >= KINDS.get(kind, {DIRECTION})
     renderer = FibletRenderer(gl, fiblets)
     for name, region in made((3.0, -2.0, 4.0), 50.0).items():
-        assert (renderer.query(region) == by_numpy(fiblets, region)).all(), name
+        assert (renderer.query(region, "points") == by_numpy(fiblets, region)).all(), name
+        assert (renderer.query(region) == region_flags(fiblets, region)).all(), name
     renderer.release()
 
 
@@ -125,8 +114,9 @@ def test_far_away_tiny_and_huge(gl, offset, scale):
     fiblets = packed(lines)
     renderer = FibletRenderer(gl, fiblets)
     for name, region in made((offset, 0.0, -offset), 60.0 * scale).items():
-        assert (renderer.query(region) == by_numpy(fiblets, region)).all(), name
+        assert (renderer.query(region, "points") == by_numpy(fiblets, region)).all(), name
         assert renderer._query.unsure < 80
+        assert (renderer.query(region) == region_flags(fiblets, region)).all(), name
     renderer.release()
 
 
@@ -143,25 +133,22 @@ def test_faces_that_touch_points(gl, plain):
             regions.Sphere(low, np.linalg.norm(high - low)),
             regions.Slab((0, 0, 1), low / 2 + high / 2, high[2] - low[2]),
         ):
-            assert (renderer.query(region) == by_numpy(plain, region)).all()
+            assert (renderer.query(region, "points") == by_numpy(plain, region)).all()
             unsure += renderer._query.unsure
     assert unsure > 0
     renderer.release()
 
 
-@pytest.mark.parametrize("sampling", [0.5, 0.2, 0.037, 30.0])
-def test_positions_between_points(gl, sampling):
+def test_segments_between_points(gl):
     fiblets = packed(steady(60, step=3.0, turn=0.3) + wandering(40))
     renderer = FibletRenderer(gl, fiblets)
     more = 0
-    shapes = [made((3.0, -2.0, 4.0), 8.0)[name] for name in ("sphere", "box", "torus", "expression")]
+    shapes = [made((3.0, -2.0, 4.0), 8.0)[name] for name in ("sphere", "box", "torus", "labels", "expression")]
     for region in (*shapes, regions.Slab((1, 2, 3), (3.0, -2.0, 4.0), 0.3), ~regions.Slab((1, 2, 3), (0, 0, 0), 0.3)):
-        found = renderer.query(region, sampling)
-        assert (found == region_flags(fiblets, region, sampling)).all()
-        if sampling > 0.1:
-            assert (found == by_numpy(fiblets, region, sampling)).all()
-        more += int((found & ANY).sum()) - int((renderer.query(region) & ANY).sum())
-    assert (more > 0) == (sampling < 30.0)
+        found = renderer.query(region)
+        assert (found == region_flags(fiblets, region)).all()
+        more += int((found & ANY).sum()) - int((renderer.query(region, "points") & ANY).sum())
+    assert more > 10
     renderer.release()
 
 
@@ -170,8 +157,8 @@ def test_one_long_step(gl):
     fiblets = packed([line, line + 1.0])
     renderer = FibletRenderer(gl, fiblets)
     region = regions.Slab((1, 0, 0), (25000.0, 0, 0), 1.0)
-    assert (renderer.query(region) == 0).all()
-    assert (renderer.query(region, 0.9) == ANY).all()
+    assert (renderer.query(region, "points") == 0).all()
+    assert (renderer.query(region) == ANY).all()
     renderer.release()
 
 
@@ -186,7 +173,7 @@ def test_streamlines_in_many_chunks(gl):
     assert len(renderer._chunks) >= 3
     for name in ("sphere", "expression", "labels"):
         region = made((0.0, 0.0, 0.0), 80.0)[name]
-        assert (renderer.query(region) == by_numpy(fiblets, region)).all()
+        assert (renderer.query(region, "points") == by_numpy(fiblets, region)).all()
     renderer.release()
 
 
@@ -195,7 +182,7 @@ def test_batches(gl, plain, monkeypatch, batch):
     monkeypatch.setattr("pvfiblets.engine.fiblets.region_query.BATCH", batch)
     renderer = FibletRenderer(gl, plain)
     region = made(size=60.0)["expression"]
-    assert (renderer.query(region) == by_numpy(plain, region)).all()
+    assert (renderer.query(region, "points") == by_numpy(plain, region)).all()
     renderer.release()
 
 
@@ -203,7 +190,7 @@ def test_batches(gl, plain, monkeypatch, batch):
 def test_other_pipelines(gl, plain, pipeline):
     renderer = FibletRenderer(gl, plain, pipeline=pipeline)
     region = made(size=60.0)["torus"]
-    assert (renderer.query(region) == by_numpy(plain, region)).all()
+    assert (renderer.query(region, "points") == by_numpy(plain, region)).all()
     assert renderer._query.available
     renderer.release()
 
@@ -214,7 +201,7 @@ def test_the_cpu_answers_where_the_gpu_has_a_part(gl):
     renderer = FibletRenderer(gl, fiblets, fit="sample", max_total_bytes=needed // 2)
     assert renderer.share < 1.0
     region = made(size=60.0)["sphere"]
-    found = renderer.query(region)
+    found = renderer.query(region, "points")
     assert not renderer._query.available
     assert (found == by_numpy(fiblets, region)).all()
     renderer.release()
@@ -250,11 +237,10 @@ def test_a_picture_is_as_it_was(gl, plain, camera):
     renderer.release()
 
 
-@pytest.mark.parametrize("sampling", [0.0, -1.0, np.nan, np.inf])
-def test_no_sampling(gl, plain, sampling):
+def test_no_sampling(gl, plain):
     renderer = FibletRenderer(gl, plain)
-    with pytest.raises(ValueError, match=f"sampling is {float(sampling)}"):
-        renderer.query(regions.Sphere((0, 0, 0), 1), sampling)
+    with pytest.raises(ValueError, match=r"sampling is 0\.5; give 'lines'"):
+        renderer.query(regions.Sphere((0, 0, 0), 1), 0.5)
     renderer.release()
 
 

@@ -1,4 +1,7 @@
-"""Streamlines chosen by regions: what NumPy finds on the decompressed points, whatever is decoded for it."""
+"""Streamlines chosen by regions: what NumPy finds on the decompressed points, whatever is decoded for it.
+
+What lies between points is the subject of :mod:`.test_segments`.
+"""
 
 from __future__ import annotations
 
@@ -20,27 +23,15 @@ from tests.codec.samples import extremes, smooth, wandering
 from tests.codec.test_restrict import every_kind, many_pages
 
 
-def expected_flags(points: np.ndarray, offsets: np.ndarray, inside: Callable, sampling: float = 0.0) -> np.ndarray:
-    """Flags by NumPy, of all positions at once."""
+def expected_flags(points: np.ndarray, offsets: np.ndarray, inside: Callable) -> np.ndarray:
+    """Flags by NumPy, of all points at once."""
     flags = np.zeros(len(offsets) - 1, np.uint8)
     filled = np.flatnonzero(np.diff(offsets))
     if not filled.size:
         return flags
-    ends = inside(points[offsets[filled]]), inside(points[offsets[filled + 1] - 1])
-    starts = offsets[filled]
-    if sampling:
-        parts = []
-        for a, b in zip(offsets[filled], offsets[filled + 1], strict=True):
-            line = []
-            for p, q in pairwise(points[a:b]):
-                n = max(1, int(np.ceil(np.sqrt(((q - p) ** 2).sum()) / sampling)))
-                line.append(p + (q - p) * (np.arange(n) / n)[:, None])
-            parts.append(np.concatenate([*line, points[b - 1 : b]]))
-        starts = np.cumsum([0, *map(len, parts[:-1])])
-        points = np.concatenate(parts)
-    each = inside(points)
+    each, starts = inside(points), offsets[filled]
     flags[filled] = np.logical_or.reduceat(each, starts) + 2 * np.logical_and.reduceat(each, starts)
-    flags[filled] += (4 * ends[0] + 8 * ends[1]).astype(np.uint8)
+    flags[filled] += (4 * each[starts] + 8 * each[offsets[filled + 1] - 1]).astype(np.uint8)
     return flags
 
 
@@ -68,15 +59,19 @@ def _shift(c: np.ndarray) -> np.ndarray:
     return matrix
 
 
-def assert_flags(whole: pf.FibletSet, region: regions.Region, sampling: float | None = None) -> np.ndarray:
+def assert_flags(whole: pf.FibletSet, region: regions.Region) -> np.ndarray:
     decoded = whole.decompress(dtype=np.float64)
-    wanted = expected_flags(decoded.points, decoded.offsets, region.contains, sampling or 0.0)
-    found = region_flags(whole, region, sampling)
+    wanted = expected_flags(decoded.points, decoded.offsets, region.contains)
+    found = region_flags(whole, region, "points")
     assert found.dtype == np.uint8
     np.testing.assert_array_equal(found, wanted)
+    lines = region_flags(whole, region)
+    assert (lines & 13 | wanted & 13 == lines & 13).all(), "what has a point in the region passes it"
+    assert (lines & 14 & wanted & 14 == lines & 14).all(), "what leaves it with a point does not stay in it"
     flags = point_flags
     for bits in (flags.ANY, flags.ALL, flags.FIRST, flags.LAST, flags.FIRST | flags.LAST):
-        np.testing.assert_array_equal(region_flags(whole, region, sampling, bits=bits) & bits, wanted & bits)
+        np.testing.assert_array_equal(region_flags(whole, region, "points", bits=bits) & bits, wanted & bits)
+        np.testing.assert_array_equal(region_flags(whole, region, bits=bits) & bits, lines & bits)
     return found
 
 
@@ -116,7 +111,7 @@ def test_a_box_is_a_box() -> None:
     )  # no decoded point lies within rounding of a face
     assert np.abs(decoded.points - low).min() > 1e-9
     assert np.abs(decoded.points - high).min() > 1e-9
-    np.testing.assert_array_equal(region_flags(whole, box), wanted)
+    np.testing.assert_array_equal(region_flags(whole, box, "points"), wanted)
 
 
 @pytest.mark.parametrize("order", ["input", "hilbert"])
@@ -130,7 +125,6 @@ def test_lattices_and_streamlines_without_points(order: str, mapped: bool, tmp_p
     assert empty.any()
     for region in some_regions().values():
         assert (assert_flags(whole, region)[empty] == 0).all()
-    assert_flags(whole, some_regions()["ball"], 0.7)
 
 
 @pytest.mark.parametrize("name", extremes())
@@ -156,25 +150,18 @@ def test_points_on_a_face_are_in_as_the_region_says() -> None:
     for region in (box, plane, regions.Sphere((0, 0, 20), 3)):
         for each in (region, ~region):
             assert_flags(whole, each)
-            assert_flags(whole.extract(slice(None, None, -3)), each, 0.25)
+            assert_flags(whole.extract(slice(None, None, -3)), each)
 
 
-@pytest.mark.parametrize("sampling", [0.05, 0.4, 3.0, 1e3])
-def test_positions_in_between(sampling: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(passing, "SAMPLES", 500)  # portions of few positions
-    monkeypatch.setattr(passing, "FIBLETS", 3)
+def test_portions_of_few_fiblets_and_segments(monkeypatch: pytest.MonkeyPatch) -> None:
     whole = pf.compress(wandering(30, 70))
-    for name in ("box", "a speck", "ball without slab", "not box"):
-        assert_flags(whole, some_regions()[name], sampling)
-
-
-def test_a_small_region_between_points_is_found_by_sampling_only() -> None:
-    line = np.stack([np.arange(200) * 10.0, np.zeros(200), np.zeros(200)], axis=1)
-    whole = pf.compress(Streamlines.from_list([line, line + [0, 5, 0]]))
-    speck = regions.Sphere((595.0, 0.0, 0.0), 1.0)  # between the last point of a fiblet and the first of the next
-    assert region_flags(whole, speck).tolist() == [0, 0]
-    assert region_flags(whole, speck, 2.0).tolist() == [point_flags.ANY, 0]
-    assert whole.select(regions.passes(speck, sampling=1.0)).tolist() == [True, False]
+    names = ("box", "a speck", "ball without slab", "not box")
+    wanted = [region_flags(whole, some_regions()[name]) for name in names]
+    monkeypatch.setattr(passing, "SEGMENTS", 5)
+    monkeypatch.setattr(passing, "FIBLETS", 3)
+    for name, flags in zip(names, wanted, strict=True):
+        assert_flags(whole, some_regions()[name])
+        np.testing.assert_array_equal(region_flags(whole, some_regions()[name]), flags)
 
 
 def test_some_streamlines_only(brains: dict[str, pf.FibletSet]) -> None:
@@ -202,8 +189,8 @@ def test_streamlines_that_run_through_pages(paged: pf.FibletSet, pages: int, mon
     for name in ("box", "not box", "a speck"):
         region = some_regions()[name]
         wanted = expected_flags(decoded.points, decoded.offsets, region.contains)
-        np.testing.assert_array_equal(region_flags(whole, region), wanted)
-        few = region_flags(whole, region, ids=[9000, 18000])
+        np.testing.assert_array_equal(region_flags(whole, region, "points"), wanted)
+        few = region_flags(whole, region, "points", ids=[9000, 18000])
         assert few[[9000, 18000]].tolist() == wanted[[9000, 18000]].tolist()
         assert np.count_nonzero(few) <= 2
 
@@ -254,13 +241,13 @@ def test_each_region_is_gone_through_once(brains: dict[str, pf.FibletSet]) -> No
     whole, asked = brains["input"], []
     box, ball = some_regions()["box"], some_regions()["ball"]
 
-    def flags(region: regions.Region, sampling: float | None) -> np.ndarray:
+    def flags(region: regions.Region, sampling: point_flags.Sampling) -> np.ndarray:
         asked.append((region, sampling))
         return region_flags(whole, region, sampling)
 
-    wanted = regions.ends_in(box) & regions.passes(regions.Box(box.bounds), sampling=0.3) & ~regions.stays_in(ball)
+    wanted = regions.ends_in(box) & regions.passes(regions.Box(box.bounds), sampling="points") & ~regions.stays_in(ball)
     np.testing.assert_array_equal(whole.select(wanted, flags=flags), whole.select(wanted))
-    assert sorted(asked, key=str) == sorted([(box, 0.3), (ball, None)], key=str)
+    assert sorted(asked, key=str) == sorted([(box, "points"), (ball, "lines")], key=str)
 
 
 def test_streamlines_without_points_satisfy_nothing() -> None:
@@ -281,11 +268,9 @@ def test_what_is_refused(brains: dict[str, pf.FibletSet]) -> None:
         regions.passes((1, 2, 3))
     with pytest.raises(ValueError, match="which is 'either'"):
         regions.ends_in(box, "either")
-    for bad in (0.0, -1.0, np.nan, np.inf):
-        with pytest.raises(ValueError, match="sampling is"):
+    for bad in (0.5, None, "segments"):
+        with pytest.raises(ValueError, match=rf"sampling is {bad!r}; give 'lines' .* or 'points'"):
             regions.passes(box, sampling=bad)
-    with pytest.raises(ValueError, match=r"more than 2\^28: use a longer sampling"):
-        region_flags(whole, box, 1e-9)
     with pytest.raises(TypeError, match="join conditions with &"):
         regions.passes(box) and regions.ends_in(box)
     words = whole.anchors.copy()
@@ -299,7 +284,6 @@ def test_a_smooth_set_of_one_page_and_one_fiblet() -> None:
     assert one.n_fiblets == 1
     for region in some_regions(1.0, tuple(one.decompress().points[30])).values():
         assert_flags(one, region)
-        assert_flags(one, region, 0.1)
 
 
 def a_torus() -> tuple[np.ndarray, np.ndarray]:
@@ -334,8 +318,6 @@ def some_volumes() -> dict[str, regions.Region]:
 def test_surfaces_and_labels(brains: dict[str, pf.FibletSet], how: str, name: str) -> None:
     found = assert_flags(brains[how], some_volumes()[name])
     assert len(np.unique(found)) > 2, "the region tells streamlines apart"
-    if how == "input":
-        assert_flags(brains[how].extract(slice(0, 40)), some_volumes()[name], 0.21)
 
 
 def test_a_torus_is_a_torus_and_labels_are_voxels(brains: dict[str, pf.FibletSet]) -> None:
@@ -348,7 +330,7 @@ def test_a_torus_is_a_torus_and_labels_are_voxels(brains: dict[str, pf.FibletSet
     wanted = expected_flags(
         decoded.points, decoded.offsets, lambda q: 14 > np.hypot(np.hypot(q[:, 0], q[:, 1]) - 30, q[:, 2])
     )
-    found = region_flags(whole, regions.Surface(*a_torus()))
+    found = region_flags(whole, regions.Surface(*a_torus()), "points")
     assert sum(clear) > 50
     np.testing.assert_array_equal(found[clear], wanted[clear])
     volume = np.zeros((200, 200, 200), bool)
@@ -357,4 +339,4 @@ def test_a_torus_is_a_torus_and_labels_are_voxels(brains: dict[str, pf.FibletSet
     voxels = np.floor(p + [100.5, 100.5, 80.5]).astype(int)
     inside = (voxels[:, 0] >= 90) & (voxels[:, 0] < 120) & (voxels[:, 2] >= 60) & (voxels[:, 2] < 99)
     each = np.logical_or.reduceat(inside, decoded.offsets[:-1])
-    np.testing.assert_array_equal(whole.select(regions.passes(slabs)), each)
+    np.testing.assert_array_equal(whole.select(regions.passes(slabs, sampling="points")), each)

@@ -1,4 +1,4 @@
-"""Which streamlines have points in a region, asked on the GPU of the records that are drawn.
+"""Which streamlines pass a region, asked on the GPU of the records that are drawn.
 
 The GPU classifies fiblets by their capsules and decodes those that a capsule leaves undecided, in float32 with a
 margin (``shaders/fiblets/compute/query.comp``). What the margin leaves open, and only that, is settled from the same
@@ -15,7 +15,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ...query.point_flags import ALL, ANY, FIRST, LAST
+from ...query.point_flags import ALL, ANY, FIRST, LAST, Sampling, check_sampling
 from ..bindings import ANSWER_STORAGE, BLOCKS
 from ..errors import GPUMemoryError
 from ..frame import FRAME_BLOCK, Array
@@ -91,7 +91,7 @@ class RegionQuery:
         largest = self._gl.get_integer("GL_MAX_SHADER_STORAGE_BLOCK_SIZE")
         return all(buffer.size <= largest for chunk in self._chunks for buffer in chunk.buffers.values())
 
-    def flags(self, features: Sequence[str], region: Region, sampling: float | None = None) -> Bytes:
+    def flags(self, features: Sequence[str], region: Region, sampling: Sampling = "lines") -> Bytes:
         """Return the answers for every streamline, by the GPU where it can, else by the CPU.
 
         Parameters
@@ -101,8 +101,8 @@ class RegionQuery:
             bound anew.
         region : Region
             In data mm.
-        sampling : float, optional
-            mm; see :func:`pvfiblets.query.passing.region_flags`.
+        sampling : {'lines', 'points'}
+            As for :func:`pvfiblets.query.passing.region_flags`.
 
         Returns
         -------
@@ -114,17 +114,16 @@ class RegionQuery:
         GPUMemoryError
             If memory does not suffice for the answers.
         ValueError
-            If the sampling is not above 0.
+            If the sampling is neither.
         """
         from ...query.passing import region_flags
 
-        if sampling is not None and not (np.isfinite(sampling) and sampling > 0.0):
-            raise ValueError(f"sampling is {sampling}; give a finite number of mm above 0, or None for points alone")
+        lines = check_sampling(sampling) == "lines"
         fiblets = self._fiblets
         self.unsure = 0
         if not (self.available and self._prepare(region)):
             return region_flags(fiblets, region, sampling=sampling)
-        marks = self._ask([*features, *self._block.features], sampling or 0.0)
+        marks = self._ask([*features, *self._block.features], lines)
         ids = np.arange(len(marks)) if fiblets.rank_to_id is None else np.asarray(fiblets.rank_to_id)
         found = np.zeros(fiblets.n_streamlines, np.uint8)
         found[ids] = _answers(marks)
@@ -152,10 +151,10 @@ class RegionQuery:
         self._frame.bind_to_uniform_block(BLOCKS["Frame"])
         return True
 
-    def _ask(self, features: Sequence[str], sampling: float) -> Bytes:
+    def _ask(self, features: Sequence[str], lines: bool) -> Bytes:
         """``(n_ranks,)`` what the shader says of each streamline that has points."""
         program = self._programs.compute("fiblets/compute/query.comp", features)
-        program["sampling"] = sampling
+        program["lines"] = lines
         self._block.bind(program)
         marks = np.zeros(int(self._fiblets.pages[-1, 0]), np.uint8)
         for chunk in self._chunks:

@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from ...codec.fibletset import FibletSet
+    from ...query.point_flags import Sampling
     from ...query.region import Region
     from .region_query import RegionQuery
     from .sampled_volume import VolumeSource
@@ -302,7 +303,7 @@ class FibletRenderer(LinesBehind):
             self._occlusion.forget()
         self._kept.filtering = wanted
 
-    def query(self, region: Region, sampling: float | None = None) -> npt.NDArray[np.uint8]:
+    def query(self, region: Region, sampling: Sampling = "lines") -> npt.NDArray[np.uint8]:
         """Say how each streamline of the set lies to a region, whatever is filtered or drawn.
 
         On the GPU where it can (:attr:`.RegionQuery.available`), and equal to what the CPU says.

@@ -27,7 +27,7 @@ class PointValues:
     images : dict
         By layer, as of `SliceStack.values`.
     streamlines : dict
-        By actor: ids of streamlines of which a point lies within the radius.
+        By actor: ids of streamlines that come within the radius.
     """
 
     position: Array
@@ -37,7 +37,7 @@ class PointValues:
 
 
 def streamlines_near(actors: Iterable[Any], position: Array, radius: float) -> dict[str, npt.NDArray[np.int64]]:
-    """Return ids of the streamlines that are shown and of which a point lies within a radius, mm, by actor."""
+    """Return ids of the shown streamlines that come within a radius, mm, by actor."""
     from pvfiblets.query.passing import region_flags
     from pvfiblets.query.point_flags import ANY
     from pvfiblets.regions import Sphere
@@ -49,8 +49,7 @@ def streamlines_near(actors: Iterable[Any], position: Array, radius: float) -> d
         matrix = np.array(actor.user_matrix, np.float64)
         if not np.array_equal(matrix, np.eye(4)):
             region = ball.moved(np.linalg.inv(matrix))
-        sampling = float(radius) if actor.fiblets.step > radius else None
-        flags = region_flags(actor.fiblets, region, sampling, bits=ANY)
+        flags = region_flags(actor.fiblets, region, bits=ANY)
         found[str(actor.name)] = np.flatnonzero((flags & ANY > 0) & actor.shown)
     return found
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numba
@@ -11,7 +10,7 @@ import numpy as np
 from ...codec.decode_kernels import decode_one
 from ...codec.jit import kernel, parallel_kernel
 from ...codec.layout import PAGE_BITS
-from ..density_kernels import _clip, _ends, _faces, _within
+from ..voxel_walk_kernels import walk, within
 from .index_kernels import ROWS, next_anchor
 
 __all__ = ["ANY", "BAD", "CHANGED", "DAMAGED", "FIRST", "HERE", "LAST", "OUT", "apply", "in_order", "lines_of", "look",
@@ -26,44 +25,8 @@ BLOCK = 64
 
 
 @kernel
-def _voxels(u: Any, i: int, shape: Any, out: Any) -> Any:
-    """Voxels on the way from point ``i`` to the next, in order: how many, and whether the way leaves the grid."""
-    _nx, ny, nz = shape
-    one, other = _within(u, i, shape), _within(u, i + 1, shape)
-    enter, leave = 0.0, 1.0
-    if not (one and other):
-        enter, leave = _clip(u, i, shape)
-        if enter > leave:
-            return 0, True
-    x, y, z, ex, ey, ez = _ends(u, i, shape, enter, leave)
-    out[0] = (x * ny + y) * nz + z
-    if x == ex and y == ey and z == ez:
-        return 1, not (one and other)
-    fx, sx, mx, dx = _faces(u, i, 0, x, ex)
-    fy, sy, my, dy = _faces(u, i, 1, y, ey)
-    fz, sz, mz, dz = _faces(u, i, 2, z, ez)
-    tx = (fx - u[i, 0]) / dx if mx else math.inf
-    ty = (fy - u[i, 1]) / dy if my else math.inf
-    tz = (fz - u[i, 2]) / dz if mz else math.inf
-    n = 1
-    while mx + my + mz:
-        if tx <= ty and tx <= tz:
-            x, mx, fx = x + sx, mx - 1, fx + sx
-            tx = (fx - u[i, 0]) / dx if mx else math.inf
-        elif ty <= tz:
-            y, my, fy = y + sy, my - 1, fy + sy
-            ty = (fy - u[i, 1]) / dy if my else math.inf
-        else:
-            z, mz, fz = z + sz, mz - 1, fz + sz
-            tz = (fz - u[i, 2]) / dz if mz else math.inf
-        out[n] = (x * ny + y) * nz + z
-        n += 1
-    return n, not (one and other)
-
-
-@kernel
 def _voxel_of(u: Any, i: int, shape: Any) -> int:
-    if not _within(u, i, shape):
+    if not within(u, i, shape):
         return -1
     return (int(u[i, 0]) * shape[1] + int(u[i, 1])) * shape[2] + int(u[i, 2])
 
@@ -84,8 +47,9 @@ def look(places: Any, order: Any, arrays: Any, low: Any, fine: Any, origin: Any,
     ``order[places]`` are the fiblets, the arrays up to ``tables`` those of :func:`.decode_kernels.decode`; ``mask`` is
     flat, in C order, 1 in the region.
     """
+    most, strides = shape[0] + shape[1] + shape[2] + 4, (shape[1] * shape[2], shape[2], 1)
     for block in numba.prange((len(found) + BLOCK - 1) // BLOCK):
-        p, u, on = np.empty((ROWS, 3)), np.empty((ROWS, 3)), np.empty(shape[0] + shape[1] + shape[2] + 4, np.int64)
+        p, u, on, stops = np.empty((ROWS, 3)), np.empty((ROWS, 3)), np.empty(most, np.int64), np.empty(most)
         for j in range(block * BLOCK, min((block + 1) * BLOCK, len(found))):
             f = np.int64(order[places[j]])
             n = decode_one(f, arrays, low, fine, origin, scale, steps, tables, p, 0)
@@ -102,8 +66,8 @@ def look(places: Any, order: Any, arrays: Any, low: Any, fine: Any, origin: Any,
             for i in range(n - 1):
                 if flags & ANY and flags & OUT:
                     break
-                many, leaves = _voxels(u, i, shape, on)
-                if leaves:
+                many, _ = walk(u, i, shape, strides, True, on, stops)
+                if not (within(u, i, shape) and within(u, i + 1, shape)):
                     flags |= OUT
                 for k in range(many):
                     flags |= ANY if mask[on[k]] & HERE else OUT
@@ -127,8 +91,9 @@ def passes(places: Any, order: Any, arrays: Any, low: Any, fine: Any, origin: An
 
     Other parameters, and what :data:`BAD` means, as for :func:`look`.
     """
+    most, strides = shape[0] + shape[1] + shape[2] + 4, (shape[1] * shape[2], shape[2], 1)
     for block in numba.prange((len(found) + BLOCK - 1) // BLOCK):
-        p, u, on = np.empty((ROWS, 3)), np.empty((ROWS, 3)), np.empty(shape[0] + shape[1] + shape[2] + 4, np.int64)
+        p, u, on, stops = np.empty((ROWS, 3)), np.empty((ROWS, 3)), np.empty(most, np.int64), np.empty(most)
         for j in range(block * BLOCK, min((block + 1) * BLOCK, len(found))):
             f = np.int64(order[places[j]])
             n = decode_one(f, arrays, low, fine, origin, scale, steps, tables, p, 0)
@@ -143,7 +108,7 @@ def passes(places: Any, order: Any, arrays: Any, low: Any, fine: Any, origin: An
                     break
                 if _apart_from(u, i, box):
                     continue
-                many, _ = _voxels(u, i, shape, on)
+                many, _ = walk(u, i, shape, strides, True, on, stops)
                 for k in range(many):
                     if mask[on[k]] & bit:
                         found[j] = ANY
@@ -193,12 +158,13 @@ def apply(places: Any, lines: Any, found: Any, order: Any, anchors: Any, states:
 
 
 @kernel
-def _ordered(u: Any, n: int, shape: Any, labels: Any, wanted: Any, on: Any) -> bool:
+def _ordered(u: Any, n: int, shape: Any, labels: Any, wanted: Any, on: Any, stops: Any) -> bool:
+    strides = (shape[1] * shape[2], shape[2], 1)
     next_, at = 0, _voxel_of(u, 0, shape)
     while next_ < len(wanted) and at >= 0 and labels[at] == wanted[next_]:
         next_ += 1
     for i in range(n - 1):
-        many, _ = _voxels(u, i, shape, on)
+        many, _ = walk(u, i, shape, strides, True, on, stops)
         for k in range(many):
             while next_ < len(wanted) and labels[on[k]] == wanted[next_]:
                 next_ += 1
@@ -211,9 +177,10 @@ def in_order(points: Any, offsets: Any, linear: Any, corner: Any, labels: Any, s
     """Whether streamlines come through labels in an order, ``found (n,)`` bool; `either`: or in the reverse one."""
     for s in numba.prange(len(found)):
         a, b = offsets[s], offsets[s + 1]
-        u, on = np.empty((b - a, 3)), np.empty(shape[0] + shape[1] + shape[2] + 4, np.int64)
+        most = shape[0] + shape[1] + shape[2] + 4
+        u, on, stops = np.empty((b - a, 3)), np.empty(most, np.int64), np.empty(most)
         _place(points, a, b, linear, corner, u)
         found[s] = b > a and (
-            _ordered(u, b - a, shape, labels, wanted, on)
-            or (either and _ordered(u, b - a, shape, labels, wanted[::-1], on))
+            _ordered(u, b - a, shape, labels, wanted, on, stops)
+            or (either and _ordered(u, b - a, shape, labels, wanted[::-1], on, stops))
         )

@@ -1,4 +1,4 @@
-// Asks of every streamline where its points lie. Three passes over a batch of fiblets, one invocation each:
+// Asks of every streamline where it lies. Three passes over a batch of fiblets, one invocation each:
 //   CLASSIFY     whole fiblets by their capsules. Those that this leaves undecided are listed. A streamline's first point is an
 //                anchor; its last is no farther from the rounded end vector than the rounding (Capsule.slip), or asked for
 //   SIFT         of those, list the ones whose streamline's answer is still open: not where it has points inside and points
@@ -9,8 +9,8 @@
 // Points are tested as balls of the radius by which float32 may have moved them (walk_margin). A point that this leaves
 // undecided counts as unsure; where that matters to its streamline, pvfiblets/engine/fiblets/region_query.py has it settled in float64.
 //
-// With `sampling`, positions between points are tested too: a segment of length L is cut into ceil(L / sampling) equal
-// pieces. Where rounding may change their number, or they are more than SAMPLES, the segment is unsure as a whole.
+// With `lines`, the segments between points are tested too, as capsules of that radius: first whole, then in PIECES. A piece
+// that this leaves undecided counts as unsure.
 //
 // A byte per streamline, by rank from the chunk's first; pvfiblets/engine/fiblets/region_query.py has the same bits.
 
@@ -32,12 +32,12 @@ uniform uint stage;
 
 uniform uint batch_first;
 uniform uint batch_size;   // fiblets from batch_first on
-uniform float sampling;  // mm; 0: points alone
+uniform bool lines;  // or points alone
 
 const uint INSIDE = 1u, OUTSIDE = 2u, UNSURE = 4u, FIRST_INSIDE = 8u, FIRST_UNSURE = 16u, LAST_INSIDE = 32u, LAST_UNSURE = 64u;
 const uint SETTLED = INSIDE | OUTSIDE;
 const float EPSILON = 1.1920929e-7;
-const float SAMPLES = 1024.0;
+const float PIECES = 8.0;
 
 uint place_of(int side) { return side > 0 ? INSIDE : side < 0 ? OUTSIDE : UNSURE; }
 
@@ -56,17 +56,15 @@ float walk_margin(uint i) {
     return EPSILON * ((n + 8.0) * (length(walk_anchor) + run) + drift);
 }
 
-// Positions on a segment, its ends left out; `margin` is that of its ends.
-uint between(vec3 a, vec3 b, float margin) {
-    int whole = region_of_capsule(a, b, margin);
-    if (whole != 0) return place_of(whole);
-    float share = distance(a, b) / sampling, slack = 2.0 * margin / sampling + 1.0e-5 * share;
-    float pieces = ceil(share - slack);
-    if (!(pieces == ceil(share + slack) && pieces <= SAMPLES)) return UNSURE;
+// A segment whose ends do not settle it, in pieces; `margin` is that of its ends.
+uint pieces(vec3 a, vec3 b, float margin) {
     float wider = margin + 8.0 * EPSILON * (length(a) + length(b));
     uint found = 0u;
-    for (float k = 1.0; k < pieces && found != (SETTLED | UNSURE); k += 1.0) {
-        found |= place_of(region_of_ball(mix(a, b, k / pieces), wider));
+    vec3 p = a;
+    for (float k = 1.0; k <= PIECES && found != (SETTLED | UNSURE); k += 1.0) {
+        vec3 q = mix(a, b, k / PIECES);
+        found |= place_of(region_of_capsule(p, q, wider));
+        p = q;
     }
     return found;
 }
@@ -87,15 +85,22 @@ uint decoded_answer(uint f, bool last, uint known) {
         }
         margin = walk_margin(i);
         if (i == 0u && !at_last) continue;
-        int side = region_of_ball(walk_point, margin);
+        bool joined = lines && i > 0u && !settled;
+        float wider = max(margin, margin_before);
+        int side = joined ? region_of_capsule(before, walk_point, wider) : 0;
+        if (side == 0) {
+            side = region_of_ball(walk_point, margin);
+            if (joined) found |= pieces(before, walk_point, wider);
+        }
         found |= place_of(side);
         if (at_last) found |= side > 0 ? LAST_INSIDE : side == 0 ? LAST_UNSURE : 0u;
-        if (sampling > 0.0 && i > 0u && !settled) found |= between(before, walk_point, max(margin, margin_before));
         settled = ((known | found) & SETTLED) == SETTLED;
     }
-    if (sampling > 0.0 && !settled && !ends(f)) {
+    if (lines && !settled && !ends(f)) {
         vec3 next = anchor_local(f + 1u);
-        found |= between(walk_point, next, max(margin, 8.0 * EPSILON * length(next)));
+        float wider = max(margin, 8.0 * EPSILON * length(next));
+        int side = region_of_capsule(walk_point, next, wider);
+        found |= side != 0 ? place_of(side) : pieces(walk_point, next, wider);
     }
     return found;
 }
