@@ -45,8 +45,8 @@ def add_options(parser: Any) -> None:
     parser.add_argument("--clip-away", metavar="WORD", help="show only what is outside; words as of --clip", **words)
     parser.add_argument(
         "--include", metavar="WORD",
-        help="only streamlines that pass through a shape of --clip, or labels path=FILE labels=N,N; passes, "
-        "ends_in, both_ends_in or stays_in before it says otherwise; with sampling=points, what lies between points does not count. "
+        help="only streamlines that pass through a shape of --clip, or labels path=FILE labels=N,N; passes, ends_in, "
+        "both_ends_in or stays_in before it says otherwise. With sampling=points, places between points do not count. "
         "May be given several times: all must hold",
         **words,
     )  # fmt: skip

@@ -8,8 +8,10 @@ Shapes are combined by ``&`` (both), ``|`` (either), ``~`` (not) and ``-`` (with
     left = regions.Plane((-1.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     region = lesion & left
 
-Streamlines are chosen by where their points lie: ``passes(region)``, ``ends_in(region)`` and ``stays_in(region)``,
-joined by ``&``, ``|`` and ``~``, for :meth:`.FibletSet.select`. ``Distance(region)`` measures how near they come.
+Streamlines are chosen by where they lie: ``passes(region)``, ``ends_in(region)`` and ``stays_in(region)``, joined by
+``&``, ``|`` and ``~``, for :meth:`.FibletSet.select`. A streamline is the line through its points; with
+``sampling="points"`` only the points count, as for MRtrix's ``tckedit``. ``Distance(region)`` measures how near the
+points come.
 
 ``RegionPainter`` paints regions on the voxels of an image, with undo, and ``LiveRegions`` tells which streamlines
 pass them after each stroke.

@@ -15,6 +15,7 @@ from pvfiblets import Streamlines, formats, regions
 from pvfiblets.cli import main
 from pvfiblets.plotting.cut_surfaces import cut_surface
 from pvfiblets.plotting.viewpoints import point_camera
+from pvfiblets.streamlines import Streamlines
 from pvfiblets.synthetic import brain_streamlines
 
 SIZE = (120, 90)
@@ -200,6 +201,21 @@ def test_an_array_that_does_not_colour_filters(shot, files):
     assert np.abs(found[[0, -1]] - expected).max() <= 1.5
 
 
+def test_a_line_of_two_points_passes_what_lies_between_them(shot, files):
+    ends = np.array([[-40.0, 0, 0], [40, 0, 0], [-40, 9, 0], [40, 9, 0]])
+    formats.write(files / "two.tck", Streamlines(ends, [0, 2, 4]))
+    volume = np.zeros((21, 21, 21), np.int16)
+    volume[8:13, 8:13, 8:13] = 3
+    affine = np.diag([2.0, 2.0, 2.0, 1.0])
+    affine[:3, 3] = -20.0
+    nib.save(nib.Nifti1Image(volume, affine), files / "between.nii")
+    sphere = ["sphere", "center=0,0,0", "radius=5"]
+    found = shot("two.tck", "--include", *sphere)
+    assert found.sum() > 0
+    assert_same(shot("two.tck", "--include", "labels", f"path={files / 'between.nii'}", "labels=3"), found)
+    assert shot("two.tck", "--include", "passes", *sphere, "sampling=points").sum() == 0
+
+
 def test_groups(shot, files, tmp_path):
     brain = brain_streamlines(40, 1.0, seed=2)
     grouped = type(brain)(
@@ -252,6 +268,7 @@ def test_a_session_is_the_picture_of_the_page(files, tmp_path):
         (["ball.vtp", "--subset", "0.5"], "--subset is about streamlines"),
         (["lines.tck", "--criterion", "length", "20"], "two numbers, of which - is open"),
         (["lines.tck", "--include", "ends_in"], "and no shape"),
+        (["lines.tck", "--include", "sphere", "center=0,0,0", "radius=5", "sampling=0.5"], "choose lines or points"),
         (["image.nii.gz", "--volumes", "moed=mip"], "moed"),
         (["view.json", "lines.tck"], "give it alone"),
         (["view.json", "--cmap", "hot"], "leave --cmap out"),

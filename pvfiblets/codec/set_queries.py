@@ -31,7 +31,7 @@ class SetQueries:
     """The part of a `FibletSet` that chooses, counts and shows its streamlines."""
 
     def select(self: Any, predicate: Condition, *, flags: Any = None) -> npt.NDArray[np.bool_]:
-        """Choose streamlines by where their points lie; see :func:`pvfiblets.query.predicates.select`.
+        """Choose streamlines by where they lie; see :func:`pvfiblets.query.predicates.select`.
 
         Parameters
         ----------

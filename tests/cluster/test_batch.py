@@ -20,7 +20,7 @@ import pytest
 import pvfiblets as pf
 from pvfiblets import regions
 from pvfiblets.cli import main
-from pvfiblets.cluster import batch
+from pvfiblets.cluster import batch, operations
 from pvfiblets.query.profile import mean_profile
 from tests.cluster.conftest import SUBJECTS
 
@@ -152,7 +152,7 @@ def test_selections_are_those_of_numpy(client, cohort, tmp_path, compressed):
         sources = tmp_path / "coded" / "sub-*" / "ses-a" / "dwi" / "*.fiblets"
     result = batch(
         "select", sources, tmp_path / "out", cluster=client, to=".tck", passes=["box:-100,0,-100,100,-100,100"],
-        avoids=["sphere:10,-20,10,30"],
+        avoids=["sphere:10,-20,10,30"], sampling="points",
     )  # fmt: skip
     for subject in SUBJECTS:
         lines = [np.asarray(line, float) for line in pf.read(cohort / name_of(subject))]
@@ -166,6 +166,22 @@ def test_selections_are_those_of_numpy(client, cohort, tmp_path, compressed):
         assert 0 < len(keep) < len(lines)
         made = pf.read(tmp_path / "out" / name_of(subject, ".tck"))
         np.testing.assert_allclose(made.points, np.concatenate(keep), atol=1e-5)
+
+
+@pytest.mark.parametrize("suffix", [".tck", ".fiblets"])
+def test_what_crosses_a_region_between_its_points_passes_it(tmp_path, suffix):
+    """Of 21 segments that cross a ball, 12 have no point in it."""
+    source = tmp_path / f"a{suffix}"
+    y = np.linspace(-4.9, 4.9, 21)
+    lines = [np.array([[-40.0 if k % 7 < 4 else 0.5, v, 0], [40.0, v, 0]]) for k, v in enumerate(y)]
+    lines.append(lines[0] - [0, 5, 0])
+    pf.write(source, pf.Streamlines.from_list(lines))
+    for sampling, n in (("lines", 21), ("points", 9)):
+        options = {"passes": ["sphere:0,0,0,5"], "sampling": sampling}
+        assert operations.select(source, tmp_path / "out.tck", **options)["selected"] == n
+        assert len(pf.read(tmp_path / "out.tck")) == n
+        options = {"avoids": ["sphere:0,0,0,5"], "sampling": sampling}
+        assert operations.select(source, tmp_path / "out.tck", **options)["selected"] == 22 - n
 
 
 def test_density_and_verify(client, cohort, tmp_path):

@@ -43,6 +43,7 @@ def test_regions_are_rows_joined_by_a_word_and_back():
     rows = [
         {"not": False, "how": "passes", "region": SPHERE},
         {"not": True, "how": "ends_in", "region": SPHERE},
+        {"not": True, "how": "stays_in", "region": SPHERE, "sampling": "points"},
     ]
     assert flat(condition("or", rows)) == ("or", rows)
     assert condition("and", []) is None

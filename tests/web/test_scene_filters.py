@@ -53,6 +53,11 @@ def test_regions_are_joined_by_and_or_not(flat, lines):
     np.testing.assert_array_equal(flat.actor(layer.id).shown, (y <= 9) & ~(ends >= 40.25))
     flat.set_regions(layer.id, {"op": "or", "of": [passes, hits]})
     np.testing.assert_array_equal(flat.actor(layer.id).shown, (y <= 9) | through)
+    between = {"kind": "sphere", "center": [float(n) for n in lines[0][:2].mean(axis=0)], "radius": 1e-3}
+    flat.set_regions(layer.id, {"how": "passes", "region": between})
+    assert flat.actor(layer.id).shown.sum() == 1
+    flat.set_regions(layer.id, {"how": "passes", "region": between, "sampling": "points"})
+    assert not flat.actor(layer.id).shown.any()
     flat.set_regions(layer.id, {"how": "stays_in", "region": box})
     np.testing.assert_array_equal(flat.actor(layer.id).shown, y <= 9)
     flat.set_regions(layer.id, {"how": "both_ends_in", "region": far})
@@ -69,6 +74,8 @@ def test_regions_are_joined_by_and_or_not(flat, lines):
         {},
         [],
         {"how": "passes"},
+        {"how": "passes", "region": {"kind": "sphere", "center": [0, 0, 0], "radius": 1}, "sampling": 0.5},
+        {"how": "ends_in", "region": {"kind": "sphere", "center": [0, 0, 0], "radius": 1}, "sampling": "points"},
         {"how": "flies over", "region": {"kind": "sphere", "center": [0, 0, 0], "radius": 1}},
         {"how": "passes", "region": {"kind": "sphere", "center": [0, 0], "radius": 1}},
         {"how": "passes", "region": {"kind": "sphere", "center": [0, 0, 0], "radius": 0}},

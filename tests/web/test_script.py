@@ -31,7 +31,7 @@ def tracts(scene):
     scene.set_subset(lines.id, 0.9)
     labels = {"how": "ends_in", "region": {"kind": "labels", "path": "atlas.nii.gz", "labels": [5]}}
     ball = {"how": "passes", "region": {"kind": "mesh", "path": "ball.ply"}}
-    anything = {"how": "passes", "region": {"kind": "sphere", "center": [0, 0, 0], "radius": 30}}
+    anything = {"how": "passes", "region": {"kind": "sphere", "center": [0, 0, 0], "radius": 30}, "sampling": "points"}
     scene.set_regions(lines.id, {"op": "or", "of": [labels, ball, {"op": "not", "of": [anything]}, anything]})
     scene.select(lines.id, [*range(10, 20), 40, 45])
     scene.set(lines.id, "selection_color", "#00ff00")

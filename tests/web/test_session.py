@@ -30,7 +30,7 @@ def fill(scene):
     scene.set(lines.id, "clim", [0.2, 0.9])
     scene.set_filter(lines.id, "length", 20, None)
     scene.set_subset(lines.id, 0.8, seed=3)
-    ball = {"how": "passes", "region": {"kind": "mesh", "path": "ball.ply"}}
+    ball = {"how": "passes", "region": {"kind": "mesh", "path": "ball.ply"}, "sampling": "points"}
     box = {"how": "ends_in", "region": {"kind": "box", "bounds": [-1, 5, -1, 50, -1, 50]}}
     scene.set_regions(lines.id, {"op": "or", "of": [ball, {"op": "not", "of": [box]}, box]})
     scene.select(lines.id, [20, 21, 22, 40])

@@ -87,6 +87,8 @@ def test_the_answer_is_exact_after_each_stroke(fiblets):
             found = flags_of(live, name)
             assert np.array_equal(found[:, [0, 2, 3]], expected[:, [0, 2, 3]])
             assert live.count(name) == expected[:, 0].sum()
+            if painter.mask(name).any():
+                assert np.array_equal(fiblets.select(regions.passes(painter.region(name))), expected[:, 0])
     assert 5 < live.count("b") < 150
     again = regions.LiveRegions(fiblets, painter)
     assert np.array_equal(again.region("a").flags(), live.region("a").flags())
