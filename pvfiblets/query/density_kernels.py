@@ -14,7 +14,7 @@ import numba
 import numpy as np
 
 from ..codec.jit import kernel, parallel_kernel
-from .voxel_walk_kernels import clip, end_voxels, walk, within
+from .voxel_walk_kernels import clip, end_voxels, faces, voxel_along, within
 
 __all__ = ["AMOUNT", "COUNT", "DIRECTION", "VALUE", "add_up", "count_pieces", "cut", "cut_ends", "place"]
 
@@ -76,6 +76,8 @@ def cut(
 ) -> float:  # fmt: skip
     """Cut the segments of items ``a`` to ``b`` at the faces of voxels.
 
+    The loop is that of :func:`.voxel_walk_kernels.walk`, written out: through its arrays, maps take a quarter longer.
+
     Parameters
     ----------
     u, line, lengths
@@ -95,31 +97,54 @@ def cut(
         mm of the segments that lie within the grid.
     """
     nx, ny, nz = shape
-    strides = (1, nx, nx * ny)
     n_blocks = (b - a + BLOCK - 1) // BLOCK
-    within_grid = np.zeros(n_blocks)
+    inside_mm = np.zeros(n_blocks)
     for block in numba.prange(n_blocks):
-        on, stops = np.empty(nx + ny + nz + 4, np.int64), np.empty(nx + ny + nz + 4)
         for i in range(a + block * BLOCK, min(a + (block + 1) * BLOCK, b)):
             r, stop = starts[i] - starts[a], starts[i + 1] - starts[a]
             if r == stop:
                 continue
-            n, now = 0, 0.0
-            if i + 1 < len(u) and line[i + 1] == line[i]:
-                n, now = walk(u, i, shape, strides, False, on, stops)
-            if n == 0:
-                voxel[r] = int(u[i, 0]) + nx * (int(u[i, 1]) + ny * int(u[i, 2]))
-                item[r], part[r], middle[r] = i, 0.0, 0.0
+            inside = within(u, i, shape)
+            enter, leave, drawn = 0.0, 1.0, i + 1 < len(u) and line[i + 1] == line[i]
+            if drawn and not (inside and within(u, i + 1, shape)):
+                enter, leave = clip(u, i, shape)
+                drawn = enter < leave
+            if not drawn:
+                x, y, z = voxel_along(u[i, 0], nx), voxel_along(u[i, 1], ny), voxel_along(u[i, 2], nz)
+                voxel[r], item[r], part[r], middle[r] = x + nx * (y + ny * z), i, 0.0, 0.0
                 continue
-            within_grid[block] += lengths[i] * (stops[n - 1] - now)
-            for k in range(n):
-                voxel[r], item[r] = on[k], i
-                part[r], middle[r] = stops[k] - now, 0.5 * (now + stops[k])
-                now = stops[k]
-                r += 1
+            inside_mm[block] += lengths[i] * (leave - enter)
+            x, y, z, ex, ey, ez = end_voxels(u, i, shape, enter, leave)
+            fx, sx, mx, dx = faces(u, i, 0, x, ex)
+            fy, sy, my, dy = faces(u, i, 1, y, ey)
+            fz, sz, mz, dz = faces(u, i, 2, z, ez)
+            tx = (fx - u[i, 0]) / dx if mx else math.inf
+            ty = (fy - u[i, 1]) / dy if my else math.inf
+            tz = (fz - u[i, 2]) / dz if mz else math.inf
+            now, holds_point = enter, inside
+            while True:
+                last = mx + my + mz == 0
+                then = leave if last else min(max(min(tx, ty, tz), now), leave)
+                if then > now or holds_point:
+                    voxel[r], item[r] = x + nx * (y + ny * z), i
+                    part[r], middle[r] = then - now, 0.5 * (now + then)
+                    r += 1
+                holds_point = False
+                now = then
+                if last:
+                    break
+                if tx <= ty and tx <= tz:
+                    x, mx, fx = x + sx, mx - 1, fx + sx
+                    tx = (fx - u[i, 0]) / dx if mx else math.inf
+                elif ty <= tz:
+                    y, my, fy = y + sy, my - 1, fy + sy
+                    ty = (fy - u[i, 1]) / dy if my else math.inf
+                else:
+                    z, mz, fz = z + sz, mz - 1, fz + sz
+                    tz = (fz - u[i, 2]) / dz if mz else math.inf
             for rest in range(r, stop):
                 voxel[rest], item[rest], part[rest], middle[rest] = -1, i, 0.0, 0.0
-    return float(within_grid.sum())
+    return float(inside_mm.sum())
 
 
 @kernel

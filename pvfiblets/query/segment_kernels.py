@@ -219,7 +219,7 @@ def label_spans(
                 for axis in range(3):
                     # Voxels' centres are at whole numbers here, their faces in the walk.
                     u[end, axis] = linear[axis, 0] * x + linear[axis, 1] * y + linear[axis, 2] * z + 0.5
-            n, now = walk(u, 0, shape, strides, True, on, stops) if math.isfinite(u.sum()) else (0, 0.0)
+            n, now = walk(u, 0, shape, strides, on, stops) if math.isfinite(u.sum()) else (0, 0.0)
             base = first[k] if writes else 0
             m, open_ = base, False
             for i in range(n):

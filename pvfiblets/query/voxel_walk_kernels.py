@@ -15,7 +15,7 @@ from typing import Any
 
 from ..codec.jit import kernel
 
-__all__ = ["clip", "end_voxels", "voxel_along", "walk", "within"]
+__all__ = ["clip", "end_voxels", "faces", "voxel_along", "walk", "within"]
 
 
 @kernel
@@ -70,7 +70,7 @@ def end_voxels(u: Any, i: int, shape: Any, enter: float, leave: float) -> Any:
 
 
 @kernel
-def _faces(u: Any, i: int, k: int, first: int, last: int) -> Any:
+def faces(u: Any, i: int, k: int, first: int, last: int) -> Any:
     """Of one axis: the first face that is crossed, the step to the next, how many there are, and the segment's extent.
 
     ``first`` and ``last`` are rounded where the segment enters and leaves the grid; they never make it turn back.
@@ -82,10 +82,10 @@ def _faces(u: Any, i: int, k: int, first: int, last: int) -> Any:
 
 
 @kernel
-def walk(u: Any, i: int, shape: Any, strides: Any, with_end: bool, on: Any, stops: Any) -> Any:
+def walk(u: Any, i: int, shape: Any, strides: Any, on: Any, stops: Any) -> Any:
     """Voxels on the way from ``u[i]`` to ``u[i + 1]``, in order: how many, and the share where the first begins.
 
-    A voxel counts if some length of the segment lies in it, or its first point; its last point too if ``with_end``.
+    A voxel counts if some length of the segment lies in it, or one of its ends.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def walk(u: Any, i: int, shape: Any, strides: Any, with_end: bool, on: Any, stop
     if not (one and other):
         enter, leave = clip(u, i, shape)
         if enter > leave:
-            if not (one or (other and with_end)):
+            if not (one or other):
                 return 0, 0.0
             # An end on the grid's face is all of it.
             k = i if one else i + 1
@@ -111,9 +111,9 @@ def walk(u: Any, i: int, shape: Any, strides: Any, with_end: bool, on: Any, stop
     on[0], stops[0] = x * sx + y * sy + z * sz, leave
     if x == ex and y == ey and z == ez:
         return 1, enter
-    fx, gx, mx, dx = _faces(u, i, 0, x, ex)
-    fy, gy, my, dy = _faces(u, i, 1, y, ey)
-    fz, gz, mz, dz = _faces(u, i, 2, z, ez)
+    fx, gx, mx, dx = faces(u, i, 0, x, ex)
+    fy, gy, my, dy = faces(u, i, 1, y, ey)
+    fz, gz, mz, dz = faces(u, i, 2, z, ez)
     tx = (fx - u[i, 0]) / dx if mx else math.inf
     ty = (fy - u[i, 1]) / dy if my else math.inf
     tz = (fz - u[i, 2]) / dz if mz else math.inf
@@ -121,7 +121,7 @@ def walk(u: Any, i: int, shape: Any, strides: Any, with_end: bool, on: Any, stop
     while True:
         last = mx + my + mz == 0
         then = leave if last else min(max(min(tx, ty, tz), now), leave)
-        if then > now or holds or (last and other and with_end):
+        if then > now or holds or (last and other):
             on[n], stops[n] = x * sx + y * sy + z * sz, then
             n += 1
         if last:

@@ -66,7 +66,7 @@ def look(places: Any, order: Any, arrays: Any, low: Any, fine: Any, origin: Any,
             for i in range(n - 1):
                 if flags & ANY and flags & OUT:
                     break
-                many, _ = walk(u, i, shape, strides, True, on, stops)
+                many, _ = walk(u, i, shape, strides, on, stops)
                 if not (within(u, i, shape) and within(u, i + 1, shape)):
                     flags |= OUT
                 for k in range(many):
@@ -108,7 +108,7 @@ def passes(places: Any, order: Any, arrays: Any, low: Any, fine: Any, origin: An
                     break
                 if _apart_from(u, i, box):
                     continue
-                many, _ = walk(u, i, shape, strides, True, on, stops)
+                many, _ = walk(u, i, shape, strides, on, stops)
                 for k in range(many):
                     if mask[on[k]] & bit:
                         found[j] = ANY
@@ -164,7 +164,7 @@ def _ordered(u: Any, n: int, shape: Any, labels: Any, wanted: Any, on: Any, stop
     while next_ < len(wanted) and at >= 0 and labels[at] == wanted[next_]:
         next_ += 1
     for i in range(n - 1):
-        many, _ = walk(u, i, shape, strides, True, on, stops)
+        many, _ = walk(u, i, shape, strides, on, stops)
         for k in range(many):
             while next_ < len(wanted) and labels[on[k]] == wanted[next_]:
                 next_ += 1
