@@ -154,7 +154,7 @@ class RegionQuery:
     def _ask(self, features: Sequence[str], lines: bool) -> Bytes:
         """``(n_ranks,)`` what the shader says of each streamline that has points."""
         program = self._programs.compute("fiblets/compute/query.comp", features)
-        program["lines"] = lines
+        program["lines"] = int(lines)
         self._block.bind(program)
         marks = np.zeros(int(self._fiblets.pages[-1, 0]), np.uint8)
         for chunk in self._chunks:

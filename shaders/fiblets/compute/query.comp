@@ -32,7 +32,7 @@ uniform uint stage;
 
 uniform uint batch_first;
 uniform uint batch_size;   // fiblets from batch_first on
-uniform bool lines;  // or points alone
+uniform uint lines;  // 0: points alone
 
 const uint INSIDE = 1u, OUTSIDE = 2u, UNSURE = 4u, FIRST_INSIDE = 8u, FIRST_UNSURE = 16u, LAST_INSIDE = 32u, LAST_UNSURE = 64u;
 const uint SETTLED = INSIDE | OUTSIDE;
@@ -85,7 +85,7 @@ uint decoded_answer(uint f, bool last, uint known) {
         }
         margin = walk_margin(i);
         if (i == 0u && !at_last) continue;
-        bool joined = lines && i > 0u && !settled;
+        bool joined = lines != 0u && i > 0u && !settled;
         float wider = max(margin, margin_before);
         int side = joined ? region_of_capsule(before, walk_point, wider) : 0;
         if (side == 0) {
@@ -96,7 +96,7 @@ uint decoded_answer(uint f, bool last, uint known) {
         if (at_last) found |= side > 0 ? LAST_INSIDE : side == 0 ? LAST_UNSURE : 0u;
         settled = ((known | found) & SETTLED) == SETTLED;
     }
-    if (lines && !settled && !ends(f)) {
+    if (lines != 0u && !settled && !ends(f)) {
         vec3 next = anchor_local(f + 1u);
         float wider = max(margin, 8.0 * EPSILON * length(next));
         int side = region_of_capsule(walk_point, next, wider);
