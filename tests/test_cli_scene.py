@@ -95,6 +95,7 @@ def assert_same(found, right, other=None):
         assert np.mean(np.abs(found - other).max(axis=-1) > 8) > 0.005
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("words", "arguments"),
     [
@@ -141,6 +142,7 @@ def test_all_of_them_cut(shot, files, middle):
     assert_same(some, drawn(lambda p: add(p, of=("lines", "volumes"))), whole)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("kind", ["slab", "box", "sphere", "mesh"])
 def test_shapes(shot, files, middle, kind):
     x, y, z = middle
@@ -155,6 +157,7 @@ def test_shapes(shot, files, middle, kind):
     assert_same(found, drawn(lambda p: lines(files)(p).clip(region)), shot("lines.tck"))
 
 
+@pytest.mark.more
 def test_filters(shot, files, middle):
     whole, ball = shot("lines.tck"), regions.Sphere(middle, 15)
     sphere, labels = ["sphere", f"center={comma(middle)}", "radius=15"], str(files / "labels.nii.gz")
@@ -286,6 +289,7 @@ def test_what_makes_no_sense_is_one_sentence(files, capsys, tmp_path, words, sai
     assert said in error
 
 
+@pytest.mark.more
 def test_plain_pictures_load_no_more_than_before(files, tmp_path):
     code = (
         "import sys; from pvfiblets.cli import main; "

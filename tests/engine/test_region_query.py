@@ -58,6 +58,7 @@ def plain():
     return packed(steady(150))
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", NAMES)
 def test_every_shape(gl, plain, name):
     renderer = FibletRenderer(gl, plain)
@@ -94,6 +95,7 @@ KINDS = {
 }
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("kind", SETS)
 def test_every_kind_of_fiblet(gl, kind):
     fiblets = SETS[kind]()
@@ -106,6 +108,7 @@ def test_every_kind_of_fiblet(gl, kind):
     renderer.release()
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("offset", [1e6, -1e6])
 @pytest.mark.parametrize("scale", [1.0, 1e-3, 1e3])
 def test_far_away_tiny_and_huge(gl, offset, scale):
@@ -224,6 +227,7 @@ def test_nothing_to_ask(gl):
     renderer.release()
 
 
+@pytest.mark.more
 def test_a_picture_is_as_it_was(gl, plain, camera):
     renderer = FibletRenderer(gl, plain)
     view = View((120, 90), camera((120, 90)))

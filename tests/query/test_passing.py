@@ -313,6 +313,7 @@ def some_volumes() -> dict[str, regions.Region]:
     }  # fmt: skip
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("name", some_volumes())
 @pytest.mark.parametrize("how", ["input", "hilbert", "fine"])
 def test_surfaces_and_labels(brains: dict[str, pf.FibletSet], how: str, name: str) -> None:

@@ -37,6 +37,7 @@ def test_groups_of_a_file_are_shown(scene):
     assert scene.actor(layer.id).shown.all()
 
 
+@pytest.mark.more
 def test_regions_are_joined_by_and_or_not(flat, lines):
     (layer,) = flat.layers
     box = {"kind": "box", "bounds": [-1, 100, -1, 9, -1, 100]}
@@ -68,6 +69,7 @@ def test_regions_are_joined_by_and_or_not(flat, lines):
     assert flat.actor(layer.id).shown.all()
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize(
     "condition",
     [

@@ -100,6 +100,7 @@ def volumes(scene):
     scene.view("coronal")
 
 
+@pytest.mark.more
 @pytest.mark.usefixtures("usual_limits")  # which the script has
 @pytest.mark.parametrize("fill", [tracts, anatomy, volumes])
 def test_a_script_makes_the_same_picture(scene, folder, fill):

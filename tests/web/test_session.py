@@ -61,6 +61,7 @@ def other(folder):
     plotter.close()
 
 
+@pytest.mark.more
 def test_a_session_brings_everything_back(scene, other, folder):
     fill(scene)
     picture = scene.screenshot()
@@ -197,6 +198,7 @@ def saved(other):
     return session.to_dict(other)
 
 
+@pytest.mark.few(5)
 @pytest.mark.parametrize(
     ("path", "value", "says"),
     [

@@ -67,6 +67,7 @@ def flags_of(live, name):
     return np.stack([found & bit != 0 for bit in (1, 2, 4, 8)], axis=1)
 
 
+@pytest.mark.more
 def test_the_answer_is_exact_after_each_stroke(fiblets):
     painter = regions.RegionPainter((SHAPE, AFFINE))
     painter.add("a", "red")
@@ -293,6 +294,7 @@ def test_what_cannot_be_painted_is_told(do, error, says):
     assert not painter.labels.any()
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("step", [0.1, 0.5, 3.0])
 def test_what_is_settled_without_decoding_is_what_decoding_says(step):
     """Fiblets in one, two and four parts; voxels of 1 mm, slanted, where discs lie in the region."""
