@@ -15,7 +15,6 @@ from pvfiblets import Streamlines, formats, regions
 from pvfiblets.cli import main
 from pvfiblets.plotting.cut_surfaces import cut_surface
 from pvfiblets.plotting.viewpoints import point_camera
-from pvfiblets.streamlines import Streamlines
 from pvfiblets.synthetic import brain_streamlines
 
 SIZE = (120, 90)
