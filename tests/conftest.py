@@ -6,9 +6,9 @@ Four rules live here:
 * A test that leaves an OpenGL error behind, or starts with one, fails: the ``gl`` fixture.
 * On continuous integration (``PVFIBLETS_CI`` is set) a check cannot vanish unseen: every test function
   must run with some of its parameters, unless the real data is not on that machine, or Firefox is not to be had there.
-* ``make test`` takes minutes: tests marked ``more``, and most parameters of those marked ``few``, run by
-  ``make test-more``; tests marked ``exhaustive``, and what a product of parameters marked ``every`` has besides every
-  value or pair, by ``make test-all`` only.
+* ``make test`` takes minutes: tests that open a browser or are marked ``more``, and most parameters of those marked
+  ``few``, run by ``make test-more``; tests marked ``exhaustive``, and what a product of parameters marked ``every`` has
+  besides every value or pair, by ``make test-all`` only.
 """
 
 from __future__ import annotations
@@ -215,6 +215,8 @@ def thin(items):
     products, lists = defaultdict(list), defaultdict(list)
     for item in items:
         function = item.nodeid.partition("[")[0]
+        if "browser" in getattr(item, "fixturenames", ()):
+            item.add_marker(pytest.mark.more)
         if (mark := item.get_closest_marker("every")) is not None and hasattr(item, "callspec"):
             products[function, SIZES[mark.args[0]]].append(item)
         if (mark := item.get_closest_marker("few")) is not None:

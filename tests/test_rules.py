@@ -40,6 +40,7 @@ def test_a_check_cannot_vanish_on_ci(tmp_path, body, on_ci, passes):
     assert (done.returncode == 0) is passes, done.stdout
 
 
+@pytest.mark.more
 @pytest.mark.parametrize(
     ("answer", "may_miss"), [("Candidate: 153.7.0esr", False), ("Candidate: (none)", True), ("", True), (None, True)]
 )

@@ -114,7 +114,7 @@ def test_bad_points_are_named() -> None:
     points = np.array(smooth(2, 20).points)
     points[7, 1] = np.nan
     with pytest.raises(ValueError, match="point 7 is .*nan.*remove or repair"):
-        pf.compress(Streamlines(points, [0, 20, 40]))
+        pf.compress(Streamlines(points, [0, 20, 40]), nan="error")
     points[7, 1] = 1e300
     with pytest.raises(ValueError, match=r"1e\+300 mm is beyond"):
         pf.compress(Streamlines(points, [0, 20, 40]))

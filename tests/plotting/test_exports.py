@@ -216,6 +216,7 @@ def test_vtk_exporters_of_ones_own(plotter, fiblets, tmp_path):
     assert len(first) == 123 + 3
 
 
+@pytest.mark.more
 def test_browser_scenes_hold_lines_with_their_colours(plotter, fiblets):
     pytest.importorskip("trame_vtk")
     plotter.add_fiblets(fiblets, scalars="weight", show_scalar_bar=False)
