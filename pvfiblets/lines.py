@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from os import PathLike
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.invalid_points import refuse_beyond
+from pvfiblets.invalid_points import CUT, NONFINITE, refuse_beyond
 from pvfiblets.other_libraries import lines_of_grid, streamlines_of
-from pvfiblets.ragged import offsets_from_counts
+from pvfiblets.ragged import cut_offsets, offsets_from_counts
 from pvfiblets.streamlines import Streamlines
+from pvfiblets.summary import warn_of_losses
 from pvfiblets.vtk_space import space_of_dataset, to_ras
 
 if TYPE_CHECKING:
@@ -51,6 +52,10 @@ class Lines:
         ``(n_segments,)`` int64, in the source's order: the tube of each segment, where tubes are not the lines.
     n_tubes : int
         Tubes, those without segments included.
+    given : ndarray, optional
+        ``(n_tubes,)`` int64: the line of the source that each tube is a piece of. None: lines are whole.
+    n_given : int, optional
+        Lines of the source, where some were cut.
     """
 
     points: npt.NDArray[Any]
@@ -61,6 +66,8 @@ class Lines:
     line_data: Mapping[str, npt.NDArray[Any]] = field(default_factory=dict)
     order: Ints | None = None
     tube_of: Ints | None = None
+    given: Ints | None = None
+    n_given: int | None = None
 
     def __post_init__(self) -> None:
         finite = self.points[np.isfinite(self.points)]
@@ -75,6 +82,15 @@ class Lines:
     def shared(self) -> bool:
         """Whether a point is on more than one line, or on one line more than once."""
         return len(self.ids) > len(self.points) or bool(np.bincount(self.ids, minlength=1).max() > 1)
+
+    @property
+    def n_rows(self) -> int:
+        """Rows of an array that has one for each line of the source."""
+        return self.n_tubes if self.n_given is None else self.n_given
+
+    def of_tubes(self, array: npt.NDArray[Any]) -> npt.NDArray[Any]:
+        """Return an array of the source's lines with a row for each tube."""
+        return array if self.given is None else array[self.given]
 
     def line_of(self, row: int) -> int:
         """The line that holds a row of `ids`."""
@@ -101,7 +117,7 @@ class Lines:
 
 
 def gather(source: Any, noun: str = "tubes", *, keep_single: bool = False) -> Lines:
-    """Take the lines out of a source.
+    """Take the lines out of a source, cut where a point is NaN or infinite, which is warned of.
 
     Parameters
     ----------
@@ -124,6 +140,12 @@ def gather(source: Any, noun: str = "tubes", *, keep_single: bool = False) -> Li
         If there are no lines in a PolyData, an array has the wrong shape, or segments refer to points that are not
         there.
     """
+    lines, dropped = _cut(_gather(source, noun, keep_single))
+    warn_of_losses(type(source).__name__, dropped, stacklevel=2)
+    return lines
+
+
+def _gather(source: Any, noun: str, keep_single: bool) -> Lines:
     if isinstance(source, Streamlines):
         return _from_streamlines(source, keep_single)
     if hasattr(source, "decompress") and hasattr(source, "fiblet_points"):
@@ -142,9 +164,42 @@ def gather(source: Any, noun: str = "tubes", *, keep_single: bool = False) -> Li
         return _from_segments(_floats(source[0], keep_single), np.asarray(source[1], np.int64))
     if isinstance(source, (Sequence, np.ndarray)) and not isinstance(source, (str, bytes)):
         if len(source) and np.ndim(source[0]) == 1 and np.size(source[0]):
-            return gather(np.asarray(source, np.float64), noun)
+            return _gather(np.asarray(source, np.float64), noun, keep_single=False)
         return _from_arrays(list(source), keep_single)
     raise TypeError(f"{noun} cannot be made from a {type(source).__name__}; give {_EXPECTED}")
+
+
+def _cut(lines: Lines) -> tuple[Lines, dict[str, int]]:
+    """Return lines that end at non-finite points, and what was left out."""
+    bad = ~np.isfinite(lines.points).all(axis=1)
+    rows = np.flatnonzero(bad[lines.ids])
+    if not len(rows):
+        return lines, {}
+    points = lines.points.copy()
+    points[bad] = 0.0 if bad.all() else points[~bad][0]  # no line has them, and arrays still have their rows
+    if lines.order is not None:
+        ends, tubes = lines.segments()
+        pairs = lines.ids[ends]
+        good = ~bad[pairs].any(axis=1)
+        found = _from_segments(points, pairs[good])
+        pieces, n_lines = len(found.counts), len(lines.counts)
+        if lines.tube_of is not None:
+            found = replace(found, n_tubes=lines.n_tubes, tube_of=tubes[good])
+        else:
+            given = np.zeros(pieces, np.int64)
+            given[found.segments()[1]] = tubes[good]
+            found = replace(found, given=given, n_given=lines.n_tubes)
+        cut = replace(found, point_data=lines.point_data, line_data=lines.line_data)
+    else:
+        offsets, counts = cut_offsets(lines.offsets, rows)
+        given, n_lines = np.repeat(np.arange(lines.n_tubes), counts), lines.n_tubes
+        data = {name: values[given] for name, values in lines.line_data.items()}
+        pieces = len(given)
+        cut = Lines(
+            points, np.delete(lines.ids, rows), offsets, pieces, lines.point_data, data, given=given, n_given=n_lines
+        )
+    added = {CUT: pieces - n_lines} if pieces > n_lines else {}
+    return cut, {NONFINITE: len(rows), **added}
 
 
 def _floats(array: Any, keep_single: bool) -> npt.NDArray[Any]:
@@ -303,7 +358,7 @@ def with_values(source: Any, path: str | PathLike[str]) -> tuple[Streamlines, st
     elif hasattr(source, "decompress") and hasattr(source, "fiblet_points"):
         lines = source.decompress()
     else:
-        found = gather(source, keep_single=True)
+        found = _gather(source, "tubes", keep_single=True)
         if found.order is not None:
             raise TypeError(f"{path}: values of a file are for whole lines, and this source lists segments; read them")
         points, columns = found.points[found.ids], {k: v[found.ids] for k, v in found.point_data.items()}

@@ -8,8 +8,10 @@ import pyvista as pv
 
 import pvfiblets
 from pvfiblets.invalid_points import CUT, NONFINITE, valid_points
+from pvfiblets.lines import gather
 
 NAN, INF = np.nan, np.inf
+X = [0, 2, 3, 4, 6, 7, 13, 14]  # of the points that are left of `lines`
 
 
 @pytest.fixture
@@ -79,3 +81,35 @@ def test_scalars_of_plotters_follow(lines, nan):
         plotter.add_fiblets(lines, nan="error")
     assert lines.to_polydata().fiblets.compress(nan=nan).n_points == 8
     plotter.close()
+
+
+@pytest.mark.parametrize("add", ["add_spline_tubes", "add_halo_lines"])
+@pytest.mark.parametrize("source", ["streamlines", "polydata", "arrays"])
+def test_tubes_and_halos_are_cut_as_files_are(lines, add, source):
+    given = {"streamlines": lines, "polydata": lines.to_polydata(), "arrays": list(lines)}[source]
+    plotter = pv.Plotter(off_screen=True)
+    of_pieces = [0, 0, 10, 20, 30, 40]
+    for values, expected in ((np.arange(13.0), [0, 2, 3, 4, 6, 7, 11, 12]), (10.0 * np.arange(5.0), of_pieces)):
+        with pytest.warns(UserWarning, match=r"non-finite points: 5; streamlines added .*: 1\)"):
+            actor = getattr(plotter, add)(given, scalars=values)
+        if add == "add_spline_tubes":
+            drawn, stored = actor.tubes, {**actor.tubes.tube_values, **actor.tubes.values}["Data"]
+        else:
+            drawn = actor.lines
+            stored = drawn.values["Data"] if len(values) == 13 else actor.scalars
+        np.testing.assert_array_equal(getattr(drawn, "points", getattr(drawn, "positions", None))[:, 0], X)
+        np.testing.assert_array_equal(getattr(stored, "values", stored), expected)
+
+
+def test_cells_of_two_points_are_cut(lines):
+    points = np.c_[[0, 1, NAN, 3, 4, 5.0], np.zeros((6, 2))]
+    cells = np.c_[np.arange(5), np.arange(1, 6)]
+    mesh = pv.PolyData(points, lines=np.c_[np.full(5, 2), cells])
+    for given in (mesh, (points, cells)):
+        with pytest.warns(UserWarning, match="non-finite points: 1; streamlines added .*: 1"):
+            found = gather(given)
+        ends, tubes = found.segments()
+        np.testing.assert_array_equal(found.points[found.ids[ends], 0], [[0, 1], [3, 4], [4, 5]])
+        np.testing.assert_array_equal(tubes, [0, 3, 4] if given is mesh else [0, 1, 1])
+        assert np.isfinite(found.points).all()
+        assert found.n_rows == (5 if given is mesh else 1)

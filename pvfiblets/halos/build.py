@@ -79,13 +79,14 @@ def as_halo_lines(
     TypeError
         If there are no lines in such a source.
     ValueError
-        If there are no lines in a PolyData, an array has the wrong shape, a name is unknown, a coordinate is not
-        finite, or a colour is not in 0..1. The message names array, row and value. Numbers may be NaN.
+        If there are no lines in a PolyData, an array has the wrong shape, a name is unknown, or a colour is not in
+        0..1. The message names array, row and value. Numbers may be NaN.
 
     Notes
     -----
-    A point that several lines use becomes a point of each. Where cells of two points were joined to lines, their data
-    is that of segments: a point has the mean of the two that meet there.
+    A point with NaN or infinity ends its line: each piece is a line with the data of the whole, and a warning counts
+    them. A point that several lines use becomes a point of each. Where cells of two points were joined to lines, their
+    data is that of segments: a point has the mean of the two that meet there.
 
     Examples
     --------
@@ -173,6 +174,7 @@ class _Rows:
     n_lines: int | None = None
     line_data: Mapping[str, Array] = field(default_factory=dict)
     counts: Array | None = None
+    pieces: Lines | None = None
 
     def find(
         self, given: Any, what: str, unnamed: str, elsewhere: str = "", *, words: bool = False
@@ -196,7 +198,7 @@ class _Rows:
         if array.ndim and len(array) == self.n_points:
             return unnamed, array, False
         if array.ndim and len(array) == self.n_lines:
-            return unnamed, array, True
+            return unnamed, array if self.pieces is None else self.pieces.of_tubes(array), True
         known_rows = f"{self.n_points} points" + ("" if self.n_lines is None else f" or of {self.n_lines} lines")
         raise ValueError(f"{what} has the shape {array.shape}, expected a row for each of {known_rows}")
 
@@ -210,7 +212,7 @@ class _Lines:
 
     def __init__(self, source: Lines, kept: Mapping[str, Array]) -> None:
         self.source, self.kept = source, kept
-        self.rows = _Rows(len(source.points), source.point_data, source.n_tubes, source.line_data)
+        self.rows = _Rows(len(source.points), source.point_data, source.n_rows, source.line_data, pieces=source)
         n = len(source.ids)
         # Most sources list their points line by line: then nothing need be copied.
         self.in_order = n == len(source.points) and bool((source.ids == np.arange(n)).all())
@@ -234,7 +236,6 @@ class _Lines:
                 raise ValueError(_clash(name))
             _put(values, name, self._at_points(_numbers(array, name), per_line))
         points = self._in_order(self.source.points)
-        self._check(points)
         return LinesAndValues(HaloLines(points, self.source.offsets, {**self.kept, **values}), line_values)
 
     def _in_order(self, array: Array) -> Array:
@@ -255,15 +256,6 @@ class _Lines:
                 rows[:, column] += np.bincount(end, flat[cells, column], len(rows))
         rows /= uses[:, None]
         return rows.reshape(-1, *array.shape[1:]).astype(array.dtype if array.dtype.kind == "f" else np.float64)
-
-    def _check(self, points: Array) -> None:
-        finite = np.isfinite(points).all(axis=1)
-        if not finite.all():
-            row = int(np.argmin(finite))
-            where = f"{self.source.ids[row]} (line {self.source.line_of(row)})"
-            raise ValueError(
-                f"point {where} is {points[row].tolist()}; coordinates must be finite: leave it out, or split the line"
-            )
 
 
 def _points_of(source: Any) -> tuple[Array, _Rows, str]:

@@ -78,13 +78,14 @@ def as_spline_tubes(
     TypeError
         If nothing can be made of such a source, or SplineTubes come with anything else.
     ValueError
-        If there are no lines in a PolyData, an array has the wrong shape, a name is unknown, a position, radius or
-        derivative is not finite, or a radius is negative. The message names array, row, line and value.
+        If there are no lines in a PolyData, an array has the wrong shape, a name is unknown, a radius or derivative
+        is not finite, or a radius is negative. The message names array, row, line and value.
 
     Notes
     -----
     Based on Russig et al. 2020, section 3.1: nodes with values and derivatives, segments as pairs of nodes. A point
-    that stands twice in a row in a line is a sharp corner, as in the paper.
+    that stands twice in a row in a line is a sharp corner, as in the paper. A point with NaN or infinity ends its line:
+    each piece is a tube with the data of the whole, and a warning counts them.
 
     Arrays for lists of lines may be lists, too: one array for each line.
 
@@ -123,7 +124,6 @@ class _Builder:
     def __init__(self, lines: Lines, scaled: bool, method: str, own_nodes: bool) -> None:
         self.lines, self.scaled, self.method = lines, scaled, method
         self.places = lines.points[lines.ids]
-        self._check(self.places, "point", "finite coordinates in mm; leave it out, or split the line there")
         self.single = np.repeat(lines.counts, lines.counts) == 1
         # By parameter, a tangent would lead a one-point line's segment away from its point: it needs a node of its own.
         self.own_nodes = own_nodes or bool(self.single.any())
@@ -277,7 +277,7 @@ class _Builder:
     def _find(self, given: Any, what: str, words: bool = False) -> tuple[npt.NDArray[Any], bool]:
         """Return the array given, by itself or by name, and whether it has a row for each line, not each point."""
         lines = self.lines
-        n_points, n_lines = len(lines.points), lines.n_tubes
+        n_points, n_lines = len(lines.points), lines.n_rows
         if isinstance(given, str):
             if given in lines.point_data:
                 return flat(lines.point_data[given], f"{what} {given!r}", words=words), False
@@ -291,7 +291,7 @@ class _Builder:
         if array.ndim and len(array) == n_points:
             return array, False
         if array.ndim and len(array) == n_lines:
-            return array, True
+            return lines.of_tubes(array), True
         raise ValueError(
             f"{what} has the shape {array.shape}, expected a row for each of {n_points} points or of {n_lines} lines"
         )

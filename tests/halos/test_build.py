@@ -251,8 +251,6 @@ BROKEN[30, 1] = np.inf
          "'scalars'"),
         (Streamlines(POINTS, OFFSETS, None, {"scalars": LENGTH}), {"scalars": LENGTH, "filter_by": "scalars"},
          "both are called 'scalars'"),
-        (BROKEN, {}, "point 30 (line 0) is ["),
-        ([BROKEN[:25], BROKEN[25:]], {}, "point 30 (line 1) is"),
         (np.zeros((4, 2)), {}, "points have the shape (4, 2), expected (n, 3)"),
         ((POINTS, [[0, 40]]), {}, "segment 0 is [0, 40], but there are 40 points"),
         (pv.Sphere(), {}, "the PolyData has no lines but 1680 other cells"),

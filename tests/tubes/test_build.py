@@ -196,16 +196,9 @@ def test_the_radius_is_always_there_to_colour_by():
 NAMED = Streamlines(HELIX, [0, 25], {"size": T, "vectors": HELIX}, {"mean": [1.0]})
 
 
-def bad_points():
-    points = HELIX.copy()
-    points[7, 1] = np.nan
-    return [HELIX, points]
-
-
 @pytest.mark.parametrize(
     ("source", "options", "message"),
     [
-        (bad_points(), {}, "point 32 (line 1) is ["),
         (NAMED, {"radius": -1}, "radius 0 (line 0) is -1.0, expected finite numbers in mm, 0 or more"),
         ([HELIX, HELIX], {"radius": np.r_[np.ones(49), -2]}, "radius 49 (line 1) is -2.0"),
         (NAMED, {"radius": np.nan}, "radius 0 (line 0) is nan"),
