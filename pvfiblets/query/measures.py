@@ -18,7 +18,8 @@ Curvature is that of ``shaders/fiblets/attributes/turn.glsl``: a streamline's en
 without length turns nothing, and of fewer than three points it is 0. It carries the codec's error: a tenth of a step
 is a tenth of a radian per step.
 
-Values per point stand in the order in which points are coded, as float32. The names above come before stored arrays.
+Values per point stand in the order in which points are coded, as float32. Stored arrays come before the names above, as
+they do for colours.
 """
 
 from __future__ import annotations
@@ -187,14 +188,14 @@ def _measured(fiblets: FibletSet, what: str | Distance | npt.ArrayLike, original
         return _distance(fiblets, what)
     if not isinstance(what, str):
         return _own(fiblets, what)
+    rows = fiblets.per_streamline.get(what)
+    if original is None and rows is not None and _is_scalar(rows):
+        return Values("streamline", np.asarray(rows, np.float64).reshape(len(rows)), what)
+    if original is None and what in fiblets.per_point:
+        return Values("point", fiblets.per_point[what], what)
     for kind, units in COMPUTED.items():
         if what in units:
             return Values(kind, _computed(fiblets, what, original), what, units[what])
-    rows = fiblets.per_streamline.get(what)
-    if rows is not None and _is_scalar(rows):
-        return Values("streamline", np.asarray(rows, np.float64).reshape(len(rows)), what)
-    if what in fiblets.per_point:
-        return Values("point", fiblets.per_point[what], what)
     kept = f". Compression left it out: keep it by per_point=[{what!r}]" if _is_left_out(fiblets, what) else ""
     raise KeyError(f"there is no measure {what!r}; there are {', '.join(measure_names(fiblets))}{kept}")
 

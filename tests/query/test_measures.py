@@ -154,6 +154,15 @@ def test_stored_arrays_and_ones_own(whole: pf.FibletSet) -> None:
     assert measure_names(whole) == measure_names(whole, "streamline") + measure_names(whole, "point")
 
 
+def test_stored_arrays_come_before_measures_of_their_name() -> None:
+    given = {"curvature": np.array([1.0, 2.0, 3.0])}, {"length": np.array([7.0, 8.0])}
+    lines = Streamlines(np.eye(3), [0, 2, 3], *given)
+    made = pf.compress(lines, per_point=["curvature"])
+    assert measure(made, "length").array().tolist() == [7.0, 8.0]
+    assert measure(made, "curvature").range() == (1.0, 3.0)
+    assert measure(made, "curvature").unit == measure(made, "length").unit == ""
+
+
 def test_what_is_refused(whole: pf.FibletSet) -> None:
     for name in ("FA", "colour", "text"):
         with pytest.raises(KeyError, match=f"no measure '{name}'; there are length, n_points, .*curvature.*fa"):
