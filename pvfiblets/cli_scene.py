@@ -75,11 +75,13 @@ def options_of(words: Words, option: str) -> dict[str, Any]:
 
 
 def value_of(text: str) -> Any:
-    """Return what a word stands for: JSON, a list between commas, or itself."""
+    """Return what a word stands for: JSON, a number such as .5, a list between commas, or itself."""
     try:
         return json.loads(text)
     except ValueError:
         pass
+    if re.fullmatch(r"[+-]?(\d+\.\d*|\.\d+)([eE][+-]?\d+)?", text):
+        return float(text)
     if text in ("None", "True", "False"):
         return {"None": None, "True": True, "False": False}[text]
     return [value_of(part) for part in text.split(",")] if "," in text else text

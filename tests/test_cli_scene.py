@@ -13,6 +13,7 @@ from PIL import Image
 
 from pvfiblets import Streamlines, formats, regions
 from pvfiblets.cli import main
+from pvfiblets.cli_scene import value_of
 from pvfiblets.plotting.cut_surfaces import cut_surface
 from pvfiblets.plotting.viewpoints import point_camera
 from pvfiblets.synthetic import brain_streamlines
@@ -216,6 +217,11 @@ def test_a_line_of_two_points_passes_what_lies_between_them(shot, files):
     assert found.sum() > 0
     assert_same(shot("two.tck", "--include", "labels", f"path={files / 'between.nii'}", "labels=3"), found)
     assert shot("two.tck", "--include", "passes", *sphere, "sampling=points").sum() == 0
+
+
+def test_numbers_need_no_digit_on_both_sides_of_the_point():
+    assert value_of(".5,-.25,3.,+1.5,1e3") == [0.5, -0.25, 3.0, 1.5, 1000.0]
+    assert value_of("007,a.5") == ["007", "a.5"]
 
 
 def test_groups(shot, files, tmp_path):
