@@ -6,7 +6,7 @@ import csv
 import os
 import re
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -133,24 +133,28 @@ def _of_lines(path: Path, text: str) -> LabelTable:
     lines = [(n, line) for n, line in enumerate(text.splitlines(), 1) if line.strip() and line.lstrip()[0] != "#"]
     with_abbreviation = _have_abbreviations([line for _, line in lines])
     table, unread = LabelTable(), []
+    colours: dict[int, Sequence[str]] = {}
+    opacities: dict[int, float] = {}
     for number, line in lines:
         if found := _ITKSNAP.match(line):
             label, name, colour = int(found[1]), found[8], found.group(2, 3, 4)
-            opacity = float(found[5]) if found[6] == "1" else 0.0
+            opacities[label] = 255.0 * float(found[5]) if found[6] == "1" else 0.0
         elif with_abbreviation and (found := _MRTRIX.match(line)):
             label, name, colour = int(found[1]), found[3].strip("\"'"), found.group(4, 5, 6)
-            opacity = float(found[7]) / (1.0 if _is_share(found.group(4, 5, 6, 7)) else 255.0)
+            opacities[label] = float(found[7]) * (255.0 if _are_shares([found.group(4, 5, 6, 7)]) else 1.0)
         elif found := _FREESURFER.match(line):
             # Its last column is 255 less the opacity in some versions and 0 for opaque in all that are used.
             label, name, colour = int(found[1]), found[2], found.group(3, 4, 5)
-            opacity = 1.0
+            opacities[label] = 255.0
         else:
             unread.append(number)
             continue
-        table.names[label] = name
-        full = 255.0 if _is_share(colour) else 1.0
-        red, green, blue = (float(part) * full for part in colour)
-        table.colours[label] = _bytes(red, green, blue, 255.0 * opacity)
+        table.names[label], colours[label] = name, colour
+    all_shares = _are_shares(colours.values())  # a row such as 1 0 0 does not say so itself
+    for label, parts in colours.items():
+        full = 255.0 if all_shares or _are_shares([parts]) else 1.0
+        red, green, blue = (float(part) * full for part in parts)
+        table.colours[label] = _bytes(red, green, blue, opacities[label])
     if unread and table.names:
         which = ", ".join(map(str, unread[:5])) + (f" and {len(unread) - 5} more" if len(unread) > 5 else "")
         first = text.splitlines()[unread[0] - 1].strip()
@@ -169,9 +173,10 @@ def _have_abbreviations(lines: list[str]) -> bool:
     return opaque and 2 * len(found) > len(lines) and sum(len(m[2]) - len(m[3]) for m in found) < 0
 
 
-def _is_share(colour: Sequence[str]) -> bool:
-    """Return True for fractions of 1, not numbers up to 255."""
-    return any("." in part for part in colour) and all(float(part) <= 1.0 for part in colour)
+def _are_shares(colours: Iterable[Sequence[str]]) -> bool:
+    """Return True for colours in fractions of 1, not numbers up to 255."""
+    parts = [part for colour in colours for part in colour]
+    return any("." in part for part in parts) and all(float(part) <= 1.0 for part in parts)
 
 
 def _bytes(*parts: float) -> tuple[int, int, int, int]:

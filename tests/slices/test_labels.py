@@ -39,6 +39,8 @@ def test_fractions_are_colours_and_other_lines_are_named(tmp_path):
     with pytest.warns(UserWarning, match=r"lut.txt: left out line 4, which names no label: '3 V3 red'"):
         table = as_label_table(tmp_path / "lut.txt")
     assert table.colours == {1: (128, 64, 255, 255), 2: (128, 20, 3, 255), 4: (1, 0, 255, 255)}
+    (tmp_path / "lut.txt").write_text("1 V1 0.5 0.25 1.0 0\n2 V2 1 0 0 0\n")
+    assert as_label_table(tmp_path / "lut.txt").colours == {1: (128, 64, 255, 255), 2: (255, 0, 0, 255)}
 
 
 def test_a_description_of_itk_snap(tmp_path):
