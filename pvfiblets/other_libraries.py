@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from pvfiblets.ragged import offsets_from_counts
 from pvfiblets.streamlines import Streamlines
+from pvfiblets.vtk_space import Space, space_of_dataset, to_ras
 
 __all__ = ["EXPECTED", "lines_of_grid", "streamlines_of"]
 
@@ -166,15 +167,19 @@ def _of_vtk(source: Any) -> Streamlines:
     )
 
 
-def _of_blocks(blocks: Any) -> Streamlines:
+def _of_blocks(blocks: Any, space: Space | None = None) -> Streamlines:
     """From the blocks of a MultiBlock: their names are groups; arrays that some of them lack are dropped."""
     import pyvista as pv
 
+    space = space_of_dataset(blocks) or space  # of blocks that name none
     parts: list[Streamlines] = []
     taken = {blocks.get_block_name(i) for i in range(len(blocks))}
     for i, block in enumerate(blocks):
         if isinstance(block, pv.MultiBlock) or (block is not None and block.n_points):
-            part, name = _of_vtk(block), blocks.get_block_name(i) or f"block {i}"
+            name = blocks.get_block_name(i) or f"block {i}"
+            part = _of_blocks(block, space) if isinstance(block, pv.MultiBlock) else _of_vtk(block)
+            if not isinstance(block, pv.MultiBlock) and space_of_dataset(block) is None:
+                part.points = to_ras(part.points, space)
             if isinstance(block, pv.MultiBlock):  # whose blocks may be called as others are
                 part.groups = {f"{name}/{g}" if g in taken else g: ids for g, ids in part.groups.items()}
                 taken |= part.groups.keys()

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from pvfiblets.lines import Lines, are_words, flat, gather, joined, numbers_or_colours, refuse_words
 from pvfiblets.streamlines import Streamlines
+from pvfiblets.vtk_space import space_of_dataset, to_ras
 
 from .geometry import HaloLines, HaloPoints
 
@@ -292,6 +293,7 @@ def _points_of_vtk(mesh: Any) -> tuple[Array, _Rows, str]:
     held = mesh.GetPoints()
     # A copy: VTK may move its own memory at any time.
     points = np.zeros((0, 3), np.float32) if held is None else np.array(vtk_to_numpy(held.GetData()))
+    points = to_ras(points, space_of_dataset(mesh))
     attributes = mesh.GetPointData()
     arrays = [attributes.GetArray(i) for i in range(attributes.GetNumberOfArrays())]  # None for text
     data = {a.GetName(): np.array(vtk_to_numpy(a)) for a in arrays if a is not None and a.GetName()}

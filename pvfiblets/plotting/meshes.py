@@ -43,13 +43,25 @@ def read_mesh(path: str | PathLike[str]) -> Any:
     mesh = pv.read(place)
     if isinstance(mesh, pv.DataSet) and not mesh.n_points:
         raise ValueError(f"{path} holds no points: there is nothing to draw; check what wrote it")
-    if isinstance(mesh, (pv.PolyData, pv.UnstructuredGrid, pv.StructuredGrid)) and space_of_file(place, mesh) == "LPS":
+    return _in_ras(mesh, space_of_file(place, mesh))
+
+
+def _in_ras(mesh: Any, space: Space | None) -> Any:
+    """Return a mesh in RAS+; the blocks of a MultiBlock are in its space unless they name another."""
+    if isinstance(mesh, pv.MultiBlock):
+        for i, block in enumerate(mesh):
+            if block is not None:
+                mesh.replace(i, _in_ras(block, space_of_dataset(block) or space))
+    elif isinstance(mesh, (pv.PolyData, pv.UnstructuredGrid, pv.StructuredGrid)) and space == "LPS":
         mesh = mesh.transform([[-1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]], inplace=False)
+    else:
+        return mesh
+    if space is not None:
         mesh.field_data[FIELD] = [OURS]
     return mesh
 
 
-def space_of_file(path: str | PathLike[str], mesh: pv.DataSet) -> Space | None:
+def space_of_file(path: str | PathLike[str], mesh: Any) -> Space | None:
     """Return the space that a file names for its points, in its header or in the mesh's field data; None if none."""
     return space_in_header(_header(Path(path)), str(path)) or space_of_dataset(mesh)
 

@@ -9,6 +9,7 @@ import numpy as np
 import pyvista as pv
 
 from pvfiblets.query.image_samples import three_axes
+from pvfiblets.vtk_space import space_of_dataset, to_ras
 
 if TYPE_CHECKING:
     from pvfiblets.regions import Region
@@ -102,7 +103,7 @@ def _surface(mesh: pv.PolyData) -> Region:
         )
     triangles = mesh if mesh.is_all_triangles else mesh.triangulate()
     faces = np.asarray(triangles.regular_faces, np.int64)
-    return regions.Surface(np.asarray(mesh.points, np.float64), faces)
+    return regions.Surface(to_ras(np.asarray(mesh.points, np.float64), space_of_dataset(mesh)), faces)
 
 
 def _image_labels(image: pv.ImageData) -> Region:

@@ -302,3 +302,11 @@ def test_importing_the_room_imports_no_vtk():
         "assert not {'vtkmodules', 'pyvista', 'moderngl'} & set(sys.modules)"
     )
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_lines_and_points_of_a_dataset_are_in_the_space_that_it_names():
+    mesh = pv.Line((-1, -2, 3), (-4, -5, 6))
+    mesh.field_data["SPACE"] = ["LPS"]
+    right = [[1, 2, 3], [4, 5, 6]]
+    np.testing.assert_array_equal(as_halo_points(mesh).points, right)
+    np.testing.assert_array_equal(as_halo_lines(mesh).lines.points, right)

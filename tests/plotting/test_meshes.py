@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 import pyvista as pv
 
+from pvfiblets.other_libraries import streamlines_of
 from pvfiblets.plotting.meshes import read_mesh
+from pvfiblets.plotting.region_sources import as_region
 
 RIGHT, FRONT = 30.0, 20.0
 
@@ -54,6 +56,25 @@ def test_meshes_that_slicer_saved(name, space, ball, tmp_path):
     surface = found.extract_surface(algorithm=None).compute_normals(cell_normals=True)
     outwards = surface.cell_centers().points - np.array(found.center)
     assert (np.einsum("ij,ij->i", outwards, surface["Normals"]) > 0).all()
+
+
+@pytest.mark.parametrize("named_by", ["block", "whole"])
+def test_blocks_are_where_they_or_the_whole_say(named_by, ball, tmp_path):
+    lines = pv.Line(ball.center, ball.center)
+    blocks = pv.MultiBlock([ball.copy(), None, pv.MultiBlock([lines])])
+    for one in [blocks] if named_by == "whole" else [blocks[0], blocks[2][0]]:
+        one.field_data["SPACE"] = ["LPS"]
+    np.testing.assert_allclose(streamlines_of(blocks).points, 2 * [[30, 20, 0]], atol=1e-4)
+    blocks.save(tmp_path / "blocks.vtm")
+    found = read_mesh(tmp_path / "blocks.vtm")
+    for mesh in (found[0], found[2][0]):
+        np.testing.assert_allclose(mesh.center, (30, 20, 0), atol=1e-4)
+    np.testing.assert_allclose(streamlines_of(found).points, 2 * [[30, 20, 0]], atol=1e-4)
+
+
+def test_a_region_is_where_the_mesh_says(ball):
+    ball.field_data["SPACE"] = ["LPS"]
+    np.testing.assert_allclose(as_region(ball).points.mean(axis=0), (30, 20, 0), atol=0.5)
 
 
 def test_a_file_without_points_is_told(tmp_path):
