@@ -42,6 +42,7 @@ SIZES = {"value": 1, "pair": 2}
 """What ``pytest.mark.every`` may say, and of how many parameters it speaks."""
 
 LONGEST = (
+    "query/test_passing.py", "query/test_measures.py", "engine/test_ray_intervals.py",
     "docs/test_snippets.py", "tests/test_examples.py", "web/test_browser_layout.py", "web/test_browser_slices.py",
     "web/test_browser.py", "web/test_browser_connection.py", "left_out/test_left_out.py",
     "plotting/test_everything_at_once.py", "web/test_browser_tools.py", "engine/test_two_phase.py",
