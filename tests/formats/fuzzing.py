@@ -192,7 +192,9 @@ def _one(read: Callable[[Path], None], reader: str, target: Path, outcomes: dict
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")
-            warnings.filterwarnings("ignore", message=r".*(which is believed|is taken, by the voxel-to-RAS)")
+            warnings.filterwarnings(
+                "ignore", message=r"(?s).*(which is believed|is taken, by the voxel-to-RAS|left out line [\d, ]+)"
+            )
             read(target)
     except _expected_of(reader) as error:
         outcomes["refused" if _is_told(error, target) else "untold"] += 1

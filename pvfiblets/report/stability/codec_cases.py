@@ -165,15 +165,25 @@ def _same(_: Setting) -> Outcome:
     return worst(found)
 
 
-@CASES.add("coordinates that are none", "NaN and infinity in one point of many", "an error that names the point")
+@CASES.add("coordinates that are none", "NaN and infinity in one point of many", "the line is cut there, or an error")
 def _not_finite(_: Setting) -> Outcome:
-    def broken(value: float) -> Streamlines:
-        points = np.array(tracking(2).points)
-        points[77, 1] = value
-        return Streamlines(points, tracking(2).offsets)
+    whole = tracking(2)
+    first = int(whole.offsets[np.searchsorted(whole.offsets, 77, "right") - 1])
 
-    makers = [lambda value=value: compress(broken(value)) for value in (np.nan, np.inf, -np.inf)]
-    return refused(ValueError, r"^point 77 is .*finite coordinates in mm are needed", *makers)
+    def broken(value: float) -> Streamlines:
+        points = np.array(whole.points)
+        points[77, 1] = value
+        return Streamlines(points, whole.offsets)
+
+    values = (np.nan, np.inf, -np.inf)
+    wrong = 0
+    for value in values:
+        found = compress(broken(value)).decompress()
+        cut = list(np.diff(found.offsets)).count(77 - first)
+        wrong += not (len(found) == len(whole) + 1 and len(found.points) == len(whole.points) - 1 and cut)
+    makers = [lambda value=value: compress(broken(value), nan="error") for value in values]
+    refusals = refused(ValueError, r"^point 77 is .*finite coordinates in mm are needed", *makers)
+    return worst([Outcome(float(wrong), 0.0, refusals.unit, refusals.note), refusals])
 
 
 @CASES.add("coordinates beyond float32", "coordinates of 1e36 mm", "an error that names the coordinate and the limit")
