@@ -1,6 +1,6 @@
 """Fixtures and rules that every room's tests share.
 
-Four rules live here:
+Rules that live here:
 
 * Real data is found, never copied: the ``shared_data`` fixture.
 * A test that leaves an OpenGL error behind, or starts with one, fails: the ``gl`` fixture.
@@ -9,6 +9,7 @@ Four rules live here:
 * ``make test`` takes minutes: tests that open a browser or are marked ``more``, and most parameters of those marked
   ``few``, run by ``make test-more``; tests marked ``exhaustive``, and what a product of parameters marked ``every`` has
   besides every value or pair, by ``make test-all`` only.
+* A test that fails says how to run it alone, and where the pictures are that it had drawn.
 """
 
 from __future__ import annotations
@@ -16,15 +17,22 @@ from __future__ import annotations
 import ctypes
 import gc
 import os
+import re
+import sys
 from collections import defaultdict
 from itertools import combinations
 from pathlib import Path
 
 import hypothesis
+import numpy as np
 import pytest
+from PIL import Image
 
 from pvfiblets.codec import parameters as limits
 from tests.debug_log import DebugLog
+
+FAILED = Path(".failed")
+"""The folder for pictures of tests that failed."""
 
 USUAL_LIMITS = {name: getattr(limits, name) for name in ("EXACT_BELOW", "EXACT_UP_TO")}
 
@@ -186,8 +194,6 @@ def older_opengl(_headless):
 def _no_plotter_left_open():
     """Close what a failing test leaves open, so that it cannot spoil the next one."""
     yield
-    import sys
-
     if (pyvista := sys.modules.get("pyvista")) is not None and hasattr(pyvista, "close_all"):
         pyvista.close_all()
 
@@ -233,6 +239,42 @@ def thin(items):
         for row, item in enumerate(rest):
             if row not in taken:
                 item.add_marker(pytest.mark.more)
+
+
+def drawn_pictures(traceback) -> dict[str, np.ndarray]:
+    """Return the pictures that a failed test had in its hands, by variable: of 0 to 255, or floats of 0 to 1."""
+    found = {}
+    for entry in traceback:
+        if not str(entry.path).startswith(str(Path(__file__).parent)):
+            continue
+        for name, value in entry.frame.f_locals.items():
+            if not (isinstance(value, np.ndarray) and value.ndim == 3 and value.shape[2] in (3, 4)):
+                continue
+            if min(value.shape[:2]) >= 8 and value.dtype.kind in "uf":
+                levels = np.nan_to_num(value)
+                scale = 255 if value.dtype.kind == "f" and levels.max() <= 1 else 1
+                found[name] = np.clip(levels * scale, 0, 255).astype(np.uint8)
+    if len(found) == 2:
+        one, other = found.values()
+        if one.shape == other.shape:
+            found["difference"] = np.abs(one[..., :3].astype(int) - other[..., :3]).astype(np.uint8)
+    return found
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item, call):
+    """Say how to run a failed test alone, and where its pictures are."""
+    report = yield
+    if report.failed:
+        compiled = f"GALLIVM_PERF={level} " if (level := os.environ.get("GALLIVM_PERF")) else ""
+        said = [f"{compiled}{sys.executable} -m pytest -m '' '{item.nodeid}'"]
+        folder = FAILED / re.sub(r"[^\w.-]+", "_", item.nodeid)[-150:]
+        for name, picture in drawn_pictures(call.excinfo.traceback).items():
+            folder.mkdir(parents=True, exist_ok=True)
+            Image.fromarray(picture).save(folder / f"{name}.png")
+            said.append(f"picture {name!r}: {folder.absolute() / name}.png")
+        report.sections.append(("to run it alone, and what it had drawn", "\n".join(said)))
+    return report
 
 
 class _SkipRule:

@@ -10,7 +10,9 @@ import sys
 from itertools import combinations
 from pathlib import Path
 
+import numpy as np
 import pytest
+from PIL import Image
 
 from tests.conftest import NO_FIREFOX
 from tests.web.firefox import launched_firefox
@@ -38,6 +40,17 @@ def test_a_check_cannot_vanish_on_ci(tmp_path, body, on_ci, passes):
     command = [sys.executable, "-m", "pytest", "-q", "--rootdir", str(tmp_path), str(tmp_path)]
     done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment, cwd=tmp_path)
     assert (done.returncode == 0) is passes, done.stdout
+
+
+def test_a_failure_says_how_to_run_it_and_where_its_pictures_are(tmp_path):
+    shutil.copy(CONFTEST, tmp_path / "conftest.py")
+    body = "import numpy\ndef test_a(): drawn = numpy.full((9, 8, 3), 7, 'uint8'); assert not drawn.any()\n"
+    (tmp_path / "test_it.py").write_text(body)
+    command = [sys.executable, "-m", "pytest", "-q", "--rootdir", str(tmp_path), "test_it.py"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=tmp_path)
+    assert "-m pytest -m '' 'test_it.py::test_a'" in done.stdout
+    (picture,) = (Path(line.split(": ")[1]) for line in done.stdout.splitlines() if line.startswith("picture 'drawn'"))
+    assert (np.asarray(Image.open(picture)) == 7).all()
 
 
 @pytest.mark.more
