@@ -17,6 +17,7 @@ composed source with its line numbers.
 
 from __future__ import annotations
 
+import logging
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -27,6 +28,8 @@ from typing import Any
 
 import moderngl
 
+from .. import __version__
+from ..cache_folder import is_first_time
 from ..codec import layout
 from .bindings import BLOCKS, CONSTANTS
 from .errors import EngineError
@@ -34,6 +37,8 @@ from .gl_version import version_of
 from .uniform_struct import find_struct
 
 __all__ = ["EXTENDED", "FEATURES", "NEWEST", "Programs", "assemble", "read_shader", "switched_on"]
+
+logger = logging.getLogger("pvfiblets.engine")
 
 FEATURES: dict[str, str] = {
     "ANCHORS_LOW": "anchors of 32 bits per axis",
@@ -281,6 +286,13 @@ def switched_on(*sources: str) -> frozenset[str]:
     return frozenset(feature for source in sources for feature in _SWITCHED_ON.findall(source))
 
 
+@cache
+def tell_of_compiling(renderer: str, version: str) -> None:
+    """Say why a first picture on this machine takes some seconds: drivers keep what they have compiled."""
+    if is_first_time(f"shaders of {__version__} {renderer} {version}"):
+        logger.warning("compiling shaders for %s: once per machine, some seconds", renderer)
+
+
 class Programs:
     """Programs of one context, built when first asked for and kept.
 
@@ -294,6 +306,7 @@ class Programs:
     """
 
     def __init__(self, ctx: moderngl.Context, constants: Mapping[str, object]) -> None:
+        tell_of_compiling(ctx.info["GL_RENDERER"], ctx.info["GL_VERSION"])
         self._ctx = ctx
         self._constants = dict(constants)
         self._programs: dict[str, moderngl.ComputeShader] = {}

@@ -13,7 +13,7 @@ import pytest
 from pvfiblets.engine import EngineError
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS as OF_PIPELINES
 from pvfiblets.engine.halos.uniform_blocks import CONSTANTS as OF_HALOS
-from pvfiblets.engine.shaders import FEATURES, Programs, assemble
+from pvfiblets.engine.shaders import FEATURES, Programs, assemble, tell_of_compiling
 
 ROOT = Path(__file__).resolve().parents[2]
 SOURCES = sorted(p for p in (ROOT / "shaders").rglob("*") if p.is_file() and "resolve" not in p.parts)
@@ -116,3 +116,13 @@ def test_storage_buffers_are_no_more_than_opengl_promises(gl, name, value):
     blocks = [m for m in (program[name] for name in program) if type(m).__name__ == "StorageBlock"]
     program.release()
     assert len(blocks) <= 8
+
+
+def test_the_first_shaders_of_a_machine_are_told_of_once(tmp_path, monkeypatch, caplog):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    for _ in range(2):
+        tell_of_compiling.cache_clear()  # as a new process
+        tell_of_compiling("llvmpipe", "4.5")
+    assert [record.message for record in caplog.records] == [
+        "compiling shaders for llvmpipe: once per machine, some seconds"
+    ]
