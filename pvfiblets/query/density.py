@@ -22,6 +22,7 @@ there are never more than about 150 MB. Threads own voxels: sums are the same, b
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cache
 from typing import Any, Literal
 
@@ -165,14 +166,8 @@ class _Sums:
         self._lines += n_lines
 
     def _cut(self, part: Part, u: Any, line: Any, lengths: Any) -> None:
-        kernels, shape = self._kernels, self._grid.shape
-        counts = np.empty(len(u), np.int64)
-        kernels.count_pieces(u, line, shape, counts)
-        starts = np.concatenate([[0], np.cumsum(counts)])
-        for a, b in blocks(starts, PIECES):
-            n = int(starts[b] - starts[a])
-            voxel, item, share, middle = np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n), np.empty(n)
-            self._within += kernels.cut(u, line, lengths, shape, starts, a, b, voxel, item, share, middle)
+        for within, n, voxel, item, share, middle in _pieces(self._grid, u, line, lengths):
+            self._within += within
             self._add_up(n, voxel, item, share, middle, part, line, lengths)
 
     def _add_up(
@@ -204,6 +199,53 @@ class _Sums:
         return volume if self._what == kernels.DIRECTION else volume[..., 0]
 
 
+class Visits:
+    """How many voxels of a grid each of some bundles visits.
+
+    Parameters
+    ----------
+    grid : VoxelGrid
+    n_bundles : int
+    """
+
+    def __init__(self, grid: VoxelGrid, n_bundles: int) -> None:
+        _check_memory(grid, 4 * grid.n_voxels)
+        self._grid = grid
+        self._visitor = np.zeros(grid.n_voxels, np.int32)
+        self.counts = np.zeros(n_bundles, np.int64)
+        _compile(self._visitor.dtype)
+
+    def add(self, points: npt.NDArray[np.floating[Any]], line: Any, owner: Any) -> None:
+        """Add points, ``(n, 3)`` mm: ``line`` is the streamline of each, ``owner`` its bundle, which never falls.
+
+        Points that are not finite end a line.
+        """
+        from . import density_kernels as kernels
+
+        known = np.isfinite(points).all(axis=1)
+        if not known.all():
+            points, line, owner = points[known], (line + np.cumsum(~known))[known], owner[known]
+        points = np.ascontiguousarray(points, np.float64)
+        u, lengths = np.empty((len(points), 3)), np.empty(len(points))
+        kernels.place(points, line, self._grid.corner, self._grid.linear, u, lengths)
+        for _, n, voxel, item, _, _ in _pieces(self._grid, u, line, lengths):
+            kernels.count_visits(n, voxel, item, owner, self._visitor, self.counts)
+
+
+def _pieces(grid: VoxelGrid, u: Any, line: Any, lengths: Any) -> Iterator[tuple[float, int, Any, Any, Any, Any]]:
+    """Cut segments at the faces of voxels: mm within the grid, how many pieces, and what they are, block by block."""
+    from . import density_kernels as kernels
+
+    counts = np.empty(len(u), np.int64)
+    kernels.count_pieces(u, line, grid.shape, counts)
+    starts = np.concatenate([[0], np.cumsum(counts)])
+    for a, b in blocks(starts, PIECES):
+        n = int(starts[b] - starts[a])
+        voxel, item, share, middle = np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n), np.empty(n)
+        within = kernels.cut(u, line, lengths, grid.shape, starts, a, b, voxel, item, share, middle)
+        yield within, n, voxel, item, share, middle
+
+
 def _tiles() -> int:
     """Power of two, of as many threads as there are or a little more."""
     import numba
@@ -233,6 +275,7 @@ def _compile(marks: np.dtype[Any]) -> None:
     kernels.count_pieces(np.empty((0, 3)), whole, grid, whole)
     kernels.cut(np.empty((0, 3)), whole, lone, grid, np.zeros(1, np.int64), 0, 0, whole, whole, lone, lone)
     kernels.cut_ends(np.empty((0, 3)), np.zeros(1, np.int64), grid, whole, whole, lone, lone)
+    kernels.count_visits(0, whole, whole, whole, np.empty(0, marks), whole)
     kernels.add_up(
         kernels.COUNT, True, 1, 0, whole, whole, lone, lone, np.empty((0, 3)), whole, lone, lone, lone, False, 0,
         np.empty(0, marks), np.empty((1, 0)),

@@ -16,7 +16,9 @@ import numpy as np
 from ..codec.jit import kernel, parallel_kernel
 from .voxel_walk_kernels import clip, end_voxels, faces, voxel_along, within
 
-__all__ = ["AMOUNT", "COUNT", "DIRECTION", "VALUE", "add_up", "count_pieces", "cut", "cut_ends", "place"]
+__all__ = [
+    "AMOUNT", "COUNT", "DIRECTION", "VALUE", "add_up", "count_pieces", "count_visits", "cut", "cut_ends", "place",
+]  # fmt: skip
 
 BLOCK = 2048  # items that a thread takes together
 TILE_BITS = 10  # voxels of a tile belong to one thread
@@ -225,3 +227,16 @@ def add_up(
                 if math.isfinite(value):
                     sums[0, v] += amount * value
                     sums[1, v] += amount
+
+
+@kernel
+def count_visits(n: int, voxel: Any, item: Any, owner: Any, visitor: Any, counts: Any) -> None:
+    """Add to ``counts`` the voxels that each owner visits; ``owner`` (of each item) never falls from call to call.
+
+    ``visitor`` (n_voxels,) says who visited a voxel last, from 1 on.
+    """
+    for r in range(n):
+        v = voxel[r]
+        if v >= 0 and visitor[v] != owner[item[r]] + 1:
+            visitor[v] = owner[item[r]] + 1
+            counts[owner[item[r]]] += 1

@@ -8,6 +8,7 @@ import math
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from io import TextIOWrapper
 from os import PathLike
 from pathlib import Path
@@ -23,7 +24,7 @@ from .measures import CHUNK, mean_curvatures
 if TYPE_CHECKING:
     from ..codec.fibletset import FibletSet
 
-__all__ = ["Table", "check_parquet", "table"]
+__all__ = ["Table", "check_parquet", "table", "without_groups"]
 
 PARQUET = (".parquet", ".pq")
 _SHOWN = 10  # rows in a notebook
@@ -153,7 +154,8 @@ def table(data: FibletSet | Streamlines, ids: npt.ArrayLike | slice | None = Non
         chosen = select_streamlines(len(data), ids)
         numbers = chosen[np.sort(np.unique(chosen, return_index=True)[1])]
         data = data[numbers]
-    parts = [_measured(chunk) for chunk in _chunks(data)] or [_measured(_decoded(data))]
+    bare = without_groups(data)
+    parts = [_measured(chunk) for chunk in _chunks(bare)] or [_measured(_decoded(bare))]
     found = Table(streamline=numbers, **{name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
     if data.groups:
         found["groups"] = _groups(data)
@@ -161,6 +163,15 @@ def table(data: FibletSet | Streamlines, ids: npt.ArrayLike | slice | None = Non
         found |= _columns(name, np.asarray(rows).reshape(len(data), *_width(rows)))
     along = [name for name in found if name.startswith(_MEAN) and name != "mean_curvature"]
     return Table(found | {name: found.pop(name) for name in along})
+
+
+def without_groups(data: FibletSet | Streamlines) -> Any:
+    """Return the same streamlines in no groups, of which every part would look through all."""
+    if not isinstance(data, Streamlines):
+        return replace(data, groups={}, per_group={})
+    return Streamlines(
+        data.points, data.offsets, data.per_point, data.per_streamline, affine=data.affine, space=data.space
+    )
 
 
 def _decoded(data: FibletSet | Streamlines) -> Streamlines:

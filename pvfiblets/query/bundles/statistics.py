@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
+from ...ragged import blocks, offsets_from_counts
 from ...streamlines import Streamlines
-from ..table import Table
-from ..voxel_grid import grid_like
+from ..density_sources import as_source
+from ..table import Table, without_groups
+from ..voxel_grid import grid_about, grid_like
 from .bundle_list import Bundles
 from .sampling import as_image
 
@@ -60,7 +62,7 @@ def bundle_table(
     TypeError, ValueError
         If an image or a voxel's size is none.
     """
-    from ..density import density
+    from ..density import Visits
 
     known = {name: as_image(image) for name, image in (images or {}).items()}
     for name, image in known.items():
@@ -72,45 +74,43 @@ def bundle_table(
         chosen = {name: bundles._members(ids) for name, ids in groups.items()}  # noqa: SLF001 - of the same room
     size = VOXEL if voxel_size is None and like is None else voxel_size
     cell = float(size) ** 3 if size is not None else float(abs(np.linalg.det(grid_like(like).affine[:3, :3])))
-    rows = []
-    for name, ids in chosen.items():
-        part = data[ids]
-        lengths = part.lengths() if len(ids) else np.zeros(0)
-        voxels = 0
-        if part.n_points:
-            voxels = int(np.count_nonzero(density(part, size, like=like).values))
-        row: dict[str, Any] = {"bundle": name, "count": len(ids), "points": part.n_points}
-        row |= {f"length_{key}": value for key, value in _summary(lengths).items()}
-        row |= {"length_total": float(lengths.sum()), "volume_voxels": voxels, "volume_mm3": voxels * cell}
-        sums: dict[str, _Sums] = {}
-        for chunk in _chunks(part):
-            for key, image in known.items():
-                assert image is not None
-                sums.setdefault(key, _Sums()).add(image.at(chunk.points))
-            for key, values in chunk.per_point.items():
-                if _single(values):
-                    sums.setdefault(key, _Sums()).add(np.asarray(values, np.float64).ravel())
-        for key, values in part.per_streamline.items():
-            if _single(values):
-                sums.setdefault(key, _Sums()).add(np.asarray(values, np.float64).ravel())
-        for key, found in sums.items():
-            row[f"mean_{key}"], row[f"std_{key}"] = found.mean, found.std
-        rows.append(row)
-    names = list(dict.fromkeys(key for row in rows for key in row)) or ["bundle", "count"]
-    return Table({name: np.array([row.get(name, np.nan) for row in rows]) for name in names})
-
-
-def _summary(values: npt.NDArray[np.float64]) -> dict[str, float]:
-    some = values if len(values) else np.full(1, np.nan)
-    return {"mean": float(some.mean()), "std": float(some.std()), "min": float(some.min()), "max": float(some.max())}
-
-
-def _chunks(part: FibletSet | Streamlines) -> Iterator[Streamlines]:
-    if isinstance(part, Streamlines):
-        for start, stop in part.blocks(CHUNK):
-            yield part[start:stop]
-    else:
-        yield from part.iter_chunks(CHUNK)
+    ids = np.concatenate([*chosen.values(), np.zeros(0, np.int64)])
+    counts = np.array([len(one) for one in chosen.values()], np.int64)
+    bundle = np.repeat(np.arange(len(counts)), counts)
+    bare = without_groups(data)
+    grid = grid_like(like) if like is not None else grid_about(*as_source(bare, None, None).box(False), size)
+    visits = Visits(grid, len(counts))
+    points, lengths = np.zeros(len(counts), np.int64), np.zeros(len(ids))
+    sums: dict[str, _Sums] = {}
+    sizes = np.asarray((data.counts if isinstance(data, Streamlines) else np.diff(data.offsets()))[ids])
+    for a, b in blocks(offsets_from_counts(sizes), CHUNK):
+        part = bare[ids[a:b]] if isinstance(bare, Streamlines) else bare.decompress(ids[a:b], dtype=np.float64)
+        lengths[a:b] = part.lengths()
+        line = np.repeat(np.arange(b - a), part.counts)
+        owner = bundle[a:b][line]
+        points += np.bincount(owner, minlength=len(counts))
+        visits.add(part.points, line, owner)
+        values = {key: image.at(part.points) for key, image in known.items() if image is not None}
+        for key, column in (values | part.per_point).items():
+            if _single(column):
+                sums.setdefault(key, _Sums(len(counts))).add(column, owner)
+    for key, column in data.per_streamline.items():
+        if _single(column):
+            sums.setdefault(key, _Sums(len(counts))).add(np.asarray(column)[ids], bundle)
+    found = Table(bundle=np.array(list(chosen), dtype=str), count=counts, points=points)
+    of_lengths = _Sums(len(counts))
+    of_lengths.add(lengths, bundle)
+    found |= {"length_mean": of_lengths.mean, "length_std": of_lengths.std}
+    for key, extreme, beyond in (("min", np.minimum, np.inf), ("max", np.maximum, -np.inf)):
+        rows = np.full(len(counts), beyond)
+        with np.errstate(invalid="ignore"):  # the length of a line with a point that is none
+            extreme.at(rows, bundle, lengths)
+        found[f"length_{key}"] = np.where(counts > 0, rows, np.nan)
+    found["length_total"] = np.bincount(bundle, lengths, minlength=len(counts))
+    found |= {"volume_voxels": visits.counts, "volume_mm3": visits.counts * cell}
+    for key, one in sums.items():
+        found |= {f"mean_{key}": one.mean, f"std_{key}": one.std}
+    return found
 
 
 def _single(rows: Any) -> bool:
@@ -118,25 +118,28 @@ def _single(rows: Any) -> bool:
 
 
 class _Sums:
-    """Mean and spread of numbers that come in parts (Chan, Golub and LeVeque 1983)."""
+    """Mean and spread of each bundle's numbers, which come in parts (Chan, Golub and LeVeque 1983)."""
 
-    def __init__(self) -> None:
-        self._n, self._mean, self._squares = 0, 0.0, 0.0
+    def __init__(self, n_bundles: int) -> None:
+        self._n, self._mean, self._squares = np.zeros(n_bundles), np.zeros(n_bundles), np.zeros(n_bundles)
 
-    def add(self, values: npt.NDArray[np.float64]) -> None:
-        known = values[np.isfinite(values)]
-        if not len(known):
-            return
-        n, mean = len(known), float(known.mean())
-        apart, total = mean - self._mean, self._n + len(known)
-        self._squares += float(((known - mean) ** 2).sum()) + apart**2 * self._n * n / total
+    def add(self, values: npt.ArrayLike, owner: npt.NDArray[np.int64]) -> None:
+        """Add numbers, ``(k,)`` or ``(k, 1)``, of bundles."""
+        numbers = np.asarray(values, np.float64).ravel()
+        known = np.isfinite(numbers)
+        numbers, owner, size = numbers[known], owner[known], len(self._n)
+        n = np.bincount(owner, minlength=size)
+        mean = np.bincount(owner, numbers, minlength=size) / np.maximum(n, 1)
+        total, apart = np.maximum(self._n + n, 1), mean - self._mean
+        self._squares += np.bincount(owner, (numbers - mean[owner]) ** 2, minlength=size)
+        self._squares += apart**2 * self._n * n / total
         self._mean += apart * n / total
-        self._n = total
+        self._n += n
 
     @property
-    def mean(self) -> float:
-        return self._mean if self._n else float("nan")
+    def mean(self) -> npt.NDArray[np.float64]:
+        return np.where(self._n > 0, self._mean, np.nan)
 
     @property
-    def std(self) -> float:
-        return float(np.sqrt(self._squares / self._n)) if self._n else float("nan")
+    def std(self) -> npt.NDArray[np.float64]:
+        return np.where(self._n > 0, np.sqrt(self._squares / np.maximum(self._n, 1)), np.nan)

@@ -22,7 +22,7 @@ import numpy.typing as npt
 from ...codec.decompress import select_streamlines
 from ...streamlines import Streamlines
 from ..band_plot import plot_band
-from ..table import Table
+from ..table import Table, without_groups
 from .resampled import check_count
 from .sampling import as_image
 from .students import student_quantile
@@ -295,7 +295,8 @@ def _resampled(points: Any, values: Any, offsets: Any, n: int) -> tuple[Floats, 
 
 def _along(data: FibletSet | Streamlines, chosen: Any, values: Any, n: int) -> tuple[Floats, Floats]:
     """Places of the streamlines that have points, and their values there."""
-    part: Any = data[chosen] if isinstance(data, Streamlines) else data.decompress(chosen, dtype=np.float64)
+    bare = without_groups(data)
+    part: Any = bare[chosen] if isinstance(bare, Streamlines) else bare.decompress(chosen, dtype=np.float64)
     if values is None:
         numbers: Any = np.zeros(part.n_points)
     elif isinstance(values, str):
@@ -305,13 +306,12 @@ def _along(data: FibletSet | Streamlines, chosen: Any, values: Any, n: int) -> t
             from ...codec.compress import compress
             from ..measures import measure
 
-            held = data if not isinstance(data, Streamlines) else compress(data)
-            found = measure(held, values)
+            found = measure(compress(part, exact=True), values)
             if found.kind != "point":
                 raise ValueError(
                     f"{values!r} has a value per {found.kind}; a profile needs values per point, or an image"
                 )
-            numbers = _rows(data, chosen, _in_order(held, found.array()))
+            numbers = found.array()
     else:
         numbers = _rows(data, chosen, np.asarray(values, np.float64))
     numbers = np.asarray(numbers, np.float64)
@@ -323,17 +323,6 @@ def _along(data: FibletSet | Streamlines, chosen: Any, values: Any, n: int) -> t
     keep = counts > 0
     offsets = np.concatenate([[0], np.cumsum(counts[keep])])
     return _resampled(part.points, numbers, offsets, n)
-
-
-def _in_order(held: Any, values: Any) -> Any:
-    """Values in the order of the streamlines, of those in coded order."""
-    if held.in_order:
-        return values
-    from ...codec.streamline_ranges import coded_rows
-
-    out = np.empty_like(values)
-    out[coded_rows(held)] = values
-    return out
 
 
 def _rows(data: Any, chosen: Any, values: Any) -> Any:
