@@ -64,6 +64,8 @@ def bundle_table(
     """
     from ..density import Visits
 
+    if voxel_size is not None and like is not None:
+        raise ValueError("give either voxel_size= (mm) or like= (an image whose grid is taken)")
     known = {name: as_image(image) for name, image in (images or {}).items()}
     for name, image in known.items():
         if image is None:
@@ -78,7 +80,7 @@ def bundle_table(
     counts = np.array([len(one) for one in chosen.values()], np.int64)
     bundle = np.repeat(np.arange(len(counts)), counts)
     bare = without_groups(data)
-    grid = grid_like(like) if like is not None else grid_about(*as_source(bare, None, None).box(False), size)
+    grid = grid_like(like) if size is None else grid_about(*as_source(bare, None, None).box(False), size)
     visits = Visits(grid, len(counts))
     points, lengths = np.zeros(len(counts), np.int64), np.zeros(len(ids))
     sums: dict[str, _Sums] = {}

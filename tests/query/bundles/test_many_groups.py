@@ -60,3 +60,8 @@ def test_a_profile_of_curvature_takes_the_points_of_a_set_that_would_be_coded():
     lines = Streamlines((arc + shifts).reshape(-1, 3).astype(np.float32), np.arange(0, 150 * 1200 + 1, 1200))
     found = tract_profile(lines, np.arange(150), "curvature", 20, weights="equal")
     np.testing.assert_allclose(found.mean, 0.02, rtol=0.01)
+
+
+def test_voxels_are_given_once(lines):
+    with pytest.raises(ValueError, match="either"):
+        statistics.bundle_table(lines, voxel_size=1.0, like=(np.zeros((2, 2, 2)), np.eye(4)))
