@@ -15,7 +15,10 @@ from pvfiblets.web.writing import EXPORTS
 __all__ = ["BundleActions", "build"]
 
 LISTED = 300
-"""Rows of the list; more are counted."""
+"""Rows of the list; more are counted, and found by their names."""
+
+MANY = 20
+"""Bundles beyond which one looks for them by name."""
 
 
 class BundleActions(LineActions):
@@ -24,26 +27,32 @@ class BundleActions(LineActions):
     def __init__(self, app: Any) -> None:
         super().__init__(app)
         self._checked: list[str] = []
-        self._shown: Any = None
+        self._sought = ""
 
     def refresh(self) -> None:
         """Show the bundles of the chosen tractogram."""
         page, scene = self._app.page, self._app.scene
         if not page.chosen or page.chosen_kind not in LINES:
-            page.bundles, self._shown = {"layer": "", "rows": []}, None
+            page.bundles, self._sought = {"layer": "", "rows": [], "count": 0}, ""
             return
         bundles = scene.bundles(page.chosen)
-        self._checked = [name for name in self._checked if any(one.name == name for one in bundles)]
+        known = {one.name for one in bundles}
+        self._checked = [name for name in self._checked if name in known]
         layer = self._layer
+        if page.bundles["layer"] != layer.id or len(bundles) <= MANY:
+            self._sought = ""
         selected = 0 if layer.selected is None else len(layer.selected)
+        order = {name: place for place, name in enumerate(self._checked, 1)}
+        found = [one for one in bundles if self._sought in one.name.casefold()]
         page.bundles = {
             "layer": layer.id,
             "rows": [
                 {"name": one.name, "color": one.color, "visible": one.visible, "count": f"{len(one.ids):,}",
-                 "order": self._checked.index(one.name) + 1 if one.name in self._checked else 0}
-                for one in bundles[:LISTED]
+                 "order": order.get(one.name, 0)}
+                for one in found[:LISTED]
             ],
-            "more": f"and {len(bundles) - LISTED:,} more" if len(bundles) > LISTED else "",
+            "count": len(bundles), "sought": self._sought,
+            "more": f"and {len(found) - LISTED:,} more" if len(found) > LISTED else "",
             "checked": len(self._checked), "selected": selected, "all": all(one.visible for one in bundles),
             "coloured": layer.settings["scalars"] == "group",
         }  # fmt: skip
@@ -54,6 +63,12 @@ class BundleActions(LineActions):
         self._checked = [one for one in self._checked if one != name]
         if on is True and name in known:
             self._checked.append(name)
+        with self._app.state:
+            self.refresh()
+
+    def seek(self, text: str) -> None:
+        """List the bundles with a text in their names only."""
+        self._sought = str(text or "").casefold()
         with self._app.state:
             self.refresh()
 
@@ -155,19 +170,24 @@ def build(app: Any) -> None:
                 )  # fmt: skip
         html.Div(
             "No bundles yet. Make one of what is selected, or of what filters and regions leave.",
-            v_if="!bundles.rows.length", classes="pv-small px-3 pt-2",
+            v_if="!bundles.count", classes="pv-small px-3 pt-2",
         )  # fmt: skip
-        with html.Div(v_if="bundles.rows.length"):
+        with html.Div(v_if="bundles.count"):
             with html.Div(classes="pv-pair px-2 pt-1"):
                 eye("bundles.all", "Hide all", "Show all", click=(bundles.show_all, "[!bundles.all]"),
                     data_action="all-bundles")  # fmt: skip
-                html.Span("{{ bundles.rows.length }} bundles", classes="pv-small", style="flex: 1")
+                html.Span("{{ bundles.count }} bundles", classes="pv-small", style="flex: 1")
                 v3.VBtn(
                     "Colour by bundle", size="x-small", classes="text-none", data_action="colour-by-bundle",
                     variant=("bundles.coloured ? 'flat' : 'tonal'",),
                     color=("bundles.coloured ? 'primary' : undefined",),
                     click=(bundles.colour, "[!bundles.coloured]"),
                 )  # fmt: skip
+            html.Input(
+                v_if=f"bundles.count > {MANY}", type="search", placeholder="Find by name", aria_label="Find bundles",
+                classes="pv-num mx-2", style="width: calc(100% - 16px)", maxlength=120, data_field="find-bundles",
+                value=("bundles.sought",), input=(bundles.seek, "[$event.target.value]"),
+            )  # fmt: skip
             with html.Div(style="max-height: 42vh; overflow: hidden auto", id="bundle-list"):
                 _rows(bundles)
             html.Div("{{ bundles.more }}", v_if="bundles.more", classes="pv-small px-3")

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["CONDITION", "BundleSync", "SceneBundles", "check_bundles"]
 
 CONDITION = "bundles"
-MOST = 2000
+MOST = 20_000
 LONGEST = 120
 
 

@@ -69,7 +69,7 @@ class Page:
     placing: int = 0  # the row of the region that the next click places
     placing_name: str = ""
     selection: Record = field(default_factory=dict)
-    bundles: Record = field(default_factory=lambda: {"layer": "", "rows": []})
+    bundles: Record = field(default_factory=lambda: {"layer": "", "rows": [], "count": 0})
     finding: Record = field(default_factory=lambda: {"open": False, "folders": [], "dipy": False})
     measures: Record = field(
         default_factory=lambda: {"open": False, "values": [], "value": "", "profile": {}, "table": {}}

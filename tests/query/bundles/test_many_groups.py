@@ -39,8 +39,8 @@ def test_groups_that_overlap_are_measured_as_each_alone(lines, monkeypatch, comp
             continue
         for key, value in {
             "length_mean": np.mean(lengths), "length_std": np.std(lengths), "length_min": min(lengths),
-            "length_max": max(lengths), "length_total": sum(lengths), "mean_fa": np.mean(alone.per_point["fa"], dtype=float),
-            "std_fa": np.std(alone.per_point["fa"], dtype=float), "mean_w": np.mean(lines.per_streamline["w"][ids]),
+            "length_max": max(lengths), "length_total": sum(lengths), "mean_w": np.mean(lines.per_streamline["w"][ids]),
+            "mean_fa": np.mean(alone.per_point["fa"], dtype=float), "std_fa": np.std(alone.per_point["fa"], dtype="f8"),
             "volume_voxels": np.count_nonzero(density(alone, 1.0).values),
         }.items():  # fmt: skip
             assert table[key][row] == pytest.approx(value, rel=1e-9, abs=1e-12), key
