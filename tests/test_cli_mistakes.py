@@ -44,6 +44,7 @@ MISUSED = [
     ("demo --streamlines 1.5", "--streamlines: '1.5' is no whole number"),
     ("density a.trx d.nii", "one of the arguments --voxel --like is required"),
     ("screenshot a.trx -o a.png --size 10", "'10' is not WIDTHxHEIGHT, such as 1200x900"),
+    ("screenshot a.trx -o a.png --size 10x16385", "10x16385: each side must be from 1 to 16384 pixels"),
     ("screenshot a.trx -o a.png --clim 1", "--clim: expected 2 arguments"),
     ("batch convert a.trx", "the following arguments are required: -o/--output"),
 ]

@@ -62,6 +62,7 @@ def test_a_token_file_is_made_once_and_for_nobody_else(tmp_path):
     [
         ("correct-horse", 0o644, "chmod 600"),
         ("correct-horse", 0o620, "chmod 600"),
+        ("correct-horse", 0o640, "chmod 600"),
         ("", 0o600, "one line"),
         ("two lines\nof text", 0o600, "one line"),
         ("x" * 10_000, 0o600, "10000 bytes"),
