@@ -257,9 +257,9 @@ def are_colours(values: np.ndarray, rgb: bool | None) -> bool:
     """Whether rows are colours; see :func:`find_scalars`."""
     if values.ndim != 2 or rgb is False or (rgb is None and values.shape[1] not in (3, 4)):
         return False
-    if rgb or values.dtype.kind != "f":
+    if rgb or values.dtype == np.uint8:
         return True
-    return not values.size or bool(np.nanmin(values) >= 0.0 and np.nanmax(values) <= 1.0)
+    return values.dtype.kind == "f" and (not values.size or bool(np.nanmin(values) >= 0.0 and np.nanmax(values) <= 1.0))
 
 
 def magnitudes(values: np.ndarray) -> np.ndarray:
