@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
+from pvfiblets import compress, write
 from pvfiblets.halos import HaloLines, HaloPoints
 
 PIXELS = 5.0  # a mm in the view `flat`
@@ -365,3 +366,21 @@ def test_empty_data_draw_nothing(stage):
     assert (shot(stage) == np.array(BACK)).all()
     assert replace(lines.look, n_tapered=0) == lines.look or lines.look.n_tapered == 2
     assert (points.look.line_width, single.look.line_width) > (0.0, 0.0)
+
+
+def test_lines_and_points_come_from_every_kind_of_source(plotter, three_lines, tmp_path):
+    lines = [np.array([(-10.0, 0, z), (0, 0, z + 2), (10, 0, z)]) for z in (-6.0, 0.0, 6.0)]
+    points, cloud = np.concatenate(lines), pv.PolyData(np.concatenate(lines))
+    cloud.save(tmp_path / "cloud.ply")
+    write(tmp_path / "lines.tck", three_lines)
+    for source, n_segments in (
+        (pv.merge([pv.lines_from_points(line) for line in lines]), 6), (three_lines, 120), (compress(three_lines), 120),
+        (lines[0], 2), (lines, 6), ((points, np.array([(0, 1), (1, 2), (3, 4)])), 3),
+        (HaloLines(points, [0, 3, 6, 9]), 6), (tmp_path / "lines.tck", 120), (str(tmp_path / "lines.tck"), 120),
+    ):  # fmt: skip
+        assert plotter.add_halo_lines(source).lines.n_segments == n_segments
+    for source, n_points in (
+        (cloud, 9), (pv.ImageData(dimensions=(2, 3, 4)), 24), (three_lines, 123), (lines[0], 3),
+        (HaloPoints(lines[0]), 3), (tmp_path / "cloud.ply", 9),
+    ):  # fmt: skip
+        assert plotter.add_halo_points(source).points.n_points == n_points

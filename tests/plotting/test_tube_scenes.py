@@ -126,3 +126,28 @@ def test_pictures_of_subplots_are_enlarged_tile_by_tile():
     reduced = large.reshape(60, 2, 80, 2, 3).mean(axis=(1, 3))
     assert plain[:, :40].max() == 255.0
     assert np.abs(reduced - plain).mean() < 6.0
+
+
+def test_peeling_supersampling_and_a_second_window_show_the_tubes(plotter):
+    actor = plotter.add_spline_tubes(BAR, radius=RADIUS, color="white", lighting=False)
+    plotter.view_xz()
+    plotter.show(auto_close=False)
+    plain = plotter.screenshot(None)
+    plotter.enable_depth_peeling()
+    plotter.render()
+    assert (plotter.screenshot(None) == plain).all()
+    plotter.disable_depth_peeling()
+    other = pv.Plotter(off_screen=True, window_size=plotter.window_size)
+    other.set_background("black")
+    other.add_actor(actor)
+    other.camera_position = plotter.camera_position
+    for _ in range(2):
+        plotter.render()
+        assert (plotter.screenshot(None) == plain).all()
+        assert other.screenshot(None).any()
+    other.close()
+    plotter.enable_anti_aliasing("ssaa")
+    plotter.render()
+    smooth = plotter.screenshot(None)
+    assert ((smooth > 0) & (smooth < 255)).any()
+    assert smooth.sum(dtype=float) == pytest.approx(plain.sum(dtype=float), rel=0.02)

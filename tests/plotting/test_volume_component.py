@@ -2,13 +2,6 @@
 
 from __future__ import annotations
 
-import gc
-import inspect
-import subprocess
-import sys
-import weakref
-from importlib.metadata import entry_points
-
 import numpy as np
 import pytest
 import pyvista as pv
@@ -52,28 +45,6 @@ def image():
     grid = pv.ImageData(dimensions=BALL.shape, spacing=(1, 1, 1), origin=(-10, -10, -10))
     grid["density"] = BALL.ravel(order="F")
     return grid
-
-
-@pytest.mark.more
-def test_no_import_of_the_package_is_needed():
-    if "add_raycast_volume" not in entry_points(group="pyvista.plotter_components").names:
-        pytest.skip("the package was installed before it had these entry points; install it again")
-    code = (
-        "import numpy as np, pyvista as pv\n"
-        "pl = pv.Plotter(off_screen=True)\n"
-        "assert 'add_raycast_volume' in dir(pl)\n"
-        "print(type(pl.add_raycast_volume(np.eye(3)[None] + np.zeros((3, 1, 1)))).__name__, len(pl.raycast_volumes))\n"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    assert done.stdout.split() == ["VolumeActor", "1"], done.stderr
-
-
-def test_the_arguments_are_add_volumes_where_both_have_them(plotter):
-    ours = inspect.signature(plotter.add_raycast_volume).parameters
-    theirs = inspect.signature(pv.Plotter.add_volume).parameters
-    shared = set(ours) & set(theirs)
-    assert {"scalars", "cmap", "clim", "opacity", "n_colors", "opacity_unit_distance", "name", "render"} <= shared
-    assert all(parameter.kind is parameter.KEYWORD_ONLY for name, parameter in ours.items() if name != "source")
 
 
 def test_light_looks_as_vtks(plotter):
@@ -387,17 +358,6 @@ def test_settings_that_others_have_are_refused_by_name():
             setattr(actor, name, 1)
     assert repr(actor).endswith("21 x 21 x 21 voxels, composite>")
     plotter.close()
-
-
-def test_an_actor_is_freed_with_its_plotter():
-    plotter = pv.Plotter(off_screen=True, window_size=(50, 50))
-    gone = weakref.ref(plotter.add_raycast_volume(BALL))
-    plotter.screenshot(None)
-    plotter.close()
-    plotter.deep_clean()
-    del plotter
-    gc.collect()
-    assert gone() is None
 
 
 def test_opacities_are_pyvistas_where_they_have_a_name():
