@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import gc
-import weakref
 from dataclasses import replace
 
 import numpy as np
 import pytest
 import pyvista as pv
-from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPlane
-from vtkmodules.vtkRenderingCore import vtkActor, vtkHardwareSelector
+from vtkmodules.vtkCommonDataModel import vtkPlane
+from vtkmodules.vtkRenderingCore import vtkActor
 
 from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
-from pvfiblets.mappers import Colouring, HaloMapper, HaloOptions, windows
+from pvfiblets.mappers import Colouring, HaloMapper, HaloOptions
 from pvfiblets.mappers.halos import Strips, halo_renderer
 
 PIXELS = 5.0  # a mm, in the view `flat`
@@ -397,21 +395,6 @@ def test_tiles_of_enlarged_pictures_show_no_seams(make_plotter, tools):
     assert (np.abs(large - wanted).max(-1) > 8).mean() < 2e-4
 
 
-@pytest.mark.parametrize(("row", "wanted"), [(100, 1), (110, 1), (150, 0)], ids=["line", "halo", "beside"])
-@pytest.mark.parametrize("alone", [True, False], ids=["actors", "cells"])
-def test_vtk_selects_the_actor(make_plotter, tools, row, wanted, alone):
-    mapper, actor = made(bar())
-    plotter = shown(make_plotter, actor)
-    tools.picture(plotter, mapper)
-    selector = vtkHardwareSelector()
-    selector.SetRenderer(plotter.renderer)
-    selector.SetFieldAssociation(vtkDataObject.FIELD_ASSOCIATION_CELLS)
-    selector.SetActorPassOnly(alone)
-    selector.SetArea(118, row - 2, 122, row + 2)
-    assert selector.Select().GetNumberOfNodes() == wanted
-    mapper.raise_pending()
-
-
 def test_nothing_to_draw_draws_nothing(make_plotter, tools):
     empty = HaloLines(np.zeros((0, 3)), [0])
     for drawn in (empty, HaloLines(np.zeros((2, 3)), [0, 1, 2]), HaloPoints(np.zeros((0, 3)))):
@@ -420,36 +403,6 @@ def test_nothing_to_draw_draws_nothing(make_plotter, tools):
         assert same(image, BACK).all()
         mapper.set_drawn(bar() if isinstance(drawn, HaloLines) else HaloPoints(np.zeros((1, 3))))
         assert actor.GetBounds()[1] == pytest.approx(19 if isinstance(drawn, HaloLines) else 4)
-
-
-def test_memory_is_given_back_and_the_mapper_freed(make_plotter, tools):
-    mapper, actor = made(bar())
-    plotter = shown(make_plotter, actor)
-    tools.picture(plotter, mapper)
-    context = windows.contexts_with(mapper)[0]
-    mapper.release()
-    mapper.release()
-    assert not windows.contexts_with(mapper)
-    assert tools.picture(plotter, mapper).any()
-    context.window.MakeCurrent()
-    plotter.remove_actor(actor)
-    plotter.render()
-    assert not windows.contexts_with(mapper)
-    gone = weakref.ref(mapper)
-    del mapper, actor
-    gc.collect()
-    assert gone() is None
-
-
-def test_a_failing_engine_is_raised_by_the_caller(make_plotter):
-    def broken(ctx, drawn, **options):
-        raise OSError("no memory")
-
-    mapper, actor = made(bar(), renderer_factory=broken)
-    plotter = shown(make_plotter, actor)
-    plotter.show(auto_close=False)
-    with pytest.raises(OSError, match="no memory"):
-        mapper.raise_pending()
 
 
 def test_numbers_that_are_not_there_are_refused_when_drawn(make_plotter):

@@ -77,32 +77,6 @@ def test_less_is_drawn_behind_a_wall(fiblets):
     assert shares[True] < 0.7 * shares[False]
 
 
-def test_what_a_wall_hid_is_there_once_it_is_gone(fiblets):
-    plotter, actor, wall = scene(fiblets)
-    behind = turn(plotter, 2.0)
-    wall.SetVisibility(False)
-    plotter.render()  # the same view
-    free = plotter.screenshot(None, return_img=True)
-    plotter.close()
-    alone = pv.Plotter(off_screen=True, window_size=(320, 240))
-    alone.set_background("black")
-    alone.disable_anti_aliasing()
-    alone.add_fiblets(fiblets, render=False)
-    alone.camera_position = [(0, -450, 10), (0, -18, 10), (0, 0, 1)]
-    alone.camera.azimuth += 2.0
-    alone.renderer.SetNearClippingPlaneTolerance(1e-3)
-    alone.camera.clipping_range = plotter_range = (200.0, 900.0)
-    alone.show(auto_close=False)
-    alone.camera.clipping_range = plotter_range
-    alone.render()
-    expected = alone.screenshot(None, return_img=True)
-    alone.close()
-    covered = expected.any(axis=2)
-    assert (free.any(axis=2) == covered).mean() > 0.999
-    assert behind.any(axis=2).sum() > 0
-    assert actor is not None
-
-
 def test_picking_looks_behind_the_wall(fiblets):
     plotter, actor, _ = scene(fiblets)
     turn(plotter, 2.0)

@@ -18,21 +18,20 @@ def yellow(image):
     return (image[..., 0] > 100) & (image[..., 1] > 100) & (image[..., 2] < 100)
 
 
-def test_the_picture_is_that_of_polylines(compare, tools):
+@pytest.mark.parametrize("inside", [False, True])
+def test_the_picture_is_that_of_polylines(compare, tools, lines, inside):
     def scene(plotter, actor, mapper):
         plotter.reset_camera()
+        if hasattr(mapper, "fiblets"):
+            assert np.allclose(plotter.bounds, lines.fiblets.bounds)
+            assert np.allclose(actor.GetBounds(), lines.fiblets.bounds)
+        if inside:
+            plotter.camera_position = [(0, 0, 0), (1, 0.3, 0.2), (0, 0, 1)]
+            plotter.renderer.ResetCameraClippingRange()
 
     ours, theirs = compare(scene)
     assert tools.agreement(tools.covered(ours), tools.covered(theirs)) >= 0.99
     assert np.array_equal(np.unique(ours[tools.covered(ours)], axis=0), [[255, 255, 0]])
-
-
-def test_reset_camera_sees_the_true_bounds(make_plotter, lines):
-    _, actor = lines.actor()
-    plotter = make_plotter()
-    plotter.add_actor(actor)
-    assert np.allclose(plotter.bounds, lines.fiblets.bounds)
-    assert np.allclose(actor.GetBounds(), lines.fiblets.bounds)
 
 
 @pytest.mark.parametrize("parallel", [False, True])
@@ -114,15 +113,6 @@ def test_depth_is_that_of_polylines(compare, lines, tools):
     assert (np.abs(ours - theirs)[both] < tolerance).mean() > share
 
 
-def test_the_camera_inside_the_data(compare, tools):
-    def scene(plotter, actor, mapper):
-        plotter.camera_position = [(0, 0, 0), (1, 0.3, 0.2), (0, 0, 1)]
-        plotter.renderer.ResetCameraClippingRange()
-
-    ours, theirs = compare(scene)
-    assert tools.agreement(tools.covered(ours), tools.covered(theirs)) >= 0.99
-
-
 def test_a_wider_line_covers_more(make_plotter, tools):
     mapper, actor = tools.fibres("engine", tools.helices()).actor()
     plotter = make_plotter()
@@ -131,10 +121,6 @@ def test_a_wider_line_covers_more(make_plotter, tools):
     mapper.line_width = 4.0
     wide = tools.covered(tools.picture(plotter, mapper)).sum()
     assert 2.0 < wide / thin < 4.5
-
-
-def test_line_width_below_one_is_refused(plain):
-    mapper, _ = plain.actor()
     with pytest.raises(ValueError, match="line_width"):
         mapper.line_width = 0.0
 

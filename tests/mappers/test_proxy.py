@@ -30,5 +30,9 @@ def test_vertices_differ_and_keep_the_bounds(name: str) -> None:
     assert proxy.GetNumberOfCells() == 2
 
 
-def test_nothing_to_draw_is_empty() -> None:
+def test_layers_repeat_its_triangles_and_nothing_to_draw_is_empty() -> None:
     assert proxy_polydata(None).GetNumberOfCells() == 0
+    one, many = proxy_polydata(BOUNDS["plain"]), proxy_polydata(BOUNDS["plain"], 5)
+    np.testing.assert_allclose(many.GetBounds(), one.GetBounds())
+    assert many.GetNumberOfCells() == 10
+    assert [many.GetPoint(i) for i in range(30)] == [one.GetPoint(i % 6) for i in range(30)]

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import gc
-
 import numpy as np
 import pytest
 import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkPlane
 from vtkmodules.vtkRenderingCore import vtkActor
 
-from pvfiblets.mappers import Colouring, TubeMapper, TubeOptions, windows
+from pvfiblets.mappers import Colouring, TubeMapper, TubeOptions
 from pvfiblets.mappers.tubes import tube_renderer
 from pvfiblets.tubes.spline_tubes import NodeValues, SplineTubes
 
@@ -222,11 +220,6 @@ def test_colours_at_nodes_are_interpolated_like_positions(make_plotter, tools, o
         assert np.abs(np.array(colour_at(image, column)) - wanted).max() <= 3
 
 
-def test_point_colours_need_a_name():
-    with pytest.raises(ValueError, match="'point_rgba' needs source"):
-        Colouring("point_rgba")
-
-
 def test_options_reach_the_engine_and_only_those_that_differ(make_plotter, tools):
     asked = []
 
@@ -283,56 +276,3 @@ def test_nothing_is_drawn_of_no_segments(make_plotter, tools):
     assert tools.picture(plotter, mapper).any()
     mapper.set_tubes(none)
     assert not tools.picture(plotter, mapper).any()
-
-
-def test_gpu_memory_is_given_back(make_plotter, tools):
-    mapper, actor = made(tubes_of())
-    plotter = shown(make_plotter, actor)
-    tools.picture(plotter, mapper)
-    held = mapper.explain()["windows"][0]
-    assert (held["tubes_total"], held["segments_total"]) == (1, 7)
-    assert held["primitives"] > 0
-    mapper.release()
-    assert mapper.explain()["windows"] == []
-    tools.picture(plotter, mapper)
-    plotter.remove_actor(actor)
-    plotter.render()
-    assert mapper.explain()["windows"] == []
-    assert not windows._contexts
-
-
-def test_a_failing_engine_is_raised_by_the_caller(make_plotter):
-    def broken(ctx, tubes, **options):
-        raise OSError("no memory")
-
-    mapper, actor = made(tubes_of(), renderer_factory=broken)
-    plotter = shown(make_plotter, actor)
-    plotter.show(auto_close=False)
-    with pytest.raises(OSError, match="no memory"):
-        mapper.raise_pending()
-
-
-def test_a_mapper_is_freed():
-    import weakref
-
-    mapper, actor = made(tubes_of())
-    gone = weakref.ref(mapper)
-    del mapper, actor
-    gc.collect()
-    assert gone() is None
-
-
-def test_vtk_selects_tubes(make_plotter, tools):
-    from vtkmodules.vtkCommonDataModel import vtkDataObject
-    from vtkmodules.vtkRenderingCore import vtkHardwareSelector
-
-    mapper, actor = made(straight())
-    plotter = shown(make_plotter, actor, view=flat)
-    tools.picture(plotter, mapper)
-    for row, wanted in ((100, 1), (60, 0)):
-        selector = vtkHardwareSelector()
-        selector.SetRenderer(plotter.renderer)
-        selector.SetFieldAssociation(vtkDataObject.FIELD_ASSOCIATION_CELLS)
-        selector.SetArea(118, row - 2, 122, row + 2)
-        assert selector.Select().GetNumberOfNodes() == wanted
-    mapper.raise_pending()

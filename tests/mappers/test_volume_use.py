@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPlane
-from vtkmodules.vtkRenderingCore import vtkHardwareSelector
+from vtkmodules.vtkCommonDataModel import vtkPlane
 
-from pvfiblets.mappers import Colouring, VolumeMapper, windows
+from pvfiblets.mappers import Colouring, VolumeMapper
 from pvfiblets.mappers.volumes import volume_renderer
 from pvfiblets.volumes import RaycastVolume, Transfer
 from pvfiblets.volumes.raycast_options import RaycastOptions
@@ -62,24 +61,6 @@ def test_subplots_end_their_own_rays(make_plotter, tools):
         image = tools.picture(plotter, mapper)
         assert np.abs(image[100, 100] - over(np.array(2 * HALF), np.zeros(3))).max() <= 2.5
         assert np.abs(image[100, 300] - over(np.array(HALF), np.ones(3))).max() <= 2.5
-
-
-@pytest.mark.parametrize(
-    "casting", [light(), RaycastOptions("mip"), RaycastOptions("isosurface", (1.0,))], ids=lambda c: c.mode
-)
-def test_vtk_selects_volumes(make_plotter, tools, casting):
-    ball = volume(lambda p: 12.0 - np.linalg.norm(p, axis=-1), 17)
-    mapper, actor = made(ball, casting)
-    plotter = look(make_plotter())
-    plotter.add_actor(actor, reset_camera=False)
-    tools.picture(plotter, mapper)
-    for row, wanted in ((100, 1), (5, 0)):
-        selector = vtkHardwareSelector()
-        selector.SetRenderer(plotter.renderer)
-        selector.SetFieldAssociation(vtkDataObject.FIELD_ASSOCIATION_CELLS)
-        selector.SetArea(118, row - 2, 122, row + 2)
-        assert selector.Select().GetNumberOfNodes() == wanted
-    mapper.raise_pending()
 
 
 @pytest.mark.few(1)
@@ -171,32 +152,6 @@ def test_another_volume_takes_its_place(make_plotter, tools):
     assert mapper.volume is second
     assert image.sum() == pytest.approx((8 * 5) ** 2, rel=0.06)
     assert actor.GetBounds() == pytest.approx((0, 8, 0, 8, 0, 8))
-
-
-def test_gpu_memory_is_given_back(make_plotter, tools):
-    mapper, actor = made(fog(), light())
-    plotter = look(make_plotter())
-    plotter.add_actor(actor, reset_camera=False)
-    plotter.add_mesh(wall(0.0), reset_camera=False)
-    tools.picture(plotter, mapper)
-    mapper.release()
-    assert mapper.explain()["windows"] == []
-    tools.picture(plotter, mapper)
-    plotter.remove_actor(actor)
-    plotter.render()
-    assert not windows._contexts
-
-
-def test_a_failing_engine_is_raised_by_the_caller(make_plotter):
-    def broken(ctx, drawn, **options):
-        raise OSError("no memory")
-
-    mapper, actor = made(fog(), light(), renderer_factory=broken)
-    plotter = look(make_plotter())
-    plotter.add_actor(actor)
-    plotter.show(auto_close=False)
-    with pytest.raises(OSError, match="no memory"):
-        mapper.raise_pending()
 
 
 def test_enlarged_pictures_of_subplots_are_whole(make_plotter, tools):
