@@ -79,6 +79,10 @@ def test_a_line_has_its_colour_its_halo_another_and_the_rest_is_left_alone(make_
     assert same(column[across > 4.0], BACK).all()
     column, z = column_at(image, 16.0)  # ends are square
     assert same(column, BACK).all()
+    mapper, actor = made(bar(z=21.0))  # beside the picture
+    column, z = column_at(tools.picture(shown(make_plotter, actor), mapper), 7.0)
+    assert same(column[z > 17.0], WHITE).all()
+    assert same(column[z < 17.0], BACK).all()
 
 
 def test_points_are_discs_in_discs(make_plotter, tools):
@@ -145,13 +149,6 @@ def test_bounds_hold_the_strips_and_the_camera_takes_them(make_plotter, tools):
     assert not image[:, [0, -1]].any()
 
 
-def test_a_strip_shows_whose_line_is_beside_the_picture(make_plotter, tools):
-    mapper, actor = made(bar(z=21.0))
-    column, z = column_at(tools.picture(shown(make_plotter, actor), mapper), 7.0)
-    assert same(column[z > 17.0], WHITE).all()
-    assert same(column[z < 17.0], BACK).all()
-
-
 def test_another_look_draws_again_and_copies_nothing(make_plotter, tools):
     engines = []
 
@@ -199,15 +196,11 @@ def test_places_are_picked_and_halos_are_not(make_plotter, tools):
     assert (line, place) == (1, pytest.approx(((15 - (150.5 - 100) / PIXELS) / 30), abs=1e-3))
     assert mapper.pick_at(170, 150, tolerance=-1) is None
     assert mapper.pick_at(-50, 500) is None
-
-
-def test_points_are_picked_by_number(make_plotter, tools):
     mapper, actor = made(HaloPoints(np.array([(-10.0, 0, 0), (0.0, 0, 0), (10.0, 0, 0)])))
     tools.picture(shown(make_plotter, actor), mapper)
-    assert [mapper.pick_at(70 + 50 * i, 100) for i in range(3)] == [0, 1, 2]
+    assert [mapper.pick_at(70 + 50 * i, 100) for i in range(3)] == [0, 1, 2]  # points by their numbers
     assert mapper.pick_at(130, 100, tolerance=0) is None
     assert mapper.pick_at(130, 100, tolerance=6) == 1
-    assert mapper.pick_at(95, 100) is None
 
 
 def test_clipping_planes_of_the_mapper_cut_the_axis(make_plotter, tools):
@@ -279,16 +272,12 @@ def test_halos_of_the_background_take_part_in_its_gradient(make_plotter, tools):
     assert mapper.halo_color == (1.0, 1.0, 0.0)
 
 
-@pytest.mark.parametrize("color", [(1.0, 2.0, 0.0), (1.0, 0.0)])
-def test_colours_that_are_none_are_refused(color):
-    with pytest.raises(ValueError, match="color of halos is "):
-        Strips(color)
-
-
-def test_unknown_options_are_refused_at_once():
+def test_what_is_no_colour_or_option_is_refused():
+    for color in ((1.0, 2.0, 0.0), (1.0, 0.0)):
+        with pytest.raises(ValueError, match="color of halos is "):
+            Strips(color)
     assert HaloOptions("none") == HaloOptions(None)
-    assert HaloOptions(None).changed() == {"culling": None}
-    assert HaloOptions().changed() == {}
+    assert (HaloOptions(None).changed(), HaloOptions().changed()) == ({"culling": None}, {})
     with pytest.raises(ValueError, match="culling is 'coverage'"):
         HaloOptions("coverage")
 
@@ -308,18 +297,16 @@ def test_light_falls_on_lines_and_not_on_halos(make_plotter, tools):
     assert same(column[(np.abs(z) > 1.0) & (np.abs(z) < 4.0)], WHITE).all()
 
 
-def test_translucent_actors_blend_lines_and_halos_alike(make_plotter, tools):
+def test_translucent_actors_blend_lines_and_halos_alike_and_colours_keep_opaque_halos(make_plotter, tools):
     mapper, actor = made(bar())
     actor.GetProperty().SetOpacity(0.5)
-    image = tools.picture(shown(make_plotter, actor), mapper).astype(int)
+    plotter = shown(make_plotter, actor)
+    image = tools.picture(plotter, mapper).astype(int)
     assert np.abs(np.array(pixel(image, 7.0, 0.1)) - [32, 159, 32]).max() <= 2
     assert np.abs(np.array(pixel(image, 7.0, 2.0)) - [159] * 3).max() <= 2
-
-
-def test_colours_that_let_through_keep_opaque_halos(make_plotter, tools):
-    values = np.array([[0, 255, 0, 128]], np.uint8)
-    mapper, actor = made(bar(), colouring=Colouring("streamline_rgba", values=values))
-    image = tools.picture(shown(make_plotter, actor), mapper).astype(int)
+    actor.GetProperty().SetOpacity(1.0)
+    mapper.colouring = Colouring("streamline_rgba", values=np.array([[0, 255, 0, 128]], np.uint8))
+    image = tools.picture(plotter, mapper).astype(int)
     assert actor.GetForceTranslucent()
     assert np.abs(np.array(pixel(image, 7.0, 0.1)) - [32, 160, 32]).max() <= 2
     assert pixel(image, 7.0, 2.0) == WHITE

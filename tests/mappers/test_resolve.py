@@ -32,11 +32,6 @@ def test_vtks_tags_stay_where_pieces_only_add():
     assert "//VTK::Normal::Impl" not in edits["//VTK::Normal::Impl"]
 
 
-def test_unknown_features_are_refused():
-    with pytest.raises(ValueError, match="rainbow"):
-        resolve.assemble(frozenset(["rainbow"]))
-
-
 def test_a_piece_without_its_place_is_refused():
     with pytest.raises(ValueError, match="Scale::Impl"):
         resolve.assemble(frozenset(["gbuffer", "scale_logarithm"]))

@@ -126,18 +126,6 @@ def test_none_where_vtk_moves_depth_afterwards(make_plotter, plain, tools, seen)
     assert seen[-1] == (None, "GL_NO_ERROR")
 
 
-def test_a_viewport_beside_another_reads_its_own_part(make_plotter, plain, tools, seen):
-    plotter = make_plotter(shape=(1, 2), window_size=(400, 200), border=False)
-    plotter.add_mesh(pv.Sphere(radius=25.0), lighting=False)
-    plotter.subplot(0, 1)
-    mapper, actor = plain.actor()
-    plotter.add_actor(actor)
-    tools.picture(plotter, mapper)
-    keys, error = seen[-1]
-    assert (keys.shape, error) == ((200, 200), "GL_NO_ERROR")
-    assert (keys == EMPTY).all()
-
-
 @pytest.mark.parametrize("depth", [0.0, 0.5, 0.999999, 1.0 - 2.0**-24, 1.0])
 def test_no_depth_becomes_the_key_of_nothing_by_overflow(make_plotter, depth):
     """The shader itself, on a depth that is known: near 1 the margin must empty the pixel, not wrap it to 0."""

@@ -195,7 +195,7 @@ def test_anti_aliasing_keeps_the_picture(scene, kind):
     assert np.abs(plain - smooth).mean() < 12
 
 
-@pytest.mark.parametrize("name", ["illuminated", "ambient_occlusion", "ink", "depth_cue", "halos"])
+@pytest.mark.parametrize("name", ALL)
 def test_what_is_taken_away_leaves_nothing(make_plotter, lines, tools, name):
     mapper, actor = lines.actor(lighting=True)
     plotter = make_plotter()

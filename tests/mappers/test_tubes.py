@@ -264,15 +264,3 @@ def test_thin_tubes_stay_as_wide_as_is_asked(make_plotter, tools):
         heights.append(image[:, 130].sum())
     assert heights[0] in (1, 2)
     assert heights[1] in (4, 5, 6)
-
-
-def test_nothing_is_drawn_of_no_segments(make_plotter, tools):
-    none = SplineTubes(np.zeros((2, 3)), [], [1, 1], np.zeros((2, 3)), [0, 0], True, [], 4)
-    mapper, actor = made(none)
-    assert mapper.GetInput().GetNumberOfCells() == 0
-    plotter = shown(make_plotter, actor)
-    assert not tools.picture(plotter, mapper).any()
-    mapper.set_tubes(tubes_of())
-    assert tools.picture(plotter, mapper).any()
-    mapper.set_tubes(none)
-    assert not tools.picture(plotter, mapper).any()

@@ -30,7 +30,7 @@ from .visible_volumes import (
     through_table,
     volume,
     wall,
-)
+)  # fmt: skip
 
 
 @pytest.mark.few(2)

@@ -63,12 +63,6 @@ def test_connected_lines_are_drawn_as_vtk_draws_them(tools):
     alike(ours, vtks(data, prepare=wide), tools)
     assert mapper.GetInput() is data
     assert mapper.fiblets.n_streamlines == len(CURVES)
-
-
-def test_bounds_are_those_of_the_lines():
-    data = lines()
-    mapper = FibletMapper()
-    mapper.SetInputData(data)
     np.testing.assert_allclose(mapper.GetBounds(), data.GetBounds(), atol=1e-3)
 
 
@@ -208,6 +202,12 @@ def said_by(mapper) -> list[str]:
 
 
 def test_what_cannot_be_drawn_is_said_once_and_mended():
+    mapper, nothing = FibletMapper(), vtkAppendPolyData()
+    said = said_by(mapper)
+    mapper.SetInputConnection(nothing.GetOutputPort())
+    assert not drawn(mapper).any()
+    mapper.raise_pending()
+    assert not said
     sphere, mapper = vtkSphereSource(), FibletMapper()
     said = said_by(mapper)
     mapper.SetInputConnection(sphere.GetOutputPort())
@@ -231,15 +231,6 @@ def test_what_cannot_be_drawn_is_said_once_and_mended():
     assert not shot(window).any()
     assert "connect PolyData" in said[1]
     window.Finalize()
-
-
-def test_empty_lines_draw_nothing_and_say_nothing():
-    mapper, nothing = FibletMapper(), vtkAppendPolyData()
-    said = said_by(mapper)
-    mapper.SetInputConnection(nothing.GetOutputPort())
-    assert not drawn(mapper).any()
-    mapper.raise_pending()
-    assert not said
 
 
 @pytest.mark.few(1)

@@ -30,23 +30,6 @@ def test_a_window_resize(compare, tools):
     assert tools.agreement(tools.covered(ours), tools.covered(theirs)) >= 0.99
 
 
-def test_a_screenshot_at_twice_the_scale(make_plotter, lines, tools):
-    images = []
-    for ours in (True, False):
-        plotter = make_plotter()
-        if ours:
-            mapper, actor = lines.actor(colouring=SOLID)
-            plotter.add_actor(actor)
-        else:
-            plotter.add_mesh(lines.polydata(), color=(1.0, 1.0, 0.0), lighting=False)
-        plotter.camera_position = "xz"
-        plotter.show(auto_close=False)
-        images.append(np.asarray(plotter.screenshot(return_img=True, scale=2))[..., :3])
-        tools.check(mapper)
-    assert images[0].shape == (400, 480, 3)
-    assert tools.agreement(*map(tools.covered, images)) >= 0.99
-
-
 def test_several_actors_in_one_renderer(make_plotter, make_fibres, tools):
     sets = [make_fibres(tools.helices(8, 60, seed)) for seed in range(3)]
     colours = [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)]
@@ -62,28 +45,6 @@ def test_several_actors_in_one_renderer(make_plotter, make_fibres, tools):
     one, other = tools.picture(ours, *mappers), tools.picture(theirs)
     for channel in range(3):
         assert tools.agreement(one[..., channel] > 100, other[..., channel] > 100) >= 0.985
-
-
-def test_subplots_with_linked_views(make_plotter, make_fibres, tools):
-    images = []
-    for ours in (True, False):
-        plotter = make_plotter(shape=(2, 2), window_size=(400, 300))
-        mappers = []
-        for index in range(4):
-            fibres = make_fibres(tools.helices(8, 60, index))
-            plotter.subplot(index // 2, index % 2)
-            plotter.set_background("black")
-            if ours:
-                mapper, actor = fibres.actor(colouring=SOLID)
-                plotter.add_actor(actor)
-                mappers.append(mapper)
-            else:
-                plotter.add_mesh(fibres.polydata(), color=(1.0, 1.0, 0.0), lighting=False)
-        plotter.link_views()
-        plotter.camera_position = [(60, -250, 70), (0, 0, 0), (0, 0, 1)]
-        plotter.renderer.ResetCameraClippingRange()
-        images.append(tools.picture(plotter, *mappers))
-    assert tools.agreement(*map(yellow, images)) >= 0.99
 
 
 @pytest.mark.parametrize("effect", ["none", "ssao", "ssaa"])
@@ -307,15 +268,6 @@ def test_other_fiblets_in_the_same_mapper(make_plotter, make_fibres, tools):
     reference.camera = plotter.camera
     theirs = tools.picture(reference)
     assert tools.agreement(tools.covered(changed), tools.covered(theirs)) >= 0.99
-
-
-def test_nothing_to_draw(make_plotter, tools):
-    empty = tools.fibres("engine", tools.helices()[:0])
-    mapper, actor = empty.actor()
-    plotter = make_plotter()
-    plotter.add_actor(actor)
-    plotter.add_mesh(pv.Sphere(), color="red", lighting=False)
-    assert tools.picture(plotter, mapper).any()
 
 
 def test_a_failing_draw_is_raised_by_the_caller(make_plotter, plain, tools):
