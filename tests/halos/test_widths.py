@@ -49,28 +49,18 @@ def test_the_three_cases_of_equation_4():
     assert halo_width([largest, 2 * largest, 1e300, np.inf], line, strip, largest).tolist() == [(strip - line) / 2] * 4
 
 
-def test_units_do_not_matter():
-    one = halo_width(DZ, 0.5, 3.0, 5.0, "square root")
-    for unit in (1e-9, 1e9):
-        np.testing.assert_allclose(halo_width(DZ * unit, 0.5 * unit, 3 * unit, 5 * unit, "square root"), one * unit)
-
-
-def test_without_displacement_all_that_is_behind_is_hidden():
-    assert halo_width([-1, 0, 1e-9, 5], 1.0, 3.0, 0.0).tolist() == [0, 0, 1, 1]
-    assert halo_width([-1, 0, 1e-9, 5], 1.0, 3.0, 0.0, (0.5, 1)).tolist() == [0, 0, 1, 1]
-
-
-def test_a_strip_as_wide_as_its_line_has_no_halo():
-    for displacement in ("linear", "square root", (0.0, 0.5, 1.0)):
-        assert not halo_width(DZ, 2.0, 2.0, 3.0, displacement).any()
-
-
-def test_shapes_and_nan():
+def test_shapes_units_and_special_widths():
     assert halo_width(1.0, 1.0, 3.0, 1.0).shape == ()
     assert halo_width(np.ones((2, 3)), 1.0, 3.0, 1.0).tolist() == [[1.0] * 3] * 2
     assert halo_width([], 1.0, 3.0, 1.0).shape == (0,)
     for displacement in ("linear", (0.0, 1.0)):
         assert np.isnan(halo_width([np.nan, 1.0], 1.0, 3.0, 1.0, displacement)).tolist() == [True, False]
+        assert not halo_width(DZ, 2.0, 2.0, 3.0, displacement).any()  # as wide as its line
+        # Without displacement all that is behind is hidden.
+        assert halo_width([-1, 0, 1e-9, 5], 1.0, 3.0, 0.0, displacement).tolist() == [0, 0, 1, 1]
+    one = halo_width(DZ, 0.5, 3.0, 5.0, "square root")
+    for unit in (1e-9, 1e9):
+        np.testing.assert_allclose(halo_width(DZ * unit, 0.5 * unit, 3 * unit, 5 * unit, "square root"), one * unit)
 
 
 @pytest.mark.parametrize(

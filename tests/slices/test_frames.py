@@ -33,9 +33,15 @@ def test_what_a_plane_shows_holds_every_point_of_it_in_the_image(orientation):
         assert ends[1] - 1.0 < found.max() <= ends[1]
 
 
-def test_a_plane_that_misses_the_image_shows_nothing():
+def test_a_plane_that_misses_shows_nothing_and_letters_name_its_sides():
     along, up = plane_axes(np.eye(3), "axial")
     assert covered([image().corners], np.array([0.0, 0.0, 1000.0]), along, up) is None
+    for axis, pair in enumerate(("RL", "AP", "SI")):
+        assert (letters(np.eye(3)[axis]), letters(-np.eye(3)[axis])) == tuple(pair)
+    assert letters(np.array([0.0, 0.8, -0.6])) == "AI"
+    assert letters(np.array([0.99, 0.05, 0.0])) == "R"
+    with pytest.raises(ValueError, match="invertible"):
+        image(np.diag([1.0, 0.0, 1.0, 1.0]))
 
 
 def test_pixels_fill_the_rectangle_and_voxel_edges_are_pixel_edges():
@@ -67,17 +73,3 @@ def test_the_nearest_frame_follows_a_tilted_and_sheared_image():
     frame = nearest_frame(SHEARED)
     np.testing.assert_allclose(frame.T @ frame, np.eye(3), atol=1e-12)
     assert np.linalg.det(frame) > 0.0
-
-
-@pytest.mark.parametrize(
-    ("direction", "said"),
-    [((1, 0, 0), "R"), ((-1, 0, 0), "L"), ((0, 1, 0), "A"), ((0, -1, 0), "P"), ((0, 0, 1), "S"), ((0, 0, -1), "I"),
-     ((0.0, 0.8, -0.6), "AI"), ((0.99, 0.05, 0.0), "R")],
-)  # fmt: skip
-def test_letters_name_the_side(direction, said):
-    assert letters(np.array(direction, float)) == said
-
-
-def test_an_affine_that_cannot_be_inverted_is_refused():
-    with pytest.raises(ValueError, match="invertible"):
-        image(np.diag([1.0, 0.0, 1.0, 1.0]))

@@ -68,7 +68,7 @@ def test_a_table_of_bids(tmp_path):
         as_label_table(tmp_path / "b.tsv")
 
 
-def test_a_table_of_gifti(tmp_path):
+def test_gifti_and_mappings_are_tables_and_other_kinds_are_refused(tmp_path):
     gifti = nib.gifti
     table = gifti.GiftiLabelTable()
     for key, name, colour in ((0, "???", (0, 0, 0, 0)), (5, "V1", (1.0, 0.5, 0.0, 1.0))):
@@ -78,25 +78,18 @@ def test_a_table_of_gifti(tmp_path):
     array = gifti.GiftiDataArray(np.zeros(4, np.int32), intent="NIFTI_INTENT_LABEL")
     nib.save(gifti.GiftiImage(darrays=[array], labeltable=table), tmp_path / "a.label.gii")
     found = as_label_table(tmp_path / "a.label.gii")
-    assert found.name(5) == "V1"
-    assert found.colours[5] == (255, 128, 0, 255)
-
-
-def test_a_mapping_of_names_colours_and_both():
+    assert (found.name(5), found.colours[5]) == ("V1", (255, 128, 0, 255))
     table = as_label_table({1: "one", 2: ("two", "red"), 3: "#00ff00", 4: (0, 0, 255)})
     assert table.names == {1: "one", 2: "two"}
     assert table.colours == {2: (255, 0, 0, 255), 3: (0, 255, 0, 255), 4: (0, 0, 255, 255)}
     assert table.name(9) == "9"
-
-
-def test_other_files_and_kinds_are_refused(tmp_path):
     (tmp_path / "a.txt").write_text("nothing of the kind\n")
-    with pytest.raises(FormatError, match="table of labels"):
-        as_label_table(tmp_path / "a.txt")
-    with pytest.raises(TypeError, match="labels is a int"):
-        as_label_table(3)
-    with pytest.raises(FileNotFoundError):
-        as_label_table(tmp_path / "b.txt")
+    for source, error, said in (
+        (tmp_path / "a.txt", FormatError, "table of labels"), (3, TypeError, "labels is a int"),
+        (tmp_path / "b.txt", FileNotFoundError, "b.txt"),
+    ):  # fmt: skip
+        with pytest.raises(error, match=said):
+            as_label_table(source)
 
 
 def test_colours_that_no_table_gives_differ_and_stay():

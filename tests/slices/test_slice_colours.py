@@ -18,6 +18,9 @@ def test_numbers_take_the_colours_of_the_window():
     powers = 10.0 ** np.linspace(0, 4, 9)[None]
     found = colours.mapped(powers, table, (1.0, 1e4), True)
     assert abs(found - mpl.colormaps["viridis"](np.linspace(0, 1, 9))[None]).max() < 0.02
+    vectors = np.array([[[3.0, 0, 0], [0, 2.0, 2.0], [0, 0, 0]]])  # directions are colours, brighter by weights
+    found = colours.direction_colours(vectors, np.array([[0.5, 1.0, 1.0]]), (0.0, 1.0))
+    np.testing.assert_allclose(found[0, :, :3], [[0.5, 0, 0], [0, 0.5**0.5, 0.5**0.5], [0, 0, 0]], atol=1e-6)
 
 
 def test_thresholds_hide_and_so_does_what_is_no_number():
@@ -38,23 +41,13 @@ def test_over_and_add_are_what_they_are_in_every_textbook():
     add = colours.blend(under.copy(), top, all_of_it, 0.5, "add")
     alpha = a + b * (1 - a)
     np.testing.assert_allclose(add[..., :3], np.minimum(top[..., :3] * a + bottom[..., :3] * b, alpha), rtol=1e-5)
+    shown = np.arange(12).reshape(3, 4) % 2 == 0  # what is hidden leaves what lies below
+    found = colours.blend(under.copy(), top, shown, 0.5, "over")
+    np.testing.assert_array_equal(found[~shown], under[~shown])
+    np.testing.assert_array_equal(found[shown], over[shown])
     plain = colours.to_bytes(over)
     np.testing.assert_allclose(plain[..., 3], 255 * over[..., 3], atol=0.51)
     np.testing.assert_allclose(plain[..., :3], 255 * over[..., :3] / over[..., 3:], atol=0.51)
-
-
-def test_what_is_hidden_leaves_what_lies_below():
-    bottom, top = np.full((1, 2, 4), 0.25, np.float32), np.ones((1, 2, 4), np.float32)
-    under = colours.blend(None, bottom, np.ones((1, 2), bool), 1.0, "over")
-    found = colours.blend(under.copy(), top, np.array([[True, False]]), 1.0, "over")
-    assert found[0, 0].tolist() == [1.0] * 4
-    np.testing.assert_array_equal(found[0, 1], under[0, 1])
-
-
-def test_directions_are_colours_and_weights_make_them_bright():
-    vectors = np.array([[[3.0, 0, 0], [0, 2.0, 2.0], [0, 0, 0]]])
-    found = colours.direction_colours(vectors, np.array([[0.5, 1.0, 1.0]]), (0.0, 1.0))
-    np.testing.assert_allclose(found[0, :, :3], [[0.5, 0, 0], [0, 0.5**0.5, 0.5**0.5], [0, 0, 0]], atol=1e-6)
 
 
 def test_outlines_are_where_the_neighbour_is_another():
