@@ -7,12 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import pyvista as pv
-from vtkmodules.vtkCommonDataModel import vtkPlane
 from vtkmodules.vtkRenderingCore import vtkActor
 
 from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
 from pvfiblets.mappers import Colouring, HaloMapper, HaloOptions
-from pvfiblets.mappers.halos import Strips, halo_renderer
+from pvfiblets.mappers.halos import Strips
 
 PIXELS = 5.0  # a mm, in the view `flat`
 LOOK = HaloStyle(2.0, 8.0, 4.0, n_tapered=0, min_width=0.0, smooth=False)
@@ -149,37 +148,6 @@ def test_bounds_hold_the_strips_and_the_camera_takes_them(make_plotter, tools):
     assert not image[:, [0, -1]].any()
 
 
-def test_another_look_draws_again_and_copies_nothing(make_plotter, tools):
-    engines = []
-
-    def factory(ctx, drawn, **options):
-        engines.append(halo_renderer(ctx, drawn, **options))
-        return engines[-1]
-
-    mapper, actor = made(bar(v=[0.0, 1.0, 2.0]), renderer_factory=factory)
-    plotter = shown(make_plotter, actor)
-
-    def widths():
-        column, _ = column_at(tools.picture(flat(plotter), mapper), 7.0)
-        return same(column, GREEN).sum(), same(column, WHITE).sum()
-
-    assert widths() == (10, 30)
-    mapper.look = replace(LOOK, line_width=4.0)
-    assert widths() == (20, 20)
-    mapper.look = replace(LOOK, filter_by="v", low=0.4)
-    assert widths() == (10, 30)
-    mapper.look = replace(LOOK, filter_by="v", low=1.6)  # x = 7 is 1.47
-    assert widths() == (0, 0)
-    mapper.look = replace(LOOK, strip_width=2.0)
-    assert widths() == (10, 0)
-    assert len(engines) == 1
-    mapper.set_drawn(bar(z=4.0), LOOK)
-    assert widths() == (10, 30)
-    mapper.options = HaloOptions(culling=None)
-    assert widths() == (10, 30)
-    assert len(engines) == 3
-
-
 def test_places_are_picked_and_halos_are_not(make_plotter, tools):
     drawn = lines_of([(-15, 0, 0), (0, 0, 0), (15, 0, 0)], [(10, 6, 15), (10, 6, -15)])
     mapper, actor = made(drawn)
@@ -203,47 +171,9 @@ def test_places_are_picked_and_halos_are_not(make_plotter, tools):
     assert mapper.pick_at(130, 100, tolerance=6) == 1
 
 
-def test_clipping_planes_of_the_mapper_cut_the_axis(make_plotter, tools):
-    mapper, actor = made(bar())
-    plotter = shown(make_plotter, actor)
-    whole = tools.picture(plotter, mapper)
-    plane = vtkPlane()
-    plane.SetNormal(1, 0, 0)
-    plane.SetOrigin(5, 0, 0)
-    mapper.AddClippingPlane(plane)
-    half = tools.picture(plotter, mapper)
-    assert (half[:, 146:] == whole[:, 146:]).all()
-    assert same(half[:, :145], BACK).all()
-    mapper.RemoveAllClippingPlanes()
-    assert (tools.picture(plotter, mapper) == whole).all()
-
-
 def pixel(image, x, z):
     column, places = column_at(image, x)
     return tuple(column[np.argmin(np.abs(places - z))].tolist())
-
-
-def test_every_way_to_colour_leaves_halos_alone(make_plotter, tools):
-    mapper, actor = made(bar(v=[0.0, 1.0, np.nan], c=np.array([(1, 0, 0, 1), (0, 1, 0, 1), (0, 0, 1, 1)], "f4")))
-    plotter = shown(make_plotter, actor)
-
-    def colours(colouring, x=7.0):
-        mapper.colouring = colouring
-        image = tools.picture(plotter, mapper)
-        assert pixel(image, x, 2.0) == WHITE
-        return pixel(image, x, 0.1)
-
-    table = np.array([[255, 0, 0, 255], [0, 0, 255, 255]], np.uint8)
-    assert colours(Colouring("orientation")) == (255, 0, 0)
-    assert colours(Colouring("solid", color=(0.0, 1.0, 1.0))) == (0, 255, 255)
-    assert colours(Colouring("streamline_rgba", values=np.array([[7, 8, 9]], np.uint8))) == (7, 8, 9)
-    assert colours(Colouring("streamline_scalar", values=np.array([0.7]), lut=table, clim=(0, 1))) == (0, 0, 255)
-    numbers = Colouring("point_scalar", source="v", lut=table, clim=(0, 1), nan_color=(0.2, 0.4, 0.6))
-    assert [colours(numbers, x) for x in (-10.0, -5.0, 7.0)] == [(255, 0, 0), (0, 0, 255), (51, 102, 153)]
-    mixed = np.array(colours(Colouring("point_rgba", source="c")), int)
-    assert np.abs(mixed - [0, 255 * (1 - 7.1 / 15), 255 * 7.1 / 15]).max() <= 3
-    with pytest.raises(ValueError, match="2 values for 1"):
-        mapper.colouring = Colouring("streamline_scalar", values=np.array([0.7, 1.0]))
 
 
 def test_smooth_lines_turn_into_their_halo_over_a_pixel(make_plotter, tools):
@@ -321,65 +251,6 @@ def test_actors_that_are_stretched_have_strips_as_wide(make_plotter, tools):
     assert same(column[np.abs(z) < 2.0], GREEN).all()
     assert same(column[(np.abs(z) > 2.0) & (np.abs(z) < 8.0)], WHITE).all()
     assert same(column[np.abs(z) > 8.0], BACK).all()
-
-
-def test_each_subplot_has_its_own_camera(make_plotter, tools):
-    mapper, actor = made(bar())
-    plotter = make_plotter(shape=(1, 2), border=False)
-    for side in (0, 1):
-        plotter.subplot(0, side)
-        plotter.add_actor(actor, reset_camera=False)
-        flat(plotter, height=40.0 * (1 + side))
-    image = tools.picture(plotter, mapper)
-    for column, scale in ((60, 1), (180, 2)):
-        z = scale * (99.5 - np.arange(200)) / PIXELS
-        assert same(image[np.abs(z) < 1.0, column], GREEN).all()
-        assert same(image[(np.abs(z) > 1.0) & (np.abs(z) < 4.0), column], WHITE).all()
-        assert same(image[np.abs(z) > 4.0, column], BACK).all()
-    assert mapper.pick_at(60, 100, renderer=plotter.renderers[0])[0] == 0
-
-
-@pytest.mark.parametrize("supersampled", [False, True])
-def test_the_least_width_is_in_pixels_of_the_window(make_plotter, tools, supersampled):
-    """Enlarged three times, or drawn from many samples, a thin line stays as wide a part of the picture."""
-    look = replace(LOOK, line_width=0.1, strip_width=4.0, min_width=3.0)
-    mapper, actor = made(bar(z=0.1), look)
-    plotter = shown(make_plotter, actor)
-    if supersampled:
-        plotter.enable_anti_aliasing("ssaa")
-        column, _ = column_at(tools.picture(plotter, mapper), 7.0)
-        green = column[:, 1].astype(float) - column[:, 0]
-        assert green.sum() / 255 == pytest.approx(3.0, abs=0.35)
-        return
-    column, z = column_at(tools.picture(plotter, mapper), 7.0)
-    assert same(column, GREEN).sum() == 3
-    large = plotter.screenshot(None, scale=3)
-    mapper.raise_pending()
-    column, _ = column_at(large, 21.0)
-    assert same(column, GREEN).sum() == 9
-    assert abs(same(column, WHITE).sum() - 3 * PIXELS * (4.0 - 0.1)) <= 1  # halos grow no wider with it
-    column, z = column_at(tools.picture(plotter, mapper), 7.0)
-    assert same(column, GREEN).sum() == 3
-
-
-def test_tiles_of_enlarged_pictures_show_no_seams(make_plotter, tools):
-    random = np.random.default_rng(3)
-    curves = [np.cumsum(random.normal(size=(40, 3)), axis=0) * 2.0 for _ in range(12)]
-    mapper, actor = made(lines_of(*curves), HaloStyle(0.5, 3.0, 3.0), halo_color=None)
-    plotter = make_plotter()
-    plotter.add_actor(actor)
-    plotter.set_background("red", top="blue")
-    tools.picture(plotter, mapper)
-    large = plotter.screenshot(None, scale=4).astype(int)
-    mapper.raise_pending()
-    whole = make_plotter(window_size=(960, 800))
-    mapper, actor = made(lines_of(*curves), HaloStyle(0.5, 3.0, 3.0, min_width=4.0), halo_color=None)
-    whole.add_actor(actor)
-    whole.camera = plotter.camera.copy()
-    whole.set_background("red", top="blue")
-    wanted = tools.picture(whole, mapper).astype(int)
-    assert tools.covered(large, (0, 0, 0)).all()
-    assert (np.abs(large - wanted).max(-1) > 8).mean() < 2e-4
 
 
 def test_nothing_to_draw_draws_nothing(make_plotter, tools):

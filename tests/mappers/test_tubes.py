@@ -151,18 +151,6 @@ def test_clipping_planes_of_the_mapper_cut(make_plotter, tools):
     assert (tools.covered(tools.picture(flat(plotter), mapper)) == whole).all()
 
 
-def test_tubes_cut_into_meshes(make_plotter, tools):
-    mapper, actor = made(straight(), colouring=Colouring("solid", color=(0, 1, 0)))
-    plotter = shown(make_plotter, actor, view=flat)
-    alone = tools.covered(tools.picture(plotter, mapper)).sum()
-    wall = pv.Plane(center=(0, -1, 0), direction=(0, 1, 0), i_size=60, j_size=60)
-    plotter.add_mesh(wall, color="red", lighting=False)
-    image = tools.picture(flat(plotter), mapper)
-    rows = np.flatnonzero((image[..., 1] > 0)[:, 120])
-    assert 0 < (image[..., 1] > 0).sum() < alone
-    assert abs(len(rows) - 5 * 2 * np.sqrt(2.0**2 - 1.0)) <= 1  # the chord of the circle, 5 pixels a mm
-
-
 def test_places_are_picked_as_the_picture_shows_them(make_plotter, tools):
     mapper, actor = made(straight(n_tubes=2))
     plotter = shown(make_plotter, actor, view=flat)
@@ -180,28 +168,6 @@ def test_places_are_picked_as_the_picture_shows_them(make_plotter, tools):
 
 def colour_at(image, column=150, row=100):
     return image[image.shape[0] - 1 - row, column].tolist()
-
-
-def test_every_way_to_colour(make_plotter, tools):
-    numbers = NodeValues([0.0, 1.0, 0.0], [1 / 15, 0.0, -1 / 15])
-    mapper, actor = made(straight(numbers))
-    plotter = shown(make_plotter, actor, view=flat)
-
-    def colours(colouring):
-        mapper.colouring = colouring
-        return colour_at(tools.picture(plotter, mapper), 195)  # x = 15.1, the end's ball
-
-    assert colours(Colouring("orientation")) == [255, 0, 0]
-    assert colours(Colouring("solid", color=(0.0, 1.0, 1.0))) == [0, 255, 255]
-    assert colours(Colouring("streamline_rgba", values=np.array([[7, 8, 9]], np.uint8))) == [7, 8, 9]
-    red = np.array([[255, 0, 0, 255], [0, 0, 255, 255]], np.uint8)
-    assert colours(Colouring("streamline_scalar", values=np.array([0.7]), lut=red, clim=(0, 1))) == [0, 0, 255]
-    through = Colouring("point_scalar", source="v", lut=red, clim=(0, 1))
-    assert colours(through) == [255, 0, 0]
-    assert colour_at(tools.picture(plotter, mapper), 120) == [0, 0, 255]
-    assert colours(Colouring("point_scalar", source="v", clim=(1, 2), below_color=(0, 1, 0))) == [0, 255, 0]
-    with pytest.raises(ValueError, match="2 values for 1"):
-        mapper.colouring = Colouring("streamline_scalar", values=np.array([0.7, 1.0]))
 
 
 @pytest.mark.parametrize("opaque", [True, False])
@@ -242,25 +208,3 @@ def test_options_reach_the_engine_and_only_those_that_differ(make_plotter, tools
     assert TubeOptions(culling="none") == TubeOptions(culling=None)
     assert TubeOptions(culling=None).changed() == {"culling": None}
     assert mapper.share == 1.0
-
-
-@pytest.mark.parametrize(
-    "bad",
-    [{"silhouettes": "ellipses"}, {"solver": "luck"}, {"iterations": 0}, {"iterations": 2.5}, {"min_width": -1},
-     {"min_width": np.nan}, {"culling": "coverage"}],
-)  # fmt: skip
-def test_unknown_options_are_refused_at_once(bad):
-    with pytest.raises(ValueError, match=f"{next(iter(bad))} is "):
-        TubeOptions(**bad)
-
-
-def test_thin_tubes_stay_as_wide_as_is_asked(make_plotter, tools):
-    heights = []
-    for width in (1.0, 5.0):
-        mapper, actor = made(straight(radius=0.001), options=TubeOptions(min_width=width))
-        actor.SetPosition(0, 0, 0.06)  # not between two rows of pixels, where a pixel's width need not meet a middle
-        image = tools.covered(tools.picture(shown(make_plotter, actor, view=flat), mapper))
-        assert image.any(axis=0).sum() >= 150
-        heights.append(image[:, 130].sum())
-    assert heights[0] in (1, 2)
-    assert heights[1] in (4, 5, 6)

@@ -7,11 +7,10 @@ import pytest
 from vtkmodules.vtkCommonDataModel import vtkPlane
 
 from pvfiblets.mappers import Colouring, VolumeMapper
-from pvfiblets.mappers.volumes import volume_renderer
-from pvfiblets.volumes import RaycastVolume, Transfer
+from pvfiblets.volumes import Transfer
 from pvfiblets.volumes.raycast_options import RaycastOptions
 
-from .visible_volumes import HALF, fog, light, look, made, middle, over, ramp, through_table, volume, wall
+from .visible_volumes import HALF, fog, light, look, made, middle, over, ramp, volume, wall
 
 
 def test_clipping_planes_of_the_mapper_cut(make_plotter, tools):
@@ -91,30 +90,6 @@ def test_light_is_picked_where_it_begins(make_plotter, tools):
     assert hit.value == pytest.approx(hit.voxel[1] - HALF)
 
 
-def test_modes_change_with_what_they_need(make_plotter, tools):
-    mapper, actor = made(fog(), light())
-    plotter = look(make_plotter())
-    plotter.add_actor(actor, reset_camera=False)
-    assert actor.GetForceTranslucent()
-    assert mapper.colouring.mode == "point_rgba"
-    first = tools.picture(plotter, mapper)
-    mapper.casting = RaycastOptions("mip")
-    assert mapper.colouring.mode == "solid"
-    assert middle(tools.picture(plotter, mapper)).tolist() == [255, 255, 255]
-    mapper.colouring = through_table((0.0, 2.0))
-    assert middle(tools.picture(plotter, mapper)).tolist() == [128, 128, 128]
-    mapper.casting = RaycastOptions("isosurface", (0.5,))
-    assert mapper.colouring.mode == "point_scalar"  # kept
-    assert not actor.GetForceTranslucent()
-    assert not tools.covered(tools.picture(plotter, mapper)).any()
-    mapper.casting = light()
-    assert (tools.picture(plotter, mapper) == first).all()
-    assert "tube_normal" not in mapper.explain()["features"]
-    twice = mapper.explain()["windows"][0]
-    assert twice["voxels_total"] == 125
-    assert twice["features"] == ["VOLUME_COMPOSITE", "VOLUME_HOMOGENEOUS", "VOLUME_PREINTEGRATED"]  # fog is even
-
-
 def test_colours_that_a_mode_does_not_have_are_refused():
     mapper, _ = made(fog(), light())
     with pytest.raises(ValueError, match=r"of mode 'composite' is 'solid'; light has the colours of casting\.transfer"):
@@ -124,23 +99,3 @@ def test_colours_that_a_mode_does_not_have_are_refused():
     assert mapper.casting.mode == "composite"
     with pytest.raises(ValueError, match="of mode 'mip' is 'point_rgba'"):
         VolumeMapper(fog(), RaycastOptions("mip"), colouring=Colouring("point_rgba", source="light"))
-
-
-def test_another_volume_takes_its_place(make_plotter, tools):
-    made_for = []
-
-    def factory(ctx, drawn, **options):
-        made_for.append(drawn)
-        return volume_renderer(ctx, drawn, **options)
-
-    first, second = fog(), RaycastVolume(np.ones((5, 5, 5), np.uint8), np.diag([2.0, 2.0, 2.0, 1.0]))
-    mapper, actor = made(first, light(), renderer_factory=factory)
-    plotter = look(make_plotter())
-    plotter.add_actor(actor, reset_camera=False)
-    tools.picture(plotter, mapper)
-    mapper.set_volume(second)
-    image = tools.covered(tools.picture(plotter, mapper))
-    assert made_for == [first, second]
-    assert mapper.volume is second
-    assert image.sum() == pytest.approx((8 * 5) ** 2, rel=0.06)
-    assert actor.GetBounds() == pytest.approx((0, 8, 0, 8, 0, 8))

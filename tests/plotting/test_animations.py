@@ -51,16 +51,6 @@ def test_frames_are_screenshots(plotter, tmp_path, what):
         assert np.abs(frame[..., :3].astype(int) - picture).mean() < 8.0  # of a palette
 
 
-def test_an_orbit(plotter, tmp_path):
-    plotter.add_fiblets(LINES, line_width=3, color="red")
-    path = plotter.generate_orbital_path(n_points=3)
-    plotter.open_gif(str(tmp_path / "a.gif"))
-    plotter.orbit_on_path(path, write_frames=True, step=0.0)
-    frames = imageio.imread(tmp_path / "a.gif")
-    assert len(frames) == 3
-    assert len({frame.tobytes() for frame in frames}) == 3
-
-
 def test_lines_that_grow(plotter, tmp_path):
     actor = plotter.add_fiblets([line[:5] for line in LINES], line_width=3, color="red")
     plotter.view_xy()

@@ -141,7 +141,9 @@ def test_labels_have_names_and_colours_and_are_never_mixed(plotter):
     values = np.zeros((10, 10, 10), np.int32)
     values[2:5], values[5:8] = 17, 2_000_000_011
     slices = plotter.add_slices(
-        values, labels={17: ("hippocampus", "yellow"), 2_000_000_011: ("far", (0, 0, 255))}, planes="axial",
+        values,
+        labels={17: ("hippocampus", "yellow"), 2_000_000_011: ("far", (0, 0, 255))},
+        planes="axial",
         position=(3, 4, 5),
     )
     assert slices.values() == {"image": (17, "hippocampus")}
@@ -304,28 +306,22 @@ def test_a_real_image_says_what_nibabel_says(plotter, shared_data):
         assert slices.values(position) == {"nv_MNI152_2009_template": data[tuple(voxel)]}
 
 
-def test_a_closed_plotter_leaves_nothing_alive():
-    plotter = pv.Plotter(off_screen=True)
-    slices = plotter.add_slices(np.ones((5, 5, 5)))
-    gone = weakref.ref(slices)
+@pytest.mark.parametrize("add", ["add_slices", "workspace"])
+def test_cleared_and_closed_plotters_leave_nothing_alive(add):
+    plotter = pv.Plotter(off_screen=True, shape=(2, 2))
+    slices = plotter.add_slices if add == "add_slices" else plotter.slices.workspace
+    gone = weakref.ref(slices(np.ones((5, 5, 5))))
+    if add == "add_slices":
+        gone().position = 1.0, 1.0, 1.0
+        plotter.show(auto_close=False)
+        plotter.clear()
+        assert list(plotter.slices) == []
+        gone = weakref.ref(plotter.add_slices(np.ones((4, 4, 4))))
+        assert list(plotter.slices) == [gone()]
     plotter.close()
     del slices, plotter
     gc.collect()
     assert gone() is None
-
-
-def test_slices_go_when_the_plotter_is_cleared(plotter):
-    stack = plotter.add_slices(np.random.default_rng(0).random((6, 7, 8)), show_scalar_bar=True)
-    other = plotter.add_slices(np.zeros((4, 4, 4)))
-    plotter.remove_actor(stack["axial"].actor)
-    assert list(plotter.slices) == [stack, other]
-    plotter.show(auto_close=False)
-    plotter.clear()
-    assert list(plotter.slices) == []
-    stack.position = 1.0, 1.0, 1.0
-    plotter.render()
-    again = plotter.add_slices(np.ones((4, 4, 4)))
-    assert list(plotter.slices) == [again]
 
 
 def test_slices_have_a_scalar_bar(plotter):

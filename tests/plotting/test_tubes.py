@@ -159,17 +159,6 @@ def test_a_node_that_tubes_share_is_a_place_along_each(plotter, front):
     assert at(picture, 6.0, 0.0)[0] == pytest.approx(255 * 21.1 / 27, abs=3)
 
 
-def test_the_radius_colours(plotter, bars, front):
-    actor = plotter.add_spline_tubes(
-        bars[1], radius=[1.0, 2.0, 3.0, 4.0, 5.0], scalars="radius", cmap="gray", lighting=False, show_scalar_bar=False
-    )
-    assert actor.clim == (1.0, 5.0)
-    picture = front()
-    for x in (-10.0, 0.0, 10.0):  # the ball of radius r that reaches farthest there lies r r' ahead
-        ball = (3.0 + (x + 0.1) * 4 / 30) / (1 - (4 / 30) ** 2)
-        assert at(picture, x, 0.0)[0] == pytest.approx(255 * (ball - 1) / 4, abs=4)
-
-
 def test_an_array_for_the_actors_own_nodes(plotter, bars, front):
     actor = plotter.add_spline_tubes(bars, color="white", **FLAT)
     actor.scalars = actor.tubes.points[:, 0]
@@ -239,24 +228,6 @@ def test_properties_take_effect_at_the_next_render(plotter, bars, front):
     assert covered(front()) > 4 * thin
 
 
-def test_light_falls_on_tubes_as_on_vtks(plotter, bars, front):
-    actor = plotter.add_spline_tubes(bars[1], radius=4.0, color="white")
-    actor.prop.ambient, actor.prop.diffuse, actor.prop.specular = 0.1, 0.7, 0.5
-    actor.prop.specular_power = 20
-    plotter.remove_all_lights()
-    lamp = pv.Light(position=(0, -100, 100), focal_point=(0, 0, 0), light_type="scene light")
-    lamp.positional = False
-    plotter.add_light(lamp)
-    ours = front()
-    plotter.remove_actor(actor)
-    tube = pv.Cylinder(center=(0, 0, 0), direction=(1, 0, 0), radius=4.0, height=30, resolution=360, capping=False)
-    plotter.add_mesh(
-        tube, color="white", ambient=0.1, diffuse=0.7, specular=0.5, specular_power=20, smooth_shading=True
-    )
-    theirs = front()
-    assert np.abs(ours - theirs)[:, 60:140].max(axis=2).mean() < 1.0
-
-
 def test_effects_of_surfaces_and_a_way_back(plotter, bars, front):
     actor = plotter.add_spline_tubes([*bars, bars[1] + (0, 4, 2.5)], color="white", **FLAT)
     before = front()
@@ -293,45 +264,6 @@ def test_settings_of_lines_say_what_to_use(plotter, bars, name):
     assert not hasattr(actor, name)
     with pytest.raises(AttributeError, match=f"{name} is for lines"):
         setattr(actor, name, True)
-
-
-def test_planes_of_the_mapper_clip(plotter, bars, front):
-    from vtkmodules.vtkCommonDataModel import vtkPlane
-
-    actor = plotter.add_spline_tubes(bars, color="white", **FLAT)
-    whole = front()
-    plane = vtkPlane()
-    plane.SetNormal(0, 0, 1)
-    plane.SetOrigin(0, 0, 5)
-    actor.mapper.AddClippingPlane(plane)
-    cut = front()
-    assert (cut[:75] == whole[:75]).all()
-    assert not cut[75:].any()
-
-
-def test_places_are_picked(plotter, bars, front):
-    actor = plotter.add_spline_tubes(bars, color="white", **FLAT)
-    assert actor.pick_at(100, 100) is None
-    front()
-    segment, t = actor.pick_at(100 + 5 * 9, 150)
-    assert actor.tubes.tubes[segment] == 2
-    assert actor.tubes.segments[segment].tolist() == [13, 14]
-    assert t == pytest.approx((9.1 - 7.5) / 7.5, abs=0.01)
-    assert actor.pick_at(100, 125) is None
-
-
-def test_a_copy_draws_the_same_and_is_another(plotter, bars, front):
-    actor = plotter.add_spline_tubes(bars, scalars=np.arange(15.0), solver="itp", min_width=2, **FLAT)
-    actor.silhouette = True
-    actor.user_matrix = np.diag([1.0, 1.0, 1.2, 1.0])
-    before = front()
-    twin = actor.copy()
-    assert (twin.solver, twin.min_width, twin.silhouettes) == ("itp", 2.0, "auto")
-    plotter.remove_actor(actor)
-    plotter.add_actor(twin, reset_camera=False)
-    assert (front() == before).all()
-    twin.opacity = 0.25
-    assert actor.opacity == 1.0
 
 
 def test_a_refused_change_leaves_the_actor_as_it_was(plotter, bars, front):

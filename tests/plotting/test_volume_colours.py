@@ -14,7 +14,7 @@ PLACE = np.array([[0.5, 0, 0, -10], [0, 20, 0, -40], [0, 0, 20, -40], [0, 0, 0, 
 """Voxel i lies at x = i / 2 - 10 mm: the value there is 2 x + 20."""
 
 
-def image_of(values=RAMP, affine=PLACE, cells=False):
+def image_of(values=RAMP, affine=PLACE, cells=False, rgb=None):
     """The same volume as VTK has it, its indices not starting at zero."""
     axes = affine[:3, :3] / np.linalg.norm(affine[:3, :3], axis=0)
     spacing = np.linalg.norm(affine[:3, :3], axis=0)
@@ -24,6 +24,9 @@ def image_of(values=RAMP, affine=PLACE, cells=False):
     image.origin = affine[:3, 3] - affine[:3, :3] @ (np.full(3, 3.0) + (0.5 if cells else 0.0))
     (image.cell_data if cells else image.point_data)["fa"] = values.ravel(order="F")
     image.set_active_scalars("fa")
+    if rgb is not None:
+        image["rgb"] = rgb
+        image.set_active_scalars("rgb")
     return image
 
 
@@ -120,21 +123,12 @@ def test_a_volume_of_nothing_but_nan_still_draws(plotter, line, colours_in):
         (lambda: nib.Nifti1Image(np.zeros((4, 5, 6, 7), np.float32), np.eye(4)), r"shape \(4, 5, 6, 7\)"),
         (lambda: (np.zeros((3, 3, 3)), np.eye(3)), r"\(4, 4\) matrix"),
         (lambda: pv.ImageData(dimensions=(3, 3, 3)), "no active scalars"),
+        (lambda: image_of(np.ones((3, 3, 3)), rgb=np.zeros((27, 3))), "3 numbers per voxel"),
     ],
 )
 def test_nonsense_is_refused_in_words(plotter, line, scalars, message):
     with pytest.raises(ValueError, match=message):
         plotter.add_fiblets([line], scalars=scalars())
-    assert not plotter.actors
-
-
-def test_colours_per_voxel_are_refused(plotter, line):
-    image = pv.ImageData(dimensions=(3, 3, 3))
-    image["rgb"] = np.zeros((27, 3))
-    with pytest.raises(ValueError, match="3 numbers per voxel"):
-        plotter.add_fiblets([line], scalars=image)
-
-
-def test_a_file_that_is_not_there_says_so(plotter, line):
     with pytest.raises(FileNotFoundError, match=r"nothing\.nii"):
         plotter.add_fiblets([line], scalars="/nowhere/nothing.nii")
+    assert not plotter.actors

@@ -106,14 +106,6 @@ def test_a_matrix_of_the_actor_turns_the_gradients():
     assert np.abs(found - shot(ours(image, specular=0.3), ["beside", "near"])).max() <= 4
 
 
-@pytest.mark.few(1)
-@pytest.mark.parametrize("integrator", ["exponential", "simpson", "preintegrated"])
-def test_all_integrators_shade(integrator):
-    image = bulge()
-    found, right = (shot(ours(image, integrator=name), ["beside"]) for name in (integrator, "adaptive"))
-    assert np.abs(found - right).mean() < 1.5
-
-
 def test_it_is_a_live_setting():
     plotter = pv.Plotter(off_screen=True, window_size=(60, 60))
     with pytest.warns(UserWarning, match=r"ambient=0\.1 changes nothing in mode 'composite': set actor\.shade"):

@@ -95,13 +95,6 @@ def test_they_look_as_contours_with_depth_peeling(shot):
     assert np.quantile(off, 0.95) <= 16  # normals of contours are those of triangles
 
 
-def test_one_opacity_for_all_and_the_colours_of_the_map(shot):
-    look = {"cmap": ["red", "blue"], "clim": (4, 13), "n_colors": 2, "lighting": False, **LOOK}
-    one = shot(lambda p: p.add_raycast_volume(ball(), mode="isosurface", values=[5, 12], surface_opacities=0.4, **look))
-    layers = [(BLUE, 0.4), (RED, 0.4), (RED, 0.4), (BLUE, 0.4)]
-    assert np.abs(one[48, 48] - over(layers)).max() <= 2
-
-
 def test_opaque_things_end_rays_and_cuts_open_surfaces(shot):
     def add(plotter, cut=False):
         actor = plotter.add_raycast_volume(

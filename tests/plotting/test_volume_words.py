@@ -166,19 +166,6 @@ def test_a_time_series_is_updated_in_place_or_by_other_sources(plotter, noise):
     assert np.abs(shown(plotter) - expected).max() <= 1
 
 
-def test_an_actor_made_by_hand_is_updated_too(noise):
-    from pvfiblets.plotting.volumes.actor import VolumeActor
-
-    values = np.zeros((4, 4, 4), np.float32)
-    actor = VolumeActor(as_raycast_volume(values))
-    values[:] = np.arange(4)
-    actor.update()
-    assert actor.clim == (0.0, 3.0)
-    actor.volume = as_raycast_volume(noise)
-    actor.update()
-    assert actor.volume.shape == (N, N, N)
-
-
 def test_other_names_of_add_volume(plotter, noise):
     actor = plotter.add_raycast_volume(noise, colormap="bone", rng=(0, 2), categories=5)
     assert (actor.cmap, actor.clim, actor.n_colors) == ("bone", (0, 2), 5)
@@ -205,15 +192,6 @@ def test_a_table_of_opacities_is_taken(plotter, noise):
     plain = pv.LookupTable("viridis", scalar_range=(0.2, 0.8))
     alpha = plotter.add_raycast_volume(noise, cmap=plain).casting.transfer.table[:, 3]
     assert np.allclose(alpha, np.linspace(0, 1, 256), atol=3e-3)
-
-
-def test_opacities_of_bytes(plotter, noise):
-    steps = np.r_[np.zeros(128), np.full(128, 255)]
-    for given in (steps, steps.tolist(), steps.astype(np.uint8)):
-        alpha = plotter.add_raycast_volume(noise, opacity=given).casting.transfer.table[:, 3]
-        assert np.array_equal(alpha, steps / 255)
-    with pytest.raises(ValueError, match="opacity is 255 at place 1"):
-        plotter.add_raycast_volume(noise, opacity=[0, 255])
 
 
 def test_one_value_that_does_not_show_is_told(plotter):

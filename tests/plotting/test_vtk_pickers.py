@@ -12,13 +12,10 @@ from vtkmodules.vtkRenderingCore import (
     vtkPicker,
     vtkPointPicker,
     vtkPropPicker,
-    vtkRenderedAreaPicker,
-    vtkWorldPointPicker,
 )
 from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLHardwareSelector
 
-import pvfiblets
-from pvfiblets.mappers import follow, readable
+from pvfiblets.mappers import follow
 
 
 @pytest.fixture
@@ -131,16 +128,6 @@ def test_hardware_selection_gives_segments_of_the_streamlines_that_are_seen(plot
     np.testing.assert_array_equal(plotter.screenshot(), before)
 
 
-def test_areas_and_points_of_the_world(plotter, scene, three_lines):
-    x, y = pixel_of(plotter, three_lines.points[30])
-    picker = vtkRenderedAreaPicker()
-    assert picker.AreaPick(x - 5, y - 5, x + 5, y + 5, plotter.renderer)
-    assert picker.GetProp3Ds().GetItemAsObject(0) is scene
-    world = vtkWorldPointPicker()
-    world.Pick(x, y, 0.0, plotter.renderer)
-    assert np.linalg.norm(np.array(world.GetPickPosition()) - three_lines.points[30]) < 0.6
-
-
 def click(plotter, pixel, button="right"):
     x, y = (round(part) for part in pixel)
     getattr(plotter.iren, f"_mouse_{button}_button_press")(x, y)
@@ -197,16 +184,6 @@ def test_rectangles_find_lines_that_run_through_them(plotter, scene, three_lines
     meshes.close()
 
 
-@pytest.mark.parametrize("mode", ["mesh", "point"])
-def test_elements_are_those_of_the_lines(plotter, scene, three_lines, mode):
-    found = []
-    plotter.enable_element_picking(found.append, mode=mode, show=False)
-    click(plotter, pixel_of(plotter, three_lines.points[30]))
-    (part,) = found
-    assert part.n_points == (123 if mode == "mesh" else 1)
-    assert np.linalg.norm(part.points - three_lines.points[30], axis=1).min() < 1.1
-
-
 def test_a_picker_of_ones_own_class_is_told(plotter, scene, three_lines):
     class Mine(vtkCellPicker):
         pass
@@ -236,12 +213,3 @@ def test_of_large_sets_pickers_get_what_lies_near(plotter, monkeypatch):
     with pytest.warns(UserWarning, match="not which streamline"):
         selected = selector.Select()
     assert selected.GetNode(0).GetProperties().Get(vtkSelectionNode.PROP()) is actor
-
-
-def test_meshes_of_the_plotter_are_lines(plotter, scene, three_lines):
-    (mesh,) = plotter.meshes
-    assert mesh.n_points == 123
-    np.testing.assert_allclose(mesh.points, scene.fiblets.decompress().points)
-    with readable(plotter.render_window):
-        assert scene.mapper.dataset.n_points == 123
-    assert isinstance(scene.fiblets, pvfiblets.FibletSet)
