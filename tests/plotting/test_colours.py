@@ -37,57 +37,29 @@ def close_to(found, wanted, tolerance=2):
     return distance.min(axis=1).max() <= tolerance and distance.min(axis=0).max() <= tolerance
 
 
-def test_orientation_is_the_absolute_direction_as_red_green_blue(plotter, three_lines, shown):
-    plotter.add_fiblets(three_lines, **FLAT)
-    assert close_to(shown(plotter), {(255, 0, 0), (0, 255, 0), (0, 0, 255)})
+BYTES = np.array([[255, 0, 0], [20, 200, 40], [250, 250, 5]])
 
 
-def test_a_solid_colour_is_that_colour(plotter, three_lines, shown):
-    plotter.add_fiblets(three_lines, color="orange", **FLAT)
-    assert close_to(shown(plotter), {pv.Color("orange").int_rgb})
-
-
-@pytest.mark.parametrize("kind", [np.uint8, np.float64])
-def test_one_colour_per_streamline(plotter, three_lines, kind, shown):
-    colours = np.array([[255, 0, 0], [20, 200, 40], [250, 250, 5]])
-    given = colours.astype(np.uint8) if kind is np.uint8 else colours / 255.0
-    plotter.add_fiblets(three_lines, scalars=given, **FLAT)
-    assert close_to(shown(plotter), {tuple(colour) for colour in colours.tolist()})
-
-
-def test_per_streamline_numbers_go_through_the_colour_map(plotter, three_lines, shown):
-    plotter.add_fiblets(three_lines, scalars="weight", cmap="plasma", clim=(0, 100), **FLAT)
-    assert close_to(shown(plotter), {mapped("plasma", f) for f in (0.01, 0.1, 1.0)})
-
-
-def test_a_logarithmic_scale_spreads_decades_evenly(plotter, three_lines, shown):
-    plotter.add_fiblets(three_lines, scalars="weight", cmap="plasma", log_scale=True, **FLAT)
-    assert close_to(shown(plotter), {mapped("plasma", f) for f in (0.0, 0.5, 1.0)}, tolerance=4)
-
-
-def test_few_colours_are_few(plotter, three_lines, shown):
-    plotter.add_fiblets(three_lines, scalars=[0.0, 0.4, 1.0], cmap="viridis", n_colors=4, **FLAT)
-    assert close_to(shown(plotter), {mapped("viridis", f, 4) for f in (0.0, 0.4, 1.0)})
-
-
-def test_nan_and_what_lies_outside_have_their_own_colours(plotter, three_lines, shown):
-    plotter.add_fiblets(
-        three_lines,
-        scalars=[np.nan, -5.0, 5.0],
-        clim=(0, 1),
-        nan_color="magenta",
-        below_color="cyan",
-        above_color="yellow",
-        **FLAT,
-    )
-    assert close_to(shown(plotter), {(255, 0, 255), (0, 255, 255), (255, 255, 0)})
-
-
-def test_lengths_are_those_of_the_lines(plotter, shown):
-    lines = [np.linspace((0, y, 0), (length, y, 0), 60) for y, length in ((0, 30.0), (5, 15.0))]
-    actor = plotter.add_fiblets(lines, scalars="length", cmap="viridis", **FLAT)
-    assert actor.clim == pytest.approx((15.0, 30.0), rel=1e-3)
-    assert close_to(shown(plotter), {mapped("viridis", f) for f in (0.0, 1.0)}, tolerance=4)
+@pytest.mark.parametrize(
+    ("arguments", "wanted"),
+    [
+        ({}, [(255, 0, 0), (0, 255, 0), (0, 0, 255)]),  # the absolute direction
+        ({"color": "orange"}, [pv.Color("orange").int_rgb]),
+        ({"scalars": BYTES.astype(np.uint8)}, BYTES.tolist()),
+        ({"scalars": BYTES / 255.0}, BYTES.tolist()),
+        ({"scalars": "weight", "cmap": "plasma", "clim": (0, 100)}, [mapped("plasma", f) for f in (0.01, 0.1, 1.0)]),
+        ({"scalars": "weight", "cmap": "plasma", "log_scale": True}, [mapped("plasma", f) for f in (0.0, 0.5, 1.0)]),
+        ({"scalars": [0.0, 0.4, 1.0], "n_colors": 4}, [mapped("viridis", f, 4) for f in (0.0, 0.4, 1.0)]),
+        ({"scalars": np.repeat([0.0, 0.5, 1.0], 41)}, [mapped("viridis", f) for f in (0.0, 0.5, 1.0)]),
+        ({"scalars": [np.nan, -5.0, 5.0], "clim": (0, 1), "nan_color": "magenta", "below_color": "cyan",
+          "above_color": "yellow"}, [(255, 0, 255), (0, 255, 255), (255, 255, 0)]),
+        ({"scalars": [np.nan] * 3, "nan_color": "red"}, [(255, 0, 0)]),
+    ],
+    ids=["direction", "one", "bytes", "floats", "numbers", "log", "few", "points", "outside", "nan"],
+)  # fmt: skip
+def test_colours_are_those_of_the_numbers(plotter, three_lines, shown, arguments, wanted):
+    plotter.add_fiblets(three_lines, **{"cmap": "viridis", **arguments}, **FLAT)
+    assert close_to(shown(plotter), set(map(tuple, wanted)), tolerance=4)
 
 
 @pytest.mark.parametrize("scalars", ["height", "arc_length"])
@@ -116,19 +88,6 @@ def test_curvature_of_a_circle_is_one_over_its_radius(plotter):
         assert np.median(near) == pytest.approx(wanted, abs=0.006)
 
 
-def test_an_array_with_a_number_per_point(plotter, three_lines, shown):
-    values = np.repeat([0.0, 0.5, 1.0], 41)
-    plotter.add_fiblets(three_lines, scalars=values, cmap="viridis", **FLAT)
-    assert close_to(shown(plotter), {mapped("viridis", f) for f in (0.0, 0.5, 1.0)}, tolerance=4)
-
-
-def test_all_values_alike_or_all_nan_still_draw(plotter, three_lines, shown):
-    plotter.add_fiblets(three_lines, scalars=[7.0, 7.0, 7.0], name="same", **FLAT)
-    assert len(shown(plotter)) == 1
-    plotter.add_fiblets(three_lines, scalars=[np.nan] * 3, nan_color="red", name="same", **FLAT)
-    assert close_to(shown(plotter), {(255, 0, 0)})
-
-
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
@@ -141,23 +100,24 @@ def test_all_values_alike_or_all_nan_still_draw(plotter, three_lines, shown):
         ({"scalars": "weight", "n_colors": 0}, "n_colors is 0"),
         ({"opacity": 1.5}, "opacity is 1.5"),
         ({"line_width": 0}, "line_width is 0"),
+        ({"line_width": "x"}, "line_width is 'x'; give .* above 0"),
     ],
 )
 def test_nonsense_is_refused_in_words(plotter, three_lines, arguments, message):
     with pytest.raises(ValueError, match=message):
         plotter.add_fiblets(three_lines, **arguments)
+    with pytest.raises(KeyError, match=r"no array 'fa'.*'weight'.*'curvature'"):
+        plotter.add_fiblets(three_lines, scalars="fa")
     assert not plotter.actors
 
 
-def test_an_unknown_name_lists_those_that_exist(plotter, three_lines):
-    with pytest.raises(KeyError, match=r"no array 'fa'.*'weight'.*'curvature'"):
-        plotter.add_fiblets(three_lines, scalars="fa")
-
-
-def test_no_streamlines_is_a_picture_of_nothing(plotter, colours_in):
+def test_no_streamlines_and_equal_values_are_drawn_too(plotter, three_lines, colours_in):
     with pytest.warns(UserWarning, match="no streamlines"):
         plotter.add_fiblets(Streamlines(np.zeros((0, 3)), [0]), scalars="length", show_scalar_bar=False)
     assert not colours_in(plotter.screenshot(None))
+    plotter.add_fiblets(three_lines, scalars=[7.0, 7.0, 7.0], **FLAT)
+    plotter.render()
+    assert len(colours_in(plotter.screenshot(None))) == 1
 
 
 WRONG = {
@@ -186,10 +146,3 @@ def test_wrong_settings_fail_at_once_though_one_colour_is_shown(plotter, three_l
             getattr(plotter, add)(three_lines, color="red", **{name: value})
     actor.scalars = np.arange(3.0)
     plotter.screenshot()
-
-
-@pytest.mark.parametrize("name", ["line_width", "tube_radius"])
-def test_a_length_that_is_a_word_is_named(plotter, three_lines, name):
-    actor = plotter.add_fiblets(three_lines)
-    with pytest.raises(ValueError, match=rf"{name} is 'x'; give .* above 0"):
-        setattr(actor, name, "x")

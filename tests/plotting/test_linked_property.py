@@ -32,15 +32,26 @@ def test_color(plotter, lines, given):
     assert actor.color == pv.Color("tomato")
     image = picture(plotter)
     assert {tuple(map(int, c)) for c in np.unique(image[image.any(-1)], axis=0)} == {pv.Color("tomato").int_rgb}
-
-
-def test_color_of_scalars_is_theirs(plotter, three_lines):
-    """As with any mesh whose scalars show."""
-    actor = plotter.add_fiblets(three_lines, scalars="weight", show_scalar_bar=False)
+    actor.prop.opacity = 0.5
+    assert (actor.opacity, actor.lighting) == (0.5, False)
+    assert abs(picture(plotter)[:, 60].max() - pv.Color("tomato").int_rgb[0] / 2) <= 1
+    actor.prop = pv.Property(color="blue", line_width=5, lighting=False)
+    assert (actor.color, actor.line_width, actor.lighting) == (pv.Color("blue"), 5, False)
+    image = picture(plotter)
+    assert {tuple(map(int, c)) for c in np.unique(image[image.any(-1)], axis=0)} == {(0, 0, 255)}
+    actor.prop.line_width = 2
+    assert actor.line_width == 2
+    actor.scalars = "length"  # whose colours are theirs, as with any mesh
     before = picture(plotter)
     actor.prop.color = "tomato"
-    assert actor.scalars == "weight"
+    assert actor.scalars == "length"
     assert np.array_equal(picture(plotter), before)
+    prop, gone = actor.prop, weakref.ref(actor)
+    plotter.close()
+    del actor
+    gc.collect()
+    assert gone() is None  # the property keeps no actor alive
+    prop.color = "red"
 
 
 def test_line_width(plotter, lines):
@@ -68,26 +79,6 @@ def test_lines_as_tubes(plotter, lines):
     assert np.array_equal(picture(plotter), flat)
 
 
-def test_opacity_and_lighting(plotter, lines):
-    actor = plotter.add_fiblets(lines, color="white", line_width=5)
-    actor.prop.lighting = False
-    assert actor.lighting is False
-    assert picture(plotter).max() == 255
-    actor.prop.opacity = 0.5
-    assert actor.opacity == 0.5
-    assert abs(picture(plotter).max() - 128) <= 1
-
-
-def test_another_property(plotter, lines):
-    actor = plotter.add_fiblets(lines)
-    actor.prop = pv.Property(color="blue", line_width=5, lighting=False)
-    assert (actor.color, actor.line_width, actor.lighting) == (pv.Color("blue"), 5, False)
-    image = picture(plotter)
-    assert {tuple(map(int, c)) for c in np.unique(image[image.any(-1)], axis=0)} == {(0, 0, 255)}
-    actor.prop.line_width = 2
-    assert actor.line_width == 2
-
-
 def test_spline_tubes_and_halos_have_their_colour(plotter, lines):
     for add in (plotter.add_spline_tubes, plotter.add_halo_lines):
         actor = add(lines, color="white", lighting=False)
@@ -105,14 +96,3 @@ def test_copies_have_a_property_of_their_own_or_share_one(plotter, lines):
     assert (deep.color, shallow.color) == (pv.Color("red"), pv.Color("blue"))
     shallow.scalars = "length"
     assert actor.color == pv.Color("blue")
-
-
-def test_the_property_keeps_no_actor_alive(lines):
-    plotter = pv.Plotter(off_screen=True)
-    actor = plotter.add_fiblets(lines)
-    prop, gone = actor.prop, weakref.ref(actor)
-    plotter.close()
-    del actor, plotter
-    gc.collect()
-    assert gone() is None
-    prop.color = "red"

@@ -13,22 +13,6 @@ ADDS = {
 }
 
 
-def set_cmap(actor):
-    actor.mapper.lookup_table.cmap = "jet"
-
-
-def apply_cmap(actor):
-    actor.mapper.lookup_table.apply_cmap("plasma", 5, flip=True)
-
-
-def set_range(actor):
-    actor.mapper.scalar_range = (2.0, 20.0)
-
-
-def set_range_by_vtk(actor):
-    actor.mapper.SetScalarRange(2.0, 20.0)
-
-
 def outside(actor):
     actor.mapper.scalar_range = (2.0, 20.0)
     actor.mapper.lookup_table.below_range_color = "red"
@@ -43,14 +27,6 @@ def all_entries(actor):
     actor.mapper.lookup_table.values = np.array([[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255]], np.uint8)
 
 
-def logarithm(actor):
-    actor.mapper.lookup_table.log_scale = True
-
-
-def another_table(actor):
-    actor.mapper.lookup_table = pv.LookupTable("jet", n_values=7)
-
-
 def no_scalars(actor):
     actor.mapper.scalar_visibility = False
     actor.prop.color = "orange"
@@ -62,14 +38,19 @@ def no_scalars_and_back(actor):
     actor.mapper.ScalarVisibilityOn()
 
 
-CHANGES = (
-    set_cmap, apply_cmap, set_range, set_range_by_vtk, outside, one_entry, all_entries, logarithm, another_table,
-    no_scalars, no_scalars_and_back,
-)  # fmt: skip
+CHANGES = {
+    "map": lambda actor: setattr(actor.mapper.lookup_table, "cmap", "jet"),
+    "applied map": lambda actor: actor.mapper.lookup_table.apply_cmap("plasma", 5, flip=True),
+    "range": lambda actor: setattr(actor.mapper, "scalar_range", (2.0, 20.0)),
+    "range by VTK": lambda actor: actor.mapper.SetScalarRange(2.0, 20.0),
+    "logarithm": lambda actor: setattr(actor.mapper.lookup_table, "log_scale", True),
+    "table": lambda actor: setattr(actor.mapper, "lookup_table", pv.LookupTable("jet", n_values=7)),
+    **{change.__name__: change for change in (outside, one_entry, all_entries, no_scalars, no_scalars_and_back)},
+}
 
 
 @pytest.mark.few(3)
-@pytest.mark.parametrize("change", CHANGES, ids=lambda change: change.__name__)
+@pytest.mark.parametrize("change", CHANGES.values(), ids=CHANGES.keys())
 @pytest.mark.parametrize("add", ADDS)
 def test_as_with_add_mesh(plotter, three_lines, colours_in, add, change):
     mesh = three_lines.to_polydata()
