@@ -8,6 +8,7 @@ import pytest
 from pvfiblets.halos import HaloStyle
 from pvfiblets.halos.displacement import as_displacement, displaced
 from pvfiblets.halos.style import DISPLACEMENTS, TABLE_SIZE
+from pvfiblets.halos.widths import halo_width
 
 X = np.linspace(0, 1, 1001)
 
@@ -78,3 +79,69 @@ def test_what_cannot_be(given, message):
     for other in (None, 0.5, b"linear", {0.0: 1.0}):
         with pytest.raises(TypeError, match=f"displacement is a {type(other).__name__}"):
             as_displacement(other)
+
+
+DZ = np.linspace(-1, 7, 161)
+
+
+def looked_at(dz, line, strip, largest, displacement, n=200_001):
+    """Go out from the line's edge until the other line shows: what is nearer to the viewer is seen."""
+    out = np.linspace(line / 2, strip / 2, n)
+    behind = largest * displaced(2 * out / strip, displacement)
+    found = []
+    for d in np.atleast_1d(dz):
+        seen = behind >= d
+        end = out[np.argmax(seen)] if seen.any() else strip / 2
+        found.append(0.0 if d <= 0.0 else end - line / 2)
+    return np.array(found)
+
+
+@pytest.mark.parametrize(
+    "displacement",
+    ["linear", "square", "square root", (0.0, 0.1, 0.9, 1.0), (0.2, 0.4), (0.0, 0.8, 0.3, 1.0), (1.0, 0.0), (0.5, 0.5),
+     lambda x: np.sin(np.pi / 2 * x), lambda x: 0.0 * x],
+)  # fmt: skip
+@pytest.mark.parametrize(("line", "strip", "largest"), [(0.5, 3.0, 5.0), (0.01, 2.0, 0.5), (1.0, 1.1, 6.0)])
+def test_widths_are_those_of_the_strip(displacement, line, strip, largest):
+    found = halo_width(DZ, line, strip, largest, displacement)
+    wanted = looked_at(DZ, line, strip, largest, displacement)
+    # Where a function has a level part, a line at its very depth is either.
+    level = np.abs(np.subtract.outer(DZ / largest, displaced(np.linspace(0, 1, 64), displacement))).min(axis=1) < 1e-9
+    level &= not isinstance(displacement, str)
+    assert found[~level] == pytest.approx(wanted[~level], abs=2e-5 * strip)
+
+
+def test_the_three_cases_of_equation_4():
+    line, strip, largest = 0.75, 4.5, 3.0
+    first = largest * line / strip
+    assert not halo_width(np.linspace(-2, first, 20), line, strip, largest).any()
+    between = np.linspace(first, largest, 20)
+    np.testing.assert_allclose(
+        halo_width(between, line, strip, largest), (strip * between / largest - line) / 2, atol=1e-15
+    )
+    assert halo_width([largest, 2 * largest, 1e300, np.inf], line, strip, largest).tolist() == [(strip - line) / 2] * 4
+
+
+def test_shapes_units_and_special_widths():
+    assert halo_width(1.0, 1.0, 3.0, 1.0).shape == ()
+    assert halo_width(np.ones((2, 3)), 1.0, 3.0, 1.0).tolist() == [[1.0] * 3] * 2
+    assert halo_width([], 1.0, 3.0, 1.0).shape == (0,)
+    for displacement in ("linear", (0.0, 1.0)):
+        assert np.isnan(halo_width([np.nan, 1.0], 1.0, 3.0, 1.0, displacement)).tolist() == [True, False]
+        assert not halo_width(DZ, 2.0, 2.0, 3.0, displacement).any()  # as wide as its line
+        # Without displacement all that is behind is hidden.
+        assert halo_width([-1, 0, 1e-9, 5], 1.0, 3.0, 0.0, displacement).tolist() == [0, 0, 1, 1]
+    one = halo_width(DZ, 0.5, 3.0, 5.0, "square root")
+    for unit in (1e-9, 1e9):
+        np.testing.assert_allclose(halo_width(DZ * unit, 0.5 * unit, 3 * unit, 5 * unit, "square root"), one * unit)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [((0.0, 1.0, 1.0), "line_width is 0.0"), ((2.0, 1.0, 1.0), "strip_width is 1.0; give at least line_width, 2.0"),
+     ((1.0, 2.0, -1.0), "max_displacement is -1.0"), ((1.0, 2.0, np.nan), "max_displacement is nan"),
+     ((1.0, 2.0, 1.0, "cubic"), "displacement is 'cubic'")],
+)  # fmt: skip
+def test_widths_that_cannot_be(arguments, message):
+    with pytest.raises(ValueError, match=message):
+        halo_width(1.0, *arguments)

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
+from vtkmodules.vtkRenderingCore import vtkActor
 
-from pvfiblets.mappers import resolve
+from pvfiblets.mappers import EngineOptions, FibletMapper, resolve
+from pvfiblets.mappers.proxy import proxy_polydata
 
 COLOURS = ("colour_orientation", "colour_solid", "colour_streamline", "colour_point_rgba", "colour_point_scalar")
 
@@ -57,3 +60,101 @@ def test_uninstalling_leaves_the_replacements_of_others():
     assert shaders.GetNumberOfShaderReplacements() == len(edits) + 1
     resolve.uninstall(shaders, edits)
     assert shaders.GetNumberOfShaderReplacements() == 1
+
+
+BOUNDS = {
+    "plain": (-1, 2, -3, 4, -5, 6),
+    "far away": (1e6, 1e6 + 10, 1e6, 1e6 + 20, -1e6, -1e6 + 5),
+    "tiny": (0, 1e-6, 0, 2e-6, 0, 3e-6),
+    "flat": (0, 10, 0, 10, 3, 3),
+    "one point": (7, 7, 8, 8, 9, 9),
+    "at the origin": (0, 0, 0, 0, 0, 0),
+}
+
+
+@pytest.mark.parametrize("name", BOUNDS)
+def test_vertices_differ_and_keep_the_bounds(name: str) -> None:
+    """VTK before 9.7 drops triangles of coinciding vertices, and with them the whole picture."""
+    bounds = np.array(BOUNDS[name], dtype=float)
+    proxy = proxy_polydata(bounds)
+    points = np.array([proxy.GetPoint(i) for i in range(6)])
+    for triangle in (points[:3], points[3:]):
+        assert len(np.unique(triangle, axis=0)) == 3
+    size = max(np.ptp(bounds.reshape(3, 2), axis=1).max(), 1e-9 * np.abs(bounds).max())
+    np.testing.assert_allclose(proxy.GetBounds(), bounds, rtol=0, atol=1e-5 * size + 1e-11)
+    assert proxy.GetNumberOfCells() == 2
+
+
+def test_layers_repeat_its_triangles_and_nothing_to_draw_is_empty() -> None:
+    assert proxy_polydata(None).GetNumberOfCells() == 0
+    one, many = proxy_polydata(BOUNDS["plain"]), proxy_polydata(BOUNDS["plain"], 5)
+    np.testing.assert_allclose(many.GetBounds(), one.GetBounds())
+    assert many.GetNumberOfCells() == 10
+    assert [many.GetPoint(i) for i in range(30)] == [one.GetPoint(i % 6) for i in range(30)]
+
+
+def recording(plain):
+    """Return a mapper on GL lines, its actor, and the list of keywords that its renderers were made with."""
+    asked = []
+    factory = plain.mapper()._factory
+
+    def make(ctx, fiblets, **options):
+        asked.append(options)
+        return factory(ctx, fiblets)
+
+    def build(**arguments):
+        mapper, actor = FibletMapper(plain.fiblets, renderer_factory=make, **arguments), vtkActor()
+        mapper.attach(actor)
+        return mapper, actor
+
+    return build, asked
+
+
+def test_only_what_is_not_the_default_is_asked_for():
+    assert EngineOptions().changed() == {}
+    assert EngineOptions("geometry", "coverage", "sample").changed() == {
+        "pipeline": "geometry", "culling": "coverage", "fit": "sample"
+    }  # fmt: skip
+    assert EngineOptions(culling="none") == EngineOptions(culling=None)
+    assert EngineOptions(culling="none").changed() == {"culling": None}
+
+
+def test_other_options_make_another_renderer_at_the_next_frame(make_plotter, plain, standins, tools):
+    build, asked = recording(plain)
+    mapper, actor = build(options=EngineOptions(pipeline="geometry"))
+    plotter = make_plotter()
+    plotter.add_actor(actor)
+    first = tools.picture(plotter, mapper)
+    assert asked == [{"pipeline": "geometry"}]
+    mapper.options = EngineOptions(pipeline="geometry")
+    tools.picture(plotter, mapper)
+    assert len(asked) == 1
+    before = actor.GetMTime()
+    mapper.options = EngineOptions(culling=None)
+    assert actor.GetMTime() > before, "who renders on demand must see the change"
+    assert len(asked) == 1, "nothing is made outside a frame"
+    assert (tools.picture(plotter, mapper) == first).all()
+    assert asked == [{"pipeline": "geometry"}, {"culling": None}]
+    assert [renderer.released for renderer in standins] == [True, False]
+
+
+def test_progress_is_passed_on_and_makes_nothing_anew(make_plotter, plain, tools):
+    build, asked = recording(plain)
+    mapper, actor = build(progress=True)
+    plotter = make_plotter()
+    plotter.add_actor(actor)
+    tools.picture(plotter, mapper)
+    assert asked == [{"progress": True}]
+
+
+def test_the_pipeline_in_use_is_known_after_the_first_frame(make_plotter, plain, standins, tools):
+    build, _ = recording(plain)
+    mapper, actor = build()
+    assert mapper.pipeline_in_use is None
+    plotter = make_plotter()
+    plotter.add_actor(actor)
+    tools.picture(plotter, mapper)
+    standins[0].pipeline = "lines"
+    assert mapper.pipeline_in_use == "lines"
+    mapper.release()
+    assert mapper.pipeline_in_use is None

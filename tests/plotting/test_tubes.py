@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import matplotlib as mpl
+import nibabel as nib
 import numpy as np
 import pytest
 import pyvista as pv
@@ -303,3 +306,128 @@ def test_slopes_of_an_array_follow_straight_values(bars):
     actor = TubeActor(as_spline_tubes(bars, radius=1.0), scalars=np.tile(np.linspace(0, 6, 5), 3))
     assert actor.tubes.values["Data"].slopes == pytest.approx(np.full(15, 6 / 30))
     assert find_tube_scalars(actor.tubes, "Data").range == (0.0, 6.0)
+
+
+X = np.linspace(-15.0, 15.0, 5)
+BARS = [np.stack([X, 0 * X, 0 * X + z], axis=1) for z in (-10.0, 0.0, 10.0)]
+FORK = (np.array([(0, 0, 0), (10, 0, 0), (20, 5, 0), (20, -5, 0)], float), np.array([(0, 1), (1, 2), (1, 3)]))
+
+
+def test_computed_colours_are_those_of_the_tubes_that_show():
+    actor = TubeActor(as_spline_tubes(BARS[0], radius=[1, 2, 3, 4, 5]), scalars="radius")
+    assert actor.clim == (1.0, 5.0)
+    actor.tubes = replace(actor.tubes, radius=2 * actor.tubes.radius)
+    assert actor.clim == (2.0, 10.0)
+    actor.scalars = "arc_length"
+    actor.tubes = replace(actor.tubes, points=3 * actor.tubes.points)
+    assert actor.clim == pytest.approx((0.0, 90.0))
+    assert actor.tubes.values == {}
+
+
+def test_arc_lengths_leave_the_tubes_of_the_actor_as_they_were():
+    """Three tubes meet in one node that lies 10 mm, 0 mm and 0 mm along them; numbers are still given per node."""
+    tubes = as_spline_tubes(FORK, tangents=np.tile([1.0, 0, 0], (4, 1)), scaled=True, radius=1.0)
+    tubes = replace(tubes, tubes=np.arange(3), n_tubes=3)
+    actor = TubeActor(tubes, scalars="arc_length")
+    assert actor.tubes is tubes
+    actor.scalars = np.arange(4.0)
+    assert (actor.tubes.n_nodes, actor.clim) == (4, (0.0, 3.0))
+
+
+@pytest.mark.parametrize("other", [None, BARS[0], "tubes"])
+def test_other_things_than_tubes_are_refused_in_words(other):
+    actor = TubeActor(as_spline_tubes(BARS, radius=1.0))
+    before = actor.tubes
+    with pytest.raises(TypeError, match="as_spline_tubes"):
+        actor.tubes = other
+    assert actor.tubes is before
+
+
+def test_unknown_names_list_what_there_is():
+    mesh = pv.MultipleLines(BARS[0])
+    mesh.point_data["height"] = X
+    mesh.cell_data["weight"] = [3.0]
+    plotter = pv.Plotter(off_screen=True)
+    for source, known in ((mesh, "'height'.*'weight'.*'arc_length'"), (BARS, "none.*none.*'arc_length'"),
+                          (as_spline_tubes(BARS), "none.*none.*'arc_length'")):  # fmt: skip
+        with pytest.raises(KeyError, match=f"no array 'fa'.*{known}"):
+            plotter.add_spline_tubes(source, scalars="fa")
+    plotter.close()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "message"),
+    [
+        ({"radius": -1.0}, ValueError, "radius"),
+        ({"radius": [1.0]}, ValueError, r"radius has the shape \(1,\)"),
+        ({"scalars": "fa"}, KeyError, "no array 'fa'.*'arc_length'"),
+        ({"scalars": np.zeros((15, 2)), "rgb": True}, ValueError, r"\(15, 2\)"),
+        ({"method": "magic"}, ValueError, "method is 'magic'"),
+        ({"opacity": 2}, ValueError, "opacity is 2"),
+        ({"solver": "luck"}, ValueError, "solver is 'luck'"),
+        ({"min_width": 1000}, ValueError, "min_width is 1000"),
+        ({"scalars": "length", "clim": (2, 1)}, ValueError, "the low one first"),
+        ({"scalars": "length", "n_colors": None}, ValueError, "n_colors is None"),
+        ({"scalars": "length", "n_colors": 1e30}, ValueError, "n_colors is 1e"),
+        ({"scalars": "length", "scalar_bar_args": {"size": 3}}, TypeError, "size"),
+        ({"scalar_bar_args": "title"}, TypeError, "scalar_bar_args is 'title'"),
+        ({"opacity": "linear"}, ValueError, "opacity 'linear' follows the numbers"),
+        ({"silhouettes": ["boxes"]}, ValueError, r"silhouettes is \['boxes'\]"),
+        ({"solver": {}}, ValueError, "solver is {}"),
+        ({"iterations": "many"}, ValueError, "iterations is 'many'"),
+        ({"iterations": float("inf")}, ValueError, "iterations is inf"),
+        ({"min_width": None}, ValueError, "min_width is None"),
+        ({"scalars": "arc_length", "scalar_slopes": np.ones(15)}, ValueError, "scalar_slopes came with 'arc_length'"),
+        ({"label": 3}, TypeError, "label is 3; give a string"),
+    ],
+)
+def test_nonsense_is_refused_in_words(plotter, arguments, error, message):
+    with pytest.raises(error, match=message):
+        plotter.add_spline_tubes(BARS, **arguments)
+    assert not plotter.actors
+
+
+ADDS = ("add_spline_tubes", "add_halo_lines")
+
+
+@pytest.fixture
+def tractogram():
+    random = np.random.default_rng(0)
+    lines = [np.cumsum(random.random((n, 3)), axis=0).astype(np.float32) for n in (10, 20, 5)]
+    fa = [random.random((len(line), 1)).astype(np.float32) for line in lines]
+    return nib.streamlines.Tractogram(
+        lines, data_per_point={"fa": fa}, data_per_streamline={"w": np.arange(3.0)[:, None]}, affine_to_rasmm=np.eye(4)
+    )
+
+
+def values_of(actor):
+    drawn = actor.tubes if hasattr(actor, "tubes") else actor.lines
+    held = drawn.values["fa"]
+    return held.values if hasattr(held, "values") else held
+
+
+@pytest.mark.parametrize("add", ADDS)
+@pytest.mark.parametrize("kind", ["Tractogram", "TrkFile", "StatefulTractogram", "MultiBlock"])
+def test_data_of_other_libraries_go_by_their_names(plotter, tractogram, add, kind, tmp_path):
+    source = tractogram
+    wanted = np.concatenate(tractogram.data_per_point["fa"])[:, 0]
+    if kind == "TrkFile":
+        nib.streamlines.save(tractogram, tmp_path / "lines.trk")
+        source = nib.streamlines.load(tmp_path / "lines.trk")
+    elif kind == "StatefulTractogram":
+        dipy = pytest.importorskip("dipy.io.stateful_tractogram")
+        image = nib.Nifti1Image(np.zeros((40, 40, 40), np.float32), np.eye(4))
+        source = dipy.StatefulTractogram(
+            tractogram.streamlines, image, dipy.Space.RASMM,
+            data_per_point=tractogram.data_per_point, data_per_streamline=tractogram.data_per_streamline,
+        )  # fmt: skip
+    elif kind == "MultiBlock":
+        source = pv.MultiBlock()
+        for line, fa, w in zip(tractogram.streamlines, tractogram.data_per_point["fa"], range(3), strict=True):
+            block = pv.PolyData(line, lines=[len(line), *range(len(line))])
+            block.point_data["fa"], block.cell_data["w"] = fa[:, 0], [float(w)]
+            source.append(block)
+    actor = getattr(plotter, add)(source, scalars="fa", show_scalar_bar=False)
+    np.testing.assert_allclose(values_of(actor), wanted, atol=1e-6)
+    per_line = getattr(plotter, add)(source, scalars="w", cmap="gray", show_scalar_bar=False)
+    assert per_line.clim == (0.0, 2.0)

@@ -132,14 +132,6 @@ def test_parents_hold_their_children(shape, margin, seed, dtype, cut):
     )
 
 
-def test_means_weigh_cells_alike():
-    values = made((30, 9, 19), np.float32)
-    octree = build_octree(RaycastVolume(values))
-    weights = [np.r_[0.5, np.ones(n - 2), 0.5] / (n - 1) for n in values.shape]
-    expected = np.einsum("ijk,i,j,k", values.astype(np.float64), *weights)
-    assert octree.levels[-1].mean[0, 0, 0] == pytest.approx(expected, rel=1e-5)
-
-
 def test_the_bound_on_overshoot_is_reached():
     # The field at a cell's middle is greatest where voxels are 1 under positive weights and 0 under negative ones.
     weights = np.array([-1, 9, 9, -1]) / 16

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pvfiblets.volumes.reference import composite, isosurface, mip, rays, sample
+from pvfiblets.volumes.reference import composite, mip, rays, sample
 from pvfiblets.volumes.reference_profiles import profiles
 from pvfiblets.volumes.transfer import Transfer
 from pvfiblets.volumes.volume import FILTERS, RaycastVolume
 
-from .analytic import GRIDS, Ball, Gaussian, Layers, camera, middle, within
+from .analytic import GRIDS, Ball, Gaussian, Layers, camera, middle
 from .noise import SHAPE, SIZE, along, haze, noise, straight, view
 
 # ----------------------------------------------------------------------------------------------------------- maxima
@@ -191,17 +191,3 @@ def test_thresholds_are_a_transfer_function_that_is_nothing_beyond_them(how):
     assert found[..., 3].max() > 0.5
     assert np.abs(found - expected).max() < (1e-10 if how == "nearest" else 2e-3)
     assert np.abs(composite(volume, plain, through, low=-5, high=300) - composite(volume, plain, through)).max() < 1e-12
-
-
-def test_rays_of_any_shape_and_some_of_them():
-    volume = noise()
-    through = rays(view(np.eye(4), volume.shape), SIZE, volume)
-    chosen = (slice(3, 20, 2), slice(5, 9))
-    assert composite(volume, haze(), through[chosen]).shape == (9, 4, 4)
-    for whole, part in (
-        (composite(volume, haze(), through), composite(volume, haze(), through[chosen])),
-        (mip(volume, through).value, mip(volume, through[chosen]).value),
-        (isosurface(volume, 0.5, through).gradient, isosurface(volume, 0.5, through[chosen]).gradient),
-    ):
-        assert np.array_equal(whole[chosen], part, equal_nan=True)
-    assert within(np.array(0.5), straight((0, 0, 0), (1, 0, 0), 1.0)) == 0.5
