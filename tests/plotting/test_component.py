@@ -15,6 +15,8 @@ import pyvista as pv
 from pvfiblets.codec.compress import compress
 from pvfiblets.plotting import FibletActor
 
+from .views import shot
+
 LINES = [np.array([(-10.0, 0, z), (0, 0, z + 2), (10, 0, z)]) for z in (-6.0, 0.0, 6.0)]
 WEIGHTS = np.array([1.0, 10.0, 100.0])
 IMAGE = pv.ImageData(dimensions=(8, 8, 8), spacing=(2, 2, 2), origin=(-7, -7, -7))
@@ -40,12 +42,6 @@ def add(plotter, kind, **arguments):
 def lit(picture):
     """How many pixels are not black."""
     return int((picture.max(axis=2) > 0).sum())
-
-
-def shot(plotter):
-    """Render, and return the picture: PyVista's screenshot alone shows the last render."""
-    plotter.show(auto_close=False) if plotter._first_time else plotter.render()
-    return plotter.screenshot(None)
 
 
 @pytest.mark.more

@@ -12,10 +12,7 @@ from pvfiblets.engine.errors import EngineError
 from pvfiblets.engine.fiblets import memory_fit
 from pvfiblets.synthetic import brain_streamlines
 
-
-def shot(plotter):
-    plotter.show(auto_close=False) if plotter._first_time else plotter.render()
-    return plotter.screenshot(None)
+from .views import shot
 
 
 def test_what_draws_and_how_much_is_known_after_the_first_picture(plotter, three_lines):

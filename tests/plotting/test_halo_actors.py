@@ -11,6 +11,8 @@ import pyvista as pv
 from pvfiblets import compress, write
 from pvfiblets.halos import HaloLines, HaloPoints
 
+from .views import facing_shot as shot
+
 PIXELS = 5.0  # a mm in the view `flat`
 GREEN, WHITE, BLACK, BACK = (0, 255, 0), (255, 255, 255), (0, 0, 0), (64, 64, 64)
 BAR = np.array([(x, 0.0, 0.0) for x in np.linspace(-15.0, 15.0, 31)])
@@ -25,19 +27,6 @@ def stage(plotter):
     """A plotter of 200 x 200 pixels, 5 pixels a mm, seen from -y."""
     plotter.set_background([part / 255 for part in BACK])
     return plotter
-
-
-def flat(plotter):
-    plotter.camera_position = [(0, -100, 0), (0, 0, 0), (0, 0, 1)]
-    plotter.enable_parallel_projection()
-    plotter.camera.parallel_scale = 20
-    plotter.camera.clipping_range = 20, 200
-
-
-def shot(plotter):
-    flat(plotter)
-    plotter.show(auto_close=False) if plotter._first_time else plotter.render()
-    return plotter.screenshot(None)
 
 
 def widths(plotter, x, line=GREEN, halo=WHITE):

@@ -10,6 +10,9 @@ from vtkmodules.vtkCommonDataModel import vtkPlane
 from pvfiblets import compress
 from pvfiblets.streamlines import Streamlines
 
+from .views import facing
+from .views import shot as plain_shot
+
 BACK = 211  # lightgrey
 
 
@@ -35,17 +38,8 @@ def looked_at(plotter):
     plotter.camera.clipping_range = 60, 300
 
 
-def facing(plotter):
-    """From -y, parallel: 200 pixels are 40 mm."""
-    plotter.camera_position = [(0, -100, 0), (0, 0, 0), (0, 0, 1)]
-    plotter.enable_parallel_projection()
-    plotter.camera.parallel_scale = 20
-    plotter.camera.clipping_range = 20, 200
-
-
 def shot(plotter):
-    plotter.show(auto_close=False) if plotter._first_time else plotter.render()
-    return plotter.screenshot(None)[..., :3].astype(int)
+    return plain_shot(plotter)[..., :3].astype(int)
 
 
 @pytest.fixture(scope="module")

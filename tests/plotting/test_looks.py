@@ -13,6 +13,8 @@ from pvfiblets.query.measures import measure
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.web import layers
 
+from .views import shot
+
 
 def sheet(pitch, count, length=50.0):
     """Return parallel lines, all in one plane and as far apart as the pitch."""
@@ -31,11 +33,6 @@ def scattered(density, count):
 def diagonal(fiblets):
     bounds = np.array(fiblets.bounds)
     return float(np.linalg.norm(bounds[1::2] - bounds[::2]))
-
-
-def shot(plotter):
-    plotter.show(auto_close=False) if plotter._first_time else plotter.render()
-    return np.asarray(plotter.screenshot(None)).astype(int)
 
 
 def test_the_distance_between_lines_is_that_of_their_grid():

@@ -10,10 +10,7 @@ import pyvista as pv
 
 import pvfiblets
 
-
-def shot(plotter):
-    plotter.show(auto_close=False) if plotter._first_time else plotter.render()
-    return plotter.screenshot(None)
+from .views import shot
 
 
 @pytest.mark.parametrize("compressed", [False, True])

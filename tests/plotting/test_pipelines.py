@@ -10,10 +10,7 @@ import pyvista as pv
 
 from pvfiblets.engine.errors import EngineError
 
-
-def shot(plotter):
-    plotter.show(auto_close=False) if plotter._first_time else plotter.render()
-    return plotter.screenshot(None)
+from .views import shot
 
 
 def test_a_plotter_lists_what_its_opengl_can_draw_with(plotter):

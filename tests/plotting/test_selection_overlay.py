@@ -11,6 +11,8 @@ import pvfiblets as pf
 from pvfiblets.mappers import FibletMapper, TubeMapper
 from pvfiblets.plotting.fiblets import selection_overlay
 
+from .views import facing_shot
+
 RADIUS = 1.6
 
 
@@ -23,16 +25,7 @@ def scene(plotter):
     lines.per_streamline = {"weight": np.array([0.0, 1.0, 2.0])}
     actor = plotter.add_fiblets(lines, per_point=("along",), lighting=False, show_scalar_bar=False, cmap="gray")
     actor.selection_style(as_tubes=True, radius=RADIUS, dim=0.0)
-
-    def front():
-        plotter.camera_position = [(0, -100, 0), (0, 0, 0), (0, 0, 1)]
-        plotter.enable_parallel_projection()
-        plotter.camera.parallel_scale = 20.0
-        plotter.camera.clipping_range = 10, 300
-        plotter.show(auto_close=False) if plotter._first_time else plotter.render()
-        return plotter.screenshot(None)[..., :3].astype(int)
-
-    return actor, front
+    return actor, lambda: facing_shot(plotter)
 
 
 def at(picture, x, z):

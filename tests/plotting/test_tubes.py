@@ -16,6 +16,8 @@ from pvfiblets.plotting import TubeActor
 from pvfiblets.plotting.tubes.scalars import find_tube_scalars, tube_lengths, with_built_in
 from pvfiblets.tubes.build import as_spline_tubes
 
+from .views import facing_shot
+
 FLAT = {"lighting": False, "show_scalar_bar": False, "radius": 1.6}
 
 
@@ -28,16 +30,7 @@ def mapped(cmap, fraction, n_colors=256):
 @pytest.fixture
 def front(plotter):
     """Return a function: the picture from -y, 5 pixels a mm, z upwards."""
-
-    def shot():
-        plotter.camera_position = [(0, -100, 0), (0, 0, 0), (0, 0, 1)]
-        plotter.enable_parallel_projection()
-        plotter.camera.parallel_scale = 20.0
-        plotter.camera.clipping_range = 10, 300
-        plotter.show(auto_close=False) if plotter._first_time else plotter.render()
-        return plotter.screenshot(None)[..., :3].astype(int)
-
-    return shot
+    return lambda: facing_shot(plotter)
 
 
 def at(picture, x, z):

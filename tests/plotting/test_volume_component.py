@@ -9,6 +9,9 @@ import pyvista as pv
 import pvfiblets.plotting.volumes.component  # noqa: F401 - for environments that were installed before it was there
 from pvfiblets.plotting.volumes.opacity import opacities, value_limits
 
+from .views import facing as look
+from .views import shot as plain_shot
+
 X = np.linspace(-10.0, 10.0, 21)
 AT = {"spacing": 1.0, "origin": (-10.0, -10.0, -10.0)}
 BALL = (10.0 - np.sqrt(X[:, None, None] ** 2 + X[:, None] ** 2 + X**2)).astype(np.float32)
@@ -16,18 +19,8 @@ FOG = np.ones((5, 5, 5), np.uint8)
 FOG_AT = {"spacing": 5.0, "origin": (-10.0, -10.0, -10.0)}
 
 
-def look(plotter):
-    """From -y, parallel: 200 pixels are 40 mm."""
-    plotter.camera_position = [(0, -100, 0), (0, 0, 0), (0, 0, 1)]
-    plotter.enable_parallel_projection()
-    plotter.camera.parallel_scale = 20.0
-    plotter.camera.clipping_range = 20, 200
-
-
 def shot(plotter):
-    """Render, and return the picture: PyVista's screenshot alone shows the last render."""
-    plotter.show(auto_close=False) if plotter._first_time else plotter.render()
-    return plotter.screenshot(None).astype(float)
+    return plain_shot(plotter).astype(float)
 
 
 def middle(plotter):
