@@ -192,52 +192,29 @@ def test_zero_alpha_is_not_drawn_and_changes_pass(rod_scene):
     assert not actor.HasTranslucentPolygonalGeometry()
 
 
-@pytest.fixture
-def along_a_line(make_plotter, tools):
-    """Return a function: rows, columns, x and colours of the pixels of a line from x = 0 to 100 mm."""
-
-    def shown(kind, colouring, values=None):
-        line = np.c_[np.linspace(0, 100, 101), np.zeros((101, 2))]
-        fibres = tools.fibres(kind, type(tools.helices(1, 2)).from_list([line]), values)
-        mapper, actor = fibres.actor(colouring=colouring)
-        plotter = make_plotter(window_size=(400, 60))
-        plotter.add_actor(actor)
-        plotter.camera_position = "xz"
-        plotter.enable_parallel_projection()
-        plotter.reset_camera()
-        plotter.camera.parallel_scale = 10
-        image = tools.picture(plotter, mapper)
-        rows, columns = np.nonzero(tools.covered(image))
-        assert len(set(rows)) == 1
-        assert len(columns) > 290
-        return 50 + (columns + 0.5 - 200) * 20 / 60, image[rows, columns]
-
-    return shown
-
-
 @pytest.mark.parametrize("log_scale", [False, True])
-def test_point_values_through_the_table(along_a_line, log_scale):
-    """Values along a straight line, from the stand-in, pixel by pixel against vtkLookupTable."""
-    values = np.linspace(-20, 120, 101)
-    values[40:45] = np.nan
+def test_point_values_through_the_table(make_plotter, make_fibres, tools, log_scale):
+    """Arc length grows along a straight line from 0 to its length: pixel by pixel against vtkLookupTable."""
+    line = np.c_[np.linspace(0, 100, 101), np.zeros((101, 2))]
     colouring = Colouring(
-        "point_scalar", source="curvature", lut=RAINBOW, clim=(1.0, 100.0), log_scale=log_scale,
-        nan_color=(0.3, 0.3, 0.3), below_color=(1, 0, 1), above_color=(1, 1, 1),
+        "point_scalar", source="arc_length", lut=RAINBOW, clim=(4.0, 90.0), log_scale=log_scale,
+        below_color=(1, 0, 1), above_color=(1, 1, 1),
     )  # fmt: skip
-    x, colours = along_a_line("lines", colouring, values)
-    table = vtk_table(colouring)
-    expected = np.array([as_bytes(table, value)[:3] for value in np.interp(x, np.arange(101.0), values)])
+    mapper, actor = make_fibres(type(tools.helices(1, 2)).from_list([line])).actor(colouring=colouring)
+    plotter = make_plotter(window_size=(400, 60))
+    plotter.add_actor(actor)
+    plotter.camera_position = "xz"
+    plotter.enable_parallel_projection()
+    plotter.reset_camera()
+    plotter.camera.parallel_scale = 10
+    image = tools.picture(plotter, mapper)
+    rows, columns = np.nonzero(tools.covered(image))
+    assert len(columns) > 290
+    x, table = 50 + (columns + 0.5 - 200) * 20 / 60, vtk_table(colouring)
+    expected = np.array([as_bytes(table, value)[:3] for value in x])
     # Only pixels at the border of two entries may fall to either side.
-    assert (colours == expected).all(axis=1).mean() > 0.97
-    assert len(np.unique(colours, axis=0)) == 8
-
-
-def test_point_values_of_the_engine(along_a_line):
-    """Arc length grows along the line from 0 to its length."""
-    ramp = np.repeat(np.arange(256, dtype=np.uint8)[:, None], 4, axis=1)
-    ramp[:, 3] = 255
-    x, colours = along_a_line("engine", Colouring("point_scalar", source="arc_length", lut=ramp, clim=(-10.0, 100.0)))
-    assert np.abs(colours[:, 0] - (x + 10) / 110 * 256).max() < 2.5
+    assert (image[rows, columns] == expected).all(axis=1).mean() > 0.97
+    assert len(np.unique(image[rows, columns], axis=0)) == 7
 
 
 def test_changing_colours_costs_no_redraw(rod_scene):
@@ -269,7 +246,7 @@ def test_more_streamlines_than_a_texture_is_wide(make_plotter, tools):
     points = np.stack([np.c_[x, 0 * x, z], np.c_[x + 0.2, 0 * x, z]], axis=1).reshape(-1, 3)
     helices = tools.helices(1, 2)
     streamlines = type(helices)(points.astype(float), np.arange(count + 1) * 2)
-    fibres = tools.fibres("lines", streamlines)
+    fibres = tools.fibres(streamlines)
     rgb = np.zeros((count, 3), dtype=np.uint8)
     rgb[:, 0] = 1 + np.arange(count) % 251
     rgb[:, 1] = np.arange(count) // 251

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from pvfiblets.mappers import Colouring, resolve, windows
-from pvfiblets.mappers.depth_peeling import Layers, layers_of, with_layers
+from pvfiblets.mappers import Colouring, windows
+from pvfiblets.mappers.depth_peeling import Layers
 from pvfiblets.mappers.line_tubes import Tubes, TubeShading
 from pvfiblets.mappers.shading import Halos
 from pvfiblets.streamlines import Streamlines
@@ -35,7 +35,7 @@ def scene(make_plotter, tools):
     """Return a function: a plotter, a mapper and an actor of lines seen along y, with a parallel camera."""
 
     def make(streamlines, *, opacity=0.4, layers=4, colours=COLOURS, lighting=False, **options):
-        fibres = tools.fibres("engine", streamlines)
+        fibres = tools.fibres(streamlines)
         if colours is not None:
             options["colouring"] = Colouring("streamline_rgba", values=np.resize(colours, (len(streamlines), 3)))
         mapper, actor = fibres.actor(lighting=lighting, **options)
@@ -76,19 +76,6 @@ def test_lines_behind_each_other_blend_as_arithmetic_says(scene, tools, layers, 
     image = tools.picture(plotter, mapper)
     inside = image[97:104, 60:180].max(axis=0)  # the line is in one of these rows
     assert np.abs(inside - blended(COLOURS[:layers], 0.4)).max() <= 3, inside[50]
-
-
-def test_order_does_not_matter(scene, tools):
-    lines = tools.helices()
-    order = np.random.default_rng(0).permutation(len(lines))
-    colours = np.random.default_rng(1).integers(0, 255, (len(lines), 3)).astype(np.uint8)
-    images = []
-    for chosen in (np.arange(len(lines)), order):
-        plotter, mapper, _ = scene(lines[chosen], colours=colours[chosen], line_width=3.0)
-        images.append(tools.picture(plotter, mapper).astype(int))
-    differs = np.abs(images[0] - images[1]).max(axis=2) > 3
-    # Each set is coded on its own, so that points differ by a hundredth of a pixel.
-    assert differs.sum() < 0.02 * tools.covered(images[0]).sum()
 
 
 @pytest.mark.parametrize("width", [1.0, 4.0])
@@ -199,14 +186,6 @@ def test_without_layers_nothing_is_left_of_them(scene, tools):
     assert "Layer" not in text
 
 
-def test_other_lines_keep_their_layers(scene, tools):
-    plotter, mapper, _ = scene(rows(), line_width=6.0)
-    tools.picture(plotter, mapper)
-    mapper.set_fiblets(tools.fibres("engine", rows((5, 25, 45, 60, 61))).fiblets)
-    assert mapper.GetInput().GetNumberOfPoints() == 24
-    assert np.abs(tools.picture(plotter, mapper)[100, 120] - blended(COLOURS[:4], 0.4)).max() <= 3
-
-
 def test_the_nearest_is_picked(scene, tools):
     plotter, mapper, actor = scene(rows(), line_width=6.0)
     tools.picture(plotter, mapper)
@@ -221,31 +200,10 @@ def test_the_nearest_is_picked(scene, tools):
     assert np.abs(tools.picture(plotter, mapper)[100, 120] - blended(COLOURS[:4], 0.4)).max() <= 3
 
 
-def test_pieces_go_together():
-    assert layers_of([Layers(7)]) == 7
-    assert layers_of([]) == 1
-    for colour in ("colour_solid", "colour_point_scalar", "colour_streamline"):
-        features = with_layers(Layers().features | {"gbuffer", "normal", colour})
-        assert ("layers_value" in features) == (colour == "colour_point_scalar")
-        text = "".join(replacement.text for replacement in resolve.assemble(features))
-        assert "pvfiblets::" not in text
-    everything = frozenset(resolve.FEATURES) - {"colour_solid", "colour_streamline", "colour_orientation"}
-    assert resolve.assemble(everything)
-
-
 @pytest.mark.parametrize("count", [1, 65, 2.5, True])
 def test_a_number_of_layers_that_makes_no_sense(count):
     with pytest.raises(ValueError, match="whole number from 2 to 64"):
         Layers(count)
-
-
-def test_both_kinds_of_bodies_at_once(scene, tools):
-
-    plotter, mapper, _ = scene(rows(), line_width=6.0)
-    mapper.set_effect("tubes", Tubes(3.0))
-    mapper.set_effect("tube shading", TubeShading())
-    image = tools.picture(plotter, mapper)
-    assert np.abs(image[100, 70:170] - blended(COLOURS[:4], 0.4)).max() <= 3
 
 
 def test_a_halo_is_there_once(scene, tools):

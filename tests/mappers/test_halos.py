@@ -110,17 +110,6 @@ def test_halos_have_a_depth_among_meshes(make_plotter, tools, behind):
     assert same(column[~halo & (np.abs(z) > 1.0)], (255, 0, 0)).all()
 
 
-def test_what_is_in_front_hides_lines_and_halos(make_plotter, tools):
-    mapper, actor = made(bar())
-    plotter = shown(make_plotter, actor)
-    box = pv.Box((-8, 8, -5, -4, -3, 3))
-    plotter.add_mesh(box, color="red", lighting=False, reset_camera=False)
-    image = tools.picture(flat(plotter), mapper)
-    column, z = column_at(image, 0.0)
-    assert same(column[np.abs(z) < 3.0], (255, 0, 0)).all()
-    assert same(column[(np.abs(z) > 3.0) & (np.abs(z) < 4.0)], WHITE).all()
-
-
 @pytest.mark.parametrize("apart", [0.5, 2.0, 3.0, 9.0])
 def test_two_actors_cut_gaps_into_each_other_as_two_lines_of_one_do(make_plotter, tools, apart):
     upright = [(3, apart, -15), (3, apart, 15)]
@@ -251,16 +240,6 @@ def test_actors_that_are_stretched_have_strips_as_wide(make_plotter, tools):
     assert same(column[np.abs(z) < 2.0], GREEN).all()
     assert same(column[(np.abs(z) > 2.0) & (np.abs(z) < 8.0)], WHITE).all()
     assert same(column[np.abs(z) > 8.0], BACK).all()
-
-
-def test_nothing_to_draw_draws_nothing(make_plotter, tools):
-    empty = HaloLines(np.zeros((0, 3)), [0])
-    for drawn in (empty, HaloLines(np.zeros((2, 3)), [0, 1, 2]), HaloPoints(np.zeros((0, 3)))):
-        mapper, actor = made(drawn)
-        image = tools.picture(shown(make_plotter, actor), mapper)
-        assert same(image, BACK).all()
-        mapper.set_drawn(bar() if isinstance(drawn, HaloLines) else HaloPoints(np.zeros((1, 3))))
-        assert actor.GetBounds()[1] == pytest.approx(19 if isinstance(drawn, HaloLines) else 4)
 
 
 def test_numbers_that_are_not_there_are_refused_when_drawn(make_plotter):

@@ -21,7 +21,7 @@ def rods(tools):
 
     def make(effect, line_width=1.0, curves=RODS):
         lines = [np.linspace(a, b, 31) for a, b in curves]
-        fibres = tools.fibres("engine", type(tools.helices(1, 2)).from_list(lines))
+        fibres = tools.fibres(type(tools.helices(1, 2)).from_list(lines))
         mapper, actor = fibres.actor(
             lighting=True, line_width=line_width, colouring=Colouring("solid", color=(1, 1, 1))
         )
@@ -150,15 +150,6 @@ def test_round_shading_faces_the_light_whatever_the_direction(rods, make_plotter
         assert toward == 0 or values[away * toward > 2].mean() > values[away * toward < -2].mean() + 20
 
 
-def test_thin_lines_are_left_as_they_are(rods, make_plotter, tools):
-    pictures = []
-    for effect in (None, TubeShading()):
-        _, mapper, actor = rods(effect)
-        pictures.append(tools.picture(scene(make_plotter, actor), mapper))
-        assert ("tube_shading" in mapper.features) == (effect is not None)
-    assert (pictures[0] == pictures[1]).all()
-
-
 def test_live_and_back_without_a_trace(rods, make_plotter, tools):
     """Tubes, other tubes, round shading, and plain lines again, in one window: nothing stays."""
     _, mapper, actor = rods(None)
@@ -181,6 +172,14 @@ def test_live_and_back_without_a_trace(rods, make_plotter, tools):
     assert (tools.picture(plotter, mapper) == before).all()
     assert {buffer["name"] for buffer in mapper.explain()["windows"][0]["buffers"]} == names
     assert {b["name"]: b["bytes"] for b in mapper.explain()["windows"][0]["buffers"]}["gbuffer"] == size
+    mapper.set_effect("tubes", TubeShading())  # which leaves thin lines as they are
+    mapper.line_width = 1.0
+    thin = tools.picture(plotter, mapper)
+    mapper.set_effect("tubes", None)
+    assert (tools.picture(plotter, mapper) == thin).all()
+    for radius in (0.0, -1.0, np.nan, np.inf):
+        with pytest.raises(ValueError, match=f"radius of tubes is {radius}; give a finite number"):
+            Tubes(radius)
 
 
 def test_tubes_are_picked_where_they_show(rods, make_plotter, tools):
@@ -195,27 +194,3 @@ def test_tubes_are_picked_where_they_show(rods, make_plotter, tools):
         assert found[0] in (0, 1)
         assert 0.0 <= found[1] <= 30.0
     assert mapper.pick_at(2, 2) is None
-
-
-def test_an_actor_of_the_plotter_has_tubes_and_round_shading(make_plotter, tools):
-    """Live, each on its own and both; copies by `name` and settings that are refused leave things as they were."""
-    plotter = make_plotter()
-    actor = plotter.add_fiblets(tools.helices(6), line_width=5)
-    assert (actor.tube_shading, actor.tube_radius) == (False, None)
-    actor.prop.lighting = True
-    areas = []
-    for shading, radius in ((False, None), (True, None), (True, 2.0), (False, 0.5), (False, None)):
-        actor.tube_shading, actor.tube_radius = shading, radius
-        assert (actor.tube_shading, actor.tube_radius) == (shading, radius)
-        image = tools.picture(plotter, actor.mapper)
-        areas.append((tools.covered(image).sum(), image.astype(int).sum()))
-    assert areas[0] == areas[4]
-    assert areas[1][0] == areas[0][0]
-    assert areas[1][1] < areas[0][1]  # edges turn away from the light
-    assert areas[3][0] < areas[2][0]
-    for radius in (0.0, -1.0, np.nan, np.inf):
-        with pytest.raises(ValueError, match=f"radius of tubes is {radius}; give a finite number"):
-            Tubes(radius)
-    with pytest.raises(ValueError, match="radius of tubes is -1"):
-        actor.tube_radius = -1
-    assert actor.tube_radius is None

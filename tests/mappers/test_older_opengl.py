@@ -65,9 +65,9 @@ def test_the_older_opengl_of_these_tests_really_lacks_what_is_newer(older_opengl
 @pytest.mark.more
 @pytest.mark.parametrize("version", [pytest.param("4.1", marks=pytest.mark.exhaustive), "3.3"])
 def test_mapper_windows_and_picking_run_there(older_opengl, version):
-    """The mapper's own tests, with the renderer of plain lines."""
+    """The mapper's own tests, by the pipeline that is left."""
     files = [str(HERE / f"test_{name}.py") for name in ("picture", "picking", "passes", "windows")]
-    chosen = ("-m", "", "-k", "lines and not engine and not polylines", "-p", "no:cacheprovider", "-q")
+    chosen = ("-k", "picked or pick_at or polylines or window or translucent_mesh", "-p", "no:cacheprovider", "-q")
     result = run(older_opengl(version), "-m", "pytest", *files, *chosen)
     assert result.returncode == 0, result.stdout[-3000:]
     assert int(result.stdout.rsplit(" passed", 1)[0].split()[-1]) > 20

@@ -98,44 +98,6 @@ def test_a_mesh_in_front_is_picked_first(scene):
     mapper.raise_pending()
 
 
-PICKERS = {
-    "point": lambda plotter: plotter.enable_point_picking(show_message=False),
-    "surface point": lambda plotter: plotter.enable_surface_point_picking(show_message=False),
-    "mesh": lambda plotter: plotter.enable_mesh_picking(show_message=False),
-    "cell": lambda plotter: plotter.enable_cell_picking(show_message=False),
-    "element": lambda plotter: plotter.enable_element_picking(mode="cell", show_message=False),
-    "rectangle": lambda plotter: plotter.enable_rectangle_picking(show_message=False),
-    "block": lambda plotter: plotter.enable_block_picking(),
-    "horizon": lambda plotter: plotter.enable_horizon_picking(show_message=False),
-    "path": lambda plotter: plotter.enable_path_picking(show_message=False),
-    "geodesic": lambda plotter: plotter.enable_geodesic_picking(show_message=False),
-    "fly to": lambda plotter: plotter.enable_fly_to_right_click(),
-}
-
-
-@pytest.mark.few(3)
-@pytest.mark.parametrize("picking", PICKERS)
-def test_pyvista_picking_survives_fiblets(scene, tools, picking):
-    plotter, mapper, _, display = scene
-    ball = (20, -10, 24)
-    plotter.add_mesh(pv.Sphere(radius=3, center=ball), reset_camera=False)
-    PICKERS[picking](plotter)
-    before = tools.picture(plotter, mapper)
-    assert tools.covered(before).any()
-    for point in ((20, 0, 16), (20, 0, 12), ball):
-        x, y = (int(value) for value in display(point))
-        interactor = plotter.iren.interactor
-        interactor.SetEventInformation(x, y)
-        for event in ("LeftButtonPress", "LeftButtonRelease", "RightButtonPress", "RightButtonRelease"):
-            interactor.InvokeEvent(event + "Event")
-        # PyVista's own callback of a horizon fails on fewer points than a line has, that of a geodesic on lines.
-        if picking != "horizon" and (picking != "geodesic" or point == ball):
-            interactor.SetKeyEventInformation(0, 0, "p", 0, "p")
-            interactor.InvokeEvent("CharEvent")
-        plotter.render()
-        mapper.raise_pending()
-
-
 @pytest.mark.parametrize("change", ["size", "multisampling", "peeling"])
 def test_picking_leaves_no_error_when_vtk_has_other_framebuffers(make_plotter, lines, tools, change):
     """moderngl must not bind again a framebuffer that VTK has deleted."""

@@ -277,18 +277,6 @@ def test_nothing_exists_while_nothing_is_changed(make_plotter):
     assert not plotter.renderer.HasObserver("StartEvent")
 
 
-def test_effects_outlive_the_scene(make_plotter):
-    """Actors come and go, and all may be removed at once."""
-    plotter = make_plotter()
-    picture = Picture(plotter.renderer)
-    picture.tone = Tone(brightness=0.5)
-    fill(plotter)
-    shot(plotter, picture)
-    plotter.renderer.RemoveAllViewProps()
-    image = shot(plotter, picture)
-    assert np.abs(image - (105 + 127.5)).max() <= 1
-
-
 def test_a_picture_that_nobody_keeps_stops_to_act(make_plotter):
     plotter = make_plotter()
     fill(plotter)

@@ -103,19 +103,6 @@ def test_a_width_is_what_the_viewer_sees(shown, name, supersampled, scale):
     assert across(shown(mapper, supersampled), mapper, scale) == pytest.approx(wanted, abs=0.75)
 
 
-@pytest.mark.parametrize("make", [fiblets, tubes, halos])
-def test_tiles_show_what_a_large_window_shows(shown, make, tools):
-    """A window three times as large, with widths three times as large, is what three by three tiles make up."""
-    mapper = make(WIDTH)
-    tiled = np.asarray(shown(mapper).screenshot(None, scale=3))[..., :3]
-    mapper.raise_pending()
-    mapper = make(3 * WIDTH)
-    whole = np.asarray(shown(mapper, size=(3 * SIZE[0], 3 * SIZE[1])).screenshot(None))[..., :3]
-    mapper.raise_pending()
-    assert tools.covered(tiled).sum() > 200 * 3 * WIDTH
-    assert (tools.covered(tiled) != tools.covered(whole)).mean() < 1e-3
-
-
 @pytest.mark.parametrize("dpi", [36, 72, 144])
 @pytest.mark.parametrize("name", ["fiblets", "spline tubes", "lines with halos"])
 def test_fewer_dots_per_inch_make_thinner_lines(shown, name, dpi):

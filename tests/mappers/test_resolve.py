@@ -93,17 +93,17 @@ def test_layers_repeat_its_triangles_and_nothing_to_draw_is_empty() -> None:
     assert [many.GetPoint(i) for i in range(30)] == [one.GetPoint(i % 6) for i in range(30)]
 
 
-def recording(plain):
+def recording(lines):
     """Return a mapper on GL lines, its actor, and the list of keywords that its renderers were made with."""
     asked = []
-    factory = plain.mapper()._factory
+    factory = lines.mapper()._factory
 
     def make(ctx, fiblets, **options):
         asked.append(options)
         return factory(ctx, fiblets)
 
     def build(**arguments):
-        mapper, actor = FibletMapper(plain.fiblets, renderer_factory=make, **arguments), vtkActor()
+        mapper, actor = FibletMapper(lines.fiblets, renderer_factory=make, **arguments), vtkActor()
         mapper.attach(actor)
         return mapper, actor
 
@@ -119,8 +119,8 @@ def test_only_what_is_not_the_default_is_asked_for():
     assert EngineOptions(culling="none").changed() == {"culling": None}
 
 
-def test_other_options_make_another_renderer_at_the_next_frame(make_plotter, plain, standins, tools):
-    build, asked = recording(plain)
+def test_other_options_make_another_renderer_at_the_next_frame(make_plotter, lines, renderers, tools):
+    build, asked = recording(lines)
     mapper, actor = build(options=EngineOptions(pipeline="geometry"))
     plotter = make_plotter()
     plotter.add_actor(actor)
@@ -135,11 +135,11 @@ def test_other_options_make_another_renderer_at_the_next_frame(make_plotter, pla
     assert len(asked) == 1, "nothing is made outside a frame"
     assert (tools.picture(plotter, mapper) == first).all()
     assert asked == [{"pipeline": "geometry"}, {"culling": None}]
-    assert [renderer.released for renderer in standins] == [True, False]
+    assert [renderer.released for renderer in renderers] == [True, False]
 
 
-def test_progress_is_passed_on_and_makes_nothing_anew(make_plotter, plain, tools):
-    build, asked = recording(plain)
+def test_progress_is_passed_on_and_makes_nothing_anew(make_plotter, lines, tools):
+    build, asked = recording(lines)
     mapper, actor = build(progress=True)
     plotter = make_plotter()
     plotter.add_actor(actor)
@@ -147,14 +147,14 @@ def test_progress_is_passed_on_and_makes_nothing_anew(make_plotter, plain, tools
     assert asked == [{"progress": True}]
 
 
-def test_the_pipeline_in_use_is_known_after_the_first_frame(make_plotter, plain, standins, tools):
-    build, _ = recording(plain)
+def test_the_pipeline_in_use_is_known_after_the_first_frame(make_plotter, lines, renderers, tools):
+    build, _ = recording(lines)
     mapper, actor = build()
     assert mapper.pipeline_in_use is None
     plotter = make_plotter()
     plotter.add_actor(actor)
     tools.picture(plotter, mapper)
-    standins[0].pipeline = "lines"
-    assert mapper.pipeline_in_use == "lines"
+    assert mapper.pipeline_in_use == renderers[0].pipeline
+    assert mapper.pipeline_in_use is not None
     mapper.release()
     assert mapper.pipeline_in_use is None

@@ -75,8 +75,8 @@ def depth_of_sphere(make_plotter, camera):
     return vtk_to_numpy(data).reshape(height, width)
 
 
-def test_the_depth_of_what_was_added_before_is_there(make_plotter, plain, tools, seen):
-    plotter, mapper = scene(make_plotter, plain, ["sphere", "fiblets"])
+def test_the_depth_of_what_was_added_before_is_there(make_plotter, lines, tools, seen):
+    plotter, mapper = scene(make_plotter, lines, ["sphere", "fiblets"])
     tools.picture(plotter, mapper)
     keys, error = seen[-1]
     assert error == "GL_NO_ERROR"
@@ -89,36 +89,36 @@ def test_the_depth_of_what_was_added_before_is_there(make_plotter, plain, tools,
     assert behind.max() < 1e-6
 
 
-def test_what_was_added_later_is_not(make_plotter, plain, tools, seen):
-    plotter, mapper = scene(make_plotter, plain, ["fiblets", "sphere"])
+def test_what_was_added_later_is_not(make_plotter, lines, tools, seen):
+    plotter, mapper = scene(make_plotter, lines, ["fiblets", "sphere"])
     tools.picture(plotter, mapper)
     assert (seen[-1][0] == EMPTY).all()
 
 
-def test_a_pixel_is_covered_only_if_all_its_samples_are(make_plotter, plain, tools, seen):
+def test_a_pixel_is_covered_only_if_all_its_samples_are(make_plotter, lines, tools, seen):
     """A pixel of an unlit white sphere on black is pure white where, and only where, all samples are."""
-    plotter, mapper = scene(make_plotter, plain, ["sphere", "fiblets"], lambda p: p.enable_anti_aliasing("msaa"))
+    plotter, mapper = scene(make_plotter, lines, ["sphere", "fiblets"], lambda p: p.enable_anti_aliasing("msaa"))
     mapper.actor.SetVisibility(True)
     tools.picture(plotter, mapper)
     keys, error = seen[-1]
     assert error == "GL_NO_ERROR"
-    alone, _ = scene(make_plotter, plain, ["sphere"], lambda p: p.enable_anti_aliasing("msaa"))
+    alone, _ = scene(make_plotter, lines, ["sphere"], lambda p: p.enable_anti_aliasing("msaa"))
     image = tools.picture(alone)[::-1]
     edge = (image[..., 0] > 0) & (image[..., 0] < 255)
     assert edge.sum() > 20, "there must be pixels that are covered in part"
     np.testing.assert_array_equal(keys != EMPTY, image[..., 0] == 255)
 
 
-def test_depth_peeling_has_none(make_plotter, plain, tools, seen):
-    plotter, mapper = scene(make_plotter, plain, ["sphere", "fiblets"], lambda p: p.enable_depth_peeling())
+def test_depth_peeling_has_none(make_plotter, lines, tools, seen):
+    plotter, mapper = scene(make_plotter, lines, ["sphere", "fiblets"], lambda p: p.enable_depth_peeling())
     mapper.actor.GetProperty().SetOpacity(0.5)
     tools.picture(plotter, mapper)
     assert [(keys, error) for keys, error in seen if keys is None] == [(None, "GL_NO_ERROR")] * len(seen)
     assert seen
 
 
-def test_none_where_vtk_moves_depth_afterwards(make_plotter, plain, tools, seen):
-    plotter, mapper = scene(make_plotter, plain, ["sphere", "fiblets"])
+def test_none_where_vtk_moves_depth_afterwards(make_plotter, lines, tools, seen):
+    plotter, mapper = scene(make_plotter, lines, ["sphere", "fiblets"])
     before = vtkMapper.GetResolveCoincidentTopology()
     try:
         vtkMapper.SetResolveCoincidentTopologyToPolygonOffset()

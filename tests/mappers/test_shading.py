@@ -179,23 +179,6 @@ def test_a_silhouette_goes_around_what_is_chosen(scene):
     assert not cyan[row + 10].any()
 
 
-@pytest.mark.parametrize("kind", ["fxaa", "ssaa"])
-def test_anti_aliasing_keeps_the_picture(scene, kind):
-    """Widths in mm and in pixels of the window stay: the same coverage, but for smooth edges."""
-    effects = {"halos": Halos(width=3.0, depth=4.0), "outline": Silhouette([True, False], (1, 0, 0), 4.0)}
-    plain = scene(CROSS, effects)[1].astype(float)
-
-    def anti_alias(plotter, _):
-        if kind == "ssaa":
-            plotter.enable_anti_aliasing("ssaa")
-        else:
-            plotter.renderer.UseFXAAOn()  # PyVista will not have it without a screen
-
-    smooth = scene(CROSS, effects, prepare=anti_alias)[1].astype(float)
-    assert np.abs(plain.mean(axis=(0, 1)) - smooth.mean(axis=(0, 1))).max() < 6
-    assert np.abs(plain - smooth).mean() < 12
-
-
 @pytest.mark.parametrize("name", ALL)
 def test_what_is_taken_away_leaves_nothing(make_plotter, lines, tools, name):
     mapper, actor = lines.actor(lighting=True)
@@ -213,20 +196,6 @@ def test_what_is_taken_away_leaves_nothing(make_plotter, lines, tools, name):
     assert mapper.features == shaders
     assert actor.GetShaderProperty().GetNumberOfShaderReplacements() == bare
     assert not slot.effects
-
-
-def test_all_at_once_and_in_a_window_of_another_size(make_plotter, lines, tools):
-    mapper, actor = lines.actor(lighting=True)
-    for name, effect in (ALL | {"outline": Silhouette(np.arange(24) < 4)}).items():
-        mapper.set_effect(name, effect)
-    plotter = make_plotter(lighting="light kit")
-    plotter.add_actor(actor)
-    plotter.enable_depth_peeling()
-    assert tools.covered(tools.picture(plotter, mapper)).any()
-    plotter.window_size = 150, 211
-    assert tools.covered(tools.picture(plotter, mapper)).any()
-    report = mapper.explain()
-    assert {"halo", "silhouette", "illuminated"} <= set(report["features"])
 
 
 # Values
@@ -258,7 +227,7 @@ def test_values_that_cannot_be_drawn_are_refused(make, message):
 
 @pytest.fixture
 def many_rods(make_plotter, make_fibres, tools):
-    """Return many_rods along x at 40 heights, in red, seen from -y, and a function: colours of each rod in the picture."""
+    """Return rods along x at 40 heights, in red, seen from -y, and a function: colours of each in the picture."""
     along = np.linspace(0, 40, 41)[:, None] * np.array((1.0, 0.0, 0.0))
     lines = [along + np.array((0, 0, 2.0 * i)) for i in range(40)]
     mapper, actor = make_fibres(type(tools.helices(1, 2)).from_list(lines)).actor(

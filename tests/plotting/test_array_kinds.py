@@ -162,6 +162,7 @@ def test_words_of_lines_are_categories_as_in_add_mesh(plotter, add, scalars):
     plotter.show(auto_close=False)
 
 
+@pytest.mark.every("pair")
 @pytest.mark.parametrize("add", ["add_fiblets", "add_spline_tubes", "add_halo_lines"])
 @pytest.mark.parametrize("later", [False, True])
 @pytest.mark.parametrize("ragged", [False, True])

@@ -12,7 +12,7 @@ import pyvista as pv
 import pvfiblets
 from pvfiblets import Streamlines, compress, regions
 from pvfiblets.plotting.fiblets.scalars import distinct_colours, find_scalars
-from pvfiblets.plotting.fiblets.sources import as_fiblets, with_point_values
+from pvfiblets.plotting.fiblets.sources import as_fiblets
 from pvfiblets.synthetic import brain_streamlines
 
 
@@ -163,18 +163,6 @@ def test_thirty_groups_have_thirty_colours_before_any_bundle_has_its_own(streaml
         plotter.close()
 
 
-def test_measures_of_streamlines(streamlines):
-    fiblets = compress(streamlines)
-    lines = list(fiblets.decompress(dtype=np.float64))
-    apart = [np.linalg.norm(line[-1] - line[0]) for line in lines]
-    np.testing.assert_allclose(find_scalars(fiblets, "end_distance").values, apart, atol=1e-6)
-    np.testing.assert_array_equal(find_scalars(fiblets, "n_points").values, [len(line) for line in lines])
-    place = np.array([3.0, -5.0, 20.0])
-    least = [np.linalg.norm(line - place, axis=1).min() for line in lines]
-    found = find_scalars(fiblets, regions.Distance(place))
-    np.testing.assert_allclose(found.values, least, atol=1e-6)
-
-
 def test_distance_of_points(streamlines):
     ball = regions.Sphere((0.0, 0.0, 20.0), 15.0)
     fiblets, name = as_fiblets(streamlines, scalars=regions.Distance(ball, per="point"))
@@ -212,9 +200,3 @@ def test_the_name_of_a_criterion_colours(streamlines):
         assert actor.mapper.filtering.points is not None
     finally:
         plotter.close()
-
-
-def test_arrays_stay_what_they_were(streamlines):
-    fiblets = compress(streamlines)
-    assert with_point_values(fiblets, None) == (fiblets, None)
-    assert with_point_values(fiblets, "length") == (fiblets, "length")

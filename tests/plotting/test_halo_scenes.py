@@ -206,22 +206,6 @@ def test_subplots_show_the_same_lines_from_two_sides():
     alone.close()
 
 
-def test_pickers_of_pyvista_that_look_at_the_picture_find_lines(plotter):
-    actor = plotter.add_halo_lines([[(-20, 0, 0), (20, 0, 0)]], line_width=4, strip_width=16)
-    plotter.view_xz()
-    plotter.show(auto_close=False)
-    points, actors = [], []
-    plotter.enable_point_picking(points.append, picker="prop", left_clicking=True, show_message=False, show_point=False)
-    plotter.iren._mouse_left_button_click(100, 100)
-    assert points[0] == pytest.approx([0.0, 0.0, 0.0], abs=0.3)
-    plotter.disable_picking()
-    plotter.enable_mesh_picking(
-        actors.append, picker="hardware", use_actor=True, left_clicking=True, show=False, show_message=False
-    )
-    plotter.iren._mouse_left_button_click(100, 100)
-    assert actors == [actor]
-
-
 def test_clipping_planes_and_boxes_cut_both_lines_and_points(plotter):
     rows = [[(-20, 0, z), (20, 0, z)] for z in (-5, 5)]
     actor = plotter.add_halo_lines(rows, line_width=1, strip_width=4, light_on_dark=True, tapering=False)

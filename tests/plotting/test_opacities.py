@@ -150,20 +150,6 @@ def test_tubes_and_halos_fade_along_the_colour_map(plotter, three_lines, add, co
         getattr(plotter, add)(three_lines, opacity="sigmoid", color="red")
 
 
-def test_names_of_the_sources_points_and_transparency(plotter, three_lines):
-    actor = plotter.add_fiblets(three_lines, opacity="height")
-    assert "height" in actor.fiblets.per_point
-    assert actor.copy().opacity_by == "height"
-    by_value = plotter.add_fiblets(three_lines, scalars="weight", opacity="linear")
-    by_value.opacity_by = None
-    assert (by_value.lookup_table.values[:, 3] == 255).all()
-    one_each = np.array([0.1, 0.5, 1.0])
-    actor.opacity_by = one_each
-    assert actor.copy().opacity_by is one_each
-    with pytest.raises(TypeError, match="add_fiblets.. takes no use_transparency: give 1 - values"):
-        plotter.add_fiblets(three_lines, opacity="linear", use_transparency=True)
-
-
 @pytest.mark.parametrize("count", [4, 7, 256])
 def test_as_many_opacities_as_colours_or_more(plotter, three_lines, count):
     """PyVista takes as many for bytes, so that numbers from 0 to 1 would all be next to nothing."""

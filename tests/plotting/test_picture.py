@@ -82,20 +82,6 @@ def test_all_that_the_package_draws_is_blurred_by_its_depth(scene):
     assert np.array_equal(shot(scene), before)
 
 
-def test_effects_may_be_set_in_any_order_and_together(scene):
-    scene.picture.gamma = 1.5
-    scene.picture.tone = {"operator": "reinhard", "exposure": 2.0}
-    scene.picture.contrast = 1.2
-    scene.picture.brightness = -0.1
-    toned = shot(scene)
-    scene.picture.reset()
-    assert scene.picture.gamma == 1.0
-    assert scene.picture.tone is False
-    plain = shot(scene)
-    how = {"operator": "reinhard", "exposure": 2.0, "brightness": -0.1, "contrast": 1.2, "gamma": 1.5}
-    assert np.abs(toned - lenses.toned(plain / 255.0, **how)[..., :3] * 255.0).max() <= 1.0
-
-
 def test_settings_are_read_as_they_are(plotter):
     picture = plotter.picture
     assert picture.depth_of_field is False
@@ -116,6 +102,8 @@ def test_settings_are_read_as_they_are(plotter):
     picture.tone = None
     assert picture.tone is False
     assert picture.gamma == 2
+    picture.reset()
+    assert picture.gamma == 1.0
     picture.depth_of_field = None
     assert picture.depth_of_field is False
 
@@ -150,19 +138,6 @@ def test_what_has_no_meaning_is_refused_and_changes_nothing(plotter, name, value
     with pytest.raises(AttributeError):
         plotter.picture.gama = 2.0
     assert before == {known: getattr(plotter.picture, known) for known in before}
-
-
-def test_each_subplot_has_its_own():
-    plotter = pv.Plotter(off_screen=True, shape=(1, 2), border=False, window_size=(200, 100))
-    plotter.set_background("gray", all_renderers=True)
-    plotter.subplot(0, 1)
-    plotter.picture.brightness = 0.25
-    plotter.subplot(0, 0)
-    assert plotter.picture.brightness == 0.0
-    image = shot(plotter).astype(int)
-    assert (image[:, :100] == 128).all()
-    assert np.abs(image[:, 100:] - (128 + 63.75)).max() <= 1
-    plotter.close()
 
 
 def test_a_scalar_bar_stays_as_it_is(plotter):

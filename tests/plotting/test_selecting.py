@@ -116,20 +116,6 @@ def test_an_empty_selection_costs_nothing(rods):
     assert len(actor.picking_layers) == 1
 
 
-def test_the_rest_fades_and_the_chosen_keep_or_take_a_colour(rods):
-    actor, tools = rods
-    chosen = np.isin(np.arange(30), [2, 11, 29])
-    actor.select(chosen)
-    actor.selection_style(dim=0.6)
-    colours = tools.colours()
-    assert (colours[chosen] == (255, 0, 0)).all()
-    assert (np.abs(colours[~chosen] - (102, 0, 0)) <= 1).all()
-    actor.selection_style(color="lime", dim=0.0)
-    colours = tools.colours()
-    assert (colours[chosen] == (0, 255, 0)).all()
-    assert (colours[~chosen] == (255, 0, 0)).all()
-
-
 def test_wider_lines_follow_their_actor(rods, plotter):
     actor, tools = rods
     actor.select([10])

@@ -412,19 +412,6 @@ def test_glyphs_of_other_numbers_are_refused(plotter, peaks):
     assert len(plotter.actors) == 3
 
 
-def test_a_workspace_shows_glyphs_in_its_panes(peaks):
-    plotter = pv.Plotter(off_screen=True, window_size=(200, 200), shape=(2, 2))
-    workspace = plotter.slices.workspace((peaks[0][..., 0], peaks[1]), layout="axial")
-    workspace.position = (8.0, 10.0, 12.0)
-    found = workspace.slices.add_glyphs(peaks)
-    plotter.show(auto_close=False)
-    assert found.n_glyphs == 25  # the one pane's
-    workspace.layout = "row"
-    plotter.render()
-    assert found.n_glyphs == 6 * 25  # three panes' and three slices' of the 3-D view
-    plotter.close()
-
-
 def test_an_oblique_slice_is_where_its_widget_is(plotter):
     at = np.stack(np.mgrid[:20, :20, :20], axis=-1)
     slices = plotter.add_slices(at.sum(axis=-1).astype(np.float32), clim=(0, 57), planes=())

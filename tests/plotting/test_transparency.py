@@ -55,12 +55,6 @@ def test_it_can_be_changed_at_any_time_and_is_copied(plotter, lines):
     assert not any(entry["name"] == "layers" for entry in actor.explain()["buffers"])
 
 
-def test_the_nearest_is_picked(plotter, lines):
-    actor = plotter.add_fiblets(lines, opacity=0.5, transparency=3, **FLAT)
-    middle(plotter)
-    assert actor.pick_at(100, 100)[0] == 0
-
-
 @pytest.mark.parametrize("transparency", ["peeling", 1, 0, -2, 65, 2.5, True, [4]])
 def test_nonsense_is_refused_in_words(plotter, lines, transparency):
     with pytest.raises(ValueError, match="give 'all', 'layers', a number of layers from 2 to 64, or None"):

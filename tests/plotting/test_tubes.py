@@ -13,7 +13,7 @@ import pyvista as pv
 import pvfiblets as pf
 from pvfiblets.codec.compress import compress
 from pvfiblets.plotting import TubeActor
-from pvfiblets.plotting.tubes.scalars import find_tube_scalars, tube_lengths, with_built_in
+from pvfiblets.plotting.tubes.scalars import tube_lengths, with_built_in
 from pvfiblets.tubes.build import as_spline_tubes
 
 from .views import facing_shot
@@ -293,12 +293,6 @@ def test_scalars_with_tubes_that_are_made_already(bars):
     with pytest.raises(TypeError, match="with them came radius"):
         plotter.add_spline_tubes(tubes, radius=2.0)
     plotter.close()
-
-
-def test_slopes_of_an_array_follow_straight_values(bars):
-    actor = TubeActor(as_spline_tubes(bars, radius=1.0), scalars=np.tile(np.linspace(0, 6, 5), 3))
-    assert actor.tubes.values["Data"].slopes == pytest.approx(np.full(15, 6 / 30))
-    assert find_tube_scalars(actor.tubes, "Data").range == (0.0, 6.0)
 
 
 X = np.linspace(-15.0, 15.0, 5)

@@ -172,16 +172,6 @@ def test_volumes_beyond_the_limit_say_the_number():
 # Scenes --------------------------------------------------------------------------------------------------------------
 
 
-def test_enlarged_pictures_show_the_same(plain):
-    for mode in ("composite", "mip"):
-        plotter = pv.Plotter(off_screen=True, window_size=(SIZE, SIZE))
-        picture((WHOLE, PLACE), mode, plotter=plotter)
-        large = plotter.screenshot(None, scale=2).astype(float)
-        small = large.reshape(SIZE, 2, SIZE, 2, 3).mean((1, 3))
-        assert np.quantile(np.abs(small - plain[mode]), 0.99) < 12
-        plotter.close()
-
-
 def test_volumes_are_cut_by_meshes_and_by_widgets_regions():
     """What is left of a ball without an octant, in all modes; cuts are named, live and copied."""
     corner = pv.Cube(bounds=(0, 20, -20, 0, 0, 20)).triangulate()
@@ -208,21 +198,6 @@ def test_volumes_are_cut_by_meshes_and_by_widgets_regions():
         plotter.render()
         assert (plotter.screenshot(None) == less).all()
         plotter.close()
-
-
-def test_cuts_that_mean_nothing_are_refused(plotter):
-    actor = plotter.add_raycast_volume(BALL)
-    for what, error, told in (
-        (pv.Plane(), ValueError, "open"),
-        (pv.PolyData(), ValueError, "no faces"),
-        (3.0, TypeError, "is no region"),
-        (pv.ImageData(dimensions=(3, 3, 3)), ValueError, "active data"),
-    ):
-        with pytest.raises(error, match=told):
-            actor.clip(what)
-    with pytest.raises(KeyError, match="there is no cut 'x'; there are: none"):
-        actor.unclip("x")
-    assert not actor.clips
 
 
 def test_cuts_stay_in_the_world_when_the_volume_moves(plotter):

@@ -63,11 +63,7 @@ def test_coarser_in_motion_and_whole_at_rest(watched, style):
     assert [casting == actor.casting for casting in shown] == [True]  # by itself, once
     plotter.render()
     assert shown[-1] == actor.casting
-
-
-def test_quality_1_switches_it_off(watched):
-    plotter, actor, shown = watched
-    actor.interactive_quality = 1
+    actor.interactive_quality = 1  # switches it off
     shown.clear()
     drag(plotter)
     assert len(shown) >= 2

@@ -62,27 +62,6 @@ def test_projections_are_those_of_a_fine_sum(plotter, noise, word, mode):
         assert hit.value == pytest.approx(of(values), abs=6e-3)
 
 
-@pytest.mark.parametrize("word", ["minimum", "average"])
-def test_they_look_as_in_add_volume(noise, word):
-    pictures = []
-    for add in ("add_raycast_volume", "add_volume"):
-        plotter = pv.Plotter(off_screen=True, window_size=(80, 60))
-        plotter.set_background("black")
-        more = {"step": 0.2} if add == "add_raycast_volume" else {"mapper": "gpu"}
-        opacity = np.full(256, 255, np.uint8)
-        shown = getattr(plotter, add)(noise.copy(), blending=word, clim=(0, 1), cmap="gray", opacity=opacity,
-                                      show_scalar_bar=False, **more)  # fmt: skip
-        if add == "add_volume":
-            shown.mapper.SetAutoAdjustSampleDistances(0)
-            shown.mapper.SetSampleDistance(0.2)
-            shown.prop.interpolation_type = "linear"
-        plotter.camera_position = "yz"
-        pictures.append(np.array(plotter.screenshot(return_img=True))[20:40, 30:50, 0].astype(int))
-        plotter.close()
-    assert np.abs(pictures[0] - pictures[1]).mean() < 4
-    assert pictures[1].mean() > 3
-
-
 def test_thresholds_and_cuts_and_the_octree(plotter, noise):
     actor = plotter.add_raycast_volume(noise, mode="minimum", step=0.05, opacity=1.0, thresholds=(0.2, None))
     hits = seen(plotter, actor, PIXELS)

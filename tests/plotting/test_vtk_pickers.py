@@ -95,18 +95,6 @@ def test_tubes_are_hit_at_their_surface(plotter, three_lines):
     assert vtkPicker().Pick(*pixel_of(plotter, (5.0, -9.0, 0.0)), 0.0, plotter.renderer)
 
 
-def test_halos_are_found(plotter, three_lines):
-    actor = plotter.add_halo_lines(three_lines)
-    plotter.camera_position = "iso"
-    plotter.show(auto_close=False)
-    target = three_lines.points[30]
-    for picker in (vtkCellPicker(), vtkPointPicker(), vtkHardwarePicker()):
-        assert picker.Pick(*pixel_of(plotter, target), 0.0, plotter.renderer)
-        assert picker.GetActor() is actor
-        if not isinstance(picker, vtkHardwarePicker):  # it takes the actor's picture, whose triangles lie elsewhere
-            assert np.linalg.norm(np.array(picker.GetPickPosition()) - target) < 0.6
-
-
 def test_hardware_selection_gives_segments_of_the_streamlines_that_are_seen(plotter, scene, three_lines):
     before = plotter.screenshot()
     pixel = pixel_of(plotter, three_lines.points[30]).round().astype(int)
