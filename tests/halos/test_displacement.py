@@ -53,23 +53,16 @@ def test_what_lies_outside_counts_as_the_nearer_end_and_functions_may_round():
 
 @pytest.mark.parametrize(
     ("given", "message"),
-    [
-        ("cubic", r"'cubic'; choose one of \('linear', 'square', 'square root'\), or give a table or a function"),
-        ([0.5], r"shape \(1,\), expected 2 to 64 numbers"),
-        (np.zeros(65), r"shape \(65,\), expected 2 to 64 numbers"),
-        (np.zeros((4, 4)), r"shape \(4, 4\)"),
-        ([0, 1.5, 1], "1.5 at 0.5, expected 0 to 1"),
-        ([0, 0.5, -0.1], "-0.1 at 1, expected 0 to 1"),
-        ([0, np.nan], "nan at 1, expected"),
-        (["a", "b"], "expected numbers"),
-        ([[1], [1, 2]], "expected numbers"),
-        (lambda x: 2 * x, "function gives .* expected 0 to 1"),
-        (lambda x: x[:5], r"function gives the shape \(5,\), expected 64 numbers for an array of as many"),
-        (lambda x: x / (x - x), "function gives nan at 0"),
-        (lambda x: None, "function gives"),
-        (lambda x: "dark", "function gives 'dark', expected numbers"),
-    ],
-)
+    [("cubic", r"'cubic'; choose one of \('linear', 'square', 'square root'\), or give a table or a function"),
+     ([0.5], r"shape \(1,\), expected 2 to 64 numbers"), (np.zeros(65), r"shape \(65,\), expected 2 to 64 numbers"),
+     (np.zeros((4, 4)), r"shape \(4, 4\)"), ([0, 1.5, 1], "1.5 at 0.5, expected 0 to 1"),
+     ([0, 0.5, -0.1], "-0.1 at 1, expected 0 to 1"), ([0, np.nan], "nan at 1, expected"),
+     (["a", "b"], "expected numbers"), ([[1], [1, 2]], "expected numbers"),
+     (lambda x: 2 * x, "function gives .* expected 0 to 1"),
+     (lambda x: x[:5], r"function gives the shape \(5,\), expected 64 numbers for an array of as many"),
+     (lambda x: x / (x - x), "function gives nan at 0"), (lambda x: None, "function gives"),
+     (lambda x: "dark", "function gives 'dark', expected numbers")],
+)  # fmt: skip
 @pytest.mark.filterwarnings("ignore:.*encountered in divide:RuntimeWarning")
 def test_what_cannot_be(given, message):
     with pytest.raises(ValueError, match=message):

@@ -76,22 +76,17 @@ def test_logarithmic_tables_map_as_vtk_does(low, factor, value):
 
 @pytest.mark.parametrize(
     ("fields", "words"),
-    [
-        ({"mode": "rainbow"}, "rainbow"),
-        ({"mode": "solid", "color": (255, 0, 0)}, "between 0 and 1"),
-        ({"mode": "streamline_rgba", "values": np.zeros((4, 2), np.uint8)}, "shape"),
-        ({"mode": "streamline_rgba", "values": np.zeros((4, 3))}, "uint8"),
-        ({"mode": "streamline_rgba"}, "nothing"),
-        ({"mode": "streamline_scalar", "values": np.zeros((4, 3))}, "streamline_scalar"),
-        ({"mode": "point_scalar", "clim": (0, 1)}, "source"),
-        ({"mode": "point_scalar", "source": "fa"}, "clim"),
-        ({"mode": "point_scalar", "source": "fa", "clim": (1, 0)}, "rising"),
-        ({"mode": "point_scalar", "source": "fa", "clim": (0, math.nan)}, "finite"),
-        ({"mode": "point_scalar", "source": "fa", "clim": (0, 1), "log_scale": True}, "positive"),
-        ({"mode": "point_scalar", "source": "fa", "clim": (0, 1), "lut": np.zeros((0, 4), "u1")}, "lut"),
-        ({"mode": "point_rgba"}, "'point_rgba' needs source"),
-    ],
-)
+    [({"mode": "rainbow"}, "rainbow"), ({"mode": "solid", "color": (255, 0, 0)}, "between 0 and 1"),
+     ({"mode": "streamline_rgba", "values": np.zeros((4, 2), np.uint8)}, "shape"),
+     ({"mode": "streamline_rgba", "values": np.zeros((4, 3))}, "uint8"), ({"mode": "streamline_rgba"}, "nothing"),
+     ({"mode": "streamline_scalar", "values": np.zeros((4, 3))}, "streamline_scalar"),
+     ({"mode": "point_scalar", "clim": (0, 1)}, "source"), ({"mode": "point_scalar", "source": "fa"}, "clim"),
+     ({"mode": "point_scalar", "source": "fa", "clim": (1, 0)}, "rising"),
+     ({"mode": "point_scalar", "source": "fa", "clim": (0, math.nan)}, "finite"),
+     ({"mode": "point_scalar", "source": "fa", "clim": (0, 1), "log_scale": True}, "positive"),
+     ({"mode": "point_scalar", "source": "fa", "clim": (0, 1), "lut": np.zeros((0, 4), "u1")}, "lut"),
+     ({"mode": "point_rgba"}, "'point_rgba' needs source")],
+)  # fmt: skip
 def test_what_cannot_be_drawn_is_refused(fields, words):
     with pytest.raises(ValueError, match=words):
         Colouring(**fields)

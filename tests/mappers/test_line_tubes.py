@@ -61,13 +61,10 @@ def capsules(fibres):
 
 @pytest.mark.parametrize(
     "place",
-    [
-        None,
-        lambda actor: actor.SetScale(1.5, 1.0, 0.7),
-        lambda actor: (actor.SetScale(1, 1, -1), actor.SetOrientation(0, 0, 30)),
-    ],
+    [None, lambda actor: actor.SetScale(1.5, 1.0, 0.7),
+     lambda actor: (actor.SetScale(1, 1, -1), actor.SetOrientation(0, 0, 30))],
     ids=["plain", "stretched", "mirrored"],
-)
+)  # fmt: skip
 def test_tubes_look_as_vtks_cylinders_and_balls(rods, make_plotter, tools, place):
     """Outline, light, and where they cut into each other, for actors placed in any way."""
     fibres, mapper, actor = rods(Tubes(RADIUS))

@@ -203,23 +203,19 @@ def test_what_is_taken_away_leaves_nothing(make_plotter, lines, tools, name):
 
 @pytest.mark.parametrize(
     ("make", "message"),
-    [
-        (lambda: AmbientOcclusion(radius=0.0), "radius of ambient occlusion is 0.0"),
-        (lambda: AmbientOcclusion(radius=np.nan), "radius of ambient occlusion is nan"),
-        (lambda: AmbientOcclusion(samples=0), "samples of ambient occlusion is 0"),
-        (lambda: AmbientOcclusion(samples=2.5), "samples of ambient occlusion is 2.5"),
-        (lambda: AmbientOcclusion(strength=1.5), "strength of ambient occlusion is 1.5"),
-        (lambda: DepthCue(strength=-1), "strength of depth cueing is -1"),
-        (lambda: DepthCue(range=(5, 5)), r"range of depth cueing is \(5, 5\)"),
-        (lambda: DepthCue(color=(1, 2, 3)), "color of depth cueing"),
-        (lambda: Halos(width=-1), "width of halos is -1"),
-        (lambda: Halos(depth=np.inf), "depth of halos is inf"),
-        (lambda: Halos(color=(1, 1)), "color of halos"),
-        (lambda: Ink((np.nan, 0, 0)), "color of ink"),
-        (lambda: Silhouette(np.zeros(3)), "selected of a silhouette is float64"),
-        (lambda: Silhouette([True], width=17), "width of a silhouette is 17"),
-    ],
-)
+    [(lambda: AmbientOcclusion(radius=0.0), "radius of ambient occlusion is 0.0"),
+     (lambda: AmbientOcclusion(radius=np.nan), "radius of ambient occlusion is nan"),
+     (lambda: AmbientOcclusion(samples=0), "samples of ambient occlusion is 0"),
+     (lambda: AmbientOcclusion(samples=2.5), "samples of ambient occlusion is 2.5"),
+     (lambda: AmbientOcclusion(strength=1.5), "strength of ambient occlusion is 1.5"),
+     (lambda: DepthCue(strength=-1), "strength of depth cueing is -1"),
+     (lambda: DepthCue(range=(5, 5)), r"range of depth cueing is \(5, 5\)"),
+     (lambda: DepthCue(color=(1, 2, 3)), "color of depth cueing"), (lambda: Halos(width=-1), "width of halos is -1"),
+     (lambda: Halos(depth=np.inf), "depth of halos is inf"), (lambda: Halos(color=(1, 1)), "color of halos"),
+     (lambda: Ink((np.nan, 0, 0)), "color of ink"),
+     (lambda: Silhouette(np.zeros(3)), "selected of a silhouette is float64"),
+     (lambda: Silhouette([True], width=17), "width of a silhouette is 17")],
+)  # fmt: skip
 def test_values_that_cannot_be_drawn_are_refused(make, message):
     with pytest.raises(ValueError, match=message):
         make()

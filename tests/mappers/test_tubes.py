@@ -87,38 +87,6 @@ def shown(make_plotter, actor, place=None, view=lit):
     return view(plotter)
 
 
-@pytest.mark.more
-@pytest.mark.parametrize(
-    "place",
-    [
-        None,
-        lambda actor: actor.SetScale(1.3, 1.0, 0.7),
-        lambda actor: (actor.SetScale(1, 1, -1), actor.SetOrientation(0, 0, 30)),
-    ],
-    ids=["plain", "stretched", "mirrored"],
-)
-def test_tubes_look_as_the_balls_that_they_are_swept_by(make_plotter, tools, place):
-    tubes = tubes_of()
-    mapper, actor = made(tubes, lighting=True)
-    ours = tools.picture(shown(make_plotter, actor, place), mapper).astype(int)
-    other = make_plotter()
-    matrix = np.array([[actor.GetMatrix().GetElement(i, j) for j in range(4)] for i in range(4)])
-    ball = pv.Sphere(radius=1.0, theta_resolution=60, phi_resolution=60)
-    meshes = []
-    for *centre, radius in cubics(tubes):
-        # placed by its points: a mirrored actor turns VTK's own meshes inside out
-        mesh = ball.scale(radius, inplace=False).translate(centre, inplace=False).transform(matrix, inplace=False)
-        meshes.append(mesh.compute_normals(auto_orient_normals=True, split_vertices=False))
-    balls = pv.merge(meshes, merge_points=False)
-    other.add_mesh(balls, color="white", ambient=0.1, diffuse=0.9, specular=0.0, smooth_shading=True)
-    theirs = tools.picture(lit(other)).astype(int)
-    both = tools.covered(ours) & tools.covered(theirs)
-    assert both.sum() > 2000
-    assert (tools.covered(ours) ^ tools.covered(theirs)).sum() < 0.03 * both.sum()
-    assert np.median(np.abs(ours - theirs).max(-1)[both]) <= 2
-    assert (np.abs(ours - theirs).max(-1)[both] <= 12).mean() > 0.97
-
-
 def test_bounds_hold_what_shows_and_the_camera_takes_them(make_plotter, tools):
     mapper, actor = made(tubes_of())
     bounds, spheres = np.array(actor.GetBounds()), cubics(mapper.tubes)

@@ -185,13 +185,10 @@ def test_local_peaks_are_the_first_and_others_the_greatest(make_plotter, tools):
 @pytest.mark.few(1)
 @pytest.mark.parametrize(
     "place",
-    [
-        None,
-        lambda actor: actor.SetScale(1.2, 1.0, 0.7),
-        lambda actor: (actor.SetScale(1, 1, -1), actor.SetOrientation(0, 0, 30)),
-    ],
+    [None, lambda actor: actor.SetScale(1.2, 1.0, 0.7),
+     lambda actor: (actor.SetScale(1, 1, -1), actor.SetOrientation(0, 0, 30))],
     ids=["plain", "stretched", "mirrored"],
-)
+)  # fmt: skip
 def test_surfaces_look_as_vtks_contours(make_plotter, tools, place):
     """Silhouette, depth and light, against marching cubes on four times as many voxels."""
     drawn = volume(blob, 24)

@@ -91,19 +91,15 @@ def test_curvature_of_a_circle_is_one_over_its_radius(plotter):
 
 @pytest.mark.parametrize(
     ("arguments", "message"),
-    [
-        ({"scalars": [1.0, 2.0]}, "expected 3 numbers, one per streamline"),
-        ({"scalars": np.zeros((3, 2)), "rgb": True}, "2 columns"),
-        ({"scalars": np.full((3, 3), 7.0), "rgb": True}, "between 0 and 1"),
-        ({"scalars": "weight", "clim": (2, 1)}, "the low one first"),
-        ({"scalars": "weight", "clim": "wide"}, "clim is 'wide'"),
-        ({"scalars": "weight", "clim": (0, 1), "log_scale": True}, "above zero"),
-        ({"scalars": "weight", "n_colors": 0}, "n_colors is 0"),
-        ({"opacity": 1.5}, "opacity is 1.5"),
-        ({"line_width": 0}, "line_width is 0"),
-        ({"line_width": "x"}, "line_width is 'x'; give .* above 0"),
-    ],
-)
+    [({"scalars": [1.0, 2.0]}, "expected 3 numbers, one per streamline"),
+     ({"scalars": np.zeros((3, 2)), "rgb": True}, "2 columns"),
+     ({"scalars": np.full((3, 3), 7.0), "rgb": True}, "between 0 and 1"),
+     ({"scalars": "weight", "clim": (2, 1)}, "the low one first"),
+     ({"scalars": "weight", "clim": "wide"}, "clim is 'wide'"),
+     ({"scalars": "weight", "clim": (0, 1), "log_scale": True}, "above zero"),
+     ({"scalars": "weight", "n_colors": 0}, "n_colors is 0"), ({"opacity": 1.5}, "opacity is 1.5"),
+     ({"line_width": 0}, "line_width is 0"), ({"line_width": "x"}, "line_width is 'x'; give .* above 0")],
+)  # fmt: skip
 def test_nonsense_is_refused_in_words(plotter, three_lines, arguments, message):
     with pytest.raises(ValueError, match=message):
         plotter.add_fiblets(three_lines, **arguments)

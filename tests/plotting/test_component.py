@@ -97,7 +97,7 @@ def test_the_arguments_are_pyvistas_where_both_have_them(kind):
     shared = {"scalars", "cmap", "clim", "opacity", "n_colors", "name", "render"}
     shared |= {"opacity_unit_distance"} if volumes else {"color", "label", "lighting"}
     assert shared <= set(ours) & set(theirs)
-    named = {one.KEYWORD_ONLY, one.VAR_KEYWORD} if (one := ours["source"]) else set()
+    named = inspect.Parameter.KEYWORD_ONLY, inspect.Parameter.VAR_KEYWORD
     assert all(parameter.kind in named for name, parameter in ours.items() if name != "source")
 
 

@@ -226,16 +226,12 @@ def test_a_ball_through_the_middle_of_a_triangle_cuts_a_round_hole(square):
 
 @pytest.mark.parametrize(
     ("region", "area"),
-    [
-        (regions.Plane((1.0, 0.0, 0.0), (2.0, 0.0, 0.0)), 30.0),
-        (~regions.Slab((0.0, 1.0, 0.0), (0.0, 0.0, 0.0), 2.0), 80.0),
-        (regions.Box((-1.0, 2.0, -2.0, 2.0, -1.0, 1.0)), 12.0),
-        (~regions.Box((-1.0, 2.0, -2.0, 2.0, -1.0, 1.0)), 88.0),
-        (regions.Sphere((0.0, 0.0, 50.0), 1.0), 0.0),
-        (~regions.Sphere((0.0, 0.0, 50.0), 1.0), 100.0),
-        (pv.Cube(center=(0, 0, 0), x_length=4, y_length=6, z_length=2), 24.0),
-    ],
-)
+    [(regions.Plane((1.0, 0.0, 0.0), (2.0, 0.0, 0.0)), 30.0),
+     (~regions.Slab((0.0, 1.0, 0.0), (0.0, 0.0, 0.0), 2.0), 80.0),
+     (regions.Box((-1.0, 2.0, -2.0, 2.0, -1.0, 1.0)), 12.0), (~regions.Box((-1.0, 2.0, -2.0, 2.0, -1.0, 1.0)), 88.0),
+     (regions.Sphere((0.0, 0.0, 50.0), 1.0), 0.0), (~regions.Sphere((0.0, 0.0, 50.0), 1.0), 100.0),
+     (pv.Cube(center=(0, 0, 0), x_length=4, y_length=6, z_length=2), 24.0)],
+)  # fmt: skip
 def test_areas_are_those_of_the_shapes(square, region, area):
     found = cut_surface(square, region)
     assert found.area == pytest.approx(area, rel=0.01, abs=1e-9)

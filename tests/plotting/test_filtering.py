@@ -219,6 +219,12 @@ def test_refused_choices_leave_all_as_it_was(shown):
         actor.clip("x")  # as of PyVista's filter of this name
     with pytest.raises(TypeError, match="is no region"):
         actor.clip(3.0)
+    with pytest.raises(ValueError, match="a label volume cannot cut"):
+        actor.clip(regions.Labels(np.ones((3, 3, 3), int), np.eye(4)))
+    for what, told in ((pv.Plane(), "open"), (pv.PolyData(), "no faces")):
+        with pytest.raises(ValueError, match=told):
+            actor.clip(what)
+    assert not actor.clips
     np.testing.assert_array_equal(actor.shown, before)
 
 
@@ -238,14 +244,6 @@ def test_fiblets_that_a_criterion_does_not_fit_are_refused(shown, tract):
     actor.fiblets = compress(Streamlines.from_list([np.linspace((0, 0, i), (100, 0, i), 400) for i in range(400)]))
     plotter.render()
     assert actor.shown.all()
-
-
-def test_label_volumes_are_refused_at_once(shown):
-    plotter, actor = shown
-    with pytest.raises(ValueError, match="a label volume cannot cut"):
-        actor.clip(regions.Labels(np.ones((3, 3, 3), int), np.eye(4)))
-    assert not actor.clips
-    plotter.render()
 
 
 def test_label_images_of_cells_lie_where_their_voxels_are(shown):

@@ -139,15 +139,11 @@ def test_subplots_are_enlarged_as_well():
 
 @pytest.mark.parametrize(
     ("arguments", "message"),
-    [
-        ({"scale": 0}, "scale is 0"),
-        ({"scale": 1.5}, r"scale is 1\.5"),
-        ({"supersampling": True}, "supersampling is True"),
-        ({"dpi": -1}, "dpi is -1"),
-        ({"filename": 7}, "filename is a int"),
-        ({"filename": "a.jpg", "one_bit": True}, r"\.jpg files have no pictures of one bit"),
-    ],
-)
+    [({"scale": 0}, "scale is 0"), ({"scale": 1.5}, r"scale is 1\.5"),
+     ({"supersampling": True}, "supersampling is True"), ({"dpi": -1}, "dpi is -1"),
+     ({"filename": 7}, "filename is a int"),
+     ({"filename": "a.jpg", "one_bit": True}, r"\.jpg files have no pictures of one bit")],
+)  # fmt: skip
 def test_what_has_no_meaning_is_refused(drawing, arguments, message):
     with pytest.raises((TypeError, ValueError), match=message):
         drawing.halo_lines.screenshot(**arguments)

@@ -106,14 +106,10 @@ def test_lines_of_different_opacity_behind_each_other(plotter):
 
 @pytest.mark.parametrize(
     ("opacity", "error", "message"),
-    [
-        ("fog", KeyError, "there is no opacity 'fog'"),
-        ("linear", ValueError, "follows the numbers of a colour map"),
-        ([0.1, 2.0, 0.3], ValueError, "between 0 and 2"),
-        (np.zeros((3, 3)), ValueError, "one per streamline"),
-        (1.5, ValueError, "opacity is 1.5"),
-    ],
-)
+    [("fog", KeyError, "there is no opacity 'fog'"), ("linear", ValueError, "follows the numbers of a colour map"),
+     ([0.1, 2.0, 0.3], ValueError, "between 0 and 2"), (np.zeros((3, 3)), ValueError, "one per streamline"),
+     (1.5, ValueError, "opacity is 1.5")],
+)  # fmt: skip
 def test_nonsense_is_refused_in_words(plotter, opacity, error, message):
     with pytest.raises(error, match=message):
         plotter.add_fiblets(rows(), opacity=opacity, **FLAT)

@@ -110,25 +110,18 @@ def test_settings_are_read_as_they_are(plotter):
 
 @pytest.mark.parametrize(
     ("name", "value", "message"),
-    [
-        ("depth_of_field", 3.0, "give True, False or a dict"),
-        ("depth_of_field", {"focus": 3.0}, r"no settings \['focus'\]; it has \['focal_distance', 'aperture'"),
-        ("depth_of_field", {"focal_distance": "mouse"}, "focal_distance is 'mouse'"),
-        ("depth_of_field", {"focal_distance": np.inf}, "focal_distance"),
-        ("depth_of_field", {"max_blur": 500}, "max_blur is 500"),
-        ("depth_of_field", {"aperture": "wide"}, "aperture"),
-        ("depth_of_field", {"darkening": 1.1}, "darkening"),
-        ("depth_of_field", {"smooth": -1.0}, "smooth"),
-        ("tone", "aces", "give True, False or a dict"),
-        ("tone", {"gamma": 2.0}, r"no settings \['gamma'\]"),
-        ("tone", {"operator": "filmic"}, "operator is 'filmic'; choose one of"),
-        ("tone", {"exposure": 0}, "exposure is 0; give a number above 0"),
-        ("tone", {"white": 2.0}, "operator 'aces' has none"),
-        ("gamma", 0, "gamma is 0"),
-        ("brightness", 2, "brightness is 2; give a number from -1 to 1"),
-        ("contrast", "high", "contrast is 'high'"),
-    ],
-)
+    [("depth_of_field", 3.0, "give True, False or a dict"),
+     ("depth_of_field", {"focus": 3.0}, r"no settings \['focus'\]; it has \['focal_distance', 'aperture'"),
+     ("depth_of_field", {"focal_distance": "mouse"}, "focal_distance is 'mouse'"),
+     ("depth_of_field", {"focal_distance": np.inf}, "focal_distance"),
+     ("depth_of_field", {"max_blur": 500}, "max_blur is 500"), ("depth_of_field", {"aperture": "wide"}, "aperture"),
+     ("depth_of_field", {"darkening": 1.1}, "darkening"), ("depth_of_field", {"smooth": -1.0}, "smooth"),
+     ("tone", "aces", "give True, False or a dict"), ("tone", {"gamma": 2.0}, r"no settings \['gamma'\]"),
+     ("tone", {"operator": "filmic"}, "operator is 'filmic'; choose one of"),
+     ("tone", {"exposure": 0}, "exposure is 0; give a number above 0"),
+     ("tone", {"white": 2.0}, "operator 'aces' has none"), ("gamma", 0, "gamma is 0"),
+     ("brightness", 2, "brightness is 2; give a number from -1 to 1"), ("contrast", "high", "contrast is 'high'")],
+)  # fmt: skip
 def test_what_has_no_meaning_is_refused_and_changes_nothing(plotter, name, value, message):
     plotter.picture.depth_of_field = FOCUS
     plotter.picture.tone = True

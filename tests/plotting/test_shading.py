@@ -58,15 +58,11 @@ def test_settings_are_read_back_with_their_defaults(actor):
 
 @pytest.mark.parametrize(
     ("name", "value", "message"),
-    [
-        ("ambient_occlusion", {"radius": -1}, "radius of ambient occlusion is -1"),
-        ("ambient_occlusion", {"bias": 1}, r"no settings \['bias'\]; it has \['radius', 'samples', 'strength'\]"),
-        ("depth_cue", 0.5, "depth_cue is 0.5; give True, False or a dict"),
-        ("halos", {"color": "no colour"}, "no colour"),
-        ("halos", {"width": 0}, "width of halos is 0"),
-        ("style", "wire", "style is 'wire'; choose one of"),
-    ],
-)
+    [("ambient_occlusion", {"radius": -1}, "radius of ambient occlusion is -1"),
+     ("ambient_occlusion", {"bias": 1}, r"no settings \['bias'\]; it has \['radius', 'samples', 'strength'\]"),
+     ("depth_cue", 0.5, "depth_cue is 0.5; give True, False or a dict"), ("halos", {"color": "no colour"}, "no colour"),
+     ("halos", {"width": 0}, "width of halos is 0"), ("style", "wire", "style is 'wire'; choose one of")],
+)  # fmt: skip
 def test_what_cannot_be_set_is_refused_and_changes_nothing(actor, name, value, message):
     actor.halos = {"width": 1.0}
     before, effects = getattr(actor, name), actor.mapper.effects

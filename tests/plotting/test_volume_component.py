@@ -236,6 +236,10 @@ def test_a_copy_looks_the_same(plotter):
     assert (shot(plotter) == picture).all()
     twin._mapper.raise_pending()
     assert twin.casting.step == 0.3
+    twin.sparse = 4
+    assert twin.casting.sparse == 4
+    with pytest.raises(ValueError, match="sparse is 3"):
+        twin.sparse = 3
     twin.release()
 
 
@@ -334,28 +338,3 @@ def test_opacities_are_pyvistas_where_they_have_a_name():
     assert opacities([True, False], 2).tolist() == [1.0, 0.0]
     assert value_limits((None, 3)) == (-np.inf, 3.0)
     assert value_limits(np.float32(2)) == (2.0, np.inf)
-
-
-def test_sparse_rays_are_a_setting(plotter):
-    actor = plotter.add_raycast_volume(np.zeros((8, 8, 8), np.float32), sparse=2, sparse_threshold=0.1, clim=(-1, 1))
-    assert (actor.casting.sparse, actor.casting.sparse_threshold) == (2, 0.1)
-    actor.sparse = 4
-    assert actor.copy().sparse == 4
-    with pytest.raises(ValueError, match="sparse is 3"):
-        actor.sparse = 3
-    assert actor.sparse == 4
-
-
-def test_a_table_is_integrated_once_though_the_mode_changes(plotter, monkeypatch):
-    from pvfiblets.volumes import preintegration
-
-    done = []
-    plain = preintegration.preintegrate
-    monkeypatch.setattr(preintegration, "preintegrate", lambda *given: done.append(given) or plain(*given))
-    actor = plotter.add_raycast_volume(np.random.default_rng(0).random((8, 8, 8)), opacity=[0, 0.123], n_colors=32)
-    plotter.show(auto_close=False)
-    for mode in ("mip", "composite", "isosurface", "composite"):
-        actor.mode = mode
-        plotter.render()
-    # Once for steps, and once for their parts, as noise bends everywhere.
-    assert [units for _, units in done] == pytest.approx([0.5, 0.125])

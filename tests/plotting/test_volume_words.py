@@ -260,16 +260,10 @@ def both(image, opacity, view="xy", **look):
 @pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("opacity", "unit", "spacing", "view"),
-    [
-        ("linear", 1.0, (1, 1, 1), "xy"),
-        ("linear", 10.0, (1, 1, 1), "xz"),
-        ("sigmoid", 20.0, (1, 1, 1), "xy"),
-        ("geom", 5.0, (0.5, 0.5, 0.5), "xy"),
-        ([0, 0.5], 10.0, (1, 1, 2.5), "xz"),
-        ([0, 0, 1], 10.0, (1, 1, 1), "xy"),
-        ([0, 0.2, 0.2, 0.1], 5.0, (1, 1, 1), "xy"),
-    ],
-)
+    [("linear", 1.0, (1, 1, 1), "xy"), ("linear", 10.0, (1, 1, 1), "xz"), ("sigmoid", 20.0, (1, 1, 1), "xy"),
+     ("geom", 5.0, (0.5, 0.5, 0.5), "xy"), ([0, 0.5], 10.0, (1, 1, 2.5), "xz"), ([0, 0, 1], 10.0, (1, 1, 1), "xy"),
+     ([0, 0.2, 0.2, 0.1], 5.0, (1, 1, 1), "xy")],
+)  # fmt: skip
 def test_a_table_looks_as_dense_as_in_add_volume(opacity, unit, spacing, view):
     ours, theirs = both(ramp(spacing), opacity, view, opacity_unit_distance=unit)
     there = theirs > 2

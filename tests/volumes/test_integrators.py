@@ -51,12 +51,6 @@ def test_the_closed_forms_are_the_integral(name, depth):
     assert np.abs(profile.light(start, end) - expected).max() < 2e-6
 
 
-def test_no_closed_form_is_an_error():
-    both = Profile("both", np.array([0.0, 1.0]), 1.0, Transfer([[0, 0, 0, 0], [1, 1, 1, 0.5]], (0, 1)))
-    with pytest.raises(ValueError, match="both change"):
-        both.light()
-
-
 # ------------------------------------------------------------------------------------------------------ integrators
 
 
@@ -88,22 +82,6 @@ def test_exponential_steps_are_exact_where_nothing_changes_in_them(x, dtype):
     assert np.abs(alpha + np.expm1(-depth.sum(axis=-1))).max() < tolerance
     assert rgb.min() >= 0
     assert max(rgb.max(), alpha.max()) <= 1 + 1e-6
-
-
-def test_riemann_is_the_papers_sum_and_eulers_method():
-    """Front to back as the paper has it; the same as equation 6, back to front."""
-    rng = np.random.default_rng(1)
-    kappa, colour, h = rng.random(20), rng.random((20, 3)), 0.3
-    rgb, alpha = integrate("riemann", kappa, colour, h)
-    light, left = np.zeros(3), 1.0
-    for k, c in zip(kappa, colour, strict=True):
-        light, left = light + left * k * h * c, left * (1 - k * h)
-    back = np.zeros(3)
-    for k, c in zip(kappa[::-1], colour[::-1], strict=True):
-        back = back + h * (k * c - k * back)
-    assert np.abs(rgb - light).max() < 1e-14
-    assert np.abs(rgb - back).max() < 1e-14
-    assert abs(alpha - 1 + left) < 1e-14
 
 
 def test_rk4_is_the_classic_method_on_equation_6():

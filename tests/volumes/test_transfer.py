@@ -131,19 +131,16 @@ def test_for_a_volume():
 
 @pytest.mark.parametrize(
     ("arguments", "message"),
-    [
-        ((np.zeros((1, 4)), (0, 1)), r"shape \(1, 4\); expected \(k, 4\) RGBA, k >= 2"),
-        ((np.zeros((4, 3)), (0, 1)), r"shape \(4, 3\)"),
-        (([[0, 0, 0, 0], [0, 0, 0, 1.2]], (0, 1)), "A of entry 1 is 1.2; expected 0 to 1"),
-        (([[0, 0, 0, 0], [0, -0.1, 0, 1]], (0, 1)), "G of entry 1 is -0.1"),
-        (([[np.nan, 0, 0, 0], [0, 0, 0, 1]], (0, 1)), "R of entry 0 is nan"),
-        ((np.zeros((2, 4)), (1, 0)), r"clim=\(1.0, 0.0\); expected two finite numbers, the lower one first"),
-        ((np.zeros((2, 4)), (1, 1)), "clim="),
-        ((np.zeros((2, 4)), (0, np.nan)), "clim="),
-        ((np.zeros((2, 4)), (0, 1), 0.0), "the unit of opacity is 0 mm"),
-        ((np.zeros((2, 4)), (0, 1), np.inf), "the unit of opacity is inf mm"),
-    ],
-)
+    [((np.zeros((1, 4)), (0, 1)), r"shape \(1, 4\); expected \(k, 4\) RGBA, k >= 2"),
+     ((np.zeros((4, 3)), (0, 1)), r"shape \(4, 3\)"),
+     (([[0, 0, 0, 0], [0, 0, 0, 1.2]], (0, 1)), "A of entry 1 is 1.2; expected 0 to 1"),
+     (([[0, 0, 0, 0], [0, -0.1, 0, 1]], (0, 1)), "G of entry 1 is -0.1"),
+     (([[np.nan, 0, 0, 0], [0, 0, 0, 1]], (0, 1)), "R of entry 0 is nan"),
+     ((np.zeros((2, 4)), (1, 0)), r"clim=\(1.0, 0.0\); expected two finite numbers, the lower one first"),
+     ((np.zeros((2, 4)), (1, 1)), "clim="), ((np.zeros((2, 4)), (0, np.nan)), "clim="),
+     ((np.zeros((2, 4)), (0, 1), 0.0), "the unit of opacity is 0 mm"),
+     ((np.zeros((2, 4)), (0, 1), np.inf), "the unit of opacity is inf mm")],
+)  # fmt: skip
 def test_bad_tables(arguments, message):
     with pytest.raises(ValueError, match=message):
         Transfer(*arguments)

@@ -106,14 +106,11 @@ def test_what_is_no_volume(values, message):
 
 @pytest.mark.parametrize(
     ("affine", "message"),
-    [
-        (np.eye(3), "give a finite \\(4, 4\\) matrix"),
-        (np.diag([1, 1, np.nan, 1]), "give a finite \\(4, 4\\) matrix"),
-        (np.ones((4, 4)), "ends in the row \\(0, 0, 0, 1\\)"),
-        (np.diag([1.0, 0.0, 1.0, 1.0]), "flattens space \\(spacing \\[1.0, 0.0, 1.0\\] mm\\)"),
-        ([[1, 2, 0, 0], [2, 4, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]], "flattens space"),
-    ],
-)
+    [(np.eye(3), "give a finite \\(4, 4\\) matrix"), (np.diag([1, 1, np.nan, 1]), "give a finite \\(4, 4\\) matrix"),
+     (np.ones((4, 4)), "ends in the row \\(0, 0, 0, 1\\)"),
+     (np.diag([1.0, 0.0, 1.0, 1.0]), "flattens space \\(spacing \\[1.0, 0.0, 1.0\\] mm\\)"),
+     ([[1, 2, 0, 0], [2, 4, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]], "flattens space")],
+)  # fmt: skip
 def test_what_is_no_place(affine, message):
     with pytest.raises(ValueError, match=message):
         RaycastVolume(numbers(), affine)
