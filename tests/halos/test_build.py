@@ -233,8 +233,8 @@ BROKEN[30, 1] = np.inf
     ("build", "source", "arguments", "message"),
     [
         (as_halo_lines, STREAMLINES, {"scalars": "md"}, "it has point data 'fa', 'col' and line data 'length'"),
-        (as_halo_lines, PARTS, {"filter_by": "md"}, "filter_by is 'md', which the source does not have; it has no data"),
-        (as_halo_lines, PARTS, {"scalars": np.zeros(5)}, "shape (5,), expected a row for each of 40 points or of 3 lines"),
+        (as_halo_lines, PARTS, {"filter_by": "md"}, "is 'md', which the source does not have; it has no data"),
+        (as_halo_lines, PARTS, {"scalars": np.zeros(5)}, "(5,), expected a row for each of 40 points or of 3 lines"),
         (as_halo_lines, PARTS, {"scalars": 1.0}, "scalars has the shape (), expected a row"),
         (as_halo_lines, PARTS, {"scalars": ["a"] * 40}, "words per point"),
         (as_halo_lines, PARTS, {"scalars": COLOURS[:, :2], "rgb": True},

@@ -180,18 +180,6 @@ def test_the_halo_of_a_line_on_another(away):
     assert (row == LINE).all()
 
 
-@pytest.mark.parametrize("camera", CAMERAS)
-def test_neighbours_in_one_plane_have_no_halo_on_each_other(camera):
-    look = HaloStyle(4.0, 30.0, 40.0, **PLAIN)
-    scene = lines(*([[-90, y, 100], [90, y, 100]] for y in (-8, 0, 5)))
-    found = picture(scene, look, CAMERAS[camera](), SIZE)
-    _, y = centres()
-    assert ((found.kind == LINE) == (np.min([abs(y - n) for n in (-8, 0, 5)], axis=0) < 2)).all()
-    # The halo between two is that of the nearer: a roof whose ridge is in their middle.
-    between = (y > -6) & (y < -2)
-    assert (found.owner == np.where(y < -4, 0, 2))[between].all()
-
-
 # ----------------------------------------------------------------------------------------------------------- margins
 
 

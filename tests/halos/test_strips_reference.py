@@ -7,7 +7,7 @@ import pytest
 
 from pvfiblets.halos import HaloPoints, HaloStyle
 from pvfiblets.halos.reference import HALO, LINE, NOTHING, picture
-from pvfiblets.halos.strips_reference import mask, places_along, rates
+from pvfiblets.halos.strips_reference import mask, places_along
 
 from .views import CAMERAS, NEAR, PLAIN, SIZE, centres, kinds, line, lines, parallel, perspective, window_depth
 
@@ -68,13 +68,6 @@ def test_filtered_lines_end_where_their_numbers_do_and_narrow_over_their_mm():
     assert ((found.kind != NOTHING) == ((abs(x) > 10) & (abs(x) < 30) & (abs(y) < 15))).all()
 
 
-def test_rates_of_numbers():
-    points = np.array([[0, 0, 0], [2, 0, 0], [2, 0, 0], [2, 4, 0], [9, 9, 9], [0, 0, 0], [0, 0, 5.0]])
-    numbers = np.array([0, 6, 7, 9, 1, np.nan, 4.0])
-    found = rates(points, np.array([0, 4, 5, 5, 7]), numbers)
-    assert found == pytest.approx([3, 3, 0.5, 0.5, 0, 0, 0])
-
-
 # ------------------------------------------------------------------------------------------------------------- bends
 
 
@@ -129,16 +122,6 @@ def test_bends_take_everything_from_the_foot(degrees):
     assert ((found.kind == LINE) == (off < 3 * 0.8))[beyond].all()
     assert np.abs(found.depth - window_depth(115 + 5 * off / 8 * (off > 2.4)))[beyond].max() < 1e-12
     assert np.isin(found.owner + found.t, [1.0])[beyond].all()
-
-
-def test_steep_bends_are_round():
-    """A segment that runs at the viewer, and whose strip so soon widens much, has no bisector with the next."""
-    look = HaloStyle(6.0, 16.0, 5.0, **PLAIN)
-    x, y = centres()
-    before = (x < -0.1) & (np.hypot(x, y) < 3)
-    for z, divided in ((140, False), (101, True)):
-        found = picture(line([-5, 0, z], [0, 0, 100], [25, 0, 100]), look, perspective(), SIZE)
-        assert (found.owner[before] == (0 if divided else 1)).all()
 
 
 def test_repeated_points_and_segments_seen_end_on_are_round_and_lines_without_extent_nothing():

@@ -275,16 +275,10 @@ def test_nothing_exists_while_nothing_is_changed(make_plotter):
     assert props.GetNumberOfItems() == count
     assert not windows._contexts
     assert not plotter.renderer.HasObserver("StartEvent")
-
-
-def test_a_picture_that_nobody_keeps_stops_to_act(make_plotter):
-    plotter = make_plotter()
-    fill(plotter)
     before = shot(plotter)
-    picture = Picture(plotter.renderer)
     picture.tone = Tone(brightness=0.5)
     shot(plotter, picture)
-    del picture
+    del picture  # one that nobody keeps stops to act
     gc.collect()
     assert np.array_equal(shot(plotter), before)
 

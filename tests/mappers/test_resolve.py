@@ -110,16 +110,9 @@ def recording(lines):
     return build, asked
 
 
-def test_only_what_is_not_the_default_is_asked_for():
-    assert EngineOptions().changed() == {}
-    assert EngineOptions("geometry", "coverage", "sample").changed() == {
-        "pipeline": "geometry", "culling": "coverage", "fit": "sample"
-    }  # fmt: skip
-    assert EngineOptions(culling="none") == EngineOptions(culling=None)
-    assert EngineOptions(culling="none").changed() == {"culling": None}
-
-
 def test_other_options_make_another_renderer_at_the_next_frame(make_plotter, lines, renderers, tools):
+    assert EngineOptions().changed() == {}
+    assert EngineOptions(culling="none") == EngineOptions(culling=None)
     build, asked = recording(lines)
     mapper, actor = build(options=EngineOptions(pipeline="geometry"))
     plotter = make_plotter()
@@ -136,15 +129,6 @@ def test_other_options_make_another_renderer_at_the_next_frame(make_plotter, lin
     assert (tools.picture(plotter, mapper) == first).all()
     assert asked == [{"pipeline": "geometry"}, {"culling": None}]
     assert [renderer.released for renderer in renderers] == [True, False]
-
-
-def test_progress_is_passed_on_and_makes_nothing_anew(make_plotter, lines, tools):
-    build, asked = recording(lines)
-    mapper, actor = build(progress=True)
-    plotter = make_plotter()
-    plotter.add_actor(actor)
-    tools.picture(plotter, mapper)
-    assert asked == [{"progress": True}]
 
 
 def test_the_pipeline_in_use_is_known_after_the_first_frame(make_plotter, lines, renderers, tools):

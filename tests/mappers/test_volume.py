@@ -9,7 +9,7 @@ from vtkmodules.vtkCommonDataModel import vtkPlane
 from vtkmodules.vtkRenderingCore import vtkActor, vtkMapper
 
 from pvfiblets.codec.compress import compress
-from pvfiblets.mappers import Colouring, FibletMapper, VolumeMapper
+from pvfiblets.mappers import Colouring, FibletMapper
 from pvfiblets.mappers.slices import Slices
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.volumes import Transfer
@@ -343,14 +343,3 @@ def test_light_is_picked_where_it_begins(make_plotter, tools):
     hit = mapper.pick_at(120, 100)
     assert hit.position == pytest.approx([0.1, 0.0, 0.1], abs=0.5)  # a step
     assert hit.value == pytest.approx(hit.voxel[1] - HALF)
-
-
-def test_colours_that_a_mode_does_not_have_are_refused():
-    mapper, _ = made(fog(), light())
-    with pytest.raises(ValueError, match=r"of mode 'composite' is 'solid'; light has the colours of casting\.transfer"):
-        mapper.colouring = Colouring("solid")
-    with pytest.raises(ValueError, match="of mode 'mip' is 'orientation'; choose of"):
-        mapper.show(RaycastOptions("mip"), Colouring())
-    assert mapper.casting.mode == "composite"
-    with pytest.raises(ValueError, match="of mode 'mip' is 'point_rgba'"):
-        VolumeMapper(fog(), RaycastOptions("mip"), colouring=Colouring("point_rgba", source="light"))

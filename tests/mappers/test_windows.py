@@ -47,29 +47,6 @@ def test_several_actors_in_one_renderer(make_plotter, make_fibres, tools):
         assert tools.agreement(one[..., channel] > 100, other[..., channel] > 100) >= 0.985
 
 
-def test_a_second_window_shows_the_same_fiblets(make_plotter, lines, tools):
-    sizes = ((240, 200), (300, 260))
-    plotters = [make_plotter(window_size=size) for size in sizes]
-    mappers = []
-    for plotter in plotters:
-        mapper, actor = lines.actor(colouring=SOLID)
-        mappers.append(mapper)
-        plotter.add_actor(actor)
-        plotter.camera_position = "xz"
-        plotter.reset_camera()
-    for _ in range(2):
-        images = [tools.picture(plotter, *mappers) for plotter in plotters]
-    assert len(windows._contexts) == 2
-    for image, size in zip(images, sizes, strict=True):
-        reference = make_plotter(window_size=size)
-        reference.add_mesh(lines.polydata(), color=(1.0, 1.0, 0.0), lighting=False)
-        reference.camera_position = "xz"
-        reference.reset_camera()
-        assert tools.agreement(yellow(image), yellow(tools.picture(reference))) >= 0.99
-    plotters[0].close()
-    assert np.array_equal(tools.picture(plotters[1], mappers[1]), images[1])
-
-
 @pytest.mark.parametrize("drawn_before", [True, False])
 def test_one_actor_in_two_windows_is_drawn_in_both(make_plotter, lines, tools, drawn_before):
     """All windows of EGL's say that they are current; VTK's own mapper leaves one of the two blank."""
@@ -141,45 +118,6 @@ def test_memory_is_returned_by_remove_actor_and_by_release(make_plotter, lines, 
     assert np.array_equal(tools.picture(plotter, mapper), first)
     plotter.close()
     mapper.release()
-
-
-def test_the_engines_memory_is_returned(make_plotter, tools):
-    """Count GL objects by name: glIsBuffer and glIsTexture of what existed while the actor was shown."""
-    fibres = tools.fibres(tools.helices())
-    mapper, actor = fibres.actor(colouring=Colouring("streamline_scalar", values=np.arange(24.0)))
-    plotter = make_plotter()
-    plotter.add_mesh(pv.Sphere())
-    plotter.add_actor(actor)
-    tools.picture(plotter, mapper)
-    (context,) = windows._contexts.values()
-    is_buffer, is_texture = gl_functions(context, "glIsBuffer", "glIsTexture")
-    (slot,) = context.slots.values()
-    renderer = slot.renderer
-    gbuffer = renderer.render(*last_drawn(slot))
-    names = [gbuffer.depth.glo, gbuffer.ids.glo, gbuffer.position.glo]
-    names += [texture.glo for texture in slot.textures.values()]
-    plotter.render_window.MakeCurrent()
-    buffers = [name for name in range(1, 400) if is_buffer(name)]
-    assert all(is_texture(name) for name in names)
-    plotter.remove_actor(actor)
-    plotter.render()
-    plotter.render_window.MakeCurrent()
-    assert not any(is_texture(name) for name in names)
-    assert len([name for name in range(1, 400) if is_buffer(name)]) <= len(buffers) - 5
-
-
-def last_drawn(slot):
-    drawn = list(slot.drawn.values())[-1]
-    return drawn.view, drawn.style
-
-
-def gl_functions(context, *names):
-    """Return GL functions that take one name and answer yes or no."""
-    import ctypes
-
-    load = context.ctx.mglo._context.load_opengl_function
-    prototype = ctypes.CFUNCTYPE(ctypes.c_ubyte, ctypes.c_uint)
-    return [prototype(load(name)) for name in names]
 
 
 def test_a_mapper_that_python_forgot_draws_and_dies_with_its_actor(make_plotter, lines, tools, renderers):

@@ -309,6 +309,10 @@ def test_what_cannot_be_added_is_refused_in_words(plotter, three_lines):
         plotter.add_fiblets(compress(three_lines), halos=True)
     with pytest.raises(TypeError, match=r"add_fiblets\(\) got an unexpected keyword argument 'colour'"):
         plotter.add_fiblets(three_lines, colour="red")
+    three_lines.per_point["fa"] = np.arange(float(three_lines.n_points))
+    # All that the source has, before any of it is left behind by compression.
+    with pytest.raises(KeyError, match="no array 'md'. Per point: 'height', 'fa'; per streamline: 'weight'; built in"):
+        plotter.add_fiblets(three_lines, scalars="md")
     assert not plotter.actors
 
 

@@ -77,17 +77,14 @@ def test_gltf_holds_what_it_holds_of_the_same_lines_by_add_mesh(plotter, fiblets
         assert len(np.unique(each[:, 0], axis=0)) == 3
 
 
-def test_orientation_is_the_colour_of_the_direction(plotter, fiblets, tmp_path):
-    plotter.add_fiblets(fiblets)
+def test_what_is_hidden_or_cut_away_stays_out(plotter, fiblets, tmp_path):
+    actor = plotter.add_fiblets(fiblets)
     ((_, colours, *_, base),) = gltf(plotter, tmp_path)
     axes = np.repeat(255 * np.eye(3, 4, dtype=np.uint8), 41, axis=0)
     axes[:, 3] = 255
     np.testing.assert_allclose(colours.astype(int), axes, atol=2)  # the codec turns directions by as much
     assert base == [1.0, 1.0, 1.0, 1.0]
-
-
-def test_what_is_hidden_or_cut_away_stays_out(plotter, fiblets, tmp_path):
-    actor = plotter.add_fiblets(fiblets, scalars="height", show_scalar_bar=False)
+    actor.scalars = "height"
     actor.show_only([0, 1])
     actor.clip(regions.Plane((1.0, 0.0, 0.0), (0.25, 0.0, 0.0)))
     actor.criterion("height", (0.0, 0.9))

@@ -53,12 +53,8 @@ def test_updates_draw_the_new_lines_with_the_old_settings(plotter, three_lines):
     got = shot(plotter)
     plotter.add_fiblets(moved, scalars="height", cmap="jet", line_width=2, show_scalar_bar=False, name=actor.name)
     np.testing.assert_array_equal(got, shot(plotter))
-
-
-def test_a_refused_update_changes_nothing(plotter, three_lines):
-    actor = plotter.add_fiblets(three_lines, scalars="height")
     before = actor.fiblets
-    with pytest.raises(KeyError, match="no array 'height'"):
+    with pytest.raises(KeyError, match="no array 'height'"):  # a refused update changes nothing
         actor.update([[(0, 0, 0), (1, 1, 1)]])
     assert actor.fiblets is before
 
@@ -72,15 +68,6 @@ def test_datasets_are_the_lines_that_are_drawn(plotter, three_lines):
         assert data.n_points == 123
         np.testing.assert_allclose(data["height"], three_lines.per_point["height"], atol=1e-2)
     assert plotter.add_halo_points(np.eye(3)).mapper.dataset.n_points == 3
-
-
-def test_tables_of_selections(plotter, three_lines):
-    actor = plotter.add_fiblets(three_lines)
-    actor.select([2, 0])
-    table = actor.selection_table()
-    assert table["streamline"].tolist() == [0, 2]
-    assert table["weight"].tolist() == [1.0, 100.0]
-    np.testing.assert_allclose(table["length"], 20.0, atol=0.2)
 
 
 @pytest.mark.parametrize("add", ["add_fiblets", "add_spline_tubes", "add_halo_lines", "add_raycast_volume"])

@@ -164,12 +164,3 @@ def test_a_picture_without_background_lies_on_any_ground(kind, background, groun
     assert off.max() <= 3.0
     assert plotter.screenshot(None).shape[-1] == 3
     plotter.close()
-
-
-def test_a_picture_of_meshes_is_pyvistas():
-    plotter = pv.Plotter(off_screen=True, window_size=(60, 60))
-    plotter.set_background("green")
-    plotter.add_mesh(pv.Sphere(), color="white", opacity=0.5, lighting=False)
-    picture = plotter.screenshot(None, transparent_background=True)
-    assert picture[30, 30].tolist() == [191, 223, 191, 191]
-    plotter.close()

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-import pyvista as pv
 
 from pvfiblets.volumes.interactive_quality import InteractiveQuality
 from pvfiblets.volumes.raycast_options import RaycastOptions
@@ -68,21 +67,6 @@ def test_coarser_in_motion_and_whole_at_rest(watched, style):
     drag(plotter)
     assert len(shown) >= 2
     assert all(casting == actor.casting for casting in shown)
-
-
-def test_nothing_is_observed(plotter):
-    events = ("StartInteractionEvent", "InteractionEvent", "EndInteractionEvent", "RenderEvent")
-    actor = plotter.add_raycast_volume(ball(), interactive_quality=0.2)
-    plotter.show(auto_close=False, interactive=False)
-    bare = pv.Plotter(off_screen=True)
-    bare.show(auto_close=False, interactive=False)
-    for event in events:
-        one, other = plotter.iren.interactor, bare.iren.interactor
-        assert bool(one.HasObserver(event)) == bool(other.HasObserver(event))
-        one, other = one.GetInteractorStyle(), other.GetInteractorStyle()
-        assert bool(one.HasObserver(event)) == bool(other.HasObserver(event))
-    assert actor.copy().interactive_quality == 0.2
-    bare.close()
 
 
 def test_light_keeps_its_table_unless_told():

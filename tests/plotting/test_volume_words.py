@@ -271,16 +271,3 @@ def test_a_table_looks_as_dense_as_in_add_volume(opacity, unit, spacing, view):
     # PyVista's tables are cut off to bytes, of which one is much in thin fog.
     assert np.abs(ours - theirs)[there].mean() < 5
     assert abs(ours[there].mean() - theirs[there].mean()) < 3
-
-
-def test_the_unit_of_add_volume_makes_defaults_alike():
-    """PyVista's default is the diagonal over the mean number of cells; ours is the mean spacing of voxels."""
-    image = ramp((1, 1, 1))
-    theirs = image.length / (np.mean(image.dimensions) - 1)
-    assert theirs == pytest.approx(np.sqrt(3.0))
-    plotter = pv.Plotter(off_screen=True)
-    assert plotter.add_raycast_volume(image).opacity_unit_distance == 1.0
-    plotter.close()
-    ours, default = both(image, "geom")
-    alike, _ = both(image, "geom", opacity_unit_distance=theirs)
-    assert np.abs(alike - default).mean() < 0.5 * np.abs(ours - default).mean()

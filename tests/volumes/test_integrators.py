@@ -10,7 +10,6 @@ from pvfiblets.volumes.integrators import (
     PANELS,
     STABLE_UP_TO,
     integrate,
-    preintegrated,
     study,
 )  # fmt: skip
 from pvfiblets.volumes.reference_profiles import Profile, profiles
@@ -113,29 +112,6 @@ def test_explicit_methods_grow_beyond_their_limits_and_not_before(method, dtype)
         left.append(abs(1 - integrate(method, kappa, np.ones((*kappa.shape, 3)), 1.0)[1]))
     assert left[0] < 1e-1
     assert left[1] > 1e3
-
-
-@pytest.mark.parametrize("method", ["simpson", "romberg", "exponential"])
-@pytest.mark.parametrize("x", [1e-3, 1.0, 1e3])
-def test_what_the_others_let_through_stays_within_0_and_1(method, x):
-    """Also where extinction rises so steeply that the parabola through it dips below 0."""
-    rng = np.random.default_rng(3)
-    n = 16
-    kappa = x * rng.random((200, n if method in MIDDLE else n + 1)) ** 8
-    _, alpha = integrate(method, kappa, np.ones((*kappa.shape, 3)), 1.0)
-    assert alpha.min() >= 0
-    assert alpha.max() <= 1
-
-
-@pytest.mark.parametrize("name", ["peak", "teeth"])
-@pytest.mark.parametrize("depth", [1.0, 1e3, 1e5])
-def test_preintegration_sees_what_lies_between_samples(name, depth):
-    """Steps that end where the values turn."""
-    profile = named(name, depth, 17.0)
-    exact = profile.light()
-    places = np.linspace(0, 17, 18)
-    rgb, alpha = preintegrated(profile.value(places), profile.transfer, 1.0)
-    assert np.abs(np.append(rgb, alpha) - exact).max() < 1e-5
 
 
 @pytest.mark.parametrize(
