@@ -157,26 +157,19 @@ def test_values_along_a_line_are_those_of_its_layer(scene, tools):
     assert np.abs(image - (0.5 * front + 0.25 * (255 - front))).max() < 6
 
 
-def test_an_opaque_actor_pays_for_no_layer(scene, tools):
-    plotter, mapper, actor = scene(rows(), opacity=1.0, line_width=6.0)
-    opaque = tools.picture(plotter, mapper)
-    assert not holds_layers(mapper)
-    assert (opaque[100, 60:180] == COLOURS[0]).all()
-    actor.GetProperty().SetOpacity(0.4)
-    assert np.abs(tools.picture(plotter, mapper)[100, 120] - blended(COLOURS[:4], 0.4)).max() <= 3
-    assert holds_layers(mapper)
-    actor.GetProperty().SetOpacity(1.0)
-    assert (tools.picture(plotter, mapper) == opaque).all()
-    assert not holds_layers(mapper)
-
-
 def test_without_layers_nothing_is_left_of_them(scene, tools):
     plotter, mapper, actor = scene(rows(), layers=None, line_width=6.0)
     before, installed = tools.picture(plotter, mapper), mapper._installed
     assert mapper.GetInput().GetNumberOfPoints() == 6
+    assert not holds_layers(mapper)
     mapper.set_effect("layers", Layers(5))
     assert mapper.GetInput().GetNumberOfPoints() == 30
     assert np.abs(tools.picture(plotter, mapper)[100, 120] - blended(COLOURS, 0.4)).max() <= 3
+    assert holds_layers(mapper)
+    actor.GetProperty().SetOpacity(1.0)  # an opaque actor pays for no layer
+    assert (tools.picture(plotter, mapper)[100, 60:180] == COLOURS[0]).all()
+    assert not holds_layers(mapper)
+    actor.GetProperty().SetOpacity(0.4)
     mapper.set_effect("layers", None)
     assert (tools.picture(plotter, mapper) == before).all()
     assert mapper._installed == installed

@@ -89,26 +89,6 @@ def test_tubes_look_as_vtks_cylinders_and_balls(rods, make_plotter, tools, place
     assert (np.abs(ours - theirs).max(-1)[mask] <= 6).mean() > 0.985  # VTK's facets
 
 
-def test_tubes_cut_into_meshes(rods, make_plotter, tools):
-    """A plane through the axis hides the far half of the tube: less shows than without it, and more than of a line."""
-
-    def shown(effect, line_width=1.0):
-        _, mapper, actor = rods(effect, line_width, [[(-15, 0, 0), (15, 0, 0)]])
-        plotter = scene(make_plotter, actor)
-        plotter.add_mesh(
-            pv.Plane(center=(0, 0, 0), direction=(0, 0, 1), i_size=60, j_size=60), color="red", lighting=False
-        )
-        image = tools.picture(plotter, mapper)
-        return (image[..., 1] > 10).sum(), (image[..., 1] > 10)
-
-    plotter_tube, mask = shown(Tubes(RADIUS))
-    rows = np.nonzero(mask.any(axis=1))[0]
-    _, mapper, actor = rods(Tubes(RADIUS), 1.0, [[(-15, 0, 0), (15, 0, 0)]])
-    alone = tools.covered(tools.picture(scene(make_plotter, actor), mapper))
-    assert 0.4 * alone.sum() < plotter_tube < 0.85 * alone.sum()
-    assert rows.max() < np.nonzero(alone.any(axis=1))[0].max()  # the lower part is hidden
-
-
 def test_wide_lines_shaded_as_tubes(rods, make_plotter, tools):
     """A rod across the view, lit from above: light falls with the cosine around it."""
     width = 30.0

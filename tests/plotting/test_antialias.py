@@ -43,6 +43,11 @@ def test_the_picture_is_the_mean_of_pictures_drawn_apart(scene, value, n):
     scene.render()
     found = shot(scene)
     assert scene.picture.samples == n
+    if value == 8:  # transparent backgrounds have the mean of alpha
+        clear = multiplied(shot(scene, transparent_background=True))
+        wanted = mean_of_pictures(scene, 8, of=multiplied, transparent_background=True)
+        assert np.abs(clear - wanted).max() <= 1.0
+        assert len(np.unique(clear[..., 3])) > 4
     wanted = mean_of_pictures(scene, n)
     assert np.abs(found - wanted).max() <= 1.0
     plain = shot(scene)
@@ -66,6 +71,12 @@ def test_it_is_the_default_of_still_pictures_with_something_of_ours(scene):
     scene.render()  # VTK draws, as it was told
     assert np.array_equal(shot(scene), finished)
     assert renders.since() == 1
+    buffers = {row["name"]: row["bytes"] for row in scene.picture.explain()["buffers"]}
+    assert buffers.keys() == {"coverage", "refinement"}
+    assert buffers["refinement"] == SIZE[0] * SIZE[1] * 16
+    scene.picture.antialias = "off"
+    scene.render()
+    assert scene.picture.explain() == {"buffers": []}
 
 
 def test_a_scene_of_other_things_only_is_left_alone(scene, plotter):
@@ -220,58 +231,6 @@ def test_subplots_are_refined_each_by_itself():
     plotter.close()
 
 
-def moved_in_tiles(renderer, position):
-    """Have a renderer's camera moved by a part of a pixel in each tile; returns what undoes it.
-
-    VTK gives each tile a window centre of its own, in halves of the part of the tile that is the renderer's.
-    """
-
-    def move(*_):
-        window = renderer.GetRenderWindow()
-        if window.GetTileScale() == (1, 1):
-            return
-        tile, own = window.GetTileViewport(), renderer.GetViewport()
-        parts = [min(own[k + 2], tile[k + 2]) - max(own[k], tile[k]) for k in (0, 1)]
-        pixels = [round(part * size * 2) for part, size in zip(parts, SIZE, strict=True)]
-        if min(pixels) > 0:
-            camera = renderer.GetActiveCamera()
-            centre = camera.GetWindowCenter()
-            camera.SetWindowCenter(*(c + 2 * o / p for c, o, p in zip(centre, position, pixels, strict=True)))
-
-    return renderer.AddObserver("StartEvent", move)
-
-
-@pytest.mark.more
-@pytest.mark.parametrize("effect", [None, "depth_of_field"])
-def test_enlarged_pictures_of_tiles_are_refined(effect):
-    """Of two subplots, one of which the tiles' edges cut; every tile is the mean of its own samples."""
-    plotter = pv.Plotter(off_screen=True, shape=(1, 2), border=False, window_size=SIZE)
-    plotter.disable_anti_aliasing()
-    for column in range(2):
-        plotter.subplot(0, column)
-        plotter.set_background("black")
-        fill(plotter)
-        plotter.picture.antialias = 4
-        if effect is not None and column:
-            plotter.picture.depth_of_field = {"focal_distance": 90.0, "max_blur": 3.0}
-    plotter.show(auto_close=False)
-    found = shot(plotter, scale=2)
-    for column in range(2):
-        plotter.subplot(0, column)
-        plotter.picture.antialias = "off"
-    total = 0.0
-    for position in sample_positions(4):
-        undo = [moved_in_tiles(renderer, position) for renderer in plotter.renderers]
-        total = total + shot(plotter, scale=2)
-        for renderer, tag in zip(plotter.renderers, undo, strict=True):
-            renderer.RemoveObserver(tag)
-    wanted = total / 4
-    assert found.shape == (2 * SIZE[1], 2 * SIZE[0], 3)
-    assert np.abs(found - wanted).max() <= 1.0
-    assert len(np.unique(found[..., 0])) > 4
-    plotter.close()
-
-
 @pytest.mark.more
 def test_what_lies_over_the_picture_is_drawn_once(plotter):
     plotter.add_fiblets([[(-9, 0, 0), (0, 4, 0), (9, 9, 0)]], color="red", lighting=False)
@@ -347,15 +306,6 @@ def multiplied(picture):
     return np.concatenate([share * picture[..., :3], picture[..., 3:]], axis=-1)
 
 
-def test_transparent_backgrounds_have_the_mean_of_alpha(scene):
-    scene.picture.antialias = 8
-    scene.render()
-    found = multiplied(shot(scene, transparent_background=True))
-    wanted = mean_of_pictures(scene, 8, of=multiplied, transparent_background=True)
-    assert np.abs(found - wanted).max() <= 1.0
-    assert len(np.unique(found[..., 3])) > 4
-
-
 def test_frames_of_movies_and_pictures_that_shows_return_are_finished(scene, tmp_path):
     frames = []
     scene.mwriter = type(
@@ -394,15 +344,6 @@ def test_other_values_are_refused_and_the_environment_names_another_default(plot
     with pytest.raises(ValueError, match="PVFIBLETS_ANTIALIAS is 'much'; give"):
         other.add_fiblets([[(0, 0, 0), (1, 1, 1)]])
     other.close()
-
-
-def test_memory_is_told_and_given_back(scene):
-    buffers = {row["name"]: row["bytes"] for row in scene.picture.explain()["buffers"]}
-    assert buffers.keys() == {"coverage", "refinement"}
-    assert buffers["refinement"] == SIZE[0] * SIZE[1] * 16
-    scene.picture.antialias = "off"
-    scene.render()
-    assert scene.picture.explain() == {"buffers": []}
 
 
 def test_passes_that_draw_into_no_textures_leave_edges_as_they_are(three_lines):

@@ -76,19 +76,6 @@ def test_values_along_a_line_run_through_the_colour_map(plotter, three_lines, sc
     assert np.abs(run - expected).max() < 12
 
 
-def test_curvature_of_a_circle_is_one_over_its_radius(plotter):
-    angle = np.linspace(0, 6, 300)
-    rings = [np.stack([r * np.cos(angle), r * np.sin(angle), 0 * angle], 1) for r in (10.0, 20.0)]
-    plotter.add_fiblets(rings, scalars="curvature", clim=(0.0, 0.2), cmap="gray", **FLAT)
-    plotter.view_xy()
-    picture = plotter.screenshot(None).max(axis=2).astype(float)
-    levels = picture[picture > 0] / 255.0 * 0.2
-    for wanted in (0.1, 0.05):
-        near = levels[np.abs(levels - wanted) < 0.02]
-        assert len(near) > 50
-        assert np.median(near) == pytest.approx(wanted, abs=0.006)
-
-
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [({"scalars": [1.0, 2.0]}, "expected 3 numbers, one per streamline"),

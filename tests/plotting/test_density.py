@@ -121,19 +121,6 @@ def test_what_is_opaque_hides_lines_behind_it_and_light_adds_over_it(plotter, bu
     assert any(np.abs(colour - [127, 127, 127]).max() <= 2 for colour in column)
 
 
-def test_it_leaves_nothing_behind(plotter, bundles):
-    actor = plotter.add_fiblets(bundles, **PLAIN)
-    before = seen(plotter)
-    features = set(actor.explain()["features"])
-    actor.style = "density"
-    seen(plotter)
-    assert any(entry["name"] == "gathered" for entry in actor.explain()["buffers"])
-    actor.style = "surface"
-    assert (seen(plotter) == before).all()
-    assert set(actor.explain()["features"]) == features
-    assert not any("gathered" in entry["name"] for entry in actor.explain()["buffers"])
-
-
 def test_nonsense_is_refused_in_words(plotter, bundles):
     actor = plotter.add_fiblets(bundles, **PLAIN)
     with pytest.raises(ValueError, match="density_tone is 'cubic'"):

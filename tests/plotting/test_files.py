@@ -11,7 +11,6 @@ import pytest
 import pyvista as pv
 
 import pvfiblets as pf
-from pvfiblets.cli import main
 from pvfiblets.errors import FormatError
 from pvfiblets.other_libraries import streamlines_of
 from pvfiblets.plotting.meshes import read_mesh
@@ -40,11 +39,6 @@ def test_nibabels_own_file_lands_where_nibabel_says(tmp_path):
     data = pv.read(tmp_path / "a.trk")
     np.testing.assert_allclose(data.points, np.concatenate(lines), atol=1e-4)
     assert data.n_lines == 4
-
-
-def test_every_declared_suffix_has_a_reader():
-    known = {registration.extension for registration in pv.registered_readers()}
-    assert {".tck", ".trk", ".trk.gz", ".trx", ".tt.gz", ".fiblets"} <= known
 
 
 def test_a_gzipped_file_is_read_by_its_double_suffix(shared_data):
@@ -127,18 +121,6 @@ def test_tubes_and_lines_with_halos_take_them_too(files, plotter, add, kind):
 def test_a_file_of_other_lines_is_refused(files, shared_data):
     with pytest.raises(FormatError, match="13 streamlines.*14 as the tractogram has"):
         pv.Plotter(off_screen=True).add_fiblets(shared_data / "nv_tract.IFOF_R.trk", scalars=files[1])
-
-
-@pytest.mark.more
-def test_the_command_line_takes_it(files, tmp_path, capsys):
-    picture = tmp_path / "a.png"
-    arguments = ["screenshot", str(files[0]), "-o", str(picture), "--scalars", str(files[1]), "--size", "120x90"]
-    assert main([*arguments, "--cmap", "gray", "--line-width", "3", "--no-lighting"]) == 0
-    colours = np.asarray(pv.read(picture).active_scalars)[:, :3]
-    grey = np.unique(colours[(colours == colours[:, :1]).all(axis=1)])
-    assert len(grey) > 20  # of the 156 numbers
-    assert main(["screenshot", str(files[0]), "-o", str(picture), "--scalars", str(tmp_path / "none.tsf")]) == 1
-    assert "none.tsf" in capsys.readouterr().err
 
 
 AFFINE = np.array([[-2.0, 0.3, 0, 20], [0, 2.5, 0, -30], [0.1, 0, 3.0, -25], [0, 0, 0, 1]])

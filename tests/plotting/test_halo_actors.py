@@ -293,19 +293,13 @@ def test_what_has_no_meaning_is_refused_and_leaves_nothing_behind(stage, argumen
     with pytest.raises((ValueError, TypeError), match=message):
         stage.add_halo_lines(BAR, **arguments)
     assert not stage.actors
-
-
-def test_what_is_refused_leaves_the_actor_as_it_was(stage):
-    actor = add(stage)
-    before = actor.look
-    for name, value in (
-        ("line_width", -1.0), ("strip_width", 1.0), ("displacement", "x"), ("tapering", 7), ("threshold", 3.0),
-        ("width_cue", 2.0), ("filter_by", np.zeros(2)), ("scalars", np.zeros(2)), ("halo_color", "nocolour"),
-    ):  # fmt: skip
+    if len(arguments) == 1:
+        ((name, value),) = arguments.items()
+        actor = add(stage)
+        before = actor.look
         with pytest.raises((ValueError, TypeError)):
             setattr(actor, name, value)
         assert actor.look == before
-    assert widths(stage, 7) == near(2, 6)
 
 
 def test_empty_data_draw_nothing(stage):

@@ -130,24 +130,6 @@ def test_translucent_meshes_are_seen_between_lines_and_behind(plotter):
     assert np.abs(column[100 - 35] - (191, 64, 128)).max() <= 2  # halo, 7 mm: 8.8 mm back, behind both
 
 
-def test_subplots_show_the_same_lines_from_two_sides():
-    plotter = opened(shape=(1, 2), window_size=(400, 160), border=False)
-    lines = plotter.add_halo_lines(curves(), smooth=False)
-    looked_at(plotter)
-    plotter.subplot(0, 1)
-    plotter.add_halo_points(lines.lines.points[::10], smooth=False)
-    plotter.set_background("lightgrey")
-    looked_at(plotter)
-    both = shot(plotter)
-    plotter.close()
-    alone = opened()
-    alone.add_halo_lines(curves(), smooth=False)
-    looked_at(alone)
-    assert (both[:, :200] == shot(alone)).all(-1).mean() > 0.999
-    assert (ink(both[:, 200:]) == 1).sum() > 200
-    alone.close()
-
-
 def test_clipping_planes_and_boxes_cut_both_lines_and_points(plotter):
     rows = [[(-20, 0, z), (20, 0, z)] for z in (-5, 5)]
     actor = plotter.add_halo_lines(rows, line_width=1, strip_width=4, light_on_dark=True, tapering=False)

@@ -264,6 +264,15 @@ def test_a_click_picks_and_selects_and_dragging_turns_the_camera(brain, plotter,
     assert len(found) == 1
     assert plotter.camera.position != camera
 
+    def broken(picked):
+        raise KeyError("mine")
+
+    plotter.fiblets.enable_picking(broken, show_message=False)
+    x, y = brain.pick_box((0, 0, 199, 199)).pixels[0]
+    for _ in range(2):  # what a callback raises is told, and picking goes on
+        with pytest.warns(UserWarning, match="mine"):
+            mouse.click(x, y)
+
 
 def test_shift_adds_control_toggles_and_the_background_deselects(brain, plotter, mouse):
     plotter.fiblets.enable_picking(show_message=False, tolerance=0)
@@ -386,14 +395,3 @@ def test_tooltips(plotter, three_lines, mouse):
     tooltip = plotter.fiblets._tooltip
     plotter.fiblets.disable_picking()
     assert tooltip.shown == ""
-
-
-def test_what_a_callback_raises_is_told_and_picking_goes_on(brain, plotter, mouse):
-    def broken(picked):
-        raise KeyError("mine")
-
-    plotter.fiblets.enable_picking(broken, show_message=False)
-    x, y = brain.pick_box((0, 0, 199, 199)).pixels[0]
-    for _ in range(2):
-        with pytest.warns(UserWarning, match="mine"):
-            mouse.click(x, y)

@@ -133,22 +133,6 @@ def test_what_has_no_meaning_is_refused_and_changes_nothing(plotter, name, value
     assert before == {known: getattr(plotter.picture, known) for known in before}
 
 
-def test_a_scalar_bar_stays_as_it_is(plotter):
-    """Its colours say values: they must not be changed."""
-    mesh = pv.Plane(i_size=10, j_size=10)
-    mesh["height"] = mesh.points[:, 0]
-    plotter.add_mesh(mesh, lighting=False, scalar_bar_args={"color": "white"})
-    plotter.camera_position = "xy"
-    plotter.camera.zoom(0.4)  # the bar lies over black
-    before = shot(plotter)
-    plotter.picture.gamma = 2.0
-    plotter.picture.depth_of_field = {"focal_distance": 5.0, "max_blur": 5.0}
-    after = shot(plotter)
-    assert (before[165:] > 0).any(axis=(0, 2)).sum() > 80
-    assert np.array_equal(after[165:], before[165:])
-    assert np.abs(after[:165].astype(int) - before[:165]).max() > 30
-
-
 def test_the_mouse_moves_the_focus_and_the_picture(plotter):
     """The event alone renders, as long as the focus follows the mouse."""
     plotter.add_mesh(pv.Plane(center=(0, 0, 20), i_size=200, j_size=200))

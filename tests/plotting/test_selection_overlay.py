@@ -137,6 +137,12 @@ def test_a_volume_colours_tubes_of_fiblets(scene):
     actor.scalars = "along"
     assert at(front(), 0.0, 0.7)[0] == pytest.approx(128, abs=4)
     assert drawn_by(actor) is TubeMapper
+    assert actor.explain()["selection"]["gpu_bytes"] > 200 * 200 * 24
+    actor.clip(pv.Sphere(radius=12))
+    front()
+    actor.deselect()
+    front()
+    assert actor.explain()["selection"] == {"streamlines": 0, "passes": [], "features": [], "gpu_bytes": 0}
 
 
 def test_very_many_points_stay_compressed(scene, monkeypatch):
@@ -161,20 +167,6 @@ def test_places_on_tubes_are_the_streamlines(scene):
             assert picked.ids.tolist() == [line]
             assert picked.places == pytest.approx([(x + 15) / 0.5], abs=1.0)
             assert picked.points[0] == pytest.approx([x, 0, z], abs=0.5)
-
-
-def test_memory_is_given_back(scene):
-    actor, front = scene
-    actor.select([0, 1])
-    front()
-    assert actor.explain()["selection"]["gpu_bytes"] > 200 * 200 * 24
-    actor.clip(pv.Sphere(radius=12))
-    front()
-    actor.show_all()
-    front()
-    actor.deselect()
-    front()
-    assert actor.explain()["selection"] == {"streamlines": 0, "passes": [], "features": [], "gpu_bytes": 0}
 
 
 @pytest.mark.parametrize("style", [{"as_tubes": True, "radius": 2.0}, {"as_tubes": False, "width": 16}])

@@ -174,10 +174,7 @@ def test_vectors_are_colours_of_direction_brightened_by_an_image_on_another_grid
     slices.layers[0].below = 0.6
     assert not slices.pixels(slices["axial"].grid).any()
     np.testing.assert_array_equal(slices.values((1, 1, 1))["image"], [-2.0, 0.0, 0.0])
-
-
-def test_bytes_of_three_are_colours(plotter):
-    values = np.zeros((6, 6, 6, 3), np.uint8)
+    values = np.zeros((6, 6, 6, 3), np.uint8)  # bytes of three are colours
     values[..., 1] = 200
     slices = plotter.add_slices((values, np.eye(4)), planes="coronal")
     assert slices.layers[0].kind == "rgb"
@@ -236,19 +233,15 @@ def test_slices_of_a_tilted_image_may_lie_along_its_own_axes(plotter):
 def test_bad_arguments_are_refused_and_nothing_is_left_behind(plotter, arguments, said):
     with pytest.raises(ValueError, match=said):
         plotter.add_slices(np.ones((5, 5, 5)), **arguments)
+    for source, more, error, told in (
+        ({1, 2}, {}, TypeError, "a set"), (np.ones((5, 5, 5)), {"opactiy": 1}, TypeError, "opactiy"),
+        (np.ones((5, 5)), {}, ValueError, r"the shape \(5, 5\)"),
+        (np.ones((5, 5, 5), complex), {}, ValueError, "complex"),
+    ):  # fmt: skip
+        with pytest.raises(error, match=told):
+            plotter.add_slices(source, **more)
     assert not plotter.actors
     assert not len(plotter.slices)
-
-
-def test_other_kinds_of_sources_are_refused(plotter):
-    with pytest.raises(TypeError, match="a set"):
-        plotter.add_slices({1, 2})
-    with pytest.raises(TypeError, match="opactiy"):
-        plotter.add_slices(np.ones((5, 5, 5)), opactiy=1)
-    with pytest.raises(ValueError, match=r"the shape \(5, 5\)"):
-        plotter.add_slices(np.ones((5, 5)))
-    with pytest.raises(ValueError, match="complex"):
-        plotter.add_slices(np.ones((5, 5, 5), complex))
 
 
 def test_images_of_pyvista_and_nibabel_lie_where_they_lie(plotter):

@@ -91,18 +91,6 @@ def test_colours_and_opacities_are_those_of_the_value(plotter):
     assert middle(plotter) == pytest.approx([64] * 3, abs=1)
 
 
-@pytest.mark.parametrize("mode", ["composite", "mip"])
-def test_lists_of_a_few_colours_keep_their_bounds(plotter, mode):
-    """Red up to 2 and lime from there, as a scalar bar of two colours has them; opacities are as fine as ever."""
-    arguments = {"cmap": ["red", "lime"], "clim": (0, 4), "opacity_unit_distance": 20.0, "mode": mode}
-    grown = [0.5, 0.4, 0.3, 0.2, 0.1]
-    for fog, colour, alpha in ((FOG, (1, 0, 0), 0.4), (np.uint8(3) * FOG, (0, 1, 0), 0.2)):
-        plotter.clear_actors()
-        plotter.add_raycast_volume(fog, opacity=grown, show_scalar_bar=False, **FOG_AT, **arguments)
-        look(plotter)
-        assert middle(plotter) == pytest.approx(255 * alpha * np.array(colour), abs=1.5)
-
-
 def test_surfaces_have_values_that_change(plotter):
     actor = shown(plotter, mode="isosurface", lighting=False, cmap="gray", clim=(0, 10))
     assert actor.values == (pytest.approx(np.mean([BALL.min(), BALL.max()]), abs=1e-6),)

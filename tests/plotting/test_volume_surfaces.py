@@ -210,19 +210,14 @@ def test_blocks_are_added_as_by_add_volume(shot):
     assert [actor.name for actor in actors] == ["both-0", "both-1-0"]
     assert [actor.cmap for actor in actors] == ["Reds", "Greens"]
     assert list(plotter.raycast_volumes) == actors
+    with pytest.raises(TypeError, match="rays cannot be cast through a PolyData"):  # and leaves none behind
+        plotter.add_raycast_volume(pv.MultiBlock([ball(), pv.Sphere()]))
+    with pytest.raises(ValueError, match="no blocks"):
+        plotter.add_raycast_volume(pv.MultiBlock())
+    assert list(plotter.raycast_volumes) == actors
     plotter.close()
     picture = shot(lambda p: p.add_raycast_volume(blocks, cmap="gray", **LOOK))
     assert (picture.sum(axis=-1) > 0).mean() > 0.3
-
-
-def test_a_block_that_is_refused_leaves_none_behind():
-    plotter = pv.Plotter(off_screen=True)
-    with pytest.raises(TypeError, match="rays cannot be cast through a PolyData"):
-        plotter.add_raycast_volume(pv.MultiBlock([ball(), pv.Sphere()]))
-    assert not list(plotter.raycast_volumes)
-    with pytest.raises(ValueError, match="no blocks"):
-        plotter.add_raycast_volume(pv.MultiBlock())
-    plotter.close()
 
 
 # RGBA ----------------------------------------------------------------------------------------------
@@ -261,8 +256,13 @@ def test_rgba_shows_its_own_colours_and_alpha(shot, unit):
             assert np.abs(found[row, column] - light_of_rgba(x, y, unit)).max() <= 4
 
 
-@pytest.mark.more
 def test_rgba_is_light_and_nothing_else():
+    image = rgba()
+    image["rgba"] = image["rgba"].astype(np.float32)
+    with pytest.raises(ValueError, match="four of type uint8, RGBA"):
+        as_raycast_volume(image, scalars="rgba")
+    with pytest.raises(ValueError, match="RGBA of type uint8 is drawn as it is"):
+        as_raycast_volume(np.zeros((4, 4, 4, 4)))
     plotter = pv.Plotter(off_screen=True)
     actor = plotter.add_raycast_volume(rgba())
     assert actor.volume.colours.shape == (N, N, N, 3)
@@ -271,21 +271,7 @@ def test_rgba_is_light_and_nothing_else():
     with pytest.raises(ValueError, match="voxels are RGBA: show them as mode 'composite'"):
         actor.mode = "mip"
     assert actor.mode == "composite"
-    actor.smooth = 1.0
-    plotter.show(auto_close=False)
-    actor.shade = True
-    plotter.render()
-    assert "VOLUME_COLOURS" in actor.explain()["features"]
     plotter.close()
-
-
-def test_four_numbers_of_another_type_are_refused():
-    image = rgba()
-    image["rgba"] = image["rgba"].astype(np.float32)
-    with pytest.raises(ValueError, match="four of type uint8, RGBA"):
-        as_raycast_volume(image, scalars="rgba")
-    with pytest.raises(ValueError, match="RGBA of type uint8 is drawn as it is"):
-        as_raycast_volume(np.zeros((4, 4, 4, 4)))
 
 
 N_BULGE = 40
