@@ -1,4 +1,4 @@
-"""Depth of other actors, as the fiblets' mapper finds it at the moment it draws, against what VTK says itself."""
+"""Depth of other actors, against what VTK says itself; what they hide is culled, and comes back."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Shading through VTK: effects in the picture, and what they leave behind."""
+"""Shading and selections through VTK: effects in the picture, and what they leave behind."""
 
 from __future__ import annotations
 

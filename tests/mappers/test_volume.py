@@ -1,4 +1,4 @@
-"""Volumes among VTK's meshes, lights, cuts and passes: against closed forms for every ray, and VTK's own pictures."""
+"""Volumes among VTK's meshes, lights, cuts, passes and pickers: against closed forms, and VTK's own pictures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Mappers as VTK's own code uses them: connected, given to actors by SetMapper, copied and followed."""
+"""Mappers as VTK's own code uses them: connected, given to actors, copied, and coloured by vtkMapper's settings."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The colours on the screen are those that matplotlib's maps and plain arithmetic give."""
+"""The colours on the screen are those of matplotlib's maps, of arithmetic, and of volumes at the points."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Colours by ends, number and chance, and by the parcels that streamlines connect."""
+"""Colours by ends, number, parcels, group, criterion, distance and coding error."""
 
 from __future__ import annotations
 

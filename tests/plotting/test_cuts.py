@@ -1,4 +1,4 @@
-"""Cuts that are planes are made as VTK's own clipping planes are: the same picture, and nothing for each pixel."""
+"""Cuts by planes are VTK's own; surfaces cut by regions have the areas and borders of the formulas."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``pyvista.read`` and ``save`` know tractograms, and PolyData can be compressed."""
+"""Files of tractograms, values, volumes and meshes through PyVista, and coordinates that nobody draws on purpose."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Choosing what an actor shows: masks equal NumPy's on the decoded points, and the picture follows."""
+"""Choosing what an actor shows: masks and painted regions equal NumPy's, and the picture follows."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``actor.prop`` is that of any PyVista actor: what is set there shows."""
+"""What is set of ``actor.prop``, ``actor.mapper`` and its look-up table shows, as with any PyVista actor."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Sets and actors are used as PyVista's meshes and actors are: plotted, copied, updated, asked for their data."""
+"""Sets and actors are used as PyVista's meshes and actors are: plotted, copied, updated, filmed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The choice of a pipeline, from PyVista's side."""
+"""The choice of a pipeline, from PyVista's side, and the same pictures by each, whatever VTK has on."""
 
 from __future__ import annotations
 

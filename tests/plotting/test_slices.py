@@ -1,4 +1,4 @@
-"""Slices of images lie where their affines say and have the colours that their layers say."""
+"""Slices of images and their glyphs lie where affines say and have the colours that their layers say."""
 
 from __future__ import annotations
 

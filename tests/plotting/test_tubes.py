@@ -1,4 +1,4 @@
-"""What ``plotter.add_spline_tubes`` draws, and how its actor changes."""
+"""What ``plotter.add_spline_tubes`` draws, from which sources, and how its actor changes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Several translucent surfaces of a volume, the logarithm of its values, blocks, and voxels that have colours."""
+"""Several translucent surfaces, the logarithm of values, blocks, voxels that have colours, and shaded light."""
 
 from __future__ import annotations
 

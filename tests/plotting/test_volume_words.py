@@ -1,4 +1,4 @@
-"""What ``add_volume`` calls otherwise, and what it takes: blending, resolution, uneven grids."""
+"""What ``add_volume`` calls otherwise, and what it takes: blending, uneven grids, thin images, dense light."""
 
 from __future__ import annotations
 

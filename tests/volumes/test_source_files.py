@@ -1,4 +1,4 @@
-"""Volumes from files of every format: the right number at the right place, and what is refused."""
+"""Volumes from files of every format, images and arrays: the right number at the right place, and what is refused."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a volume keeps, what it refuses, and where it lies."""
+"""What a volume keeps, what it refuses, where it lies, and Gaussian smoothing against sums written out."""
 
 from __future__ import annotations
 

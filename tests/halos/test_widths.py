@@ -1,4 +1,4 @@
-"""Displacement functions by name, as tables and as functions."""
+"""Displacement functions, and the widths of halos against strips that are looked at place by place."""
 
 from __future__ import annotations
 

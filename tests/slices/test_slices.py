@@ -1,4 +1,4 @@
-"""Where planes lie and what of them images cover."""
+"""Where planes lie, glyphs, tables of labels, and colours, against dipy, NumPy and formulas."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Assembly of the resolve's shader pieces."""
+"""The resolve's shader pieces, the polydata that VTK believes it draws, and when the engine is asked anew."""
 
 from __future__ import annotations
 
