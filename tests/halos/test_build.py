@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import itertools
 import re
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -60,6 +58,10 @@ def test_all_sources_give_the_same_lines(source):
 
 
 def test_other_sources():
+    mesh = pv.Line((-1, -2, 3), (-4, -5, 6))
+    mesh.field_data["SPACE"] = ["LPS"]  # as 3D Slicer says where points are
+    np.testing.assert_array_equal(as_halo_points(mesh).points, [[1, 2, 3], [4, 5, 6]])
+    np.testing.assert_array_equal(as_halo_lines(mesh).lines.points, [[1, 2, 3], [4, 5, 6]])
     assert as_halo_lines(HELIX).lines.n_lines == 1
     assert as_halo_lines(np.stack([HELIX, HELIX + 1])).lines.offsets.tolist() == [0, 25, 50]
     assert as_halo_lines(HELIX.tolist()).lines.n_segments == 24
@@ -91,6 +93,9 @@ def test_numbers_of_lines_are_given_in_any_form():
         assert line_values["scalars"].tolist() == LENGTH.tolist()
         assert list(lines.values) == ["filter"]
         np.testing.assert_array_equal(lines.values["filter"], np.repeat(LENGTH, np.diff(OFFSETS)))
+    missing = np.where(np.arange(40) % 3, FA, np.nan)
+    both = as_halo_lines(Streamlines(POINTS, OFFSETS, {"x": missing}), scalars="x", filter_by="x").lines
+    np.testing.assert_array_equal(both.values["x"], missing)
     by_line = np.split(FA, OFFSETS[1:-1])
     np.testing.assert_array_equal(as_halo_lines(PARTS, scalars=by_line).lines.values["scalars"], FA)
     # As many lines as points in all: a row for each point.
@@ -188,16 +193,6 @@ def test_colours(columns):
     )
 
 
-def test_nan_of_numbers_is_kept():
-    numbers = np.where(np.arange(40) % 3, FA, np.nan)
-    lines = as_halo_lines(PARTS, scalars=numbers, filter_by=numbers).lines
-    np.testing.assert_array_equal(lines.values["scalars"], numbers)
-    np.testing.assert_array_equal(lines.values["filter"], numbers)
-    # The same array by the same name is one, NaN or not.
-    both = as_halo_lines(Streamlines(POINTS, OFFSETS, {"x": numbers}), scalars="x", filter_by="x").lines
-    np.testing.assert_array_equal(both.values["x"], numbers)
-
-
 def test_empty_and_one_point_lines():
     for source in ([], np.zeros((0, 3)), [[], []], Streamlines(np.zeros((0, 3)), [0])):
         lines = as_halo_lines(source).lines
@@ -235,78 +230,52 @@ BROKEN[30, 1] = np.inf
 
 
 @pytest.mark.parametrize(
-    ("source", "arguments", "message"),
+    ("build", "source", "arguments", "message"),
     [
-        (STREAMLINES, {"scalars": "md"}, "it has point data 'fa', 'col' and line data 'length'"),
-        (PARTS, {"filter_by": "md"}, "filter_by is 'md', which the source does not have; it has no data"),
-        (PARTS, {"scalars": np.zeros(5)}, "shape (5,), expected a row for each of 40 points or of 3 lines"),
-        (PARTS, {"scalars": 1.0}, "scalars has the shape (), expected a row"),
-        (PARTS, {"scalars": ["a"] * 40}, "words per point"),
-        (PARTS, {"scalars": COLOURS[:, :2], "rgb": True}, "the shape (40, 2) and type float64, expected one number"),
-        (PARTS, {"scalars": FA, "rgb": True}, "rgb=True asks for colours, but 'scalars' has one number in each row"),
-        (PARTS, {"scalars": 2 * COLOURS, "rgb": True}, "colour 0 of 'scalars' is [2.0, 2.0, 2.0], expected 0 to 1"),
-        (PARTS, {"scalars": np.nan * COLOURS, "rgb": True}, "colour 0 of 'scalars' is [nan, nan, nan]"),
-        (PARTS, {"filter_by": COLOURS}, "filter_by 'filter' has the shape (40, 3), expected one number in each row"),
-        (Streamlines(POINTS, OFFSETS, {"scalars": FA}), {"scalars": 2 * FA, "filter_by": "scalars"}, "both are called "
-         "'scalars'"),
-        (Streamlines(POINTS, OFFSETS, None, {"scalars": LENGTH}), {"scalars": LENGTH, "filter_by": "scalars"},
+        (as_halo_lines, STREAMLINES, {"scalars": "md"}, "it has point data 'fa', 'col' and line data 'length'"),
+        (as_halo_lines, PARTS, {"filter_by": "md"}, "is 'md', which the source does not have; it has no data"),
+        (as_halo_lines, PARTS, {"scalars": np.zeros(5)}, "(5,), expected a row for each of 40 points or of 3 lines"),
+        (as_halo_lines, PARTS, {"scalars": 1.0}, "scalars has the shape (), expected a row"),
+        (as_halo_lines, PARTS, {"scalars": ["a"] * 40}, "words per point"),
+        (as_halo_lines, PARTS, {"scalars": COLOURS[:, :2], "rgb": True},
+         "the shape (40, 2) and type float64, expected one number"),
+        (as_halo_lines, PARTS, {"scalars": FA, "rgb": True},
+         "rgb=True asks for colours, but 'scalars' has one number in each row"),
+        (as_halo_lines, PARTS, {"scalars": 2 * COLOURS, "rgb": True},
+         "colour 0 of 'scalars' is [2.0, 2.0, 2.0], expected 0 to 1"),
+        (as_halo_lines, PARTS, {"scalars": np.nan * COLOURS, "rgb": True}, "colour 0 of 'scalars' is [nan, nan, nan]"),
+        (as_halo_lines, PARTS, {"filter_by": COLOURS},
+         "filter_by 'filter' has the shape (40, 3), expected one number in each row"),
+        (as_halo_lines, Streamlines(POINTS, OFFSETS, {"scalars": FA}), {"scalars": 2 * FA, "filter_by": "scalars"},
          "both are called 'scalars'"),
-        (np.zeros((4, 2)), {}, "points have the shape (4, 2), expected (n, 3)"),
-        ((POINTS, [[0, 40]]), {}, "segment 0 is [0, 40], but there are 40 points"),
-        (pv.Sphere(), {}, "the PolyData has no lines but 1680 other cells"),
-        (pv.PolyData(np.zeros((2, 3))), {}, "the PolyData has no lines but 2 other cells"),
-    ],
-)  # fmt: skip
-def test_what_lines_cannot_be(source, arguments, message):
-    with pytest.raises(ValueError, match=re.escape(message)):
-        as_halo_lines(source, **arguments)
-
-
-@pytest.mark.parametrize("source", [None, "lines.trk", 3, pv.ImageData(dimensions=(2, 2, 2))])
-def test_what_has_no_lines(source):
-    name = re.escape(type(source).__name__)
-    with pytest.raises(TypeError, match=f"lines with halos cannot be made from a {name}; give"):
-        as_halo_lines(source)
-
-
-@pytest.mark.parametrize(
-    ("source", "arguments", "message"),
-    [
-        (BROKEN, {}, "point 30 of points is"),
-        (np.zeros((4, 2)), {}, "points of the shape (4, 2), expected (n, 3)"),
-        (np.float64(3), {}, "points of the shape ()"),
-        (POINTS, {"scalars": LENGTH}, "scalars has the shape (3,), expected a row for each of 40 points"),
-        (POINTS, {"scalars": COLOURS[:, :2], "rgb": True}, "'scalars' has the shape (40, 2)"),
-        (POINTS, {"filter_by": COLOURS}, "filter_by 'filter' has the shape (40, 3)"),
-        (STREAMLINES.to_polydata(), {"scalars": "length"},
+        (as_halo_lines, Streamlines(POINTS, OFFSETS, None, {"scalars": LENGTH}),
+         {"scalars": LENGTH, "filter_by": "scalars"}, "both are called 'scalars'"),
+        (as_halo_lines, np.zeros((4, 2)), {}, "points have the shape (4, 2), expected (n, 3)"),
+        (as_halo_lines, (POINTS, [[0, 40]]), {}, "segment 0 is [0, 40], but there are 40 points"),
+        (as_halo_lines, pv.Sphere(), {}, "the PolyData has no lines but 1680 other cells"),
+        (as_halo_points, BROKEN, {}, "point 30 of points is"),
+        (as_halo_points, np.zeros((4, 2)), {}, "points of the shape (4, 2), expected (n, 3)"),
+        (as_halo_points, np.float64(3), {}, "points of the shape ()"),
+        (as_halo_points, POINTS, {"scalars": LENGTH},
+         "scalars has the shape (3,), expected a row for each of 40 points"),
+        (as_halo_points, POINTS, {"scalars": COLOURS[:, :2], "rgb": True}, "'scalars' has the shape (40, 2)"),
+        (as_halo_points, POINTS, {"filter_by": COLOURS}, "filter_by 'filter' has the shape (40, 3)"),
+        (as_halo_points, STREAMLINES.to_polydata(), {"scalars": "length"},
          "it has point data 'fa', 'col'; cell data 'length' becomes point data by cell_data_to_point_data()"),
-        (HaloPoints(POINTS, {"scalars": FA}), {"scalars": 2 * FA, "filter_by": "scalars"}, "both are called 'scalars'"),
+        (as_halo_points, HaloPoints(POINTS, {"scalars": FA}), {"scalars": 2 * FA, "filter_by": "scalars"},
+         "both are called 'scalars'"),
     ],
 )  # fmt: skip
-def test_what_points_cannot_be(source, arguments, message):
+def test_what_lines_and_points_cannot_be(build, source, arguments, message):
     with pytest.raises(ValueError, match=re.escape(message)):
-        as_halo_points(source, **arguments)
+        build(source, **arguments)
 
 
-@pytest.mark.parametrize("source", [None, "cloud.ply", PARTS, pv.MultiBlock([pv.Sphere()]), vtk.vtkTable()])
-def test_what_has_no_points(source):
-    with pytest.raises(
-        TypeError, match=f"points with halos cannot be made from a {re.escape(type(source).__name__)}; give"
+def test_what_has_no_lines_or_points():
+    for build, sources in (
+        (as_halo_lines, (None, "lines.trk", 3, pv.ImageData(dimensions=(2, 2, 2)))),
+        (as_halo_points, (None, "cloud.ply", PARTS, pv.MultiBlock([pv.Sphere()]), vtk.vtkTable())),
     ):
-        as_halo_points(source)
-
-
-def test_importing_the_room_imports_no_vtk():
-    code = (
-        "import sys, pvfiblets.halos.build, pvfiblets.halos.spacing, pvfiblets.halos.widths; "
-        "assert not {'vtkmodules', 'pyvista', 'moderngl'} & set(sys.modules)"
-    )
-    subprocess.run([sys.executable, "-c", code], check=True)
-
-
-def test_lines_and_points_of_a_dataset_are_in_the_space_that_it_names():
-    mesh = pv.Line((-1, -2, 3), (-4, -5, 6))
-    mesh.field_data["SPACE"] = ["LPS"]
-    right = [[1, 2, 3], [4, 5, 6]]
-    np.testing.assert_array_equal(as_halo_points(mesh).points, right)
-    np.testing.assert_array_equal(as_halo_lines(mesh).lines.points, right)
+        for source in sources:
+            with pytest.raises(TypeError, match=f"with halos cannot be made from a {type(source).__name__}; give"):
+                build(source)

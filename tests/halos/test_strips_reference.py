@@ -7,7 +7,7 @@ import pytest
 
 from pvfiblets.halos import HaloPoints, HaloStyle
 from pvfiblets.halos.reference import HALO, LINE, NOTHING, picture
-from pvfiblets.halos.strips_reference import mask, places_along, rates
+from pvfiblets.halos.strips_reference import mask, places_along
 
 from .views import CAMERAS, NEAR, PLAIN, SIZE, centres, kinds, line, lines, parallel, perspective, window_depth
 
@@ -47,7 +47,7 @@ def test_tapered_ends_are_round():
     assert ((found.kind != NOTHING) == ellipse)[left].all()
 
 
-def test_filtered_lines_end_where_their_numbers_do():
+def test_filtered_lines_end_where_their_numbers_do_and_narrow_over_their_mm():
     x, y = centres()
     scene = line([-30, 0, 100], [0, 0, 100], [30, 0, 100], n=[0.0, 6.0, 0.0])
     for low, high in ((2.0, np.inf), (-np.inf, 3.35), (2.0, 3.35), (0.0, 6.0), (7.0, 8.0)):
@@ -57,31 +57,15 @@ def test_filtered_lines_end_where_their_numbers_do():
         there = (number >= low) & (number <= high) & (abs(x) < 30) & (abs(y) < 15)
         assert (found.kind == kinds(abs(y) < 5, there)).all()
         assert there.any() == (low < 7)
-
-
-def test_filtered_ends_narrow_over_their_mm():
-    x, y = centres()
     scene = line([-30, 0, 100], [30, 0, 100], n=[0.0, 6.0])
     look = HaloStyle(10.0, 30.0, 20.0, filter_by="n", low=2.0, high=5.0, filter_taper=8.0, **PLAIN)
     found = picture(scene, look, parallel(), SIZE)
     end = np.clip(np.minimum(x + 10, 20 - x) / 8, 0, 1)
     m = np.sqrt(end * (2 - end))
     assert (found.kind == kinds((abs(y) < 5 * m), (abs(y) < 15 * m) & (end > 0))).all()
-
-
-def test_what_has_no_number_is_not_there():
-    x, y = centres()
     scene = line(*([10 * i, 0, 100] for i in range(-3, 4)), n=[1, 1, 1, np.nan, 1, 1, 1])
-    look = HaloStyle(10.0, 30.0, 20.0, filter_by="n", **PLAIN)
-    found = picture(scene, look, parallel(), SIZE)
+    found = picture(scene, HaloStyle(10.0, 30.0, 20.0, filter_by="n", **PLAIN), parallel(), SIZE)
     assert ((found.kind != NOTHING) == ((abs(x) > 10) & (abs(x) < 30) & (abs(y) < 15))).all()
-
-
-def test_rates_of_numbers():
-    points = np.array([[0, 0, 0], [2, 0, 0], [2, 0, 0], [2, 4, 0], [9, 9, 9], [0, 0, 0], [0, 0, 5.0]])
-    numbers = np.array([0, 6, 7, 9, 1, np.nan, 4.0])
-    found = rates(points, np.array([0, 4, 5, 5, 7]), numbers)
-    assert found == pytest.approx([3, 3, 0.5, 0.5, 0, 0, 0])
 
 
 # ------------------------------------------------------------------------------------------------------------- bends
@@ -140,31 +124,16 @@ def test_bends_take_everything_from_the_foot(degrees):
     assert np.isin(found.owner + found.t, [1.0])[beyond].all()
 
 
-def test_steep_bends_are_round():
-    """A segment that runs at the viewer, and whose strip so soon widens much, has no bisector with the next."""
-    look = HaloStyle(6.0, 16.0, 5.0, **PLAIN)
-    x, y = centres()
-    before = (x < -0.1) & (np.hypot(x, y) < 3)
-    for z, divided in ((140, False), (101, True)):
-        found = picture(line([-5, 0, z], [0, 0, 100], [25, 0, 100]), look, perspective(), SIZE)
-        assert (found.owner[before] == (0 if divided else 1)).all()
-
-
-def test_repeated_points_and_segments_seen_end_on_are_round():
+def test_repeated_points_and_segments_seen_end_on_are_round_and_lines_without_extent_nothing():
     """With the segments beside them, a disc."""
     look = HaloStyle(6.0, 16.0, 5.0, **PLAIN)
+    for scene in (lines(np.zeros((0, 3))), line([0, 0, 100]), HaloPoints(np.zeros((0, 3)))):
+        assert not picture(scene, look, parallel(), SIZE).kind.any()
     x, y = centres()
     for middle in ([[0, 0, 100], [0, 0, 100]], [[0, 0, 100], [0, 0, 100], [0, 0, 100]], [[0, 0, 100], [0, 0, 150]]):
         found = picture(line([-20, 0, 100], *middle), look, parallel(), SIZE)
         away = np.where(x < 0, abs(y), np.hypot(x, y)) + 99 * (x < -20)
         assert (found.kind == kinds(away < 3, away < 8)).all()
-
-
-def test_lines_without_extent_show_nothing():
-    look = HaloStyle(6.0, 16.0, 5.0, **PLAIN)
-    for scene in (lines(np.zeros((0, 3))), line([0, 0, 100]), lines([[0, 0, 100]], [[5, 0, 100]])):
-        assert not picture(scene, look, parallel(), SIZE).kind.any()
-    assert not picture(HaloPoints(np.zeros((0, 3))), look, parallel(), SIZE).kind.any()
 
 
 # -------------------------------------------------------------------------------------------------------------- cuts

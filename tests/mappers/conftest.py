@@ -1,10 +1,8 @@
-"""Scenes for the mapper's tests, with two renderers: the engine, and GL lines that know nothing of it."""
+"""Scenes for the tests of mappers, and the same lines for VTK's own."""
 
 from __future__ import annotations
 
-import importlib.util
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,21 +12,8 @@ from vtkmodules.vtkRenderingCore import vtkActor, vtkMapper
 
 from pvfiblets.codec.compress import compress
 from pvfiblets.mappers import FibletMapper, windows
+from pvfiblets.mappers.fiblets import engine_renderer
 from pvfiblets.streamlines import Streamlines
-
-
-def _standin():
-    path = Path(__file__).with_name("standin.py")
-    spec = importlib.util.spec_from_file_location("fiblets_standin", path)
-    module = importlib.util.module_from_spec(spec)
-    import sys
-
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    return module
-
-
-standin = _standin()
 
 
 @pytest.fixture(autouse=True)
@@ -58,19 +43,27 @@ def polylines(streamlines: Any) -> pv.PolyData:
     return pv.PolyData(np.asarray(streamlines.points, dtype=np.float64), lines=cells)
 
 
+MADE: list[Any] = []
+
+
+def counted(ctx: Any, fiblets: Any, **options: Any) -> Any:
+    """Return the engine's renderer, and remember it."""
+    MADE.append(engine_renderer(ctx, fiblets, **options))
+    return MADE[-1]
+
+
 @dataclass
 class Fibres:
     """One set of streamlines as the mapper takes it and as VTK's polylines take it."""
 
-    kind: str
     fiblets: Any
-    reference: Streamlines
+
+    @property
+    def reference(self) -> Streamlines:
+        return self.fiblets.decompress()
 
     def mapper(self, **options: Any) -> FibletMapper:
-        """Return a mapper on this kind's renderer."""
-        if self.kind == "lines":
-            options["renderer_factory"] = standin.LineRenderer
-        return FibletMapper(self.fiblets, **options)
+        return FibletMapper(self.fiblets, **{"renderer_factory": counted} | options)
 
     def actor(self, *, lighting: bool = False, **options: Any) -> tuple[FibletMapper, vtkActor]:
         """Return a mapper and its actor."""
@@ -84,44 +77,29 @@ class Fibres:
         return polylines(self.reference)
 
 
-def fibres(kind: str, streamlines: Streamlines, values: Any = None) -> Fibres:
-    """Return streamlines for one of the two renderers."""
-    if kind == "lines":
-        plain = standin.PlainFiblets(np.asarray(streamlines.points, np.float64), streamlines.offsets, values)
-        return Fibres(kind, plain, streamlines)
-    fiblets = compress(streamlines)
-    return Fibres(kind, fiblets, fiblets.decompress())
-
-
-@pytest.fixture(params=["engine", pytest.param("lines", marks=pytest.mark.exhaustive)])
-def kind(request) -> str:
-    """Return which renderer fills the G-buffer."""
-    return request.param
+def fibres(streamlines: Streamlines | None = None) -> Fibres:
+    """Return streamlines, by default helices, for both."""
+    return Fibres(compress(helices() if streamlines is None else streamlines))
 
 
 @pytest.fixture
-def make_fibres(kind):
-    """Return a function that makes fibres for this renderer."""
-    return lambda streamlines=None, values=None: fibres(kind, streamlines or helices(), values)
+def make_fibres():
+    """Return a function that makes fibres."""
+    return fibres
 
 
 @pytest.fixture
-def lines(make_fibres) -> Fibres:
+def lines() -> Fibres:
     """Return helices."""
-    return make_fibres()
+    return fibres()
 
 
 @pytest.fixture
-def plain() -> Fibres:
-    """Return helices on GL lines, for tests in which the engine has no part."""
-    return fibres("lines", helices())
-
-
-@pytest.fixture
-def standins():
-    """Return the list of line renderers made since the test began."""
-    standin.LineRenderer.made.clear()
-    return standin.LineRenderer.made
+def renderers():
+    """Return the list of renderers made since the test began."""
+    MADE.clear()
+    yield MADE
+    MADE.clear()
 
 
 def check(*mappers: FibletMapper) -> None:

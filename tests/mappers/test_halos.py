@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import gc
-import weakref
 from dataclasses import replace
 
 import numpy as np
 import pytest
 import pyvista as pv
-from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPlane
-from vtkmodules.vtkRenderingCore import vtkActor, vtkHardwareSelector
+from vtkmodules.vtkRenderingCore import vtkActor
 
 from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
-from pvfiblets.mappers import Colouring, HaloMapper, HaloOptions, windows
-from pvfiblets.mappers.halos import Strips, halo_renderer
+from pvfiblets.mappers import Colouring, HaloMapper, HaloOptions
+from pvfiblets.mappers.halos import Strips
 
 PIXELS = 5.0  # a mm, in the view `flat`
 LOOK = HaloStyle(2.0, 8.0, 4.0, n_tapered=0, min_width=0.0, smooth=False)
@@ -81,6 +78,10 @@ def test_a_line_has_its_colour_its_halo_another_and_the_rest_is_left_alone(make_
     assert same(column[across > 4.0], BACK).all()
     column, z = column_at(image, 16.0)  # ends are square
     assert same(column, BACK).all()
+    mapper, actor = made(bar(z=21.0))  # beside the picture
+    column, z = column_at(tools.picture(shown(make_plotter, actor), mapper), 7.0)
+    assert same(column[z > 17.0], WHITE).all()
+    assert same(column[z < 17.0], BACK).all()
 
 
 def test_points_are_discs_in_discs(make_plotter, tools):
@@ -107,17 +108,6 @@ def test_halos_have_a_depth_among_meshes(make_plotter, tools, behind):
     assert same(column[np.abs(z) < 1.0], GREEN).all()
     assert same(column[halo], WHITE).all()
     assert same(column[~halo & (np.abs(z) > 1.0)], (255, 0, 0)).all()
-
-
-def test_what_is_in_front_hides_lines_and_halos(make_plotter, tools):
-    mapper, actor = made(bar())
-    plotter = shown(make_plotter, actor)
-    box = pv.Box((-8, 8, -5, -4, -3, 3))
-    plotter.add_mesh(box, color="red", lighting=False, reset_camera=False)
-    image = tools.picture(flat(plotter), mapper)
-    column, z = column_at(image, 0.0)
-    assert same(column[np.abs(z) < 3.0], (255, 0, 0)).all()
-    assert same(column[(np.abs(z) > 3.0) & (np.abs(z) < 4.0)], WHITE).all()
 
 
 @pytest.mark.parametrize("apart", [0.5, 2.0, 3.0, 9.0])
@@ -147,44 +137,6 @@ def test_bounds_hold_the_strips_and_the_camera_takes_them(make_plotter, tools):
     assert not image[:, [0, -1]].any()
 
 
-def test_a_strip_shows_whose_line_is_beside_the_picture(make_plotter, tools):
-    mapper, actor = made(bar(z=21.0))
-    column, z = column_at(tools.picture(shown(make_plotter, actor), mapper), 7.0)
-    assert same(column[z > 17.0], WHITE).all()
-    assert same(column[z < 17.0], BACK).all()
-
-
-def test_another_look_draws_again_and_copies_nothing(make_plotter, tools):
-    engines = []
-
-    def factory(ctx, drawn, **options):
-        engines.append(halo_renderer(ctx, drawn, **options))
-        return engines[-1]
-
-    mapper, actor = made(bar(v=[0.0, 1.0, 2.0]), renderer_factory=factory)
-    plotter = shown(make_plotter, actor)
-
-    def widths():
-        column, _ = column_at(tools.picture(flat(plotter), mapper), 7.0)
-        return same(column, GREEN).sum(), same(column, WHITE).sum()
-
-    assert widths() == (10, 30)
-    mapper.look = replace(LOOK, line_width=4.0)
-    assert widths() == (20, 20)
-    mapper.look = replace(LOOK, filter_by="v", low=0.4)
-    assert widths() == (10, 30)
-    mapper.look = replace(LOOK, filter_by="v", low=1.6)  # x = 7 is 1.47
-    assert widths() == (0, 0)
-    mapper.look = replace(LOOK, strip_width=2.0)
-    assert widths() == (10, 0)
-    assert len(engines) == 1
-    mapper.set_drawn(bar(z=4.0), LOOK)
-    assert widths() == (10, 30)
-    mapper.options = HaloOptions(culling=None)
-    assert widths() == (10, 30)
-    assert len(engines) == 3
-
-
 def test_places_are_picked_and_halos_are_not(make_plotter, tools):
     drawn = lines_of([(-15, 0, 0), (0, 0, 0), (15, 0, 0)], [(10, 6, 15), (10, 6, -15)])
     mapper, actor = made(drawn)
@@ -201,58 +153,16 @@ def test_places_are_picked_and_halos_are_not(make_plotter, tools):
     assert (line, place) == (1, pytest.approx(((15 - (150.5 - 100) / PIXELS) / 30), abs=1e-3))
     assert mapper.pick_at(170, 150, tolerance=-1) is None
     assert mapper.pick_at(-50, 500) is None
-
-
-def test_points_are_picked_by_number(make_plotter, tools):
     mapper, actor = made(HaloPoints(np.array([(-10.0, 0, 0), (0.0, 0, 0), (10.0, 0, 0)])))
     tools.picture(shown(make_plotter, actor), mapper)
-    assert [mapper.pick_at(70 + 50 * i, 100) for i in range(3)] == [0, 1, 2]
+    assert [mapper.pick_at(70 + 50 * i, 100) for i in range(3)] == [0, 1, 2]  # points by their numbers
     assert mapper.pick_at(130, 100, tolerance=0) is None
     assert mapper.pick_at(130, 100, tolerance=6) == 1
-    assert mapper.pick_at(95, 100) is None
-
-
-def test_clipping_planes_of_the_mapper_cut_the_axis(make_plotter, tools):
-    mapper, actor = made(bar())
-    plotter = shown(make_plotter, actor)
-    whole = tools.picture(plotter, mapper)
-    plane = vtkPlane()
-    plane.SetNormal(1, 0, 0)
-    plane.SetOrigin(5, 0, 0)
-    mapper.AddClippingPlane(plane)
-    half = tools.picture(plotter, mapper)
-    assert (half[:, 146:] == whole[:, 146:]).all()
-    assert same(half[:, :145], BACK).all()
-    mapper.RemoveAllClippingPlanes()
-    assert (tools.picture(plotter, mapper) == whole).all()
 
 
 def pixel(image, x, z):
     column, places = column_at(image, x)
     return tuple(column[np.argmin(np.abs(places - z))].tolist())
-
-
-def test_every_way_to_colour_leaves_halos_alone(make_plotter, tools):
-    mapper, actor = made(bar(v=[0.0, 1.0, np.nan], c=np.array([(1, 0, 0, 1), (0, 1, 0, 1), (0, 0, 1, 1)], "f4")))
-    plotter = shown(make_plotter, actor)
-
-    def colours(colouring, x=7.0):
-        mapper.colouring = colouring
-        image = tools.picture(plotter, mapper)
-        assert pixel(image, x, 2.0) == WHITE
-        return pixel(image, x, 0.1)
-
-    table = np.array([[255, 0, 0, 255], [0, 0, 255, 255]], np.uint8)
-    assert colours(Colouring("orientation")) == (255, 0, 0)
-    assert colours(Colouring("solid", color=(0.0, 1.0, 1.0))) == (0, 255, 255)
-    assert colours(Colouring("streamline_rgba", values=np.array([[7, 8, 9]], np.uint8))) == (7, 8, 9)
-    assert colours(Colouring("streamline_scalar", values=np.array([0.7]), lut=table, clim=(0, 1))) == (0, 0, 255)
-    numbers = Colouring("point_scalar", source="v", lut=table, clim=(0, 1), nan_color=(0.2, 0.4, 0.6))
-    assert [colours(numbers, x) for x in (-10.0, -5.0, 7.0)] == [(255, 0, 0), (0, 0, 255), (51, 102, 153)]
-    mixed = np.array(colours(Colouring("point_rgba", source="c")), int)
-    assert np.abs(mixed - [0, 255 * (1 - 7.1 / 15), 255 * 7.1 / 15]).max() <= 3
-    with pytest.raises(ValueError, match="2 values for 1"):
-        mapper.colouring = Colouring("streamline_scalar", values=np.array([0.7, 1.0]))
 
 
 def test_smooth_lines_turn_into_their_halo_over_a_pixel(make_plotter, tools):
@@ -281,16 +191,12 @@ def test_halos_of_the_background_take_part_in_its_gradient(make_plotter, tools):
     assert mapper.halo_color == (1.0, 1.0, 0.0)
 
 
-@pytest.mark.parametrize("color", [(1.0, 2.0, 0.0), (1.0, 0.0)])
-def test_colours_that_are_none_are_refused(color):
-    with pytest.raises(ValueError, match="color of halos is "):
-        Strips(color)
-
-
-def test_unknown_options_are_refused_at_once():
+def test_what_is_no_colour_or_option_is_refused():
+    for color in ((1.0, 2.0, 0.0), (1.0, 0.0)):
+        with pytest.raises(ValueError, match="color of halos is "):
+            Strips(color)
     assert HaloOptions("none") == HaloOptions(None)
-    assert HaloOptions(None).changed() == {"culling": None}
-    assert HaloOptions().changed() == {}
+    assert (HaloOptions(None).changed(), HaloOptions().changed()) == ({"culling": None}, {})
     with pytest.raises(ValueError, match="culling is 'coverage'"):
         HaloOptions("coverage")
 
@@ -310,18 +216,16 @@ def test_light_falls_on_lines_and_not_on_halos(make_plotter, tools):
     assert same(column[(np.abs(z) > 1.0) & (np.abs(z) < 4.0)], WHITE).all()
 
 
-def test_translucent_actors_blend_lines_and_halos_alike(make_plotter, tools):
+def test_translucent_actors_blend_lines_and_halos_alike_and_colours_keep_opaque_halos(make_plotter, tools):
     mapper, actor = made(bar())
     actor.GetProperty().SetOpacity(0.5)
-    image = tools.picture(shown(make_plotter, actor), mapper).astype(int)
+    plotter = shown(make_plotter, actor)
+    image = tools.picture(plotter, mapper).astype(int)
     assert np.abs(np.array(pixel(image, 7.0, 0.1)) - [32, 159, 32]).max() <= 2
     assert np.abs(np.array(pixel(image, 7.0, 2.0)) - [159] * 3).max() <= 2
-
-
-def test_colours_that_let_through_keep_opaque_halos(make_plotter, tools):
-    values = np.array([[0, 255, 0, 128]], np.uint8)
-    mapper, actor = made(bar(), colouring=Colouring("streamline_rgba", values=values))
-    image = tools.picture(shown(make_plotter, actor), mapper).astype(int)
+    actor.GetProperty().SetOpacity(1.0)
+    mapper.colouring = Colouring("streamline_rgba", values=np.array([[0, 255, 0, 128]], np.uint8))
+    image = tools.picture(plotter, mapper).astype(int)
     assert actor.GetForceTranslucent()
     assert np.abs(np.array(pixel(image, 7.0, 0.1)) - [32, 160, 32]).max() <= 2
     assert pixel(image, 7.0, 2.0) == WHITE
@@ -336,120 +240,6 @@ def test_actors_that_are_stretched_have_strips_as_wide(make_plotter, tools):
     assert same(column[np.abs(z) < 2.0], GREEN).all()
     assert same(column[(np.abs(z) > 2.0) & (np.abs(z) < 8.0)], WHITE).all()
     assert same(column[np.abs(z) > 8.0], BACK).all()
-
-
-def test_each_subplot_has_its_own_camera(make_plotter, tools):
-    mapper, actor = made(bar())
-    plotter = make_plotter(shape=(1, 2), border=False)
-    for side in (0, 1):
-        plotter.subplot(0, side)
-        plotter.add_actor(actor, reset_camera=False)
-        flat(plotter, height=40.0 * (1 + side))
-    image = tools.picture(plotter, mapper)
-    for column, scale in ((60, 1), (180, 2)):
-        z = scale * (99.5 - np.arange(200)) / PIXELS
-        assert same(image[np.abs(z) < 1.0, column], GREEN).all()
-        assert same(image[(np.abs(z) > 1.0) & (np.abs(z) < 4.0), column], WHITE).all()
-        assert same(image[np.abs(z) > 4.0, column], BACK).all()
-    assert mapper.pick_at(60, 100, renderer=plotter.renderers[0])[0] == 0
-
-
-@pytest.mark.parametrize("supersampled", [False, True])
-def test_the_least_width_is_in_pixels_of_the_window(make_plotter, tools, supersampled):
-    """Enlarged three times, or drawn from many samples, a thin line stays as wide a part of the picture."""
-    look = replace(LOOK, line_width=0.1, strip_width=4.0, min_width=3.0)
-    mapper, actor = made(bar(z=0.1), look)
-    plotter = shown(make_plotter, actor)
-    if supersampled:
-        plotter.enable_anti_aliasing("ssaa")
-        column, _ = column_at(tools.picture(plotter, mapper), 7.0)
-        green = column[:, 1].astype(float) - column[:, 0]
-        assert green.sum() / 255 == pytest.approx(3.0, abs=0.35)
-        return
-    column, z = column_at(tools.picture(plotter, mapper), 7.0)
-    assert same(column, GREEN).sum() == 3
-    large = plotter.screenshot(None, scale=3)
-    mapper.raise_pending()
-    column, _ = column_at(large, 21.0)
-    assert same(column, GREEN).sum() == 9
-    assert abs(same(column, WHITE).sum() - 3 * PIXELS * (4.0 - 0.1)) <= 1  # halos grow no wider with it
-    column, z = column_at(tools.picture(plotter, mapper), 7.0)
-    assert same(column, GREEN).sum() == 3
-
-
-def test_tiles_of_enlarged_pictures_show_no_seams(make_plotter, tools):
-    random = np.random.default_rng(3)
-    curves = [np.cumsum(random.normal(size=(40, 3)), axis=0) * 2.0 for _ in range(12)]
-    mapper, actor = made(lines_of(*curves), HaloStyle(0.5, 3.0, 3.0), halo_color=None)
-    plotter = make_plotter()
-    plotter.add_actor(actor)
-    plotter.set_background("red", top="blue")
-    tools.picture(plotter, mapper)
-    large = plotter.screenshot(None, scale=4).astype(int)
-    mapper.raise_pending()
-    whole = make_plotter(window_size=(960, 800))
-    mapper, actor = made(lines_of(*curves), HaloStyle(0.5, 3.0, 3.0, min_width=4.0), halo_color=None)
-    whole.add_actor(actor)
-    whole.camera = plotter.camera.copy()
-    whole.set_background("red", top="blue")
-    wanted = tools.picture(whole, mapper).astype(int)
-    assert tools.covered(large, (0, 0, 0)).all()
-    assert (np.abs(large - wanted).max(-1) > 8).mean() < 2e-4
-
-
-@pytest.mark.parametrize(("row", "wanted"), [(100, 1), (110, 1), (150, 0)], ids=["line", "halo", "beside"])
-@pytest.mark.parametrize("alone", [True, False], ids=["actors", "cells"])
-def test_vtk_selects_the_actor(make_plotter, tools, row, wanted, alone):
-    mapper, actor = made(bar())
-    plotter = shown(make_plotter, actor)
-    tools.picture(plotter, mapper)
-    selector = vtkHardwareSelector()
-    selector.SetRenderer(plotter.renderer)
-    selector.SetFieldAssociation(vtkDataObject.FIELD_ASSOCIATION_CELLS)
-    selector.SetActorPassOnly(alone)
-    selector.SetArea(118, row - 2, 122, row + 2)
-    assert selector.Select().GetNumberOfNodes() == wanted
-    mapper.raise_pending()
-
-
-def test_nothing_to_draw_draws_nothing(make_plotter, tools):
-    empty = HaloLines(np.zeros((0, 3)), [0])
-    for drawn in (empty, HaloLines(np.zeros((2, 3)), [0, 1, 2]), HaloPoints(np.zeros((0, 3)))):
-        mapper, actor = made(drawn)
-        image = tools.picture(shown(make_plotter, actor), mapper)
-        assert same(image, BACK).all()
-        mapper.set_drawn(bar() if isinstance(drawn, HaloLines) else HaloPoints(np.zeros((1, 3))))
-        assert actor.GetBounds()[1] == pytest.approx(19 if isinstance(drawn, HaloLines) else 4)
-
-
-def test_memory_is_given_back_and_the_mapper_freed(make_plotter, tools):
-    mapper, actor = made(bar())
-    plotter = shown(make_plotter, actor)
-    tools.picture(plotter, mapper)
-    context = windows.contexts_with(mapper)[0]
-    mapper.release()
-    mapper.release()
-    assert not windows.contexts_with(mapper)
-    assert tools.picture(plotter, mapper).any()
-    context.window.MakeCurrent()
-    plotter.remove_actor(actor)
-    plotter.render()
-    assert not windows.contexts_with(mapper)
-    gone = weakref.ref(mapper)
-    del mapper, actor
-    gc.collect()
-    assert gone() is None
-
-
-def test_a_failing_engine_is_raised_by_the_caller(make_plotter):
-    def broken(ctx, drawn, **options):
-        raise OSError("no memory")
-
-    mapper, actor = made(bar(), renderer_factory=broken)
-    plotter = shown(make_plotter, actor)
-    plotter.show(auto_close=False)
-    with pytest.raises(OSError, match="no memory"):
-        mapper.raise_pending()
 
 
 def test_numbers_that_are_not_there_are_refused_when_drawn(make_plotter):

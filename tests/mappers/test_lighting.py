@@ -1,4 +1,4 @@
-"""Lights on fiblets against the arithmetic of VTK's light model."""
+"""Light on lines against the arithmetic of its models: VTK's, that of illuminated lines, and the default one."""
 
 from __future__ import annotations
 
@@ -7,120 +7,113 @@ import pytest
 import pyvista as pv
 
 from pvfiblets.mappers import Colouring
+from pvfiblets.mappers.line_light import LegendColours, LineLight
+from pvfiblets.mappers.shading import Illuminated
+
+COLOUR = np.array([255, 127.5, 63.75])
+AMBIENT, DIFFUSE, SPECULAR, POWER = 0.05, 0.5, 0.3, 6.0
+SHOULDER = np.array([-1.0, 1.0, 1.0]) / 3**0.5
+"""From where the default light of the camera's lights comes: right, up, towards the viewer."""
+TO_VIEW = np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]])
+"""From data to view coordinates, seen from -y with z upwards."""
+RODS = [(1, 0, 0), (1, 0.7, 0.2), (0.1, 0.5, 0.9), (0.5, -2.0, 0.3)]
+
+
+def unit(*vector):
+    return np.array(vector, float) / np.linalg.norm(vector)
+
+
+def lamp(*place, positional=False, intensity=1.0, color="white", attenuation=(1, 0, 0), cone=90.0):
+    """A light of the scene; one that is not positional shines from that direction."""
+    place = np.array(place) * (1 if positional else 1e3)
+    light = pv.Light(position=place, focal_point=(0, 0, 0), light_type="scene light", cone_angle=cone, color=color)
+    light.positional, light.intensity, light.attenuation_values = positional, intensity, attenuation
+    return light
+
+
+def headlight(intensity=1.0, color="white"):
+    light = pv.Light(light_type="headlight", intensity=intensity, color=color)
+    light.positional = False
+    return light
 
 
 @pytest.fixture
 def rod(make_plotter, make_fibres, tools):
-    """Return a function: colour of a straight rod, seen from -y, by direction of the rod and lights."""
+    """Return a function: colour of a short straight rod in the middle of the view from -y."""
 
-    def run(direction, lights=None, *, parallel=True, lighting=True, prepare=None):
-        along = np.linspace(-10, 10, 41)[:, None] * np.asarray(direction, float)
+    def run(direction, *lights, effect=None, light=None, lighting=True, place=None, distance=200):
+        along = np.linspace(-10, 10, 41)[:, None] * unit(*direction)
         fibres = make_fibres(type(tools.helices(1, 2)).from_list([along]))
-        mapper, actor = fibres.actor(lighting=lighting, colouring=Colouring("solid", color=(1.0, 0.5, 0.25)))
-        actor.GetProperty().SetAmbient(0.1)
-        actor.GetProperty().SetDiffuse(0.8)
-        actor.GetProperty().SetSpecular(0.0)
-        if prepare:
-            prepare(actor)
-        plotter = make_plotter(lighting="none" if lights is not None else "light kit")
-        plotter.add_actor(actor)
-        for light in lights or ():
-            plotter.add_light(light)
-        plotter.camera_position = "xz"
-        if parallel:
-            plotter.enable_parallel_projection()
-        plotter.reset_camera()
+        mapper, actor = fibres.actor(lighting=lighting, colouring=Colouring("solid", color=tuple(COLOUR / 255)))
+        if effect is not None:
+            mapper.set_effect("light", effect)
+        prop = actor.GetProperty()
+        plain = isinstance(effect, LineLight | LegendColours)
+        given = {"Ambient": 0.0, "Diffuse": 1.0} if plain else {"Ambient": AMBIENT, "Diffuse": DIFFUSE}
+        for name, value in {**given, "Specular": 0.0, "SpecularPower": POWER, **(light or {})}.items():
+            getattr(prop, f"Set{name}")(value)
+        if place is not None:
+            place(actor)
+        kit = [one for one in lights if isinstance(one, str)]
+        plotter = make_plotter(lighting=kit[0] if kit else "none", window_size=(61, 61))
+        plotter.add_actor(actor, reset_camera=False)
+        for one in lights:
+            if not isinstance(one, str):
+                plotter.add_light(one)
+        plotter.camera_position = [(0, -distance, 0), (0, 0, 0), (0, 0, 1)]
+        plotter.camera.view_angle = 4.0
+        plotter.renderer.ResetCameraClippingRange()
         image = tools.picture(plotter, mapper)
-        mask = tools.covered(image)
-        assert mask.sum() > 20
-        return np.median(image[mask], axis=0)
+        middle = image[28:33, 28:33]
+        return np.median(middle[tools.covered(middle)], axis=0)
 
     return run
 
 
-def headlight(intensity=1.0):
-    light = pv.Light(light_type="headlight", intensity=intensity)
-    light.positional = False
-    return light
+# VTK's model, of the normal that is nearest to the viewer
 
 
-def sun(x, y, z):
-    light = pv.Light(position=(x, y, z), focal_point=(0, 0, 0), light_type="scene light")
-    light.positional = False
-    return light
-
-
-def test_a_headlight_lights_a_line_across_the_view_fully(rod):
-    assert np.allclose(rod((1, 0, 0), [headlight()]), np.array([255, 127, 64]) * 0.9, atol=1.5)
-
-
-@pytest.mark.parametrize("tilt", [20, 50, 75])
+@pytest.mark.parametrize("tilt", [0, 20, 50, 75])
 def test_a_tilted_line_is_lit_by_the_sine(rod, tilt):
     """The best normal makes the angle of the tilt with the viewer: diffuse falls with its cosine."""
     angle = np.radians(tilt)
-    seen = rod((np.cos(angle), np.sin(angle), 0), [headlight()])
-    expected = np.array([255, 127.5, 63.75]) * (0.1 + 0.8 * np.cos(angle))
-    assert np.allclose(seen, expected, atol=3)
+    seen = rod((np.cos(angle), np.sin(angle), 0), headlight())
+    assert np.allclose(seen, COLOUR * (AMBIENT + DIFFUSE * np.cos(angle)), atol=3)
 
 
-def test_a_light_from_the_side(rod):
+def test_lights_add_and_one_from_behind_does_not(rod):
     """The rod along x has the normal -y; a light 60 degrees off in z gives half."""
-    light = sun(0, -np.cos(np.pi / 3) * 100, np.sin(np.pi / 3) * 100)
-    seen = rod((1, 0, 0), [light])
-    assert np.allclose(seen, np.array([255, 127.5, 63.75]) * (0.1 + 0.8 * 0.5), atol=2)
-
-
-def test_two_lights_add_and_one_from_behind_does_not(rod):
-    one = rod((1, 0, 0), [sun(0, -50, 86.6)])
-    two = rod((1, 0, 0), [sun(0, -50, 86.6), sun(0, 100, 0)])
-    assert np.allclose(one, two, atol=1)
-    three = rod((1, 0, 0), [sun(0, -50, 86.6), sun(0, -50, -86.6)])
-    assert np.allclose(three, np.array([255, 127.5, 63.75]) * (0.1 + 0.8), atol=3)
+    one = rod((1, 0, 0), lamp(0, -50, 86.6))
+    assert np.allclose(one, COLOUR * (AMBIENT + DIFFUSE / 2), atol=2)
+    assert np.allclose(rod((1, 0, 0), lamp(0, -50, 86.6), lamp(0, 100, 0)), one, atol=1)
+    both = rod((1, 0, 0), lamp(0, -50, 86.6), lamp(0, -50, -86.6))
+    assert np.allclose(both, COLOUR * (AMBIENT + DIFFUSE), atol=3)
 
 
 def test_without_lighting_the_colour_is_exact(rod):
-    def flat(actor):
-        actor.GetProperty().SetAmbient(0.0)
-        actor.GetProperty().SetDiffuse(1.0)
-
-    seen = rod((0.5, 0.6, 0.3), [headlight(0.3)], lighting=False, prepare=flat)
-    assert np.allclose(seen, (255, 128, 64), atol=1)
+    plain = rod((0.5, 0.6, 0.3), headlight(0.3), lighting=False, light={"Ambient": 0.0, "Diffuse": 1.0})
+    assert np.allclose(plain, (255, 128, 64), atol=1)
+    seen = rod((1, 0.7, 0.2), lamp(1, 2, 3), lighting=False, effect=Illuminated())
+    assert np.allclose(seen, COLOUR * (AMBIENT + DIFFUSE), atol=1)  # nothing to illuminate
 
 
 @pytest.mark.parametrize(
-    "place",
+    ("direction", "place", "angle"),
     [
-        lambda actor: actor.SetOrientation(0, 0, 50),
-        lambda actor: (actor.SetScale(1, 1, -1), actor.SetOrientation(0, 0, 50)),
+        ((1, 0, 0), lambda actor: actor.SetOrientation(0, 0, 50), 50.0),
+        ((1, 0, 0), lambda actor: (actor.SetScale(1, 1, -1), actor.SetOrientation(0, 0, 50)), 50.0),
+        ((1, 1, 0), lambda actor: actor.SetScale(3, 1, 1), np.degrees(np.arctan(1 / 3))),
     ],
-    ids=["turned", "mirrored"],
+    ids=["turned", "mirrored", "stretched"],
 )
-def test_the_normal_follows_the_actor(rod, place):
-    seen = rod((1, 0, 0), [headlight()], prepare=place)
-    expected = np.array([255, 127.5, 63.75]) * (0.1 + 0.8 * np.cos(np.radians(50)))
-    assert np.allclose(seen, expected, atol=3)
-
-
-def test_non_uniform_scale_turns_tangents_as_it_turns_lines(rod):
-    """A rod at 45 degrees, stretched threefold along x, lies at atan(1/3)."""
-    seen = rod((1, 1, 0), [headlight()], prepare=lambda actor: actor.SetScale(3, 1, 1), parallel=True)
-    expected = np.array([255, 127.5, 63.75]) * (0.1 + 0.8 * np.cos(np.arctan(1 / 3)))
-    assert np.allclose(seen, expected, atol=3)
+def test_the_normal_follows_the_actor(rod, direction, place, angle):
+    seen = rod(direction, headlight(), place=place)
+    assert np.allclose(seen, COLOUR * (AMBIENT + DIFFUSE * np.cos(np.radians(angle))), atol=3)
 
 
 def test_specular_highlights_need_the_position(rod):
-    def shiny(actor):
-        actor.GetProperty().SetSpecular(1.0)
-        actor.GetProperty().SetSpecularPower(20.0)
-        actor.GetProperty().SetDiffuse(0.0)
-
-    seen = rod((1, 0, 0), [headlight()], prepare=shiny, parallel=False)
-    # Normal, light and viewer coincide in the middle of the picture: full highlight.
-    assert seen.min() > 230
-
-
-def test_the_default_lights_of_a_plotter(rod):
-    assert rod((1, 0, 0)).max() > 100
+    """Normal, light and viewer coincide in the middle of the picture: full highlight."""
+    assert rod((1, 0, 0), headlight(), light={"Specular": 1.0, "Diffuse": 0.0}).min() > 230
 
 
 def test_a_line_straight_at_the_viewer_has_no_nan(make_plotter, make_fibres, tools):
@@ -134,6 +127,96 @@ def test_a_line_straight_at_the_viewer_has_no_nan(make_plotter, make_fibres, too
     plotter.enable_parallel_projection()
     plotter.reset_camera()
     image = tools.picture(plotter, mapper)
-    if fibres.kind == "engine":  # GL draws no line of no length on the screen
-        assert tools.covered(image).any()
-        assert image[tools.covered(image)].min() > 200
+    assert tools.covered(image).any()
+    assert image[tools.covered(image)].min() > 200
+
+
+# Illuminated lines
+
+
+def lit(tangent, *lights, viewer=(0.0, -1.0, 0.0)):
+    """The maximum-normal model: colour of a line under (direction to the light, intensity)."""
+    tangent, viewer = unit(*tangent), np.array(viewer)
+    diffuse = specular = 0.0
+    for light, intensity in lights:
+        lt, vt = light @ tangent, viewer @ tangent
+        diffuse += intensity * np.sqrt(1 - lt**2)
+        specular += intensity * max(0.0, np.sqrt(1 - lt**2) * np.sqrt(1 - vt**2) - lt * vt) ** POWER
+    return COLOUR * (AMBIENT + DIFFUSE * diffuse) + 255 * SPECULAR * specular
+
+
+ILLUMINATED = {"effect": Illuminated(), "light": {"Specular": SPECULAR}}
+PLACE = np.array((70.0, -90.0, 40.0))
+STRENGTH = 1 / (0.5 + 1e-4 * (PLACE @ PLACE))
+EYE = np.array((0, -1.0, 0))
+
+
+@pytest.mark.parametrize("direction", RODS)
+@pytest.mark.parametrize(
+    ("lights", "wanted"),
+    [
+        ([lamp(3, 1, 2)], [(unit(3, 1, 2), 1.0)]),
+        ([lamp(-1, -4, 1)], [(unit(-1, -4, 1), 1.0)]),
+        ([lamp(*PLACE, positional=True, attenuation=(0.5, 0, 1e-4))], [(unit(*PLACE), STRENGTH)]),
+        ([headlight(0.8)], [(EYE, 0.8)]),
+        ([lamp(3, 1, 2, intensity=0.4), lamp(*PLACE, positional=True, intensity=0.3), headlight(0.2)],
+         [(unit(3, 1, 2), 0.4), (unit(*PLACE), 0.3), (EYE, 0.2)]),
+    ],
+    ids=["from behind", "from the front", "positional", "headlight", "all kinds"],
+)  # fmt: skip
+def test_illuminated_lines_have_the_light_of_the_maximum_normal(rod, lights, wanted, direction):
+    assert np.allclose(rod(direction, *lights, **ILLUMINATED), lit(direction, *wanted), atol=3)
+
+
+def test_a_cone_that_points_elsewhere_sheds_no_light(rod):
+    light = lamp(100.0, -100.0, 0.0, positional=True, cone=20.0)
+    light.focal_point = (100.0, 0.0, 0.0)
+    assert np.allclose(rod((0, 0, 1), light, **ILLUMINATED), COLOUR * AMBIENT, atol=1)
+
+
+def test_more_light_than_white_is_dimmed_alike(rod):
+    """Without a highlight: (L.T)(V.T) is a half, as the product of the sines."""
+    seen = rod((1, -1, 0), lamp(1, 0, 0, intensity=6.0), **ILLUMINATED)
+    assert np.allclose(seen, lit((1, -1, 0), (unit(1, 0, 0), 1.0)), atol=2)
+    several = rod((1, -1, 0), lamp(1, 0, 0, intensity=1.5), lamp(1, 0, 0, intensity=0.5), **ILLUMINATED)
+    assert np.allclose(several, seen, atol=2)
+
+
+# The default light
+
+
+def share(direction, towards):
+    return 0.6 + 0.4 * (1.0 - (unit(*direction) @ towards) ** 4)
+
+
+@pytest.mark.parametrize("direction", [*RODS, (0.3, -0.8, 0.5)])
+@pytest.mark.parametrize("kit", [True, False])
+def test_the_cameras_lights_come_over_the_shoulder_and_legends_keep_their_colours(rod, direction, kit):
+    """However many they are; and the kit's warm and cold light is white."""
+    lights = ["light kit"] if kit else [headlight()]
+    seen = rod(direction, *lights, effect=LineLight())
+    assert np.allclose(seen, COLOUR * share(direction, SHOULDER @ TO_VIEW), atol=2)
+    assert np.allclose(rod(direction, *lights, effect=LegendColours()), COLOUR, atol=1)
+    if direction == RODS[0]:  # highlights are added
+        assert (rod(direction, *lights, effect=LineLight(), light={"Specular": 0.5}) > seen + 5)[1:].all()
+
+
+def test_no_direction_loses_more_than_two_fifths(rod):
+    """The direction of the light itself has the least: the floor. Lines along the view axis keep what others do."""
+    assert np.allclose(rod(SHOULDER @ TO_VIEW, headlight(), effect=LineLight()), 0.6 * COLOUR, atol=2)
+    axes = [share(axis, SHOULDER @ TO_VIEW) for axis in np.eye(3)]
+    np.testing.assert_allclose(axes, 1.0 - 0.4 / 9)
+
+
+@pytest.mark.parametrize("direction", RODS)
+def test_lights_in_the_scene_shine_from_where_they_are_by_their_strength(rod, direction):
+    a, b = unit(3, 1, 2), unit(-1, -4, 1)
+    assert np.allclose(rod(direction, lamp(*a), effect=LineLight()), COLOUR * share(direction, a), atol=2)
+    seen = rod(direction, lamp(*a, intensity=0.9), lamp(*b, intensity=0.3), effect=LineLight())
+    assert np.allclose(seen, COLOUR * (0.75 * share(direction, a) + 0.25 * share(direction, b)), atol=2)
+
+
+def test_weak_lights_are_weak_and_coloured_ones_coloured(rod):
+    plain = COLOUR * share((1, 0, 0), SHOULDER @ TO_VIEW)
+    assert np.allclose(rod((1, 0, 0), headlight(0.4), effect=LineLight()), 0.4 * plain, atol=2)
+    assert np.allclose(rod((1, 0, 0), headlight(color="red"), effect=LineLight()), plain * (1, 0, 0), atol=2)

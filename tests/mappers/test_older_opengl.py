@@ -65,19 +65,12 @@ def test_the_older_opengl_of_these_tests_really_lacks_what_is_newer(older_opengl
 @pytest.mark.more
 @pytest.mark.parametrize("version", [pytest.param("4.1", marks=pytest.mark.exhaustive), "3.3"])
 def test_mapper_windows_and_picking_run_there(older_opengl, version):
-    """The mapper's own tests, with the renderer of plain lines."""
+    """The mapper's own tests, by the pipeline that is left."""
     files = [str(HERE / f"test_{name}.py") for name in ("picture", "picking", "passes", "windows")]
-    chosen = ("-m", "", "-k", "lines and not engine and not polylines", "-p", "no:cacheprovider", "-q")
+    chosen = ("-k", "picked or pick_at or polylines or window or translucent_mesh", "-p", "no:cacheprovider", "-q")
     result = run(older_opengl(version), "-m", "pytest", *files, *chosen)
     assert result.returncode == 0, result.stdout[-3000:]
     assert int(result.stdout.rsplit(" passed", 1)[0].split()[-1]) > 20
-
-
-@pytest.mark.more
-def test_the_scene_of_the_next_tests_is_drawn_by_this_opengl():
-    """Without this, a mistake in the scene would look like a missing pipeline."""
-    result = run(None, "-c", SCENE, "auto")
-    assert result.stdout.split()[-1:] == ["drawn"], result.stderr[-2000:]
 
 
 # The pipeline is forced: that the picture is right shows that it drew, for compute shaders do not compile here.
@@ -85,10 +78,11 @@ def test_the_scene_of_the_next_tests_is_drawn_by_this_opengl():
 @pytest.mark.parametrize(
     ("version", "pipeline"),
     [
-        ("4.1", "auto"), ("4.1", "tessellation"), ("3.3", "auto"),
+        (None, "auto"), ("4.1", "auto"), ("4.1", "tessellation"), ("3.3", "auto"),
         *(pytest.param(version, "geometry", marks=pytest.mark.exhaustive) for version in ("4.1", "3.3")),
     ],
 )  # fmt: skip
 def test_a_plotter_draws_and_picks_there(older_opengl, version, pipeline):
-    result = run(older_opengl(version), "-c", SCENE, pipeline)
+    """And by this OpenGL: without that, a mistake in the scene would look like a missing pipeline."""
+    result = run(older_opengl(version) if version else None, "-c", SCENE, pipeline)
     assert result.stdout.split()[-1:] == ["drawn"], result.stderr[-2000:]

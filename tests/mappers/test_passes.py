@@ -22,41 +22,21 @@ def yellow_lines(lines):
     return mapper, actor
 
 
-@pytest.mark.parametrize("peeling", [True, False])
-def test_a_translucent_mesh_in_front_tints_fiblets(make_plotter, yellow_lines, tools, peeling):
+@pytest.mark.parametrize(("y", "peeling"), [(-60, True), (-60, False), (80, True)])
+def test_a_translucent_mesh_tints_fiblets_behind_it_only(make_plotter, yellow_lines, tools, y, peeling):
     mapper, actor = yellow_lines
     plotter = scene_with(make_plotter, actor)
     plotter.renderer.ResetCameraClippingRange()
     alone = tools.covered(tools.picture(plotter, mapper))
     if peeling:
         plotter.enable_depth_peeling()
-    plotter.add_mesh(
-        pv.Box((-60, 60, -60, -58, -60, 60)),
-        color="blue",
-        opacity=0.5,
-        lighting=False,
-        reset_camera=False,
-    )
-    image = tools.picture(plotter, mapper)
-    behind = image[alone]
-    # Two faces of blue at one half over yellow: a quarter of the yellow is left.
-    assert np.allclose(behind.mean(axis=0), (64, 64, 191), atol=4)
-
-
-def test_a_translucent_mesh_behind_does_not(make_plotter, yellow_lines, tools):
-    mapper, actor = yellow_lines
-    plotter = scene_with(make_plotter, actor)
-    plotter.enable_depth_peeling()
-    alone = tools.covered(tools.picture(plotter, mapper))
-    plotter.add_mesh(
-        pv.Box((-60, 60, 80, 82, -60, 60)),
-        color="blue",
-        opacity=0.5,
-        lighting=False,
-        reset_camera=False,
-    )
-    image = tools.picture(plotter, mapper)
-    assert np.array_equal(np.unique(image[alone], axis=0), [[255, 255, 0]])
+    box = pv.Box((-60, 60, y, y + 2, -60, 60))
+    plotter.add_mesh(box, color="blue", opacity=0.5, lighting=False, reset_camera=False)
+    seen = tools.picture(plotter, mapper)[alone]
+    if y < 0:  # two faces of blue at one half over yellow: a quarter of the yellow is left
+        assert np.allclose(seen.mean(axis=0), (64, 64, 191), atol=4)
+    else:
+        assert np.array_equal(np.unique(seen, axis=0), [[255, 255, 0]])
 
 
 @pytest.mark.parametrize("peeling", [True, False])
@@ -75,21 +55,6 @@ def test_translucent_fiblets_over_an_opaque_mesh(make_plotter, yellow_lines, too
     image = tools.picture(plotter, mapper)
     inner = alone & tools.covered(image)
     assert (image[inner] == (255, 0, 0)).all(axis=-1).mean() > 0.9
-
-
-def test_peeling_orders_fiblets_between_two_translucent_walls(make_plotter, yellow_lines, tools):
-    mapper, actor = yellow_lines
-    actor.GetProperty().SetOpacity(0.5)
-    plotter = scene_with(make_plotter, actor)
-    alone = tools.covered(tools.picture(plotter, mapper))
-    plotter.enable_depth_peeling(number_of_peels=8)
-    for y, colour in ((-80, "red"), (80, "blue")):
-        plane = pv.Plane(center=(0, y, 0), direction=(0, 1, 0), i_size=300, j_size=300)
-        plotter.add_mesh(plane, color=colour, opacity=0.5, lighting=False, reset_camera=False)
-    plotter.renderer.ResetCameraClippingRange()
-    image = tools.picture(plotter, mapper)
-    # Front to back: half red, a quarter yellow, an eighth blue, an eighth black background.
-    assert np.allclose(np.median(image[alone], axis=0), (191, 64, 32), atol=4)
 
 
 def test_ambient_occlusion_darkens_fiblets_close_to_a_mesh(make_plotter, lines, tools):
@@ -114,20 +79,6 @@ def test_ambient_occlusion_darkens_fiblets_close_to_a_mesh(make_plotter, lines, 
     near = tools.grown(white) & ~white
     far = ~tools.grown(tools.grown(tools.grown(tools.grown(white))))
     assert shaded[near][:, 2].mean() < shaded[far][:, 2].mean() + 1
-
-
-def test_positions_of_the_occlusion_pass_are_those_of_polylines(make_plotter, plain, tools):
-    """A mesh and fiblets in one plane are equally far: no occlusion between them, hence no dark rim."""
-    mapper, actor = plain.actor(colouring=Colouring("solid", color=(1.0, 1.0, 1.0)))
-    plotter = scene_with(make_plotter, actor)
-    plotter.enable_ssao(radius=8, bias=0.5, kernel_size=64)
-    with_fiblets = tools.picture(plotter, mapper)
-    reference = make_plotter()
-    reference.add_mesh(plain.polydata(), color=(1.0, 1.0, 1.0), lighting=False, reset_camera=False)
-    reference.camera_position = [(0, -220, 0), (0, 0, 0), (0, 0, 1)]
-    reference.enable_ssao(radius=8, bias=0.5, kernel_size=64)
-    theirs = tools.picture(reference)
-    assert tools.agreement(tools.covered(with_fiblets), tools.covered(theirs)) > 0.98
 
 
 def test_eye_dome_lighting_outlines_fiblets(make_plotter, compare, tools):
@@ -190,15 +141,8 @@ def test_fiblets_cast_shadows(make_plotter, make_fibres, tools):
     plotter.add_actor(actor)
     floor = pv.Plane(center=(0, 0, -20), i_size=100, j_size=100, i_resolution=10, j_resolution=10)
     plotter.add_mesh(floor, color="white")
-    plotter.add_light(
-        pv.Light(
-            position=(0, 0, 400),
-            focal_point=(0, 0, 0),
-            light_type="scene light",
-            positional=True,
-            cone_angle=20,
-        )
-    )
+    place = {"position": (0, 0, 400), "focal_point": (0, 0, 0), "positional": True, "cone_angle": 20}
+    plotter.add_light(pv.Light(light_type="scene light", **place))
     plotter.camera_position = [(0, -150, 150), (0, 0, -10), (0, 0, 1)]
     plotter.renderer.ResetCameraClippingRange()
 

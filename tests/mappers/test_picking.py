@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkDataObject
-from vtkmodules.vtkRenderingCore import vtkCellPicker, vtkHardwareSelector, vtkPropPicker
+from vtkmodules.vtkRenderingCore import vtkHardwareSelector, vtkPropPicker
 
 from pvfiblets.mappers import windows
 
@@ -32,7 +32,7 @@ def scene(make_plotter, make_fibres, tools):
     return plotter, mapper, actor, display
 
 
-def test_pick_at_finds_streamline_and_position(scene):
+def test_pick_at_finds_streamline_and_position(scene, make_fibres):
     _, mapper, _, display = scene
     for streamline in range(5):
         for position in (3.0, 20.5, 38.0):
@@ -40,25 +40,14 @@ def test_pick_at_finds_streamline_and_position(scene):
             assert found is not None
             assert found[0] == streamline
             assert found[1] == pytest.approx(position, abs=0.6)
-
-
-def test_pick_at_finds_nothing_in_the_background(scene):
-    _, mapper, _, display = scene
     assert mapper.pick_at(*display((20, 0, 4))) is None
     assert mapper.pick_at(-5, 5) is None
     assert mapper.pick_at(10_000, 5) is None
-
-
-def test_tolerance_is_a_distance_in_pixels(scene):
-    _, mapper, _, display = scene
     x, y = display((20, 0, 16))
     assert mapper.pick_at(x, y + 4, tolerance=0) is None
     assert mapper.pick_at(x, y + 4, tolerance=6)[0] == 2
-
-
-def test_pick_at_before_anything_was_drawn(make_fibres):
     mapper, _ = make_fibres().actor()
-    assert mapper.pick_at(5, 5) is None
+    assert mapper.pick_at(5, 5) is None  # nothing was drawn
 
 
 @pytest.mark.parametrize("effect", ["ssaa", "ssao", "none"])
@@ -87,23 +76,6 @@ def test_pick_at_in_the_second_subplot(make_plotter, make_fibres, tools, effect)
     assert found[1] == pytest.approx(30, abs=1)
 
 
-def test_hardware_selection_finds_the_actor_where_a_line_is(scene):
-    plotter, mapper, actor, display = scene
-    selector = vtkHardwareSelector()
-    selector.SetRenderer(plotter.renderer)
-    selector.SetFieldAssociation(vtkDataObject.FIELD_ASSOCIATION_CELLS)
-    for point, hit in (((20, 0, 16), True), ((20, 0, 12), False)):
-        x, y = (int(value) for value in display(point))
-        selector.SetArea(x - 1, y - 1, x + 1, y + 1)
-        selection = selector.Select()
-        props = {
-            selection.GetNode(i).GetProperties().Get(selection.GetNode(i).PROP())
-            for i in range(selection.GetNumberOfNodes())
-        }
-        assert (actor in props) == hit
-    mapper.raise_pending()
-
-
 def test_hardware_selection_of_points_draws_no_error(scene, tools):
     plotter, mapper, _, _ = scene
     before = tools.picture(plotter, mapper)
@@ -116,18 +88,6 @@ def test_hardware_selection_of_points_draws_no_error(scene, tools):
     assert np.array_equal(tools.picture(plotter, mapper), before)
 
 
-def test_prop_picker_finds_the_actor_where_a_line_is(scene):
-    plotter, mapper, actor, display = scene
-    picker = vtkPropPicker()
-    x, y = (int(value) for value in display((20, 0, 16)))
-    (row,) = (y + step for step in (-1, 0, 1) if mapper.pick_at(x, y + step, tolerance=0))
-    picker.PickProp(x, row, plotter.renderer)
-    assert picker.GetViewProp() is actor
-    picker.PickProp(*display((20, 0, 12)), plotter.renderer)
-    assert picker.GetViewProp() is None
-    mapper.raise_pending()
-
-
 def test_a_mesh_in_front_is_picked_first(scene):
     plotter, mapper, _, display = scene
     box = plotter.add_mesh(pv.Box((15, 25, -6, -4, 10, 20)), reset_camera=False)
@@ -136,55 +96,6 @@ def test_a_mesh_in_front_is_picked_first(scene):
     picker.PickProp(*display((20, 0, 16)), plotter.renderer)
     assert picker.GetViewProp() is box
     mapper.raise_pending()
-
-
-def test_geometric_pickers_find_no_surface_in_mid_air(scene):
-    plotter, mapper, _, display = scene
-    picker = vtkCellPicker()
-    picker.SetTolerance(1e-6)
-    for x in (5, 20, 35):
-        for z in (4, 12, 20, 28):
-            picker.Pick(*display((x, 0, z)), 0.0, plotter.renderer)
-            assert picker.GetCellId() == -1
-    mapper.raise_pending()
-
-
-PICKERS = {
-    "point": lambda plotter: plotter.enable_point_picking(show_message=False),
-    "surface point": lambda plotter: plotter.enable_surface_point_picking(show_message=False),
-    "mesh": lambda plotter: plotter.enable_mesh_picking(show_message=False),
-    "cell": lambda plotter: plotter.enable_cell_picking(show_message=False),
-    "element": lambda plotter: plotter.enable_element_picking(mode="cell", show_message=False),
-    "rectangle": lambda plotter: plotter.enable_rectangle_picking(show_message=False),
-    "block": lambda plotter: plotter.enable_block_picking(),
-    "horizon": lambda plotter: plotter.enable_horizon_picking(show_message=False),
-    "path": lambda plotter: plotter.enable_path_picking(show_message=False),
-    "geodesic": lambda plotter: plotter.enable_geodesic_picking(show_message=False),
-    "fly to": lambda plotter: plotter.enable_fly_to_right_click(),
-}
-
-
-@pytest.mark.few(3)
-@pytest.mark.parametrize("picking", PICKERS)
-def test_pyvista_picking_survives_fiblets(scene, tools, picking):
-    plotter, mapper, _, display = scene
-    ball = (20, -10, 24)
-    plotter.add_mesh(pv.Sphere(radius=3, center=ball), reset_camera=False)
-    PICKERS[picking](plotter)
-    before = tools.picture(plotter, mapper)
-    assert tools.covered(before).any()
-    for point in ((20, 0, 16), (20, 0, 12), ball):
-        x, y = (int(value) for value in display(point))
-        interactor = plotter.iren.interactor
-        interactor.SetEventInformation(x, y)
-        for event in ("LeftButtonPress", "LeftButtonRelease", "RightButtonPress", "RightButtonRelease"):
-            interactor.InvokeEvent(event + "Event")
-        # PyVista's own callback of a horizon fails on fewer points than a line has, that of a geodesic on lines.
-        if picking != "horizon" and (picking != "geodesic" or point == ball):
-            interactor.SetKeyEventInformation(0, 0, "p", 0, "p")
-            interactor.InvokeEvent("CharEvent")
-        plotter.render()
-        mapper.raise_pending()
 
 
 @pytest.mark.parametrize("change", ["size", "multisampling", "peeling"])

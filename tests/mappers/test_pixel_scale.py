@@ -9,14 +9,13 @@ import pytest
 from vtkmodules.vtkRenderingCore import vtkActor
 
 from pvfiblets.codec.compress import compress
-from pvfiblets.engine.effects.halos import WIDEST
 from pvfiblets.halos import HaloLines, HaloStyle
 from pvfiblets.mappers import FibletMapper
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.halos import HaloMapper
 from pvfiblets.mappers.line_tubes import Tubes
 from pvfiblets.mappers.scene import pixel_scale
-from pvfiblets.mappers.shading import Halos, Silhouette
+from pvfiblets.mappers.shading import Silhouette
 from pvfiblets.mappers.tubes import TubeMapper, TubeOptions
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.tubes.build import as_spline_tubes
@@ -41,12 +40,6 @@ def fiblets_as_tubes():
 def outline(width):
     mapper = fiblets(1.0)
     mapper.set_effect("silhouette", Silhouette(np.ones(1, bool), width=width))
-    return mapper
-
-
-def halo_effect(width):
-    mapper = fiblets(2.0)
-    mapper.set_effect("halos", Halos(width=width))
     return mapper
 
 
@@ -108,25 +101,6 @@ def test_a_width_is_what_the_viewer_sees(shown, name, supersampled, scale):
     make, wanted = DRAWN[name]
     mapper = make()
     assert across(shown(mapper, supersampled), mapper, scale) == pytest.approx(wanted, abs=0.75)
-
-
-@pytest.mark.parametrize("supersampled", [False, True], ids=["plain", "ssaa"])
-def test_the_widest_halo_is_as_wide_whatever_the_samples(shown, supersampled):
-    mapper = halo_effect(1e3)
-    assert across(shown(mapper, supersampled), mapper, 1) == pytest.approx(2.0 + 2 * WIDEST, abs=0.75)
-
-
-@pytest.mark.parametrize("make", [fiblets, tubes, halos])
-def test_tiles_show_what_a_large_window_shows(shown, make, tools):
-    """A window three times as large, with widths three times as large, is what three by three tiles make up."""
-    mapper = make(WIDTH)
-    tiled = np.asarray(shown(mapper).screenshot(None, scale=3))[..., :3]
-    mapper.raise_pending()
-    mapper = make(3 * WIDTH)
-    whole = np.asarray(shown(mapper, size=(3 * SIZE[0], 3 * SIZE[1])).screenshot(None))[..., :3]
-    mapper.raise_pending()
-    assert tools.covered(tiled).sum() > 200 * 3 * WIDTH
-    assert (tools.covered(tiled) != tools.covered(whole)).mean() < 1e-3
 
 
 @pytest.mark.parametrize("dpi", [36, 72, 144])

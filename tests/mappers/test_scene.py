@@ -96,9 +96,9 @@ def test_the_rectangle_holds_every_point_and_little_else(parallel: bool) -> None
     rng = np.random.default_rng(5)
     bounds = (-3.0, 5.0, 10.0, 11.0, -2.0, 2.0)
     points = np.array([[x, y, z] for x in bounds[:2] for y in bounds[2:4] for z in bounds[4:]])
-    for _ in range(50):
+    for k in range(30):
         plotter = pv.Plotter(off_screen=True, window_size=(400, 300))
-        plotter.camera.position = 30.0 * rng.normal(size=3) / 1.7 + (0, 10, 0)
+        plotter.camera.position = (0 if k == 0 else 30.0) * rng.normal(size=3) / 1.7 + (0, 10.5, 0)  # among them first
         plotter.camera.focal_point = rng.uniform(-3, 3, 3) + (0, 10, 0)
         plotter.camera.up = rng.normal(size=3)
         plotter.camera.parallel_projection = parallel
@@ -107,6 +107,7 @@ def test_the_rectangle_holds_every_point_and_little_else(parallel: bool) -> None
         left, lower, right, upper = frame.rectangle(bounds, 0.0, 2.0)
         clip = np.c_[points, np.ones(8)] @ frame.model_view_projection.T
         plotter.close()
+        assert k > 0 or clip[:, 3].min() <= 0 or parallel
         if clip[:, 3].min() <= 0:
             assert (left, lower, right, upper) == (-1, -1, 1, 1)
             continue
@@ -116,11 +117,3 @@ def test_the_rectangle_holds_every_point_and_little_else(parallel: bool) -> None
         assert (place.max(0) <= (right, upper)).all()
         assert (place.min(0) - (left, lower) <= slack).all()
         assert ((right, upper) - place.max(0) <= slack).all()
-
-
-def test_a_camera_among_the_bounds_takes_the_whole_viewport() -> None:
-    plotter = pv.Plotter(off_screen=True, window_size=(400, 300))
-    plotter.camera.position, plotter.camera.focal_point = (0, 0, 0), (0, 0, -1)
-    frame = frame_of(plotter.renderer, pv.Actor(), (0, 0, 400, 300))
-    assert frame.rectangle((-1, 1, -1, 1, -1, 1), 0.0, 2.0) == (-1, -1, 1, 1)
-    plotter.close()

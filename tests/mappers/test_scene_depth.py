@@ -1,4 +1,4 @@
-"""Depth of other actors, as the fiblets' mapper finds it at the moment it draws, against what VTK says itself."""
+"""Depth of other actors, against what VTK says itself; what they hide is culled, and comes back."""
 
 from __future__ import annotations
 
@@ -9,9 +9,11 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkFloatArray
 from vtkmodules.vtkRenderingCore import vtkMapper
 
+import pvfiblets
 from pvfiblets.mappers import fiblets as mapper_module
 from pvfiblets.mappers import windows
 from pvfiblets.mappers.scene_depth import OutsideDepth
+from pvfiblets.synthetic import brain_streamlines
 
 EMPTY = 0xFFFFFFFF
 SCALE = 2.0**32
@@ -73,8 +75,8 @@ def depth_of_sphere(make_plotter, camera):
     return vtk_to_numpy(data).reshape(height, width)
 
 
-def test_the_depth_of_what_was_added_before_is_there(make_plotter, plain, tools, seen):
-    plotter, mapper = scene(make_plotter, plain, ["sphere", "fiblets"])
+def test_the_depth_of_what_was_added_before_is_there(make_plotter, lines, tools, seen):
+    plotter, mapper = scene(make_plotter, lines, ["sphere", "fiblets"])
     tools.picture(plotter, mapper)
     keys, error = seen[-1]
     assert error == "GL_NO_ERROR"
@@ -87,36 +89,36 @@ def test_the_depth_of_what_was_added_before_is_there(make_plotter, plain, tools,
     assert behind.max() < 1e-6
 
 
-def test_what_was_added_later_is_not(make_plotter, plain, tools, seen):
-    plotter, mapper = scene(make_plotter, plain, ["fiblets", "sphere"])
+def test_what_was_added_later_is_not(make_plotter, lines, tools, seen):
+    plotter, mapper = scene(make_plotter, lines, ["fiblets", "sphere"])
     tools.picture(plotter, mapper)
     assert (seen[-1][0] == EMPTY).all()
 
 
-def test_a_pixel_is_covered_only_if_all_its_samples_are(make_plotter, plain, tools, seen):
+def test_a_pixel_is_covered_only_if_all_its_samples_are(make_plotter, lines, tools, seen):
     """A pixel of an unlit white sphere on black is pure white where, and only where, all samples are."""
-    plotter, mapper = scene(make_plotter, plain, ["sphere", "fiblets"], lambda p: p.enable_anti_aliasing("msaa"))
+    plotter, mapper = scene(make_plotter, lines, ["sphere", "fiblets"], lambda p: p.enable_anti_aliasing("msaa"))
     mapper.actor.SetVisibility(True)
     tools.picture(plotter, mapper)
     keys, error = seen[-1]
     assert error == "GL_NO_ERROR"
-    alone, _ = scene(make_plotter, plain, ["sphere"], lambda p: p.enable_anti_aliasing("msaa"))
+    alone, _ = scene(make_plotter, lines, ["sphere"], lambda p: p.enable_anti_aliasing("msaa"))
     image = tools.picture(alone)[::-1]
     edge = (image[..., 0] > 0) & (image[..., 0] < 255)
     assert edge.sum() > 20, "there must be pixels that are covered in part"
     np.testing.assert_array_equal(keys != EMPTY, image[..., 0] == 255)
 
 
-def test_depth_peeling_has_none(make_plotter, plain, tools, seen):
-    plotter, mapper = scene(make_plotter, plain, ["sphere", "fiblets"], lambda p: p.enable_depth_peeling())
+def test_depth_peeling_has_none(make_plotter, lines, tools, seen):
+    plotter, mapper = scene(make_plotter, lines, ["sphere", "fiblets"], lambda p: p.enable_depth_peeling())
     mapper.actor.GetProperty().SetOpacity(0.5)
     tools.picture(plotter, mapper)
     assert [(keys, error) for keys, error in seen if keys is None] == [(None, "GL_NO_ERROR")] * len(seen)
     assert seen
 
 
-def test_none_where_vtk_moves_depth_afterwards(make_plotter, plain, tools, seen):
-    plotter, mapper = scene(make_plotter, plain, ["sphere", "fiblets"])
+def test_none_where_vtk_moves_depth_afterwards(make_plotter, lines, tools, seen):
+    plotter, mapper = scene(make_plotter, lines, ["sphere", "fiblets"])
     before = vtkMapper.GetResolveCoincidentTopology()
     try:
         vtkMapper.SetResolveCoincidentTopologyToPolygonOffset()
@@ -124,18 +126,6 @@ def test_none_where_vtk_moves_depth_afterwards(make_plotter, plain, tools, seen)
     finally:
         vtkMapper.SetResolveCoincidentTopology(before)
     assert seen[-1] == (None, "GL_NO_ERROR")
-
-
-def test_a_viewport_beside_another_reads_its_own_part(make_plotter, plain, tools, seen):
-    plotter = make_plotter(shape=(1, 2), window_size=(400, 200), border=False)
-    plotter.add_mesh(pv.Sphere(radius=25.0), lighting=False)
-    plotter.subplot(0, 1)
-    mapper, actor = plain.actor()
-    plotter.add_actor(actor)
-    tools.picture(plotter, mapper)
-    keys, error = seen[-1]
-    assert (keys.shape, error) == ((200, 200), "GL_NO_ERROR")
-    assert (keys == EMPTY).all()
 
 
 @pytest.mark.parametrize("depth", [0.0, 0.5, 0.999999, 1.0 - 2.0**-24, 1.0])
@@ -154,3 +144,82 @@ def test_no_depth_becomes_the_key_of_nothing_by_overflow(make_plotter, depth):
         picture.release()
     assert key == EMPTY or key / SCALE > depth
     assert (key == EMPTY) == (depth > 1.0 - 2.0**-23)
+
+
+@pytest.fixture(scope="module")
+def fiblets():
+    return pvfiblets.compress(brain_streamlines(600, 0.5, 3))
+
+
+def behind_a_wall(fiblets, *, wall_first=True, culling="two-phase", samples=0):
+    """A wall in front of most of a brain."""
+    plotter = pv.Plotter(off_screen=True, window_size=(320, 240))
+    plotter.set_background("black")
+    if not samples:
+        plotter.disable_anti_aliasing()
+    plane = pv.Plane(center=(0, -140, 10), direction=(0, 1, 0), i_size=150, j_size=150, i_resolution=1, j_resolution=1)
+    if wall_first:
+        wall = plotter.add_mesh(plane, color="white", render=False)
+    actor = plotter.add_fiblets(fiblets, culling=culling, render=False)
+    if not wall_first:
+        wall = plotter.add_mesh(plane, color="white", render=False)
+    plotter.camera_position = [(0, -450, 10), (0, -18, 10), (0, 0, 1)]
+    plotter.reset_camera_clipping_range()
+    plotter.show(auto_close=False)
+    return plotter, actor, wall
+
+
+def turn(plotter, degrees):
+    plotter.camera.azimuth += degrees
+    plotter.render()
+    return plotter.screenshot(None, return_img=True)
+
+
+@pytest.mark.few(1)
+@pytest.mark.parametrize("samples", [0, 4])
+@pytest.mark.parametrize("wall_first", [True, False])
+def test_pictures_are_those_without_culling(fiblets, wall_first, samples):
+    culled, actor, wall = behind_a_wall(fiblets, wall_first=wall_first, samples=samples)
+    whole, _, other_wall = behind_a_wall(fiblets, wall_first=wall_first, culling=None, samples=samples)
+    for move in range(8):
+        for it in (wall, other_wall):
+            if move == 3:
+                it.SetVisibility(False)
+            if move == 4:
+                it.SetVisibility(True)
+            if move == 6:
+                it.SetPosition(40, 0, 0)
+        a, b = (turn(plotter, 3.0 if move % 2 else 0.0) for plotter in (culled, whole))
+        assert (a == b).all(), f"move {move}"
+    actor.prop.line_width = 4
+    culled.render()
+    culled.close()
+    whole.close()
+
+
+def drawn(actor):
+    """Fiblets in the plan of the last redraw."""
+    return actor.explain()["fiblets"]["drawn"]
+
+
+def test_less_is_drawn_behind_a_wall(fiblets):
+    shares = {}
+    for wall_first in (True, False):
+        plotter, actor, _ = behind_a_wall(fiblets, wall_first=wall_first)
+        turn(plotter, 2.0)
+        turn(plotter, 2.0)
+        shares[wall_first] = drawn(actor) / fiblets.n_fiblets
+        plotter.close()
+    assert shares[True] < 0.7 * shares[False]
+
+
+def test_picking_looks_behind_the_wall(fiblets):
+    plotter, actor, _ = behind_a_wall(fiblets)
+    turn(plotter, 2.0)
+    with_wall = actor.mapper.pick_at(160, 120, tolerance=3)
+    plotter.close()
+    free, other, _ = behind_a_wall(fiblets, wall_first=False)
+    turn(free, 2.0)
+    assert with_wall == other.mapper.pick_at(160, 120, tolerance=3)
+    assert np.isfinite(with_wall[1])
+    free.close()

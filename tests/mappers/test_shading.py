@@ -1,15 +1,13 @@
-"""Shading through VTK: lights against closed forms, effects in the picture, and what they leave behind."""
+"""Shading and selections through VTK: effects in the picture, and what they leave behind."""
 
 from __future__ import annotations
-
-import subprocess
-import sys
 
 import numpy as np
 import pytest
 import pyvista as pv
 
 from pvfiblets.mappers import Colouring, windows
+from pvfiblets.mappers.highlight import Highlight
 from pvfiblets.mappers.shading import AmbientOcclusion, DepthCue, Halos, Illuminated, Ink, Silhouette
 
 ALL = {
@@ -20,128 +18,6 @@ ALL = {
     "halos": Halos(width=2.0, depth=5.0),
 }
 DISTANCE = 200.0
-
-
-# Illuminated lines
-
-COLOUR = np.array([255, 127.5, 63.75])
-AMBIENT, DIFFUSE, SPECULAR, POWER = 0.05, 0.5, 0.3, 6.0
-
-
-def unit(*vector):
-    return np.array(vector, float) / np.linalg.norm(vector)
-
-
-def lit(tangent, lights, viewer=(0.0, -1.0, 0.0)):
-    """The maximum-normal model: colour of a line under (direction to the light, intensity)."""
-    tangent, viewer = unit(*tangent), np.array(viewer)
-    diffuse = specular = 0.0
-    for light, intensity in lights:
-        lt, vt = light @ tangent, viewer @ tangent
-        diffuse += intensity * np.sqrt(1 - lt**2)
-        specular += intensity * max(0.0, np.sqrt(1 - lt**2) * np.sqrt(1 - vt**2) - lt * vt) ** POWER
-    return COLOUR * (AMBIENT + DIFFUSE * diffuse) + 255 * SPECULAR * specular
-
-
-def sun(*towards, intensity=1.0):
-    light = pv.Light(position=np.array(towards) * 1e3, focal_point=(0, 0, 0), light_type="scene light")
-    light.positional, light.intensity = False, intensity
-    return light
-
-
-def lamp(*place, intensity=1.0, attenuation=(1, 0, 0), cone=90.0):
-    light = pv.Light(position=place, focal_point=(0, 0, 0), light_type="scene light", cone_angle=cone)
-    light.positional, light.intensity, light.attenuation_values = True, intensity, attenuation
-    return light
-
-
-def headlight(intensity=1.0):
-    light = pv.Light(light_type="headlight", intensity=intensity)
-    light.positional = False
-    return light
-
-
-@pytest.fixture
-def rod(make_plotter, make_fibres, tools):
-    """Return a function: colour of a short straight rod in the middle of the view from -y."""
-
-    def run(direction, *lights, effect=None, lighting=True):
-        along = np.linspace(-10, 10, 41)[:, None] * unit(*direction)
-        fibres = make_fibres(type(tools.helices(1, 2)).from_list([along]))
-        mapper, actor = fibres.actor(lighting=lighting, colouring=Colouring("solid", color=tuple(COLOUR / 255)))
-        mapper.set_effect("illuminated", Illuminated() if effect is None else effect)
-        prop = actor.GetProperty()
-        prop.SetAmbient(AMBIENT)
-        prop.SetDiffuse(DIFFUSE)
-        prop.SetSpecular(SPECULAR)
-        prop.SetSpecularPower(POWER)
-        plotter = make_plotter(lighting="none", window_size=(61, 61))
-        plotter.add_actor(actor, reset_camera=False)
-        for light in lights:
-            plotter.add_light(light)
-        plotter.camera_position = [(0, -DISTANCE, 0), (0, 0, 0), (0, 0, 1)]
-        plotter.camera.view_angle = 4.0
-        plotter.renderer.ResetCameraClippingRange()
-        image = tools.picture(plotter, mapper)
-        middle = image[28:33, 28:33]
-        return np.median(middle[tools.covered(middle)], axis=0)
-
-    return run
-
-
-RODS = [(1, 0, 0), (1, 0.7, 0.2), (0.1, 0.5, 0.9), (0.5, -2.0, 0.3)]
-
-
-@pytest.mark.parametrize("direction", RODS)
-def test_a_directional_light(rod, direction):
-    for towards in ((3, 1, 2), (-1, -4, 1)):
-        assert np.allclose(rod(direction, sun(*towards)), lit(direction, [(unit(*towards), 1.0)]), atol=2)
-
-
-@pytest.mark.parametrize("direction", RODS)
-def test_a_positional_light(rod, direction):
-    place = np.array((70.0, -90.0, 40.0))
-    seen = rod(direction, lamp(*place, attenuation=(0.5, 0, 1e-4)))
-    strength = 1 / (0.5 + 1e-4 * (place @ place))
-    assert np.allclose(seen, lit(direction, [(unit(*place), strength)]), atol=3)
-
-
-@pytest.mark.parametrize("direction", RODS)
-def test_a_headlight(rod, direction):
-    assert np.allclose(rod(direction, headlight(0.8)), lit(direction, [(np.array((0, -1.0, 0)), 0.8)]), atol=2)
-
-
-def test_lights_of_all_kinds_add(rod):
-    place = np.array((-70.0, -90.0, 40.0))
-    seen = rod((1, 0.7, 0.2), sun(3, 1, 2, intensity=0.4), lamp(*place, intensity=0.3), headlight(0.2))
-    lights = [(unit(3, 1, 2), 0.4), (unit(*place), 0.3), (np.array((0, -1.0, 0)), 0.2)]
-    assert np.allclose(seen, lit((1, 0.7, 0.2), lights), atol=2)
-
-
-def test_a_cone_that_points_elsewhere_sheds_no_light(rod):
-    light = lamp(100.0, -100.0, 0.0, cone=20.0)
-    light.focal_point = (100.0, 0.0, 0.0)
-    assert np.allclose(rod((0, 0, 1), light), COLOUR * AMBIENT, atol=1)
-
-
-def test_a_light_from_the_side_is_what_the_model_differs_in(rod):
-    """The normal nearest to the viewer gives the cosine of the light's angle, this model the whole light."""
-    light = sun(0, -1, 2)
-    ours = rod((1, 0, 0), light)
-    assert np.allclose(ours, lit((1, 0, 0), [(unit(0, -1, 2), 1.0)]), atol=2)
-
-
-def test_more_light_than_white_is_dimmed_alike(rod):
-    """Without a highlight: (L.T)(V.T) is a half, as the product of the sines."""
-    seen = rod((1, -1, 0), sun(1, 0, 0, intensity=6.0))
-    assert np.allclose(seen, lit((1, -1, 0), [(unit(1, 0, 0), 1.0)]), atol=2)
-    several = rod((1, -1, 0), sun(1, 0, 0, intensity=1.5), sun(1, 0, 0, intensity=0.5))
-    assert np.allclose(several, seen, atol=2)
-
-
-def test_without_lighting_there_is_nothing_to_illuminate(rod):
-    expected = COLOUR * (AMBIENT + DIFFUSE)
-    assert np.allclose(rod((1, 0.7, 0.2), sun(1, 2, 3), lighting=False), expected, atol=1)
 
 
 # Scenes
@@ -202,27 +78,20 @@ def test_halos_show_and_cut_what_is_behind(scene, parallel):
     assert not cut[rows[0] - int(wide) - 2]
 
 
-def test_a_halo_is_as_deep_in_the_scene_as_it_says(scene):
-    def wall(plotter, _):  # and with it the far plane, beyond which nothing can lie
-        plotter.add_mesh(pv.Box((-30, 30, 40, 41, -30, 30)), color="blue", lighting=False, reset_camera=False)
+@pytest.mark.parametrize("wall", [40.0, 6.0])
+def test_a_halo_is_as_deep_in_the_scene_as_it_says(scene, wall):
+    """Before a wall that makes the far plane, beyond which nothing can lie, and cut off by one that is nearer."""
 
-    plotter, image, _ = scene(CROSS[:1], {"halos": Halos(width=5.0, depth=12.0)}, prepare=wall)
-    depth = -plotter.get_image_depth(fill_value=np.nan)
-    row = int(np.flatnonzero(is_color(image, 255, 255, 0)[:, 60])[0])
-    away = np.arange(-9, 10)
-    assert np.allclose(depth[row + away, 60], DISTANCE + 12.0 * np.abs(away) / 10.0, atol=0.05)
+    def prepare(plotter, _):
+        box = pv.Box((-30, 30, wall, wall + 1, -30, 30))
+        plotter.add_mesh(box, color="blue", lighting=False, reset_camera=False)
 
-
-def test_a_mesh_between_a_line_and_its_halo_hides_the_halo(scene):
-    def wall(plotter, _):
-        plotter.add_mesh(pv.Box((-30, 30, 6, 7, -30, 30)), color="blue", lighting=False, reset_camera=False)
-
-    _, image, _ = scene(CROSS[:1], {"halos": Halos(width=5.0, depth=12.0)}, prepare=wall)
-    column = image[:, 60]
-    row = int(np.flatnonzero(is_color(column, 255, 255, 0))[0])
-    white = is_color(column, 255, 255, 255)
-    assert white[row - 4 : row].all()
-    assert is_color(column[row - 9 : row - 5], 0, 0, 255).all()
+    plotter, image, _ = scene(CROSS[:1], {"halos": Halos(width=5.0, depth=12.0)}, prepare=prepare)
+    depth, column = -plotter.get_image_depth(fill_value=np.nan), image[:, 60]
+    row, away = int(np.flatnonzero(is_color(column, 255, 255, 0))[0]), np.arange(-9, 10)
+    assert np.allclose(depth[row + away, 60], DISTANCE + np.minimum(1.2 * np.abs(away), wall), atol=0.05)
+    assert is_color(column[row - 4 : row], 255, 255, 255).all()
+    assert is_color(column[row - 9 : row - 5], *((0, 0, 255) if wall == 6.0 else (255, 255, 255))).all()
 
 
 def test_halos_without_a_colour_are_the_background(scene):
@@ -244,16 +113,12 @@ def test_halos_reach_beyond_the_bounds_of_the_data(scene):
     assert is_color(image, 255, 255, 255)[:, 60].sum() == 48  # 24 pixels are the most
 
 
-def test_halos_of_a_translucent_actor_are_as_translucent(scene):
-    _, image, _ = scene(
-        CROSS, {"halos": Halos(width=3.0, depth=4.0)}, prepare=lambda _, actor: actor.GetProperty().SetOpacity(0.5)
-    )
+def test_halos_are_as_translucent_as_their_actor_and_never_inked(scene):
+    halos = Halos(width=3.0, depth=4.0)
+    _, image, _ = scene(CROSS, {"halos": halos}, prepare=lambda _, actor: actor.GetProperty().SetOpacity(0.5))
     assert is_color(image, 128, 128, 0).any()
     assert is_color(image, 128, 128, 128).any()
-
-
-def test_ink_covers_all_colours_but_not_halos(scene):
-    _, image, _ = scene(CROSS, {"ink": Ink((0, 0, 1)), "halos": Halos(width=3.0, depth=4.0)}, lighting=True)
+    _, image, _ = scene(CROSS, {"ink": Ink((0, 0, 1)), "halos": halos}, lighting=True)
     seen = {tuple(map(int, color)) for color in np.unique(image.reshape(-1, 3), axis=0)}
     assert seen == {(0, 0, 0), (0, 0, 255), (255, 255, 255)}
 
@@ -306,35 +171,15 @@ def test_a_silhouette_goes_around_what_is_chosen(scene):
     row = int(np.flatnonzero(yellow[:, 30])[0])
     assert cyan[[row - 2, row - 1, row + 1, row + 2], 30].all()
     assert cyan[:, 30].sum() == 4
+    with pytest.raises(ValueError, match="3 values for 2 streamlines"):
+        scene(CROSS, {"outline": Silhouette(np.zeros(3, bool))})
     # The other line is drawn over where it passes near, and stays elsewhere.
     column = int(np.flatnonzero(yellow[row + 10])[0])
     assert cyan[[row - 2, row + 2], column].all()
     assert not cyan[row + 10].any()
 
 
-def test_a_silhouette_for_other_streamlines_is_refused(scene):
-    with pytest.raises(ValueError, match="3 values for 2 streamlines"):
-        scene(CROSS, {"outline": Silhouette(np.zeros(3, bool))})
-
-
-@pytest.mark.parametrize("kind", ["fxaa", "ssaa"])
-def test_anti_aliasing_keeps_the_picture(scene, kind):
-    """Widths in mm and in pixels of the window stay: the same coverage, but for smooth edges."""
-    effects = {"halos": Halos(width=3.0, depth=4.0), "outline": Silhouette([True, False], (1, 0, 0), 4.0)}
-    plain = scene(CROSS, effects)[1].astype(float)
-
-    def anti_alias(plotter, _):
-        if kind == "ssaa":
-            plotter.enable_anti_aliasing("ssaa")
-        else:
-            plotter.renderer.UseFXAAOn()  # PyVista will not have it without a screen
-
-    smooth = scene(CROSS, effects, prepare=anti_alias)[1].astype(float)
-    assert np.abs(plain.mean(axis=(0, 1)) - smooth.mean(axis=(0, 1))).max() < 6
-    assert np.abs(plain - smooth).mean() < 12
-
-
-@pytest.mark.parametrize("name", ["illuminated", "ambient_occlusion", "ink", "depth_cue", "halos"])
+@pytest.mark.parametrize("name", ALL)
 def test_what_is_taken_away_leaves_nothing(make_plotter, lines, tools, name):
     mapper, actor = lines.actor(lighting=True)
     plotter = make_plotter()
@@ -353,90 +198,119 @@ def test_what_is_taken_away_leaves_nothing(make_plotter, lines, tools, name):
     assert not slot.effects
 
 
-def test_all_at_once_and_in_a_window_of_another_size(make_plotter, lines, tools):
-    mapper, actor = lines.actor(lighting=True)
-    for name, effect in (ALL | {"outline": Silhouette(np.arange(24) < 4)}).items():
-        mapper.set_effect(name, effect)
-    plotter = make_plotter(lighting="light kit")
-    plotter.add_actor(actor)
-    plotter.enable_depth_peeling()
-    assert tools.covered(tools.picture(plotter, mapper)).any()
-    plotter.window_size = 150, 211
-    assert tools.covered(tools.picture(plotter, mapper)).any()
-    report = mapper.explain()
-    assert {"halo", "silhouette", "illuminated"} <= set(report["features"])
-
-
-def test_two_renderers_have_pictures_of_their_own(make_plotter, lines, tools):
-    mapper, actor = lines.actor()
-    mapper.set_effect("halos", Halos(width=3.0, depth=5.0, color=(1, 0, 0)))
-    plotter = make_plotter(shape=(1, 2), window_size=(301, 150))
-    for column in (0, 1):
-        plotter.subplot(0, column)
-        plotter.add_actor(actor)
-        plotter.set_background("black")
-        plotter.camera_position = [(0, -220, 0), (0, 0, 0), (0, 0, 1)]
-    image = tools.picture(plotter, mapper)
-    left, right = image[2:-2, 3:147], image[2:-2, 154:298]
-    assert is_color(left, 255, 0, 0).any()
-    assert np.abs(is_color(left, 255, 0, 0).mean() - is_color(right, 255, 0, 0).mean()) < 0.02
-
-
-OLDER = """
-import numpy as np
-import pyvista as pv
-from pvfiblets.mappers.shading import Silhouette
-plotter = pv.Plotter(off_screen=True, window_size=(120, 100))
-line = np.c_[np.linspace(-10, 10, 61), np.zeros(61), np.zeros(61)]
-actor = plotter.add_fiblets([line], color="red", lighting=True, pipeline="geometry")
-actor.illuminated = actor.ambient_occlusion = actor.depth_cue = actor.halos = True
-actor.mapper.set_effect("outline", Silhouette([True], (0, 1, 0)))
-plotter.set_background("black")
-plotter.view_xy()
-plotter.show(auto_close=False)
-picture = plotter.screenshot(None)
-assert (picture[:, 60] == (0, 255, 0)).all(axis=-1).sum() == 4, picture[:, 60]
-print("drawn")
-"""
-
-
-@pytest.mark.more
-@pytest.mark.parametrize("version", [pytest.param("4.1", marks=pytest.mark.exhaustive), "3.3"])
-def test_older_opengl_suffices(older_opengl, version):
-    """A process of its own: Mesa reads how old it has to be when it is loaded."""
-    result = subprocess.run(
-        [sys.executable, "-c", OLDER],
-        capture_output=True,
-        text=True,
-        check=False,
-        env=older_opengl(version),
-        timeout=280,
-    )
-    assert result.stdout.strip().endswith("drawn"), result.stderr
-
-
 # Values
 
 
 @pytest.mark.parametrize(
     ("make", "message"),
-    [
-        (lambda: AmbientOcclusion(radius=0.0), "radius of ambient occlusion is 0.0"),
-        (lambda: AmbientOcclusion(radius=np.nan), "radius of ambient occlusion is nan"),
-        (lambda: AmbientOcclusion(samples=0), "samples of ambient occlusion is 0"),
-        (lambda: AmbientOcclusion(samples=2.5), "samples of ambient occlusion is 2.5"),
-        (lambda: AmbientOcclusion(strength=1.5), "strength of ambient occlusion is 1.5"),
-        (lambda: DepthCue(strength=-1), "strength of depth cueing is -1"),
-        (lambda: DepthCue(range=(5, 5)), r"range of depth cueing is \(5, 5\)"),
-        (lambda: DepthCue(color=(1, 2, 3)), "color of depth cueing"),
-        (lambda: Halos(width=-1), "width of halos is -1"),
-        (lambda: Halos(depth=np.inf), "depth of halos is inf"),
-        (lambda: Halos(color=(1, 1)), "color of halos"),
-        (lambda: Ink((np.nan, 0, 0)), "color of ink"),
-        (lambda: Silhouette(np.zeros(3)), "selected of a silhouette is float64"),
-        (lambda: Silhouette([True], width=17), "width of a silhouette is 17"),
-    ],
-)
+    [(lambda: AmbientOcclusion(radius=0.0), "radius of ambient occlusion is 0.0"),
+     (lambda: AmbientOcclusion(radius=np.nan), "radius of ambient occlusion is nan"),
+     (lambda: AmbientOcclusion(samples=0), "samples of ambient occlusion is 0"),
+     (lambda: AmbientOcclusion(samples=2.5), "samples of ambient occlusion is 2.5"),
+     (lambda: AmbientOcclusion(strength=1.5), "strength of ambient occlusion is 1.5"),
+     (lambda: DepthCue(strength=-1), "strength of depth cueing is -1"),
+     (lambda: DepthCue(range=(5, 5)), r"range of depth cueing is \(5, 5\)"),
+     (lambda: DepthCue(color=(1, 2, 3)), "color of depth cueing"), (lambda: Halos(width=-1), "width of halos is -1"),
+     (lambda: Halos(depth=np.inf), "depth of halos is inf"), (lambda: Halos(color=(1, 1)), "color of halos"),
+     (lambda: Ink((np.nan, 0, 0)), "color of ink"),
+     (lambda: Silhouette(np.zeros(3)), "selected of a silhouette is float64"),
+     (lambda: Silhouette([True], width=17), "width of a silhouette is 17")],
+)  # fmt: skip
 def test_values_that_cannot_be_drawn_are_refused(make, message):
     with pytest.raises(ValueError, match=message):
         make()
+
+
+@pytest.fixture
+def many_rods(make_plotter, make_fibres, tools):
+    """Return rods along x at 40 heights, in red, seen from -y, and a function: colours of each in the picture."""
+    along = np.linspace(0, 40, 41)[:, None] * np.array((1.0, 0.0, 0.0))
+    lines = [along + np.array((0, 0, 2.0 * i)) for i in range(40)]
+    mapper, actor = make_fibres(type(tools.helices(1, 2)).from_list(lines)).actor(
+        colouring=Colouring("solid", color=(1.0, 0.0, 0.0))
+    )
+    plotter = make_plotter()
+    plotter.add_actor(actor)
+    plotter.camera_position = "xz"
+    plotter.reset_camera()
+
+    def colours():
+        image = tools.picture(plotter, mapper)
+        found = []
+        for i in range(40):
+            plotter.renderer.SetWorldPoint(20.0, 0.0, 2.0 * i, 1.0)
+            plotter.renderer.WorldToDisplay()
+            x, y, _ = plotter.renderer.GetDisplayPoint()
+            row = image.shape[0] - 1 - round(y)
+            part = image[row - 1 : row + 2, int(x)]
+            away = np.abs(part.astype(int) - np.round(255 * np.array(plotter.background_color.float_rgb)))
+            found.append(part[away.sum(axis=1).argmax()])
+        return np.array(found)
+
+    return plotter, mapper, colours
+
+
+def mask(*chosen):
+    selected = np.zeros(40, bool)
+    selected[list(chosen)] = True
+    return selected
+
+
+def test_others_fade_towards_the_background_and_the_chosen_keep_their_colour(many_rods):
+    plotter, mapper, colours = many_rods
+    plotter.set_background((0.0, 0.0, 1.0))
+    before = colours()
+    assert (before == (255, 0, 0)).all()
+    chosen = mask(0, 7, 31, 32, 39)
+    mapper.set_effect("selection", Highlight(chosen, dim=0.75))
+    after = colours()
+    assert (after[chosen] == (255, 0, 0)).all()
+    assert (np.abs(after[~chosen].astype(int) - (64, 0, 191)) <= 1).all()
+    mapper.set_effect("selection", None)
+    assert (colours() == before).all()
+
+
+def test_colours_can_be_given_and_another_selection_changes_bits_alone(many_rods):
+    _, mapper, colours = many_rods
+    mapper.set_effect("selection", Highlight(mask(3), color=(0.0, 1.0, 0.0), dim=0.5, faded=(1.0, 1.0, 1.0)))
+    first = colours()
+    assert (first[3] == (0, 255, 0)).all()
+    assert (np.abs(first[4].astype(int) - (255, 128, 128)) <= 1).all()
+    kept = [slot.effects["selection"][1] for slot in slots(mapper)]
+    textures = [bits.texture for bits in kept]
+    mapper.set_effect("selection", Highlight(mask(35), color=(0.0, 1.0, 0.0), dim=0.0))
+    second = colours()
+    assert (second[35] == (0, 255, 0)).all()
+    assert (second[3] == (255, 0, 0)).all()
+    assert [slot.effects["selection"][1].texture for slot in slots(mapper)] == textures
+
+
+def slots(mapper):
+    from pvfiblets.mappers.windows import contexts_with
+
+    return [context.slots[mapper.GetAddressAsString("")] for context in contexts_with(mapper)]
+
+
+def test_more_streamlines_than_a_row_of_the_texture_holds(make_plotter):
+    from pvfiblets.mappers.highlight import _Bits
+    from pvfiblets.mappers.windows import borrowed_context
+
+    plotter = make_plotter(window_size=(31, 31))
+    plotter.show(auto_close=False)
+    selected = np.random.default_rng(1).random(300_001) < 0.3
+    with borrowed_context(plotter.render_window) as ctx:
+        bits = _Bits(ctx)
+        texture = bits.update(selected)
+        words = np.frombuffer(texture.read(), "<u4")
+        ids = np.arange(len(selected))
+        assert texture.size[0] <= 4096
+        assert np.array_equal((words[ids // 32] >> (ids % 32)) & 1, selected)
+        bits.release()
+        bits.release()
+
+
+def test_bad_input_is_refused():
+    with pytest.raises(ValueError, match="one bool for each streamline"):
+        Highlight(np.arange(3))
+    with pytest.raises(ValueError, match=r"dim is 1\.5"):
+        Highlight(np.ones(3, bool), dim=1.5)

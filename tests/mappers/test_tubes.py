@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import gc
-
 import numpy as np
 import pytest
 import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkPlane
 from vtkmodules.vtkRenderingCore import vtkActor
 
-from pvfiblets.mappers import Colouring, TubeMapper, TubeOptions, windows
+from pvfiblets.mappers import Colouring, TubeMapper, TubeOptions
 from pvfiblets.mappers.tubes import tube_renderer
 from pvfiblets.tubes.spline_tubes import NodeValues, SplineTubes
 
@@ -89,38 +87,6 @@ def shown(make_plotter, actor, place=None, view=lit):
     return view(plotter)
 
 
-@pytest.mark.more
-@pytest.mark.parametrize(
-    "place",
-    [
-        None,
-        lambda actor: actor.SetScale(1.3, 1.0, 0.7),
-        lambda actor: (actor.SetScale(1, 1, -1), actor.SetOrientation(0, 0, 30)),
-    ],
-    ids=["plain", "stretched", "mirrored"],
-)
-def test_tubes_look_as_the_balls_that_they_are_swept_by(make_plotter, tools, place):
-    tubes = tubes_of()
-    mapper, actor = made(tubes, lighting=True)
-    ours = tools.picture(shown(make_plotter, actor, place), mapper).astype(int)
-    other = make_plotter()
-    matrix = np.array([[actor.GetMatrix().GetElement(i, j) for j in range(4)] for i in range(4)])
-    ball = pv.Sphere(radius=1.0, theta_resolution=60, phi_resolution=60)
-    meshes = []
-    for *centre, radius in cubics(tubes):
-        # placed by its points: a mirrored actor turns VTK's own meshes inside out
-        mesh = ball.scale(radius, inplace=False).translate(centre, inplace=False).transform(matrix, inplace=False)
-        meshes.append(mesh.compute_normals(auto_orient_normals=True, split_vertices=False))
-    balls = pv.merge(meshes, merge_points=False)
-    other.add_mesh(balls, color="white", ambient=0.1, diffuse=0.9, specular=0.0, smooth_shading=True)
-    theirs = tools.picture(lit(other)).astype(int)
-    both = tools.covered(ours) & tools.covered(theirs)
-    assert both.sum() > 2000
-    assert (tools.covered(ours) ^ tools.covered(theirs)).sum() < 0.03 * both.sum()
-    assert np.median(np.abs(ours - theirs).max(-1)[both]) <= 2
-    assert (np.abs(ours - theirs).max(-1)[both] <= 12).mean() > 0.97
-
-
 def test_bounds_hold_what_shows_and_the_camera_takes_them(make_plotter, tools):
     mapper, actor = made(tubes_of())
     bounds, spheres = np.array(actor.GetBounds()), cubics(mapper.tubes)
@@ -153,18 +119,6 @@ def test_clipping_planes_of_the_mapper_cut(make_plotter, tools):
     assert (tools.covered(tools.picture(flat(plotter), mapper)) == whole).all()
 
 
-def test_tubes_cut_into_meshes(make_plotter, tools):
-    mapper, actor = made(straight(), colouring=Colouring("solid", color=(0, 1, 0)))
-    plotter = shown(make_plotter, actor, view=flat)
-    alone = tools.covered(tools.picture(plotter, mapper)).sum()
-    wall = pv.Plane(center=(0, -1, 0), direction=(0, 1, 0), i_size=60, j_size=60)
-    plotter.add_mesh(wall, color="red", lighting=False)
-    image = tools.picture(flat(plotter), mapper)
-    rows = np.flatnonzero((image[..., 1] > 0)[:, 120])
-    assert 0 < (image[..., 1] > 0).sum() < alone
-    assert abs(len(rows) - 5 * 2 * np.sqrt(2.0**2 - 1.0)) <= 1  # the chord of the circle, 5 pixels a mm
-
-
 def test_places_are_picked_as_the_picture_shows_them(make_plotter, tools):
     mapper, actor = made(straight(n_tubes=2))
     plotter = shown(make_plotter, actor, view=flat)
@@ -184,28 +138,6 @@ def colour_at(image, column=150, row=100):
     return image[image.shape[0] - 1 - row, column].tolist()
 
 
-def test_every_way_to_colour(make_plotter, tools):
-    numbers = NodeValues([0.0, 1.0, 0.0], [1 / 15, 0.0, -1 / 15])
-    mapper, actor = made(straight(numbers))
-    plotter = shown(make_plotter, actor, view=flat)
-
-    def colours(colouring):
-        mapper.colouring = colouring
-        return colour_at(tools.picture(plotter, mapper), 195)  # x = 15.1, the end's ball
-
-    assert colours(Colouring("orientation")) == [255, 0, 0]
-    assert colours(Colouring("solid", color=(0.0, 1.0, 1.0))) == [0, 255, 255]
-    assert colours(Colouring("streamline_rgba", values=np.array([[7, 8, 9]], np.uint8))) == [7, 8, 9]
-    red = np.array([[255, 0, 0, 255], [0, 0, 255, 255]], np.uint8)
-    assert colours(Colouring("streamline_scalar", values=np.array([0.7]), lut=red, clim=(0, 1))) == [0, 0, 255]
-    through = Colouring("point_scalar", source="v", lut=red, clim=(0, 1))
-    assert colours(through) == [255, 0, 0]
-    assert colour_at(tools.picture(plotter, mapper), 120) == [0, 0, 255]
-    assert colours(Colouring("point_scalar", source="v", clim=(1, 2), below_color=(0, 1, 0))) == [0, 255, 0]
-    with pytest.raises(ValueError, match="2 values for 1"):
-        mapper.colouring = Colouring("streamline_scalar", values=np.array([0.7, 1.0]))
-
-
 @pytest.mark.parametrize("opaque", [True, False])
 def test_colours_at_nodes_are_interpolated_like_positions(make_plotter, tools, opaque):
     rgba = np.array([[1, 0, 0, 1], [0, 1, 0, 1 if opaque else 0.5], [0, 0, 1, 1]])
@@ -220,11 +152,6 @@ def test_colours_at_nodes_are_interpolated_like_positions(make_plotter, tools, o
         seen = 1.0 if opaque else 1 - 0.5 * share
         wanted = [255 * (1 - share) * seen, 255 * share * seen, 0]
         assert np.abs(np.array(colour_at(image, column)) - wanted).max() <= 3
-
-
-def test_point_colours_need_a_name():
-    with pytest.raises(ValueError, match="'point_rgba' needs source"):
-        Colouring("point_rgba")
 
 
 def test_options_reach_the_engine_and_only_those_that_differ(make_plotter, tools):
@@ -249,90 +176,3 @@ def test_options_reach_the_engine_and_only_those_that_differ(make_plotter, tools
     assert TubeOptions(culling="none") == TubeOptions(culling=None)
     assert TubeOptions(culling=None).changed() == {"culling": None}
     assert mapper.share == 1.0
-
-
-@pytest.mark.parametrize(
-    "bad",
-    [{"silhouettes": "ellipses"}, {"solver": "luck"}, {"iterations": 0}, {"iterations": 2.5}, {"min_width": -1},
-     {"min_width": np.nan}, {"culling": "coverage"}],
-)  # fmt: skip
-def test_unknown_options_are_refused_at_once(bad):
-    with pytest.raises(ValueError, match=f"{next(iter(bad))} is "):
-        TubeOptions(**bad)
-
-
-def test_thin_tubes_stay_as_wide_as_is_asked(make_plotter, tools):
-    heights = []
-    for width in (1.0, 5.0):
-        mapper, actor = made(straight(radius=0.001), options=TubeOptions(min_width=width))
-        actor.SetPosition(0, 0, 0.06)  # not between two rows of pixels, where a pixel's width need not meet a middle
-        image = tools.covered(tools.picture(shown(make_plotter, actor, view=flat), mapper))
-        assert image.any(axis=0).sum() >= 150
-        heights.append(image[:, 130].sum())
-    assert heights[0] in (1, 2)
-    assert heights[1] in (4, 5, 6)
-
-
-def test_nothing_is_drawn_of_no_segments(make_plotter, tools):
-    none = SplineTubes(np.zeros((2, 3)), [], [1, 1], np.zeros((2, 3)), [0, 0], True, [], 4)
-    mapper, actor = made(none)
-    assert mapper.GetInput().GetNumberOfCells() == 0
-    plotter = shown(make_plotter, actor)
-    assert not tools.picture(plotter, mapper).any()
-    mapper.set_tubes(tubes_of())
-    assert tools.picture(plotter, mapper).any()
-    mapper.set_tubes(none)
-    assert not tools.picture(plotter, mapper).any()
-
-
-def test_gpu_memory_is_given_back(make_plotter, tools):
-    mapper, actor = made(tubes_of())
-    plotter = shown(make_plotter, actor)
-    tools.picture(plotter, mapper)
-    held = mapper.explain()["windows"][0]
-    assert (held["tubes_total"], held["segments_total"]) == (1, 7)
-    assert held["primitives"] > 0
-    mapper.release()
-    assert mapper.explain()["windows"] == []
-    tools.picture(plotter, mapper)
-    plotter.remove_actor(actor)
-    plotter.render()
-    assert mapper.explain()["windows"] == []
-    assert not windows._contexts
-
-
-def test_a_failing_engine_is_raised_by_the_caller(make_plotter):
-    def broken(ctx, tubes, **options):
-        raise OSError("no memory")
-
-    mapper, actor = made(tubes_of(), renderer_factory=broken)
-    plotter = shown(make_plotter, actor)
-    plotter.show(auto_close=False)
-    with pytest.raises(OSError, match="no memory"):
-        mapper.raise_pending()
-
-
-def test_a_mapper_is_freed():
-    import weakref
-
-    mapper, actor = made(tubes_of())
-    gone = weakref.ref(mapper)
-    del mapper, actor
-    gc.collect()
-    assert gone() is None
-
-
-def test_vtk_selects_tubes(make_plotter, tools):
-    from vtkmodules.vtkCommonDataModel import vtkDataObject
-    from vtkmodules.vtkRenderingCore import vtkHardwareSelector
-
-    mapper, actor = made(straight())
-    plotter = shown(make_plotter, actor, view=flat)
-    tools.picture(plotter, mapper)
-    for row, wanted in ((100, 1), (60, 0)):
-        selector = vtkHardwareSelector()
-        selector.SetRenderer(plotter.renderer)
-        selector.SetFieldAssociation(vtkDataObject.FIELD_ASSOCIATION_CELLS)
-        selector.SetArea(118, row - 2, 122, row + 2)
-        assert selector.Select().GetNumberOfNodes() == wanted
-    mapper.raise_pending()

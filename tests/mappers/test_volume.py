@@ -1,16 +1,18 @@
-"""Volumes among VTK's meshes, lights, cuts and passes: against closed forms for every ray, and VTK's own pictures."""
+"""Volumes among VTK's meshes, lights, cuts, passes and pickers: against closed forms, and VTK's own pictures."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 import pyvista as pv
+from vtkmodules.vtkCommonDataModel import vtkPlane
 from vtkmodules.vtkRenderingCore import vtkActor, vtkMapper
 
 from pvfiblets.codec.compress import compress
 from pvfiblets.mappers import Colouring, FibletMapper
 from pvfiblets.mappers.slices import Slices
 from pvfiblets.streamlines import Streamlines
+from pvfiblets.volumes import Transfer
 from pvfiblets.volumes.raycast_options import RaycastOptions
 
 from .visible_volumes import (
@@ -30,7 +32,7 @@ from .visible_volumes import (
     through_table,
     volume,
     wall,
-)
+)  # fmt: skip
 
 
 @pytest.mark.few(2)
@@ -120,19 +122,9 @@ def test_the_picture_follows_what_moves_inside(make_plotter, tools, peeling):
         assert np.abs(middle(image) - wanted).max() <= 2.5, y
     sheet.visibility = False
     assert np.abs(middle(tools.picture(plotter, mapper)) - over(np.array(2 * HALF), np.zeros(3))).max() <= 2.5
-
-
-def test_rays_end_where_vtk_shifts_depths(make_plotter, tools):
-    mapper, actor = made(fog(), light())
-    plotter = look(make_plotter())
-    plotter.add_actor(actor, reset_camera=False)
-    plotter.add_mesh(wall(0.0), color="white", lighting=False, reset_camera=False)
-    before = vtkMapper.GetResolveCoincidentTopology()
-    vtkMapper.SetResolveCoincidentTopologyToPolygonOffset()
-    try:
-        image = tools.picture(look(plotter), mapper)
-    finally:
-        vtkMapper.SetResolveCoincidentTopology(before)
+    sheet.visibility, sheet.position = True, (0.0, 0.0, 0.0)
+    vtkMapper.SetResolveCoincidentTopologyToPolygonOffset()  # VTK shifts depths; a fixture puts it back
+    image = tools.picture(look(plotter), mapper)
     assert np.abs(middle(image) - over(np.array(HALF), np.ones(3))).max() <= 3.0
 
 
@@ -180,39 +172,13 @@ def test_local_peaks_are_the_first_and_others_the_greatest(make_plotter, tools):
             assert hit.position == pytest.approx([0.1, y, 0.1], abs=0.15)
 
 
-def test_peaks_look_as_vtks(make_plotter, tools):
-    drawn = volume(lambda p: np.maximum(blob(p), 0.0), 24)
-    mapper, actor = made(drawn, RaycastOptions("mip", step=0.1), colouring=through_table((0.0, 18.0)))
-    ours, theirs = make_plotter(), make_plotter()
-    ours.add_actor(actor, reset_camera=False)
-    image = pv.ImageData(dimensions=drawn.shape, spacing=drawn.spacing, origin=[-HALF] * 3)
-    image["v"] = drawn.values.ravel(order="F")
-    opaque = np.full(256, 255, np.uint8)
-    other = theirs.add_volume(
-        image, cmap="gray", clim=(0.0, 18.0), opacity=opaque, blending="maximum", shade=False, show_scalar_bar=False
-    )
-    other.mapper.SetAutoAdjustSampleDistances(False)
-    other.mapper.SetSampleDistance(0.1)
-    other.prop.interpolation_type = "linear"
-    eye = (30.0, -60.0, 25.0)
-    ours, theirs = (look(plotter, eye, False) for plotter in (ours, theirs))
-    one, other = (tools.picture(ours, mapper)[..., 0].astype(int), tools.picture(theirs)[..., 0].astype(int))
-    both = inner((one > 0) & (other > 0)) & (one > 0)
-    assert both.sum() > 3000
-    assert np.median(np.abs(one - other)[both]) <= 2
-    assert (np.abs(one - other)[both] <= 6).mean() > 0.98
-
-
 @pytest.mark.few(1)
 @pytest.mark.parametrize(
     "place",
-    [
-        None,
-        lambda actor: actor.SetScale(1.2, 1.0, 0.7),
-        lambda actor: (actor.SetScale(1, 1, -1), actor.SetOrientation(0, 0, 30)),
-    ],
+    [None, lambda actor: actor.SetScale(1.2, 1.0, 0.7),
+     lambda actor: (actor.SetScale(1, 1, -1), actor.SetOrientation(0, 0, 30))],
     ids=["plain", "stretched", "mirrored"],
-)
+)  # fmt: skip
 def test_surfaces_look_as_vtks_contours(make_plotter, tools, place):
     """Silhouette, depth and light, against marching cubes on four times as many voxels."""
     drawn = volume(blob, 24)
@@ -279,7 +245,7 @@ def test_translucent_lines_lie_in_order_under_depth_peeling(make_plotter, tools,
     plotter.add_actor(actor, reset_camera=False)
     x = np.linspace(-30.0, 30.0, 61)
     lines = [np.stack([x, np.full_like(x, y + k), np.zeros_like(x)], axis=1) for k in range(3)]
-    fibres = tools.fibres("engine", Streamlines.from_list(lines))
+    fibres = tools.fibres(Streamlines.from_list(lines))
     drawn, among = fibres.actor(lighting=False, line_width=40, colouring=Colouring("solid", color=(0.0, 0.0, 1.0)))
     among.GetProperty().SetOpacity(0.3)
     drawn.set_effect("layers", Slices())
@@ -290,3 +256,80 @@ def test_translucent_lines_lie_in_order_under_depth_peeling(make_plotter, tools,
     lit = (1.0 - through) * blue
     wanted = 255.0 * lit + through * over(length, empty) if front else over(length, lit)
     assert np.abs(seen - wanted).max() <= 3.0
+
+
+def test_clipping_planes_of_the_mapper_cut(make_plotter, tools):
+    mapper, actor = made(fog(), light())
+    plotter = look(make_plotter())
+    plotter.add_actor(actor, reset_camera=False)
+    plane = vtkPlane()
+    plane.SetNormal(0, 1, 0)
+    plane.SetOrigin(0, 6.0, 0)
+    mapper.AddClippingPlane(plane)
+    image = tools.picture(plotter, mapper)
+    assert np.abs(middle(image) - over(np.array(10.0), np.zeros(3))).max() <= 2.5
+    plane.SetNormal(1, 0, 0)
+    plane.SetOrigin(2.0, 0, 0)
+    mapper.RemoveAllClippingPlanes()
+    mapper.AddClippingPlane(plane)
+    columns = np.flatnonzero(tools.covered(tools.picture(plotter, mapper)).any(axis=0))
+    assert columns[0] == 130  # 2 mm right of the middle, 5 pixels a mm
+    assert columns[-1] == 199
+
+
+def test_subplots_end_their_own_rays(make_plotter, tools):
+    """One actor in two renderers, a mesh in one of them."""
+    mapper, actor = made(fog(), light())
+    plotter = make_plotter(shape=(1, 2), window_size=(400, 200))
+    for column in range(2):
+        plotter.subplot(0, column)
+        plotter.add_actor(actor, reset_camera=False)
+        if column:
+            plotter.add_mesh(wall(0.0), color="white", lighting=False, reset_camera=False)
+        look(plotter)
+    for peeling in (True, False):
+        for renderer in plotter.renderers:
+            renderer.SetUseDepthPeeling(peeling)
+        image = tools.picture(plotter, mapper)
+        assert np.abs(image[100, 100] - over(np.array(2 * HALF), np.zeros(3))).max() <= 2.5
+        assert np.abs(image[100, 300] - over(np.array(HALF), np.ones(3))).max() <= 2.5
+    large = plotter.screenshot(return_img=True, scale=2)[..., :3]
+    mapper.raise_pending()
+    assert large.shape == (400, 800, 3)
+    assert np.abs(large[200, 600] - over(np.array(HALF), np.ones(3))).max() <= 2.5
+
+
+@pytest.mark.few(1)
+@pytest.mark.parametrize("ssaa", [False, True])
+def test_places_are_picked_as_the_picture_shows_them(make_plotter, tools, ssaa):
+    ball = volume(lambda p: 16.0 - np.linalg.norm(p, axis=-1), 33)
+    mapper, actor = made(ball, RaycastOptions("isosurface", (4.0,), filter="tricubic"))
+    plotter = look(make_plotter())
+    plotter.add_actor(actor, reset_camera=False)
+    if ssaa:
+        plotter.enable_anti_aliasing("ssaa")
+    assert mapper.pick_at(120, 100) is None
+    tools.picture(plotter, mapper)
+    for column, row in ((120, 100), (90, 80), (150, 130)):
+        hit = mapper.pick_at(column, row)
+        x, z = (column + 0.5 - 120) / 5, (row + 0.5 - 100) / 5
+        assert hit.position == pytest.approx([x, -np.sqrt(144 - x**2 - z**2), z], abs=0.15)
+        assert np.linalg.norm(hit.position) == pytest.approx(12.0, abs=0.02)
+        assert hit.voxel == tuple(np.round(hit.position + HALF).astype(int))
+        assert hit.value == 4.0
+    assert mapper.pick_at(120, 190) is None
+    assert mapper.pick_at(-5, 100) is None
+    assert mapper.pick_at(120, 170, tolerance=20) is not None
+    assert mapper.pick_at(120, 100, tolerance=-1) is None
+
+
+def test_light_is_picked_where_it_begins(make_plotter, tools):
+    mapper, actor = made(
+        volume(ramp), RaycastOptions("composite", transfer=Transfer([[1, 1, 1, 0], [1, 1, 1, 1]], (0, 1)))
+    )
+    plotter = look(make_plotter())
+    plotter.add_actor(actor, reset_camera=False)
+    tools.picture(plotter, mapper)
+    hit = mapper.pick_at(120, 100)
+    assert hit.position == pytest.approx([0.1, 0.0, 0.1], abs=0.5)  # a step
+    assert hit.value == pytest.approx(hit.voxel[1] - HALF)

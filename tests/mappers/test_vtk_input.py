@@ -1,4 +1,4 @@
-"""Mappers as VTK's own code uses them: connected, given to actors by SetMapper, copied and followed."""
+"""Mappers as VTK's own code uses them: connected, given to actors, copied, and coloured by vtkMapper's settings."""
 
 from __future__ import annotations
 
@@ -7,20 +7,21 @@ import weakref
 
 import numpy as np
 import pytest
+from vtkmodules.vtkCommonCore import vtkLookupTable, vtkVariant
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkCommonExecutionModel import vtkTrivialProducer
 from vtkmodules.vtkCommonTransforms import vtkTransform
 from vtkmodules.vtkFiltersCore import vtkAppendPolyData, vtkContourFilter, vtkTubeFilter
 from vtkmodules.vtkFiltersGeneral import vtkTransformFilter
 from vtkmodules.vtkFiltersSources import vtkLineSource, vtkSphereSource
-from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper
+from vtkmodules.vtkRenderingCore import vtkActor, vtkColorTransferFunction, vtkPolyDataMapper
 
 from pvfiblets.codec.compress import compress
 from pvfiblets.mappers import Colouring, FibletMapper, HaloMapper, TubeMapper, VolumeMapper
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.volumes.raycast_options import RaycastOptions
 
-from .vtk_lines import CURVES, alike, ball, drawn, lines, rainbow, scene, shot, vtks, wide
+from .vtk_lines import CURVES, SIZE, alike, ball, drawn, lines, rainbow, scene, shot, vtks, wide
 
 
 def test_set_mapper_is_enough(tools):
@@ -63,12 +64,6 @@ def test_connected_lines_are_drawn_as_vtk_draws_them(tools):
     alike(ours, vtks(data, prepare=wide), tools)
     assert mapper.GetInput() is data
     assert mapper.fiblets.n_streamlines == len(CURVES)
-
-
-def test_bounds_are_those_of_the_lines():
-    data = lines()
-    mapper = FibletMapper()
-    mapper.SetInputData(data)
     np.testing.assert_allclose(mapper.GetBounds(), data.GetBounds(), atol=1e-3)
 
 
@@ -208,6 +203,12 @@ def said_by(mapper) -> list[str]:
 
 
 def test_what_cannot_be_drawn_is_said_once_and_mended():
+    mapper, nothing = FibletMapper(), vtkAppendPolyData()
+    said = said_by(mapper)
+    mapper.SetInputConnection(nothing.GetOutputPort())
+    assert not drawn(mapper).any()
+    mapper.raise_pending()
+    assert not said
     sphere, mapper = vtkSphereSource(), FibletMapper()
     said = said_by(mapper)
     mapper.SetInputConnection(sphere.GetOutputPort())
@@ -233,15 +234,6 @@ def test_what_cannot_be_drawn_is_said_once_and_mended():
     window.Finalize()
 
 
-def test_empty_lines_draw_nothing_and_say_nothing():
-    mapper, nothing = FibletMapper(), vtkAppendPolyData()
-    said = said_by(mapper)
-    mapper.SetInputConnection(nothing.GetOutputPort())
-    assert not drawn(mapper).any()
-    mapper.raise_pending()
-    assert not said
-
-
 @pytest.mark.few(1)
 @pytest.mark.parametrize("make", [FibletMapper, TubeMapper, HaloMapper])
 def test_mapper_and_data_go_when_nobody_has_them(make):
@@ -253,3 +245,133 @@ def test_mapper_and_data_go_when_nobody_has_them(make):
     del mapper
     gc.collect()
     assert what() is None
+
+
+def logarithm(mapper):
+    table = vtkLookupTable()
+    table.SetScaleToLog10()
+    table.SetTableRange(1, 40)
+    table.SetUseBelowRangeColor(True)
+    table.SetBelowRangeColor(1, 0, 1, 1)
+    mapper.SetScalarModeToUsePointFieldData()
+    mapper.SelectColorArray("height")
+    mapper.SetLookupTable(table)
+    mapper.UseLookupTableScalarRangeOn()
+
+
+def function(mapper):
+    table = vtkColorTransferFunction()
+    for place, colour in ((-20, (1, 0, 0)), (0, (1, 1, 1)), (20, (0, 0, 1))):
+        table.AddRGBPoint(place, *colour)
+    mapper.SetScalarModeToUsePointFieldData()
+    mapper.SelectColorArray("height")
+    mapper.SetLookupTable(table)
+
+
+def magnitude(mapper):
+    rainbow(mapper)
+    mapper.SelectColorArray("place")
+    mapper.GetLookupTable().SetVectorModeToMagnitude()
+    mapper.SetScalarRange(18, 25)
+
+
+def component(mapper):
+    mapper.SetScalarModeToUsePointFieldData()
+    mapper.ColorByArrayComponent("place", 1)
+    mapper.SetScalarRange(-20, 20)
+
+
+def by_cells(mapper):
+    mapper.SetScalarModeToUseCellFieldData()
+    mapper.SelectColorArray("number")
+    mapper.SetScalarRange(0, 12)
+
+
+def tints(mapper):
+    mapper.SetScalarModeToUseCellFieldData()
+    mapper.SelectColorArray("tint")
+
+
+def hidden(mapper):
+    mapper.SetScalarModeToUsePointFieldData()
+    mapper.SelectColorArray("height")
+    mapper.ScalarVisibilityOff()
+
+
+def labels(mapper):
+    table = vtkLookupTable()
+    table.IndexedLookupOn()
+    table.SetNumberOfTableValues(3)
+    for i, colour in enumerate(((1, 0, 0, 1), (0, 1, 0, 1), (0, 0, 1, 1))):
+        table.SetAnnotation(vtkVariant(i), str(i))
+        table.SetTableValue(i, *colour)
+    mapper.SetScalarModeToUsePointFieldData()
+    mapper.SelectColorArray("label")
+    mapper.SetLookupTable(table)
+
+
+COLOURS = (labels, rainbow, logarithm, function, magnitude, component, by_cells, tints, hidden)
+
+
+@pytest.mark.few(2)
+@pytest.mark.parametrize("settle", COLOURS)
+def test_colours_are_those_of_vtks_mapper(settle, tools):
+    data = lines()
+    mapper = FibletMapper()
+    mapper.SetInputData(data)
+    settle(mapper)
+    ours = drawn(mapper, wide)
+    mapper.raise_pending()
+    alike(ours, vtks(data, settle, wide), tools)
+
+
+@pytest.mark.few(1)
+@pytest.mark.parametrize("make", [TubeMapper, HaloMapper])
+def test_tubes_and_halos_are_coloured_point_by_point(make, tools):
+    """Of the nearest pixels of VTK's lines: tubes and strips have widths of their own."""
+    data = lines()
+
+    def tinted(mapper):
+        mapper.SetScalarModeToUsePointFieldData()
+        mapper.SelectColorArray("tints")
+
+    mapper = make()
+    mapper.SetInputData(data)
+    for settle in (tinted, rainbow, by_cells):
+        settle(mapper)
+        ours, theirs = drawn(mapper), vtks(data, settle)
+        both = (ours.max(axis=-1) > 90) & (theirs.max(axis=-1) > 90)
+        assert both.sum() > 500
+        hues = [image[both] / image[both].max(axis=-1, keepdims=True) for image in (ours, theirs)]
+        assert np.percentile(np.abs(hues[0] - hues[1]).max(axis=-1), 70) <= 0.12, settle.__name__
+    mapper.raise_pending()
+
+
+def test_peaks_of_an_image_have_the_colours_of_the_look_up_table():
+    """The ray through the middle of the ball meets 12, the last of the range."""
+    mapper = VolumeMapper()
+    mapper.SetInputData(ball())
+    mapper.SetScalarRange(0, 12)
+    image = drawn(mapper)
+    mapper.raise_pending()
+    wanted = [0.0, 0.0, 0.0]
+    mapper.GetLookupTable().GetColor(12.0, wanted)
+    np.testing.assert_allclose(image[SIZE[1] // 2, SIZE[0] // 2] / 255, wanted, atol=0.03)
+
+
+def test_translucent_colours_are_drawn_in_the_translucent_pass():
+    """Half of white on blue."""
+    table = vtkLookupTable()
+    table.SetNumberOfTableValues(1)
+    table.SetTableValue(0, 1, 1, 1, 0.5)
+    mapper = FibletMapper()
+    mapper.SetInputData(lines(CURVES[:1]))
+    rainbow(mapper)
+    mapper.SetLookupTable(table)
+    window = scene(mapper)
+    window.GetRenderers().GetFirstRenderer().SetBackground(0, 0, 1)
+    image = shot(window)
+    line = image[image[..., 0] > 0]
+    assert len(line) > 50
+    np.testing.assert_allclose(np.median(line, axis=0), (128, 128, 255), atol=3)
+    window.Finalize()

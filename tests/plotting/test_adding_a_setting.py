@@ -12,7 +12,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 
-DECLARATION = '''
+DECLARATION = """
     from pvfiblets.plotting.setting_places import Uniform
 
     emission: Setting[float] = Setting(
@@ -24,7 +24,7 @@ DECLARATION = '''
         where=Uniform("emission", "fibletEmission"),
         row=Row("Emission", group="Shading"),
     )
-'''
+"""
 
 SHADER = """// Surfaces give off a share of their colour themselves.
 
@@ -35,7 +35,7 @@ uniform float fibletEmission;
   gl_FragData[0].rgb = mix(gl_FragData[0].rgb, diffuseColor, fibletEmission);
 """
 
-IN_THE_COPY = '''
+IN_THE_COPY = """
 import inspect, json, sys
 from pathlib import Path
 
@@ -116,18 +116,11 @@ assert scene.actor(layer.id).emission == 0.5
 scene.close()
 plotter.close()
 print("everywhere")
-'''
+"""
 
 SPLINE = """
 data = pv.Spline([(0, 0, 0), (5, 1, 0), (10, 0, 0)], 9)
 more = {"radius": 2.0}
-"""
-
-BALL = """
-x = np.linspace(-1.0, 1.0, 12)
-data = pv.ImageData(dimensions=(12, 12, 12))
-data["values"] = (1.0 - np.sqrt(x[:, None, None] ** 2 + x[:, None] ** 2 + x**2)).ravel(order="F")
-more = {"mode": "isosurface", "values": 0.3}
 """
 
 
@@ -137,8 +130,6 @@ more = {"mode": "isosurface", "values": 0.3}
     [
         ("tubes", {"actor": "TubeActor", "add": "add_spline_tubes", "adder": "_AddSplineTubes", "kind": "tubes",
                    "data": SPLINE, "file": "line.vtp", "save": "save(root / 'line.vtp')"}),
-        ("volumes", {"actor": "VolumeActor", "add": "add_raycast_volume", "adder": "_AddRaycastVolume",
-                     "kind": "volume", "data": BALL, "file": "ball.vti", "save": "save(root / 'ball.vti')"}),
     ],
 )  # fmt: skip
 def test_one_declaration_and_a_shader_are_enough(drawable, names, tmp_path):

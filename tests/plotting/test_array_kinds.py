@@ -11,22 +11,15 @@ import pvfiblets
 VECTORS = np.array([[3.0, 4.0, 0.0], [0.0, 0.0, 1.0], [6.0, 0.0, 8.0]])
 
 
-def mesh_range(vectors):
-    """The range that `add_mesh` maps vectors of points by."""
-    plotter = pv.Plotter(off_screen=True)
+def test_vectors_of_streamlines_by_their_magnitude(plotter, three_lines):
     cloud = pv.PolyData(np.eye(3))
-    cloud["v"] = vectors
-    found = plotter.add_mesh(cloud, scalars="v").mapper.scalar_range
-    plotter.close()
-    return found
-
-
-@pytest.mark.parametrize("named", [False, True])
-def test_vectors_of_streamlines_by_their_magnitude(plotter, three_lines, named):
+    cloud["v"] = VECTORS
+    wanted = plotter.add_mesh(cloud, scalars="v").mapper.scalar_range
     three_lines.per_streamline["v"] = VECTORS
-    actor = plotter.add_fiblets(three_lines, scalars="v" if named else VECTORS)
-    np.testing.assert_allclose(actor.active_scalars.values, [5.0, 1.0, 10.0])
-    assert actor.clim == pytest.approx(mesh_range(VECTORS))
+    for scalars in ("v", VECTORS):
+        actor = plotter.add_fiblets(three_lines, scalars=scalars)
+        np.testing.assert_allclose(actor.active_scalars.values, [5.0, 1.0, 10.0])
+        assert actor.clim == pytest.approx(wanted)
     plotter.show(auto_close=False)
 
 
@@ -81,14 +74,6 @@ def test_words_are_categories(plotter, three_lines, colours_in):
     actor.scalars = ["a", "", "b"]
     assert actor.active_scalars.categories == {0: "a", 1: "b"}
     np.testing.assert_array_equal(actor.active_scalars.values, [0.0, np.nan, 1.0])
-
-
-def test_what_fiblets_cannot_have_is_said(plotter, three_lines):
-    colours = np.zeros((123, 3), np.uint8)
-    with pytest.raises(ValueError, match="words per point"):
-        plotter.add_fiblets(three_lines, scalars=np.full(123, "a"))
-    actor = plotter.add_fiblets(three_lines, scalars=colours, rgb=False)
-    assert actor.scalars == "Data"
 
 
 def lines_with(kind):
@@ -147,15 +132,6 @@ def test_vectors_and_colours_of_tubes_and_halos(plotter, add):
         getattr(plotter, add)(mesh, scalars="h", rgb=True)
 
 
-@pytest.mark.parametrize("add", ["add_fiblets", "add_spline_tubes", "add_halo_lines"])
-@pytest.mark.parametrize("scalars", ["height", "weight", "length", np.arange(3.0), np.arange(123.0)])
-def test_numbers_are_no_colours(plotter, three_lines, add, scalars):
-    """`add_mesh` says: RGB array must be n_points/n_cells by 3/4 in shape."""
-    with pytest.raises(ValueError, match="rgb=True asks for colours, but .* one number"):
-        getattr(plotter, add)(three_lines, scalars=scalars, rgb=True)
-    assert not plotter.actors
-
-
 def named_lines():
     """Three lines with a word for each line and each point, as VTK keeps text."""
     mesh = pv.PolyData()
@@ -179,16 +155,14 @@ def test_words_of_lines_are_categories_as_in_add_mesh(plotter, add, scalars):
     actor.scalars = None
     actor.scalars = np.array(["b", "c", "a"])
     assert [actor.lookup_table.GetAnnotation(i) for i in range(3)] == ["a", "b", "c"]
+    actor.scalars = np.array(["a", None, "b"], object)  # words may be missing
+    table = actor.lookup_table
+    assert actor.shows_labels
+    assert {"a", "b"} < {table.GetAnnotation(k) for k in range(table.GetNumberOfAnnotatedValues())}
     plotter.show(auto_close=False)
 
 
-@pytest.mark.parametrize("scalars", ["tissue", ["white", "grey", "white"] * 5])
-@pytest.mark.parametrize("add", ["add_fiblets", "add_spline_tubes", "add_halo_lines"])
-def test_words_of_points_are_refused_in_one_sentence(plotter, add, scalars):
-    with pytest.raises(ValueError, match="words per point; words are taken per line, and numbers per point"):
-        getattr(plotter, add)(named_lines(), scalars=scalars)
-
-
+@pytest.mark.every("pair")
 @pytest.mark.parametrize("add", ["add_fiblets", "add_spline_tubes", "add_halo_lines"])
 @pytest.mark.parametrize("later", [False, True])
 @pytest.mark.parametrize("ragged", [False, True])
@@ -207,10 +181,12 @@ def test_a_list_of_arrays_is_of_points(plotter, add, later, ragged):
 
 
 @pytest.mark.parametrize("add", ["add_fiblets", "add_spline_tubes", "add_halo_lines"])
-@pytest.mark.parametrize("words", [["a", None, "b"], np.array(["a", None, "b"], object)], ids=["list", "array"])
-def test_words_may_be_missing(plotter, three_lines, add, words):
-    actor = getattr(plotter, add)(three_lines, scalars=words)
-    assert actor.shows_labels
-    table = actor.lookup_table
-    assert {"a", "b"} < {table.GetAnnotation(k) for k in range(table.GetNumberOfAnnotatedValues())}
-    plotter.screenshot()
+def test_what_lines_cannot_have_is_said(plotter, three_lines, add):
+    """`add_mesh` says of numbers: RGB array must be n_points/n_cells by 3/4 in shape."""
+    for scalars in ("height", "weight", "length", np.arange(3.0), np.arange(123.0)):
+        with pytest.raises(ValueError, match="rgb=True asks for colours, but .* one number"):
+            getattr(plotter, add)(three_lines, scalars=scalars, rgb=True)
+    for scalars in ("tissue", ["white", "grey", "white"] * 5):
+        with pytest.raises(ValueError, match="words per point; words are taken per line, and numbers per point"):
+            getattr(plotter, add)(named_lines(), scalars=scalars)
+    assert not plotter.actors

@@ -1,8 +1,9 @@
-"""The colours on the screen are those that matplotlib's maps and plain arithmetic give."""
+"""The colours on the screen are those of matplotlib's maps, of arithmetic, and of volumes at the points."""
 
 from __future__ import annotations
 
 import matplotlib as mpl
+import nibabel as nib
 import numpy as np
 import pytest
 import pyvista as pv
@@ -37,57 +38,29 @@ def close_to(found, wanted, tolerance=2):
     return distance.min(axis=1).max() <= tolerance and distance.min(axis=0).max() <= tolerance
 
 
-def test_orientation_is_the_absolute_direction_as_red_green_blue(plotter, three_lines, shown):
-    plotter.add_fiblets(three_lines, **FLAT)
-    assert close_to(shown(plotter), {(255, 0, 0), (0, 255, 0), (0, 0, 255)})
+BYTES = np.array([[255, 0, 0], [20, 200, 40], [250, 250, 5]])
 
 
-def test_a_solid_colour_is_that_colour(plotter, three_lines, shown):
-    plotter.add_fiblets(three_lines, color="orange", **FLAT)
-    assert close_to(shown(plotter), {pv.Color("orange").int_rgb})
-
-
-@pytest.mark.parametrize("kind", [np.uint8, np.float64])
-def test_one_colour_per_streamline(plotter, three_lines, kind, shown):
-    colours = np.array([[255, 0, 0], [20, 200, 40], [250, 250, 5]])
-    given = colours.astype(np.uint8) if kind is np.uint8 else colours / 255.0
-    plotter.add_fiblets(three_lines, scalars=given, **FLAT)
-    assert close_to(shown(plotter), {tuple(colour) for colour in colours.tolist()})
-
-
-def test_per_streamline_numbers_go_through_the_colour_map(plotter, three_lines, shown):
-    plotter.add_fiblets(three_lines, scalars="weight", cmap="plasma", clim=(0, 100), **FLAT)
-    assert close_to(shown(plotter), {mapped("plasma", f) for f in (0.01, 0.1, 1.0)})
-
-
-def test_a_logarithmic_scale_spreads_decades_evenly(plotter, three_lines, shown):
-    plotter.add_fiblets(three_lines, scalars="weight", cmap="plasma", log_scale=True, **FLAT)
-    assert close_to(shown(plotter), {mapped("plasma", f) for f in (0.0, 0.5, 1.0)}, tolerance=4)
-
-
-def test_few_colours_are_few(plotter, three_lines, shown):
-    plotter.add_fiblets(three_lines, scalars=[0.0, 0.4, 1.0], cmap="viridis", n_colors=4, **FLAT)
-    assert close_to(shown(plotter), {mapped("viridis", f, 4) for f in (0.0, 0.4, 1.0)})
-
-
-def test_nan_and_what_lies_outside_have_their_own_colours(plotter, three_lines, shown):
-    plotter.add_fiblets(
-        three_lines,
-        scalars=[np.nan, -5.0, 5.0],
-        clim=(0, 1),
-        nan_color="magenta",
-        below_color="cyan",
-        above_color="yellow",
-        **FLAT,
-    )
-    assert close_to(shown(plotter), {(255, 0, 255), (0, 255, 255), (255, 255, 0)})
-
-
-def test_lengths_are_those_of_the_lines(plotter, shown):
-    lines = [np.linspace((0, y, 0), (length, y, 0), 60) for y, length in ((0, 30.0), (5, 15.0))]
-    actor = plotter.add_fiblets(lines, scalars="length", cmap="viridis", **FLAT)
-    assert actor.clim == pytest.approx((15.0, 30.0), rel=1e-3)
-    assert close_to(shown(plotter), {mapped("viridis", f) for f in (0.0, 1.0)}, tolerance=4)
+@pytest.mark.parametrize(
+    ("arguments", "wanted"),
+    [
+        ({}, [(255, 0, 0), (0, 255, 0), (0, 0, 255)]),  # the absolute direction
+        ({"color": "orange"}, [pv.Color("orange").int_rgb]),
+        ({"scalars": BYTES.astype(np.uint8)}, BYTES.tolist()),
+        ({"scalars": BYTES / 255.0}, BYTES.tolist()),
+        ({"scalars": "weight", "cmap": "plasma", "clim": (0, 100)}, [mapped("plasma", f) for f in (0.01, 0.1, 1.0)]),
+        ({"scalars": "weight", "cmap": "plasma", "log_scale": True}, [mapped("plasma", f) for f in (0.0, 0.5, 1.0)]),
+        ({"scalars": [0.0, 0.4, 1.0], "n_colors": 4}, [mapped("viridis", f, 4) for f in (0.0, 0.4, 1.0)]),
+        ({"scalars": np.repeat([0.0, 0.5, 1.0], 41)}, [mapped("viridis", f) for f in (0.0, 0.5, 1.0)]),
+        ({"scalars": [np.nan, -5.0, 5.0], "clim": (0, 1), "nan_color": "magenta", "below_color": "cyan",
+          "above_color": "yellow"}, [(255, 0, 255), (0, 255, 255), (255, 255, 0)]),
+        ({"scalars": [np.nan] * 3, "nan_color": "red"}, [(255, 0, 0)]),
+    ],
+    ids=["direction", "one", "bytes", "floats", "numbers", "log", "few", "points", "outside", "nan"],
+)  # fmt: skip
+def test_colours_are_those_of_the_numbers(plotter, three_lines, shown, arguments, wanted):
+    plotter.add_fiblets(three_lines, **{"cmap": "viridis", **arguments}, **FLAT)
+    assert close_to(shown(plotter), set(map(tuple, wanted)), tolerance=4)
 
 
 @pytest.mark.parametrize("scalars", ["height", "arc_length"])
@@ -103,61 +76,32 @@ def test_values_along_a_line_run_through_the_colour_map(plotter, three_lines, sc
     assert np.abs(run - expected).max() < 12
 
 
-def test_curvature_of_a_circle_is_one_over_its_radius(plotter):
-    angle = np.linspace(0, 6, 300)
-    rings = [np.stack([r * np.cos(angle), r * np.sin(angle), 0 * angle], 1) for r in (10.0, 20.0)]
-    plotter.add_fiblets(rings, scalars="curvature", clim=(0.0, 0.2), cmap="gray", **FLAT)
-    plotter.view_xy()
-    picture = plotter.screenshot(None).max(axis=2).astype(float)
-    levels = picture[picture > 0] / 255.0 * 0.2
-    for wanted in (0.1, 0.05):
-        near = levels[np.abs(levels - wanted) < 0.02]
-        assert len(near) > 50
-        assert np.median(near) == pytest.approx(wanted, abs=0.006)
-
-
-def test_an_array_with_a_number_per_point(plotter, three_lines, shown):
-    values = np.repeat([0.0, 0.5, 1.0], 41)
-    plotter.add_fiblets(three_lines, scalars=values, cmap="viridis", **FLAT)
-    assert close_to(shown(plotter), {mapped("viridis", f) for f in (0.0, 0.5, 1.0)}, tolerance=4)
-
-
-def test_all_values_alike_or_all_nan_still_draw(plotter, three_lines, shown):
-    plotter.add_fiblets(three_lines, scalars=[7.0, 7.0, 7.0], name="same", **FLAT)
-    assert len(shown(plotter)) == 1
-    plotter.add_fiblets(three_lines, scalars=[np.nan] * 3, nan_color="red", name="same", **FLAT)
-    assert close_to(shown(plotter), {(255, 0, 0)})
-
-
 @pytest.mark.parametrize(
     ("arguments", "message"),
-    [
-        ({"scalars": [1.0, 2.0]}, "expected 3 numbers, one per streamline"),
-        ({"scalars": np.zeros((3, 2)), "rgb": True}, "2 columns"),
-        ({"scalars": np.full((3, 3), 7.0), "rgb": True}, "between 0 and 1"),
-        ({"scalars": "weight", "clim": (2, 1)}, "the low one first"),
-        ({"scalars": "weight", "clim": "wide"}, "clim is 'wide'"),
-        ({"scalars": "weight", "clim": (0, 1), "log_scale": True}, "above zero"),
-        ({"scalars": "weight", "n_colors": 0}, "n_colors is 0"),
-        ({"opacity": 1.5}, "opacity is 1.5"),
-        ({"line_width": 0}, "line_width is 0"),
-    ],
-)
+    [({"scalars": [1.0, 2.0]}, "expected 3 numbers, one per streamline"),
+     ({"scalars": np.zeros((3, 2)), "rgb": True}, "2 columns"),
+     ({"scalars": np.full((3, 3), 7.0), "rgb": True}, "between 0 and 1"),
+     ({"scalars": "weight", "clim": (2, 1)}, "the low one first"),
+     ({"scalars": "weight", "clim": "wide"}, "clim is 'wide'"),
+     ({"scalars": "weight", "clim": (0, 1), "log_scale": True}, "above zero"),
+     ({"scalars": "weight", "n_colors": 0}, "n_colors is 0"), ({"opacity": 1.5}, "opacity is 1.5"),
+     ({"line_width": 0}, "line_width is 0"), ({"line_width": "x"}, "line_width is 'x'; give .* above 0")],
+)  # fmt: skip
 def test_nonsense_is_refused_in_words(plotter, three_lines, arguments, message):
     with pytest.raises(ValueError, match=message):
         plotter.add_fiblets(three_lines, **arguments)
+    with pytest.raises(KeyError, match=r"no array 'fa'.*'weight'.*'curvature'"):
+        plotter.add_fiblets(three_lines, scalars="fa")
     assert not plotter.actors
 
 
-def test_an_unknown_name_lists_those_that_exist(plotter, three_lines):
-    with pytest.raises(KeyError, match=r"no array 'fa'.*'weight'.*'curvature'"):
-        plotter.add_fiblets(three_lines, scalars="fa")
-
-
-def test_no_streamlines_is_a_picture_of_nothing(plotter, colours_in):
+def test_no_streamlines_and_equal_values_are_drawn_too(plotter, three_lines, colours_in):
     with pytest.warns(UserWarning, match="no streamlines"):
         plotter.add_fiblets(Streamlines(np.zeros((0, 3)), [0]), scalars="length", show_scalar_bar=False)
     assert not colours_in(plotter.screenshot(None))
+    plotter.add_fiblets(three_lines, scalars=[7.0, 7.0, 7.0], **FLAT)
+    plotter.render()
+    assert len(colours_in(plotter.screenshot(None))) == 1
 
 
 WRONG = {
@@ -188,8 +132,126 @@ def test_wrong_settings_fail_at_once_though_one_colour_is_shown(plotter, three_l
     plotter.screenshot()
 
 
-@pytest.mark.parametrize("name", ["line_width", "tube_radius"])
-def test_a_length_that_is_a_word_is_named(plotter, three_lines, name):
-    actor = plotter.add_fiblets(three_lines)
-    with pytest.raises(ValueError, match=rf"{name} is 'x'; give .* above 0"):
-        setattr(actor, name, "x")
+RAMP = np.fromfunction(lambda i, j, k: i + 0.0 * j + 0.0 * k, (41, 5, 5))
+PLACE = np.array([[0.5, 0, 0, -10], [0, 20, 0, -40], [0, 0, 20, -40], [0, 0, 0, 1.0]])
+"""Voxel i lies at x = i / 2 - 10 mm: the value there is 2 x + 20."""
+
+
+def image_of(values=RAMP, affine=PLACE, cells=False, rgb=None):
+    """The same volume as VTK has it, its indices not starting at zero."""
+    axes = affine[:3, :3] / np.linalg.norm(affine[:3, :3], axis=0)
+    spacing = np.linalg.norm(affine[:3, :3], axis=0)
+    extent = [end for n in values.shape for end in (3, n + 2 + cells)]
+    image = pv.ImageData(spacing=spacing, direction_matrix=axes)
+    image.extent = extent
+    image.origin = affine[:3, 3] - affine[:3, :3] @ (np.full(3, 3.0) + (0.5 if cells else 0.0))
+    (image.cell_data if cells else image.point_data)["fa"] = values.ravel(order="F")
+    image.set_active_scalars("fa")
+    if rgb is not None:
+        image["rgb"] = rgb
+        image.set_active_scalars("rgb")
+    return image
+
+
+@pytest.fixture
+def line():
+    """From x = -15 to 15 mm, beyond both ends of the ramp."""
+    return np.linspace((-15, 0, 0), (15, 0, 0), 241)
+
+
+def row_of(plotter):
+    """Brightness along the line, a pixel a number, and x in mm of each pixel's centre."""
+    plotter.camera_position = [(0, 0, 100), (0, 0, 0), (0, 1, 0)]
+    plotter.enable_parallel_projection()
+    plotter.camera.parallel_scale = 20.0
+    picture = plotter.screenshot(None)
+    width, height = plotter.window_size
+    return picture[height // 2].astype(int), (np.arange(width) + 0.5) * 40.0 / width - 20.0
+
+
+def source_of(kind, tmp_path):
+    if kind == "image":
+        return image_of()
+    if kind == "cells":
+        return image_of(cells=True)
+    if kind == "array":
+        return RAMP, PLACE
+    image = nib.Nifti1Image(RAMP.astype(np.float32)[..., None], PLACE)
+    if kind == "nibabel":
+        return image
+    path = tmp_path / "ramp.nii.gz"
+    nib.save(image, path)
+    return str(path) if kind == "text" else path
+
+
+@pytest.mark.few(3)
+@pytest.mark.parametrize("kind", ["image", "cells", "array", "nibabel", "text", "path"])
+def test_a_ramp_runs_through_the_colour_map(plotter, line, kind, tmp_path):
+    actor = plotter.add_fiblets([line], scalars=source_of(kind, tmp_path), cmap="gray", nan_color="red", **FLAT)
+    assert actor.clim == (0.0, 40.0)
+    colours, x = row_of(plotter)
+    inside, outside = abs(x) < 9.9, (abs(x) > 10.5) & (abs(x) < 14.5)
+    # Where fiblets join, a round brush of 5 pixels (1 mm) shows its end's value half a width further on.
+    assert np.abs(colours[inside][:, 0] - (2 * x[inside] + 20) / 40 * 255).max() < 7
+    assert (colours[outside] == (255, 0, 0)).all()
+
+
+def test_it_moves_with_the_actor_and_can_be_set_later(plotter, line):
+    actor = plotter.add_fiblets([line], color="blue", **FLAT)
+    actor.user_matrix = np.diag([0.5, 1, 1, 1]) + np.array([[0, 0, 0, 2.0]] + [[0] * 4] * 3)
+    actor.scalars = RAMP, PLACE
+    actor.cmap = "gray"
+    colours, x = row_of(plotter)
+    data = (x - 2) / 0.5
+    inside = abs(data) < 9.5
+    assert np.abs(colours[inside][:, 0] - (2 * data[inside] + 20) / 40 * 255).max() < 13
+    assert actor.copy().scalars is actor.scalars
+
+
+def test_labels_keep_their_colours(plotter, line, colours_in):
+    labels = (RAMP // 14).astype(np.uint8)  # 0, 1, 2
+    plotter.add_fiblets([line[60:180]], scalars=(labels, PLACE), cmap="viridis", categories=True, **FLAT)
+    row_of(plotter)
+    assert close_to(colours_in(plotter.screenshot(None)), {mapped("viridis", f, 3) for f in (0.0, 0.5, 1.0)})
+
+
+@pytest.mark.parametrize("scalars", [[3.0, 3.0, 9.0], np.repeat([2.0, 2.0, 5.0], 41)])
+def test_categories_are_counted(plotter, three_lines, scalars, colours_in):
+    actor = plotter.add_fiblets(three_lines, scalars=scalars, cmap="viridis", categories=True, **FLAT)
+    assert actor.lookup_table.n_values == 2
+    plotter.view_vector((1, 0.4, 0.7))
+    assert close_to(colours_in(plotter.screenshot(None)), {mapped("viridis", f, 2) for f in (0.0, 1.0)}, tolerance=4)
+    actor.categories = False
+    assert actor.lookup_table.n_values == 256
+
+
+def test_a_logarithmic_scale_and_a_bar(plotter, line):
+    values = 10.0 ** (RAMP / 20) - 1.0  # from 0 to 99
+    actor = plotter.add_fiblets([line], scalars=image_of(values), log_scale=True, lighting=False)
+    assert actor.clim == pytest.approx((10**0.05 - 1, 99.0))
+    assert list(plotter.scalar_bars.keys()) == ["fa"]
+    plotter.screenshot(None)
+
+
+def test_a_volume_of_nothing_but_nan_still_draws(plotter, line, colours_in):
+    plotter.add_fiblets([line], scalars=(np.full((3, 3, 3), np.nan), np.eye(4)), nan_color="red", **FLAT)
+    row_of(plotter)
+    assert colours_in(plotter.screenshot(None)) == {(255, 0, 0)}
+
+
+@pytest.mark.parametrize(
+    ("scalars", "message"),
+    [
+        (lambda: (np.zeros((3, 3, 3, 2)), np.eye(4)), r"shape \(3, 3, 3, 2\)"),
+        (lambda: nib.Nifti1Image(np.zeros((4, 5, 6, 7), np.float32), np.eye(4)), r"shape \(4, 5, 6, 7\)"),
+        (lambda: (np.zeros((3, 3, 3)), np.eye(3)), r"\(4, 4\) matrix"),
+        (lambda: pv.ImageData(dimensions=(3, 3, 3)), "no active scalars"),
+        (lambda: image_of(np.ones((3, 3, 3)), rgb=np.zeros((27, 3))), "3 numbers per voxel"),
+    ],
+)
+def test_what_is_no_volume_is_refused_in_words(plotter, line, scalars, message):
+    with pytest.raises(ValueError, match=message):
+        plotter.add_fiblets([line], scalars=scalars())
+    with pytest.raises(FileNotFoundError, match=r"nothing\.nii"):
+        plotter.add_fiblets([line], scalars="/nowhere/nothing.nii")
+    assert not plotter.actors

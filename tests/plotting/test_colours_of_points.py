@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-import pyvista as pv
 
 import pvfiblets
 from pvfiblets.codec.point_arrays import colours_of_points
-from pvfiblets.mappers import FibletMapper, drawn_lines
 from pvfiblets.streamlines import Streamlines
 
 X = np.linspace(-10.0, 10.0, 41)
@@ -126,36 +124,3 @@ def test_colours_change_and_are_saved(plotter, tmp_path, colours_in):
     assert colours_in(show(plotter)) == {(255, 0, 0)}
     with pytest.raises(ValueError, match="floats must lie between 0 and 1"):
         plotter.add_fiblets(line(), scalars=3.0 * RAMP, rgb=True)
-
-
-def test_vtk_gives_a_mapper_colours_of_points(plotter):
-    mesh = line(c=np.round(255.0 * RAMP).astype(np.uint8)).to_polydata()
-    mesh.set_active_scalars("c")
-    mapper = FibletMapper()
-    mapper.SetInputData(mesh)
-    actor = pv.Actor()
-    actor.SetMapper(mapper)
-    actor.prop.lighting = False
-    plotter.add_actor(actor)
-    found, x = middle(show(plotter))
-    np.testing.assert_allclose(found, ramp(x), atol=3.0 / 255.0 + 0.06 / 20.0)
-
-
-def test_exports_and_selection_have_them(plotter):
-    actor = plotter.add_fiblets(line(), scalars=RAMP, lighting=False)
-    plotter.show(auto_close=False)
-    exported = drawn_lines.fiblet_lines(actor.fiblets, actor.mapper.colouring, None, np.array([0]))
-    np.testing.assert_allclose(exported.columns["colours"][:, :3] / 255.0, RAMP, atol=1.0 / 255.0)
-    actor.select([0], as_tubes=True, radius=0.5)
-    actor.selection_style(color=None)
-    plotter.show(auto_close=False)
-
-
-def test_an_unknown_name_is_answered_with_all_that_the_source_has(plotter, three_lines):
-    """Before any of it is left behind by compression."""
-    three_lines.per_point["fa"] = np.arange(float(three_lines.n_points))
-    three_lines.per_streamline["w"] = np.arange(3.0)
-    there = "there is no array 'md'. Per point: 'height', 'fa'; per streamline: 'weight', 'w'; built in: "
-    with pytest.raises(KeyError, match=there) as said:
-        plotter.add_fiblets(three_lines, scalars="md")
-    assert "kept only when asked for" not in str(said.value)

@@ -1,16 +1,17 @@
-"""Colours by ends, number and chance, and by the parcels that streamlines connect."""
+"""Colours by ends, number, parcels, group, criterion, distance and coding error."""
 
 from __future__ import annotations
-
-import colorsys
 
 import nibabel
 import numpy as np
 import pytest
+import pyvista as pv
 
 import pvfiblets
-from pvfiblets import Streamlines
-from pvfiblets.plotting.fiblets.scalars import distinct_colours
+from pvfiblets import Streamlines, compress, regions
+from pvfiblets.plotting.fiblets.scalars import distinct_colours, find_scalars
+from pvfiblets.plotting.fiblets.sources import as_fiblets
+from pvfiblets.synthetic import brain_streamlines
 
 
 def test_ends_colour_by_the_direction_from_end_to_end(plotter, colours_in):
@@ -33,18 +34,10 @@ def test_numbers_and_chance(plotter, three_lines):
     actor = plotter.add_fiblets(three_lines, scalars="id")
     assert actor.clim == (0.0, 2.0)
     assert actor.scalars_title == "streamline"
+    assert np.linalg.norm(np.diff(distinct_colours(3000), axis=0), axis=1).min() > 0.3
     actor.scalars = "random"
     assert len(np.unique(actor.active_scalars.values, axis=0)) == 3
     assert not actor.active_scalars.mapped
-
-
-def test_distinct_colours_are_those_of_their_hues():
-    colours = distinct_colours(3000)
-    hues = [(i * 0.6180339887498949) % 1.0 for i in range(3000)]
-    levels = [((0.9, 0.6, 0.75)[i % 3], (1.0, 0.9, 0.75)[i % 3]) for i in range(3000)]
-    wanted = [colorsys.hsv_to_rgb(hue, *level) for hue, level in zip(hues, levels, strict=True)]
-    np.testing.assert_allclose(colours, wanted, atol=1e-9)
-    assert np.linalg.norm(np.diff(colours, axis=0), axis=1).min() > 0.3
 
 
 @pytest.fixture
@@ -108,3 +101,92 @@ def test_lines_of_one_length_have_one_colour(plotter):
     lengths = actor.fiblets.lengths()
     assert np.ptp(lengths) > 0.0
     assert {actor.lookup_table.GetIndex(length) for length in lengths} == {0}
+
+
+@pytest.fixture
+def streamlines():
+    lines = Streamlines.from_list([np.asarray(line) for line in brain_streamlines(120, seed=4)])
+    lines.groups = {"front": np.arange(10, 50), "back": np.arange(40, 90)}
+    return lines
+
+
+def test_groups_are_labels(streamlines):
+    fiblets = compress(streamlines)
+    found = find_scalars(fiblets, "group")
+    expected = np.full(120, np.nan)
+    expected[40:90] = 1
+    expected[10:50] = 0  # the first group that a streamline is in
+    np.testing.assert_array_equal(found.values, expected)
+    plotter = pv.Plotter(off_screen=True, window_size=(150, 120))
+    try:
+        actor = plotter.add_fiblets(fiblets, scalars="group")
+        plotter.show(auto_close=False)
+        assert actor.lookup_table.n_values == 2
+        table = actor.lookup_table
+        assert [table.GetAnnotation(i) for i in range(table.GetNumberOfAnnotatedValues())] == ["front", "back"]
+        shown = [tuple(row) for row in np.asarray(table.values)[:, :3] / 255.0]
+        np.testing.assert_allclose(shown, [actor.bundles[name].color for name in ("front", "back")], atol=0.5 / 255.0)
+        assert len({tuple(np.rint(255 * np.array(one.color)).astype(int)) for one in actor.bundles}) == 2
+        assert "group" in plotter.scalar_bars
+        actor.scalars = "length"
+        assert table.GetNumberOfAnnotatedValues() == 0
+        assert actor.lookup_table.n_values == 256
+    finally:
+        plotter.close()
+    with pytest.raises(KeyError, match="no groups"):
+        find_scalars(compress(Streamlines.from_list([np.zeros((3, 3))])), "group")
+
+
+def test_thirty_groups_have_thirty_colours_before_any_bundle_has_its_own(streamlines):
+    streamlines.groups = {f"group {k}": np.arange(4 * k, 4 * k + 4) for k in range(30)}
+    plotter = pv.Plotter(off_screen=True, window_size=(100, 100))
+    try:
+        actor = plotter.add_fiblets(streamlines, scalars="group", show_scalar_bar=False)
+        before = np.array(actor.lookup_table.values)
+        assert len(np.unique(before, axis=0)) == 30
+        actor.bundles["group 7"].color = "white"
+        after = np.array(actor.lookup_table.values)
+        assert np.flatnonzero((before != after).any(axis=1)).tolist() == [7]  # no other changes with it
+        actor.cmap = "viridis"  # what is asked for goes before
+        assert not np.array_equal(np.array(actor.lookup_table.values), after)
+    finally:
+        plotter.close()
+
+
+def test_distance_of_points(streamlines):
+    ball = regions.Sphere((0.0, 0.0, 20.0), 15.0)
+    fiblets, name = as_fiblets(streamlines, scalars=regions.Distance(ball, per="point"))
+    points = fiblets.decompress(dtype=np.float64).points
+    expected = np.maximum(np.linalg.norm(points - (0.0, 0.0, 20.0), axis=1) - 15.0, 0.0)
+    stored = fiblets.per_point[name]
+    np.testing.assert_allclose(stored.values(), expected, atol=(stored.hi - stored.lo) / stored.levels + 1e-4)
+    assert find_scalars(fiblets, name).title == "distance [mm]"
+
+
+def test_coding_error_is_that_of_every_point(streamlines):
+    fiblets, name = as_fiblets(streamlines, scalars="coding_error", max_error=0.2)
+    error = np.linalg.norm(fiblets.decompress(dtype=np.float64).points - streamlines.points.astype(float), axis=1)
+    stored = fiblets.per_point[name]
+    np.testing.assert_allclose(stored.values(), error, atol=(stored.hi - stored.lo) / stored.levels + 1e-5)
+    assert 0.0 < stored.hi <= 0.2
+    with pytest.raises(KeyError, match="only while streamlines are compressed"):
+        find_scalars(compress(streamlines), "coding_error")
+
+
+def test_the_name_of_a_criterion_colours(streamlines):
+    plotter = pv.Plotter(off_screen=True, window_size=(150, 120))
+    try:
+        actor = plotter.add_fiblets(streamlines)
+        plotter.show(auto_close=False)
+        numbers = np.linspace(0.0, 1.0, 120)
+        actor.criterion(numbers, (0.2, 0.8), name="mine")
+        actor.scalars = "mine"
+        assert actor.clim == (0.0, 1.0)
+        actor.criterion(regions.Distance((0.0, 0.0, 0.0), per="point"), (0.0, 60.0), name="near")
+        actor.scalars = "near"
+        plotter.render()
+        assert actor.scalars_title == "distance [mm]"
+        assert dict(actor.criteria) == {"mine": (0.2, 0.8), "near": (0.0, 60.0)}
+        assert actor.mapper.filtering.points is not None
+    finally:
+        plotter.close()

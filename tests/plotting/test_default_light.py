@@ -75,42 +75,6 @@ def test_colours_match_their_bar(brain, scalars, lights):
         assert away.max() <= 3
 
 
-def test_light_can_be_asked_for(plotter, three_lines):
-    """Illuminated lines, and round ones, are shaded whatever colours them."""
-    actor = plotter.add_fiblets(three_lines, scalars="weight", show_scalar_bar=False, line_width=5)
-    plain = picture(plotter)
-    for name in ("illuminated", "tube_shading"):
-        setattr(actor, name, True)
-        assert picture(plotter).sum() < 0.97 * plain.sum()
-        setattr(actor, name, False)
-        assert np.array_equal(picture(plotter), plain)
-
-
-def test_only_the_light_in_use_is_there(plotter, three_lines):
-    actor = plotter.add_fiblets(three_lines, show_scalar_bar=False)
-    lights = {"line_light", "legend_colours", "illuminated"}
-
-    def used():
-        return set(actor.mapper.features) & lights
-
-    assert used() == {"line_light"}
-    actor.scalars = "weight"
-    assert used() == {"legend_colours"}
-    actor.lighting = False
-    assert used() == set()
-    actor.lighting = True
-    actor.illuminated = True
-    assert used() == {"illuminated"}
-    actor.illuminated = False
-    actor.tube_radius = 1.0
-    assert used() == set()
-    actor.tube_radius = None
-    actor.style = "halo"
-    assert used() == set()
-    actor.style = "surface"
-    assert used() == {"legend_colours"}
-
-
 def test_the_theme_is_obeyed(three_lines):
     theme = pv.themes.Theme()
     theme.lighting, theme.opacity, theme.line_width, theme.render_lines_as_tubes = False, 0.5, 4.0, True

@@ -1,4 +1,4 @@
-"""Choosing what an actor shows: masks equal NumPy's on the decoded points, and the picture follows."""
+"""Choosing what an actor shows: masks and painted regions equal NumPy's, and the picture follows."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
+import pvfiblets.plotting  # noqa: F401 - registers the components
 from pvfiblets import Streamlines, compress, regions
 from pvfiblets.synthetic import brain_streamlines
 
@@ -218,6 +219,12 @@ def test_refused_choices_leave_all_as_it_was(shown):
         actor.clip("x")  # as of PyVista's filter of this name
     with pytest.raises(TypeError, match="is no region"):
         actor.clip(3.0)
+    with pytest.raises(ValueError, match="a label volume cannot cut"):
+        actor.clip(regions.Labels(np.ones((3, 3, 3), int), np.eye(4)))
+    for what, told in ((pv.Plane(), "open"), (pv.PolyData(), "no faces")):
+        with pytest.raises(ValueError, match=told):
+            actor.clip(what)
+    assert not actor.clips
     np.testing.assert_array_equal(actor.shown, before)
 
 
@@ -239,14 +246,6 @@ def test_fiblets_that_a_criterion_does_not_fit_are_refused(shown, tract):
     assert actor.shown.all()
 
 
-def test_label_volumes_are_refused_at_once(shown):
-    plotter, actor = shown
-    with pytest.raises(ValueError, match="a label volume cannot cut"):
-        actor.clip(regions.Labels(np.ones((3, 3, 3), int), np.eye(4)))
-    assert not actor.clips
-    plotter.render()
-
-
 def test_label_images_of_cells_lie_where_their_voxels_are(shown):
     _, actor = shown
     image = pv.ImageData(dimensions=(5, 4, 3), spacing=(30.0, 30.0, 40.0), origin=(-60.0, -40.0, -40.0))
@@ -257,3 +256,49 @@ def test_label_images_of_cells_lie_where_their_voxels_are(shown):
     actor.include(image, name="cells")
     found = actor.conditions["cells"].region.contains(np.asarray(centres.points) + (14.0, -14.0, 19.0))
     np.testing.assert_array_equal(found, np.asarray(image["labels"], bool))
+
+
+@pytest.fixture
+def actor():
+    lines = [np.array([(0.0, y, 1.0), (9.0, y, 1.0)]) for y in range(10)]
+    plotter = pv.Plotter(off_screen=True)
+    yield plotter.add_fiblets(Streamlines.from_list(lines))
+    plotter.close()
+
+
+def test_painted_regions_filter_again_after_each_stroke(actor):
+    painter = regions.RegionPainter(((10, 10, 3), np.eye(4)))
+    painter.add("A")
+    painter.add("B")
+    live = regions.LiveRegions(actor.fiblets, painter)
+    painter.paint("A", (4, 5, 1), 1.2)
+    name = actor.include_painted(live, include="A")
+    assert np.flatnonzero(actor.shown).tolist() == [4, 5, 6]
+    painter.paint("A", (4, 8, 1), 1.2)
+    assert np.flatnonzero(actor.shown).tolist() == [4, 5, 6, 7, 8, 9]
+    painter.undo()
+    assert np.flatnonzero(actor.shown).tolist() == [4, 5, 6]
+    other = actor.include_painted(live, ends_in="B", name="ends")
+    assert not actor.shown.any()
+    painter.paint("B", (9, 5, 1), 0.6)
+    assert np.flatnonzero(actor.shown).tolist() == [5]
+    actor.remove_condition(other)
+    actor.remove_condition(name)
+    painter.paint("A", (4, 1, 1), 1.2)
+    assert actor.shown.all()
+    assert len(painter.listeners) == 1  # that of the live regions alone
+    with pytest.raises(KeyError, match="no region 'C'"):
+        actor.include_painted(live, include="C")
+
+
+def test_a_mask_is_a_condition_and_joins_with_others(actor):
+    mask = np.arange(10) < 6
+    actor.include(mask, name="first")
+    mask[:] = False  # it was copied
+    actor.exclude(np.arange(10) == 2)
+    assert np.flatnonzero(actor.shown).tolist() == [0, 1, 3, 4, 5]
+    with pytest.raises(ValueError, match="shape"):
+        actor.include(np.ones(9, bool))
+    other = regions.LiveRegions(actor.fiblets.extract(slice(0, 5)), regions.RegionPainter(((10, 10, 3), np.eye(4))))
+    with pytest.raises(ValueError, match="other fiblets"):
+        actor.include_painted(other, include="A")

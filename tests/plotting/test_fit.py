@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-import pyvista as pv
 
 from pvfiblets import compress
 from pvfiblets.codec.restrict import even_share
@@ -12,10 +11,7 @@ from pvfiblets.engine.errors import EngineError
 from pvfiblets.engine.fiblets import memory_fit
 from pvfiblets.synthetic import brain_streamlines
 
-
-def shot(plotter):
-    plotter.show(auto_close=False) if plotter._first_time else plotter.render()
-    return plotter.screenshot(None)
+from .views import shot
 
 
 def test_what_draws_and_how_much_is_known_after_the_first_picture(plotter, three_lines):
@@ -30,14 +26,6 @@ def test_what_draws_and_how_much_is_known_after_the_first_picture(plotter, three
     counts = actor.explain()["fiblets"]
     assert counts["total"] == counts["in_frustum"] == counts["visible"] == n
     assert counts["drawn"] in (n, None)
-
-
-def test_counting_leaves_the_picture_as_it_was(plotter, three_lines):
-    plotter.add_mesh(pv.Sphere(radius=6.0), color="white")
-    actor = plotter.add_fiblets(three_lines, line_width=3.0)
-    before = shot(plotter)
-    actor.explain()
-    np.testing.assert_array_equal(shot(plotter), before)
 
 
 def test_what_does_not_fit_is_refused_or_sampled(plotter, monkeypatch):

@@ -8,7 +8,10 @@ import numpy as np
 import pytest
 import pyvista as pv
 
+from pvfiblets import compress, write
 from pvfiblets.halos import HaloLines, HaloPoints
+
+from .views import facing_shot as shot
 
 PIXELS = 5.0  # a mm in the view `flat`
 GREEN, WHITE, BLACK, BACK = (0, 255, 0), (255, 255, 255), (0, 0, 0), (64, 64, 64)
@@ -24,19 +27,6 @@ def stage(plotter):
     """A plotter of 200 x 200 pixels, 5 pixels a mm, seen from -y."""
     plotter.set_background([part / 255 for part in BACK])
     return plotter
-
-
-def flat(plotter):
-    plotter.camera_position = [(0, -100, 0), (0, 0, 0), (0, 0, 1)]
-    plotter.enable_parallel_projection()
-    plotter.camera.parallel_scale = 20
-    plotter.camera.clipping_range = 20, 200
-
-
-def shot(plotter):
-    flat(plotter)
-    plotter.show(auto_close=False) if plotter._first_time else plotter.render()
-    return plotter.screenshot(None)
 
 
 def widths(plotter, x, line=GREEN, halo=WHITE):
@@ -201,14 +191,12 @@ def test_points_have_sizes_and_filters(stage):
     assert actor.pick_at(50, 100) is None
     actor.points = HaloPoints(points[1:] * 0.5, {"filter": np.array([0.0, 9.0])})
     assert [widths(stage, x)[0] for x in (0, 5)] == [0.0, about(3)]
-
-
-def test_lines_are_picked(stage):
-    actor = add(stage, [BAR, BAR + (0, 0, 10)])
-    shot(stage)
-    line, place = actor.pick_at(135, 150)
-    assert (line, place) == (1, pytest.approx(15 + 7.1, abs=1e-2))
-    assert actor.pick_at(135, 115) is None
+    with pytest.raises(ValueError, match=r"halo_size is 1\.0; give at least point_size, 2\.0"):
+        stage.add_halo_points(BAR, point_size=2.0, halo_size=1.0)
+    with pytest.raises(ValueError, match=r"point_size is -2\.0"):
+        stage.add_halo_points(BAR, point_size=-2.0)
+    with pytest.raises(KeyError, match="orientation"):
+        stage.add_halo_points(HaloPoints(BAR), scalars="orientation")
 
 
 def test_dark_and_light_change_places_and_what_was_given_stays(stage):
@@ -228,13 +216,10 @@ def test_dark_and_light_change_places_and_what_was_given_stays(stage):
     assert widths(stage, 7, GREEN, BACK)[1] == about(38)
     actor.halo_color, actor.color = None, None
     assert widths(stage, 7, BLACK, WHITE) == near(2, 6)
-
-
-def test_light_on_dark_with_colours_keeps_the_colours(stage):
-    actor = add(stage, color=None, scalars="orientation", light_on_dark=True)
+    actor.scalars, actor.light_on_dark = "orientation", True
     assert widths(stage, 7, (255, 0, 0), BLACK) == near(2, 6)
-    actor.scalars = None
-    assert widths(stage, 7, WHITE, BLACK) == near(2, 6)
+    twin = actor.copy()
+    assert (twin.look, twin.light_on_dark, twin.scalars) == (actor.look, True, "orientation")
 
 
 def test_colours_by_line_by_point_and_by_name(stage, colours_in):
@@ -285,74 +270,36 @@ def test_other_lines_take_the_place(stage):
         actor.lines = HaloPoints(BAR)
 
 
-def test_a_copy_looks_the_same(stage):
-    actor = add(stage, filter_by="arc_length", threshold=12.0, halo_color="yellow", scalars=None)
-    actor.opacity, actor.user_matrix = 0.5, np.diag([1.0, 1.0, 1.5, 1.0])
-    first = shot(stage)
-    twin = actor.copy()
-    stage.remove_actor(actor)
-    stage.add_actor(twin, reset_camera=False)
-    assert (shot(stage) == first).all()
-    assert twin.look == actor.look
-    assert "31 points" in repr(twin)
-
-
 @pytest.mark.parametrize(
     ("arguments", "message"),
-    [
-        ({"line_width": 0.0}, r"line_width is 0\.0; give a number of mm, above 0"),
-        ({"line_width": "wide"}, "line_width is 'wide'"),
-        ({"line_width": np.nan}, "line_width is nan"),
-        ({"line_width": 2.0, "strip_width": 1.0}, r"strip_width is 1\.0; give at least line_width, 2\.0"),
-        ({"max_displacement": -1.0}, r"max_displacement is -1\.0"),
-        ({"displacement": "cubic"}, "displacement is 'cubic'"),
-        ({"displacement": [0.0, 2.0]}, "2 at 1"),
-        ({"displacement": lambda x: x - 0.5}, "-0.5"),
-        ({"tapering": "soft"}, "tapering is 'soft'"),
-        ({"tapering": (2, 0.7)}, r"t_tapered is 0\.7"),
-        ({"tapering": (2.5, 0.2)}, r"n_tapered is 2\.5"),
-        ({"width_cue": 1.5}, r"width_cue is 1\.5"),
-        ({"min_width": -1}, "min_width is -1"),
-        ({"threshold": 1.0}, r"threshold is 1\.0, but there are no numbers to filter by"),
-        ({"filter_by": "arc_length", "threshold": "high"}, "threshold is 'high'"),
-        ({"filter_by": "arc_length", "threshold": (2.0, 1.0)}, r"thresholds are 2\.0 and 1\.0"),
-        ({"filter_by": "arc_length", "threshold": (1, 2, 3)}, r"threshold is \(1, 2, 3\)"),
-        ({"filter_by": "arc_length", "filter_taper": -1}, "filter_taper is -1"),
-        ({"filter_by": np.zeros(7)}, "7"),
-        ({"scalars": np.zeros((31, 5)), "rgb": True}, "5"),
-        ({"opacity": 2.0}, "opacity is 2"),
-        ({"culling": "magic"}, "culling is 'magic'"),
-        ({"halo_color": "nocolour"}, "nocolour"),
-    ],
+    [({"line_width": 0.0}, r"line_width is 0\.0; give a number of mm, above 0"),
+     ({"line_width": "wide"}, "line_width is 'wide'"), ({"line_width": np.nan}, "line_width is nan"),
+     ({"line_width": 2.0, "strip_width": 1.0}, r"strip_width is 1\.0; give at least line_width, 2\.0"),
+     ({"max_displacement": -1.0}, r"max_displacement is -1\.0"), ({"displacement": "cubic"}, "displacement is 'cubic'"),
+     ({"displacement": [0.0, 2.0]}, "2 at 1"), ({"displacement": lambda x: x - 0.5}, "-0.5"),
+     ({"tapering": "soft"}, "tapering is 'soft'"), ({"tapering": (2, 0.7)}, r"t_tapered is 0\.7"),
+     ({"tapering": (2.5, 0.2)}, r"n_tapered is 2\.5"), ({"width_cue": 1.5}, r"width_cue is 1\.5"),
+     ({"min_width": -1}, "min_width is -1"),
+     ({"threshold": 1.0}, r"threshold is 1\.0, but there are no numbers to filter by"),
+     ({"filter_by": "arc_length", "threshold": "high"}, "threshold is 'high'"),
+     ({"filter_by": "arc_length", "threshold": (2.0, 1.0)}, r"thresholds are 2\.0 and 1\.0"),
+     ({"filter_by": "arc_length", "threshold": (1, 2, 3)}, r"threshold is \(1, 2, 3\)"),
+     ({"filter_by": "arc_length", "filter_taper": -1}, "filter_taper is -1"), ({"filter_by": np.zeros(7)}, "7"),
+     ({"scalars": np.zeros((31, 5)), "rgb": True}, "5"), ({"opacity": 2.0}, "opacity is 2"),
+     ({"culling": "magic"}, "culling is 'magic'"), ({"halo_color": "nocolour"}, "nocolour")],
     ids=lambda value: "" if isinstance(value, str) else "-".join(value),
-)
+)  # fmt: skip
 def test_what_has_no_meaning_is_refused_and_leaves_nothing_behind(stage, arguments, message):
     with pytest.raises((ValueError, TypeError), match=message):
         stage.add_halo_lines(BAR, **arguments)
     assert not stage.actors
-
-
-def test_what_is_refused_leaves_the_actor_as_it_was(stage):
-    actor = add(stage)
-    before = actor.look
-    for name, value in (
-        ("line_width", -1.0), ("strip_width", 1.0), ("displacement", "x"), ("tapering", 7), ("threshold", 3.0),
-        ("width_cue", 2.0), ("filter_by", np.zeros(2)), ("scalars", np.zeros(2)), ("halo_color", "nocolour"),
-    ):  # fmt: skip
+    if len(arguments) == 1:
+        ((name, value),) = arguments.items()
+        actor = add(stage)
+        before = actor.look
         with pytest.raises((ValueError, TypeError)):
             setattr(actor, name, value)
         assert actor.look == before
-    assert widths(stage, 7) == near(2, 6)
-
-
-def test_points_name_their_own_settings(stage):
-    with pytest.raises(ValueError, match=r"halo_size is 1\.0; give at least point_size, 2\.0"):
-        stage.add_halo_points(BAR, point_size=2.0, halo_size=1.0)
-    with pytest.raises(ValueError, match=r"point_size is -2\.0"):
-        stage.add_halo_points(BAR, point_size=-2.0)
-    with pytest.raises(KeyError, match="orientation"):
-        stage.add_halo_points(HaloPoints(BAR), scalars="orientation")
-    assert not stage.actors
 
 
 def test_empty_data_draw_nothing(stage):
@@ -365,3 +312,21 @@ def test_empty_data_draw_nothing(stage):
     assert (shot(stage) == np.array(BACK)).all()
     assert replace(lines.look, n_tapered=0) == lines.look or lines.look.n_tapered == 2
     assert (points.look.line_width, single.look.line_width) > (0.0, 0.0)
+
+
+def test_lines_and_points_come_from_every_kind_of_source(plotter, three_lines, tmp_path):
+    lines = [np.array([(-10.0, 0, z), (0, 0, z + 2), (10, 0, z)]) for z in (-6.0, 0.0, 6.0)]
+    points, cloud = np.concatenate(lines), pv.PolyData(np.concatenate(lines))
+    cloud.save(tmp_path / "cloud.ply")
+    write(tmp_path / "lines.tck", three_lines)
+    for source, n_segments in (
+        (pv.merge([pv.lines_from_points(line) for line in lines]), 6), (three_lines, 120), (compress(three_lines), 120),
+        (lines[0], 2), (lines, 6), ((points, np.array([(0, 1), (1, 2), (3, 4)])), 3),
+        (HaloLines(points, [0, 3, 6, 9]), 6), (tmp_path / "lines.tck", 120), (str(tmp_path / "lines.tck"), 120),
+    ):  # fmt: skip
+        assert plotter.add_halo_lines(source).lines.n_segments == n_segments
+    for source, n_points in (
+        (cloud, 9), (pv.ImageData(dimensions=(2, 3, 4)), 24), (three_lines, 123), (lines[0], 3),
+        (HaloPoints(lines[0]), 3), (tmp_path / "cloud.ply", 9),
+    ):  # fmt: skip
+        assert plotter.add_halo_points(source).points.n_points == n_points

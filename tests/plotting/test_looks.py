@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pvfiblets import cli, cli_scene_arguments
 from pvfiblets.codec.compress import compress
 from pvfiblets.engine.effects.halos import HaloPass
 from pvfiblets.mappers.spacing import MOST_STREAMLINES, line_spacing_of
@@ -13,6 +12,8 @@ from pvfiblets.plotting.fiblets.looks import LOOKS, PLAIN, Apart, Fewer, look_of
 from pvfiblets.query.measures import measure
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.web import layers
+
+from .views import shot
 
 
 def sheet(pitch, count, length=50.0):
@@ -32,11 +33,6 @@ def scattered(density, count):
 def diagonal(fiblets):
     bounds = np.array(fiblets.bounds)
     return float(np.linalg.norm(bounds[1::2] - bounds[::2]))
-
-
-def shot(plotter):
-    plotter.show(auto_close=False) if plotter._first_time else plotter.render()
-    return np.asarray(plotter.screenshot(None)).astype(int)
 
 
 def test_the_distance_between_lines_is_that_of_their_grid():
@@ -59,15 +55,6 @@ def test_a_width_goes_by_it_between_its_ends():
     assert Apart(1.0, 1e-9, 1.0, 1000.0).of(few) == pytest.approx(1000.0 * 3.0 / size, rel=0.03)
     alone = compress(sheet(3.0, 1))
     assert Apart(0.1, 1e-9, 0.02).of(alone) == pytest.approx(0.02 * 50.0, rel=0.01)
-
-
-def test_every_look_says_the_same_settings_and_no_colours(plotter):
-    actor = plotter.add_fiblets(sheet(2.0, 5))
-    for look in LOOKS.values():
-        assert look.settings.keys() == PLAIN.keys()
-        assert look.doc
-    assert not {"color", "scalars", "cmap", "clim"} & PLAIN.keys()
-    assert all(hasattr(type(actor), name) for name in PLAIN)
 
 
 def test_looks_can_be_set_and_read_back(plotter):
@@ -199,20 +186,3 @@ def test_a_page_takes_a_look_and_says_when_it_is_one_no_more():
     assert settings["look"] is None
     assert layers.changed("tractogram", settings, "look", None, data)["line_width"] == 9.0
     assert layers.changed("tractogram", settings, "line_width", 1.0, data)["look"] == "studio"
-
-
-def test_the_command_draws_looks(tmp_path, plotter):
-    assert tuple(LOOKS) == cli_scene_arguments.LOOKS
-    from pvfiblets import formats
-
-    lines, picture = tmp_path / "lines.tck", tmp_path / "ink.png"
-    formats.write(lines, sheet(6.0, 5))
-    command = ["screenshot", str(lines), "-o", str(picture), "--look", "ink", "--background", "white"]
-    command += ["--size", "120x90", "--antialias", "off", "--view", "axial"]
-    assert cli.main(command) == 0
-    import pyvista as pv
-
-    image = np.asarray(pv.read(picture).point_data.active_scalars)
-    assert image.min() < 0.5 * 255 + 1  # far lines fade by half
-    assert image.max() == 255
-    assert (np.ptp(image.astype(int), axis=1) == 0).all()  # no colour: the orientation's are not seen

@@ -1,4 +1,4 @@
-"""Sets and actors are used as PyVista's meshes and actors are: plotted, copied, updated, asked for their data."""
+"""Sets and actors are used as PyVista's meshes and actors are: plotted, copied, updated, filmed."""
 
 from __future__ import annotations
 
@@ -10,10 +10,7 @@ import pyvista as pv
 
 import pvfiblets
 
-
-def shot(plotter):
-    plotter.show(auto_close=False) if plotter._first_time else plotter.render()
-    return plotter.screenshot(None)
+from .views import shot
 
 
 @pytest.mark.parametrize("compressed", [False, True])
@@ -56,12 +53,8 @@ def test_updates_draw_the_new_lines_with_the_old_settings(plotter, three_lines):
     got = shot(plotter)
     plotter.add_fiblets(moved, scalars="height", cmap="jet", line_width=2, show_scalar_bar=False, name=actor.name)
     np.testing.assert_array_equal(got, shot(plotter))
-
-
-def test_a_refused_update_changes_nothing(plotter, three_lines):
-    actor = plotter.add_fiblets(three_lines, scalars="height")
     before = actor.fiblets
-    with pytest.raises(KeyError, match="no array 'height'"):
+    with pytest.raises(KeyError, match="no array 'height'"):  # a refused update changes nothing
         actor.update([[(0, 0, 0), (1, 1, 1)]])
     assert actor.fiblets is before
 
@@ -75,15 +68,6 @@ def test_datasets_are_the_lines_that_are_drawn(plotter, three_lines):
         assert data.n_points == 123
         np.testing.assert_allclose(data["height"], three_lines.per_point["height"], atol=1e-2)
     assert plotter.add_halo_points(np.eye(3)).mapper.dataset.n_points == 3
-
-
-def test_tables_of_selections(plotter, three_lines):
-    actor = plotter.add_fiblets(three_lines)
-    actor.select([2, 0])
-    table = actor.selection_table()
-    assert table["streamline"].tolist() == [0, 2]
-    assert table["weight"].tolist() == [1.0, 100.0]
-    np.testing.assert_allclose(table["length"], 20.0, atol=0.2)
 
 
 @pytest.mark.parametrize("add", ["add_fiblets", "add_spline_tubes", "add_halo_lines", "add_raycast_volume"])
@@ -112,3 +96,62 @@ def test_changes_in_place_are_told_once(plotter, three_lines, add):
         actor.update(mesh)
         plotter.render()
         assert actor.fiblets.bounds[4] == pytest.approx(mesh.bounds[4], abs=0.01)
+
+
+imageio = pytest.importorskip("imageio.v3")
+
+LINES = [np.linspace([0.0, 0.0, k], [9.0, 5.0 * k, k], 20) for k in range(3)]
+
+
+@pytest.fixture
+def plotter():
+    plotter = pv.Plotter(off_screen=True, window_size=(96, 64))  # sizes that films of all codecs may have
+    plotter.set_background("black")
+    yield plotter
+    plotter.close()
+
+
+def image():
+    ball = pv.ImageData(dimensions=(8, 8, 8))
+    ball["values"] = np.exp(-(((np.mgrid[:8, :8, :8] - 3.5) ** 2).sum(axis=0)) / 8.0).ravel(order="F")
+    return ball
+
+
+ADDED = {
+    "fiblets": lambda plotter: plotter.add_fiblets(LINES, line_width=3, color="red"),
+    "tubes": lambda plotter: plotter.add_spline_tubes(LINES, radius=1.0, color="red"),
+    "halos": lambda plotter: plotter.add_halo_lines(LINES, light_on_dark=True),
+    "volume": lambda plotter: plotter.add_raycast_volume(image(), show_scalar_bar=False),
+}
+
+
+@pytest.mark.few(1)
+@pytest.mark.parametrize("what", ADDED)
+def test_frames_are_screenshots(plotter, tmp_path, what):
+    ADDED[what](plotter)
+    plotter.open_gif(str(tmp_path / "a.gif"), loop=0)
+    shown = []
+    for _ in range(3):
+        plotter.camera.azimuth += 40.0
+        plotter.write_frame()
+        shown.append(plotter.screenshot())
+    plotter.close()
+    frames = imageio.imread(tmp_path / "a.gif")
+    assert len(frames) == 3
+    for frame, picture in zip(frames, shown, strict=True):
+        assert picture.any()
+        assert np.abs(frame[..., :3].astype(int) - picture).mean() < 8.0  # of a palette
+
+
+def test_lines_that_grow(plotter, tmp_path):
+    actor = plotter.add_fiblets([line[:5] for line in LINES], line_width=3, color="red")
+    plotter.view_xy()
+    plotter.camera.zoom(0.3)
+    plotter.open_gif(str(tmp_path / "a.gif"))
+    for points in (5, 12, 20):
+        actor.update([line[:points] for line in LINES])
+        plotter.write_frame()
+    plotter.close()
+    frames = imageio.imread(tmp_path / "a.gif")[..., :3].astype(int)
+    inked = [int((frame.sum(axis=-1) > 60).sum()) for frame in frames]
+    assert 0 < inked[0] < inked[1] < inked[2]

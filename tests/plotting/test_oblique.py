@@ -121,22 +121,6 @@ def test_the_widget_turns_and_pushes_it_and_follows(five, workspace):
     assert not widget.GetEnabled()
 
 
-def test_a_drag_of_the_widgets_arrow_turns_it(five, workspace):
-    five.render()
-    view, widget = five.renderers[3], five.widgets.plane_widgets[0]
-    corners = workspace.slices.layers[0].image.corners
-    reach = 0.3 * np.linalg.norm(np.ptp(corners, axis=0))  # of the arrow, as VTK draws it
-    mouse, found = Mouse(five), False
-    for sign in (1.0, -1.0):
-        view.SetWorldPoint(*(workspace.position + sign * 0.95 * reach * NORMAL), 1.0)
-        view.WorldToDisplay()
-        x, y, _ = view.GetDisplayPoint()
-        mouse.drag("Left", (x, y), (x + 20, y + 10), (x + 40, y + 10))
-        found = found or not np.allclose(workspace.oblique.normal, NORMAL)
-    assert found
-    np.testing.assert_allclose(widget.GetNormal(), workspace.oblique.normal, atol=1e-6)
-
-
 def test_without_a_fifth_view_it_has_no_pane_and_turns_all_the_same():
     plotter = pv.Plotter(off_screen=True, window_size=(400, 400), shape=(2, 2), border=False)
     workspace = plotter.slices.workspace((ramp(), AFFINE))

@@ -83,6 +83,9 @@ def test_a_transfer_function_fades_along_the_map(plotter, opacity, transparency)
     expected = [table[int(value * 256)] for value in (0.1, 0.5, 0.9)]
     assert np.abs(columns(plotter)[:, 1, 0] - expected).max() <= 4
     assert actor.opacity == 1.0
+    for count in (4, 7, 256):  # PyVista takes as many for bytes: numbers from 0 to 1 would be next to nothing
+        actor = plotter.add_fiblets(rows(), scalars=[0.1, 0.5, 0.9], n_colors=4, opacity=np.linspace(1.0, 0.0, count))
+        np.testing.assert_allclose(actor.lookup_table.values[:, 3] / 255.0, np.linspace(1.0, 0.0, 4), atol=1.0 / 255.0)
 
 
 def test_lines_of_different_opacity_behind_each_other(plotter):
@@ -106,14 +109,10 @@ def test_lines_of_different_opacity_behind_each_other(plotter):
 
 @pytest.mark.parametrize(
     ("opacity", "error", "message"),
-    [
-        ("fog", KeyError, "there is no opacity 'fog'"),
-        ("linear", ValueError, "follows the numbers of a colour map"),
-        ([0.1, 2.0, 0.3], ValueError, "between 0 and 2"),
-        (np.zeros((3, 3)), ValueError, "one per streamline"),
-        (1.5, ValueError, "opacity is 1.5"),
-    ],
-)
+    [("fog", KeyError, "there is no opacity 'fog'"), ("linear", ValueError, "follows the numbers of a colour map"),
+     ([0.1, 2.0, 0.3], ValueError, "between 0 and 2"), (np.zeros((3, 3)), ValueError, "one per streamline"),
+     (1.5, ValueError, "opacity is 1.5")],
+)  # fmt: skip
 def test_nonsense_is_refused_in_words(plotter, opacity, error, message):
     with pytest.raises(error, match=message):
         plotter.add_fiblets(rows(), opacity=opacity, **FLAT)
@@ -148,25 +147,3 @@ def test_tubes_and_halos_fade_along_the_colour_map(plotter, three_lines, add, co
     actor.scalars = None
     with pytest.raises(ValueError, match="follows the numbers of a colour map"):
         getattr(plotter, add)(three_lines, opacity="sigmoid", color="red")
-
-
-def test_names_of_the_sources_points_and_transparency(plotter, three_lines):
-    actor = plotter.add_fiblets(three_lines, opacity="height")
-    assert "height" in actor.fiblets.per_point
-    assert actor.copy().opacity_by == "height"
-    by_value = plotter.add_fiblets(three_lines, scalars="weight", opacity="linear")
-    by_value.opacity_by = None
-    assert (by_value.lookup_table.values[:, 3] == 255).all()
-    one_each = np.array([0.1, 0.5, 1.0])
-    actor.opacity_by = one_each
-    assert actor.copy().opacity_by is one_each
-    with pytest.raises(TypeError, match="add_fiblets.. takes no use_transparency: give 1 - values"):
-        plotter.add_fiblets(three_lines, opacity="linear", use_transparency=True)
-
-
-@pytest.mark.parametrize("count", [4, 7, 256])
-def test_as_many_opacities_as_colours_or_more(plotter, three_lines, count):
-    """PyVista takes as many for bytes, so that numbers from 0 to 1 would all be next to nothing."""
-    wanted = np.linspace(1.0, 0.0, count)
-    actor = plotter.add_fiblets(three_lines, scalars="weight", n_colors=4, opacity=wanted)
-    np.testing.assert_allclose(actor.lookup_table.values[:, 3] / 255.0, np.linspace(1.0, 0.0, 4), atol=1.0 / 255.0)

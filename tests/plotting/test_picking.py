@@ -37,10 +37,9 @@ def gbuffer(actor):
     return np.where(depth == EMPTY, -1, ids.astype(np.int64)), depth / EMPTY
 
 
-def within(polygon, width, height):
-    """Which pixels have their middle in a polygon, by crossings of a ray to the right."""
-    x, y = np.meshgrid(np.arange(width), np.arange(height))
-    inside = np.zeros((height, width), bool)
+def within(polygon, x, y):
+    """Which places lie in a polygon, by crossings of a ray to the right."""
+    inside = np.zeros(x.shape, bool)
     for a, b in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
         straddles = (a[1] > y) != (b[1] > y)
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -81,7 +80,7 @@ def mouse(plotter):
     return Mouse(plotter)
 
 
-def test_a_box_gives_the_ids_of_the_picture_within(brain):
+def test_a_box_and_a_lasso_give_the_ids_of_the_picture_within(brain):
     ids, depth = gbuffer(brain)
     picked = brain.pick_box((60, 70, 130, 120))
     there = ids[70:121, 60:131]
@@ -92,14 +91,10 @@ def test_a_box_gives_the_ids_of_the_picture_within(brain):
         assert ids[pixel[1], pixel[0]] == i
         assert place == pytest.approx(depth[70:121, 60:131][there == i].min(), abs=1e-9)
     assert brain.pick_box((130, 120, 60, 70)).ids.tolist() == picked.ids.tolist()
-
-
-def test_a_lasso_gives_the_ids_of_the_picture_within(brain):
-    ids, _ = gbuffer(brain)
-    picked = brain.pick_polygon(LASSO)
-    there = ids[within(LASSO, 200, 200)]
-    assert len(picked) > 20
-    assert np.array_equal(np.sort(picked.ids), np.unique(there[there >= 0]))
+    x, y = np.meshgrid(np.arange(200), np.arange(200))
+    there = ids[within(LASSO, x, y)]
+    assert len(there[there >= 0]) > 20
+    assert np.array_equal(np.sort(brain.pick_polygon(LASSO).ids), np.unique(there[there >= 0]))
 
 
 def test_places_are_under_the_pixels(brain, plotter):
@@ -118,27 +113,20 @@ def test_places_are_under_the_pixels(brain, plotter):
         assert np.abs(clip[:, 2] / clip[:, 3] / 2 + 0.5 - picked.depths).max() < (1e-9 if through else 1e-3)
 
 
-def project(plotter, actor, points):
-    """Window pixels and depths of data points, by VTK's camera, in float64."""
-    model = actor.GetMatrix()
-    matrices = [plotter.camera.GetCompositeProjectionTransformMatrix(1.0, -1, 1), model]
-    projection, model = (np.array([[m.GetElement(i, j) for j in range(4)] for i in range(4)]) for m in matrices)
-    clip = np.column_stack([points, np.ones(len(points))]) @ (projection @ model).T
-    return (clip[:, :2] / clip[:, 3:] + 1) / 2 * 200 - 0.5
-
-
 def under(plotter, actor, polygon):
-    """Streamlines of which some place on a segment, tried at 21 places each, lies in a polygon."""
+    """Streamlines of which some place on a segment, tried at 21 places each, lies in a polygon of the window.
+
+    By VTK's camera, in float64.
+    """
+    matrices = [plotter.camera.GetCompositeProjectionTransformMatrix(1.0, -1, 1), actor.GetMatrix()]
+    projection, model = (np.array([[m.GetElement(i, j) for j in range(4)] for i in range(4)]) for m in matrices)
     found = []
     for i, line in enumerate(actor.fiblets.decompress(dtype=np.float64).to_list()):
         t = np.linspace(0, 1, 21)[:, None, None]
         dense = (line[:-1] + t * (line[1:] - line[:-1])).reshape(-1, 3)
-        pixels = project(plotter, actor, dense)
-        inside = np.zeros(len(pixels), bool)
-        for a, b in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
-            straddles = (a[1] > pixels[:, 1]) != (b[1] > pixels[:, 1])
-            inside ^= straddles & (pixels[:, 0] < a[0] + (pixels[:, 1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]))
-        if inside.any():
+        clip = np.column_stack([dense, np.ones(len(dense))]) @ (projection @ model).T
+        pixels = (clip[:, :2] / clip[:, 3:] + 1) / 2 * 200 - 0.5
+        if within(polygon, *pixels.T).any():
             found.append(i)
     return found
 
@@ -241,16 +229,22 @@ def test_values_of_what_is_picked(plotter, three_lines):
 
 def test_nothing_drawn_nothing_there_and_bad_input(plotter, three_lines):
     actor = plotter.add_fiblets(three_lines)
-    assert actor.pick_box((0, 0, 10, 10)) is None
-    assert actor.pick_box((0, 0, 10, 10), through=True) is None
+    for through in (False, True):
+        assert actor.pick_box((0, 0, 10, 10), through=through) is None
     plotter.show(auto_close=False)
     for box in ((0, 0, 3, 3), (-50, -50, -10, -10), (500, 500, 600, 600)):
-        assert actor.pick_box(box) is None
-        assert actor.pick_box(box, through=True) is None
+        for through in (False, True):
+            assert actor.pick_box(box, through=through) is None
     with pytest.raises(ValueError, match="four pixels"):
         actor.pick_box((1, 2, 3))
     with pytest.raises(ValueError, match="finite pixels"):
         actor.pick_polygon([[0, np.nan]])
+    with pytest.raises(TypeError, match="callback is a int"):
+        plotter.fiblets.enable_picking(3)
+    for bad, said in (({"mode": "sphere"}, "click, box, lasso"), ({"button": "middle"}, "left, right"),
+                      ({"tolerance": -1}, "tolerance")):  # fmt: skip
+        with pytest.raises(ValueError, match=said):
+            plotter.fiblets.enable_picking(**bad)
 
 
 def test_a_click_picks_and_selects_and_dragging_turns_the_camera(brain, plotter, mouse):
@@ -269,6 +263,15 @@ def test_a_click_picks_and_selects_and_dragging_turns_the_camera(brain, plotter,
     mouse.drag((x, y), (x + 20, y), (x + 40, y + 10))
     assert len(found) == 1
     assert plotter.camera.position != camera
+
+    def broken(picked):
+        raise KeyError("mine")
+
+    plotter.fiblets.enable_picking(broken, show_message=False)
+    x, y = brain.pick_box((0, 0, 199, 199)).pixels[0]
+    for _ in range(2):  # what a callback raises is told, and picking goes on
+        with pytest.warns(UserWarning, match="mine"):
+            mouse.click(x, y)
 
 
 def test_shift_adds_control_toggles_and_the_background_deselects(brain, plotter, mouse):
@@ -311,8 +314,7 @@ def test_a_click_picks_of_two_actors_the_one_in_front(plotter, three_lines, mous
 def test_either_button_clicks_with_any_style(brain, plotter, mouse, button):
     ids, _ = gbuffer(brain)
     y, x = np.argwhere(ids >= 0)[100]
-    styles = ("trackball", "terrain", "image", "rubber_band", "trackball_actor")  # joysticks need a timer
-    for style in styles:
+    for style in ("trackball", "terrain", "image", "rubber_band", "trackball_actor"):  # joysticks need a timer
         found = []
         getattr(plotter, f"enable_{style}_style")()
         plotter.fiblets.enable_picking(found.append, button=button, show_message=False, select=False)
@@ -393,26 +395,3 @@ def test_tooltips(plotter, three_lines, mouse):
     tooltip = plotter.fiblets._tooltip
     plotter.fiblets.disable_picking()
     assert tooltip.shown == ""
-
-
-def test_what_a_callback_raises_is_told_and_picking_goes_on(brain, plotter, mouse):
-    def broken(picked):
-        raise KeyError("mine")
-
-    plotter.fiblets.enable_picking(broken, show_message=False)
-    x, y = brain.pick_box((0, 0, 199, 199)).pixels[0]
-    for _ in range(2):
-        with pytest.warns(UserWarning, match="mine"):
-            mouse.click(x, y)
-
-
-def test_wrong_arguments_are_refused(plotter):
-    enable = plotter.fiblets.enable_picking
-    with pytest.raises(TypeError, match="callback is a int"):
-        enable(3)
-    with pytest.raises(ValueError, match="click, box, lasso"):
-        enable(mode="sphere")
-    with pytest.raises(ValueError, match="left, right"):
-        enable(button="middle")
-    with pytest.raises(ValueError, match="tolerance"):
-        enable(tolerance=-1)

@@ -31,10 +31,6 @@ plotter.add_mesh("brain.vtp")
 """
 
 
-def test_the_class_is_pyvistas_own():
-    assert plotter.Plotter is pv.Plotter
-
-
 def test_the_stub_names_every_component_and_its_class():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     named = project["entry-points"]["pyvista.plotter_components"]
@@ -79,16 +75,3 @@ def test_a_checker_knows_what_comes_back(tmp_path):
     assert 'Revealed type is "float"' in said.replace("builtins.", "")
     assert 'Unexpected keyword argument "line_widht"' in said
     assert "Found 1 error" in said
-
-
-def test_colours_have_the_types_of_add_mesh():
-    theirs = inspect.signature(pv.Plotter.add_mesh).parameters
-    plotter = pv.Plotter(off_screen=True)
-    for name in ("add_fiblets", "add_spline_tubes", "add_halo_lines", "add_halo_points", "add_raycast_volume"):
-        ours = inspect.signature(getattr(plotter, name)).parameters
-        for one in ("color", "user_matrix"):
-            assert ours[one].annotation == str(theirs[one].annotation)
-        assert {"ColormapOptions", "None"} <= set(ours["cmap"].annotation.split(" | "))
-        assert ours["clim"].annotation == "float | Sequence[float] | None"
-    assert "ColorLike" in STUB.read_text()
-    plotter.close()

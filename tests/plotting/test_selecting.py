@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import matplotlib as mpl
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
-import pyvista as pv
 
 import pvfiblets as pf
 from pvfiblets.engine.fiblets.filter_textures import Filter
 from pvfiblets.formats.registry import UnknownFormatError
+from pvfiblets.plotting.fiblets.profiles import Profile
 from pvfiblets.plotting.fiblets.selection_overlay import part_of_filter
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.synthetic import brain_streamlines
+
+mpl.use("Agg")
 
 
 @pytest.fixture
@@ -112,20 +116,6 @@ def test_an_empty_selection_costs_nothing(rods):
     assert len(actor.picking_layers) == 1
 
 
-def test_the_rest_fades_and_the_chosen_keep_or_take_a_colour(rods):
-    actor, tools = rods
-    chosen = np.isin(np.arange(30), [2, 11, 29])
-    actor.select(chosen)
-    actor.selection_style(dim=0.6)
-    colours = tools.colours()
-    assert (colours[chosen] == (255, 0, 0)).all()
-    assert (np.abs(colours[~chosen] - (102, 0, 0)) <= 1).all()
-    actor.selection_style(color="lime", dim=0.0)
-    colours = tools.colours()
-    assert (colours[chosen] == (0, 255, 0)).all()
-    assert (colours[~chosen] == (255, 0, 0)).all()
-
-
 def test_wider_lines_follow_their_actor(rods, plotter):
     actor, tools = rods
     actor.select([10])
@@ -175,34 +165,6 @@ def test_tubes_of_selected_streamlines_have_their_radius(rods, plotter):
     y, x = np.argwhere(high).mean(axis=0).round().astype(int)
     picked = actor.pick_polygon([(x, y)], tolerance=0.6)
     assert picked.ids.tolist() == [12]
-
-
-def test_a_pixel_of_a_wider_line_is_its_streamline(rods, plotter):
-    actor, tools = rods
-    actor.select([10, 20])
-    actor.selection_style(width=9)
-    tools.picture()
-    plotter.renderer.SetWorldPoint(20.0, 20.0, 0.0, 1.0)
-    plotter.renderer.WorldToDisplay()
-    x, y, _ = plotter.renderer.GetDisplayPoint()
-    found = [actor.pick_polygon([(round(x), round(y) + step)], tolerance=0.6) for step in (-3, 0, 3)]
-    assert [picked.ids.tolist() for picked in found] == [[10]] * 3
-    assert [picked.places[0] for picked in found] == pytest.approx([40] * 3, abs=2)
-
-
-def test_selected_before_the_actor_is_shown(three_lines):
-    from pvfiblets.plotting import FibletActor
-
-    plotter = pv.Plotter(off_screen=True, window_size=(100, 100))
-    actor = FibletActor(pf.compress(three_lines))
-    actor.select([1])
-    actor.selection_style(width=5, color="lime", silhouette=(1.0, 0.0, 1.0))
-    plotter.add_actor(actor)
-    actor.entered(plotter.renderer)
-    plotter.show(auto_close=False)
-    plotter.render()
-    assert plotter.renderer.GetActors().GetNumberOfItems() == 2
-    plotter.close()
 
 
 def test_other_fiblets_keep_the_selection_if_ids_mean_the_same(rods, three_lines):
@@ -278,12 +240,8 @@ def test_statistics(plotter):
     assert found["length_total"] == pytest.approx(sum(lengths), rel=1e-4)
     assert "mean" not in found
     fa = np.concatenate([lines.per_point["fa"][lines.offsets[i] : lines.offsets[i + 1]] for i in ids])
-    for scalars, values in (
-        ("fa", fa),
-        (np.asarray(lines.per_point["fa"]), fa),
-        ("weight", lines.per_streamline["weight"][ids]),
-        (np.asarray(lines.per_streamline["weight"]), lines.per_streamline["weight"][ids]),
-    ):
+    weight = lines.per_streamline["weight"]
+    for scalars, values in (("fa", fa), (np.asarray(lines.per_point["fa"]), fa), ("weight", weight[ids])):
         found = actor.selection_statistics(scalars)
         assert found["mean"] == pytest.approx(values.mean(), abs=0.005)
         assert found["std"] == pytest.approx(values.std(), abs=0.005)
@@ -314,32 +272,22 @@ def test_profile(plotter, three_lines):
     assert len(list(chart.plots())) == 2
     plotter.add_chart(chart)
     plotter.show(auto_close=False)
+    ax = profile.plot()
+    assert ax.get_ylabel() == "height"
+    np.testing.assert_array_equal(ax.lines[0].get_ydata(), profile.mean)
+    assert profile.plot(ax) is ax
+    nothing = Profile(np.full(3, np.nan), np.full(3, np.nan), np.linspace(0, 1, 3))
+    assert len(list(nothing.chart().plots())) == 0
+    plt.close(ax.figure)
+    twin = actor.copy()
+    assert twin.selection.tolist() == [0, 1]
+    twin.deselect()
+    assert actor.selection.tolist() == [0, 1]
     with pytest.raises(ValueError, match="per streamline"):
         actor.selection_profile("length")
     actor.color = "red"
     with pytest.raises(ValueError, match="name one"):
         actor.selection_profile()
-
-
-def test_profile_plots(three_lines):
-    import matplotlib as mpl
-
-    mpl.use("Agg")
-    from pvfiblets.plotting.fiblets.profiles import Profile
-
-    mean, std = np.array([1.0, np.nan, 3.0]), np.array([0.1, np.nan, 0.2])
-    profile = Profile(mean, std, np.linspace(0, 1, 3), "FA", 5)
-    ax = profile.plot()
-    assert ax.get_ylabel() == "FA"
-    assert np.array_equal(ax.lines[0].get_ydata(), mean, equal_nan=True)
-    assert profile.plot(ax) is ax
-    assert len(ax.lines) == 2
-    assert len(list(profile.chart().plots())) == 2
-    nothing = Profile(np.full(3, np.nan), np.full(3, np.nan), np.linspace(0, 1, 3))
-    assert len(list(nothing.chart().plots())) == 0
-    import matplotlib.pyplot as plt
-
-    plt.close(ax.figure)
 
 
 @pytest.mark.parametrize("suffix", ["fiblets", "trk", "tck", "trx", "vtk"])
@@ -357,23 +305,3 @@ def test_saved_selections_come_back(plotter, three_lines, tmp_path, suffix):
         assert np.asarray(back.per_streamline["weight"]).ravel().tolist() == [1.0, 100.0]
     with pytest.raises(UnknownFormatError, match="obj"):
         actor.save_selection(tmp_path / "chosen.obj")
-
-
-def test_a_copy_selects_the_same_and_explain_tells():
-    plotter = pv.Plotter(off_screen=True, window_size=(120, 100))
-    try:
-        actor = plotter.add_fiblets([[(0, y, 0), (5, y, 1), (10, y, 0)] for y in range(6)])
-        plotter.show(auto_close=False)
-        assert actor.explain()["selection"] == {"streamlines": 0, "features": [], "passes": [], "gpu_bytes": 0}
-        actor.select([1, 4])
-        actor.selection_style(as_tubes=True, radius=0.3)
-        plotter.render()
-        report = actor.explain()["selection"]
-        assert report["streamlines"] == 2
-        assert report["gpu_bytes"] > 0
-        twin = actor.copy()
-        assert twin.selection.tolist() == [1, 4]
-        twin.deselect()
-        assert actor.selection.tolist() == [1, 4]
-    finally:
-        plotter.close()

@@ -11,6 +11,8 @@ import pvfiblets as pf
 from pvfiblets.mappers import FibletMapper, TubeMapper
 from pvfiblets.plotting.fiblets import selection_overlay
 
+from .views import facing_shot
+
 RADIUS = 1.6
 
 
@@ -23,16 +25,7 @@ def scene(plotter):
     lines.per_streamline = {"weight": np.array([0.0, 1.0, 2.0])}
     actor = plotter.add_fiblets(lines, per_point=("along",), lighting=False, show_scalar_bar=False, cmap="gray")
     actor.selection_style(as_tubes=True, radius=RADIUS, dim=0.0)
-
-    def front():
-        plotter.camera_position = [(0, -100, 0), (0, 0, 0), (0, 0, 1)]
-        plotter.enable_parallel_projection()
-        plotter.camera.parallel_scale = 20.0
-        plotter.camera.clipping_range = 10, 300
-        plotter.show(auto_close=False) if plotter._first_time else plotter.render()
-        return plotter.screenshot(None)[..., :3].astype(int)
-
-    return actor, front
+    return actor, lambda: facing_shot(plotter)
 
 
 def at(picture, x, z):
@@ -144,6 +137,12 @@ def test_a_volume_colours_tubes_of_fiblets(scene):
     actor.scalars = "along"
     assert at(front(), 0.0, 0.7)[0] == pytest.approx(128, abs=4)
     assert drawn_by(actor) is TubeMapper
+    assert actor.explain()["selection"]["gpu_bytes"] > 200 * 200 * 24
+    actor.clip(pv.Sphere(radius=12))
+    front()
+    actor.deselect()
+    front()
+    assert actor.explain()["selection"] == {"streamlines": 0, "passes": [], "features": [], "gpu_bytes": 0}
 
 
 def test_very_many_points_stay_compressed(scene, monkeypatch):
@@ -168,37 +167,6 @@ def test_places_on_tubes_are_the_streamlines(scene):
             assert picked.ids.tolist() == [line]
             assert picked.places == pytest.approx([(x + 15) / 0.5], abs=1.0)
             assert picked.points[0] == pytest.approx([x, 0, z], abs=0.5)
-
-
-def test_tubes_bend_smoothly_through_the_points(plotter):
-    """Between the points of a ring the tube keeps to the ring, where straight pieces would leave it."""
-    angle = np.linspace(0.0, 2 * np.pi, 13)
-    ring = np.stack([12 * np.cos(angle), 0 * angle, 12 * np.sin(angle)], axis=1)
-    actor = plotter.add_fiblets([ring], color="red", lighting=False, max_error=1e-3)
-    actor.select([0])
-    actor.selection_style(as_tubes=True, radius=0.25, dim=0.0)
-    plotter.camera_position = [(0, -100, 0), (0, 0, 0), (0, 0, 1)]
-    plotter.enable_parallel_projection()
-    plotter.camera.parallel_scale = 20.0
-    plotter.show(auto_close=False)
-    picture = plotter.screenshot(None)
-    between = angle[:-1] + angle[1] / 2
-    on = [at(picture, 12 * np.cos(a), 12 * np.sin(a))[0] for a in between]
-    assert min(on) == 255  # the chords' middles are 0.41 mm inside, farther than the radius
-
-
-def test_memory_is_given_back(scene):
-    actor, front = scene
-    actor.select([0, 1])
-    front()
-    assert actor.explain()["selection"]["gpu_bytes"] > 200 * 200 * 24
-    actor.clip(pv.Sphere(radius=12))
-    front()
-    actor.show_all()
-    front()
-    actor.deselect()
-    front()
-    assert actor.explain()["selection"] == {"streamlines": 0, "passes": [], "features": [], "gpu_bytes": 0}
 
 
 @pytest.mark.parametrize("style", [{"as_tubes": True, "radius": 2.0}, {"as_tubes": False, "width": 16}])

@@ -1,4 +1,4 @@
-"""Slices of images lie where their affines say and have the colours that their layers say."""
+"""Slices of images and their glyphs lie where affines say and have the colours that their layers say."""
 
 from __future__ import annotations
 
@@ -141,7 +141,9 @@ def test_labels_have_names_and_colours_and_are_never_mixed(plotter):
     values = np.zeros((10, 10, 10), np.int32)
     values[2:5], values[5:8] = 17, 2_000_000_011
     slices = plotter.add_slices(
-        values, labels={17: ("hippocampus", "yellow"), 2_000_000_011: ("far", (0, 0, 255))}, planes="axial",
+        values,
+        labels={17: ("hippocampus", "yellow"), 2_000_000_011: ("far", (0, 0, 255))},
+        planes="axial",
         position=(3, 4, 5),
     )
     assert slices.values() == {"image": (17, "hippocampus")}
@@ -172,10 +174,7 @@ def test_vectors_are_colours_of_direction_brightened_by_an_image_on_another_grid
     slices.layers[0].below = 0.6
     assert not slices.pixels(slices["axial"].grid).any()
     np.testing.assert_array_equal(slices.values((1, 1, 1))["image"], [-2.0, 0.0, 0.0])
-
-
-def test_bytes_of_three_are_colours(plotter):
-    values = np.zeros((6, 6, 6, 3), np.uint8)
+    values = np.zeros((6, 6, 6, 3), np.uint8)  # bytes of three are colours
     values[..., 1] = 200
     slices = plotter.add_slices((values, np.eye(4)), planes="coronal")
     assert slices.layers[0].kind == "rgb"
@@ -205,26 +204,6 @@ def test_layers_are_laid_over_each_other_and_there_are_eight_at_most(plotter):
         slices.layer("image 3")
 
 
-def test_what_is_set_shows_with_the_next_render(plotter):
-    slices = plotter.add_slices(np.ones((5, 5, 5)), clim=(0, 1), planes="axial")
-    plotter.view_xy()
-    plotter.show(auto_close=False)
-    before = plotter.screenshot(return_img=True)
-    slices.layers[0].cmap = ["blue", "blue"]
-    plotter.render()
-    after = plotter.screenshot(return_img=True)
-    assert before[100, 100].tolist() == [255, 255, 255]
-    assert after[100, 100].tolist() == [0, 0, 255]
-    slices.position = (2.0, 2.0, 30.0)
-    plotter.render()
-    assert not plotter.screenshot(return_img=True).any()
-    slices.voxel = (2, 2, 3)
-    assert slices.position.tolist() == [2.0, 2.0, 3.0]
-    slices["axial"].visible = False
-    plotter.render()
-    assert not plotter.screenshot(return_img=True).any()
-
-
 def test_slices_of_a_tilted_image_may_lie_along_its_own_axes(plotter):
     angle = np.radians(30.0)
     tilt = np.array([[1, 0, 0], [0, np.cos(angle), -np.sin(angle)], [0, np.sin(angle), np.cos(angle)]])
@@ -238,18 +217,6 @@ def test_slices_of_a_tilted_image_may_lie_along_its_own_axes(plotter):
     slices["axial"].normal = (0, 0, 1)
     assert np.ptp(slices.pixels(slices["axial"].grid)[..., 0]) > 60
     np.testing.assert_allclose(slices["axial"].normal, (0, 0, 1), atol=1e-12)
-
-
-def test_the_same_name_replaces_and_remove_takes_all_away(plotter):
-    first = plotter.add_slices(np.ones((5, 5, 5)), name="t1")
-    second = plotter.add_slices(np.ones((5, 5, 5)), name="t1")
-    assert list(plotter.slices) == [second]
-    assert first["axial"].actor not in plotter.actors.values()
-    assert len(plotter.actors) == 3
-    second.remove()
-    second.remove()
-    assert not plotter.actors
-    assert not len(plotter.slices)
 
 
 @pytest.mark.parametrize(
@@ -266,19 +233,15 @@ def test_the_same_name_replaces_and_remove_takes_all_away(plotter):
 def test_bad_arguments_are_refused_and_nothing_is_left_behind(plotter, arguments, said):
     with pytest.raises(ValueError, match=said):
         plotter.add_slices(np.ones((5, 5, 5)), **arguments)
+    for source, more, error, told in (
+        ({1, 2}, {}, TypeError, "a set"), (np.ones((5, 5, 5)), {"opactiy": 1}, TypeError, "opactiy"),
+        (np.ones((5, 5)), {}, ValueError, r"the shape \(5, 5\)"),
+        (np.ones((5, 5, 5), complex), {}, ValueError, "complex"),
+    ):  # fmt: skip
+        with pytest.raises(error, match=told):
+            plotter.add_slices(source, **more)
     assert not plotter.actors
     assert not len(plotter.slices)
-
-
-def test_other_kinds_of_sources_are_refused(plotter):
-    with pytest.raises(TypeError, match="a set"):
-        plotter.add_slices({1, 2})
-    with pytest.raises(TypeError, match="opactiy"):
-        plotter.add_slices(np.ones((5, 5, 5)), opactiy=1)
-    with pytest.raises(ValueError, match=r"the shape \(5, 5\)"):
-        plotter.add_slices(np.ones((5, 5)))
-    with pytest.raises(ValueError, match="complex"):
-        plotter.add_slices(np.ones((5, 5, 5), complex))
 
 
 def test_images_of_pyvista_and_nibabel_lie_where_they_lie(plotter):
@@ -304,28 +267,22 @@ def test_a_real_image_says_what_nibabel_says(plotter, shared_data):
         assert slices.values(position) == {"nv_MNI152_2009_template": data[tuple(voxel)]}
 
 
-def test_a_closed_plotter_leaves_nothing_alive():
-    plotter = pv.Plotter(off_screen=True)
-    slices = plotter.add_slices(np.ones((5, 5, 5)))
-    gone = weakref.ref(slices)
+@pytest.mark.parametrize("add", ["add_slices", "workspace"])
+def test_cleared_and_closed_plotters_leave_nothing_alive(add):
+    plotter = pv.Plotter(off_screen=True, shape=(2, 2))
+    slices = plotter.add_slices if add == "add_slices" else plotter.slices.workspace
+    gone = weakref.ref(slices(np.ones((5, 5, 5))))
+    if add == "add_slices":
+        gone().position = 1.0, 1.0, 1.0
+        plotter.show(auto_close=False)
+        plotter.clear()
+        assert list(plotter.slices) == []
+        gone = weakref.ref(plotter.add_slices(np.ones((4, 4, 4))))
+        assert list(plotter.slices) == [gone()]
     plotter.close()
     del slices, plotter
     gc.collect()
     assert gone() is None
-
-
-def test_slices_go_when_the_plotter_is_cleared(plotter):
-    stack = plotter.add_slices(np.random.default_rng(0).random((6, 7, 8)), show_scalar_bar=True)
-    other = plotter.add_slices(np.zeros((4, 4, 4)))
-    plotter.remove_actor(stack["axial"].actor)
-    assert list(plotter.slices) == [stack, other]
-    plotter.show(auto_close=False)
-    plotter.clear()
-    assert list(plotter.slices) == []
-    stack.position = 1.0, 1.0, 1.0
-    plotter.render()
-    again = plotter.add_slices(np.ones((4, 4, 4)))
-    assert list(plotter.slices) == [again]
 
 
 def test_slices_have_a_scalar_bar(plotter):
@@ -352,9 +309,88 @@ def test_slices_are_moved_and_hidden_as_a_whole(plotter):
     stack.user_matrix = None
     bounds = np.array(plotter.bounds)
     np.testing.assert_allclose(bounds[1::2] - bounds[::2], [6.0, 7.0, 8.0], atol=1e-6)
+    second = plotter.add_slices(image, name=stack.name)  # takes its place
+    assert list(plotter.slices) == [second]
+    assert stack["axial"].actor not in plotter.actors.values()
+    second.remove()
+    second.remove()
+    assert not plotter.actors
+    stack = plotter.add_slices(image)
     stack.visibility = False
     assert not any(plane.actor.visibility for plane in stack)
     stack.visible = True
     assert all(plane.actor.visibility for plane in stack)
     with pytest.raises(AttributeError, match="slices have no 'opacity' to set: .*layers"):
         stack.opacity = 0.5
+
+
+@pytest.fixture
+def peaks():
+    values = np.zeros((9, 10, 11, 6), np.float32)
+    values[2:7, 3:8, 4:9, 0] = 1.0
+    return values, np.diag([2.0, 2.0, 2.0, 1.0])
+
+
+def test_glyphs_follow_the_slices_and_only_those_that_are_shown_are_made(plotter, peaks):
+    slices = plotter.add_slices((peaks[0][..., 0], peaks[1]), position=(8.0, 10.0, 12.0))
+    found = slices.add_glyphs(peaks)
+    slices["coronal"].visible = slices["sagittal"].visible = False
+    assert found.n_glyphs == 0
+    plotter.show(auto_close=False)
+    assert found.n_glyphs == 25
+    slices.position = (8.0, 10.0, 2.0)
+    plotter.render()
+    assert found.n_glyphs == 0
+    slices["sagittal"].visible = True
+    plotter.render()
+    assert found.n_glyphs == 25
+    found.remove()
+    assert len(plotter.actors) == 3
+
+
+@pytest.mark.parametrize(("kind", "n"), [("peaks", 3), ("tensor", 6), ("sh", 6), ("sh", 45)])
+def test_every_kind_is_seen_in_its_colour(plotter, kind, n):
+    values = np.zeros((7, 7, 7, n))
+    values[3, 3, 3, 0] = 1.0  # along x; of harmonics the same in all directions
+    if kind == "tensor":
+        values[3, 3, 3, 1:3] = 0.2
+    slices = plotter.add_slices(np.zeros((7, 7, 7)), clim=(0, 1), planes="axial")
+    slices.add_glyphs((values, np.eye(4)), kind, size=4.0, line_width=4)
+    plotter.view_xy()
+    plotter.show(auto_close=False)
+    picture = plotter.screenshot(return_img=True).astype(int)
+    if kind == "sh":
+        assert (picture.max(axis=2) > 60).sum() > 1000
+    else:
+        red = (picture[..., 0] > 60) & (picture[..., 1:].max(axis=-1) < 40)
+        assert 60 < red.sum() < 3000
+        assert red[100].sum() > 60
+
+
+def test_glyphs_of_other_numbers_are_refused(plotter, peaks):
+    slices = plotter.add_slices((peaks[0][..., 0], peaks[1]))
+    for arguments, said in (
+        ({"kind": "tensors"}, "kind is"), ({"kind": "sh", "basis": "x"}, "basis is"), ({"size": 0}, "size is"),
+        ({"kind": "tensor", "tensor": "x"}, "tensor is"),
+    ):  # fmt: skip
+        with pytest.raises(ValueError, match=said):
+            slices.add_glyphs(peaks, **arguments)
+    with pytest.raises(ValueError, match="peaks are three each"):
+        slices.add_glyphs(peaks[0][..., :4])
+    assert len(plotter.actors) == 3
+
+
+def test_an_oblique_slice_is_where_its_widget_is(plotter):
+    at = np.stack(np.mgrid[:20, :20, :20], axis=-1)
+    slices = plotter.add_slices(at.sum(axis=-1).astype(np.float32), clim=(0, 57), planes=())
+    plane = plotter.slices.add_oblique(normal=(1, 1, 1))
+    assert np.ptp(slices.pixels(plane.grid)[..., 0][slices.pixels(plane.grid)[..., 3] > 0]) <= 8
+    (widget,) = plotter.widgets.plane_widgets
+    widget.SetOrigin(5.0, 5.0, 5.0)
+    widget.SetNormal(0.0, 0.0, 1.0)
+    widget.InvokeEvent("InteractionEvent")
+    np.testing.assert_allclose(plane.normal, (0, 0, 1), atol=1e-9)
+    np.testing.assert_allclose(plane.origin, (5, 5, 5))
+    np.testing.assert_allclose(plane.grid.positions()[..., 2], 5.0, atol=1e-9)
+    with pytest.raises(ValueError, match="another plane has"):
+        plotter.slices.add_oblique()

@@ -55,12 +55,6 @@ def test_it_can_be_changed_at_any_time_and_is_copied(plotter, lines):
     assert not any(entry["name"] == "layers" for entry in actor.explain()["buffers"])
 
 
-def test_the_nearest_is_picked(plotter, lines):
-    actor = plotter.add_fiblets(lines, opacity=0.5, transparency=3, **FLAT)
-    middle(plotter)
-    assert actor.pick_at(100, 100)[0] == 0
-
-
 @pytest.mark.parametrize("transparency", ["peeling", 1, 0, -2, 65, 2.5, True, [4]])
 def test_nonsense_is_refused_in_words(plotter, lines, transparency):
     with pytest.raises(ValueError, match="give 'all', 'layers', a number of layers from 2 to 64, or None"):
@@ -93,21 +87,15 @@ print("drawn")
 """
 
 
-def draws(environment, pipeline):
+@pytest.mark.more
+@pytest.mark.parametrize(
+    ("version", "pipeline"), [(None, "auto"), ("4.1", "tessellation"), ("4.1", "geometry"), ("3.3", "geometry")]
+)
+def test_layers_of_a_volumes_values_by_older_opengl(older_opengl, version, pipeline):
     command = [sys.executable, "-c", SCENE, pipeline]
+    environment = older_opengl(version) if version else None
     result = subprocess.run(command, capture_output=True, text=True, check=False, env=environment, timeout=280)
     assert result.stdout.split()[-1:] == ["drawn"], result.stderr[-3000:]
-
-
-@pytest.mark.more
-def test_layers_of_a_volumes_values_by_this_opengl():
-    draws(None, "auto")
-
-
-@pytest.mark.more
-@pytest.mark.parametrize(("version", "pipeline"), [("4.1", "tessellation"), ("4.1", "geometry"), ("3.3", "geometry")])
-def test_layers_of_a_volumes_values_by_older_opengl(older_opengl, version, pipeline):
-    draws(older_opengl(version), pipeline)
 
 
 @pytest.mark.parametrize("samples", [0, 4])
@@ -148,6 +136,7 @@ DRAWN = {
 }
 
 
+@pytest.mark.every("value")
 @pytest.mark.parametrize("kind", list(DRAWN))
 @pytest.mark.parametrize(("background", "ground"), [("black", (40, 90, 160)), ("white", (200, 250, 180))])
 def test_a_picture_without_background_lies_on_any_ground(kind, background, ground):
@@ -174,22 +163,4 @@ def test_a_picture_without_background_lies_on_any_ground(kind, background, groun
     off = np.abs(share * found[..., :3] + (1.0 - share) * ground - drawn)
     assert off.max() <= 3.0
     assert plotter.screenshot(None).shape[-1] == 3
-    plotter.close()
-
-
-def test_mapped_tones_leave_no_background(plotter, lines):
-    plotter.set_background("white")
-    plotter.add_fiblets(lines, **FLAT | {"color": "lime"})
-    plotter.picture.tone = {"operator": "reinhard", "exposure": 1.5}
-    picture = plotter.screenshot(None, transparent_background=True)
-    assert (picture[0, 0] == 0).all()
-    assert set(np.unique(picture[..., 3])) == {0, 255}
-
-
-def test_a_picture_of_meshes_is_pyvistas():
-    plotter = pv.Plotter(off_screen=True, window_size=(60, 60))
-    plotter.set_background("green")
-    plotter.add_mesh(pv.Sphere(), color="white", opacity=0.5, lighting=False)
-    picture = plotter.screenshot(None, transparent_background=True)
-    assert picture[30, 30].tolist() == [191, 223, 191, 191]
     plotter.close()

@@ -99,30 +99,26 @@ def test_other_passes_and_places_show_the_same_as_for_meshes(both, effect):
     assert (np.abs(tube - mesh).max(axis=2) > 40).mean() < 4e-3
 
 
-def test_pickers_of_pyvista_that_look_at_the_picture_find_tubes(plotter):
-    actor = plotter.add_spline_tubes(BAR, radius=RADIUS)
+def test_peeling_supersampling_and_a_second_window_show_the_tubes(plotter):
+    actor = plotter.add_spline_tubes(BAR, radius=RADIUS, color="white", lighting=False)
     plotter.view_xz()
     plotter.show(auto_close=False)
-    points, actors = [], []
-    plotter.enable_point_picking(points.append, picker="prop", left_clicking=True, show_message=False, show_point=False)
-    plotter.iren._mouse_left_button_click(100, 100)
-    assert points[0] == pytest.approx([0.0, -RADIUS, 0.0], abs=0.3)
-    plotter.disable_picking()
-    plotter.enable_mesh_picking(
-        actors.append, picker="hardware", use_actor=True, left_clicking=True, show=False, show_message=False
-    )
-    plotter.iren._mouse_left_button_click(100, 100)
-    assert actors == [actor]
-
-
-def test_pictures_of_subplots_are_enlarged_tile_by_tile():
-    plotter = pv.Plotter(off_screen=True, shape=(1, 2), border=False, window_size=(80, 60), lighting="none")
-    plotter.add_spline_tubes(BAR, radius=RADIUS, color="white", lighting=False)
-    plotter.set_background("black")
-    plotter.show(auto_close=False)
-    plain = plotter.screenshot(None).astype(float)
-    large = plotter.screenshot(None, scale=2).astype(float)
-    plotter.close()
-    reduced = large.reshape(60, 2, 80, 2, 3).mean(axis=(1, 3))
-    assert plain[:, :40].max() == 255.0
-    assert np.abs(reduced - plain).mean() < 6.0
+    plain = plotter.screenshot(None)
+    plotter.enable_depth_peeling()
+    plotter.render()
+    assert (plotter.screenshot(None) == plain).all()
+    plotter.disable_depth_peeling()
+    other = pv.Plotter(off_screen=True, window_size=plotter.window_size)
+    other.set_background("black")
+    other.add_actor(actor)
+    other.camera_position = plotter.camera_position
+    for _ in range(2):
+        plotter.render()
+        assert (plotter.screenshot(None) == plain).all()
+        assert other.screenshot(None).any()
+    other.close()
+    plotter.enable_anti_aliasing("ssaa")
+    plotter.render()
+    smooth = plotter.screenshot(None)
+    assert ((smooth > 0) & (smooth < 255)).any()
+    assert smooth.sum(dtype=float) == pytest.approx(plain.sum(dtype=float), rel=0.02)

@@ -1,8 +1,11 @@
-"""What ``plotter.add_spline_tubes`` draws, and how its actor changes."""
+"""What ``plotter.add_spline_tubes`` draws, from which sources, and how its actor changes."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import matplotlib as mpl
+import nibabel as nib
 import numpy as np
 import pytest
 import pyvista as pv
@@ -10,8 +13,10 @@ import pyvista as pv
 import pvfiblets as pf
 from pvfiblets.codec.compress import compress
 from pvfiblets.plotting import TubeActor
-from pvfiblets.plotting.tubes.scalars import find_tube_scalars, tube_lengths, with_built_in
+from pvfiblets.plotting.tubes.scalars import tube_lengths, with_built_in
 from pvfiblets.tubes.build import as_spline_tubes
+
+from .views import facing_shot
 
 FLAT = {"lighting": False, "show_scalar_bar": False, "radius": 1.6}
 
@@ -25,16 +30,7 @@ def mapped(cmap, fraction, n_colors=256):
 @pytest.fixture
 def front(plotter):
     """Return a function: the picture from -y, 5 pixels a mm, z upwards."""
-
-    def shot():
-        plotter.camera_position = [(0, -100, 0), (0, 0, 0), (0, 0, 1)]
-        plotter.enable_parallel_projection()
-        plotter.camera.parallel_scale = 20.0
-        plotter.camera.clipping_range = 10, 300
-        plotter.show(auto_close=False) if plotter._first_time else plotter.render()
-        return plotter.screenshot(None)[..., :3].astype(int)
-
-    return shot
+    return lambda: facing_shot(plotter)
 
 
 def at(picture, x, z):
@@ -159,17 +155,6 @@ def test_a_node_that_tubes_share_is_a_place_along_each(plotter, front):
     assert at(picture, 6.0, 0.0)[0] == pytest.approx(255 * 21.1 / 27, abs=3)
 
 
-def test_the_radius_colours(plotter, bars, front):
-    actor = plotter.add_spline_tubes(
-        bars[1], radius=[1.0, 2.0, 3.0, 4.0, 5.0], scalars="radius", cmap="gray", lighting=False, show_scalar_bar=False
-    )
-    assert actor.clim == (1.0, 5.0)
-    picture = front()
-    for x in (-10.0, 0.0, 10.0):  # the ball of radius r that reaches farthest there lies r r' ahead
-        ball = (3.0 + (x + 0.1) * 4 / 30) / (1 - (4 / 30) ** 2)
-        assert at(picture, x, 0.0)[0] == pytest.approx(255 * (ball - 1) / 4, abs=4)
-
-
 def test_an_array_for_the_actors_own_nodes(plotter, bars, front):
     actor = plotter.add_spline_tubes(bars, color="white", **FLAT)
     actor.scalars = actor.tubes.points[:, 0]
@@ -204,6 +189,8 @@ def test_nan_and_values_outside_have_their_colours(plotter, bars, front):
     )  # fmt: skip
     picture = front()
     assert [at(picture, 0.0, z).tolist() for z in (-10, 0, 10)] == [[255, 0, 255], [0, 255, 255], [255, 255, 0]]
+    actor.scalars = np.tile([0.0, 1e300, -1e300, np.inf, -np.inf], 3)  # beyond float32, and infinite
+    assert at(front(), 12.0, 0.0).tolist() == [255, 0, 255]
     actor.scalars = np.repeat([0.0, 1.0, np.nan], 5)
     assert at(front(), 0.0, 10.0).tolist() == [255, 0, 255]
 
@@ -237,24 +224,6 @@ def test_properties_take_effect_at_the_next_render(plotter, bars, front):
     thin = covered(front())
     actor.min_width = 6
     assert covered(front()) > 4 * thin
-
-
-def test_light_falls_on_tubes_as_on_vtks(plotter, bars, front):
-    actor = plotter.add_spline_tubes(bars[1], radius=4.0, color="white")
-    actor.prop.ambient, actor.prop.diffuse, actor.prop.specular = 0.1, 0.7, 0.5
-    actor.prop.specular_power = 20
-    plotter.remove_all_lights()
-    lamp = pv.Light(position=(0, -100, 100), focal_point=(0, 0, 0), light_type="scene light")
-    lamp.positional = False
-    plotter.add_light(lamp)
-    ours = front()
-    plotter.remove_actor(actor)
-    tube = pv.Cylinder(center=(0, 0, 0), direction=(1, 0, 0), radius=4.0, height=30, resolution=360, capping=False)
-    plotter.add_mesh(
-        tube, color="white", ambient=0.1, diffuse=0.7, specular=0.5, specular_power=20, smooth_shading=True
-    )
-    theirs = front()
-    assert np.abs(ours - theirs)[:, 60:140].max(axis=2).mean() < 1.0
 
 
 def test_effects_of_surfaces_and_a_way_back(plotter, bars, front):
@@ -295,67 +264,6 @@ def test_settings_of_lines_say_what_to_use(plotter, bars, name):
         setattr(actor, name, True)
 
 
-def test_planes_of_the_mapper_clip(plotter, bars, front):
-    from vtkmodules.vtkCommonDataModel import vtkPlane
-
-    actor = plotter.add_spline_tubes(bars, color="white", **FLAT)
-    whole = front()
-    plane = vtkPlane()
-    plane.SetNormal(0, 0, 1)
-    plane.SetOrigin(0, 0, 5)
-    actor.mapper.AddClippingPlane(plane)
-    cut = front()
-    assert (cut[:75] == whole[:75]).all()
-    assert not cut[75:].any()
-
-
-def test_places_are_picked(plotter, bars, front):
-    actor = plotter.add_spline_tubes(bars, color="white", **FLAT)
-    assert actor.pick_at(100, 100) is None
-    front()
-    segment, t = actor.pick_at(100 + 5 * 9, 150)
-    assert actor.tubes.tubes[segment] == 2
-    assert actor.tubes.segments[segment].tolist() == [13, 14]
-    assert t == pytest.approx((9.1 - 7.5) / 7.5, abs=0.01)
-    assert actor.pick_at(100, 125) is None
-
-
-def test_a_copy_draws_the_same_and_is_another(plotter, bars, front):
-    actor = plotter.add_spline_tubes(bars, scalars=np.arange(15.0), solver="itp", min_width=2, **FLAT)
-    actor.silhouette = True
-    actor.user_matrix = np.diag([1.0, 1.0, 1.2, 1.0])
-    before = front()
-    twin = actor.copy()
-    assert (twin.solver, twin.min_width, twin.silhouettes) == ("itp", 2.0, "auto")
-    plotter.remove_actor(actor)
-    plotter.add_actor(twin, reset_camera=False)
-    assert (front() == before).all()
-    twin.opacity = 0.25
-    assert actor.opacity == 1.0
-
-
-def test_a_refused_change_leaves_the_actor_as_it_was(plotter, bars, front):
-    actor = plotter.add_spline_tubes(bars, scalars=np.array([0.0, 1.0, 2.0]), **FLAT)
-    before = front()
-    for name, value in (("clim", (3, 1)), ("n_colors", 0), ("solver", "luck"), ("silhouettes", "x"), ("min_width", -1),
-                        ("iterations", 0)):  # fmt: skip
-        with pytest.raises(ValueError, match=name):
-            setattr(actor, name, value)
-    with pytest.raises(KeyError, match=r"no array 'fa'.*'arc_length'"):
-        actor.scalars = "fa"
-    with pytest.raises(AttributeError):
-        actor.colour = "red"
-    assert (front() == before).all()
-
-
-def test_numbers_beyond_float32_and_infinite_ones_are_drawn(plotter, bars, front):
-    numbers = np.array([0.0, 1e300, -1e300, np.inf, -np.inf])
-    actor = plotter.add_spline_tubes(bars[1], scalars=numbers, nan_color="lime", **FLAT)
-    assert actor.clim == (-1e300, 1e300)
-    assert covered(front()) > 100
-    assert at(front(), 12.0, 0.0).tolist() == [0, 255, 0]
-
-
 def test_scalars_with_tubes_that_are_made_already(bars):
     tubes = as_spline_tubes(bars, radius=1.0)
     plotter = pv.Plotter(off_screen=True)
@@ -367,7 +275,122 @@ def test_scalars_with_tubes_that_are_made_already(bars):
     plotter.close()
 
 
-def test_slopes_of_an_array_follow_straight_values(bars):
-    actor = TubeActor(as_spline_tubes(bars, radius=1.0), scalars=np.tile(np.linspace(0, 6, 5), 3))
-    assert actor.tubes.values["Data"].slopes == pytest.approx(np.full(15, 6 / 30))
-    assert find_tube_scalars(actor.tubes, "Data").range == (0.0, 6.0)
+X = np.linspace(-15.0, 15.0, 5)
+BARS = [np.stack([X, 0 * X, 0 * X + z], axis=1) for z in (-10.0, 0.0, 10.0)]
+FORK = (np.array([(0, 0, 0), (10, 0, 0), (20, 5, 0), (20, -5, 0)], float), np.array([(0, 1), (1, 2), (1, 3)]))
+
+
+def test_computed_colours_are_those_of_the_tubes_that_show():
+    actor = TubeActor(as_spline_tubes(BARS[0], radius=[1, 2, 3, 4, 5]), scalars="radius")
+    assert actor.clim == (1.0, 5.0)
+    actor.tubes = replace(actor.tubes, radius=2 * actor.tubes.radius)
+    assert actor.clim == (2.0, 10.0)
+    actor.scalars = "arc_length"
+    actor.tubes = replace(actor.tubes, points=3 * actor.tubes.points)
+    assert actor.clim == pytest.approx((0.0, 90.0))
+    assert actor.tubes.values == {}
+
+
+def test_arc_lengths_leave_the_tubes_of_the_actor_as_they_were():
+    """Three tubes meet in one node that lies 10 mm, 0 mm and 0 mm along them; numbers are still given per node."""
+    tubes = as_spline_tubes(FORK, tangents=np.tile([1.0, 0, 0], (4, 1)), scaled=True, radius=1.0)
+    tubes = replace(tubes, tubes=np.arange(3), n_tubes=3)
+    actor = TubeActor(tubes, scalars="arc_length")
+    assert actor.tubes is tubes
+    actor.scalars = np.arange(4.0)
+    assert (actor.tubes.n_nodes, actor.clim) == (4, (0.0, 3.0))
+
+
+@pytest.mark.parametrize("other", [None, BARS[0], "tubes"])
+def test_other_things_than_tubes_are_refused_in_words(other):
+    actor = TubeActor(as_spline_tubes(BARS, radius=1.0))
+    before = actor.tubes
+    with pytest.raises(TypeError, match="as_spline_tubes"):
+        actor.tubes = other
+    assert actor.tubes is before
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "message"),
+    [
+        ({"radius": -1.0}, ValueError, "radius"),
+        ({"radius": [1.0]}, ValueError, r"radius has the shape \(1,\)"),
+        ({"scalars": "fa"}, KeyError, "no array 'fa'.*'arc_length'"),
+        ({"scalars": np.zeros((15, 2)), "rgb": True}, ValueError, r"\(15, 2\)"),
+        ({"method": "magic"}, ValueError, "method is 'magic'"),
+        ({"opacity": 2}, ValueError, "opacity is 2"),
+        ({"solver": "luck"}, ValueError, "solver is 'luck'"),
+        ({"min_width": 1000}, ValueError, "min_width is 1000"),
+        ({"scalars": "length", "clim": (2, 1)}, ValueError, "the low one first"),
+        ({"scalars": "length", "n_colors": None}, ValueError, "n_colors is None"),
+        ({"scalars": "length", "n_colors": 1e30}, ValueError, "n_colors is 1e"),
+        ({"scalars": "length", "scalar_bar_args": {"size": 3}}, TypeError, "size"),
+        ({"scalar_bar_args": "title"}, TypeError, "scalar_bar_args is 'title'"),
+        ({"opacity": "linear"}, ValueError, "opacity 'linear' follows the numbers"),
+        ({"silhouettes": ["boxes"]}, ValueError, r"silhouettes is \['boxes'\]"),
+        ({"solver": {}}, ValueError, "solver is {}"),
+        ({"iterations": "many"}, ValueError, "iterations is 'many'"),
+        ({"iterations": float("inf")}, ValueError, "iterations is inf"),
+        ({"min_width": None}, ValueError, "min_width is None"),
+        ({"scalars": "arc_length", "scalar_slopes": np.ones(15)}, ValueError, "scalar_slopes came with 'arc_length'"),
+        ({"label": 3}, TypeError, "label is 3; give a string"),
+    ],
+)
+def test_nonsense_is_refused_in_words(plotter, arguments, error, message):
+    with pytest.raises(error, match=message):
+        plotter.add_spline_tubes(BARS, **arguments)
+    assert not plotter.actors
+    ((name, value),) = list(arguments.items())[-1:]
+    if name in ("opacity", "solver", "min_width", "clim", "n_colors", "silhouettes", "iterations", "scalars"):
+        actor = plotter.add_spline_tubes(BARS, scalars="length")
+        before = getattr(actor, name)
+        if value != "linear" and (name != "scalars" or isinstance(value, str)):
+            with pytest.raises(error, match=message):
+                setattr(actor, name, value)
+        assert getattr(actor, name) == before
+
+
+ADDS = ("add_spline_tubes", "add_halo_lines")
+
+
+@pytest.fixture
+def tractogram():
+    random = np.random.default_rng(0)
+    lines = [np.cumsum(random.random((n, 3)), axis=0).astype(np.float32) for n in (10, 20, 5)]
+    fa = [random.random((len(line), 1)).astype(np.float32) for line in lines]
+    return nib.streamlines.Tractogram(
+        lines, data_per_point={"fa": fa}, data_per_streamline={"w": np.arange(3.0)[:, None]}, affine_to_rasmm=np.eye(4)
+    )
+
+
+def values_of(actor):
+    drawn = actor.tubes if hasattr(actor, "tubes") else actor.lines
+    held = drawn.values["fa"]
+    return held.values if hasattr(held, "values") else held
+
+
+@pytest.mark.parametrize("add", ADDS)
+@pytest.mark.parametrize("kind", ["Tractogram", "TrkFile", "StatefulTractogram", "MultiBlock"])
+def test_data_of_other_libraries_go_by_their_names(plotter, tractogram, add, kind, tmp_path):
+    source = tractogram
+    wanted = np.concatenate(tractogram.data_per_point["fa"])[:, 0]
+    if kind == "TrkFile":
+        nib.streamlines.save(tractogram, tmp_path / "lines.trk")
+        source = nib.streamlines.load(tmp_path / "lines.trk")
+    elif kind == "StatefulTractogram":
+        dipy = pytest.importorskip("dipy.io.stateful_tractogram")
+        image = nib.Nifti1Image(np.zeros((40, 40, 40), np.float32), np.eye(4))
+        source = dipy.StatefulTractogram(
+            tractogram.streamlines, image, dipy.Space.RASMM,
+            data_per_point=tractogram.data_per_point, data_per_streamline=tractogram.data_per_streamline,
+        )  # fmt: skip
+    elif kind == "MultiBlock":
+        source = pv.MultiBlock()
+        for line, fa, w in zip(tractogram.streamlines, tractogram.data_per_point["fa"], range(3), strict=True):
+            block = pv.PolyData(line, lines=[len(line), *range(len(line))])
+            block.point_data["fa"], block.cell_data["w"] = fa[:, 0], [float(w)]
+            source.append(block)
+    actor = getattr(plotter, add)(source, scalars="fa", show_scalar_bar=False)
+    np.testing.assert_allclose(values_of(actor), wanted, atol=1e-6)
+    per_line = getattr(plotter, add)(source, scalars="w", cmap="gray", show_scalar_bar=False)
+    assert per_line.clim == (0.0, 2.0)

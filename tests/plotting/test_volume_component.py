@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-import gc
-import inspect
-import subprocess
-import sys
-import weakref
-from importlib.metadata import entry_points
-
 import numpy as np
 import pytest
 import pyvista as pv
 
 import pvfiblets.plotting.volumes.component  # noqa: F401 - for environments that were installed before it was there
 from pvfiblets.plotting.volumes.opacity import opacities, value_limits
+
+from .views import facing as look
+from .views import shot as plain_shot
 
 X = np.linspace(-10.0, 10.0, 21)
 AT = {"spacing": 1.0, "origin": (-10.0, -10.0, -10.0)}
@@ -23,18 +19,8 @@ FOG = np.ones((5, 5, 5), np.uint8)
 FOG_AT = {"spacing": 5.0, "origin": (-10.0, -10.0, -10.0)}
 
 
-def look(plotter):
-    """From -y, parallel: 200 pixels are 40 mm."""
-    plotter.camera_position = [(0, -100, 0), (0, 0, 0), (0, 0, 1)]
-    plotter.enable_parallel_projection()
-    plotter.camera.parallel_scale = 20.0
-    plotter.camera.clipping_range = 20, 200
-
-
 def shot(plotter):
-    """Render, and return the picture: PyVista's screenshot alone shows the last render."""
-    plotter.show(auto_close=False) if plotter._first_time else plotter.render()
-    return plotter.screenshot(None).astype(float)
+    return plain_shot(plotter).astype(float)
 
 
 def middle(plotter):
@@ -52,28 +38,6 @@ def image():
     grid = pv.ImageData(dimensions=BALL.shape, spacing=(1, 1, 1), origin=(-10, -10, -10))
     grid["density"] = BALL.ravel(order="F")
     return grid
-
-
-@pytest.mark.more
-def test_no_import_of_the_package_is_needed():
-    if "add_raycast_volume" not in entry_points(group="pyvista.plotter_components").names:
-        pytest.skip("the package was installed before it had these entry points; install it again")
-    code = (
-        "import numpy as np, pyvista as pv\n"
-        "pl = pv.Plotter(off_screen=True)\n"
-        "assert 'add_raycast_volume' in dir(pl)\n"
-        "print(type(pl.add_raycast_volume(np.eye(3)[None] + np.zeros((3, 1, 1)))).__name__, len(pl.raycast_volumes))\n"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    assert done.stdout.split() == ["VolumeActor", "1"], done.stderr
-
-
-def test_the_arguments_are_add_volumes_where_both_have_them(plotter):
-    ours = inspect.signature(plotter.add_raycast_volume).parameters
-    theirs = inspect.signature(pv.Plotter.add_volume).parameters
-    shared = set(ours) & set(theirs)
-    assert {"scalars", "cmap", "clim", "opacity", "n_colors", "opacity_unit_distance", "name", "render"} <= shared
-    assert all(parameter.kind is parameter.KEYWORD_ONLY for name, parameter in ours.items() if name != "source")
 
 
 def test_light_looks_as_vtks(plotter):
@@ -125,18 +89,6 @@ def test_colours_and_opacities_are_those_of_the_value(plotter):
     assert middle(plotter) == pytest.approx([128, 0, 0], abs=1)
     actor.color = None
     assert middle(plotter) == pytest.approx([64] * 3, abs=1)
-
-
-@pytest.mark.parametrize("mode", ["composite", "mip"])
-def test_lists_of_a_few_colours_keep_their_bounds(plotter, mode):
-    """Red up to 2 and lime from there, as a scalar bar of two colours has them; opacities are as fine as ever."""
-    arguments = {"cmap": ["red", "lime"], "clim": (0, 4), "opacity_unit_distance": 20.0, "mode": mode}
-    grown = [0.5, 0.4, 0.3, 0.2, 0.1]
-    for fog, colour, alpha in ((FOG, (1, 0, 0), 0.4), (np.uint8(3) * FOG, (0, 1, 0), 0.2)):
-        plotter.clear_actors()
-        plotter.add_raycast_volume(fog, opacity=grown, show_scalar_bar=False, **FOG_AT, **arguments)
-        look(plotter)
-        assert middle(plotter) == pytest.approx(255 * alpha * np.array(colour), abs=1.5)
 
 
 def test_surfaces_have_values_that_change(plotter):
@@ -240,20 +192,16 @@ def test_skipped_parts_are_told_and_change_nothing(plotter):
     corner = np.zeros((33, 33, 33), np.float32)
     corner[2:6, 2:6, 2:6] = 1.0
     actor = shown(plotter, corner, mode="isosurface", values=0.5)
+    assert actor.explain()["octree"] is None
     one = shot(plotter)
     assert actor.explain()["skipped"] > 0.9
+    octree = actor.explain()["octree"]
+    assert octree["bytes"] == pytest.approx(octree["share"] * corner.nbytes)
+    assert octree["share"] <= 0.05
+    assert octree["ms"] > 0
     actor.octree = False
     assert (shot(plotter) == one).all()
     assert actor.explain()["skipped"] == 0.0
-
-
-def test_matrices_move_it(plotter):
-    actor = shown(plotter, FOG, mode="mip", opacity=1.0, color="white", user_matrix=np.diag([0.5, 1, 1, 1]))
-    wide = shot(plotter).max(-1) > 0
-    assert wide[100].sum() == 50
-    actor.position = (0, 0, 5)
-    assert np.flatnonzero((shot(plotter).max(-1) > 0)[:, 100])[0] == 25
-    assert actor.bounds == pytest.approx((-5, 5, -10, 10, -5, 15))
 
 
 def test_tubes_and_volumes_meet_in_one_picture(plotter):
@@ -276,32 +224,11 @@ def test_a_copy_looks_the_same(plotter):
     assert (shot(plotter) == picture).all()
     twin._mapper.raise_pending()
     assert twin.casting.step == 0.3
+    twin.sparse = 4
+    assert twin.casting.sparse == 4
+    with pytest.raises(ValueError, match="sparse is 3"):
+        twin.sparse = 3
     twin.release()
-
-
-def test_shading_effects_are_of_surfaces_and_fading_of_all(plotter):
-    actor = shown(plotter, mode="mip", opacity=1.0, cmap="gray", clim=(0, 10))
-    plain = shot(plotter)
-    actor.ambient_occlusion = True
-    assert (shot(plotter) == plain).all()
-    assert actor.ambient_occlusion["samples"] == 16
-    actor.mode = "isosurface"
-    assert "ambient_occlusion" in actor.explain()["features"]
-    assert shot(plotter).any()
-    actor.mode, actor.ambient_occlusion = "mip", False
-    actor.depth_cue = {"strength": 0.5, "color": "black", "range": (90.0, 110.0)}
-    faded = shot(plotter)[100, 100]  # the middle of the ball lies half way
-    assert faded == pytest.approx(0.75 * plain[100, 100], abs=3)
-    for mode in ("composite", "local-mip"):
-        actor.mode = mode
-        assert shot(plotter).any()
-
-
-def test_labels_stand_in_the_legend(plotter):
-    shown(plotter, color="red", label="brain")
-    plotter.add_legend()
-    assert plotter.renderer._labels
-    assert shot(plotter).any()
 
 
 @pytest.mark.few(21)
@@ -389,17 +316,6 @@ def test_settings_that_others_have_are_refused_by_name():
     plotter.close()
 
 
-def test_an_actor_is_freed_with_its_plotter():
-    plotter = pv.Plotter(off_screen=True, window_size=(50, 50))
-    gone = weakref.ref(plotter.add_raycast_volume(BALL))
-    plotter.screenshot(None)
-    plotter.close()
-    plotter.deep_clean()
-    del plotter
-    gc.collect()
-    assert gone() is None
-
-
 def test_opacities_are_pyvistas_where_they_have_a_name():
     for name in ("linear", "geom_r", "sigmoid_8", "foreground"):
         assert (opacities(name, 64) * 255.0 == pv.opacity_transfer_function(name, 64)).all()
@@ -410,38 +326,3 @@ def test_opacities_are_pyvistas_where_they_have_a_name():
     assert opacities([True, False], 2).tolist() == [1.0, 0.0]
     assert value_limits((None, 3)) == (-np.inf, 3.0)
     assert value_limits(np.float32(2)) == (2.0, np.inf)
-
-
-def test_the_octree_and_what_it_costs_are_told(plotter):
-    actor = plotter.add_raycast_volume(np.random.default_rng(0).random((40, 33, 48)).astype(np.float32), values=0.5)
-    assert actor.explain()["octree"] is None
-    plotter.show(auto_close=False)
-    octree = actor.explain()["octree"]
-    assert octree["bytes"] == pytest.approx(octree["share"] * 40 * 33 * 48 * 4)
-    assert octree["share"] <= 0.05
-    assert octree["ms"] > 0
-
-
-def test_sparse_rays_are_a_setting(plotter):
-    actor = plotter.add_raycast_volume(np.zeros((8, 8, 8), np.float32), sparse=2, sparse_threshold=0.1, clim=(-1, 1))
-    assert (actor.casting.sparse, actor.casting.sparse_threshold) == (2, 0.1)
-    actor.sparse = 4
-    assert actor.copy().sparse == 4
-    with pytest.raises(ValueError, match="sparse is 3"):
-        actor.sparse = 3
-    assert actor.sparse == 4
-
-
-def test_a_table_is_integrated_once_though_the_mode_changes(plotter, monkeypatch):
-    from pvfiblets.volumes import preintegration
-
-    done = []
-    plain = preintegration.preintegrate
-    monkeypatch.setattr(preintegration, "preintegrate", lambda *given: done.append(given) or plain(*given))
-    actor = plotter.add_raycast_volume(np.random.default_rng(0).random((8, 8, 8)), opacity=[0, 0.123], n_colors=32)
-    plotter.show(auto_close=False)
-    for mode in ("mip", "composite", "isosurface", "composite"):
-        actor.mode = mode
-        plotter.render()
-    # Once for steps, and once for their parts, as noise bends everywhere.
-    assert [units for _, units in done] == pytest.approx([0.5, 0.125])

@@ -73,16 +73,6 @@ def test_each_setting_changes_the_picture_or_says_why_not(plotter, ball, made):
             assert not told, name
 
 
-@pytest.mark.parametrize("made", [{}, {"mode": "mip"}], ids=str)
-def test_lighting_is_of_surfaces(plotter, ball, made):
-    actor = plotter.add_raycast_volume(ball, **made)
-    before = picture(plotter)
-    with pytest.warns(UserWarning, match=r"prop\.lighting changes nothing.*set actor\.shade"):
-        actor.prop.lighting = True
-    assert not actor.prop.lighting
-    np.testing.assert_array_equal(picture(plotter), before)
-
-
 def test_what_was_said_is_forgotten_with_the_mode(plotter, ball):
     actor = plotter.add_raycast_volume(ball, mode="mip")
     with pytest.warns(UserWarning, match="no lamp shines"):

@@ -1,4 +1,4 @@
-"""Several translucent surfaces of a volume, the logarithm of its values, blocks, and voxels that have colours."""
+"""Several translucent surfaces, the logarithm of values, blocks, voxels that have colours, and shaded light."""
 
 from __future__ import annotations
 
@@ -95,13 +95,6 @@ def test_they_look_as_contours_with_depth_peeling(shot):
     assert np.quantile(off, 0.95) <= 16  # normals of contours are those of triangles
 
 
-def test_one_opacity_for_all_and_the_colours_of_the_map(shot):
-    look = {"cmap": ["red", "blue"], "clim": (4, 13), "n_colors": 2, "lighting": False, **LOOK}
-    one = shot(lambda p: p.add_raycast_volume(ball(), mode="isosurface", values=[5, 12], surface_opacities=0.4, **look))
-    layers = [(BLUE, 0.4), (RED, 0.4), (RED, 0.4), (BLUE, 0.4)]
-    assert np.abs(one[48, 48] - over(layers)).max() <= 2
-
-
 def test_opaque_things_end_rays_and_cuts_open_surfaces(shot):
     def add(plotter, cut=False):
         actor = plotter.add_raycast_volume(
@@ -117,30 +110,27 @@ def test_opaque_things_end_rays_and_cuts_open_surfaces(shot):
     assert np.abs(shot(lambda p: add(p, cut=True))[48, 48] - over([(RED, 0.5)], white)).max() <= 2
 
 
-def test_picks_sparse_rays_and_copies(shot):
-    found = {}
-
-    def add(plotter, sparse=1, copied=False):
-        actor = plotter.add_raycast_volume(
-            ball(), mode="isosurface", values=[5, 12], surface_opacities=[0.5, 0.0], surface_colors=["red", "blue"],
-            lighting=False, sparse=sparse, **LOOK,
-        )  # fmt: skip
-        if copied:
-            twin = actor.copy()
-            plotter.remove_actor(actor)
-            plotter.add_actor(twin)
-            actor = twin
-        plotter.camera_position = "xy"
-        plotter.show(auto_close=False)
-        found["hit"] = actor.pick_at(48, 48)
-        found["layered"] = actor.casting.layered
-
-    whole = shot(add)
-    assert found["layered"]
-    assert found["hit"].value == 5
-    assert abs(np.linalg.norm(found["hit"].position) - 5) < 0.6
-    assert np.mean(np.abs(shot(lambda p: add(p, sparse=2)) - whole) > 4) < 0.05
-    assert np.array_equal(shot(lambda p: add(p, copied=True)), whole)
+def test_picks_sparse_rays_and_copies(plotter):
+    plotter.enable_parallel_projection()
+    actor = plotter.add_raycast_volume(
+        ball(), mode="isosurface", values=[5, 12], surface_opacities=[0.5, 0.0], surface_colors=["red", "blue"],
+        lighting=False, **LOOK,
+    )  # fmt: skip
+    plotter.camera_position = "xy"
+    plotter.show(auto_close=False)
+    whole, hit = plotter.screenshot(None).astype(int), actor.pick_at(100, 100)
+    assert actor.casting.layered
+    assert hit.value == 5
+    assert abs(np.linalg.norm(hit.position) - 5) < 0.6
+    actor.sparse = 2
+    plotter.render()
+    assert np.mean(np.abs(plotter.screenshot(None) - whole) > 4) < 0.05
+    actor.sparse = 1
+    twin = actor.copy()
+    plotter.remove_actor(actor)
+    plotter.add_actor(twin, reset_camera=False)
+    plotter.render()
+    assert np.array_equal(plotter.screenshot(None), whole)
 
 
 @pytest.mark.parametrize(
@@ -220,19 +210,14 @@ def test_blocks_are_added_as_by_add_volume(shot):
     assert [actor.name for actor in actors] == ["both-0", "both-1-0"]
     assert [actor.cmap for actor in actors] == ["Reds", "Greens"]
     assert list(plotter.raycast_volumes) == actors
+    with pytest.raises(TypeError, match="rays cannot be cast through a PolyData"):  # and leaves none behind
+        plotter.add_raycast_volume(pv.MultiBlock([ball(), pv.Sphere()]))
+    with pytest.raises(ValueError, match="no blocks"):
+        plotter.add_raycast_volume(pv.MultiBlock())
+    assert list(plotter.raycast_volumes) == actors
     plotter.close()
     picture = shot(lambda p: p.add_raycast_volume(blocks, cmap="gray", **LOOK))
     assert (picture.sum(axis=-1) > 0).mean() > 0.3
-
-
-def test_a_block_that_is_refused_leaves_none_behind():
-    plotter = pv.Plotter(off_screen=True)
-    with pytest.raises(TypeError, match="rays cannot be cast through a PolyData"):
-        plotter.add_raycast_volume(pv.MultiBlock([ball(), pv.Sphere()]))
-    assert not list(plotter.raycast_volumes)
-    with pytest.raises(ValueError, match="no blocks"):
-        plotter.add_raycast_volume(pv.MultiBlock())
-    plotter.close()
 
 
 # RGBA ----------------------------------------------------------------------------------------------
@@ -271,8 +256,13 @@ def test_rgba_shows_its_own_colours_and_alpha(shot, unit):
             assert np.abs(found[row, column] - light_of_rgba(x, y, unit)).max() <= 4
 
 
-@pytest.mark.more
 def test_rgba_is_light_and_nothing_else():
+    image = rgba()
+    image["rgba"] = image["rgba"].astype(np.float32)
+    with pytest.raises(ValueError, match="four of type uint8, RGBA"):
+        as_raycast_volume(image, scalars="rgba")
+    with pytest.raises(ValueError, match="RGBA of type uint8 is drawn as it is"):
+        as_raycast_volume(np.zeros((4, 4, 4, 4)))
     plotter = pv.Plotter(off_screen=True)
     actor = plotter.add_raycast_volume(rgba())
     assert actor.volume.colours.shape == (N, N, N, 3)
@@ -281,18 +271,122 @@ def test_rgba_is_light_and_nothing_else():
     with pytest.raises(ValueError, match="voxels are RGBA: show them as mode 'composite'"):
         actor.mode = "mip"
     assert actor.mode == "composite"
-    actor.smooth = 1.0
-    plotter.show(auto_close=False)
-    actor.shade = True
-    plotter.render()
-    assert "VOLUME_COLOURS" in actor.explain()["features"]
     plotter.close()
 
 
-def test_four_numbers_of_another_type_are_refused():
-    image = rgba()
-    image["rgba"] = image["rgba"].astype(np.float32)
-    with pytest.raises(ValueError, match="four of type uint8, RGBA"):
-        as_raycast_volume(image, scalars="rgba")
-    with pytest.raises(ValueError, match="RGBA of type uint8 is drawn as it is"):
-        as_raycast_volume(np.zeros((4, 4, 4, 4)))
+N_BULGE = 40
+OPACITY = np.clip((np.linspace(0, 1, 256) - 0.25) * 3, 0, 0.6)
+SHADED = {
+    "cmap": "viridis", "clim": (0, 1), "opacity_unit_distance": 1.0, "shade": True, "show_scalar_bar": False,
+    "specular_power": 10.0,
+}  # fmt: skip
+
+LIGHTS = {
+    "beside": {"position": (1000, 200, 500), "focal_point": (20, 20, 20)},
+    "behind": {"position": (-1000, -200, -500), "focal_point": (20, 20, 20)},
+    "near": {"position": (75, 40, 60), "focal_point": (20, 20, 20), "positional": True, "cone_angle": 90},
+    "the eye's": {"light_type": "headlight"},
+    "a spot": {"position": (75, 40, 60), "focal_point": (20, 25, 20), "positional": True, "cone_angle": 12},
+}
+
+
+def bulge():
+    x = np.linspace(-1, 1, N_BULGE)
+    at = np.stack(np.meshgrid(x, x, x, indexing="ij"), axis=-1)
+    ball = np.clip(1.15 - np.linalg.norm(at, axis=-1) / 0.8, 0, 1)
+    field = ball + 0.6 * np.exp(-(((at - [0.3, -0.5, 0.3]) ** 2).sum(axis=-1)) * 40)
+    image = pv.ImageData(dimensions=field.shape)
+    image["values"] = (field / field.max()).astype(np.float32).ravel(order="F")
+    return image
+
+
+def lit_shot(add, lights, azimuth=30.0):
+    plotter = pv.Plotter(off_screen=True, window_size=(120, 120), lighting="none")
+    plotter.set_background("black")
+    for light in lights:
+        plotter.add_light(pv.Light(**{"light_type": "scene light", **LIGHTS[light]}))
+    add(plotter)
+    plotter.camera_position = "xy"
+    plotter.camera.azimuth, plotter.camera.elevation = azimuth, 20.0
+    plotter.camera.zoom(1.8)
+    picture = np.array(plotter.screenshot(return_img=True)).astype(float)
+    plotter.close()
+    return picture
+
+
+def ours(image, **look):
+    return lambda plotter: plotter.add_raycast_volume(image, **{**SHADED, "opacity": OPACITY, **look})
+
+
+def vtks(image, **look):
+    def add(plotter):
+        volume = plotter.add_volume(image.copy(), mapper="gpu", **{**SHADED, "opacity": 255 * OPACITY, **look})
+        volume.mapper.SetAutoAdjustSampleDistances(0)
+        volume.mapper.SetSampleDistance(0.25)
+        volume.mapper.SetUseJittering(0)
+
+    return add
+
+
+@pytest.mark.few(1)
+@pytest.mark.parametrize(
+    ("lights", "reflection"),
+    [
+        (["beside"], (0.0, 1.0, 0.0)),
+        (["behind"], (0.0, 0.7, 0.0)),
+        (["near"], (0.0, 1.0, 0.0)),
+        (["a spot", "behind"], (0.0, 0.8, 0.0)),
+        (["beside", "near"], (0.0, 0.3, 0.3)),
+        (["the eye's"], (0.5, 0.0, 0.0)),  # of other lights VTK takes an ambient colour, which they lack
+    ],
+)
+def test_light_is_shaded_as_vtk_shades_it(lights, reflection):
+    look = dict(zip(("ambient", "diffuse", "specular"), reflection, strict=True))
+    image = bulge()
+    found, right = lit_shot(ours(image, **look), lights), lit_shot(vtks(image, **look), lights)
+    there = right.max(axis=-1) > 3
+    assert there.mean() > 0.2
+    assert np.abs(found - right)[there].mean() < (5.0 if reflection[2] else 2.5)
+    assert np.quantile(np.abs(found - right)[there], 0.99) < (32 if reflection[2] else 16)
+    plain = lit_shot(ours(image, shade=False), lights)
+    assert np.abs(plain - right)[there].mean() > 15
+
+
+def test_without_a_gradient_light_has_its_own_colours():
+    """VTK leaves such parts black but for the ambient share; noise of a thousandth casts no shadows either."""
+    image = bulge()
+    for level, noise in ((0.6, 0.0), (0.6, 1e-3)):
+        values = level + noise * np.random.default_rng(0).random(N_BULGE**3)
+        image["values"] = values.astype(np.float32)
+        lit, plain = (lit_shot(ours(image, shade=shade), ["beside"]) for shade in (True, False))
+        assert plain.max() > 60
+        assert np.abs(lit - plain).max() <= (1 if noise == 0.0 else 6)
+
+
+def test_a_matrix_of_the_actor_turns_the_gradients():
+    """A volume and its mirror image show the same where the matrix takes one to the other."""
+    image = bulge()
+    flipped = image.copy()
+    flipped["values"] = image["values"].reshape(N_BULGE, N_BULGE, N_BULGE)[:, :, ::-1].ravel()
+    matrix = np.diag([-1.0, 1.0, 1.0, 1.0])
+    matrix[0, 3] = N_BULGE - 1.0
+    found = lit_shot(ours(flipped, user_matrix=matrix, specular=0.3), ["beside", "near"])
+    assert np.abs(found - lit_shot(ours(image, specular=0.3), ["beside", "near"])).max() <= 4
+
+
+def test_it_is_a_live_setting():
+    plotter = pv.Plotter(off_screen=True, window_size=(60, 60))
+    with pytest.warns(UserWarning, match=r"ambient=0\.1 changes nothing in mode 'composite': set actor\.shade"):
+        actor = plotter.add_raycast_volume(bulge(), ambient=0.1)
+    assert not actor.shade
+    before = np.array(plotter.screenshot(return_img=True)).astype(int)
+    actor.shade = True
+    actor.specular, actor.specular_power = 0.4, 20.0
+    assert (actor.prop.ambient, actor.prop.specular) == (0.1, 0.4)
+    plotter.render()
+    assert np.abs(np.array(plotter.screenshot(return_img=True)).astype(int) - before).max() > 10
+    assert actor.copy().shade
+    assert "VOLUME_SHADED" in actor.explain()["features"]
+    with pytest.raises(ValueError, match="specular"):
+        actor.specular = -1.0
+    plotter.close()

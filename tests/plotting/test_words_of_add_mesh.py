@@ -24,6 +24,17 @@ def test_light_is_told_to_be_the_propertys(plotter, three_lines, add):
         getattr(plotter, add)(three_lines, smooth_shading=True)
     with pytest.raises(TypeError, match="unexpected keyword argument 'spekular'"):
         getattr(plotter, add)(three_lines, spekular=1.0)
+    name = {"add_spline_tubes": "silhouette", "add_halo_lines": "n_tapered", "add_fiblets": "tube_radius"}[add]
+    with pytest.raises(TypeError, match=rf"takes no {name}: set it on the actor .*actor\.{name} = "):
+        getattr(plotter, add)(three_lines, **{name: 1})
+    with pytest.warns(UserWarning, match="nothing is drawn"):
+        getattr(plotter, add)([])
+    actor = getattr(plotter, add)(three_lines, color="red")
+    assert hasattr(actor, name)
+    actor.prop.specular_color, actor.prop.specular = "blue", 1.0  # VTK's GetColor mixes the two
+    assert actor.color == "red"
+    actor.prop.color = "green"
+    assert actor.color == "green"
 
 
 @pytest.mark.parametrize("add", ["add_fiblets", "add_spline_tubes"])
@@ -37,12 +48,6 @@ def test_light_of_the_property_is_drawn(plotter, three_lines, add):
         after = plotter.screenshot()
         assert np.abs(after.astype(int) - before).max() > 20, name
         before = after
-
-
-@pytest.mark.parametrize("add", ADDS)
-def test_nothing_to_draw_is_told(plotter, add):
-    with pytest.warns(UserWarning, match="nothing is drawn"):
-        getattr(plotter, add)([])
 
 
 def test_tables_for_pandas_and_arrow(three_lines):
@@ -59,18 +64,6 @@ def test_the_colour_cycler_colours_tubes(plotter, three_lines):
     found = [plotter.add_spline_tubes(three_lines).prop.color.name for _ in range(2)]
     assert found == ["red", "lime"]
     assert plotter.add_spline_tubes(three_lines, color="white").prop.color.name == "white"
-
-
-@pytest.mark.parametrize("add", ["add_fiblets", "add_spline_tubes", "add_halo_lines"])
-def test_the_colour_of_highlights_leaves_lines_theirs(plotter, add):
-    """VTK's ``GetColor`` mixes the two once a property has highlights."""
-    line = np.linspace([0.0, 0.0, 0.0], [9.0, 5.0, 1.0], 20)
-    actor = getattr(plotter, add)(line, color="red")
-    actor.prop.specular_color = "blue"
-    actor.prop.specular = 1.0
-    assert actor.color == "red"
-    actor.prop.color = "green"
-    assert actor.color == "green"
 
 
 @pytest.mark.parametrize("add", ["add_fiblets", "add_spline_tubes", "add_halo_lines"])
@@ -93,19 +86,14 @@ def add(request, plotter, three_lines):
 EVERY = [*ADDS, "add_halo_points", "add_raycast_volume"]
 
 
-@pytest.mark.parametrize("add", EVERY, indirect=True)
-def test_a_name_is_a_string(plotter, add):
-    with pytest.raises(TypeError, match="name is 3; give a string"):
-        add(name=3)
-    assert not plotter.actors
-
-
 WORDS = sorted(set(inspect.signature(pv.Plotter.add_mesh).parameters) - {"self", "mesh", "kwargs"})
 
 
 @pytest.mark.parametrize("add", EVERY, indirect=True)
 def test_every_word_of_add_mesh_is_taken_or_explained(add, request):
     name = request.node.callspec.params["add"]
+    with pytest.raises(TypeError, match="name is 3; give a string"):
+        add(name=3)
     known = inspect.signature(getattr(pv.Plotter(off_screen=True), name)).parameters
     for word in set(WORDS) - set(known):
         with pytest.raises((TypeError, ValueError), match=rf"takes no {word}: \w|{word} of add_volume \w") as told:
@@ -150,23 +138,6 @@ def test_the_plotter_has_a_mapper_whose_range_can_be_set(add, plotter):
     assert actor.clim == (2.0, 3.0)
 
 
-@pytest.mark.parametrize("add", ["add_fiblets"], indirect=True)
-def test_nan_color_takes_the_opacity_of_nan(add, plotter, colours_in):
-    """As the error for ``nan_opacity`` advises."""
-    add(scalars=np.full(3, np.nan), nan_color=(1.0, 0.0, 0.0, 0.0), clim=(0.0, 1.0), show_scalar_bar=False)
-    assert not colours_in(plotter.screenshot())
-
-
-@pytest.mark.parametrize(
-    ("add", "name"),
-    [("add_spline_tubes", "silhouette"), ("add_halo_lines", "n_tapered"), ("add_fiblets", "tube_radius")],
-)
-def test_what_is_set_of_actors_only_is_told(plotter, three_lines, add, name):
-    with pytest.raises(TypeError, match=rf"takes no {name}: set it on the actor .*actor\.{name} = "):
-        getattr(plotter, add)(three_lines, **{name: 1})
-    assert hasattr(getattr(plotter, add)(three_lines), name)
-
-
 def words_of(mapper):
     """What PyVista adds to a mapper of VTK's, beside what it keeps to itself."""
     vtks = set(dir(next(kind for kind in type(mapper).__mro__ if kind.__module__.startswith("vtkmodules"))))
@@ -182,6 +153,13 @@ def test_words_of_mappers_are_taken_or_explained(add, plotter, request):
     theirs = plotter.add_volume(image).mapper if volume else plotter.add_mesh(pv.Sphere()).mapper
     ours = add().mapper
     kept = {"bounds_size", "check_attribute", "resolve", "static"}  # of bounds, of Python, and of triangles
+    if volume:
+        actor = add()
+        assert actor.mapper.blend_mode == "composite"
+        actor.mapper.blend_mode = "maximum"
+        assert (actor.mode, actor.mapper.blend_mode) == ("mip", "maximum")
+        with pytest.raises(ValueError, match="blending='additive' adds up"):
+            actor.mapper.blend_mode = "additive"
     for name in words_of(theirs) - kept:
         assert hasattr(type(ours), name), name
         if hasattr(ours, name):
@@ -190,18 +168,6 @@ def test_words_of_mappers_are_taken_or_explained(add, plotter, request):
             getattr(ours, name)
         with pytest.raises(AttributeError, match=rf"this mapper has no {name}: \w"):
             setattr(ours, name, 1)
-
-
-@pytest.mark.parametrize("add", ["add_raycast_volume"], indirect=True)
-def test_blend_modes_of_a_mapper(add):
-    actor = add()
-    assert actor.mapper.blend_mode == "composite"
-    actor.mapper.blend_mode = "maximum"
-    assert (actor.mode, actor.mapper.blend_mode) == ("mip", "maximum")
-    with pytest.raises(ValueError, match="blending='additive' adds up"):
-        actor.mapper.blend_mode = "additive"
-    actor.mode = "isosurface"
-    assert actor.mapper.blend_mode == "isosurface"
 
 
 @pytest.mark.parametrize("add", ADDS, indirect=True)

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import itertools
 import re
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -47,8 +45,9 @@ def test_all_sources_give_the_same_tubes(method):
     plain = vtk.vtkPolyData()
     plain.ShallowCopy(mesh)
     same(as_spline_tubes(plain, radius="radius", scalars="scalars", method=method), reference)
-    segments = np.concatenate([np.stack([np.arange(a, b - 1), np.arange(a + 1, b)], axis=1) for a, b in
-                               itertools.pairwise(offsets)])
+    segments = np.concatenate(
+        [np.stack([np.arange(a, b - 1), np.arange(a + 1, b)], axis=1) for a, b in itertools.pairwise(offsets)]
+    )
     same(as_spline_tubes((points, segments), radius=width, scalars=2 * width, method=method), reference)
     # Segments in any order are chained where they follow each other, and stay in the order given.
     order = np.random.default_rng(3).permutation(len(segments))
@@ -233,23 +232,5 @@ def test_bad_values_are_named(source, options, message):
 def test_what_cannot_be_tubes_is_refused(source):
     with pytest.raises(TypeError, match="tubes cannot be made from a"):
         as_spline_tubes(source)
-
-
-def test_tubes_come_alone():
-    tubes = as_spline_tubes(HELIX)
     with pytest.raises(TypeError, match="with them came radius, scalars; leave it out"):
-        as_spline_tubes(tubes, radius=1.0, scalars=T)
-
-
-def test_needs_neither_pyvista_nor_opengl():
-    code = ("import sys, numpy as np; from pvfiblets.tubes import as_spline_tubes; as_spline_tubes(np.eye(3));"
-            "assert not {'vtk', 'vtkmodules', 'pyvista', 'moderngl', 'numba'} & set(sys.modules)")
-    subprocess.run([sys.executable, "-c", code], check=True)
-
-
-def test_rows_may_be_plain_lists():
-    rows = [(0, 20, 0), (1, 20, 0), (2, 0, 0)]
-    given = as_spline_tubes(np.eye(3), radius=[1, 1, 2], tangents=rows)
-    np.testing.assert_array_equal(given.tangents, rows)
-    colours = as_spline_tubes(np.eye(3), radius=1, scalars=[[1, 0, 0], [0, 1, 0], [0, 0, 1]], rgb=True)
-    assert next(iter(colours.values.values())).is_colour
+        as_spline_tubes(as_spline_tubes(HELIX), radius=1.0, scalars=T)

@@ -83,14 +83,6 @@ def test_where_halves_meet_is_the_middle_of_the_cubic_with_a_quarter_and_beside_
     np.testing.assert_allclose(beside, (slopes[:, 0] - slopes[:, 1]) / 24.0, atol=1e-12)
 
 
-def test_derivative_is_what_differences_tell():
-    halves = controls(some_tubes())
-    t = np.array([0.1, 0.5, 0.8])
-    step = 1e-6
-    change = (evaluate(halves[:, :, None], t + step) - evaluate(halves[:, :, None], t - step)) / (2.0 * step)
-    np.testing.assert_allclose(derivative(halves[:, :, None], t), change, atol=1e-7)
-
-
 @pytest.mark.parametrize("scaled", [False, True])
 def test_deviation_is_a_fifty_fourth_of_the_third_difference(scaled):
     tubes = some_tubes(scaled=scaled)
@@ -107,12 +99,6 @@ def test_deviation_of_what_quadratics_hold_exactly_is_0():
     tubes = SplineTubes([[0, 0, 0], [1, 1, 0]], [[0, 1]], [1, 2], [[1, 0, 0], [1, 2, 0]], [1, 1], False, [0], 1)
     assert deviation(tubes) < 1e-15
     assert deviation(SplineTubes([], [], [], [], [], False, [], 0)) == 0.0
-
-
-def test_some_segments_in_any_order():
-    tubes = some_tubes()
-    np.testing.assert_array_equal(controls(tubes, [7, 3, 7]), controls(tubes)[[7, 3, 7]])
-    assert controls(tubes, []).shape == (0, 2, 3, 4)
 
 
 def test_radii_never_fall_below_0():
@@ -156,13 +142,6 @@ def test_boxes_hold_their_tubes_and_all_sides_touch():
     assert np.linalg.det(box.axes) == pytest.approx(np.ones(200))
     sides = box.corners.max(axis=1) - box.corners.min(axis=1)
     assert (sides.prod(axis=1) >= box.volume - 1e-9).all()
-
-
-def test_axes_run_along_the_chord_and_to_the_bend():
-    box = boxes([[[1, 1, 1, 0], [2, 3, 1, 0], [5, 1, 1, 0.0]]])
-    np.testing.assert_allclose(box.axes[0], [[1, 0, 0], [0, 1, 0], [0, 0, 1]], atol=1e-15)
-    np.testing.assert_allclose(box.half[0], [2.0, 0.5, 0.0], atol=1e-15)  # the top is half as high as its control point
-    np.testing.assert_allclose(box.centre[0], [3.0, 1.5, 1.0], atol=1e-15)
 
 
 @pytest.mark.parametrize(

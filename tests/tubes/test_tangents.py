@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import time
 
 import numpy as np
 import pytest
@@ -94,10 +93,6 @@ def test_closed_lines_are_smooth_where_they_meet(count):
     np.testing.assert_allclose(found[:-1], middle, atol=1e-12)
 
 
-def test_there_and_back_is_not_closed():
-    assert one([[0, 0, 0], [1, 0, 0], [0, 0, 0]])[:, 0].tolist() == [1, 0, -1]
-
-
 @pytest.mark.parametrize("name", METHODS)
 def test_a_node_twice_in_a_row_is_a_sharp_corner(name):
     rng = np.random.default_rng(1)
@@ -165,14 +160,8 @@ def test_a_long_spline_is_solved_to_the_last_digits():
     assert np.all(np.abs(ends[:-1] - starts[1:]) <= 1e-13 * size)
 
 
-def test_a_large_set_takes_less_than_a_second():
-    points, offsets = ragged(np.random.default_rng(0), np.full(10000, 80))
-    began = time.process_time()
-    derivatives(points, Steps.between(points, offsets))
-    assert time.process_time() - began < 2.0  # 0.4 s where nothing else runs
-
-
 def test_no_such_method():
     with pytest.raises(ValueError, match="method is 'cubic', expected one of 'finite'"):
         one(np.zeros((2, 3)), "cubic")
     assert one(np.zeros((0, 3))).shape == (0, 3)
+    assert one([[0, 0, 0], [1, 0, 0], [0, 0, 0]])[:, 0].tolist() == [1, 0, -1]  # there and back is not closed

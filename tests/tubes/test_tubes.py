@@ -18,8 +18,16 @@ def tubes(points, segments, *, radius=1.0, tangents=0.0, slopes=0.0, scaled=True
     n, segments = len(points), np.asarray(segments, int).reshape(-1, 2)
     owner = np.zeros(len(segments), int) if owner is None else owner
     rest.setdefault("n_tubes", int(max(owner, default=-1)) + 1)
-    return SplineTubes(points, segments, np.broadcast_to(radius, n), np.broadcast_to(tangents, (n, 3)),
-                       np.broadcast_to(slopes, n), scaled, owner, **rest)
+    return SplineTubes(
+        points,
+        segments,
+        np.broadcast_to(radius, n),
+        np.broadcast_to(tangents, (n, 3)),
+        np.broadcast_to(slopes, n),
+        scaled,
+        owner,
+        **rest,
+    )
 
 
 def hermite(tube, segment, t):
@@ -28,8 +36,10 @@ def hermite(tube, segment, t):
     scale = np.linalg.norm(tube.points[j] - tube.points[i]) if tube.scaled else 1.0
     basis = (2 * t**3 - 3 * t**2 + 1, t**3 - 2 * t**2 + t, -2 * t**3 + 3 * t**2, t**3 - t**2)
     return [
-        np.multiply.outer(basis[0], n[i]) + np.multiply.outer(basis[1], scale * m[i])
-        + np.multiply.outer(basis[2], n[j]) + np.multiply.outer(basis[3], scale * m[j])
+        np.multiply.outer(basis[0], n[i])
+        + np.multiply.outer(basis[1], scale * m[i])
+        + np.multiply.outer(basis[2], n[j])
+        + np.multiply.outer(basis[3], scale * m[j])
         for n, m in ((tube.points, tube.tangents), (tube.radius, tube.radius_slopes))
     ]
 
@@ -37,8 +47,14 @@ def hermite(tube, segment, t):
 @given(st.integers(0, 10**6), st.booleans())
 def test_bounds_hold_every_sphere_and_are_not_much_larger(seed, scaled):
     rng = np.random.default_rng(seed)
-    tube = tubes(rng.normal(size=(5, 3)), [[0, 1], [1, 2], [3, 1], [4, 4]], radius=rng.uniform(0, 1, 5),
-                 tangents=rng.normal(size=(5, 3)), slopes=rng.normal(size=5), scaled=scaled)
+    tube = tubes(
+        rng.normal(size=(5, 3)),
+        [[0, 1], [1, 2], [3, 1], [4, 4]],
+        radius=rng.uniform(0, 1, 5),
+        tangents=rng.normal(size=(5, 3)),
+        slopes=rng.normal(size=5),
+        scaled=scaled,
+    )
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     for segment in range(4):
         place, radius = hermite(tube, segment, np.linspace(0, 1, 101))
@@ -63,29 +79,12 @@ def test_bounds_of_a_straight_tube_are_its_own():
     assert tubes([[0, 0, 0], [9, 9, 9]], [[0, 0]]).bounds == (-1, 1, -1, 1, -1, 1)
 
 
-@pytest.mark.parametrize(
-    ("segments", "expected"),
-    [
-        ([[0, 1], [1, 2]], [[0, 1], [1, 0]]),
-        # a ring, a bifurcation, two segments that meet head on, a sphere at the end of a tube
-        ([[0, 1], [1, 2], [2, 0]], [[1, 1], [1, 1], [1, 1]]),
-        ([[0, 1], [1, 2], [1, 3]], [[0, 1], [1, 0], [1, 0]]),
-        ([[0, 1], [2, 1]], [[0, 0], [0, 0]]),
-        ([[0, 1], [1, 1]], [[0, 0], [0, 0]]),
-        ([], np.zeros((0, 2))),
-    ],
-)
-def test_joined_ends(segments, expected):
-    found = tubes(np.arange(12.0).reshape(4, 3), segments).joined_ends
-    assert found.dtype == bool
-    np.testing.assert_array_equal(found, np.array(expected, bool))
-
-
 @given(st.integers(0, 10**6))
 def test_joined_ends_agree_with_looking_one_by_one(seed):
     rng = np.random.default_rng(seed)
     segments = rng.integers(0, 12, (7, 2))
     found = tubes(rng.normal(size=(12, 3)), segments).joined_ends
+    assert found.dtype == bool
     pairs = [tuple(pair) for pair in segments.tolist() if pair[0] != pair[1]]
     for (i, j), joined in zip(segments.tolist(), found.tolist(), strict=True):
         before = i != j and any(end == i for _, end in pairs)
@@ -104,11 +103,21 @@ def test_lengths_are_right_for_all_sizes():
 def test_a_subset_keeps_its_shapes_and_values():
     rng = np.random.default_rng(0)
     points = rng.normal(size=(9, 3))
-    whole = tubes(points, [[0, 1], [3, 4], [1, 2], [4, 5], [6, 7], [7, 8]], owner=[0, 1, 0, 1, 3, 3], n_tubes=4,
-                  tangents=rng.normal(size=(9, 3)), values={"a": NodeValues(np.arange(9.0), np.arange(9.0) + 0.5)},
-                  tube_values={"b": np.array([10, 11, 12, 13])})
+    whole = tubes(
+        points,
+        [[0, 1], [3, 4], [1, 2], [4, 5], [6, 7], [7, 8]],
+        owner=[0, 1, 0, 1, 3, 3],
+        n_tubes=4,
+        tangents=rng.normal(size=(9, 3)),
+        values={"a": NodeValues(np.arange(9.0), np.arange(9.0) + 0.5)},
+        tube_values={"b": np.array([10, 11, 12, 13])},
+    )
     part = whole.subset([3, 2, 1])
-    assert (part.n_tubes, part.n_segments, part.n_nodes) == (3, 4, 6)
+    assert (part.n_tubes, part.n_segments, part.n_nodes, part.n_streamlines) == (3, 4, 6, 3)
+    # points, tangents: 3 numbers a node; radius, slopes, and values twice: one; two indices and a tube a segment
+    assert part.nbytes == 8 * (6 * (3 + 3 + 4) + 4 * 3) + part.tube_values["b"].nbytes
+    assert not NodeValues([0, np.nan], [0, 0]).is_colour  # values may be missing, but not their slopes
+    assert NodeValues(np.zeros((1, 4)), np.zeros((1, 4))).is_colour
     assert part.tube_values["b"].tolist() == [13, 12, 11]
     np.testing.assert_array_equal(part.tubes, [0, 0, 2, 2])
     np.testing.assert_array_equal(part.points[part.segments], points[[[6, 7], [7, 8], [3, 4], [4, 5]]])
@@ -118,15 +127,6 @@ def test_a_subset_keeps_its_shapes_and_values():
     for wrong in ([4], [-1], [1, 1], np.ones(3, bool)):
         with pytest.raises(IndexError):
             whole.subset(wrong)
-
-
-def test_sizes_and_what_mappers_ask():
-    tube = tubes(np.zeros((3, 3)), [[0, 1]], n_tubes=5, values={"a": NodeValues(np.zeros(3), np.zeros(3))})
-    assert (tube.n_nodes, tube.n_points, tube.n_segments, tube.n_tubes, tube.n_streamlines) == (3, 3, 1, 5, 5)
-    assert tube.promise == 0.0
-    # points, tangents: 3 x 3; radius, slopes, and values twice: 3; two indices and a tube
-    assert tube.nbytes == 8 * (9 + 9 + 4 * 3 + 3)
-    assert "5 tubes" in repr(tube)
 
 
 TWO = ([[0, 0, 0], [1, 0, 0]], [[0, 1]])
@@ -156,8 +156,3 @@ TWO = ([[0, 0, 0], [1, 0, 0]], [[0, 1]])
 def test_what_contradicts_itself_is_refused(how, message):
     with pytest.raises(ValueError, match=re.escape(message)):
         how()
-
-
-def test_values_may_be_missing_but_not_their_slopes():
-    assert not NodeValues([0, np.nan], [0, 0]).is_colour
-    assert NodeValues(np.zeros((1, 4)), np.zeros((1, 4))).is_colour

@@ -69,16 +69,11 @@ def test_a_mih_names_the_file_of_its_data(tmp_path):
 
 @pytest.mark.parametrize(
     ("change", "said"),
-    [
-        ((b"mrtrix image", b"mrtrix tracks"), "magic line"),
-        ((b"dim: 4,5,6", b"dim: 4,5,x"), "whole numbers"),
-        ((b"dim: 4,5,6", b"dim: 4,5,9"), "bytes of data"),
-        ((b"layout: +0,+1,+2", b"layout: +0,+1,+1"), "layout"),
-        ((b"Float32LE", b"CFloat32LE"), "datatype"),
-        ((b"\nEND", b"\nEMD"), "END|a line"),
-        ((b"file: . ", b"fine: . "), "0 lines"),
-    ],
-)
+    [((b"mrtrix image", b"mrtrix tracks"), "magic line"), ((b"dim: 4,5,6", b"dim: 4,5,x"), "whole numbers"),
+     ((b"dim: 4,5,6", b"dim: 4,5,9"), "bytes of data"), ((b"layout: +0,+1,+2", b"layout: +0,+1,+1"), "layout"),
+     ((b"Float32LE", b"CFloat32LE"), "datatype"), ((b"\nEND", b"\nEMD"), "END|a line"),
+     ((b"file: . ", b"fine: . "), "0 lines")],
+)  # fmt: skip
 def test_a_damaged_mif_says_what_is_wrong(tmp_path, change, said):
     path = mif(tmp_path / "a.mif", np.zeros((4, 5, 6), "<f4"), "+0,+1,+2")
     path.write_bytes(path.read_bytes().replace(*change))

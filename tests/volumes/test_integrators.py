@@ -6,19 +6,13 @@ import numpy as np
 import pytest
 
 from pvfiblets.volumes.integrators import (
-    INTEGRATORS,
     MIDDLE,
     PANELS,
     STABLE_UP_TO,
-    Row,
-    composed,
     integrate,
-    preintegrated,
     study,
 )  # fmt: skip
-from pvfiblets.volumes.reference import composite
 from pvfiblets.volumes.reference_profiles import Profile, profiles
-from pvfiblets.volumes.reference_rays import Rays
 from pvfiblets.volumes.transfer import Transfer
 
 
@@ -56,19 +50,6 @@ def test_the_closed_forms_are_the_integral(name, depth):
     assert np.abs(profile.light(start, end) - expected).max() < 2e-6
 
 
-def test_a_profile_is_a_volume():
-    profile = named("teeth", 20.0)
-    volume = profile.volume()
-    ray = Rays(np.array([[0.3, 0.6, 0.0]]), np.array([[0, 0, 1.0]]), np.array([2.0]), np.array([62.0]), np.eye(4))
-    assert np.abs(composite(volume, profile.transfer, ray) - profile.light(2.0, 62.0)).max() < 1e-6  # float32 voxels
-
-
-def test_no_closed_form_is_an_error():
-    both = Profile("both", np.array([0.0, 1.0]), 1.0, Transfer([[0, 0, 0, 0], [1, 1, 1, 0.5]], (0, 1)))
-    with pytest.raises(ValueError, match="both change"):
-        both.light()
-
-
 # ------------------------------------------------------------------------------------------------------ integrators
 
 
@@ -86,7 +67,7 @@ def test_orders(method, order, table):
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
-@pytest.mark.parametrize("x", [1e-6, 1e-3, 1.0, 30.0, 1e3, 1e6])
+@pytest.mark.parametrize("x", [1e-6, 1.0, 1e3, 1e6])
 def test_exponential_steps_are_exact_where_nothing_changes_in_them(x, dtype):
     rng = np.random.default_rng(0)
     kappa, colour = (x * rng.random((3, 5, 8))).astype(dtype), rng.random((3, 5, 8, 3))
@@ -100,22 +81,6 @@ def test_exponential_steps_are_exact_where_nothing_changes_in_them(x, dtype):
     assert np.abs(alpha + np.expm1(-depth.sum(axis=-1))).max() < tolerance
     assert rgb.min() >= 0
     assert max(rgb.max(), alpha.max()) <= 1 + 1e-6
-
-
-def test_riemann_is_the_papers_sum_and_eulers_method():
-    """Front to back as the paper has it; the same as equation 6, back to front."""
-    rng = np.random.default_rng(1)
-    kappa, colour, h = rng.random(20), rng.random((20, 3)), 0.3
-    rgb, alpha = integrate("riemann", kappa, colour, h)
-    light, left = np.zeros(3), 1.0
-    for k, c in zip(kappa, colour, strict=True):
-        light, left = light + left * k * h * c, left * (1 - k * h)
-    back = np.zeros(3)
-    for k, c in zip(kappa[::-1], colour[::-1], strict=True):
-        back = back + h * (k * c - k * back)
-    assert np.abs(rgb - light).max() < 1e-14
-    assert np.abs(rgb - back).max() < 1e-14
-    assert abs(alpha - 1 + left) < 1e-14
 
 
 def test_rk4_is_the_classic_method_on_equation_6():
@@ -147,40 +112,6 @@ def test_explicit_methods_grow_beyond_their_limits_and_not_before(method, dtype)
         left.append(abs(1 - integrate(method, kappa, np.ones((*kappa.shape, 3)), 1.0)[1]))
     assert left[0] < 1e-1
     assert left[1] > 1e3
-
-
-@pytest.mark.parametrize("method", ["simpson", "romberg", "exponential"])
-@pytest.mark.parametrize("x", [1e-3, 1.0, 1e3])
-def test_what_the_others_let_through_stays_within_0_and_1(method, x):
-    """Also where extinction rises so steeply that the parabola through it dips below 0."""
-    rng = np.random.default_rng(3)
-    n = 16
-    kappa = x * rng.random((200, n if method in MIDDLE else n + 1)) ** 8
-    _, alpha = integrate(method, kappa, np.ones((*kappa.shape, 3)), 1.0)
-    assert alpha.min() >= 0
-    assert alpha.max() <= 1
-
-
-def test_stretches_put_together_are_the_whole():
-    rng = np.random.default_rng(4)
-    light, through = rng.random((6, 3)), rng.random(6)
-    rgb, alpha = composed(light, through)
-    back = np.zeros(3)
-    for b, a in zip(light[::-1], through[::-1], strict=True):
-        back = b + a * back
-    assert np.abs(rgb - back).max() < 1e-14
-    assert abs(alpha - 1 + through.prod()) < 1e-14
-
-
-@pytest.mark.parametrize("name", ["peak", "teeth"])
-@pytest.mark.parametrize("depth", [1.0, 1e3, 1e5])
-def test_preintegration_sees_what_lies_between_samples(name, depth):
-    """Steps that end where the values turn."""
-    profile = named(name, depth, 17.0)
-    exact = profile.light()
-    places = np.linspace(0, 17, 18)
-    rgb, alpha = preintegrated(profile.value(places), profile.transfer, 1.0)
-    assert np.abs(np.append(rgb, alpha) - exact).max() < 1e-5
 
 
 @pytest.mark.parametrize(
@@ -222,19 +153,3 @@ def test_the_study_shows_what_is_stable():
     constant = [row for row in rows if row.profile == "constant"]
     assert max(row.error for row in constant if row.method == "exponential") < 1e-4
     assert all(row.error == np.inf or row.error > 1 for row in constant if row.method == "rk4" and row.kappa_ds > 3)
-
-
-def test_the_study_of_preintegration():
-    rows = study([named("peak", 6.4e3)], (16,), methods=("exponential", "preintegrated"))
-    assert [row.method for row in rows] == ["exponential", "preintegrated"]
-    assert rows[0].error > 0.5
-    assert rows[1].error < 1e-2
-    assert rows[1].bounded
-    assert {row.dtype for row in rows} == {"float32"}
-    assert set(INTEGRATORS) == {*PANELS, "preintegrated"}
-
-
-def test_rounding_does_not_make_a_row_unbounded():
-    row = Row("constant", "exponential", "float32", 16, 1.0, 0.0, -1e-7, 1.0 + 1e-7)
-    assert row.bounded
-    assert not Row("constant", "exponential", "float32", 16, 1.0, 0.2, -0.1, 1.0).bounded

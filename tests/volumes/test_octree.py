@@ -105,41 +105,6 @@ def test_nodes_are_what_brute_force_finds(shape, dtype, order, seed):
     assert octree.levels[-1].shape == (1, 1, 1)
 
 
-@hypothesis.given(
-    shape=st.tuples(*[st.integers(2, 50)] * 3), margin=st.sampled_from([1, 2]), seed=st.integers(0, 99),
-    dtype=st.sampled_from(DTYPES), cut=st.floats(0.0, 1.0),
-)  # fmt: skip
-def test_parents_hold_their_children(shape, margin, seed, dtype, cut):
-    values = made(shape, dtype, seed, share=0.002)
-    octree = build_octree(RaycastVolume(values), margin)
-    low, high = float(values.min()), float(values.max())
-    value = low + cut * (high - low)
-    seen = flags(octree, lambda least, greatest: (least <= value) & (value <= greatest))
-    for level in range(1, len(octree.levels)):
-        below, above = octree.levels[level - 1], octree.levels[level]
-        up = tuple(i // 2 for i in np.indices(below.shape))
-        assert (above.least[up] <= below.least).all()
-        assert (above.greatest[up] >= below.greatest).all()
-        parents = np.full(above.shape, SKIP)
-        np.maximum.at(parents, up, seen[level - 1])
-        np.testing.assert_array_equal(seen[level], parents)
-        children = np.zeros(above.shape, int)
-        np.add.at(children, up, 1)
-        assert children.min() >= 1
-    assert seen[0].dtype == np.uint8
-    np.testing.assert_array_equal(
-        seen[0] != SKIP, (octree.levels[0].least <= value) & (value <= octree.levels[0].greatest)
-    )
-
-
-def test_means_weigh_cells_alike():
-    values = made((30, 9, 19), np.float32)
-    octree = build_octree(RaycastVolume(values))
-    weights = [np.r_[0.5, np.ones(n - 2), 0.5] / (n - 1) for n in values.shape]
-    expected = np.einsum("ijk,i,j,k", values.astype(np.float64), *weights)
-    assert octree.levels[-1].mean[0, 0, 0] == pytest.approx(expected, rel=1e-5)
-
-
 def test_the_bound_on_overshoot_is_reached():
     # The field at a cell's middle is greatest where voxels are 1 under positive weights and 0 under negative ones.
     weights = np.array([-1, 9, 9, -1]) / 16

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pvfiblets.volumes.reference import composite, isosurface, mip, rays, sample
+from pvfiblets.volumes.reference import composite, mip, rays, sample
 from pvfiblets.volumes.reference_profiles import profiles
 from pvfiblets.volumes.transfer import Transfer
 from pvfiblets.volumes.volume import FILTERS, RaycastVolume
 
-from .analytic import GRIDS, Ball, Gaussian, Layers, camera, middle, within
+from .analytic import GRIDS, Ball, Gaussian, Layers, camera, middle
 from .noise import SHAPE, SIZE, along, haze, noise, straight, view
 
 # ----------------------------------------------------------------------------------------------------------- maxima
@@ -77,19 +77,6 @@ def test_the_first_local_maximum_above_a_threshold(how, threshold, value, t):
     else:
         assert found.value[0] == value
         assert found.t[0] == (t if how == "trilinear" else t - 0.5)
-
-
-def test_local_maxima_at_the_ends_of_rays_and_across_a_level_field():
-    falling, rising = Layers((9, 5, 2, 1)).volume(), Layers((1, 2, 5, 9)).volume()
-    ray = straight((4, 4, 0), (0, 0, 1), 3.0)
-    assert mip(falling, ray, threshold=4.0).value[0] == 9.0
-    assert mip(rising, ray, threshold=4.0).value[0] == 9.0
-    # A ray on which nothing but rounding changes has not fallen before it rises.
-    wide = np.broadcast_to(np.array([0.1, 0.7, 0.9, 0.3])[:, None, None], (4, 12, 12)).copy()
-    wide[:, 9:] += 1.0
-    volume = RaycastVolume(wide.astype(np.float32))
-    across = straight((1.3, 0.0, 0.37), (0, 1, 1), 11 * np.sqrt(2) - 1)
-    assert mip(volume, across, threshold=0.5).value[0] > 1.7
 
 
 def test_bad_thresholds_are_named():
@@ -175,33 +162,3 @@ def test_noise_against_very_many_samples(how):
     assert (found[~seen] == 0).all()
     rough = composite(volume, haze(), through, 1e-3, filter=how)
     assert np.abs(rough - found).max() < 1e-3
-
-
-@pytest.mark.parametrize("how", FILTERS)
-def test_thresholds_are_a_transfer_function_that_is_nothing_beyond_them(how):
-    volume = noise(seed=6, dtype=np.uint8)
-    through = rays(view(np.eye(4), volume.shape, size=(8, 6)), (8, 6), volume)
-    plain = Transfer([[1, 0.5, 0, 0.5], [1, 0.5, 0, 0.5]], (0, 255))
-    alpha = np.zeros(256 * 64 + 1)
-    steps = np.linspace(0, 256, len(alpha))
-    alpha[(steps >= 100) & (steps <= 180)] = 0.5  # for the nearest voxel, both ends are there
-    steep = np.concatenate([np.broadcast_to([1, 0.5, 0], (len(alpha), 3)), alpha[:, None]], axis=1)
-    expected = composite(volume, Transfer(steep, (0, 256)), through, filter=how)
-    found = composite(volume, plain, through, filter=how, low=100, high=180)
-    assert found[..., 3].max() > 0.5
-    assert np.abs(found - expected).max() < (1e-10 if how == "nearest" else 2e-3)
-    assert np.abs(composite(volume, plain, through, low=-5, high=300) - composite(volume, plain, through)).max() < 1e-12
-
-
-def test_rays_of_any_shape_and_some_of_them():
-    volume = noise()
-    through = rays(view(np.eye(4), volume.shape), SIZE, volume)
-    chosen = (slice(3, 20, 2), slice(5, 9))
-    assert composite(volume, haze(), through[chosen]).shape == (9, 4, 4)
-    for whole, part in (
-        (composite(volume, haze(), through), composite(volume, haze(), through[chosen])),
-        (mip(volume, through).value, mip(volume, through[chosen]).value),
-        (isosurface(volume, 0.5, through).gradient, isosurface(volume, 0.5, through[chosen]).gradient),
-    ):
-        assert np.array_equal(whole[chosen], part, equal_nan=True)
-    assert within(np.array(0.5), straight((0, 0, 0), (1, 0, 0), 1.0)) == 0.5

@@ -1,4 +1,4 @@
-"""Volumes from files of every format: the right number at the right place, and what is refused."""
+"""Volumes from files of every format, images and arrays: the right number at the right place, and what is refused."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ import pytest
 import pyvista as pv
 from hypothesis import given
 from hypothesis import strategies as st
+from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
 from pvfiblets.errors import FormatError
 from pvfiblets.plotting.fiblets.volume_sources import as_volume
@@ -20,7 +21,7 @@ from pvfiblets.volumes import RaycastVolume, as_raycast_volume
 from pvfiblets.volumes.metaimage import read_metaimage
 from pvfiblets.volumes.nrrd import read_nrrd
 
-from .small_volume import AFFINE, SHAPE, SPACING, VALUES, assert_is_the_volume, image
+from .small_volume import AFFINE, AXES, ORIGIN, SHAPE, SPACING, VALUES, assert_is_the_volume, image
 
 # nibabel
 
@@ -155,15 +156,15 @@ def test_nrrd_with_data_apart_and_things_before_them(tmp_path):
     last = nrrd(tmp_path / "c.nhdr", data_file="c.img", data=b"any header" + raw, byte_skip="-1")
     assert_is_the_volume(as_raycast_volume(last))
     (tmp_path / "a.img").unlink()
-    with pytest.raises(FileNotFoundError, match=r"a\.img"):
-        as_raycast_volume(apart)
-
-
-def test_nrrd_without_directions(tmp_path):
+    whole = apart.read_text()
+    for name in ("a.img", ".", "x" * 3000):
+        apart.write_text(whole.replace("a.img", name))
+        with pytest.raises(FileNotFoundError, match="its data are in '.*', and there is no file"):
+            as_raycast_volume(apart)
     plain = {"space": None, "space_directions": None, "space_origin": None, "kinds": None}
-    spaced = as_raycast_volume(nrrd(tmp_path / "a.nrrd", **plain, spacings="2 3 nan"))
+    spaced = as_raycast_volume(nrrd(tmp_path / "d.nrrd", **plain, spacings="2 3 nan"))
     np.testing.assert_allclose(spaced.affine, np.diag([2.0, 3.0, 1.0, 1.0]))
-    np.testing.assert_allclose(as_raycast_volume(nrrd(tmp_path / "b.nrrd", **plain)).affine, np.eye(4))
+    np.testing.assert_allclose(as_raycast_volume(nrrd(tmp_path / "e.nrrd", **plain)).affine, np.eye(4))
 
 
 def test_nrrd_axes_of_one_entry_go(tmp_path):
@@ -180,25 +181,24 @@ def test_nrrd_axes_of_one_entry_go(tmp_path):
 
 @pytest.mark.parametrize(
     ("more", "message"),
-    [
-        ({"sizes": None}, "no field 'sizes' in the header"),
-        ({"sizes": "3 4 x"}, "sizes: x, expected a whole number"),
-        ({"sizes": "3 4"}, "sizes: 3 4, expected 3 whole numbers above 0"),
-        ({"type": "block"}, "type: block, expected one of signed char"),
-        ({"encoding": "hex", "data": b""}, "encoding: hex, expected raw, gzip, bzip2 or ascii"),
-        ({"endian": "middle"}, "endian: middle"),
-        ({"sizes": "30 4 5"}, "120 bytes of data, expected 1200"),
-        ({"sizes": "30 4 5", "encoding": "gzip", "data": gzip.compress(b"12")}, "found 1 numbers, expected 600"),
-        ({"encoding": "gzip", "data": b"nonsense"}, "damaged gzip data"),
-        ({"encoding": "gzip", "data": gzip.compress(bytes(1000))[:-12]}, "damaged gzip data"),
-        ({"encoding": "ascii", "data": b"1 2 three"}, "other than numbers"),
-        ({"space_directions": "(1,0,0) (0,1,0) (0,0,"}, "expected vectors such as"),
-        ({"space_directions": "(1,0) (0,1) (0,0)"}, "expected a vector of three numbers for each axis"),
-        ({"space_directions": "(1,0,0) (0,1,0) (1,1,0)"}, "flattens space"),
-        ({"data_file": "LIST"}, "expected data in one file: join them first"),
-        ({"data_file": "slice%03d.raw 1 5 1"}, "expected data in one file"),
-    ],
-)
+    [({"sizes": None}, "no field 'sizes' in the header"), ({"sizes": "3 4 x"}, "sizes: x, expected a whole number"),
+     ({"sizes": "3 4"}, "sizes: 3 4, expected 3 whole numbers above 0"),
+     ({"type": "block"}, "type: block, expected one of signed char"),
+     ({"encoding": "hex", "data": b""}, "encoding: hex, expected raw, gzip, bzip2 or ascii"),
+     ({"endian": "middle"}, "endian: middle"), ({"sizes": "30 4 5"}, "120 bytes of data, expected 1200"),
+     ({"sizes": "30 4 5", "encoding": "gzip", "data": gzip.compress(b"12")}, "found 1 numbers, expected 600"),
+     ({"encoding": "gzip", "data": b"nonsense"}, "damaged gzip data"),
+     ({"encoding": "gzip", "data": gzip.compress(bytes(1000))[:-12]}, "damaged gzip data"),
+     ({"encoding": "ascii", "data": b"1 2 three"}, "other than numbers"),
+     ({"space_directions": "(1,0,0) (0,1,0) (0,0,"}, "expected vectors such as"),
+     ({"space_directions": "(1,0) (0,1) (0,0)"}, "expected a vector of three numbers for each axis"),
+     ({"space_directions": "(1,0,0) (0,1,0) (1,1,0)"}, "flattens space"),
+     ({"sizes": "9223372036854775807 4 5"}, "as the header's sizes and type say"),
+     ({"byte_skip": "-5"}, "byte skip: -5, expected -1, or a number of bytes"),
+     ({"line_skip": "1000000000000"}, "0 bytes of data"),
+     ({"data_file": "LIST"}, "expected data in one file: join them first"),
+     ({"data_file": "slice%03d.raw 1 5 1"}, "expected data in one file")],
+)  # fmt: skip
 def test_bad_nrrd(tmp_path, more, message):
     path = nrrd(tmp_path / "a.nrrd", **more)
     with pytest.raises(ValueError, match=message):
@@ -230,23 +230,11 @@ def metaimage(path, *, compressed=False, msb=False, header="", data="LOCAL", val
     return path
 
 
-@pytest.mark.parametrize("more", [{}, {"compressed": True}, {"msb": True}, {"data": "a.raw"}])
-def test_metaimages(tmp_path, more):
-    path = metaimage(tmp_path / ("ct.mhd" if "data" in more else "ct.mha"), **more)
-    assert_is_the_volume(as_raycast_volume(path), "ct")
-
-
-def test_metaimages_without_a_place(tmp_path):
-    path = tmp_path / "a.mhd"
-    VALUES.tofile(tmp_path / "a.raw")
-    path.write_text("NDims = 3\nDimSize = 5 4 3\nElementType = MET_SHORT\nElementDataFile = a.raw\n")
-    values, affine = read_metaimage(path)
-    np.testing.assert_array_equal(values, VALUES.T)
-    np.testing.assert_array_equal(affine, np.diag([-1.0, -1.0, 1.0, 1.0]))
-
-
-def test_bad_metaimages(tmp_path):
+def test_metaimages_and_bad_ones(tmp_path):
+    for more in ({}, {"compressed": True}, {"msb": True}):
+        assert_is_the_volume(as_raycast_volume(metaimage(tmp_path / "ct.mha", **more)), "ct")
     path = metaimage(tmp_path / "a.mhd", data="a.raw")
+    assert_is_the_volume(as_raycast_volume(path), "a")
     (tmp_path / "a.raw").unlink()
     with pytest.raises(FileNotFoundError, match=r"its data are in 'a\.raw'"):
         as_raycast_volume(path)
@@ -285,9 +273,11 @@ def test_metaimages_are_what_vtk_reads(tmp_path, kind, deflated):
     np.testing.assert_allclose(affine @ (0, 0, 0, 1), (-1.0, -2.0, 3.0, 1.0))
 
 
-def test_metaimages_with_text_or_bytes_before_the_data(tmp_path):
+def test_metaimages_without_a_place_and_with_text_or_bytes_before_the_data(tmp_path):
     VALUES.tofile(tmp_path / "a.raw")
     head = "NDims = 3\nDimSize = 5 4 3\nElementType = MET_SHORT\n"
+    (tmp_path / "a.mhd").write_text(f"{head}ElementDataFile = a.raw\n")
+    np.testing.assert_array_equal(read_metaimage(tmp_path / "a.mhd")[1], np.diag([-1.0, -1.0, 1.0, 1.0]))
     (tmp_path / "a.raw").write_bytes(b"header" + VALUES.tobytes())
     for size in (6, -1):
         (tmp_path / "a.mhd").write_text(f"{head}HeaderSize = {size}\nElementDataFile = a.raw\n")
@@ -302,17 +292,14 @@ def test_metaimages_with_text_or_bytes_before_the_data(tmp_path):
 
 @pytest.mark.parametrize(
     ("change", "message"),
-    [
-        ("DimSize = 3 4 5.5", "expected three whole numbers above 0"),
-        ("DimSize = 3 4 0", "expected three whole numbers above 0"),
-        ("DimSize = 3 4 nan", "expected three whole numbers above 0"),
-        ("DimSize = 30000 40000 50000", "expected 120000000000000 behind what is skipped"),
-        ("ElementType = MET_COLOUR", "ElementType = MET_COLOUR, expected one of MET_CHAR"),
-        ("HeaderSize = many", "HeaderSize = many, expected -1, or a number of bytes"),
-        ("ElementDataFile = LIST", "join them first"),
-        ("CompressedData = True", "damaged zlib data"),
-    ],
-)
+    [("DimSize = 3 4 5.5", "expected three whole numbers above 0"),
+     ("DimSize = 3 4 0", "expected three whole numbers above 0"),
+     ("DimSize = 3 4 nan", "expected three whole numbers above 0"),
+     ("DimSize = 30000 40000 50000", "expected 120000000000000 behind what is skipped"),
+     ("ElementType = MET_COLOUR", "ElementType = MET_COLOUR, expected one of MET_CHAR"),
+     ("HeaderSize = many", "HeaderSize = many, expected -1, or a number of bytes"),
+     ("ElementDataFile = LIST", "join them first"), ("CompressedData = True", "damaged zlib data")],
+)  # fmt: skip
 def test_what_metaimages_say_is_not_taken_at_their_word(tmp_path, change, message):
     VALUES.tofile(tmp_path / "a.raw")
     fields = {"NDims": "3", "DimSize": "5 4 3", "ElementType": "MET_SHORT", "HeaderSize": "0"}
@@ -352,21 +339,6 @@ def test_small_files_that_swell_take_no_memory(tmp_path, packing, where):
         assert tracemalloc.get_traced_memory()[1] < 8_000_000
     finally:
         tracemalloc.stop()
-
-
-def test_nrrd_with_absurd_numbers(tmp_path):
-    for more, message in [
-        ({"sizes": "9223372036854775807 4 5"}, "as the header's sizes and type say"),
-        ({"byte_skip": "-5"}, "byte skip: -5, expected -1, or a number of bytes"),
-        ({"line_skip": "1000000000000"}, "0 bytes of data"),
-    ]:
-        with pytest.raises(FormatError, match=message):
-            as_raycast_volume(nrrd(tmp_path / "a.nrrd", **more))
-    whole = nrrd(tmp_path / "a.nhdr", data_file="a.raw").read_text()
-    for name in (".", "x" * 3000, "b.raw"):
-        (tmp_path / "a.nhdr").write_text(whole.replace("a.raw", name))
-        with pytest.raises(FileNotFoundError, match="its data are in '.*', and there is no file"):
-            as_raycast_volume(tmp_path / "a.nhdr")
 
 
 @given(
@@ -419,19 +391,6 @@ def test_bare_numbers_of_which_too_little_is_said(tmp_path):
         as_raycast_volume(tmp_path / "b.raw")
 
 
-def test_all_formats_show_a_volume_at_one_place(tmp_path):
-    nib.save(nib.Nifti1Image(VALUES, AFFINE), tmp_path / "a.nii.gz")
-    image().save(tmp_path / "a.vti")
-    lps = AFFINE.copy()
-    lps[:2] *= -1
-    paths = [
-        tmp_path / "a.nii.gz", tmp_path / "a.vti", metaimage(tmp_path / "a.mha"),
-        nrrd(tmp_path / "a.nrrd", affine=lps, space="left-posterior-superior"),
-    ]  # fmt: skip
-    for path in paths:
-        assert_is_the_volume(as_raycast_volume(path), atol=1e-5)
-
-
 # Real files
 
 
@@ -465,3 +424,189 @@ def test_real_volumes(shared_data):
     fa = as_raycast_volume(shared_data / "tractseg_FA.nii.gz", smooth=0.7)
     assert isinstance(fa, RaycastVolume)
     assert 0.0 <= fa.value_range[0] < fa.value_range[1] <= 1.3
+
+
+def written(path, made, mode, packer="ZLib", *, wide=False, pieces=1):
+    """Write an image by VTK; 'Encoded' is appended in base64."""
+    writer = vtkXMLImageDataWriter()
+    writer.SetFileName(str(path))
+    writer.SetInputData(made)
+    (writer.SetDataModeToAppended if mode == "Encoded" else getattr(writer, f"SetDataModeTo{mode}"))()
+    writer.SetEncodeAppendedData(mode == "Encoded")
+    getattr(writer, f"SetCompressorTypeTo{packer}")()
+    (writer.SetHeaderTypeToUInt64 if wide else writer.SetHeaderTypeToUInt32)()
+    writer.SetNumberOfPieces(pieces)
+    assert writer.Write()
+
+
+@pytest.mark.parametrize("wide", [False, True], ids=["32-bit", "64-bit"])
+@pytest.mark.parametrize("packer", ["None", "ZLib", "LZ4", "LZMA"])
+@pytest.mark.parametrize("mode", ["Ascii", "Binary", "Appended", "Encoded"])
+def test_every_way_to_write_vti(tmp_path, mode, packer, wide):
+    made = image(other=np.arange(60.0))
+    made.cell_data["cells"] = np.arange(made.n_cells)
+    made.field_data["note"] = ["one", "two"]
+    made.field_data["numbers"] = np.arange(7)
+    written(tmp_path / "a.vti", made, mode, packer, wide=wide, pieces=2)
+    assert_is_the_volume(as_raycast_volume(tmp_path / "a.vti", scalars="ct"), "ct", atol=1e-6)
+    assert as_raycast_volume(tmp_path / "a.vti", scalars="other").value_range == (0.0, 59.0)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [('WholeExtent="0 2 0 3 0 4"', 'WholeExtent="0 2 0 3 0 2147483646"', "60 points in pieces"),
+     ('Extent="0 2 0 3 0 4"', 'Extent="0 2 0 3 0 2147483646"', "bytes in a file of"),
+     ('WholeExtent="0 2 0 3 0 4"', 'WholeExtent="0 2 0 -3 0 4"', "a point along each axis"),
+     ('WholeExtent="0 2 0 3 0 4"', 'WholeExtent="0 2 0 3 0"', "six whole numbers"),
+     ('type="ImageData"', 'type="PolyData"', "VTKFile of type 'ImageData'"), ("AQAAAACAAA", "AQ99999999", "blocks of")],
+)  # fmt: skip
+def test_sizes_that_a_vti_cannot_hold(tmp_path, old, new, words):
+    written(tmp_path / "a.vti", image(), "Binary")
+    text = (tmp_path / "a.vti").read_text()
+    assert old in text
+    head, found, tail = text.rpartition(old) if old.startswith("Extent") else text.partition(old)
+    assert found
+    (tmp_path / "a.vti").write_text(head + new + tail)
+    with pytest.raises(FormatError, match=words):
+        as_raycast_volume(tmp_path / "a.vti")
+
+
+# Images of VTK
+
+
+def test_an_image_lies_where_its_points_are():
+    grid = image()
+    volume = as_raycast_volume(grid)
+    assert_is_the_volume(volume, "ct")
+    assert volume.values.dtype == np.int16
+    assert np.shares_memory(volume.values, grid["ct"])
+    voxels = np.stack(np.meshgrid(*[np.arange(n) for n in SHAPE], indexing="ij"), -1).reshape(-1, 3, order="F")
+    np.testing.assert_allclose(voxels @ volume.affine[:3, :3].T + volume.affine[:3, 3], grid.points, atol=1e-5)
+    np.testing.assert_allclose(volume.bounds, grid.bounds, atol=1e-5)
+
+
+def test_an_extent_that_begins_elsewhere():
+    part = image().extract_subset([1, 2, 0, 3, 2, 4])
+    part.offset = (5, -2, 1)
+    volume = as_raycast_volume(part)
+    np.testing.assert_array_equal(volume.values, part["ct"].reshape(part.dimensions, order="F"))
+    np.testing.assert_allclose(volume.affine[:3, 3], part.points[0], atol=1e-5)
+    np.testing.assert_allclose(volume.bounds, part.bounds, atol=1e-5)
+
+
+def test_a_plain_image_of_vtk():
+    from vtkmodules.vtkCommonDataModel import vtkImageData
+
+    plain = vtkImageData()
+    plain.ShallowCopy(image())
+    plain.GetPointData().SetActiveScalars("ct")
+    assert_is_the_volume(as_raycast_volume(plain))
+    only = vtkImageData()
+    only.CopyStructure(plain)
+    only.GetPointData().AddArray(plain.GetPointData().GetArray("ct"))
+    assert only.GetPointData().GetScalars() is None
+    assert_is_the_volume(as_raycast_volume(only))
+
+
+def test_arrays_are_chosen():
+    grid = image(other=np.arange(60, dtype=np.float32))
+    grid.set_active_scalars("ct")
+    assert as_raycast_volume(grid).name == "ct"
+    other = as_raycast_volume(grid, scalars="other")
+    np.testing.assert_array_equal(other.values.ravel(order="F"), np.arange(60))
+    given = as_raycast_volume(grid, scalars=np.arange(60)[::-1])
+    np.testing.assert_array_equal(given.values.ravel(order="F"), np.arange(60)[::-1])
+
+
+def test_cells_become_points_as_in_add_volume():
+    grid = pv.ImageData(dimensions=(4, 5, 6), spacing=(1, 2, 3), origin=(7, 8, 9))
+    grid.cell_data["fa"] = np.random.default_rng(0).random(grid.n_cells)
+    expected = grid.cell_data_to_point_data()["fa"].reshape(4, 5, 6, order="F")
+    for scalars in (None, "fa", grid.cell_data["fa"]):
+        volume = as_raycast_volume(grid, scalars=scalars)
+        np.testing.assert_allclose(volume.values, expected, rtol=1e-6)
+        np.testing.assert_allclose(volume.bounds, grid.bounds)
+    grid = image()  # active cells are taken before points
+    grid.cell_data["fa"] = np.ones(grid.n_cells)
+    grid.set_active_scalars("fa", preference="cell")
+    np.testing.assert_array_equal(as_raycast_volume(grid).values, 1.0)
+
+
+# Arrays, and places that are given
+
+
+def test_arrays():
+    volume = as_raycast_volume(VALUES)
+    assert np.shares_memory(volume.values, VALUES)
+    np.testing.assert_array_equal(volume.affine, np.eye(4))
+    assert_is_the_volume(as_raycast_volume(VALUES, affine=AFFINE))
+    assert_is_the_volume(as_raycast_volume((VALUES, AFFINE)))
+    assert_is_the_volume(as_raycast_volume(VALUES[..., None], spacing=SPACING, origin=ORIGIN, direction=AXES))
+    assert_is_the_volume(as_raycast_volume(VALUES, spacing=SPACING, origin=ORIGIN, direction=AXES.ravel()))
+    assert_is_the_volume(as_raycast_volume(VALUES.tolist(), affine=AFFINE))
+    np.testing.assert_array_equal(as_raycast_volume(VALUES, spacing=2).spacing, 2.0)
+    masked = as_raycast_volume(np.ma.masked_less(VALUES, 0))
+    np.testing.assert_array_equal(masked.missing, VALUES < 0)
+    assert masked.value_range[0] == VALUES[VALUES >= 0].min()
+    values = np.where(VALUES == VALUES[1, 1, 1], np.nan, VALUES)
+    volume = as_raycast_volume(values, smooth=1.0, spacing=2.0)  # smoothing comes last
+    in_mm = as_raycast_volume(values, smooth=2.0, smooth_unit="mm", spacing=2.0)
+    np.testing.assert_array_equal(volume.values, in_mm.values)
+    assert volume.n_missing == np.isnan(values).sum()
+    assert np.ptp(volume.values) < 0.8 * np.ptp(VALUES)
+
+
+def test_what_is_given_takes_the_place_of_the_sources():
+    grid = image()
+    np.testing.assert_allclose(as_raycast_volume(grid, affine=np.eye(4)).affine, np.eye(4))
+    spaced = as_raycast_volume(grid, spacing=(1, 2, 3))
+    np.testing.assert_allclose(spaced.spacing, (1, 2, 3))
+    np.testing.assert_allclose(spaced.affine[:3, :3] / (1, 2, 3), AXES)
+    moved = as_raycast_volume(as_raycast_volume(grid), origin=(0, 0, 1))
+    np.testing.assert_allclose(moved.affine[:3, 3], (0, 0, 1))
+    np.testing.assert_allclose(moved.affine[:3, :3], AFFINE[:3, :3])
+    missing = np.where(VALUES > 250, np.nan, VALUES)
+    kept = as_raycast_volume(as_raycast_volume(missing), spacing=3.0)
+    np.testing.assert_array_equal(kept.missing, VALUES > 250)
+    volume = as_raycast_volume(VALUES)
+    assert as_raycast_volume(volume) is volume
+
+
+@pytest.mark.parametrize(
+    ("source", "given", "error", "message"),
+    [
+        (VALUES, {"spacing": (1, 0, 1)}, ValueError,
+         r"spacing=\(1, 0, 1\); expected one or three finite lengths above 0"),
+        (VALUES, {"spacing": (1, 1)}, ValueError, "spacing="),
+        (VALUES, {"spacing": np.nan}, ValueError, "spacing=nan"),
+        (VALUES, {"origin": (1, 1)}, ValueError, r"origin=\(1, 1\); expected three finite coordinates"),
+        (VALUES, {"direction": np.eye(2)}, ValueError, "expected a finite"),
+        (VALUES, {"direction": 2 * np.eye(3)}, ValueError,
+         r"have the lengths \[2.0, 2.0, 2.0\]; expected 1: lengths belong into spacing"),
+        (VALUES, {"direction": np.eye(3)[[0, 0, 1]]}, ValueError, "lengths"),
+        (VALUES, {"direction": [[1, 1, 0], [0, 0, 0], [0, 0, 1]]}, ValueError, "flattens space"),
+        (VALUES, {"affine": np.eye(4), "spacing": 1}, ValueError, "affine says spacing, origin and direction too"),
+        (VALUES, {"affine": np.zeros((4, 4))}, ValueError, "ends in the row"),
+        (VALUES, {"shape": SHAPE}, ValueError, "shape and dtype are of files of bare numbers, such as .raw; leave"),
+        (VALUES, {"scalars": "fa"}, ValueError, "scalars='fa' chooses among the arrays of a VTK image; leave it out"),
+        (np.zeros((4, 4, 4, 3)), {}, ValueError, r"\(4, 4, 4, 3\), as RGB colours have; .* such as image\[..., 0\]"),
+        (np.zeros((4, 4)), {}, ValueError, r"the shape \(4, 4\); three axes \(nx, ny, nz\)"),
+        ([[1, 2], [3]], {}, ValueError, "rows are of unlike lengths"),
+        (5, {}, TypeError, "cannot be cast through a int; give a pyvista.ImageData"),
+        ({"a": 1}, {}, TypeError, "cannot be cast through a dict"),
+        (pv.ImageData(dimensions=SHAPE), {}, ValueError, r"no active scalars among its arrays \[\]"),
+        (pv.ImageData(dimensions=(4, 4, 1)), {}, ValueError, "no active scalars"),
+        (pv.Sphere(), {}, TypeError, "cannot be cast through a PolyData; sample it on a grid first"),
+        (pv.StructuredGrid(np.eye(3), np.eye(3), np.eye(3)), {}, TypeError, "cast through a StructuredGrid"),
+        (pv.MultiBlock([image()]), {}, TypeError, "a MultiBlock is no grid"),
+        (image(), {"scalars": "fa"}, ValueError,
+         r"no array 'fa' of numbers among its arrays \['ct'\]; choose one by scalars="),
+        (image(), {"scalars": np.zeros(7)}, ValueError,
+         r"shape \(7,\); expected one number for each of the image's 60 points or 24 cells"),
+        (image(rgb=np.zeros((60, 3), np.uint8)), {"scalars": "rgb"}, ValueError,
+         "'rgb' has 3 numbers per voxel, RGB colours perhaps; one is needed"),
+    ],
+)  # fmt: skip
+def test_what_is_no_volume_or_place_is_refused(source, given, error, message):
+    with pytest.raises(error, match=message):
+        as_raycast_volume(source, **given)
