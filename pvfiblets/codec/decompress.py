@@ -22,7 +22,9 @@ if TYPE_CHECKING:
     from .fibletset import FibletSet
     from .quantised import QuantisedPoints
 
-__all__ = ["decode_fiblets", "decompress", "held_in_bounds", "iter_chunks", "select_streamlines"]
+__all__ = [
+    "decode_fiblets", "decoding_arrays", "decompress", "fixed", "held_in_bounds", "iter_chunks", "select_streamlines",
+]  # fmt: skip
 
 
 def select_streamlines(n: int, ids: Any) -> npt.NDArray[np.int64]:
@@ -72,26 +74,30 @@ def decode_fiblets(
     FormatError
         If records point beyond the arrays, as they may in a damaged file.
     """
-    p = fiblets.parameters
-    low = fiblets.anchors_low
-    arrays = (fiblets.anchors, fiblets.decoding, fiblets.codes, np.ascontiguousarray(fiblets.pages[:, 1]))
     with without_kernels("decoding", len(points)) as small:
-        damaged = _decoder(small)(
-            which,
-            destination,
-            arrays,
-            np.zeros((1, 3), np.uint16) if low is None else low,
-            low is not None,
-            fiblets.origin,
-            fiblets.anchor_scale,
-            (p.step_lo, p.step_hi, p.lattice),
-            quaternions().astype(np.float64),
-            points,
-        )
+        damaged = _decoder(small)(which, destination, *decoding_arrays(fiblets), points)
     if damaged:
         raise FormatError(
             "the set of fiblets", None, f"{damaged} records that point beyond its arrays", "an undamaged file"
         )
+
+
+def decoding_arrays(fiblets: FibletSet) -> tuple[Any, ...]:
+    """What :func:`.decode_kernels.decode_one` takes of a set, from ``arrays`` to ``tables``."""
+    p, low = fiblets.parameters, fiblets.anchors_low
+    return (
+        (fixed(fiblets.anchors), fixed(fiblets.decoding), fixed(fiblets.codes), fixed(fiblets.pages[:, 1])),
+        fixed(np.zeros((1, 3), np.uint16) if low is None else low), low is not None,
+        fiblets.origin, fiblets.anchor_scale,
+        (p.step_lo, p.step_hi, p.lattice), quaternions().astype(np.float64),
+    )  # fmt: skip
+
+
+def fixed(array: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    """An array that cannot be written to, as those of mapped sets cannot: kernels are compiled once for either."""
+    found = np.ascontiguousarray(array).view()
+    found.flags.writeable = False
+    return found
 
 
 def _decoder(small: bool) -> Any:

@@ -33,6 +33,7 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
+from ..codec.decompress import fixed
 from ..codec.jit import kernel, parallel_kernel
 from .placement import positions
 from .shape_kernels import unit
@@ -115,7 +116,7 @@ def pack(region: Region) -> Packed:
         row[18] = float(field.whole)
     values = [field.values.ravel() for field in fields.values()]
     flat = values[0] if len(values) == 1 else np.concatenate([*values, np.zeros(1, np.float32)])
-    return Packed(ops, rows, np.array(grids).reshape(-1, 16), flat, tuple(fields.values()))
+    return Packed(ops, rows, np.array(grids).reshape(-1, 16), fixed(flat), tuple(fields.values()))
 
 
 def _largest(linear: Array) -> float:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from ..codec.decompress import decode_fiblets
+from ..codec.decompress import decode_fiblets, fixed
 from ..codec.layout import PAGE_BITS, unpack
 from ..codec.stored_parts import in_parts, stored_parts
 from ..codec.streamline_ranges import ranges_of
@@ -239,13 +239,8 @@ def _candidates(
 ) -> Iterator[tuple[Ints, Region | None]]:
     """Fiblets that may be hit, and the region if it must be asked for each of their places."""
     p, low = fiblets.parameters, fiblets.anchors_low
-    arrays = (
-        fiblets.anchors,
-        np.zeros((1, 3), np.uint16) if low is None else low,
-        fiblets.reach,
-        fiblets.ends,
-        np.ascontiguousarray(fiblets.pages[:, 0]),
-    )
+    lower = np.zeros((1, 3), np.uint16) if low is None else low
+    arrays = tuple(map(fixed, (fiblets.anchors, lower, fiblets.reach, fiblets.ends, fiblets.pages[:, 0])))
     largest = max(float(np.abs(fiblets.origin).max(initial=0.0)), float(np.abs(fiblets.bounds).max(initial=0.0)))
     slack = 64.0 * float(np.spacing(largest)) if np.isfinite(largest) else 0.0
     scale = np.array(p.anchor_scale, np.float64)

@@ -1,7 +1,5 @@
 """One cluster of two processes for each module, and a small cohort."""
 
-from __future__ import annotations
-
 import nibabel as nib
 import numpy as np
 import pytest
@@ -31,7 +29,7 @@ def cohort(tmp_path_factory):
         pf.write(folder / f"sub-{subject}_ses-a_bundle-all_tractography.trx", brain)
         labels = np.ones((20, 24, 20), np.int16)
         labels[10:] += 1
-        labels[:, 8 + n:] += 2
+        labels[:, 8 + n :] += 2
         (root / "atlas").mkdir(exist_ok=True)
         nib.save(nib.Nifti1Image(labels, AFFINE), root / "atlas" / f"sub-{subject}.nii.gz")
     folder = root / "sub-04" / "ses-a" / "dwi"

@@ -1,7 +1,5 @@
 """Cohorts: what is made, what is skipped, what fails, and what becomes of workers that die."""
 
-from __future__ import annotations
-
 import json
 import os
 import shutil

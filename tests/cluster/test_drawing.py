@@ -1,7 +1,5 @@
 """Pictures drawn by workers and put together: held against a renderer of all of the set, bit by bit."""
 
-from __future__ import annotations
-
 import os
 import pickle
 import signal

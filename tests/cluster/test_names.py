@@ -1,7 +1,5 @@
 """What names of files say, by BIDS, and which files patterns mean."""
 
-from __future__ import annotations
-
 from pathlib import PurePosixPath
 
 import pytest

@@ -1,7 +1,5 @@
 """What the page about cohorts says, run as it stands there but on workers that are there already."""
 
-from __future__ import annotations
-
 import re
 import shlex
 from pathlib import Path

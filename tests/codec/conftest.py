@@ -1,15 +1,11 @@
 """Kernels code and decode here, small as the sets are: what they are compared with is for them."""
 
-from __future__ import annotations
-
-from collections.abc import Iterator
-
 import pytest
 
 from .coders import coded_by
 
 
 @pytest.fixture(scope="module", autouse=True)
-def by_kernels() -> Iterator[None]:
+def by_kernels():
     with coded_by("kernels"):
         yield

@@ -1,14 +1,12 @@
 """What test_pools.py has pools do: a module that their processes can import."""
 
-from __future__ import annotations
-
 import numpy as np
 
 import pvfiblets
 from pvfiblets import regions
 
 
-def work(seed: int) -> tuple[int, int]:
+def work(seed):
     """Code, decode and question a small set, the last by compiled kernels."""
     random = np.random.default_rng(seed)
     lines = [np.cumsum(random.normal(size=(40, 3)) * 0.3 + [1, 0, 0], axis=0) for _ in range(10)]

@@ -1,13 +1,11 @@
 """Lines that codec tests share: plain, noisy, and extreme."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from pvfiblets.streamlines import Streamlines
 
 
-def assert_equal_streamlines(found: Streamlines, wanted: Streamlines) -> None:
+def assert_equal_streamlines(found, wanted):
     """Points, values and members of groups, whatever their order in a group."""
     np.testing.assert_array_equal(found.points, wanted.points)
     np.testing.assert_array_equal(found.offsets, wanted.offsets)
@@ -19,7 +17,7 @@ def assert_equal_streamlines(found: Streamlines, wanted: Streamlines) -> None:
             np.testing.assert_array_equal(ordered(ours[name]), ordered(theirs[name]))
 
 
-def smooth(n: int = 40, points: int = 150, step: float = 0.5, seed: int = 0) -> Streamlines:
+def smooth(n=40, points=150, step=0.5, seed=0):
     """Helices and circles of many radii: constant step, slowly turning."""
     rng = np.random.default_rng(seed)
     lines = []
@@ -37,7 +35,7 @@ def smooth(n: int = 40, points: int = 150, step: float = 0.5, seed: int = 0) -> 
     return Streamlines.from_list(lines)
 
 
-def noisy(n: int = 40, points: int = 150, step: float = 0.2, degrees: float = 5.0, seed: int = 1) -> Streamlines:
+def noisy(n=40, points=150, step=0.2, degrees=5.0, seed=1):
     """Probabilistic tracking: an independent random turn at every step, at most 18 degrees."""
     rng = np.random.default_rng(seed)
     lines = []
@@ -56,7 +54,7 @@ def noisy(n: int = 40, points: int = 150, step: float = 0.2, degrees: float = 5.
     return Streamlines.from_list(lines)
 
 
-def wandering(n: int = 60, points: int = 40, seed: int = 2) -> Streamlines:
+def wandering(n=60, points=40, seed=2):
     """Random walks: every step another length and direction."""
     rng = np.random.default_rng(seed)
     return Streamlines.from_list(
@@ -64,7 +62,7 @@ def wandering(n: int = 60, points: int = 40, seed: int = 2) -> Streamlines:
     )
 
 
-def extremes() -> dict[str, Streamlines]:
+def extremes():
     """Stiff and extreme cases by name."""
     rng = np.random.default_rng(3)
     one = Streamlines.from_list

@@ -1,7 +1,5 @@
 """Small sets are coded by NumPy alone, to the same bits as by compiled kernels, and without numba."""
 
-from __future__ import annotations
-
 import dataclasses
 import logging
 import os
@@ -17,7 +15,6 @@ from hypothesis import strategies as st
 
 import pvfiblets as pf
 from pvfiblets.codec import small_sets
-from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.streamlines import Streamlines
 
 from .coders import coded_by
@@ -27,7 +24,7 @@ ARRAYS = ("anchors", "decoding", "reach", "codes", "ends", "anchors_low", "pages
 SAMPLES = {"smooth": smooth(8, 130), "noisy": noisy(8, 130), "wandering": wandering(12), **extremes()}
 
 
-def assert_same(lines: Streamlines, **options: object) -> None:
+def assert_same(lines, **options):
     """Compress and decompress in both ways."""
     found = {}
     for way in ("kernels", "NumPy"):
@@ -44,7 +41,7 @@ def assert_same(lines: Streamlines, **options: object) -> None:
 
 @pytest.mark.few(3)
 @pytest.mark.parametrize("name", SAMPLES)
-def test_numpy_writes_the_kernels_codes(name: str) -> None:
+def test_numpy_writes_the_kernels_codes(name):
     assert_same(SAMPLES[name])
     assert_same(SAMPLES[name], max_angle=0.5)
     assert_same(SAMPLES[name], max_angle=None)
@@ -53,7 +50,7 @@ def test_numpy_writes_the_kernels_codes(name: str) -> None:
 @pytest.mark.parametrize(
     "name", ["dipy_EuDX_small_25.trk", "trxpy_small.trx", "trxrs_tinytrack_small.tt.gz", "vtk_track1.binary.vtk"]
 )
-def test_numpy_writes_the_kernels_codes_on_real_files(shared_data: Path, name: str) -> None:
+def test_numpy_writes_the_kernels_codes_on_real_files(shared_data, name):
     lines = pf.read(shared_data / name)
     assert_same(lines[:200])
     assert_same(lines[:100], max_error=0.02, max_angle=2.0)
@@ -62,7 +59,7 @@ def test_numpy_writes_the_kernels_codes_on_real_files(shared_data: Path, name: s
 @pytest.mark.more
 @settings(max_examples=25)
 @given(st.data())
-def test_numpy_writes_the_kernels_codes_for_any_lines(data: st.DataObject) -> None:
+def test_numpy_writes_the_kernels_codes_for_any_lines(data):
     rng = np.random.default_rng(data.draw(st.integers(0, 2**32)))
     counts = data.draw(st.lists(st.integers(0, 130), min_size=1, max_size=6))
     spread, uneven = data.draw(st.floats(0.0, 2.0)), data.draw(st.sampled_from([0.0, 1e-5, 0.03, 0.5]))
@@ -79,7 +76,7 @@ def test_numpy_writes_the_kernels_codes_for_any_lines(data: st.DataObject) -> No
 
 
 @pytest.mark.parametrize("name", SAMPLES)
-def test_numpy_decodes_exact_sets_as_kernels_do(name: str) -> None:
+def test_numpy_decodes_exact_sets_as_kernels_do(name):
     fiblets = pf.compress(SAMPLES[name], exact=True)
     drawn = [decoded(fiblets, way) for way in ("kernels", "NumPy")]
     np.testing.assert_array_equal(drawn[0][0], drawn[1][0])
@@ -87,7 +84,7 @@ def test_numpy_decodes_exact_sets_as_kernels_do(name: str) -> None:
 
 
 @pytest.mark.parametrize("exact", [False, True])
-def test_damaged_records_are_left_out_alike(exact: bool) -> None:
+def test_damaged_records_are_left_out_alike(exact):
     fiblets = pf.compress(Streamlines.concatenate([smooth(3, 130), wandering(3)]), exact=exact)
     rng = np.random.default_rng(0)
     for _ in range(30):
@@ -101,7 +98,7 @@ def test_damaged_records_are_left_out_alike(exact: bool) -> None:
         assert said["NumPy"][1] == said["kernels"][1]
 
 
-def decoded(fiblets: FibletSet, way: str) -> tuple[np.ndarray, str]:
+def decoded(fiblets, way):
     """Points, zeros where there are none, and what the error says."""
     from pvfiblets.codec.decompress import decode_fiblets
 
@@ -116,7 +113,7 @@ def decoded(fiblets: FibletSet, way: str) -> tuple[np.ndarray, str]:
 
 
 @pytest.mark.more
-def test_small_sets_are_shown_and_decoded_without_a_compiler(tmp_path: Path) -> None:
+def test_small_sets_are_shown_and_decoded_without_a_compiler(tmp_path):
     script = tmp_path / "small.py"
     script.write_text(
         "import sys\nimport numpy as np\nimport pyvista as pv\n"
@@ -128,9 +125,7 @@ def test_small_sets_are_shown_and_decoded_without_a_compiler(tmp_path: Path) -> 
         "assert 'scipy' not in sys.modules, 'scipy'\n"
     )
     environment = {**os.environ, "PYTHONPATH": str(Path(pf.__file__).parents[1])}
-    done = subprocess.run(
-        [sys.executable, str(script)], env=environment, capture_output=True, text=True, check=False
-    )
+    done = subprocess.run([sys.executable, str(script)], env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
 
 
@@ -145,13 +140,11 @@ def test_small_sets_are_shown_and_decoded_without_a_compiler(tmp_path: Path) -> 
         (1000, 0.0, True, True, False),
     ],
 )
-def test_kernels_are_loaded_for_what_takes_longer(
-    monkeypatch: pytest.MonkeyPatch, points: int, spent: float, loaded: bool, filled: bool, small: bool
-) -> None:
+def test_kernels_are_loaded_for_what_takes_longer(monkeypatch, points, spent, loaded, filled, small):
     state = small_sets.State(spent, loaded)
     monkeypatch.setitem(small_sets.STATES, "coding", state)
     monkeypatch.setattr(small_sets, "is_filled", lambda _: filled)
-    marked: list[str] = []
+    marked = []
     monkeypatch.setattr(small_sets, "mark_filled", marked.append)
     begin = time.thread_time()
     with small_sets.without_kernels("coding", points) as said:
@@ -163,9 +156,7 @@ def test_kernels_are_loaded_for_what_takes_longer(
     assert marked == (["coding"] if not small and not loaded else [])
 
 
-def test_compilation_is_told_and_waiting_is_not(
-    caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_compilation_is_told_and_waiting_is_not(caplog, monkeypatch):
     from pvfiblets.codec import jit
 
     monkeypatch.setattr(jit, "NOTICED", 0.02)
@@ -183,6 +174,5 @@ def test_compilation_is_told_and_waiting_is_not(
     ]
 
 
-def _slow(more: int):
+def _slow(more):
     return lambda x: x + more
-

@@ -1,7 +1,5 @@
 """The capsules that culling goes by hold all that is drawn, and little more."""
 
-from __future__ import annotations
-
 import dataclasses
 
 import numpy as np
@@ -12,13 +10,12 @@ from hypothesis import strategies as st
 import pvfiblets as pf
 from pvfiblets import synthetic
 from pvfiblets.codec import capsule_kernels, capsules, layout
-from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.streamlines import Streamlines
 
 from .samples import extremes, noisy, smooth, wandering
 
 
-def chord_distances(points: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
+def chord_distances(points, a, b):
     """Distances from the segment ab by cases: beside it a height of a triangle, else the distance from an end."""
     length = np.linalg.norm(b - a)
     from_a, from_b = np.linalg.norm(points - a, axis=1), np.linalg.norm(points - b, axis=1)
@@ -31,7 +28,7 @@ def chord_distances(points: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndar
     return np.where(beside, height, nearest)
 
 
-def assert_capsules_are_right(fiblets: FibletSet) -> None:
+def assert_capsules_are_right(fiblets):
     points = fiblets.decompress(dtype=np.float64).points
     slack = 32 * np.spacing(np.abs(points).max(initial=0.0))  # the origin has been added
     starts, counts = fiblets.fiblet_points(), fiblets.fiblet_counts()
@@ -60,11 +57,11 @@ def assert_capsules_are_right(fiblets: FibletSet) -> None:
 @pytest.mark.few(11)
 @pytest.mark.parametrize("effort", ["fast", "high"])
 @pytest.mark.parametrize("name", extremes())
-def test_capsules_hold_extreme_lines(name: str, effort: str) -> None:
+def test_capsules_hold_extreme_lines(name, effort):
     assert_capsules_are_right(pf.compress(extremes()[name], effort=effort))
 
 
-def test_capsules_hold_lines_of_all_kinds() -> None:
+def test_capsules_hold_lines_of_all_kinds():
     lines = Streamlines.concatenate([smooth(10, 130), noisy(10, 130), wandering(10, 130)])
     fiblets = pf.compress(lines)
     assert len(np.unique(layout.unpack("kind", fiblets.decoding))) > 1
@@ -75,7 +72,7 @@ def test_capsules_hold_lines_of_all_kinds() -> None:
 @pytest.mark.more
 @settings(max_examples=40)
 @given(st.data())
-def test_capsules_hold_any_lines(data: st.DataObject) -> None:
+def test_capsules_hold_any_lines(data):
     rng = np.random.default_rng(data.draw(st.integers(0, 2**32 - 1)))
     counts = data.draw(st.lists(st.integers(0, 150), min_size=1, max_size=5))
     scale = 10.0 ** data.draw(st.floats(-6, 6))
@@ -85,7 +82,7 @@ def test_capsules_hold_any_lines(data: st.DataObject) -> None:
     assert_capsules_are_right(pf.compress(Streamlines(points, np.concatenate([[0], np.cumsum(counts)]))))
 
 
-def test_capsules_of_tracking_are_slim() -> None:
+def test_capsules_of_tracking_are_slim():
     """The volume that culling must take for full, beside that of spheres about the chords' middles."""
     fiblets = pf.compress(synthetic.brain_streamlines(500, 0.5))
     points, starts = fiblets.decompress().points, fiblets.fiblet_points()
@@ -97,7 +94,7 @@ def test_capsules_of_tracking_are_slim() -> None:
     assert np.median(capsule / (np.pi / 6 * chords**3)) < 0.04
 
 
-def test_kernels_compute_what_the_reference_says() -> None:
+def test_kernels_compute_what_the_reference_says():
     rng = np.random.default_rng(0)
     for n in (1, 2, 3, 60):
         points = np.cumsum(rng.normal(size=(n, 3)), axis=0)
@@ -114,7 +111,7 @@ def test_kernels_compute_what_the_reference_says() -> None:
 
 
 @pytest.mark.more
-def test_a_mapped_file_has_the_same_bounds(tmp_path) -> None:
+def test_a_mapped_file_has_the_same_bounds(tmp_path):
     lines = wandering(30, 100)
     pf.write(tmp_path / "a.trx", lines)
     pf.compress_file(tmp_path / "a.trx", tmp_path / "a.fiblets")

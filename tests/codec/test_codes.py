@@ -1,9 +1,6 @@
 """Compiled kernels against the literal reference, bit for bit; promises and figures on real and made-up lines."""
 
-from __future__ import annotations
-
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,7 +9,6 @@ from hypothesis import strategies as st
 
 import pvfiblets as pf
 from pvfiblets.codec import reference
-from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.codec.layout import DIRECTION, MAX_POINTS, unpack
 from pvfiblets.codec.turn_reference import cut as reference_cut
 from pvfiblets.codec.turn_reference import may_turn
@@ -21,14 +17,12 @@ from pvfiblets.streamlines import Streamlines
 from .samples import extremes, noisy, smooth, wandering
 
 
-def pixel_of(fiblets: FibletSet) -> float:
+def pixel_of(fiblets):
     bounds = np.array(fiblets.bounds)
     return float(np.linalg.norm(bounds[1::2] - bounds[::2])) / 2000.0
 
 
-def reference_slot(
-    line: np.ndarray, first: int, count: int, fiblets: FibletSet
-) -> list[reference.DirectionPiece | reference.LatticePiece]:
+def reference_slot(line, first, count, fiblets):
     """What the encoder must write for one cut of at most 60 points of a streamline, by the reference alone."""
     p = fiblets.parameters
     turns = may_turn(line, pixel_of(fiblets), 10.0)[first : first + count]
@@ -60,7 +54,7 @@ def reference_slot(
     return pieces
 
 
-def assert_matches_reference(streamlines: Streamlines, fiblets: FibletSet, most: int = 60) -> None:
+def assert_matches_reference(streamlines, fiblets, most=60):
     starts, counts = fiblets.fiblet_points(), fiblets.fiblet_counts()
     code_at = unpack("code", fiblets.decoding) + fiblets._base(1)
     where = {int(s): f for f, s in enumerate(starts)}
@@ -91,7 +85,7 @@ SAMPLES = {"smooth": smooth, "noisy": noisy, "wandering": wandering}
 
 @pytest.mark.few(2)
 @pytest.mark.parametrize("name", SAMPLES)
-def test_kernels_write_the_references_codes(name: str) -> None:
+def test_kernels_write_the_references_codes(name):
     streamlines = SAMPLES[name]()
     assert_matches_reference(streamlines, pf.compress(streamlines))
 
@@ -107,13 +101,13 @@ def test_kernels_write_the_references_codes(name: str) -> None:
         "trxrs_tinytrack_small.tt.gz",
     ],
 )
-def test_kernels_write_the_references_codes_on_real_files(shared_data: Path, name: str) -> None:
+def test_kernels_write_the_references_codes_on_real_files(shared_data, name):
     streamlines = pf.read(shared_data / name)
     streamlines = streamlines[:: 1 + streamlines.n_points // 20_000]  # the reference is slow
     assert_matches_reference(streamlines, pf.compress(streamlines))
 
 
-def decode_by_reference(fiblets: FibletSet) -> np.ndarray:
+def decode_by_reference(fiblets):
     """All points, decoded by the reference from the records."""
     out = np.empty((fiblets.n_points, 3))
     p = fiblets.parameters
@@ -137,7 +131,7 @@ def decode_by_reference(fiblets: FibletSet) -> np.ndarray:
 
 
 @pytest.mark.parametrize("name", SAMPLES)
-def test_kernels_decode_what_the_reference_decodes(name: str) -> None:
+def test_kernels_decode_what_the_reference_decodes(name):
     fiblets = pf.compress(SAMPLES[name](10, 100))
     expected = decode_by_reference(fiblets)
     np.testing.assert_array_equal(fiblets.decompress(dtype=np.float64).points, expected)
@@ -147,7 +141,7 @@ def test_kernels_decode_what_the_reference_decodes(name: str) -> None:
 @pytest.mark.few(7)
 @pytest.mark.parametrize("effort", ["fast", "high"])
 @pytest.mark.parametrize("name", extremes())
-def test_extreme_lines_keep_the_promise(name: str, effort: str) -> None:
+def test_extreme_lines_keep_the_promise(name, effort):
     streamlines = extremes()[name]
     fiblets = pf.compress(streamlines, effort=effort)
     fiblets.verify()
@@ -164,7 +158,7 @@ def test_extreme_lines_keep_the_promise(name: str, effort: str) -> None:
 @pytest.mark.more
 @settings(max_examples=60)
 @given(st.data())
-def test_any_lines_keep_any_promise(data: st.DataObject) -> None:
+def test_any_lines_keep_any_promise(data):
     seed = data.draw(st.integers(0, 2**32 - 1))
     rng = np.random.default_rng(seed)
     counts = data.draw(st.lists(st.integers(0, 150), min_size=1, max_size=5))
@@ -186,7 +180,7 @@ def test_any_lines_keep_any_promise(data: st.DataObject) -> None:
 
 
 @pytest.mark.more
-def test_figures_on_smooth_and_noisy_constant_steps() -> None:
+def test_figures_on_smooth_and_noisy_constant_steps():
     """The issue's figures in steps (the paper: max 0.17, mean 0.05), at the bytes of a full fiblet.
 
     Each streamline adds the four bytes of its end vector, here to 240 points.
@@ -206,7 +200,7 @@ def test_figures_on_smooth_and_noisy_constant_steps() -> None:
         assert fiblets.ends.nbytes == 4 * len(lines)
 
 
-def test_figures_on_real_tracking(shared_data: Path) -> None:
+def test_figures_on_real_tracking(shared_data):
     lines = pf.read(shared_data / "wholebrain_eudx_0.5mm_fifth.tck")
     fiblets = pf.compress(lines)
     error = pf.measure_error(lines, fiblets)
@@ -214,13 +208,13 @@ def test_figures_on_real_tracking(shared_data: Path) -> None:
     assert error.mean_steps <= 0.012
 
 
-def test_high_effort_is_better_than_fast() -> None:
+def test_high_effort_is_better_than_fast():
     lines = noisy(40, 240)
     fast, high = (pf.measure_error(lines, pf.compress(lines, effort=e)) for e in ("fast", "high"))
     assert high.mean_mm < 0.9 * fast.mean_mm
 
 
-def test_variable_steps_stay_below_their_bytes() -> None:
+def test_variable_steps_stay_below_their_bytes():
     lines = wandering(100, 60)
     # A tenth of the step; a 4000th of the diagonal, a third of that, without and with directions.
     for promise, angle, most in ((0.16, None, 2.7), (None, None, 3.8), (None, 10.0, 4.3)):
@@ -229,13 +223,13 @@ def test_variable_steps_stay_below_their_bytes() -> None:
 
 
 @pytest.mark.parametrize("make", [smooth, wandering])
-def test_six_point_streamlines_stay_below_half_of_float32(make) -> None:
+def test_six_point_streamlines_stay_below_half_of_float32(make):
     lines = make(200, 6)
     fiblets = pf.compress(lines, max_error=0.1 * lines.lengths().mean() / 5, max_angle=None)
     assert fiblets.nbytes - fiblets.pages.nbytes < 0.5 * lines.n_points * 12
 
 
-def test_many_pages(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_many_pages(monkeypatch):
     """More than one page of fiblets, in several chunks that begin inside pages."""
     n = 40_000
     rng = np.random.default_rng(5)
@@ -253,7 +247,7 @@ def test_many_pages(monkeypatch: pytest.MonkeyPatch) -> None:
     assert np.linalg.norm(chosen.points - lines[some].points, axis=1).max() <= whole.promise
 
 
-def test_steps_of_one_fiblet_are_its_own() -> None:
+def test_steps_of_one_fiblet_are_its_own():
     """A file whose streamlines differ in step by a few percent still takes one byte a point."""
     lines = Streamlines.concatenate([smooth(20, 120, step) for step in (0.49, 0.5, 0.515)])
     fiblets = pf.compress(lines)

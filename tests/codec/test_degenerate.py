@@ -1,10 +1,7 @@
 """Sets at the edge of what numbers can say, from a file to a file and back: sensible words, or one clear error."""
 
-from __future__ import annotations
-
 import json
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -22,7 +19,7 @@ ALTERNATING = np.tile([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]], (25, 1))
 NOTHING = np.zeros((0, 3))
 
 
-def lines_of(kind: type) -> dict[str, list[object]]:
+def lines_of(kind):
     """Lines by what is odd about them, with the extremes of a type of number."""
     least, most = float(np.finfo(kind).tiny), float(np.finfo(kind).max)
     bad = {name: np.concatenate([CURVE, [[value, 0.0, 0.0]], CURVE]) for name, value in
@@ -71,7 +68,7 @@ def lines_of(kind: type) -> dict[str, list[object]]:
     }
 
 
-def streamlines(name: str, kind: type) -> Streamlines:
+def streamlines(name, kind):
     lines = [np.asarray(line, np.float64).reshape(-1, 3) for line in lines_of(kind)[name]]
     with np.errstate(over="ignore"):
         points = np.concatenate([NOTHING, *lines]).astype(kind)
@@ -84,9 +81,7 @@ NONSENSE = re.compile(r"\bnan\b|\binf\b|\bNone\b|e[-+][0-9]{3}|Traceback")
 @pytest.mark.few(4)
 @pytest.mark.parametrize("kind", [np.float32, np.float64])
 @pytest.mark.parametrize("name", lines_of(np.float32))
-def test_a_degenerate_set_is_kept_within_its_promise_and_told_of(
-    name: str, kind: type, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_degenerate_set_is_kept_within_its_promise_and_told_of(name, kind, tmp_path, capsys):
     source, target, back = (tmp_path / part for part in ("a.trx", "a.fiblets", "b.trx"))
     formats.write(source, streamlines(name, kind))
     done = main(["convert", str(source), str(target), "--no-exact"])
@@ -124,9 +119,7 @@ def test_a_degenerate_set_is_kept_within_its_promise_and_told_of(
     ],
 )  # fmt: skip
 @pytest.mark.filterwarnings("default:the source holds no points", "default:.*non-finite points")
-def test_a_degenerate_set_is_drawn(
-    name: str, least: int, most: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_degenerate_set_is_drawn(name, least, most, tmp_path, capsys):
     """A point is a dot, a line is a line, and what is not there is told."""
     source, picture = tmp_path / "a.trx", tmp_path / "a.png"
     formats.write(source, streamlines(name, np.float64))
@@ -138,7 +131,7 @@ def test_a_degenerate_set_is_drawn(
 
 
 @pytest.mark.parametrize("how", [["--exact"], ["--no-exact"], ["--shards", "1M"]])
-def test_a_set_of_nothing_goes_on_to_every_format(how: list[str], tmp_path: Path) -> None:
+def test_a_set_of_nothing_goes_on_to_every_format(how, tmp_path):
     source, between = tmp_path / "a.trx", tmp_path / "a.fiblets"
     formats.write(source, streamlines("no line", np.float32))
     assert main(["convert", str(source), str(between), *how]) == 0

@@ -1,7 +1,5 @@
 """Measured errors against a plain computation; resampling against closed forms; bad arguments."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -15,7 +13,7 @@ from .samples import smooth, wandering
 
 
 @pytest.mark.more
-def test_errors_are_those_of_a_plain_computation(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_errors_are_those_of_a_plain_computation(monkeypatch):
     lines = Streamlines.concatenate([wandering(30, 50), Streamlines(np.empty((0, 3)), [0, 0]), smooth(30, 100)])
     fiblets = pf.compress(lines, max_error=0.03)
     error = pf.measure_error(lines, fiblets)
@@ -38,10 +36,10 @@ def test_errors_are_those_of_a_plain_computation(monkeypatch: pytest.MonkeyPatch
     assert again.mean_mm == pytest.approx(error.mean_mm, rel=1e-12)
 
 
-def test_errors_against_other_lines_are_refused() -> None:
+def test_errors_against_other_lines_are_refused():
     fiblets = pf.compress(smooth(5, 50))
     with pytest.raises(TypeError, match="in this order; got FibletSet and Streamlines"):
-        pf.measure_error(fiblets, smooth(5, 50))  # type: ignore[arg-type]
+        pf.measure_error(fiblets, smooth(5, 50))
     with pytest.raises(ValueError, match="5 streamlines of 250 points, the original 4 of 200"):
         pf.measure_error(smooth(4, 50), fiblets)
     other = smooth(5, 50)
@@ -50,7 +48,7 @@ def test_errors_against_other_lines_are_refused() -> None:
         pf.measure_error(moved, fiblets)
 
 
-def test_resampled_points_lie_a_step_apart_on_the_line() -> None:
+def test_resampled_points_lie_a_step_apart_on_the_line():
     angle = np.linspace(0, np.pi, 2001)
     circle = 10 * np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
     lines = Streamlines.from_list([circle, circle[:1], np.empty((0, 3))])
@@ -63,7 +61,7 @@ def test_resampled_points_lie_a_step_apart_on_the_line() -> None:
     assert [len(f) for f in fresh] == [len(first), 1, 0]
 
 
-def test_resampling_carries_values_along() -> None:
+def test_resampling_carries_values_along():
     lines = Streamlines.from_list([np.array([[0.0, 0, 0], [1, 0, 0], [4, 0, 0]])])
     lines = Streamlines(
         lines.points, lines.offsets, per_point={"v": np.array([0.0, 1.0, 4.0])}, per_streamline={"w": [7]}
@@ -74,13 +72,13 @@ def test_resampling_carries_values_along() -> None:
     assert fresh.per_streamline["w"].tolist() == [7]
 
 
-def test_a_zero_length_streamline_resamples_to_its_ends() -> None:
+def test_a_zero_length_streamline_resamples_to_its_ends():
     fresh = resample(Streamlines.from_list([np.zeros((5, 3))]), 1.0)
     assert fresh.points.tolist() == [[0, 0, 0], [0, 0, 0]]
 
 
 @pytest.mark.more
-def test_compress_resamples_only_when_asked() -> None:
+def test_compress_resamples_only_when_asked():
     lines = smooth(5, 50)
     assert pf.compress(lines).n_points == lines.n_points
     coarse = pf.compress(lines, step=2.0)
@@ -105,12 +103,12 @@ def test_compress_resamples_only_when_asked() -> None:
         ({"per_point_bits": 12}, r"per_point_bits is 12; 8 or 16"),
     ],
 )
-def test_bad_arguments_say_what_is_needed(arguments: dict, message: str) -> None:
+def test_bad_arguments_say_what_is_needed(arguments, message):
     with pytest.raises(ValueError, match=message):
         pf.compress(smooth(2, 20), **arguments)
 
 
-def test_bad_points_are_named() -> None:
+def test_bad_points_are_named():
     points = np.array(smooth(2, 20).points)
     points[7, 1] = np.nan
     with pytest.raises(ValueError, match="point 7 is .*nan.*remove or repair"):
@@ -123,7 +121,7 @@ def test_bad_points_are_named() -> None:
 
 
 @pytest.mark.parametrize("bits", [8, 16])
-def test_quantised_values(bits: int) -> None:
+def test_quantised_values(bits):
     rng = np.random.default_rng(0)
     values = rng.normal(size=1000)
     values[[3, 500]] = np.nan, np.inf

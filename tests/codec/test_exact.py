@@ -1,7 +1,5 @@
 """Sets that keep every bit of their points: small ones by default, and those that coding would enlarge."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

@@ -1,9 +1,5 @@
 """Some streamlines as a renumbered set: what decompress gives for them, bit for bit, in memory and in every format."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -15,7 +11,7 @@ from .samples import assert_equal_streamlines, extremes, smooth
 from .test_restrict import every_kind
 
 
-def assert_equal(part: pf.FibletSet, wanted: Streamlines, whole: pf.FibletSet) -> None:
+def assert_equal(part, wanted, whole):
     part.verify()
     assert_equal_streamlines(part.decompress(dtype=np.float64), wanted)
     assert part.n_streamlines == len(part) == len(wanted)
@@ -24,7 +20,7 @@ def assert_equal(part: pf.FibletSet, wanted: Streamlines, whole: pf.FibletSet) -
     assert {k: list(v) for k, v in part.per_group.items()} == {k: list(v) for k, v in wanted.per_group.items()}
 
 
-def with_groups() -> Streamlines:
+def with_groups():
     lines = every_kind()
     return Streamlines(
         lines.points, lines.offsets, lines.per_point, {**lines.per_streamline, "three": np.arange(219).reshape(73, 3)},
@@ -36,7 +32,7 @@ def with_groups() -> Streamlines:
 @pytest.mark.few(1)
 @pytest.mark.parametrize("order", ["input", "hilbert"])
 @pytest.mark.parametrize("mapped", [False, True])
-def test_parts_of_every_kind(order: str, mapped: bool, tmp_path: Path) -> None:
+def test_parts_of_every_kind(order, mapped, tmp_path):
     whole = pf.compress(with_groups(), per_point=["height", "fine"], per_point_bits=16, order=order)
     if mapped:
         whole.save(tmp_path / "a.fiblets")
@@ -53,7 +49,7 @@ def test_parts_of_every_kind(order: str, mapped: bool, tmp_path: Path) -> None:
         assert_equal(pf.FibletSet.open(tmp_path / "b.fiblets"), whole.decompress(ids, dtype=np.float64), whole)
 
 
-def test_ways_to_choose() -> None:
+def test_ways_to_choose():
     whole = pf.compress(with_groups())
     mask = np.arange(73) % 3 == 0
     for chosen, ids in (
@@ -70,7 +66,7 @@ def test_ways_to_choose() -> None:
 
 
 @pytest.mark.parametrize("ids", [[], np.zeros(73, bool), slice(0, 0), [0]])
-def test_a_part_without_points_is_a_set_and_can_be_saved(ids: object, tmp_path: Path) -> None:
+def test_a_part_without_points_is_a_set_and_can_be_saved(ids, tmp_path):
     whole = pf.compress(with_groups(), per_point=["height"])
     part = whole[ids]
     assert_equal(part, whole.decompress(ids, dtype=np.float64), whole)
@@ -82,13 +78,13 @@ def test_a_part_without_points_is_a_set_and_can_be_saved(ids: object, tmp_path: 
 
 @pytest.mark.few(7)
 @pytest.mark.parametrize("name", extremes())
-def test_extreme_lines(name: str) -> None:
+def test_extreme_lines(name):
     whole = pf.compress(extremes()[name])
     ids = np.flatnonzero(np.arange(len(whole)) % 3 != 1)[::-1]
     assert_equal(whole[ids], whole.decompress(ids, dtype=np.float64), whole)
 
 
-def test_anchors_of_32_bits() -> None:
+def test_anchors_of_32_bits():
     whole = pf.compress(smooth(20, 200), max_error=1e-5)
     assert whole.anchors_low is not None
     assert_equal(whole[[19, 2]], whole.decompress([19, 2], dtype=np.float64), whole)
@@ -96,7 +92,7 @@ def test_anchors_of_32_bits() -> None:
 
 @pytest.mark.few(3)
 @pytest.mark.parametrize("suffix", [".trk", ".tck", ".trx", ".vtk", ".vtp"])
-def test_a_part_is_saved_in_any_format(suffix: str, tmp_path: Path) -> None:
+def test_a_part_is_saved_in_any_format(suffix, tmp_path):
     whole = pf.compress(every_kind(), per_point=["height"])
     part = whole[[41, 3, 70, 0]]
     lost = part.save(tmp_path / f"a{suffix}")
@@ -108,7 +104,7 @@ def test_a_part_is_saved_in_any_format(suffix: str, tmp_path: Path) -> None:
         np.testing.assert_allclose(read.per_point["height"].ravel(), part.decompress().per_point["height"], rtol=1e-6)
 
 
-def test_formats_that_cannot_be_written_say_so(tmp_path: Path) -> None:
+def test_formats_that_cannot_be_written_say_so(tmp_path):
     part = pf.compress(every_kind())[:3]
     with pytest.raises(UnknownFormatError, match=r"no write\(\)"):
         part.save(tmp_path / "a.trk.gz")

@@ -1,11 +1,8 @@
 """Files: what is written is what is read, and damage is found."""
 
-from __future__ import annotations
-
 import json
 import os
 import zipfile
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -21,7 +18,7 @@ from pvfiblets.streamlines import Streamlines
 from .samples import extremes, smooth, wandering
 
 
-def rich(name: str = "cluster/with slash") -> Streamlines:
+def rich(name="cluster/with slash"):
     """Streamlines with one of everything, and an empty streamline among them."""
     base = wandering(20, 30)
     rng = np.random.default_rng(0)
@@ -41,7 +38,7 @@ def rich(name: str = "cluster/with slash") -> Streamlines:
     )
 
 
-def assert_equal_sets(a: pf.FibletSet, b: pf.FibletSet) -> None:
+def assert_equal_sets(a, b):
     assert a.parameters == b.parameters
     assert a.bounds == b.bounds
     assert a.n_streamlines == b.n_streamlines
@@ -67,7 +64,7 @@ def assert_equal_sets(a: pf.FibletSet, b: pf.FibletSet) -> None:
         )
 
 
-def test_a_rich_set_survives_the_disk(tmp_path: Path) -> None:
+def test_a_rich_set_survives_the_disk(tmp_path):
     fiblets = pf.compress(rich(), per_point=["fa", "rgb"], per_point_bits=16)
     assert list(fiblets.per_point) == ["fa", "rgb[0]", "rgb[1]", "rgb[2]"]
     fiblets.save(tmp_path / "a.fiblets")
@@ -81,7 +78,7 @@ def test_a_rich_set_survives_the_disk(tmp_path: Path) -> None:
 
 @pytest.mark.few(8)
 @pytest.mark.parametrize("name", extremes())
-def test_every_extreme_survives_the_disk(tmp_path: Path, name: str) -> None:
+def test_every_extreme_survives_the_disk(tmp_path, name):
     fiblets = pf.compress(extremes()[name])
     fiblets.save(tmp_path / "a.fiblets")
     assert_equal_sets(fiblets, pf.FibletSet.open(tmp_path / "a.fiblets"))
@@ -89,7 +86,7 @@ def test_every_extreme_survives_the_disk(tmp_path: Path, name: str) -> None:
 
 
 @given(st.data())
-def test_any_set_survives_the_disk(tmp_path_factory: pytest.TempPathFactory, data: st.DataObject) -> None:
+def test_any_set_survives_the_disk(tmp_path_factory, data):
     counts = data.draw(st.lists(st.integers(0, 130), max_size=6))
     n, m = sum(counts), len(counts)
     rng = np.random.default_rng(data.draw(st.integers(0, 1000)))
@@ -117,7 +114,7 @@ def test_any_set_survives_the_disk(tmp_path_factory: pytest.TempPathFactory, dat
         np.testing.assert_array_equal(decoded.groups[name], members)
 
 
-def test_numpy_alone_reads_a_file(tmp_path: Path) -> None:
+def test_numpy_alone_reads_a_file(tmp_path):
     fiblets = pf.compress(smooth(5, 100))
     fiblets.save(tmp_path / "a.fiblets")
     with np.load(tmp_path / "a.fiblets") as plain:
@@ -128,7 +125,7 @@ def test_numpy_alone_reads_a_file(tmp_path: Path) -> None:
     assert header["n_points"] == fiblets.n_points
 
 
-def test_arrays_are_mapped_and_aligned(tmp_path: Path) -> None:
+def test_arrays_are_mapped_and_aligned(tmp_path):
     pf.compress(rich(), per_point=["fa"]).save(tmp_path / "a.fiblets")
     again = pf.FibletSet.open(tmp_path / "a.fiblets")
     for array in (again.anchors, again.decoding, again.codes, again.per_point["fa"].codes):
@@ -137,7 +134,7 @@ def test_arrays_are_mapped_and_aligned(tmp_path: Path) -> None:
         assert not array.flags.writeable
 
 
-def test_opening_reads_no_array(tmp_path: Path) -> None:
+def test_opening_reads_no_array(tmp_path):
     """Constant in time and memory: opening succeeds even where the arrays' bytes are nonsense."""
     path = tmp_path / "a.fiblets"
     pf.compress(smooth(5, 100)).save(path)
@@ -152,7 +149,7 @@ def test_opening_reads_no_array(tmp_path: Path) -> None:
         fiblets_format.verify_file(path)
 
 
-def test_values_come_back_within_their_measured_error() -> None:
+def test_values_come_back_within_their_measured_error():
     lines = rich()
     fiblets = pf.compress(lines, per_point=["fa"])
     decoded = fiblets.decompress()
@@ -166,14 +163,14 @@ def test_values_come_back_within_their_measured_error() -> None:
     assert decoded.groups["AF left"].tolist() == [1, 3, 20]
 
 
-def test_values_cost_nothing_unless_kept() -> None:
+def test_values_cost_nothing_unless_kept():
     lines = rich()
     without, with_fa = pf.compress(lines), pf.compress(lines, per_point=["fa"])
     assert not without.per_point
     assert with_fa.nbytes - without.nbytes == lines.n_points
 
 
-def test_selection_keeps_everything_that_belongs() -> None:
+def test_selection_keeps_everything_that_belongs():
     lines = rich()
     fiblets = pf.compress(lines, per_point=["fa"])
     ids = [20, 3, 7, 3, -21]
@@ -202,7 +199,7 @@ def test_selection_keeps_everything_that_belongs() -> None:
 
 
 @pytest.mark.more
-def test_a_few_streamlines_are_found_as_many_are(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_few_streamlines_are_found_as_many_are(monkeypatch):
     """Over several pages, with streamlines that cross from one into the next, and with empty ones."""
     rng = np.random.default_rng(0)
     counts = rng.integers(0, 40, 9000) * rng.integers(1, 30, 9000)
@@ -221,7 +218,7 @@ def test_a_few_streamlines_are_found_as_many_are(monkeypatch: pytest.MonkeyPatch
 
 
 @pytest.mark.parametrize("max_points", [1, 61, 100, 1000, 10**9])
-def test_chunks_put_together_are_the_whole(max_points: int) -> None:
+def test_chunks_put_together_are_the_whole(max_points):
     lines = rich()
     fiblets = pf.compress(lines, per_point=["fa"])
     whole = fiblets.decompress()
@@ -240,7 +237,7 @@ def test_chunks_put_together_are_the_whole(max_points: int) -> None:
 
 
 @pytest.mark.parametrize("offsets", [[0, 0, 0], [0, 0, 3, 3, 3], [0, 3, 3], [0]])
-def test_chunks_keep_empty_streamlines(offsets: list[int]) -> None:
+def test_chunks_keep_empty_streamlines(offsets):
     lines = Streamlines(np.zeros((offsets[-1], 3)) + np.arange(offsets[-1])[:, None], offsets)
     fiblets = pf.compress(lines)
     assert sum(len(c) for c in fiblets.iter_chunks(1)) == len(lines)
@@ -250,7 +247,7 @@ def test_chunks_keep_empty_streamlines(offsets: list[int]) -> None:
 # ------------------------------------------------------------------------------------------------------ conversion
 
 
-def test_conversion_writes_what_compressing_gives(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_conversion_writes_what_compressing_gives(tmp_path, monkeypatch):
     pf.write(tmp_path / "a.trx", rich("cluster"))
     monkeypatch.setattr("pvfiblets.codec.convert.CHUNK_POINTS", 100)
     report = pf.compress_file(tmp_path / "a.trx", tmp_path / "a.fiblets", per_point=["fa"])
@@ -264,24 +261,24 @@ def test_conversion_writes_what_compressing_gives(tmp_path: Path, monkeypatch: p
     assert sorted(os.listdir(tmp_path)) == ["a.fiblets", "a.trx"]
 
 
-def test_conversion_of_nothing(tmp_path: Path) -> None:
+def test_conversion_of_nothing(tmp_path):
     pf.write(tmp_path / "a.tck", Streamlines(np.empty((0, 3), np.float32), [0]))
     report = pf.compress_file(tmp_path / "a.tck", tmp_path / "a.fiblets")
     assert report["points"] == 0
     assert len(pf.read(tmp_path / "a.fiblets")) == 0
 
 
-def test_conversion_tells_how_far_it_is_and_can_be_stopped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_conversion_tells_how_far_it_is_and_can_be_stopped(tmp_path, monkeypatch):
     pf.write(tmp_path / "a.tck", smooth(20, 50))
     monkeypatch.setattr("pvfiblets.codec.convert.CHUNK_POINTS", 100)
-    told: list[tuple[str, float]] = []
+    told = []
     pf.compress_file(tmp_path / "a.tck", tmp_path / "a.fiblets", progress=lambda *step: told.append(step))
     for what in ("compressing", "measuring"):
         shares = [share for stage, share in told if stage == what]
         np.testing.assert_allclose(shares, np.arange(20) / 20)
     assert [what for what, _ in told[:20]] == ["surveying"] * 20
 
-    def stop(what: str, share: float) -> None:
+    def stop(what, share):
         if what == "compressing" and share > 0.5:
             raise KeyboardInterrupt
 
@@ -290,14 +287,14 @@ def test_conversion_tells_how_far_it_is_and_can_be_stopped(tmp_path: Path, monke
     assert sorted(os.listdir(tmp_path)) == ["a.fiblets", "a.tck"]
 
 
-def test_conversion_refuses_unknown_values(tmp_path: Path) -> None:
+def test_conversion_refuses_unknown_values(tmp_path):
     pf.write(tmp_path / "a.tck", smooth(2, 10))
     with pytest.raises(ValueError, match="no per-point array 'fa'; the streamlines have: none"):
         pf.compress_file(tmp_path / "a.tck", tmp_path / "a.fiblets", per_point=["fa"])
     assert os.listdir(tmp_path) == ["a.tck"]
 
 
-def test_measuring_against_another_file_is_refused(tmp_path: Path) -> None:
+def test_measuring_against_another_file_is_refused(tmp_path):
     pf.write(tmp_path / "a.tck", smooth(5, 50))
     pf.write(tmp_path / "b.tck", smooth(4, 50))
     pf.write(tmp_path / "c.tck", smooth(5, 49))
@@ -311,13 +308,13 @@ def test_measuring_against_another_file_is_refused(tmp_path: Path) -> None:
 # ---------------------------------------------------------------------------------------------------------- damage
 
 
-def saved(tmp_path: Path) -> Path:
+def saved(tmp_path):
     path = tmp_path / "a.fiblets"
     pf.compress(rich(), per_point=["fa"]).save(path)
     return path
 
 
-def test_a_newer_version_is_refused(tmp_path: Path) -> None:
+def test_a_newer_version_is_refused(tmp_path):
     path = saved(tmp_path)
     header, arrays = archive.open_archive(path)
     header["version"] = fiblets_file.VERSION + 1
@@ -328,7 +325,7 @@ def test_a_newer_version_is_refused(tmp_path: Path) -> None:
         pf.FibletSet.open(tmp_path / "b.fiblets")
 
 
-def test_an_older_version_is_refused(tmp_path: Path) -> None:
+def test_an_older_version_is_refused(tmp_path):
     """Version 1 had spheres where capsules are now, and no end vectors."""
     header, arrays = archive.open_archive(saved(tmp_path))
     header["version"] = 1
@@ -340,7 +337,7 @@ def test_an_older_version_is_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["reach", "ends"])
-def test_verify_finds_bounds_that_do_not_hold(tmp_path: Path, name: str) -> None:
+def test_verify_finds_bounds_that_do_not_hold(tmp_path, name):
     """Such a set would lose lines to culling; its checksums are right."""
     header, arrays = archive.open_archive(saved(tmp_path))
     arrays = {k: np.array(v) for k, v in arrays.items()}
@@ -350,7 +347,7 @@ def test_verify_finds_bounds_that_do_not_hold(tmp_path: Path, name: str) -> None
         fiblets_format.verify_file(tmp_path / "b.fiblets")
 
 
-def test_verify_finds_a_radius_that_is_too_small(tmp_path: Path) -> None:
+def test_verify_finds_a_radius_that_is_too_small(tmp_path):
     header, arrays = archive.open_archive(saved(tmp_path))
     header["parameters"]["largest_radius"] *= 0.99
     members = {k: archive.array_member(np.array(v)) for k, v in arrays.items()}
@@ -358,7 +355,8 @@ def test_verify_finds_a_radius_that_is_too_small(tmp_path: Path) -> None:
     with pytest.raises(FormatError, match="beyond the set's largest radius"):
         fiblets_format.verify_file(tmp_path / "b.fiblets")
 
-def test_a_header_that_says_it_is_larger_than_its_file(tmp_path: Path) -> None:
+
+def test_a_header_that_says_it_is_larger_than_its_file(tmp_path):
     path = tmp_path / "a.fiblets"
     pf.compress(smooth(3, 40)).save(path)
     raw = bytearray(path.read_bytes())
@@ -370,8 +368,7 @@ def test_a_header_that_says_it_is_larger_than_its_file(tmp_path: Path) -> None:
         pf.FibletSet.open(path)
 
 
-
-def test_other_files_are_refused(tmp_path: Path) -> None:
+def test_other_files_are_refused(tmp_path):
     (tmp_path / "text.fiblets").write_text("not a zip")
     with pytest.raises(FormatError, match="no readable zip"):
         pf.FibletSet.open(tmp_path / "text.fiblets")
@@ -383,7 +380,7 @@ def test_other_files_are_refused(tmp_path: Path) -> None:
         pf.FibletSet.open(tmp_path / "none.fiblets")
 
 
-def test_a_truncated_file_is_refused(tmp_path: Path) -> None:
+def test_a_truncated_file_is_refused(tmp_path):
     path = saved(tmp_path)
     data = path.read_bytes()
     for size in (0, 10, len(data) // 2, len(data) - 1):
@@ -392,7 +389,7 @@ def test_a_truncated_file_is_refused(tmp_path: Path) -> None:
             pf.FibletSet.open(path)
 
 
-def test_verify_names_the_changed_member(tmp_path: Path) -> None:
+def test_verify_names_the_changed_member(tmp_path):
     path = saved(tmp_path)
     codes = pf.FibletSet.open(path).codes
     data = bytearray(path.read_bytes())

@@ -1,7 +1,5 @@
 """Kernels kept on disk are not used once any source of the codec has changed."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess
@@ -18,7 +16,7 @@ print(kernels.quantise(3.0, 1.0, 100.0), len(kernels.quantise.stats.cache_hits))
 """
 
 
-def run(folder: Path, **more: str) -> list[str]:
+def run(folder, **more):
     environment = {**os.environ, "PYTHONPATH": str(folder), **(more or {"NUMBA_CACHE_DIR": str(folder / "kept")})}
     return subprocess.run(
         [sys.executable, "-c", CODE], env=environment, cwd=folder, capture_output=True, text=True, check=True
@@ -26,7 +24,7 @@ def run(folder: Path, **more: str) -> list[str]:
 
 
 @pytest.mark.more
-def test_a_change_in_another_module_compiles_anew(tmp_path: Path) -> None:
+def test_a_change_in_another_module_compiles_anew(tmp_path):
     shutil.copytree(
         Path(pvfiblets.__file__).parent, tmp_path / "pvfiblets", ignore=shutil.ignore_patterns("__pycache__", "shaders")
     )
@@ -40,7 +38,7 @@ def test_a_change_in_another_module_compiles_anew(tmp_path: Path) -> None:
 
 @pytest.mark.more
 @pytest.mark.skipif(sys.platform != "linux", reason="the user's folder for such things is set for Linux")
-def test_another_copy_of_the_same_sources_finds_them_compiled(tmp_path: Path) -> None:
+def test_another_copy_of_the_same_sources_finds_them_compiled(tmp_path):
     home = {"XDG_CACHE_HOME": str(tmp_path / "home"), "NUMBA_CACHE_DIR": ""}
     for name in ("one", "other"):
         shutil.copytree(
@@ -59,7 +57,7 @@ def test_another_copy_of_the_same_sources_finds_them_compiled(tmp_path: Path) ->
 
 @pytest.mark.more
 @pytest.mark.skipif(sys.platform != "linux", reason="the user's folder for such things is set for Linux")
-def test_a_home_that_cannot_be_written_to_is_no_error(tmp_path: Path) -> None:
+def test_a_home_that_cannot_be_written_to_is_no_error(tmp_path):
     shutil.copytree(
         Path(pvfiblets.__file__).parent, tmp_path / "pvfiblets", ignore=shutil.ignore_patterns("__pycache__", "shaders")
     )
@@ -92,7 +90,7 @@ print("done")
 
 @pytest.mark.more
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="processes are forked, which this system cannot")
-def test_processes_that_were_forked_after_kernels_ran_do_the_same(tmp_path: Path) -> None:
+def test_processes_that_were_forked_after_kernels_ran_do_the_same(tmp_path):
     """GNU's OpenMP ended or hung them; pools of processes then waited for ever."""
     script = tmp_path / "forks.py"
     script.write_text(FORKS)
@@ -104,7 +102,7 @@ def test_processes_that_were_forked_after_kernels_ran_do_the_same(tmp_path: Path
 
 
 @pytest.mark.more
-def test_all_that_codes_is_compiled_beforehand() -> None:
+def test_all_that_codes_is_compiled_beforehand():
     """A part that lacks a kernel would leave it to the first large set."""
     environment = {**os.environ, "PYTHONPATH": str(Path(pvfiblets.__file__).parents[1])}
     code = "from pvfiblets.codec.precompile import PARTS\nfor part in PARTS.values():\n    part()\n" + BEFOREHAND

@@ -1,9 +1,5 @@
 """Sets behind each other: parts of one keep every bit, others keep their promise, data are joined or refused."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -15,7 +11,7 @@ from .test_extract import assert_equal, with_groups
 
 
 @pytest.mark.parametrize("order", ["input", "hilbert"])
-def test_parts_of_one_set_keep_every_bit(order: str, tmp_path: Path) -> None:
+def test_parts_of_one_set_keep_every_bit(order, tmp_path):
     whole = pf.compress(with_groups(), per_point=["height", "fine"], per_point_bits=16, order=order)
     first, second = np.array([5, 0, 18, 40]), np.arange(20, 73)
     both = whole[first] + whole[second]
@@ -28,7 +24,7 @@ def test_parts_of_one_set_keep_every_bit(order: str, tmp_path: Path) -> None:
     assert_equal(pf.FibletSet.open(tmp_path / "a.fiblets"), wanted, both)
 
 
-def test_more_than_a_page_of_fiblets() -> None:
+def test_more_than_a_page_of_fiblets():
     whole = pf.compress(Streamlines.from_list([np.cumsum(np.ones((60, 3)), axis=0) + i for i in range(9000)]))
     both = whole[:8999] + whole + whole[3000:]
     assert both.n_fiblets > 16384
@@ -38,7 +34,7 @@ def test_more_than_a_page_of_fiblets() -> None:
     np.testing.assert_array_equal(both.decompress(dtype=np.float64).points, wanted.reshape(-1, 3))
 
 
-def test_other_sets_are_coded_again_within_the_promise() -> None:
+def test_other_sets_are_coded_again_within_the_promise():
     one, two = smooth(0), smooth(1)
     both = pf.compress(one) + pf.compress(two, max_error=0.03)
     both.verify()
@@ -48,7 +44,7 @@ def test_other_sets_are_coded_again_within_the_promise() -> None:
     assert np.linalg.norm(got.points - wanted.points, axis=1).max() <= both.promise
 
 
-def test_nothing_and_gaps() -> None:
+def test_nothing_and_gaps():
     whole = pf.compress(with_groups(), per_point=["height"])
     assert pf.FibletSet.concatenate([whole]) is whole
     assert_equal(whole[:0] + whole[:3], whole.decompress([0, 1, 2], dtype=np.float64), whole)
@@ -58,10 +54,10 @@ def test_nothing_and_gaps() -> None:
     with pytest.raises(ValueError, match="not every set has per_point 'height'"):
         whole[:20] + pf.compress(with_groups())[20:]
     with pytest.raises(TypeError, match="unsupported operand"):
-        whole + 1  # type: ignore[operator]
+        whole + 1
 
 
-def test_iteration_gives_the_points_of_each_streamline() -> None:
+def test_iteration_gives_the_points_of_each_streamline():
     whole = pf.compress(with_groups(), order="hilbert")
     for line, wanted in zip(whole, whole.decompress(), strict=True):
         np.testing.assert_array_equal(line, wanted)

@@ -1,7 +1,5 @@
 """The record and the direction table hold what their documents say."""
 
-from __future__ import annotations
-
 import zlib
 
 import numpy as np
@@ -12,7 +10,7 @@ from hypothesis import strategies as st
 from pvfiblets.codec import direction_codebook, layout, nearest, reference
 
 
-def test_fields_tile_their_words_without_overlap() -> None:
+def test_fields_tile_their_words_without_overlap():
     for array, words in (("anchors", 2), ("decoding", 3)):
         used = [0] * words
         for f in layout.FIELDS.values():
@@ -23,14 +21,14 @@ def test_fields_tile_their_words_without_overlap() -> None:
         assert used == [0xFFFFFFFF] * words
 
 
-def test_a_full_fiblet_takes_eighty_bytes() -> None:
+def test_a_full_fiblet_takes_eighty_bytes():
     record = 2 * 4 + 3 * 4 + 2
     codes = layout.MAX_POINTS - 2
     assert record + codes == 80
     assert (record + codes) / layout.MAX_POINTS <= 1.34
 
 
-def test_field_widths_hold_the_largest_page() -> None:
+def test_field_widths_hold_the_largest_page():
     largest_codes = layout.WIDE_HEADER + (layout.MAX_POINTS - 1) * 4
     assert (layout.PAGE - 1) * largest_codes <= layout.FIELDS["code"].mask
     assert (layout.PAGE - 1) * layout.MAX_POINTS <= layout.FIELDS["point"].mask
@@ -38,7 +36,7 @@ def test_field_widths_hold_the_largest_page() -> None:
 
 
 @given(st.data())
-def test_pack_and_unpack_are_inverse(data: st.DataObject) -> None:
+def test_pack_and_unpack_are_inverse(data):
     for array in ("anchors", "decoding"):
         fields = [f for f in layout.FIELDS.values() if f.array == array]
         values = {f.name: data.draw(st.integers(0, f.mask)) for f in fields}
@@ -46,7 +44,7 @@ def test_pack_and_unpack_are_inverse(data: st.DataObject) -> None:
         assert {name: int(layout.unpack(name, words)[0]) for name in values} == values
 
 
-def test_pack_refuses_what_does_not_fit() -> None:
+def test_pack_refuses_what_does_not_fit():
     good = {f.name: 0 for f in layout.FIELDS.values() if f.array == "anchors"}
     with pytest.raises(ValueError, match=r"rank holds 0\.\.16383, got 16384"):
         layout.pack("anchors", **(good | {"rank": 16384}))
@@ -55,20 +53,20 @@ def test_pack_refuses_what_does_not_fit() -> None:
 
 
 @given(st.lists(st.tuples(*[st.integers(-511, 511)] * 3), max_size=5))
-def test_end_vectors_pack_and_unpack(vectors: list[tuple[int, int, int]]) -> None:
+def test_end_vectors_pack_and_unpack(vectors):
     words = layout.pack_ends(np.array(vectors, int).reshape(-1, 3))
     assert words.dtype == np.uint32
     assert (words >> 30 == 0).all()
     assert [tuple(v) for v in layout.unpack_ends(words).tolist()] == vectors
 
 
-def test_end_vectors_stand_where_they_are_said_to() -> None:
+def test_end_vectors_stand_where_they_are_said_to():
     assert layout.pack_ends(np.array([[1, 2, 3], [-1, 0, 0], [0, 0, -511]])).tolist() == [3147777, 1023, 537919488]
     with pytest.raises(ValueError, match=r"holds -511\.\.511, got 0\.\.512"):
         layout.pack_ends(np.array([[512, 0, 0]]))
 
 
-def test_glsl_states_every_field() -> None:
+def test_glsl_states_every_field():
     source = layout.glsl_source()
     for f in layout.FIELDS.values():
         assert f"uint fiblet_{f.name}(" in source
@@ -78,7 +76,7 @@ def test_glsl_states_every_field() -> None:
     assert "const uint FIBLET_DECODING_WORDS = 3u;" in source
 
 
-def test_codes_are_smallest_rotations_within_their_cap() -> None:
+def test_codes_are_smallest_rotations_within_their_cap():
     directions = direction_codebook.directions()
     q = direction_codebook.quaternions().astype(np.float64)
     assert np.abs(np.linalg.norm(q, axis=-1) - 1).max() < 1e-7
@@ -91,14 +89,14 @@ def test_codes_are_smallest_rotations_within_their_cap() -> None:
         assert len(np.unique(directions[cap], axis=0)) == direction_codebook.CODES
 
 
-def test_tables_are_the_same_everywhere() -> None:
+def test_tables_are_the_same_everywhere():
     """Files hold codes, not directions: a table that changed would silently bend every file."""
     assert zlib.crc32(direction_codebook.packed().astype("<u4").tobytes()) == 983017696
     assert zlib.crc32(direction_codebook.packed_scales().astype("<f4").tobytes()) == 3030463841
     assert zlib.crc32(direction_codebook.quaternions().astype("<f4").tobytes()) == 3427054955
 
 
-def test_rotations_are_what_their_packed_words_say() -> None:
+def test_rotations_are_what_their_packed_words_say():
     """Unpacked in float64 from the description, against the float32 that everything decodes with."""
     q, words = direction_codebook.quaternions().astype(np.float64), direction_codebook.packed().astype(np.int64)
     scale = direction_codebook.packed_scales().astype(np.float64)[:, None]
@@ -110,7 +108,7 @@ def test_rotations_are_what_their_packed_words_say() -> None:
     assert (q[:, 0] == [1, 0, 0, 0]).all(), "code 0 is exactly straight on"
 
 
-def test_packed_rotations_are_close_to_the_codes_directions() -> None:
+def test_packed_rotations_are_close_to_the_codes_directions():
     """Rounding moves a direction by less than a five-thousandth of its cap angle."""
     x = 1 - direction_codebook.cap_ratios()[:, None] * (direction_codebook.disc() ** 2).sum(1)
     lateral = np.sqrt(np.maximum(1 - x * x, 0))
@@ -120,14 +118,14 @@ def test_packed_rotations_are_close_to_the_codes_directions() -> None:
     assert (moved < np.radians(direction_codebook.CAP_DEGREES) / 5000).all()
 
 
-def test_small_caps_keep_their_digits() -> None:
+def test_small_caps_keep_their_digits():
     closed = 2 * np.sin(np.radians(direction_codebook.CAP_DEGREES[0]) / 2) ** 2
     assert direction_codebook.cap_ratios()[0] == pytest.approx(closed, rel=1e-6)
 
 
 @pytest.mark.few(7)
 @pytest.mark.parametrize("cap", range(layout.CAPS))
-def test_candidates_always_hold_the_nearest_code(cap: int) -> None:
+def test_candidates_always_hold_the_nearest_code(cap):
     rng = np.random.default_rng(cap)
     rows, directions = nearest.candidates(cap), direction_codebook.directions()[cap]
     ratio = direction_codebook.cap_ratios()[cap]
@@ -144,7 +142,7 @@ def test_candidates_always_hold_the_nearest_code(cap: int) -> None:
 
 
 @given(st.tuples(*[st.floats(-1, 1, allow_subnormal=False)] * 3).filter(lambda d: np.linalg.norm(d) > 1e-3))
-def test_first_direction_is_kept_to_four_thousandths_of_a_degree(d: tuple[float, float, float]) -> None:
+def test_first_direction_is_kept_to_four_thousandths_of_a_degree(d):
     direction = np.array(d) / np.linalg.norm(d)
     decoded, frame = reference.first_frame(reference.pack_direction(direction))
     assert np.linalg.norm(decoded - direction) < np.radians(0.004)
@@ -152,7 +150,7 @@ def test_first_direction_is_kept_to_four_thousandths_of_a_degree(d: tuple[float,
     assert reference.rotate_x(frame) == pytest.approx(decoded, abs=1e-12)
 
 
-def test_first_frame_has_no_bad_direction() -> None:
+def test_first_frame_has_no_bad_direction():
     for d in ([1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [-1, 1e-9, -1e-9], [-1e-12, 1, 0]):
         decoded, frame = reference.first_frame(reference.pack_direction(np.array(d, float)))
         assert np.isfinite(frame).all()

@@ -1,9 +1,5 @@
 """Streamlines coded along a space-filling curve: compact in space, and given back in their own order."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -16,7 +12,7 @@ from .samples import extremes, smooth, wandering
 
 
 @pytest.mark.parametrize(("dimensions", "bits"), [(2, 4), (3, 3), (6, 2)])
-def test_the_curve_visits_every_cell_and_goes_by_single_steps(dimensions: int, bits: int) -> None:
+def test_the_curve_visits_every_cell_and_goes_by_single_steps(dimensions, bits):
     axes = np.meshgrid(*[np.arange(1 << bits)] * dimensions, indexing="ij")
     cells = np.stack([a.ravel() for a in axes], axis=1)
     keys = ordering.hilbert_keys(cells, bits)
@@ -25,7 +21,7 @@ def test_the_curve_visits_every_cell_and_goes_by_single_steps(dimensions: int, b
     assert (steps == 1).all()
 
 
-def lines_with_everything() -> Streamlines:
+def lines_with_everything():
     """Lines of both kinds, some empty, with values per point and per streamline, and a group."""
     whole = Streamlines.concatenate([smooth(40, 130), wandering(40, 30)])
     shuffled = whole[np.random.default_rng(1).permutation(80)]
@@ -39,7 +35,7 @@ def lines_with_everything() -> Streamlines:
     )  # fmt: skip
 
 
-def assert_same(a: Streamlines, b: Streamlines) -> None:
+def assert_same(a, b):
     np.testing.assert_array_equal(a.points, b.points)
     np.testing.assert_array_equal(a.offsets, b.offsets)
     np.testing.assert_array_equal(a.per_point["height"], b.per_point["height"])
@@ -49,7 +45,7 @@ def assert_same(a: Streamlines, b: Streamlines) -> None:
 
 @pytest.mark.few(1)
 @pytest.mark.parametrize("mapped", [False, True])
-def test_everything_comes_back_in_the_order_of_the_input(mapped: bool, tmp_path: Path) -> None:
+def test_everything_comes_back_in_the_order_of_the_input(mapped, tmp_path):
     lines = lines_with_everything()
     plain = pf.compress(lines, per_point=["height"])
     ordered = pf.compress(lines, per_point=["height"], order="hilbert")
@@ -75,11 +71,11 @@ def test_everything_comes_back_in_the_order_of_the_input(mapped: bool, tmp_path:
     np.testing.assert_array_equal(plain.in_coded_order(lines.per_point["height"]), lines.per_point["height"])
 
 
-def _blocks(lines: Streamlines, fiblets: pf.FibletSet, size: int) -> list[Streamlines]:
+def _blocks(lines, fiblets, size):
     return [fiblets.decompress(np.arange(a, b)) for a, b in lines.blocks(size)]
 
 
-def test_streamlines_of_one_cell_keep_their_order() -> None:
+def test_streamlines_of_one_cell_keep_their_order():
     """So that the same input makes the same file everywhere."""
     ends = np.repeat(np.random.default_rng(0).uniform(0.0, 100.0, (7, 3)), 300, axis=0)
     order = ordering.ends_order(ends, ends + 1e-9)
@@ -89,7 +85,7 @@ def test_streamlines_of_one_cell_keep_their_order() -> None:
 
 @pytest.mark.few(6)
 @pytest.mark.parametrize("name", extremes())
-def test_extreme_lines_can_be_ordered(name: str) -> None:
+def test_extreme_lines_can_be_ordered(name):
     lines = extremes()[name]
     fiblets = pf.compress(lines, order="hilbert")
     fiblets.verify()
@@ -97,11 +93,11 @@ def test_extreme_lines_can_be_ordered(name: str) -> None:
     assert pf.measure_error(lines, fiblets).max_mm <= fiblets.promise
 
 
-def test_neighbours_on_the_curve_are_neighbours_in_space() -> None:
+def test_neighbours_on_the_curve_are_neighbours_in_space():
     """The area that the box around 8 consecutive streamlines shows, beside that in the order of tracking."""
     lines = brain_streamlines(8000, 2.0)
 
-    def shown(fiblets: pf.FibletSet) -> float:
+    def shown(fiblets):
         anchors = np.stack([layout.unpack(f"anchor_{a}", fiblets.anchors) for a in "xyz"], axis=1)
         starts = np.flatnonzero(layout.unpack("begin", fiblets.anchors))[::8]
         size = (np.maximum.reduceat(anchors, starts) - np.minimum.reduceat(anchors, starts)) * fiblets.anchor_scale
@@ -110,7 +106,7 @@ def test_neighbours_on_the_curve_are_neighbours_in_space() -> None:
     assert shown(pf.compress(lines, order="hilbert")) < 0.35 * shown(pf.compress(lines))
 
 
-def test_orders_that_there_are_none_of_are_refused(tmp_path: Path) -> None:
+def test_orders_that_there_are_none_of_are_refused(tmp_path):
     with pytest.raises(ValueError, match="order is 'z'; 'input' or 'hilbert' is needed"):
         pf.compress(smooth(2, 10), order="z")
     pf.write(tmp_path / "a.tck", smooth(2, 10))

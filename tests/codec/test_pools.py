@@ -1,7 +1,5 @@
 """Pools of processes and threads work after kernels ran in the parent: fork, spawn, joblib's and dask's."""
 
-from __future__ import annotations
-
 import importlib
 import multiprocessing
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor

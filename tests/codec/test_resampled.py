@@ -1,7 +1,5 @@
 """Resampling on the way in: the promise is about the lines that were given, corners and all."""
 
-from __future__ import annotations
-
 import itertools
 import json
 

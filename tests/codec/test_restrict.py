@@ -1,9 +1,6 @@
 """Some streamlines as a set of their own: the same points bit for bit, under their own numbers, and no more read."""
 
-from __future__ import annotations
-
 from dataclasses import replace
-from pathlib import Path
 
 import hypothesis.strategies as st
 import numpy as np
@@ -18,7 +15,7 @@ from pvfiblets.streamlines import Streamlines
 from .samples import extremes, noisy, smooth, wandering
 
 
-def assert_restricted(whole: pf.FibletSet, ids: np.ndarray, part: pf.FibletSet) -> None:
+def assert_restricted(whole, ids, part):
     """``part`` holds these streamlines of ``whole``, bit for bit, and no points of others."""
     part.verify()
     assert part.n_streamlines == whole.n_streamlines
@@ -37,7 +34,7 @@ def assert_restricted(whole: pf.FibletSet, ids: np.ndarray, part: pf.FibletSet) 
     assert part.bounds == whole.bounds
 
 
-def every_kind() -> Streamlines:
+def every_kind():
     """Lines of every kind of fiblet, some without points, with values of both sorts and a group."""
     lines = Streamlines.concatenate([smooth(30, 130, 0.2), noisy(10, 70, 0.2), wandering(30, 90)])
     points = np.asarray(lines.points, np.float64)
@@ -56,7 +53,7 @@ def every_kind() -> Streamlines:
 @pytest.mark.few(1)
 @pytest.mark.parametrize("order", ["input", "hilbert"])
 @pytest.mark.parametrize("mapped", [False, True])
-def test_of_every_kind_the_same_points_come_back(order: str, mapped: bool, tmp_path: Path) -> None:
+def test_of_every_kind_the_same_points_come_back(order, mapped, tmp_path):
     whole = pf.compress(every_kind(), per_point=["height", "fine"], per_point_bits=16, order=order)
     kinds = np.bincount(layout.unpack("kind", whole.decoding), minlength=4)
     assert (kinds > 0).all(), kinds
@@ -78,13 +75,13 @@ def test_of_every_kind_the_same_points_come_back(order: str, mapped: bool, tmp_p
 
 @pytest.mark.few(8)
 @pytest.mark.parametrize("name", extremes())
-def test_extreme_lines_survive(name: str) -> None:
+def test_extreme_lines_survive(name):
     whole = pf.compress(extremes()[name])
     ids = np.flatnonzero(np.arange(len(whole)) % 3 != 1)
     assert_restricted(whole, ids, restrict(whole, ids))
 
 
-def test_anchors_of_32_bits_keep_their_lower_halves() -> None:
+def test_anchors_of_32_bits_keep_their_lower_halves():
     whole = pf.compress(smooth(20, 200), max_error=1e-5)
     assert whole.anchors_low is not None
     ids = np.array([2, 3, 11, 19])
@@ -94,7 +91,7 @@ def test_anchors_of_32_bits_keep_their_lower_halves() -> None:
     assert_restricted(whole, ids, part)
 
 
-def many_pages() -> pf.FibletSet:
+def many_pages():
     """Four pages: short streamlines, one that runs through a whole page and across two borders, short ones again."""
     rng = np.random.default_rng(8)
     dots = [rng.uniform(-50, 50, (1 + i % 3, 3)) for i in range(9000)]
@@ -106,7 +103,7 @@ def many_pages() -> pf.FibletSet:
 
 
 @pytest.fixture(scope="module")
-def paged() -> pf.FibletSet:
+def paged():
     whole = many_pages()
     assert len(whole.pages) - 1 >= 3
     ranks = whole.pages[:, 0]
@@ -115,7 +112,7 @@ def paged() -> pf.FibletSet:
 
 
 @pytest.mark.more
-def test_streamlines_that_cross_pages(paged: pf.FibletSet) -> None:
+def test_streamlines_that_cross_pages(paged):
     rng = np.random.default_rng(9)
     for ids in (
         np.array([9000]),
@@ -129,7 +126,7 @@ def test_streamlines_that_cross_pages(paged: pf.FibletSet) -> None:
 
 @pytest.mark.more
 @given(st.lists(st.integers(0, 18000), max_size=30), st.booleans())
-def test_any_choice(paged: pf.FibletSet, ids: list[int], rest: bool) -> None:
+def test_any_choice(paged, ids, rest):
     few = np.unique(np.array(ids, np.int64))
     few = np.setdiff1d(np.arange(0, len(paged), 5), few) if rest else few
     part = restrict(paged, few)
@@ -148,7 +145,7 @@ class Watched(np.ndarray):
         return np.asarray(taken)
 
 
-def test_only_pages_with_something_to_take_are_read(paged: pf.FibletSet) -> None:
+def test_only_pages_with_something_to_take_are_read(paged):
     names = ("anchors", "decoding", "codes", "reach")
     watched = {name: getattr(paged, name).view(Watched) for name in names}
     part = restrict(replace(paged, **watched), [12])
@@ -159,11 +156,11 @@ def test_only_pages_with_something_to_take_are_read(paged: pf.FibletSet) -> None
 
 
 @pytest.mark.parametrize("order", ["input", "hilbert"])
-def test_an_even_share_is_nested_and_even(order: str) -> None:
+def test_an_even_share_is_nested_and_even(order):
     lines = Streamlines.from_list([np.zeros((min(i % 4, 1), 3)) + i for i in range(4000)])
     whole = pf.compress(lines, order=order)
     assert whole.n_ranks == 3000
-    before: set[int] = set()
+    before = set()
     for share in (0.0, 0.01, 0.1, 0.35, 0.5, 0.9, 1.0):
         ids = even_share(whole, share)
         assert before <= set(ids.tolist())
@@ -178,7 +175,7 @@ def test_an_even_share_is_nested_and_even(order: str) -> None:
         even_share(whole, 1.5)
 
 
-def test_bad_choices_and_damaged_sets_are_refused() -> None:
+def test_bad_choices_and_damaged_sets_are_refused():
     whole = pf.compress(every_kind())
     with pytest.raises(IndexError, match="streamline 73 is not among the 73"):
         restrict(whole, [73])

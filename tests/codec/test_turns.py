@@ -1,9 +1,6 @@
 """Directions within the angle that is promised: on extreme, made-up and real lines, and by the bound's own proof."""
 
-from __future__ import annotations
-
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -26,7 +23,7 @@ FILES = [
 ]  # fmt: skip
 
 
-def angles(lines: Streamlines, *, begun: bool = True, **options: object) -> np.ndarray:
+def angles(lines, *, begun=True, **options):
     """Angles between the tangents of lines and of what is drawn, by plain NumPy; of bare points if not ``begun``."""
     fiblets = pf.compress(lines, **options)
     decoded, offsets = fiblets.decompress(dtype=np.float64).points, np.asarray(lines.offsets, np.int64)
@@ -35,7 +32,7 @@ def angles(lines: Streamlines, *, begun: bool = True, **options: object) -> np.n
 
 @pytest.mark.few(1)
 @pytest.mark.parametrize("name", FILES)
-def test_every_real_file_keeps_its_directions(shared_data: Path, name: str) -> None:
+def test_every_real_file_keeps_its_directions(shared_data, name):
     found = angles(pf.read(shared_data / name))
     assert found.max() <= 10.0
     assert np.quantile(found, 0.99) < 5.0
@@ -44,7 +41,7 @@ def test_every_real_file_keeps_its_directions(shared_data: Path, name: str) -> N
 @pytest.mark.few(4)
 @pytest.mark.parametrize("effort", ["fast", "high"])
 @pytest.mark.parametrize(("make", "kept"), [(smooth, 1.0), (noisy, 1.3), (wandering, 15.0)])
-def test_any_angle_is_kept_and_none_leaves_directions_alone(make, kept: float, effort: str) -> None:
+def test_any_angle_is_kept_and_none_leaves_directions_alone(make, kept, effort):
     lines = make()
     # The first two turn at every point by more than such angles, so that no first point of a fiblet can keep them.
     begun = make is wandering
@@ -56,14 +53,14 @@ def test_any_angle_is_kept_and_none_leaves_directions_alone(make, kept: float, e
 
 @pytest.mark.few(6)
 @pytest.mark.parametrize("name", extremes())
-def test_directions_cost_no_extreme_line_its_promise(name: str) -> None:
+def test_directions_cost_no_extreme_line_its_promise(name):
     lines = extremes()[name]
     fiblets = pf.compress(lines, max_angle=0.5)
     fiblets.verify()
     assert pf.measure_error(lines, fiblets).max_mm <= fiblets.promise
 
 
-def test_doubled_points_and_short_segments_beside_long_ones() -> None:
+def test_doubled_points_and_short_segments_beside_long_ones():
     """Joints of edited lines: a point twice, or nearly, or with a stub, between segments a hundred times as long."""
     rng = np.random.default_rng(4)
     lines = []
@@ -77,7 +74,7 @@ def test_doubled_points_and_short_segments_beside_long_ones() -> None:
     assert angles(made, max_angle=None).max() > 20.0
 
 
-def test_the_bound_is_that_of_the_bend() -> None:
+def test_the_bound_is_that_of_the_bend():
     line = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [1, 1, 0], [0.9, 1, 0]])
     turns = may_turn(line, 0.5, 30.0)
     np.testing.assert_allclose(turns.units, [[1, 0, 0], [0, 1, 0], [0, 0, 0], [-1, 0, 0]])
@@ -91,7 +88,7 @@ def test_the_bound_is_that_of_the_bend() -> None:
 
 @settings(max_examples=100)
 @given(st.integers(0, 2**32 - 1), st.floats(0.5, 90.0))
-def test_segments_within_their_bounds_keep_the_angle(seed: int, angle: float) -> None:
+def test_segments_within_their_bounds_keep_the_angle(seed, angle):
     """The proof, tried: segments turned by as much as they may, in any direction, turn no tangent farther."""
     rng = np.random.default_rng(seed)
     line = np.cumsum(rng.normal(size=(12, 3)), axis=0)
@@ -109,7 +106,7 @@ def test_segments_within_their_bounds_keep_the_angle(seed: int, angle: float) ->
 
 @settings(max_examples=100)
 @given(st.integers(0, 2**32 - 1), st.floats(5.0, 90.0))
-def test_first_segments_within_their_bounds_keep_the_angle(seed: int, angle: float) -> None:
+def test_first_segments_within_their_bounds_keep_the_angle(seed, angle):
     """The same where fiblets begin, at points where they may."""
     rng = np.random.default_rng(seed)
     line = np.cumsum(rng.normal(size=3) + 0.3 * rng.normal(size=(12, 3)), axis=0)
@@ -127,7 +124,7 @@ def test_first_segments_within_their_bounds_keep_the_angle(seed: int, angle: flo
         assert found[1] <= angle * (1.0 + 1e-9)
 
 
-def test_fiblets_begin_where_lines_bend_little() -> None:
+def test_fiblets_begin_where_lines_bend_little():
     """Corners at every 60th point, of which each would be the first of a fiblet."""
     steps = np.tile([[1.0, 0.0, 0.0]], (400, 1))
     for corner in range(60, 400, 60):
@@ -140,7 +137,7 @@ def test_fiblets_begin_where_lines_bend_little() -> None:
     assert np.diff(pf.compress(lines, max_angle=None).fiblet_points()).tolist() == [60] * 6
 
 
-def test_lines_that_bend_everywhere_are_cut_where_they_bend_least() -> None:
+def test_lines_that_bend_everywhere_are_cut_where_they_bend_least():
     lines = wandering(30, 200)
     fiblets = pf.compress(lines)
     fiblets.verify()

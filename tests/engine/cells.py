@@ -1,7 +1,5 @@
 """The pixels of thin lines (``fiblets/segments/thin_line_rule.glsl``), in integers and float64, without the engine."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

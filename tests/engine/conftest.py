@@ -1,7 +1,5 @@
 """Cameras, made-up lines and made-by-hand fiblets for the engine's tests."""
 
-from __future__ import annotations
-
 import importlib.util
 from pathlib import Path
 

@@ -5,8 +5,6 @@ page of assignments to built-in arrays, gives way to writes into a buffer. A ver
 primitive by primitive, to the rasteriser and the pipeline's own fragment stage.
 """
 
-from __future__ import annotations
-
 import moderngl
 import numpy as np
 

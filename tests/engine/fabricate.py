@@ -1,7 +1,5 @@
 """Lattice fiblets made by hand from the record's description, without the encoder."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np

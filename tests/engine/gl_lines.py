@@ -1,7 +1,5 @@
 """What OpenGL itself draws of polylines, with or without clip distances."""
 
-from __future__ import annotations
-
 import moderngl
 import numpy as np
 

@@ -1,7 +1,5 @@
 """Lines and points with halos for the engine's tests: scenes, pictures read back, and what every pixel must show."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Sets of fiblets of which only the numbers are there."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Depth of field and tones once more, in NumPy: written from the formulas, pixel by pixel."""
 
-from __future__ import annotations
-
 import numpy as np
 
 

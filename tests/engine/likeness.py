@@ -1,7 +1,5 @@
 """How alike pictures of different pipelines must be."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from .pictures import unpacked_tangent

@@ -1,7 +1,5 @@
 """Tubes in float64: where the rays through the pixels' centres enter the union of all segments' capsules."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 from typing import NamedTuple
 

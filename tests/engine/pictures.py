@@ -1,7 +1,5 @@
 """Pictures of the engine: drawn, read back and held against what every picture keeps to."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -10,8 +10,6 @@ that may lead away, in pixels:
 * in depth: that of the place, but for the shift along the line, ``SHIFT`` pixels' worth of its slope.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from .pictures import near, unpacked_tangent

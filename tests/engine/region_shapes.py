@@ -1,7 +1,5 @@
 """Regions of all kinds, made up, for the engine's tests."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from pvfiblets import regions

@@ -5,11 +5,9 @@ together stands once, in `EXCLUSIVE` and `NEEDS`. The rows of a kind are
 choices in which every pair of features that can occur does: a covering array, found greedily.
 """
 
-from __future__ import annotations
-
 import itertools
 import random
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
 
@@ -108,7 +106,7 @@ class Kind:
     needs: Mapping[str, tuple[tuple[str, ...], ...]] = field(default_factory=dict)
     constants: Mapping[str, object] = field(default_factory=dict)
 
-    def sources(self, features, version: int) -> dict[str, str]:
+    def sources(self, features, version):
         """GLSL by glslang's names of stages."""
         return {
             stage: assemble(name, features, {**OF_PIPELINES, **self.constants}, version=version)
@@ -116,7 +114,7 @@ class Kind:
         }
 
 
-def _features_in(name: str, seen: set[str]) -> set[str]:
+def _features_in(name, seen):
     if name in seen:
         return set()
     seen.add(name)
@@ -125,7 +123,7 @@ def _features_in(name: str, seen: set[str]) -> set[str]:
     return found.union(*(_features_in(included, seen) for included in shaders._INCLUDE.findall(text)))
 
 
-def varied(kind: Kind) -> tuple[str, ...]:
+def varied(kind):
     """Features that programs of a kind look at, and that are not the same in all of them."""
     found = set().union(*(_features_in(name, set()) for name in kind.stages.values()))
     return tuple(sorted(found - set(kind.always) - set(kind.never)))
@@ -140,7 +138,7 @@ class Choice:
     on: frozenset[str]
     off: frozenset[str]
 
-    def having(self, names: Iterable[str]) -> Choice | None:
+    def having(self, names):
         """Return the choice with more features, and all that these need; None if that cannot be."""
         on, off, todo = set(self.on), set(self.off), list(names)
         while todo:
@@ -168,7 +166,7 @@ _BESIDE = {
 
 
 @cache
-def rows(kind_name: str, size: int = 2) -> list[frozenset[str]]:
+def rows(kind_name, size=2):
     """Return choices of a kind's features, the plain program first.
 
     Parameters
@@ -184,7 +182,7 @@ def rows(kind_name: str, size: int = 2) -> list[frozenset[str]]:
     empty = Choice({**NEEDS, **kind.needs}, draw, frozenset(), frozenset(kind.never)).having(kind.always)
     assert empty is not None
 
-    def word(choice: Choice) -> int:
+    def word(choice):
         return sum(bits.get(name, 0) for name in choice.on)
 
     # A pair is the bits that it speaks of, and what they are to be.
@@ -209,14 +207,14 @@ def rows(kind_name: str, size: int = 2) -> list[frozenset[str]]:
     return taken
 
 
-def _begun(empty: Choice, fixed: list[str], names: tuple[str, ...]) -> Choice | None:
+def _begun(empty, fixed, names):
     """Return a choice with some features fixed, and what these need."""
     begun = empty.having([name for name in fixed if name[0] == "!"])
     begun = begun and begun.having([name for name in fixed if name[0] != "!"])
     return begun and _decoding(begun, names)
 
 
-def _decoding(choice: Choice, names: tuple[str, ...]) -> Choice | None:
+def _decoding(choice, names):
     """Add a kind of record, if fiblets are decoded: there is no set without."""
     kinds = [name for name in ("DIRECTION", "LATTICE") if name not in choice.off]
     if "DIRECTION" not in names or choice.on.intersection(kinds):
@@ -224,7 +222,7 @@ def _decoding(choice: Choice, names: tuple[str, ...]) -> Choice | None:
     return choice.having([choice.draw.choice(kinds)]) if kinds else None
 
 
-def _filled(choice: Choice, names: tuple[str, ...]) -> Choice:
+def _filled(choice, names):
     """Add half of the other features, as far as they go with those that are there."""
     for name in choice.draw.sample(names, len(names)):
         if name not in choice.on and name not in choice.off and choice.draw.random() < 0.5:
@@ -240,15 +238,15 @@ GATHERED = ("GATHER_SLICES", "GATHER_OUTSIDE", "PAINTED")
 PICTURE = ("blur", "copy", "gather", "mean", "reach", "seen_through", "tiles", "tone")
 
 
-def _raster(vertex: Mapping[str, str], fragment: str, versions, always, never=()) -> Kind:
+def _raster(vertex, fragment, versions, always, never=()):
     wide = fragment == "capsule"
     fragments = {"frag": f"fiblets/hardware_raster/{fragment}.frag"}
     never = (*never, "ONE_SEGMENT", *(() if wide else ("WIDE_LINES", "TUBES", "CROSS_LINE")))
     return Kind({**vertex, **fragments}, versions, (*always, *(("WIDE_LINES",) if wide else ())), never, RASTER)
 
 
-def _fiblets() -> dict[str, Kind]:
-    kinds: dict[str, Kind] = {}
+def _fiblets():
+    kinds = {}
     survivors, textured = {"vert": "fiblets/hardware_raster/survivors.vert"}, ("TEXTURE_DATA",)
     not_mesh = ("PER_PRIMITIVE", "MESH_EXT", "SUBGROUPS")
     decode = {**survivors, "tesc": "fiblets/tessellation/decode.tesc"}
@@ -297,10 +295,10 @@ def _fiblets() -> dict[str, Kind]:
     return kinds
 
 
-def _others() -> dict[str, Kind]:
-    kinds: dict[str, Kind] = {}
+def _others():
+    kinds = {}
 
-    def screen(*names: str, vertex: str = "screen/triangle.vert", versions=SCREEN, **rest) -> None:
+    def screen(*names, vertex="screen/triangle.vert", versions=SCREEN, **rest):
         for name in names:
             kinds[name] = Kind({"vert": vertex, "frag": f"{name}.frag"}, versions, **rest)
 

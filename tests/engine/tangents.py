@@ -5,8 +5,6 @@ fiblet that of the segment after it; between points, interpolated. Segments of n
 that of the last one before them.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from pvfiblets.codec import layout

@@ -1,7 +1,5 @@
 """Pictures are added up in float32, and their mean is drawn back."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

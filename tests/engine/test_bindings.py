@@ -1,7 +1,5 @@
 """Binding points do not overlap, and OpenGL agrees with what Python says of them."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

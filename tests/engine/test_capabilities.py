@@ -1,7 +1,5 @@
 """Which pipelines a context can draw with: made-up drivers, this machine's, and this machine's made to look older."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys
@@ -31,6 +29,7 @@ def by_name(ctx):
     ("driver", "available"),
     [
         (Driver(460, MESH), ["compute", "mesh", "tessellation", "geometry", "mesh-serial"]),
+        (Driver(460, "GL_EXT_mesh_shader"), ["compute", "mesh", "tessellation", "geometry", "mesh-serial"]),
         (Driver(460), ["compute", "tessellation", "geometry"]),
         (Driver(440, MESH), ["compute", "tessellation", "geometry"]),
         (Driver(430), ["compute", "tessellation", "geometry"]),
@@ -63,33 +62,28 @@ def test_what_is_missing_is_said():
     )
     assert by_name(Driver(410))["compute"].why_not == "OpenGL is 4.1, needed is 4.3"
     assert by_name(Driver(430))["mesh-serial"].why_not == f"OpenGL is 4.3, needed is 4.5; {EITHER} is missing"
+    lines = repr(pipelines(Driver(410))).splitlines()
+    assert lines[0].split() == ["pipeline", "needs"]
+    assert [line.split()[0] for line in lines[1:]] == ["compute", "mesh", "tessellation", "geometry", "mesh-serial"]
+    assert [line.split()[0] for line in lines if "(auto)" in line] == ["tessellation"]
+    assert "no: OpenGL is 4.1, needed is 4.3" in lines[1]
 
 
-@pytest.mark.parametrize("extension", ["GL_EXT_mesh_shader", "GL_NV_mesh_shader"])
-def test_either_extension_has_mesh_shaders(extension):
-    found = by_name(Driver(460, extension))
-    assert found["mesh"].available
-    assert found["mesh-serial"].available
-
-
-def test_a_forced_pipeline_that_is_missing_is_an_error_that_says_what_there_is():
+def test_what_cannot_draw_is_an_error_that_says_what_there_is():
     with pytest.raises(EngineError) as caught:
         choose(Driver(430), "mesh")
     assert str(caught.value) == (
         f"pipeline 'mesh' cannot draw on OpenGL 4.3 (A card): OpenGL is 4.3, needed is 4.5; {EITHER} is "
         "missing. Available are 'compute', 'tessellation', 'geometry'; pipeline='auto' takes 'compute'"
     )
+    with pytest.raises(ValueError, match="pipeline is 'vulkan'; expected one of 'auto', 'mesh', 'mesh-serial', 'comp"):
+        choose(Driver(460), "vulkan")
 
 
 @pytest.mark.parametrize("name", ["auto", "geometry"])
 def test_where_there_is_none_the_least_version_is_named(name):
     with pytest.raises(EngineError, match=r"no pipeline can draw .* OpenGL 3\.2 \(A card\): the least is OpenGL 3\.3"):
         choose(Driver(320), name)
-
-
-def test_an_unknown_name_is_refused():
-    with pytest.raises(ValueError, match="pipeline is 'vulkan'; expected one of 'auto', 'mesh', 'mesh-serial', 'comp"):
-        choose(Driver(460), "vulkan")
 
 
 @pytest.mark.parametrize(
@@ -112,14 +106,6 @@ def test_good_choices_pass():
         check_choices(pipeline="geometry", culling=culling, fit="sample")
 
 
-def test_the_table_shows_a_line_for_each_and_marks_the_one_that_auto_takes():
-    lines = repr(pipelines(Driver(410))).splitlines()
-    assert lines[0].split() == ["pipeline", "needs"]
-    assert [line.split()[0] for line in lines[1:]] == ["compute", "mesh", "tessellation", "geometry", "mesh-serial"]
-    assert [line.split()[0] for line in lines if "(auto)" in line] == ["tessellation"]
-    assert "no: OpenGL is 4.1, needed is 4.3" in lines[1]
-
-
 @pytest.mark.parametrize(
     ("extensions", "found"),
     [
@@ -134,7 +120,7 @@ def test_atomics_of_64_bits_need_the_integers_too(extensions, found):
     assert atomics64(extensions) == found
 
 
-def test_this_context_is_described(gl):
+def test_this_context_is_described_and_can_compute(gl):
     found = Capabilities.of(gl)
     assert int(found.version.replace(".", "")) * 10 == gl.version_code
     assert (found.vendor, found.renderer, found.driver) == tuple(
@@ -147,10 +133,7 @@ def test_this_context_is_described(gl):
     assert found.limits["GL_MAX_TESS_GEN_LEVEL"] >= 64  # what OpenGL 4.0 promises
     assert found.limits["GL_MAX_GEOMETRY_TOTAL_OUTPUT_COMPONENTS"] >= 1024
     assert json.loads(json.dumps(found.as_dict()))["limits"] == found.limits
-
-
-def test_this_context_can_compute(gl):
-    """The fixture asks for OpenGL 4.3."""
+    # The fixture asks for OpenGL 4.3.
     assert {"compute", "tessellation", "geometry"} <= {info.name for info in pipelines(gl) if info.available}
 
 

@@ -1,7 +1,5 @@
 """What `explain` counts: fiblets in the view, drawn and visible, against the same counted from the records."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

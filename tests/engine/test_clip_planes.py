@@ -1,7 +1,5 @@
 """Clip planes of a view, against polylines cut in NumPy and against OpenGL's own clip distances."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

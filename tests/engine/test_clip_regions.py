@@ -1,7 +1,5 @@
 """Regions of a view: what is shown lies in the region, what lies in it is shown; every pipeline, all culling."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

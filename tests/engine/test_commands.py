@@ -1,7 +1,5 @@
 """How many commands a picture takes: as many whatever the data, and so many more a chunk."""
 
-from __future__ import annotations
-
 import moderngl
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """The paper's coverage buffer: conservative from the same camera, nearly so after a turn, and never for long."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """Frustum culling leaves out what cannot show, and nothing else."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

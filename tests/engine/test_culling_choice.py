@@ -1,7 +1,5 @@
 """Culling that is chosen by what pictures take: the choice, its price, and that no pixel changes by it."""
 
-from __future__ import annotations
-
 import contextlib
 
 import pytest

@@ -1,7 +1,5 @@
 """What of a region is planes: the same part of space in NumPy, and the same picture but for the pixels at the cut."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """What watches OpenGL's own messages notices a wrong call, and forgets it once it was told."""
 
-from __future__ import annotations
-
 from pvfiblets.engine.moderngl_extras import GLExtras
 from tests.debug_log import DebugLog
 

@@ -1,7 +1,5 @@
 """Both ways to decode in GLSL against the codec's float64 reference."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import moderngl

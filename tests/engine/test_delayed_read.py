@@ -1,7 +1,5 @@
 """Numbers that come back later: the right ones, in time, without waiting, and none are left behind."""
 
-from __future__ import annotations
-
 import moderngl
 import numpy as np
 import pytest

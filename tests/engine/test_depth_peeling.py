@@ -1,7 +1,5 @@
 """Layers of a picture against streamlines drawn one by one and sorted by NumPy."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Level of detail (``shaders/culling/bounds.glsl``): which fiblets are one segment, and how far that leads away."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

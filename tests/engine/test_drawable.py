@@ -1,7 +1,5 @@
 """A made-up fifth drawable, which fills the picture with one owner: all else it has from `Drawable`."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -63,7 +61,7 @@ def glyphs(gl):
     made.release()
 
 
-def test_it_draws_when_the_view_or_the_style_changed(glyphs):
+def test_it_draws_when_the_view_or_the_style_changed_and_takes_no_other_style(glyphs):
     first = glyphs.render(VIEW)
     assert glyphs.render(View((8, 6), np.eye(4)), GlyphStyle()) is first
     assert (glyphs.draws, first.generation) == (1, 1)
@@ -74,6 +72,8 @@ def test_it_draws_when_the_view_or_the_style_changed(glyphs):
     other = glyphs.render(View((4, 6), np.eye(4)), GlyphStyle(owner=5))
     assert other is not first
     assert (other.size, glyphs.draws, other.generation) == ((4, 6), 3, 3)
+    with pytest.raises(TypeError, match="style is a FibletStyle; GlyphRenderer needs a GlyphStyle"):
+        glyphs.render(VIEW, FibletStyle())
 
 
 def test_a_picture_for_one_call_serves_that_call_only(glyphs, gl):
@@ -95,11 +95,6 @@ def test_it_says_what_it_is_made_of(glyphs):
     assert (said["features"], said["glyphs_total"], said["counted"]) == ([], 7, False)
     assert not glyphs.needs_outside(VIEW, GlyphStyle())
     assert glyphs.share == 1.0
-
-
-def test_it_takes_its_own_style_only(glyphs):
-    with pytest.raises(TypeError, match="style is a FibletStyle; GlyphRenderer needs a GlyphStyle"):
-        glyphs.render(VIEW, FibletStyle())
 
 
 def test_nothing_is_left_of_one_that_is_released_or_was_never_made(gl, monkeypatch):

@@ -1,7 +1,5 @@
 """Effects in screen space against their formulas in NumPy, on G-buffers made by hand."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 
@@ -151,9 +149,6 @@ def test_pixels_per_mm_is_what_the_projection_makes_of_a_mm(make_lens):
         ends = np.array([[0, 0, -distance, 1], [0, 1, -distance, 1]]) @ lens.projection.T
         ends = ends[:, 1] / ends[:, 3]
         assert np.isclose(lens.pixels_per_mm(distance), (ends[1] - ends[0]) * 60)
-
-
-def test_a_projection_that_cannot_be_undone_is_refused():
     with pytest.raises(ValueError, match="inverse"):
         Projection((10, 10), np.zeros((4, 4)))
     with pytest.raises(ValueError, match="finite"):
@@ -216,7 +211,7 @@ def test_the_gap_widens_with_the_distance_in_depth_as_in_the_papers_appendix(eff
     assert column.sum() == 2 * cut
 
 
-def test_neighbours_at_one_depth_leave_each_other_alone(effect, make_buffer, make_lens):
+def test_there_are_no_halos_of_nothing_thinner_than_a_pixel_or_at_one_depth(effect, make_buffer, make_lens):
     lens = make_lens((64, 48))
     distance = np.full((48, 64), FAR)
     distance[::2] = 140.0 + np.arange(24)[:, None] * 0.05
@@ -224,15 +219,9 @@ def test_neighbours_at_one_depth_leave_each_other_alone(effect, make_buffer, mak
     halo = read(effect(HaloPass).draw(buffer, lens, width=2.0, depth=5.0)) != EMPTY
     assert not halo[::2].any()
     assert halo[1::2].all()
-
-
-def test_an_empty_picture_has_no_halos(effect, make_buffer, make_lens):
     lens = make_lens((33, 17))
     buffer = make_buffer(np.full((17, 33), EMPTY, np.uint32))
     assert (read(effect(HaloPass).draw(buffer, lens, width=5.0, depth=5.0)) == EMPTY).all()
-
-
-def test_a_halo_thinner_than_a_pixel_is_none(effect, make_buffer, make_lens):
     lens = make_lens((64, 48))
     buffer = make_buffer(keys_of(lens, scattered_lines(lens.size)))
     assert (read(effect(HaloPass).draw(buffer, lens, width=0.01, depth=5.0)) == EMPTY).all()
@@ -337,13 +326,10 @@ def test_a_wall_is_dark_beside_a_bar_and_lighter_farther_away(effect, make_buffe
     assert dark[middle & (np.abs(x) < 2.0)].max() < 0.1
 
 
-def test_what_is_farther_than_the_radius_does_not_darken_however_near_it_looks(effect, make_buffer):
+def test_what_is_beyond_the_radius_and_the_background_do_not_darken(effect, make_buffer, make_lens):
     lens = LENSES["parallel"]((120, 90))
     distance, _ = bar_before_a_wall(lens, 10.5)
     assert occlusion(effect, make_buffer, lens, distance).max() == 0.0
-
-
-def test_the_background_never_darkens(effect, make_buffer, make_lens):
     lens = make_lens((80, 60))
     distance = np.full((60, 80), FAR)
     distance[30] = 150.0

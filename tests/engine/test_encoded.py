@@ -1,7 +1,5 @@
 """Sets made by the codec: what is drawn is what `decompress` gives, on made-up brains and on real tracking."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

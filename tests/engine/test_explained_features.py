@@ -1,7 +1,5 @@
 """`explain()["features"]` is what the text of the programs says that ran, whoever asks for them, and nothing else."""
 
-from __future__ import annotations
-
 import functools
 import re
 

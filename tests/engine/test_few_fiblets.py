@@ -1,7 +1,5 @@
 """Few fiblets are drawn by one program: the picture is the same, and fewer programs are compiled."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

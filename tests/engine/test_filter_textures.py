@@ -1,7 +1,5 @@
 """Streamlines and points that the caller left out: gone, in every pipeline, and what is behind them shows."""
 
-from __future__ import annotations
-
 import moderngl
 import numpy as np
 import pytest

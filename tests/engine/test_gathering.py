@@ -1,7 +1,5 @@
 """What all lines of a pixel add up to, against lines drawn by NumPy and blended one by one."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Contexts that say they are old, of a vendor whose old contexts have all of later versions."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

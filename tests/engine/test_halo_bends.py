@@ -1,7 +1,5 @@
 """Strips where lines turn: sharp and slight bends, bends by cuts and by the eye, bends too sharp for their width."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

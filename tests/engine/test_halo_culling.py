@@ -1,7 +1,5 @@
 """Halos behind others are left out, and the picture is the same to the bit."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Lines and points with halos where it is hard: no length, end on, all around, far away, tiny and huge."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

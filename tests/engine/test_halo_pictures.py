@@ -1,7 +1,5 @@
 """Lines and points with halos against the float64 reference: every look, both projections, filters and cuts."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

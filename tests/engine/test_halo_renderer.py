@@ -1,7 +1,5 @@
 """`HaloRenderer`: when it redraws, what it keeps, gives back, says and refuses, and 10^7 vertices."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -246,17 +244,7 @@ def test_nothing_is_left_after_release(gl, drawn, view, monkeypatch, software):
 # ------------------------------------------------------------------------------------------------------ what it refuses
 
 
-def test_bad_choices_name_what_there_is(gl, drawn):
-    with pytest.raises(ValueError, match=r"culling is 'guess'; choose one of \('two-phase', None\)"):
-        HaloRenderer(gl, drawn, culling="guess")
-
-
-def test_a_style_without_a_look(renderer, view):
-    with pytest.raises(TypeError, match="a HaloDrawStyle"):
-        renderer.render(view, FibletStyle())
-
-
-def test_unknown_values_name_those_there_are(renderer, view):
+def test_what_is_refused_leaves_the_next_picture_as_it_was(renderer, view, gl, drawn):
     renderer.render(view, STYLE)
     for style in (styled("fa"), styled(filter_by="fa")):
         with pytest.raises(EngineError, match=r"no values 'fa' .* there are \['colour', 'number'\]"):
@@ -264,13 +252,14 @@ def test_unknown_values_name_those_there_are(renderer, view):
     with pytest.raises(EngineError, match="'colour' are colours, and cannot filter; give numbers"):
         renderer.render(view, styled(filter_by="colour"))
     assert read_halos(renderer.render(view, STYLE)).shown.any()
-
-
-def test_a_picture_too_large(renderer, view):
     first = renderer.render(view, STYLE).generation
     with pytest.raises(EngineError, match="wider or higher than this OpenGL's largest texture"):
         renderer.render(View((100_000, 4), view.model_view_projection), STYLE)
     assert renderer.render(view, STYLE).generation > first
+    with pytest.raises(TypeError, match="a HaloDrawStyle"):
+        renderer.render(view, FibletStyle())
+    with pytest.raises(ValueError, match=r"culling is 'guess'; choose one of \('two-phase', None\)"):
+        HaloRenderer(gl, drawn, culling="guess")
 
 
 def test_coordinates_too_large_for_float32(gl):

@@ -5,8 +5,6 @@ very capsules, projected in float32 as shaders do it, and drawn by the rule of t
 of theirs may be as near as the image's.
 """
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import moderngl

@@ -5,8 +5,6 @@ atomic, by a plain write; where lanes of one instruction overwrote each other, d
 only ever falls.
 """
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys
@@ -21,6 +19,7 @@ from pvfiblets.engine.moderngl_extras import GLExtras
 from pvfiblets.engine.shaders import EXTENDED, assemble
 
 ROOT = Path(__file__).resolve().parents[2]
+
 
 @pytest.mark.parametrize("stage", ["clear", "depth", "split"])
 def test_depth_and_owner_are_taken_at_once(stage):

@@ -1,7 +1,5 @@
 """Limits of 2^31 bytes, 2^32 points and 65,535 work groups: crossed in numbers, or in pictures with smaller limits."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Tubes are exact bodies, in every pipeline and view; wide lines say where across them a pixel lies."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

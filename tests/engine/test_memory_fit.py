@@ -1,7 +1,5 @@
 """Sets larger than memory: refused before anything is allocated, or an even share drawn; copied in slices."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from dataclasses import replace

@@ -3,8 +3,6 @@
 The drivers' own part is what remains: that they link what glslang links, and draw what the stages wrote.
 """
 
-from __future__ import annotations
-
 import re
 import subprocess
 from types import SimpleNamespace

@@ -1,7 +1,5 @@
 """The functions that moderngl lacks, each seen by a shader or by moderngl itself."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 
@@ -73,15 +71,12 @@ def test_a_shader_reads_a_buffer_through_a_texture(gl, internal_format):
         texture.bind(0)
 
 
-def test_a_part_of_a_texel_at_the_end_is_left_out(gl):
+def test_bad_buffer_textures_are_refused_and_parts_of_a_texel_left_out(gl, monkeypatch):
     buffer = gl.buffer(bytes(23))
     texture = GLExtras(gl).texture_buffer(buffer, "rg32ui")
     assert (texture.texels, texture.nbytes) == (2, 16)
     texture.release()
     buffer.release()
-
-
-def test_bad_buffer_textures_are_refused(gl, monkeypatch):
     functions = GLExtras(gl)
     buffer = gl.buffer(bytes(64))
     with pytest.raises(EngineError, match=r"'rgb8' is no format of .* \['r8ui'"):
@@ -153,13 +148,6 @@ def test_every_level_of_a_texture_can_be_drawn_and_read(gl, dtype, components):
         thing.release()
 
 
-def test_levels_of_an_unknown_texture_are_refused(gl):
-    texture = gl.texture((4, 4), 3)
-    with pytest.raises(EngineError, match=r"\('f1', 3\)"):
-        GLExtras(gl).add_levels(texture, 2)
-    texture.release()
-
-
 def test_an_integer_attachment_is_cleared_and_no_other(gl):
     textures = [gl.texture((3, 2), 2, dtype="u4") for _ in range(2)]
     framebuffer, other = gl.framebuffer(textures), gl.simple_framebuffer((2, 2))
@@ -204,12 +192,10 @@ def test_integers_are_those_of_moderngl_or_refused(gl, name):
         assert value > 0
 
 
-def test_an_unknown_integer_is_refused(gl):
+def test_what_this_opengl_lacks_is_named(gl, monkeypatch):
     with pytest.raises(EngineError, match="GL_NONSENSE is not a known integer of OpenGL; known are GL_"):
         GLExtras(gl).get_integer("GL_NONSENSE")
 
-
-def test_an_integer_of_a_newer_version_is_refused():
     class Old:
         version_code = 330
         extensions = frozenset()
@@ -219,12 +205,13 @@ def test_an_integer_of_a_newer_version_is_refused():
         GLExtras(Old()).get_integer("GL_MAX_TESS_GEN_LEVEL")
     with pytest.raises(EngineError, match=r"glDrawMeshTasksEXT needs GL_EXT_mesh_shader, which .*an old card"):
         GLExtras(Old()).function("glDrawMeshTasksEXT")
-
-
-def test_a_missing_function_is_named(gl, monkeypatch):
     monkeypatch.setattr(moderngl_extras, "loader", lambda: lambda name: 0)
     with pytest.raises(EngineError, match=r"this OpenGL \(.+\) has no function glTexBuffer"):
         GLExtras(gl).function("glTexBuffer")
+    texture = gl.texture((4, 4), 3)
+    with pytest.raises(EngineError, match=r"\('f1', 3\)"):
+        GLExtras(gl).add_levels(texture, 2)
+    texture.release()
 
 
 def test_without_a_context_nothing_is_looked_up():

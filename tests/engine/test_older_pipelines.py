@@ -1,7 +1,5 @@
 """Pipelines on an OpenGL that has nothing newer than they say they need: pictures of compute, in other processes."""
 
-from __future__ import annotations
-
 import os
 import pickle
 import subprocess

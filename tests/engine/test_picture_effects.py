@@ -1,7 +1,5 @@
 """Depth of field and tones of a whole picture, held against NumPy and against closed forms."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

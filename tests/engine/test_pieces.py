@@ -1,7 +1,5 @@
 """Pictures drawn piece by piece: the pixels of those drawn at once, whatever others draw in between."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

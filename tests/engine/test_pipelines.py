@@ -1,7 +1,5 @@
 """The pipelines that OpenGL's rasteriser draws for: their pictures are those of the compute pipeline."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import moderngl

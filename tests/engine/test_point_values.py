@@ -1,7 +1,5 @@
 """Per-point values in the G-buffer against NumPy on the decoded points."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np

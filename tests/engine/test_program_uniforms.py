@@ -1,7 +1,5 @@
 """Uniforms are set where they change, and only there."""
 
-from __future__ import annotations
-
 import moderngl
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """Drivers keep compiled programs on disk by their text: the same picture asks for the same text in every process."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

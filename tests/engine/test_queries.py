@@ -1,7 +1,5 @@
 """Queries of time and of samples: what they measure, beyond 32 bits, and that OpenGL has their names back."""
 
-from __future__ import annotations
-
 import ctypes
 
 import moderngl

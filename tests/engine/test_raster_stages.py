@@ -1,7 +1,5 @@
 """The stages of the pipelines that OpenGL's rasteriser draws for: they link, and keep to OpenGL's promises."""
 
-from __future__ import annotations
-
 import ast
 import re
 from types import SimpleNamespace

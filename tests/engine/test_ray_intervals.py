@@ -1,7 +1,5 @@
 """Boundaries of regions along rays, against the exact regions: random depths of every pixel, in float64."""
 
-from __future__ import annotations
-
 import itertools
 import os
 import subprocess
@@ -24,7 +22,7 @@ from pvfiblets.engine.view import View
 
 pv = pytest.importorskip("pyvista")  # which makes surfaces
 
-SIZE = (120, 90)
+SIZE = (96, 72)
 ORIGIN, SCALE, TOP = np.full(3, -100.0), np.full(3, 200.0 / 65535.0), 65535
 
 FRAGMENT = """
@@ -211,7 +209,7 @@ def test_surfaces_in_expressions(gl, cutter, camera, torus, bumpy):
     moved = torus.moved([[0, 0, 1, 5], [1, 0, 0, -8], [0, 1, 0, 3], [0, 0, 0, 1]])
     for region in (bumpy - torus, (torus | moved) - BOX, ~(bumpy & moved) & BALL):
         for view in cameras(camera):
-            check(gl, cutter, region, view, rounds=2)
+            check(gl, cutter, region, view, rounds=1)
 
 
 def test_compute_shaders_say_the_same(gl, cutter, camera, torus):
@@ -278,7 +276,7 @@ def test_more_boundaries_than_expected(gl, cutter, camera):
 
 def test_mirrors(gl, cutter, camera, torus):
     mirror = np.diag([-1.0, 1, 1, 1])
-    for view in cameras(camera):
+    for view in [*cameras(camera)][::2]:
         check(gl, cutter, torus.moved(mirror), view, rounds=1)
         mirrored = View(view.size, view.model_view_projection @ mirror)
         check(gl, cutter, torus.moved(np.eye(4) + 20 * np.eye(4, k=3)), mirrored, rounds=1)
@@ -291,7 +289,7 @@ def test_far_away_tiny_and_huge(gl, cutter, camera, torus, size, where):
     placed[:3, 3] = where
     box = (size * ORIGIN + where, size * SCALE, TOP)
     for region in (torus, TURNED, BALL, regions.Plane((1, 2, 0.5), (4, 5, 6))):
-        for view in cameras(camera):
+        for view in [*cameras(camera)][::2]:
             there = View(view.size, view.model_view_projection @ np.linalg.inv(placed))
             check(gl, cutter, region.moved(placed), there, rounds=1, box=box, slack=6e-7)
 
@@ -304,16 +302,13 @@ def test_sizes_far_from_that_of_the_data(gl, cutter, camera):
             check(gl, cutter, region, view, rounds=1)
 
 
-def test_a_surface_beside_or_behind_is_nowhere(gl, cutter, camera, torus):
+def test_what_lies_beside_or_behind_is_nowhere(gl, cutter, camera, torus):
     view = View(SIZE, camera(SIZE))
     for shift in ([0, -400, 60], [500, 0, 0], [0, 900, 0]):
         away = np.eye(4)
         away[:3, 3] = shift
         for region in (torus.moved(away), ~torus.moved(away), BALL - torus.moved(away), BALL.moved(away)):
             check(gl, cutter, region, view, rounds=1)
-
-
-def test_many_shapes_beside_the_picture(gl, cutter, camera):
     shapes = [regions.Sphere((500, 0, 3 * k), 2) for k in range(5)]
     region = shapes[0] | shapes[1] | shapes[2] | shapes[3] | shapes[4]
     for one in (region, ~region):

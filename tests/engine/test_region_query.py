@@ -1,7 +1,5 @@
 """Queries on the GPU against `contains` on the decoded points, streamline by streamline."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -241,14 +239,7 @@ def test_a_picture_is_as_it_was(gl, plain, camera):
     renderer.release()
 
 
-def test_no_sampling(gl, plain):
-    renderer = FibletRenderer(gl, plain)
-    with pytest.raises(ValueError, match=r"sampling is 0\.5; give 'lines'"):
-        renderer.query(regions.Sphere((0, 0, 0), 1), 0.5)
-    renderer.release()
-
-
-def test_what_stays_on_the_gpu_is_told(gl, plain):
+def test_what_stays_on_the_gpu_is_told_and_no_query_is_answered_after_release(gl, plain):
     renderer = FibletRenderer(gl, plain)
     assert "query" not in {buffer["name"] for buffer in renderer.explain()["buffers"]}
     region = made(size=60.0)["torus"]
@@ -257,9 +248,10 @@ def test_what_stays_on_the_gpu_is_told(gl, plain):
     assert sizes["query"] >= region.leaves[0].field.values.nbytes
     renderer.release()
     assert "query" not in {buffer["name"] for buffer in renderer.explain(counts=False)["buffers"]}
-
-
-def test_after_release(gl, plain):
+    renderer = FibletRenderer(gl, plain)
+    with pytest.raises(ValueError, match=r"sampling is 0\.5; give 'lines'"):
+        renderer.query(regions.Sphere((0, 0, 0), 1), 0.5)
+    renderer.release()
     renderer = FibletRenderer(gl, plain)
     renderer.query(regions.Sphere((0, 0, 0), 1))
     renderer.release()

@@ -1,7 +1,5 @@
 """Classification of balls and capsules in GLSL against `contains` on the positions in them."""
 
-from __future__ import annotations
-
 import moderngl
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """`FibletRenderer`: pictures that repeat and do not depend on paging, when it redraws, what it says and refuses."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Samples of a pixel stand for all of it: at edges of every direction, and by the first few of them."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np
@@ -76,7 +74,7 @@ def test_the_energy_distance_is_the_error_at_edges():
     assert energy_distance(grid(40)) < 1e-3
 
 
-def test_samples_are_better_than_grids_random_ones_and_rotated_grids():
+def test_more_samples_are_better_than_fewer_than_grids_and_than_random_ones():
     rng = np.random.default_rng(2)
     rotated = np.array([[-1, -3], [3, -1], [1, 3], [-3, 1]]) / 8.0
     assert edge_error(sample_positions(4)) < 1.02 * edge_error(rotated)
@@ -86,23 +84,17 @@ def test_samples_are_better_than_grids_random_ones_and_rotated_grids():
         assert edge_error(sample_positions(n)) < 0.6 * at_random
     # A grid of 16 has four levels at edges along its axes.
     assert edge_error(sample_positions(16), tilt=3.0) < 0.75 * edge_error(grid(4), tilt=3.0)
-
-
-def test_more_samples_are_better_and_the_first_few_are_good_too():
     errors = [edge_error(sample_positions(n)) for n in (1, 2, 4, 8, 16, 32, 64, 128, 256)]
     assert errors == sorted(errors, reverse=True)
     assert errors[-1] < 1.5
     whole = sample_positions(16)
     for k in (4, 8, 12):
         assert edge_error(whole[:k]) < 1.5 * edge_error(sample_positions(k))
+    assert antialias.MOST == MOST
+    assert antialias.samples_of("refined") >= CENTRED
 
 
 @pytest.mark.parametrize("n", [0, -1, MOST + 1])
 def test_other_numbers_are_refused(n):
     with pytest.raises(ValueError, match=f"the number of samples is {n}; give one from 1 to 256"):
         sample_positions(n)
-
-
-def test_the_setting_allows_as_many_as_there_are():
-    assert antialias.MOST == MOST
-    assert antialias.samples_of("refined") >= CENTRED

@@ -1,7 +1,5 @@
 """Values of a volume in the G-buffer against trilinear interpolation in float64 at the decoded points."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Sets in shards, drawn shard by shard: held against a renderer of all of the set, bit by bit."""
 
-from __future__ import annotations
-
 import threading
 import time
 

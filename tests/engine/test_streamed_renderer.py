@@ -1,7 +1,5 @@
 """Sets larger than GPU memory, drawn part by part: held against a renderer of all of the set, bit by bit."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -166,11 +164,16 @@ def test_ranges_are_those_of_the_whole_set(made, brain):
         parts.value_range("none")
 
 
-def test_what_needs_all_lines_says_so(made, camera):
+def test_what_needs_all_lines_says_so_and_nothing_stays_behind(made, camera, gl):
     _, parts = made()
     view = View(SIZE, camera(SIZE, **WHOLE_BRAIN))
     with pytest.raises(EngineError, match="drawn part by part has no layers of lines.*fit='sample'"):
         parts.render_layers(view)
+    parts.render(View(SIZE, camera(SIZE, **WHOLE_BRAIN)))
+    parts.release()
+    parts.release()
+    with pytest.raises(EngineError, match="released"):
+        parts.render(View(SIZE, camera(SIZE, **WHOLE_BRAIN)))
 
 
 @pytest.mark.more
@@ -210,19 +213,12 @@ def test_sums_of_hurried_pictures_fetch_no_part(made, camera):
     np.testing.assert_array_equal(parts.gather(view).read(), whole.gather(view).read())
 
 
-def test_what_fits_is_drawn_by_a_renderer_of_all(gl, brain):
+def test_what_fits_is_drawn_by_a_renderer_of_all_and_no_memory_is_said(gl, brain):
     renderer = streamed_renderer(gl, brain)
     assert isinstance(renderer, FibletRenderer)
     renderer.release()
-
-
-def test_nothing_stays_behind(gl, made, camera):
-    _, parts = made()
-    parts.render(View(SIZE, camera(SIZE, **WHOLE_BRAIN)))
-    parts.release()
-    parts.release()
-    with pytest.raises(EngineError, match="released"):
-        parts.render(View(SIZE, camera(SIZE, **WHOLE_BRAIN)))
+    with pytest.raises(GPUMemoryError, match=r"0\.0 MB of GPU memory beside a picture are too .* 0\.1 are needed"):
+        streamed_renderer(gl, brain, max_total_bytes=100)
 
 
 def test_parts_hold_each_streamline_once_and_their_bounds_all_points(brain):
@@ -257,11 +253,6 @@ def test_a_box_in_view_is_never_left_out(camera):
         left_out += 1
         assert not shows.any()
     assert left_out > 20
-
-
-def test_no_memory_at_all_is_said(gl, brain):
-    with pytest.raises(GPUMemoryError, match=r"0\.0 MB of GPU memory beside a picture are too .* 0\.1 are needed"):
-        streamed_renderer(gl, brain, max_total_bytes=100)
 
 
 def test_memory_that_runs_out_meanwhile_makes_room(gl, made, camera, monkeypatch):

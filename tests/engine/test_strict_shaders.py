@@ -4,8 +4,6 @@
 together; `make test-all` checks whole programs with each pair of features, which takes four minutes.
 """
 
-from __future__ import annotations
-
 import itertools
 import os
 import random

@@ -1,7 +1,5 @@
 """Tangents are continuous along lines, in every pipeline: against float64 tangents of the decoded points."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Thin lines: the rule of their pixels, against integers, against OpenGL's own lines and against dense samples."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Pictures of spline tubes against float64: every pixel's ray, met with every half."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -15,7 +13,6 @@ from .line_tubes import rays
 from .pictures import near
 from .tubes import (
     EYE,
-    TubeTarget,
     assert_all_show,
     assert_shows,
     bundle,
@@ -136,7 +133,7 @@ def test_any_matrix(gl, camera, tubes, name):
     assert_all_show(gl, tubes, view, least=500)
 
 
-def same_pictures(a: TubeTarget, b: TubeTarget, *, some=0.002, depth=1e-5):
+def same_pictures(a, b, *, some=0.002, depth=1e-5):
     count = a.drawn.sum()
     assert count > 500
     assert (a.drawn != b.drawn).sum() <= some * count

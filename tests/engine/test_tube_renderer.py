@@ -1,7 +1,5 @@
 """`TubeRenderer`: when it redraws, what it keeps and gives back, what it says and refuses, and older OpenGL."""
 
-from __future__ import annotations
-
 import os
 import pickle
 import subprocess
@@ -135,6 +133,7 @@ def test_no_framebuffer_of_its_own_stays_bound(gl, tubes, view):
 
 
 def test_values_take_memory_only_while_they_show(renderer, tubes, view):
+    """A node takes 32 bytes, a segment 16, and values and colours what they are while they show."""
     renderer.render(view)
     plain = buffers(renderer)
     assert not {"values", "colours"} & set(plain)
@@ -149,9 +148,6 @@ def test_values_take_memory_only_while_they_show(renderer, tubes, view):
     assert "TUBE_COLOURS" in renderer.explain()["features"]
     renderer.render(view)
     assert buffers(renderer) == plain
-
-
-def test_a_node_takes_32_bytes_and_a_segment_16(renderer, tubes, view):
     renderer.render(view)
     assert buffers(renderer)["nodes"] == 32 * tubes.n_nodes
     assert buffers(renderer)["segments"] == 16 * tubes.n_segments
@@ -302,11 +298,15 @@ def test_a_style_needs_a_width(width):
         TubeStyle(min_width=width)
 
 
-def test_unknown_values_name_those_there_are(renderer, view):
+def test_what_is_refused_leaves_the_next_picture_as_it_was(renderer, view, camera):
     renderer.render(view)
     with pytest.raises(EngineError, match=r"no values 'fa' .* there are \['colour', 'number'\]"):
         renderer.render(view, TubeStyle(values="fa"))
     assert read_splines(renderer.render(view)).drawn.any()
+    first = renderer.render(view).generation
+    with pytest.raises(EngineError, match="wider or higher than this OpenGL's largest texture"):
+        renderer.render(View((100_000, 4), camera(SIZE, **EYE)))
+    assert renderer.render(view).generation > first
 
 
 LARGE = {
@@ -323,13 +323,6 @@ def test_numbers_too_large_for_float32(gl, message):
     array[2] = value
     with pytest.raises(EngineError, match=f"{message}.*more than float32 holds; scale"):
         TubeRenderer(gl, changed(tubes, **{name: array}))
-
-
-def test_a_picture_too_large(renderer, camera, view):
-    first = renderer.render(view).generation
-    with pytest.raises(EngineError, match="wider or higher than this OpenGL's largest texture"):
-        renderer.render(View((100_000, 4), camera(SIZE, **EYE)))
-    assert renderer.render(view).generation > first
 
 
 def test_release_twice_and_use_after(gl, tubes, view):

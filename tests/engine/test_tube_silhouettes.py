@@ -1,7 +1,5 @@
 """Silhouettes of spline tubes: boxes that hold their halves, rectangles that hold every pixel of their segment."""
 
-from __future__ import annotations
-
 import hypothesis
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """The solver of spline tubes alone, on rays and halves at random and degenerate ones, against float64."""
 
-from __future__ import annotations
-
 import hypothesis
 import numpy as np
 import pytest
@@ -349,7 +347,7 @@ def probes(gl):
         asked.release()
 
 
-def test_a_solver_is_given_other_steps_without_being_made_anew(gl, sample):
+def test_a_solver_is_given_other_steps_released_twice_and_refuses_bad_choices(gl, sample):
     points, o, d, *_ = sample("usual")
     asked = SolverProbe(gl, "bisection", clock=iter(range(9)).__next__)
     for iterations in (2, 9):
@@ -361,9 +359,6 @@ def test_a_solver_is_given_other_steps_without_being_made_anew(gl, sample):
     with pytest.raises(ValueError, match="iterations is 0"):
         asked.limit(0)
     asked.release()
-
-
-def test_released_twice_and_bad_choices(gl):
     asked = SolverProbe(gl, "itp")
     asked.release()
     asked.release()

@@ -1,7 +1,5 @@
 """Two-phase culling changes no bit of any picture, however the camera jumps, and does leave work out."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -10,7 +8,7 @@ from pvfiblets.engine import FibletRenderer, FibletStyle, View, shaders
 from pvfiblets.engine.culling import DepthPyramid
 from pvfiblets.synthetic import brain_streamlines
 
-from .pictures import Picture, differences, read
+from .pictures import differences, read
 from .visibility_bits import owning, planned
 
 SMALL = (160, 120)
@@ -24,7 +22,7 @@ class Both:
         self.whole = FibletRenderer(gl, fiblets, culling=None, **options)
         self.tested = self.hidden = self.pixels = 0
 
-    def draw(self, view, style=None) -> Picture:
+    def draw(self, view, style=None):
         """Draw one picture with both; they must be the same."""
         style = style or FibletStyle()
         picture, expected = read(self.culled.render(view, style)), read(self.whole.render(view, style))

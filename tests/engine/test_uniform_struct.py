@@ -1,7 +1,5 @@
 """Uniform blocks: the driver's own offsets, what GLSL reads of what Python packs, and errors of declarations."""
 
-from __future__ import annotations
-
 import ctypes
 import re
 from pathlib import Path
@@ -122,9 +120,13 @@ def compare(program, struct):
 
 
 @pytest.mark.parametrize("name", MODULES)
-def test_the_driver_lays_a_block_out_as_numpy_has_it(program_of, name):
+def test_the_driver_lays_a_block_out_as_numpy_has_it_and_shaders_read_it(program_of, name):
     struct = find_struct(name)
     compare(program_of(struct), struct)
+    # What none reads would only be packed.
+    text = "\n".join(path.read_text(encoding="utf-8") for path in (ROOT / "shaders").rglob("*.*"))
+    unread = [field for field in find_struct(name).fields if not re.search(rf"\b{field}\b", text)]
+    assert not unread
 
 
 def test_all_kinds_of_fields_lie_where_the_driver_has_them(program_of):
@@ -169,12 +171,14 @@ def test_shaders_read_what_python_packs(gl):
     assert found.tolist() == [np.float32(value) for _, value in asked]
 
 
-def test_some_fields_are_written_and_the_others_stay(gl):
+def test_some_fields_are_written_the_others_stay_and_none_is_forgotten(gl):
     buffer = gl.buffer(EVERY.pack(**VALUES))
     EVERY.write(buffer, the_end=31, a_vec3=(32.0, 33.0, 34.0), floats=[35.0])
     expected = EVERY.pack(**{**VALUES, "the_end": 31, "a_vec3": (32.0, 33.0, 34.0), "floats": [35.0]})
     assert buffer.read() == expected
     buffer.release()
+    with pytest.raises(UniformStructError, match=r"Frame: no value for a_mat4, the_end$"):
+        EVERY.pack(**{name: value for name, value in VALUES.items() if name not in ("a_mat4", "the_end")})
 
 
 def test_the_text_has_each_field_with_its_type_and_what_it_is():
@@ -187,17 +191,14 @@ def test_the_text_has_each_field_with_its_type_and_what_it_is():
     )
 
 
-def test_a_source_has_a_block_by_its_name_and_once():
+def test_a_source_has_a_block_by_its_name_once_and_only_if_it_is_looked_at():
     source = '#version 430\n#include "uniforms/Raycast.glsl"\n#include "uniforms/Raycast.glsl"\n'
     made = assemble("test", source=source)
     assert made.count(find_struct("Raycast").glsl) == made.count("Raycast") == 1
     assert "binding" not in assemble("test", source=source, version=330)
     with pytest.raises(EngineError, match=r"no uniform block 'Raycasts' is known; MODULES .* has \['Chunk"):
         read_shader("uniforms/Raycasts.glsl")
-
-
-def test_a_block_of_a_feature_that_is_off_is_not_looked_for():
-    """Nor is any other file: who packs the block is not imported."""
+    # Nor is any other file: who packs the block is not imported.
     source = """#version 430
 #if FEATURE_TUBES
 #include "uniforms/Nowhere.glsl"
@@ -266,16 +267,3 @@ def test_a_value_that_does_not_fit_is_one_clear_error(gl, changed, message):
     with pytest.raises(UniformStructError, match=message):
         EVERY.write(buffer, **changed)
     buffer.release()
-
-
-def test_no_field_is_forgotten():
-    with pytest.raises(UniformStructError, match=r"Frame: no value for a_mat4, the_end$"):
-        EVERY.pack(**{name: value for name, value in VALUES.items() if name not in ("a_mat4", "the_end")})
-
-
-@pytest.mark.parametrize("name", MODULES)
-def test_every_field_is_read_by_a_shader(name):
-    """What none reads would only be packed."""
-    text = "\n".join(path.read_text(encoding="utf-8") for path in (ROOT / "shaders").rglob("*.*"))
-    unread = [field for field in find_struct(name).fields if not re.search(rf"\b{field}\b", text)]
-    assert not unread

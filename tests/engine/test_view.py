@@ -1,7 +1,5 @@
 """`View` and `FibletStyle`: what they refuse, and when two are the same."""
 
-from __future__ import annotations
-
 import dataclasses
 
 import numpy as np

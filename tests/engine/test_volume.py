@@ -1,7 +1,5 @@
 """Rays on the GPU see what the float64 reference sees: surfaces, peaks and light, however they are cast."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A volume in bricks shows what it shows as one texture: no seam in values, gradients, surfaces, light or peaks."""
 
-from __future__ import annotations
-
 import tracemalloc
 
 import numpy as np

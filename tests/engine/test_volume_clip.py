@@ -1,7 +1,5 @@
 """Rays see what lies inside a region, and nothing else: closed forms for every pixel, in all modes."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -224,7 +222,7 @@ def test_empty_nodes_are_left_before_what_follows_begins(cast, camera, step):
             assert np.abs(plain[what] - skipped[what])[plain["there"]].max() < 2e-3, (options, what)
 
 
-def test_a_scene_without_cuts_has_nothing_of_them(gl, camera):
+def test_a_scene_without_cuts_has_nothing_of_them_and_labels_cannot_cut(gl, camera):
     matrix = camera(SIZE, eye=(0, -50, 0), target=(0, 0, 0), near=1, far=150)
     renderer = VolumeRenderer(gl, FOG)
     style = VolumeStyle(casting=LIGHT)
@@ -237,6 +235,9 @@ def test_a_scene_without_cuts_has_nothing_of_them(gl, camera):
     assert sizes["region"] >= 16 * SIZE[0] * SIZE[1]
     renderer.render(View(SIZE, matrix), style)
     assert "region" not in {part["name"] for part in renderer.explain()["buffers"]}
+    labels = regions.Labels(np.ones((3, 3, 3), np.uint8), np.eye(4))
+    with pytest.raises(ValueError, match="label volume cannot cut"):
+        renderer.render(View(SIZE, matrix, region=labels), VolumeStyle(casting=LIGHT))
     renderer.release()
 
 
@@ -248,12 +249,3 @@ def test_regions_that_hold_nothing_or_everything(cast, camera):
     for all_of_it in (regions.Sphere((0.0, 0.0, 0.0), 1e4), ~regions.Sphere((0.0, 0.0, 100.0), 3.0)):
         shown, _ = cast(FOG, LIGHT, matrix, all_of_it)
         assert np.abs(shown["alpha"] - plain["alpha"]).max() <= 1.01 / 255.0
-
-
-def test_labels_cannot_cut(gl, camera):
-    renderer = VolumeRenderer(gl, FOG)
-    labels = regions.Labels(np.ones((3, 3, 3), np.uint8), np.eye(4))
-    matrix = camera(SIZE, eye=(0, -50, 0), target=(0, 0, 0), near=1, far=150)
-    with pytest.raises(ValueError, match="label volume cannot cut"):
-        renderer.render(View(SIZE, matrix, region=labels), VolumeStyle(casting=LIGHT))
-    renderer.release()

@@ -1,7 +1,5 @@
 """What shaders weigh themselves, where graphics cards do it too coarsely, are pictures of exact hardware."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

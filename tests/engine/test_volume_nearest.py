@@ -1,7 +1,5 @@
 """Surfaces of nearest voxels are the voxels' sides, and each is shaded by the gradient at its voxel's centre."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from pvfiblets.engine import View

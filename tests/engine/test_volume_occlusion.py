@@ -1,7 +1,5 @@
 """Ambient occlusion by rays through a volume: closed forms, and a float64 reference that marches nothing."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

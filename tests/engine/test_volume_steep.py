@@ -1,7 +1,5 @@
 """Light is within a hundredth of the float64 reference by default: thin to dense, whatever the transfer function."""
 
-from __future__ import annotations
-
 import time
 
 import numpy as np
@@ -198,7 +196,7 @@ def test_lines_between_samples_are_the_nearest_ones(gl, camera):
     renderer.release()
 
 
-def test_values_beyond_thresholds_are_left_out_exactly(gl, camera):
+def test_values_beyond_thresholds_are_left_out_exactly_and_the_octree_changes_no_pixel(gl, camera):
     volume = field("slope")
     matrix = matrix_of(camera, volume)
     renderer = VolumeRenderer(gl, volume)
@@ -208,11 +206,7 @@ def test_values_beyond_thresholds_are_left_out_exactly(gl, camera):
         right = reference.composite(volume, transfer, reference.rays(matrix, SIZE, volume), low=0.4, high=0.6)
         assert np.abs(light(renderer, matrix, casting) - right.reshape(*SIZE[::-1], 4)).max() < 1e-2
     renderer.release()
-
-
-def test_the_octree_changes_no_pixel_of_it(gl, camera):
     volume = field("ball", 24)
-    matrix = matrix_of(camera, volume)
     renderer = VolumeRenderer(gl, volume)
     transfer = steep_transfer("peak", 3.0)
     pictures = [
@@ -330,7 +324,7 @@ def test_the_bend_that_is_allowed():
         assert 0.6 * OFF / 4 < off < 1.6 * OFF / 4, (front, back)  # heights are found of half as long a step's table
 
 
-def test_between_which_values_anything_is_opaque():
+def test_between_which_values_anything_is_opaque_or_even():
     def ends(*opacities):
         return Transfer(np.array(opacities)[:, None] * [0, 0, 0, 1], (10.0, 14.0)).opaque_range
 
@@ -338,6 +332,11 @@ def test_between_which_values_anything_is_opaque():
     assert ends(0, 0, 0, 0, 1) == (13.0, np.inf)
     assert ends(1, 0, 0, 0, 0) == (-np.inf, 11.0)
     assert ends(0, 0, 0, 0, 0) == (np.inf, -np.inf)
+    rgba = table(ORANGE, np.select([X < 0.3, X < 0.9], [0.0, 0.02], 0.9))
+    transfer = Transfer(rgba, (0.0, 1.0))
+    even = transfer.even_range([0.4, 0.2, 0.4, 0.92, 0.0], [0.8, 0.4, 0.95, 2.0, 0.1])
+    assert even.tolist() == [True, False, False, True, True]
+    assert not transfer.even_range(0.88, 0.8999)  # the opacity rises within the entry
 
 
 @pytest.mark.parametrize("integrator", ["adaptive", "exponential"])
@@ -361,14 +360,6 @@ def test_parts_of_one_colour_and_opacity_need_no_reconstruction(gl, camera, inte
     assert np.abs(after - before).max() < (6e-3 if integrator == "adaptive" else 3e-2)  # rays are cut at other places
     assert (before[..., 2] > 0.3).sum() > 30  # the sheet
     renderer.release()
-
-
-def test_what_is_even():
-    rgba = table(ORANGE, np.select([X < 0.3, X < 0.9], [0.0, 0.02], 0.9))
-    transfer = Transfer(rgba, (0.0, 1.0))
-    even = transfer.even_range([0.4, 0.2, 0.4, 0.92, 0.0], [0.8, 0.4, 0.95, 2.0, 0.1])
-    assert even.tolist() == [True, False, False, True, True]
-    assert not transfer.even_range(0.88, 0.8999)  # the opacity rises within the entry
 
 
 def test_a_step_is_no_longer_than_a_voxel_is_short_unless_it_is_asked_to_be():

@@ -1,7 +1,5 @@
 """Wide lines: all pixels of a round brush drawn along the line, and no others, however long a loop that takes."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np
@@ -68,7 +66,7 @@ def test_a_width_beyond_software_opengl_is_told(gl, fabricate, random_lines, cam
         draw(gl, fabricate(random_lines(5), kind=2), View(SIZE, camera(SIZE)), FibletStyle(400.0))
 
 
-def test_wide_lines_reach_in_from_outside(gl, fabricate, camera):
+def test_wide_lines_reach_in_from_outside_and_the_nearest_wins(gl, fabricate, camera):
     """A wide line just off the screen shows its edge."""
     size, matrix = (200, 100), camera((200, 100), height=100.0)
     x = 102.2  # window x = 202.2, and the last pixel's centre is at 199.5
@@ -76,9 +74,6 @@ def test_wide_lines_reach_in_from_outside(gl, fabricate, camera):
     assert not draw(gl, fiblets, View(size, matrix)).drawn.any()
     drawn = draw(gl, fiblets, View(size, matrix), FibletStyle(line_width=6.0)).drawn
     assert drawn[50].tolist() == [False] * 199 + [True]
-
-
-def test_the_nearest_wide_line_wins(gl, fabricate, camera):
     lines = [np.array([[-50.0, y, 1e-3 * i], [50.0, y, 1e-3 * i]]) for i, y in enumerate((5.0, -20.0, 30.0))]
     fiblets = fabricate(lines, kind=3)
     picture = draw(gl, fiblets, View(SIZE, camera(SIZE, eye=(0, -260, 0))), FibletStyle(line_width=3.0))

@@ -1,7 +1,5 @@
 """No call asks so much of a card that its system takes it for hung, and no picture shows where calls end."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np

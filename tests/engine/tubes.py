@@ -1,7 +1,5 @@
 """Spline tubes for the engine's tests: halves and rays at random, sets, and what every pixel must show, in float64."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What a picture's passes tell each other about fiblets (``fiblets/compute/visibility_bits.glsl``), read back."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Connectomes against the search about the ends by NumPy, dipy's matrix, and sums by hand."""
 
-from __future__ import annotations
-
 import itertools
 import json
 

@@ -1,7 +1,5 @@
 """Density maps: against a clip in NumPy that cuts one segment at a time, and examples whose numbers are known."""
 
-from __future__ import annotations
-
 import itertools
 
 import nibabel as nib
@@ -26,7 +24,7 @@ SHEARED = np.array([[3.4, 0.8, 0, -45.0], [-0.6, 4.2, 0.4, -35.0], [0.2, 1.0, -6
 SHAPE = (17, 19, 15)
 
 
-def pieces(a: np.ndarray, b: np.ndarray) -> list[tuple[tuple[int, ...], float, float, float]]:
+def pieces(a, b):
     """Of a segment in voxels from the grid's corner: voxel, share, and where the middle lies, piece by piece."""
     cuts = [0.0, 1.0]
     for k in range(3):
@@ -40,11 +38,11 @@ def pieces(a: np.ndarray, b: np.ndarray) -> list[tuple[tuple[int, ...], float, f
 
 
 def reference(
-    lines: list[np.ndarray],
-    grid: VoxelGrid,
-    weights: np.ndarray | None = None,
-    values: list[np.ndarray] | None = None,
-) -> dict[str, np.ndarray]:
+    lines,
+    grid,
+    weights=None,
+    values=None,
+):
     """Every contrast, from float64 points."""
     w = np.ones(len(lines)) if weights is None else weights
     found = {name: np.zeros(grid.shape) for name in ("count", "length", "sum", "known")}
@@ -77,7 +75,7 @@ def reference(
     return found
 
 
-def lines_with_values() -> Streamlines:
+def lines_with_values():
     lines = every_kind()
     rng = np.random.default_rng(3)
     fa = rng.random(lines.n_points)
@@ -91,13 +89,13 @@ LINES = lines_with_values()
 
 
 @pytest.fixture(autouse=True)
-def small_chunks(monkeypatch: pytest.MonkeyPatch) -> None:
+def small_chunks(monkeypatch):
     monkeypatch.setattr(density_sources, "CHUNK", 2000)
     monkeypatch.setattr(room, "PIECES", 3000)
 
 
 @pytest.fixture(scope="module", params=["input", "hilbert", "mapped"])
-def whole(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> pf.FibletSet:
+def whole(request, tmp_path_factory):
     order = "input" if request.param == "input" else "hilbert"
     made = pf.compress(LINES, per_point=["fa"], order=order)
     if request.param != "mapped":
@@ -108,14 +106,14 @@ def whole(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
 
 
 @pytest.fixture(scope="module")
-def part_of() -> tuple[pf.FibletSet, dict[str, np.ndarray], float]:
+def part_of():
     """A set, what a sheared grid that covers a part of it holds, and the length of all of it."""
     coded = pf.compress(LINES)
     lines = coded.decompress(dtype=np.float64)
     return coded, reference(lines.to_list(), VoxelGrid(SHAPE, SHEARED)), lines.lengths().sum()
 
 
-def split(rows: np.ndarray, lines: list[np.ndarray]) -> list[np.ndarray]:
+def split(rows, lines):
     return np.split(rows, np.cumsum([len(line) for line in lines])[:-1])
 
 
@@ -174,7 +172,7 @@ def test_grids_of_images_may_be_sheared_and_cover_a_part(part_of, kind):
     np.testing.assert_array_equal(coded.density(like=like).values, exact["count"])
 
 
-def pyvista_image(shape: tuple[int, int, int], affine: np.ndarray, cells: bool = False) -> pv.ImageData:
+def pyvista_image(shape, affine, cells=False):
     """An image that has these voxels, with an extent that does not begin at 0."""
     n = np.array(shape) + cells
     image = pv.ImageData()
@@ -189,7 +187,7 @@ def pyvista_image(shape: tuple[int, int, int], affine: np.ndarray, cells: bool =
     return image
 
 
-def lone(*points: tuple[float, float, float]) -> Streamlines:
+def lone(*points):
     return Streamlines.from_list([np.array(points, np.float64)])
 
 
@@ -466,7 +464,7 @@ def test_damaged_images_are_told(tmp_path):
 
 
 def test_progress_is_told():
-    told: list[tuple[str, float]] = []
+    told = []
     pf.density(LINES, 14.0, progress=lambda what, share: told.append((what, share)))
     assert list(dict.fromkeys(what for what, _ in told)) == ["surveying", "adding up"]
     shares = [share for what, share in told if what == "adding up"]

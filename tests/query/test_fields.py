@@ -1,7 +1,5 @@
 """Label volumes and their distance fields: against NumPy look-ups and brute force over voxels."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -31,12 +29,12 @@ def affine(request):
     return AFFINES[request.param]
 
 
-def scattered(affine: np.ndarray, n: int = 20_000) -> np.ndarray:
+def scattered(affine, n=20_000):
     """Positions in and around the volume, mm."""
     return place(affine, RNG.uniform(-4.0, np.array(VOLUME.shape) + 3.0, (n, 3)))
 
 
-def looked_up(mask: np.ndarray, affine: np.ndarray, points: np.ndarray) -> np.ndarray:
+def looked_up(mask, affine, points):
     voxels = np.floor(place(np.linalg.inv(affine), points) + 0.5).astype(int)
     inside = ((voxels >= 0) & (voxels < mask.shape)).all(axis=1)
     found = np.zeros(len(points), bool)
@@ -44,7 +42,7 @@ def looked_up(mask: np.ndarray, affine: np.ndarray, points: np.ndarray) -> np.nd
     return found
 
 
-def box_distances(points: np.ndarray, voxels: np.ndarray, sizes: np.ndarray) -> np.ndarray:
+def box_distances(points, voxels, sizes):
     """Distances (n,) of points (n, 3), voxel coordinates, from the nearest of voxels' boxes; axes at right angles."""
     gaps = np.maximum(np.abs(points[:, None] - voxels[None]) - 0.5, 0.0) * sizes
     return np.linalg.norm(gaps, axis=2).min(axis=1)
@@ -149,9 +147,7 @@ def test_distances_are_to_the_nearest_voxels_box(name):
 def test_distances_in_a_sheared_volume():
     region = regions.Labels(VOLUME, SHEAR, 3)
     points = scattered(SHEAR, 500)
-    boxes = [
-        regions.Box(center=voxel, size=1.0).moved(SHEAR) for voxel in np.argwhere(VOLUME == 3).astype(float)
-    ]
+    boxes = [regions.Box(center=voxel, size=1.0).moved(SHEAR) for voxel in np.argwhere(VOLUME == 3).astype(float)]
     assert region.distance(points) == pytest.approx(np.min([box.distance(points) for box in boxes], axis=0), abs=1e-9)
 
 

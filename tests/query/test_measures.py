@@ -1,9 +1,6 @@
 """Measures, bits, ends and profiles: against NumPy on the decompressed points, streamline by streamline."""
 
-from __future__ import annotations
-
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -20,7 +17,7 @@ from tests.codec.samples import extremes, smooth
 from tests.codec.test_restrict import every_kind, many_pages
 
 
-def lines_with_values() -> Streamlines:
+def lines_with_values():
     lines = every_kind()
     fa = np.sin(np.arange(lines.n_points) * 0.01)
     fa[5:9] = np.nan
@@ -39,7 +36,7 @@ NAN = np.isnan(LINES.per_point["fa"])
 
 
 @pytest.fixture(scope="module", params=["input", "hilbert", "mapped"])
-def whole(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> pf.FibletSet:
+def whole(request, tmp_path_factory):
     order = "input" if request.param == "input" else "hilbert"
     made = pf.compress(LINES, per_point=["fa", "height"], order=order)
     if request.param != "mapped":
@@ -50,11 +47,11 @@ def whole(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
 
 
 @pytest.fixture(autouse=True)
-def small_chunks(monkeypatch: pytest.MonkeyPatch) -> None:
+def small_chunks(monkeypatch):
     monkeypatch.setattr(measures, "CHUNK", 300)
 
 
-def curvature(p: np.ndarray) -> np.ndarray:
+def curvature(p):
     """By the angle between segments, from its cosine and sine."""
     k = np.zeros(len(p))
     for i in range(1, len(p) - 1):
@@ -67,22 +64,22 @@ def curvature(p: np.ndarray) -> np.ndarray:
     return k
 
 
-def arc_length(p: np.ndarray) -> np.ndarray:
+def arc_length(p):
     return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(p, axis=0), axis=1))])[: len(p)]
 
 
-def by_line(whole: pf.FibletSet) -> list[np.ndarray]:
+def by_line(whole):
     return whole.decompress(dtype=np.float64).to_list()
 
 
-def coded(whole: pf.FibletSet, lines: list[np.ndarray]) -> np.ndarray:
+def coded(whole, lines):
     return whole.in_coded_order(np.concatenate(lines))
 
 
 # ------------------------------------------------------------------------------------------------------------ measures
 
 
-def test_measures_of_points(whole: pf.FibletSet) -> None:
+def test_measures_of_points(whole):
     lines = by_line(whole)
     original = [np.asarray(p, np.float64) for p in LINES]
     for name, unit, wanted in (
@@ -99,7 +96,7 @@ def test_measures_of_points(whole: pf.FibletSet) -> None:
     assert errors.array().max() == pytest.approx(pf.measure_error(LINES, whole).max_mm, rel=1e-3)
 
 
-def test_measures_of_streamlines(whole: pf.FibletSet) -> None:
+def test_measures_of_streamlines(whole):
     lines = by_line(whole)
     full = [i for i, p in enumerate(lines) if len(p)]
     for name, unit, make, without in (
@@ -118,7 +115,7 @@ def test_measures_of_streamlines(whole: pf.FibletSet) -> None:
     np.testing.assert_allclose(whole.lengths(), measure(whole, "length").array(), rtol=1e-5, atol=1e-4)
 
 
-def test_distances_to_regions_are_the_regions_own(whole: pf.FibletSet) -> None:
+def test_distances_to_regions_are_the_regions_own(whole):
     box = regions.Box((-20, 10, -5, 25, 0, 40))
     decoded = whole.decompress(dtype=np.float64)
     low, high = np.array([-20, -5, 0]), np.array([10, 25, 40])
@@ -132,7 +129,7 @@ def test_distances_to_regions_are_the_regions_own(whole: pf.FibletSet) -> None:
         measure(whole, Distance(~box))
 
 
-def test_stored_arrays_and_ones_own(whole: pf.FibletSet) -> None:
+def test_stored_arrays_and_ones_own(whole):
     fa = measure(whole, "fa")
     assert fa.kind == "point"
     assert fa.values is whole.per_point["fa"], "no copy is made"
@@ -154,7 +151,7 @@ def test_stored_arrays_and_ones_own(whole: pf.FibletSet) -> None:
     assert measure_names(whole) == measure_names(whole, "streamline") + measure_names(whole, "point")
 
 
-def test_stored_arrays_come_before_measures_of_their_name() -> None:
+def test_stored_arrays_come_before_measures_of_their_name():
     given = {"curvature": np.array([1.0, 2.0, 3.0])}, {"length": np.array([7.0, 8.0])}
     lines = Streamlines(np.eye(3), [0, 2, 3], *given)
     made = pf.compress(lines, per_point=["curvature"])
@@ -163,7 +160,7 @@ def test_stored_arrays_come_before_measures_of_their_name() -> None:
     assert measure(made, "curvature").unit == measure(made, "length").unit == ""
 
 
-def test_what_is_refused(whole: pf.FibletSet) -> None:
+def test_what_is_refused(whole):
     for name in ("FA", "colour", "text"):
         with pytest.raises(KeyError, match=f"no measure '{name}'; there are length, n_points, .*curvature.*fa"):
             measure(whole, name)
@@ -183,7 +180,7 @@ def test_what_is_refused(whole: pf.FibletSet) -> None:
 
 
 @pytest.mark.parametrize("name", extremes())
-def test_extreme_lines(name: str) -> None:
+def test_extreme_lines(name):
     whole = pf.compress(extremes()[name])
     lines = by_line(whole)
     if whole.n_points == 0:
@@ -208,13 +205,13 @@ def test_extreme_lines(name: str) -> None:
 # ---------------------------------------------------------------------------------------------------------------- bits
 
 
-def unpacked(words: np.ndarray, n: int) -> np.ndarray:
+def unpacked(words, n):
     bits = (words[:, None] >> np.arange(32, dtype=np.uint32) & 1).astype(bool).ravel()
     assert not bits[n:].any(), "bits behind the last are 0"
     return bits[:n]
 
 
-def test_bits_of_points(whole: pf.FibletSet) -> None:
+def test_bits_of_points(whole):
     n = whole.n_points
     arc, fa = measure(whole, "arc_length"), measure(whole, "fa")
     number = whole.per_point["fa"].values().astype(np.float64)
@@ -240,7 +237,7 @@ def test_bits_of_points(whole: pf.FibletSet) -> None:
 
 
 @pytest.mark.parametrize("n", [0, 1, 31, 32, 33, 64, 100])
-def test_bits_of_any_number_of_points(n: int) -> None:
+def test_bits_of_any_number_of_points(n):
     whole = pf.compress(Streamlines(np.random.default_rng(n).normal(size=(n, 3)), [0, n]))
     values = np.arange(n, dtype=np.float32)
     words = point_words(whole, [(values, 3.0, n - 2.0)] if n > 5 else [])
@@ -248,7 +245,7 @@ def test_bits_of_any_number_of_points(n: int) -> None:
     assert unpacked(words, n).sum() == (n - 4 if n > 5 else n)
 
 
-def test_sixteen_bit_codes_compare_as_their_values() -> None:
+def test_sixteen_bit_codes_compare_as_their_values():
     whole = pf.compress(LINES, per_point=["fa"], per_point_bits=16)
     number = whole.per_point["fa"].values().astype(np.float64)
     for lo, hi in ((-0.3, 0.25), (float(number[20]), float(number[20])), (0.9, np.inf)):
@@ -256,7 +253,7 @@ def test_sixteen_bit_codes_compare_as_their_values() -> None:
         np.testing.assert_array_equal(found, (number >= lo) & (number <= hi))
 
 
-def test_bits_of_ranks(whole: pf.FibletSet) -> None:
+def test_bits_of_ranks(whole):
     mask = np.random.default_rng(3).random(73) < 0.5
     words = rank_words(whole, mask)
     assert (words.dtype, words.shape) == (np.uint32, (3,))
@@ -268,7 +265,7 @@ def test_bits_of_ranks(whole: pf.FibletSet) -> None:
             rank_words(whole, bad)
 
 
-def test_masks_of_streamlines(whole: pf.FibletSet) -> None:
+def test_masks_of_streamlines(whole):
     length, number = measure(whole, "length"), measure(whole, "number")
     found = streamline_mask(whole, [(length, 20.0, np.inf), (number, 3, 40)])
     np.testing.assert_array_equal(found, (length.array() >= 20) & (np.arange(73) >= 3) & (np.arange(73) <= 40))
@@ -290,14 +287,14 @@ def test_masks_of_streamlines(whole: pf.FibletSet) -> None:
 # ---------------------------------------------------------------------------------------------------------------- ends
 
 
-def test_end_points_are_those_of_the_decoded_streamlines(whole: pf.FibletSet) -> None:
+def test_end_points_are_those_of_the_decoded_streamlines(whole):
     ends = end_points(whole)
     assert (ends.shape, ends.dtype) == ((73, 2, 3), np.float64)
     for found, line in zip(ends, by_line(whole), strict=True):
         np.testing.assert_array_equal(found, line[[0, -1]] if len(line) else np.full((2, 3), np.nan))
 
 
-def test_end_points_across_pages() -> None:
+def test_end_points_across_pages():
     whole = many_pages()
     decoded = whole.decompress(dtype=np.float64)
     wanted = np.stack([decoded.points[decoded.offsets[:-1]], decoded.points[decoded.offsets[1:] - 1]], axis=1)
@@ -305,7 +302,7 @@ def test_end_points_across_pages() -> None:
 
 
 @pytest.mark.parametrize("distance", [0.01, 4.0, 12.0, 1e6])
-def test_similar_ends(distance: float) -> None:
+def test_similar_ends(distance):
     rng = np.random.default_rng(6)
     lines = [np.linspace(a, b, 9) for a, b in rng.uniform(-20, 20, (400, 2, 3))]
     lines += [line[::-1] + 1.0 for line in lines[:50]] + [np.zeros((0, 3)), np.array([[1.0, 2, 3]])]
@@ -323,7 +320,7 @@ def test_similar_ends(distance: float) -> None:
     assert found[403] == (distance >= 4.0), "the other way round"
 
 
-def test_similar_ends_of_bad_or_no_questions() -> None:
+def test_similar_ends_of_bad_or_no_questions():
     whole = pf.compress(every_kind())
     assert not similar_ends(whole, [], 1.0).any()
     assert not similar_ends(whole, [0], 1.0).any()  # without points
@@ -337,7 +334,7 @@ def test_similar_ends_of_bad_or_no_questions() -> None:
 # ------------------------------------------------------------------------------------------------------------- profiles
 
 
-def test_profile_of_a_bundle_stored_in_both_directions() -> None:
+def test_profile_of_a_bundle_stored_in_both_directions():
     """A value that is a function of place, along parallel arcs that run to and fro with different steps."""
     arcs = []
     for i in range(40):
@@ -355,7 +352,7 @@ def test_profile_of_a_bundle_stored_in_both_directions() -> None:
         np.testing.assert_allclose(mean, -wanted, atol=0.3)  # the first runs the other way
 
 
-def test_profile_is_the_mean_and_deviation_of_interpolated_values(whole: pf.FibletSet) -> None:
+def test_profile_is_the_mean_and_deviation_of_interpolated_values(whole):
     fa = np.arange(whole.n_points, dtype=np.float32) % 17
     ids = np.array([5, 9, 30, 45, 45, 60])
     rows, decoded = [], whole.decompress(dtype=np.float64)
@@ -374,7 +371,7 @@ def test_profile_is_the_mean_and_deviation_of_interpolated_values(whole: pf.Fibl
     np.testing.assert_allclose(std, np.std(rows, axis=0), rtol=1e-6, atol=1e-6)
 
 
-def test_profile_leaves_out_what_has_no_value(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_profile_leaves_out_what_has_no_value(monkeypatch):
     line = np.stack([np.arange(41.0), np.zeros(41), np.zeros(41)], axis=1)
     whole = pf.compress(Streamlines.from_list([line, line + [0, 1, 0], np.zeros((0, 3)), line[:1]]))
     values = np.concatenate([np.full(41, 2.0), np.where(np.arange(41) < 20, 4.0, np.nan), [np.nan]])
@@ -392,7 +389,7 @@ def test_profile_leaves_out_what_has_no_value(monkeypatch: pytest.MonkeyPatch) -
         mean_profile(whole, [0], values, n=1)
 
 
-def test_profile_in_portions_is_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_profile_in_portions_is_the_same(monkeypatch):
     from pvfiblets.query import profile
 
     whole = pf.compress(smooth(30, 90))
@@ -401,7 +398,7 @@ def test_profile_in_portions_is_the_same(monkeypatch: pytest.MonkeyPatch) -> Non
     np.testing.assert_allclose(mean_profile(whole, slice(None), "curvature", n=12), once, rtol=1e-12)
 
 
-def test_damaged_sets_say_so(tmp_path: Path) -> None:
+def test_damaged_sets_say_so(tmp_path):
     whole = pf.compress(every_kind())
     words = whole.anchors.copy()
     words[20:40, 1] ^= np.uint32(0x3FFF0000)

@@ -3,12 +3,8 @@
 What lies between points is the subject of :mod:`.test_segments`.
 """
 
-from __future__ import annotations
-
-from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -23,7 +19,7 @@ from tests.codec.samples import extremes, smooth, wandering
 from tests.codec.test_restrict import every_kind, many_pages
 
 
-def expected_flags(points: np.ndarray, offsets: np.ndarray, inside: Callable) -> np.ndarray:
+def expected_flags(points, offsets, inside):
     """Flags by NumPy, of all points at once."""
     flags = np.zeros(len(offsets) - 1, np.uint8)
     filled = np.flatnonzero(np.diff(offsets))
@@ -35,7 +31,7 @@ def expected_flags(points: np.ndarray, offsets: np.ndarray, inside: Callable) ->
     return flags
 
 
-def some_regions(scale: float = 1.0, at: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> dict[str, regions.Region]:
+def some_regions(scale=1.0, at=(0.0, 0.0, 0.0)):
     """Every primitive and expressions of them, about a position."""
     c = np.array(at)
     box = regions.Box(center=c + scale * np.array([4.0, -3.0, 5.0]), size=scale * np.array([40.0, 30.0, 50.0]))
@@ -53,13 +49,13 @@ def some_regions(scale: float = 1.0, at: tuple[float, float, float] = (0.0, 0.0,
     }  # fmt: skip
 
 
-def _shift(c: np.ndarray) -> np.ndarray:
+def _shift(c):
     matrix = np.eye(4)
     matrix[:3, 3] = c
     return matrix
 
 
-def assert_flags(whole: pf.FibletSet, region: regions.Region) -> np.ndarray:
+def assert_flags(whole, region):
     decoded = whole.decompress(dtype=np.float64)
     wanted = expected_flags(decoded.points, decoded.offsets, region.contains)
     found = region_flags(whole, region, "points")
@@ -76,12 +72,12 @@ def assert_flags(whole: pf.FibletSet, region: regions.Region) -> np.ndarray:
 
 
 @pytest.fixture(scope="module")
-def brain() -> Streamlines:
+def brain():
     return brain_streamlines(600)
 
 
 @pytest.fixture(scope="module")
-def brains(brain: Streamlines) -> dict[str, pf.FibletSet]:
+def brains(brain):
     return {
         "input": pf.compress(brain),
         "hilbert": pf.compress(brain, order="hilbert"),
@@ -92,7 +88,7 @@ def brains(brain: Streamlines) -> dict[str, pf.FibletSet]:
 @pytest.mark.every("value")
 @pytest.mark.parametrize("name", some_regions())
 @pytest.mark.parametrize("how", ["input", "hilbert", "fine"])
-def test_flags_are_those_of_the_decoded_points(brains: dict[str, pf.FibletSet], how: str, name: str) -> None:
+def test_flags_are_those_of_the_decoded_points(brains, how, name):
     whole = brains[how]
     assert (whole.anchors_low is not None) == (how == "fine")
     found = assert_flags(whole, some_regions()[name])
@@ -100,7 +96,7 @@ def test_flags_are_those_of_the_decoded_points(brains: dict[str, pf.FibletSet], 
         assert len(np.unique(found)) > 1, "the region tells streamlines apart"
 
 
-def test_a_box_is_a_box() -> None:
+def test_a_box_is_a_box():
     """Against comparisons of coordinates, so that no region's own arithmetic is trusted."""
     whole = pf.compress(every_kind())
     decoded = whole.decompress(dtype=np.float64)
@@ -116,7 +112,7 @@ def test_a_box_is_a_box() -> None:
 
 @pytest.mark.parametrize("order", ["input", "hilbert"])
 @pytest.mark.parametrize("mapped", [False, True])
-def test_lattices_and_streamlines_without_points(order: str, mapped: bool, tmp_path: Path) -> None:
+def test_lattices_and_streamlines_without_points(order, mapped, tmp_path):
     whole = pf.compress(every_kind(), order=order)
     if mapped:
         whole.save(tmp_path / "a.fiblets")
@@ -128,7 +124,7 @@ def test_lattices_and_streamlines_without_points(order: str, mapped: bool, tmp_p
 
 
 @pytest.mark.parametrize("name", extremes())
-def test_extreme_lines(name: str) -> None:
+def test_extreme_lines(name):
     lines = extremes()[name]
     whole = pf.compress(lines)
     size = float(np.ptp(lines.points, axis=0).max()) / 60.0 if lines.n_points else 1.0
@@ -139,7 +135,7 @@ def test_extreme_lines(name: str) -> None:
         assert_flags(whole, region)
 
 
-def test_points_on_a_face_are_in_as_the_region_says() -> None:
+def test_points_on_a_face_are_in_as_the_region_says():
     """A lattice of whole numbers, decoded exactly, with a box through its points."""
     rng = np.random.default_rng(4)
     lines = Streamlines.from_list(
@@ -153,7 +149,7 @@ def test_points_on_a_face_are_in_as_the_region_says() -> None:
             assert_flags(whole.extract(slice(None, None, -3)), each)
 
 
-def test_portions_of_few_fiblets_and_segments(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_portions_of_few_fiblets_and_segments(monkeypatch):
     whole = pf.compress(wandering(30, 70))
     names = ("box", "a speck", "ball without slab", "not box")
     wanted = [region_flags(whole, some_regions()[name]) for name in names]
@@ -164,7 +160,7 @@ def test_portions_of_few_fiblets_and_segments(monkeypatch: pytest.MonkeyPatch) -
         np.testing.assert_array_equal(region_flags(whole, some_regions()[name]), flags)
 
 
-def test_some_streamlines_only(brains: dict[str, pf.FibletSet]) -> None:
+def test_some_streamlines_only(brains):
     for whole in brains.values():
         every = region_flags(whole, some_regions()["box"])
         for ids in ([3], [-1, 0, 77, 77], np.arange(600) % 7 == 0, []):
@@ -177,12 +173,12 @@ def test_some_streamlines_only(brains: dict[str, pf.FibletSet]) -> None:
 
 
 @pytest.fixture(scope="module")
-def paged() -> pf.FibletSet:
+def paged():
     return many_pages()
 
 
 @pytest.mark.parametrize("pages", [1, 3, 8])
-def test_streamlines_that_run_through_pages(paged: pf.FibletSet, pages: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_streamlines_that_run_through_pages(paged, pages, monkeypatch):
     monkeypatch.setattr(passing, "PAGES", pages)
     whole = paged
     decoded = whole.decompress(dtype=np.float64)
@@ -195,13 +191,11 @@ def test_streamlines_that_run_through_pages(paged: pf.FibletSet, pages: int, mon
         assert np.count_nonzero(few) <= 2
 
 
-def test_fiblets_that_lie_clear_are_not_decoded(
-    brains: dict[str, pf.FibletSet], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    decoded: list[int] = []
+def test_fiblets_that_lie_clear_are_not_decoded(brains, monkeypatch):
+    decoded = []
     real = passing.decode_fiblets
 
-    def counted(fiblets: pf.FibletSet, which: np.ndarray, *rest: np.ndarray) -> None:
+    def counted(fiblets, which, *rest):
         decoded.append(len(which))
         real(fiblets, which, *rest)
 
@@ -215,7 +209,7 @@ def test_fiblets_that_lie_clear_are_not_decoded(
     assert not decoded
 
 
-def test_conditions(brains: dict[str, pf.FibletSet]) -> None:
+def test_conditions(brains):
     whole = brains["input"]
     box, ball = regions.Box((-90, 20, -90, 90, 0, 120)), some_regions()["ball"]
     b, s = region_flags(whole, box), region_flags(whole, ball)
@@ -237,11 +231,11 @@ def test_conditions(brains: dict[str, pf.FibletSet]) -> None:
     assert len({regions.passes(box), regions.ends_in(box), regions.passes(regions.Box(box.bounds))}) == 2
 
 
-def test_each_region_is_gone_through_once(brains: dict[str, pf.FibletSet]) -> None:
+def test_each_region_is_gone_through_once(brains):
     whole, asked = brains["input"], []
     box, ball = some_regions()["box"], some_regions()["ball"]
 
-    def flags(region: regions.Region, sampling: point_flags.Sampling) -> np.ndarray:
+    def flags(region, sampling):
         asked.append((region, sampling))
         return region_flags(whole, region, sampling)
 
@@ -250,7 +244,7 @@ def test_each_region_is_gone_through_once(brains: dict[str, pf.FibletSet]) -> No
     assert sorted(asked, key=str) == sorted([(box, "points"), (ball, "lines")], key=str)
 
 
-def test_streamlines_without_points_satisfy_nothing() -> None:
+def test_streamlines_without_points_satisfy_nothing():
     whole = pf.compress(Streamlines(np.zeros((1, 3)), [0, 0, 1, 1]))
     everywhere = regions.Sphere((0, 0, 0), 5.0)
     for predicate in (regions.passes(everywhere), regions.ends_in(everywhere), regions.stays_in(everywhere)):
@@ -260,7 +254,7 @@ def test_streamlines_without_points_satisfy_nothing() -> None:
     assert none.select(regions.passes(everywhere)).shape == (0,)
 
 
-def test_what_is_refused(brains: dict[str, pf.FibletSet]) -> None:
+def test_what_is_refused(brains):
     whole, box = brains["input"], some_regions()["box"]
     with pytest.raises(TypeError, match=r"a Box is no condition on streamlines; ask passes\(region\)"):
         whole.select(box)
@@ -279,14 +273,14 @@ def test_what_is_refused(brains: dict[str, pf.FibletSet]) -> None:
         region_flags(replace(whole, anchors=words), box)
 
 
-def test_a_smooth_set_of_one_page_and_one_fiblet() -> None:
+def test_a_smooth_set_of_one_page_and_one_fiblet():
     one = pf.compress(smooth(1, 60))
     assert one.n_fiblets == 1
     for region in some_regions(1.0, tuple(one.decompress().points[30])).values():
         assert_flags(one, region)
 
 
-def a_torus() -> tuple[np.ndarray, np.ndarray]:
+def a_torus():
     """Points and triangles of a torus about z, radii 30 and 14 mm."""
     n, m = 48, 24
     u, v = np.meshgrid(np.arange(n) * 2 * np.pi / n, np.arange(m) * 2 * np.pi / m, indexing="ij")
@@ -298,7 +292,7 @@ def a_torus() -> tuple[np.ndarray, np.ndarray]:
     return points, np.concatenate([np.stack(t, axis=-1).reshape(-1, 3) for t in ((a, b, c), (a, c, d))])
 
 
-def some_volumes() -> dict[str, regions.Region]:
+def some_volumes():
     rng = np.random.default_rng(5)
     affine = np.array([[3.0, 0.4, 0, -60], [0, 2.5, 0, -75], [0, 0, 4, -40], [0, 0, 0, 1]])
     blobs = rng.random((40, 60, 30))
@@ -316,12 +310,12 @@ def some_volumes() -> dict[str, regions.Region]:
 @pytest.mark.few(4)
 @pytest.mark.parametrize("name", some_volumes())
 @pytest.mark.parametrize("how", ["input", "hilbert", "fine"])
-def test_surfaces_and_labels(brains: dict[str, pf.FibletSet], how: str, name: str) -> None:
+def test_surfaces_and_labels(brains, how, name):
     found = assert_flags(brains[how], some_volumes()[name])
     assert len(np.unique(found)) > 2, "the region tells streamlines apart"
 
 
-def test_a_torus_is_a_torus_and_labels_are_voxels(brains: dict[str, pf.FibletSet]) -> None:
+def test_a_torus_is_a_torus_and_labels_are_voxels(brains):
     """Against closed forms: a torus, but for what lies within the coarseness of its mesh; and a slab of voxels."""
     whole = brains["input"]
     decoded = whole.decompress(dtype=np.float64)

@@ -1,7 +1,5 @@
 """What lies under an area of the screen equals a search through all decoded segments in float64."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

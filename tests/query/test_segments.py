@@ -1,7 +1,5 @@
 """Segments against regions: signed distances searched to the last bit, closed forms, and voxels one by one."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np
@@ -16,9 +14,9 @@ from pvfiblets.query.segments import segment_flags
 from pvfiblets.streamlines import Streamlines
 
 
-def signed_distance(region: regions.Region, p: np.ndarray) -> float:
+def signed_distance(region, p):
     """Of a position: below 0 inside, above 0 outside, and changing by no more than one goes; by textbook formulas."""
-    stack: list[float] = []
+    stack = []
     for op in region.program:
         if op >= 0:
             stack.append(leaf_distance(region.leaves[op], p))
@@ -30,7 +28,7 @@ def signed_distance(region: regions.Region, p: np.ndarray) -> float:
     return stack[0]
 
 
-def leaf_distance(leaf: regions.Shape, p: np.ndarray) -> float:
+def leaf_distance(leaf, p):
     if isinstance(leaf, regions.Surface):
         return -float(leaf.signed_distance(p)[0])
     u = leaf.linear @ (p - leaf.centre)
@@ -44,7 +42,7 @@ def leaf_distance(leaf: regions.Shape, p: np.ndarray) -> float:
     return (np.linalg.norm(u) - 1.0) / np.linalg.norm(leaf.linear, 2)
 
 
-def some_place_below(f, a: np.ndarray, b: np.ndarray) -> bool | None:
+def some_place_below(f, a, b):
     """Whether ``f <= 0`` somewhere from a to b, by Piyavskii's search; None within 1e-7 mm of either answer."""
     length, parts, unsure = float(np.linalg.norm(b - a)), [(0.0, 1.0)], False
     while parts:
@@ -62,13 +60,13 @@ def some_place_below(f, a: np.ndarray, b: np.ndarray) -> bool | None:
     return None if unsure else False
 
 
-def an_octahedron(size: float) -> regions.Surface:
+def an_octahedron(size):
     points = size * np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], float)
     triangles = [(0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4), (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5)]
     return regions.Surface(points, triangles)
 
 
-def some_regions() -> dict[str, regions.Region]:
+def some_regions():
     box = regions.Box(center=(4.0, -3.0, 5.0), size=(40.0, 30.0, 50.0))
     ball, plane = regions.Sphere((10.0, 0.0, 0.0), 18.0), regions.Plane((1.0, 2.0, -0.5))
     slab = regions.Slab((0.0, 1.0, 1.0), (2.0, 2.0, 2.0), 3.0)
@@ -85,7 +83,7 @@ def some_regions() -> dict[str, regions.Region]:
 
 
 @pytest.mark.parametrize("name", some_regions())
-def test_segments_are_where_their_places_are(name: str) -> None:
+def test_segments_are_where_their_places_are(name):
     region = some_regions()[name]
     rng = np.random.default_rng(len(name))
     n = 8 if "mesh" in name or "hole" in name else 30
@@ -104,7 +102,7 @@ def test_segments_are_where_their_places_are(name: str) -> None:
     assert len(answers) > 1
 
 
-def test_what_touches_passes() -> None:
+def test_what_touches_passes():
     a, b = np.array([[-8.0, 5, 0]]), np.array([[8.0, 5, 0]])
     ball, up = regions.Sphere((0, 0, 0), 5.0), np.array([0, 1e-9, 0])
     assert segment_flags(ball, a, b) == 3
@@ -117,7 +115,7 @@ def test_what_touches_passes() -> None:
 
 
 @pytest.mark.parametrize("shift", [0.0, 1e6])
-def test_shapes_that_share_a_face(shift: float) -> None:
+def test_shapes_that_share_a_face(shift):
     """Rounding puts the two crossings of a face side by side: neither a gap nor a sliver comes of that."""
     rng = np.random.default_rng(8)
     middle = np.array([shift, -shift, 0.1])
@@ -140,7 +138,7 @@ def test_shapes_that_share_a_face(shift: float) -> None:
     assert (segment_flags(one | two, inner, end) == 1).all()
 
 
-def lines_of_all_steps(seed: int) -> list[np.ndarray]:
+def lines_of_all_steps(seed):
     """Streamlines with steps from 0 to hundreds of mm; some of one point, some long enough for many fiblets."""
     rng = np.random.default_rng(seed)
     lines = [rng.uniform(-40, 40, (1, 3)) + np.cumsum(rng.normal(0, size, (n, 3)), axis=0)
@@ -150,7 +148,7 @@ def lines_of_all_steps(seed: int) -> list[np.ndarray]:
 
 
 @pytest.mark.parametrize("name", ["ball", "mesh", "box and ball without slab", "speck"])
-def test_streamlines_are_their_points_and_segments(name: str) -> None:
+def test_streamlines_are_their_points_and_segments(name):
     region = some_regions()[name]
     whole = pf.compress(Streamlines.from_list(lines_of_all_steps(3)), exact=name == "ball")
     found, by_points = region_flags(whole, region), region_flags(whole, region, "points")
@@ -166,7 +164,7 @@ def test_streamlines_are_their_points_and_segments(name: str) -> None:
         assert outside is None or bool(flags & 2) == (len(line) > 0 and not outside)
 
 
-def test_labels_are_passed_where_density_maps_have_some() -> None:
+def test_labels_are_passed_where_density_maps_have_some():
     """And where the slabs of one voxel after the other have some length of a segment."""
     rng = np.random.default_rng(5)
     affine = np.array([[3.0, 0.4, 0, -30], [0, -2.5, 0, 40], [0.3, 0, 4, -40], [0, 0, 0, 1]])
@@ -193,7 +191,7 @@ def test_labels_are_passed_where_density_maps_have_some() -> None:
     np.testing.assert_array_equal(region_flags(whole, ~labels) & 2 == 0, (found & 1 > 0) | empty)
 
 
-def test_a_line_of_two_points_passes_what_lies_between_them() -> None:
+def test_a_line_of_two_points_passes_what_lies_between_them():
     """Also between the last point of a fiblet and the first of the next."""
     line = np.stack([np.arange(200) * 10.0, np.zeros(200), np.zeros(200)], axis=1)
     whole = pf.compress(Streamlines.from_list([line, line + [0, 5, 0], line[[0, -1]]]))

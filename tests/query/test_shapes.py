@@ -1,7 +1,5 @@
 """Shapes and expressions: against closed forms and NumPy's own boolean algebra."""
 
-from __future__ import annotations
-
 import pickle
 
 import numpy as np
@@ -16,18 +14,18 @@ RNG = np.random.default_rng(7)
 POINTS = RNG.uniform(-3.0, 3.0, (4000, 3))
 
 
-def rotation(seed: int = 1) -> np.ndarray:
+def rotation(seed=1):
     turn, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))
     return turn * np.sign(np.linalg.det(turn))
 
 
-def placement(linear: np.ndarray, shift: tuple[float, float, float]) -> np.ndarray:
+def placement(linear, shift):
     matrix = np.eye(4)
     matrix[:3, :3], matrix[:3, 3] = linear, shift
     return matrix
 
 
-def place(matrix: np.ndarray, points: np.ndarray) -> np.ndarray:
+def place(matrix, points):
     return points @ matrix[:3, :3].T + matrix[:3, 3]
 
 

@@ -1,7 +1,5 @@
 """Closed surfaces: against VTK's enclosure and distance filters, closed forms, and lattices that meet every tie."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv
@@ -16,17 +14,17 @@ from .test_shapes import SHEAR, place, placement, rotation
 RNG = np.random.default_rng(11)
 
 
-def mesh_of(polydata: pv.PolyData) -> tuple[np.ndarray, np.ndarray]:
+def mesh_of(polydata):
     polydata = polydata.triangulate().clean()
     return np.asarray(polydata.points, np.float64), np.asarray(polydata.regular_faces)
 
 
-def torus() -> pv.PolyData:
+def torus():
     made = pv.ParametricTorus(ringradius=2.0, crosssectionradius=0.7, u_res=50, v_res=30)
     return made.triangulate().clean().compute_normals(consistent_normals=True, auto_orient_normals=True)
 
 
-def bumpy() -> pv.PolyData:
+def bumpy():
     ball = pv.Sphere(radius=1.0, theta_resolution=60, phi_resolution=60)
     x, y, z = ball.points.T
     waves = 1.8 + 0.5 * np.sin(5 * x) * np.cos(6 * y) + 0.3 * np.sin(9 * z)
@@ -43,7 +41,7 @@ def concave(request):
     return polydata, regions.Surface(*mesh_of(polydata))
 
 
-def vtk_signed(polydata: pv.PolyData, points: np.ndarray) -> np.ndarray:
+def vtk_signed(polydata, points):
     function = vtkImplicitPolyDataDistance()
     function.SetInput(polydata)
     return -np.array([function.EvaluateFunction(point) for point in points])

@@ -1,9 +1,6 @@
 """Tables of streamlines: NumPy and the csv module find the same."""
 
-from __future__ import annotations
-
 import csv
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,7 +11,7 @@ from pvfiblets.query.measures import measure
 
 
 @pytest.fixture
-def lines() -> pf.Streamlines:
+def lines():
     """Three lines and one without points; values of all sorts, one missing."""
     rng = np.random.default_rng(1)
     points = np.cumsum(rng.normal(size=(30, 3)), axis=0)
@@ -28,7 +25,7 @@ def lines() -> pf.Streamlines:
 
 
 @pytest.mark.parametrize("coded", [False, True])
-def test_rows_are_numpys(lines: pf.Streamlines, coded: bool) -> None:
+def test_rows_are_numpys(lines, coded):
     data = pf.compress(lines, per_point=["fa", "rgb"], max_error=1e-4, per_point_bits=16) if coded else lines
     found, near = data.table(), {"atol": 2e-3 if coded else 1e-12}
     each = list(lines)
@@ -56,9 +53,7 @@ def test_rows_are_numpys(lines: pf.Streamlines, coded: bool) -> None:
     assert set(data.table([])) == set(found)
 
 
-def test_the_command_writes_what_the_csv_module_reads(
-    lines: pf.Streamlines, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_command_writes_what_the_csv_module_reads(lines, tmp_path, capsys):
     pf.compress(lines, per_point=["fa"]).save(tmp_path / "a.fiblets")
     table = pf.FibletSet.open(tmp_path / "a.fiblets").table()
     assert cli.main(["table", str(tmp_path / "a.fiblets"), str(tmp_path / "a.csv")]) == 0
@@ -73,7 +68,7 @@ def test_the_command_writes_what_the_csv_module_reads(
     assert "has no group 'wide'; it has: left, long" in capsys.readouterr().err
 
 
-def test_notebooks_get_html(lines: pf.Streamlines) -> None:
+def test_notebooks_get_html(lines):
     lines.groups["<b>"] = np.array([0])
     for text in (lines._repr_html_(), pf.compress(lines)._repr_html_()):
         assert "&lt;b&gt;" in text

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from ...codec.direction_codebook import quaternions
+from ...codec.decompress import decoding_arrays, fixed
 from ...codec.fiblets_file import INDEX as KEY
 from ...codec.layout import unpack
 from ...codec.small_sets import prefer_kernels
@@ -28,7 +28,7 @@ from ...errors import FormatError
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
 
-__all__ = ["FibletIndex", "decoding_arrays", "fiblets_of_streamlines", "index_of"]
+__all__ = ["FibletIndex", "fiblets_of_streamlines", "index_of"]
 
 Ints = npt.NDArray[np.int64]
 CHUNK = 1 << 22  # fiblets sorted together
@@ -94,24 +94,6 @@ class FibletIndex:
         return np.flatnonzero(found)
 
 
-def decoding_arrays(fiblets: FibletSet) -> tuple[Any, ...]:
-    """What :func:`.decode_kernels.decode_one` takes of a set, from ``arrays`` to ``tables``."""
-    p, low = fiblets.parameters, fiblets.anchors_low
-    return (
-        (_fixed(fiblets.anchors), _fixed(fiblets.decoding), _fixed(fiblets.codes), _fixed(fiblets.pages[:, 1])),
-        _fixed(np.zeros((1, 3), np.uint16) if low is None else low), low is not None,
-        fiblets.origin, fiblets.anchor_scale,
-        (p.step_lo, p.step_hi, p.lattice), quaternions().astype(np.float64),
-    )  # fmt: skip
-
-
-def _fixed(array: npt.NDArray[Any]) -> npt.NDArray[Any]:
-    """An array that cannot be written to, as those of mapped sets cannot: kernels are compiled once for either."""
-    found = np.ascontiguousarray(array).view()
-    found.flags.writeable = False
-    return found
-
-
 def index_of(fiblets: FibletSet) -> FibletIndex:
     """Return a set's spatial index; made when first asked for, and kept with the set.
 
@@ -130,7 +112,7 @@ def index_of(fiblets: FibletSet) -> FibletIndex:
 
 
 def _of_file(order: Any, leaves: Any, pieces: Any) -> FibletIndex:
-    return FibletIndex(_fixed(order), _fixed(leaves), _fixed(pieces))
+    return FibletIndex(fixed(order), fixed(leaves), fixed(pieces))
 
 
 def _checked(fiblets: FibletSet, index: FibletIndex) -> FibletIndex:
@@ -164,7 +146,7 @@ def _built(fiblets: FibletSet) -> FibletIndex:
     n, parts = fiblets.n_fiblets, _parts(fiblets)
     arrays = decoding_arrays(fiblets)
     low, fine, origin, scale = arrays[1:5]
-    anchors, ends, bases, end_scale = arrays[0][0], _fixed(fiblets.ends), _fixed(fiblets.pages[:, 0]), fiblets.end_scale
+    anchors, ends, bases, end_scale = arrays[0][0], fixed(fiblets.ends), fixed(fiblets.pages[:, 0]), fiblets.end_scale
     order, pieces = np.empty(n, np.uint32), np.empty((n, 4 * parts + 3), np.uint8)
     held = [np.empty((0, 4 * parts + 5), np.float32)]
     for first in range(0, n, CHUNK):
@@ -182,11 +164,11 @@ def _built(fiblets: FibletSet) -> FibletIndex:
         order[first : first + m] = places + first
         found = np.zeros((-(-m // LEAF), 4 * parts + 5), np.float32)
         damaged = np.zeros(len(found), np.bool_)
-        kernels.leaf_pieces(_fixed(order[first : first + m]), *arrays, parts, found, pieces[first : first + m], damaged)
+        kernels.leaf_pieces(fixed(order[first : first + m]), *arrays, parts, found, pieces[first : first + m], damaged)
         if damaged.any():
             raise FormatError("the set of fiblets", None, "records that point beyond its arrays", "an undamaged file")
         held.append(found)
-    return FibletIndex(_fixed(order), _fixed(np.concatenate(held)), _fixed(pieces), time.perf_counter() - begin)
+    return FibletIndex(fixed(order), fixed(np.concatenate(held)), fixed(pieces), time.perf_counter() - begin)
 
 
 def fiblets_of_streamlines(fiblets: FibletSet) -> npt.NDArray[np.int32]:

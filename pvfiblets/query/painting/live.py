@@ -18,13 +18,14 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import numpy.typing as npt
 
+from ...codec.decompress import decoding_arrays
 from ...codec.small_sets import prefer_kernels
 from ...errors import FormatError
 from ..point_flags import ALL
 from ..point_flags import ANY as PASSES
 from ..point_flags import FIRST as BEGINS
 from ..point_flags import LAST as ENDS
-from .fiblet_index import CHUNK, LEAF, decoding_arrays, fiblets_of_streamlines, index_of
+from .fiblet_index import CHUNK, LEAF, fiblets_of_streamlines, index_of
 from .free_space import FreeSpace
 
 if TYPE_CHECKING:

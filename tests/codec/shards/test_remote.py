@@ -1,13 +1,9 @@
 """Sets in shards at an address: only what is asked for is fetched, and kept within the cache's size; tries again."""
 
-from __future__ import annotations
-
 import re
 import threading
 import warnings
-from collections.abc import Iterator
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -29,7 +25,7 @@ class Server(ThreadingHTTPServer):
 
     daemon_threads = True
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder):
         super().__init__(("127.0.0.1", 0), Handler)
         self.folder, self.asked, self.sent = folder, [], 0
         self.lose, self.ranges, self.altered = 0, True, False
@@ -39,13 +35,13 @@ class Handler(BaseHTTPRequestHandler):
     protocol_version = "HTTP/1.1"
     server: Server
 
-    def log_message(self, *_: object) -> None:
+    def log_message(self, *_):
         pass
 
-    def do_HEAD(self) -> None:
+    def do_HEAD(self):
         self.do_GET()
 
-    def do_GET(self) -> None:
+    def do_GET(self):
         path = self.server.folder / self.path.lstrip("/")
         if not path.is_file():
             self.send_error(404)
@@ -76,12 +72,12 @@ class Handler(BaseHTTPRequestHandler):
 
 
 @pytest.fixture
-def whole() -> pf.FibletSet:
+def whole():
     return pf.compress(smooth(60, 80), exact=False)
 
 
 @pytest.fixture
-def server(whole: pf.FibletSet, tmp_path: Path) -> Iterator[Server]:
+def server(whole, tmp_path):
     (tmp_path / "at").mkdir()
     write_shards(whole, tmp_path / "at" / "a.fiblets", whole.nbytes // 4)
     made = Server(tmp_path / "at")
@@ -94,32 +90,32 @@ def server(whole: pf.FibletSet, tmp_path: Path) -> Iterator[Server]:
 
 
 @pytest.fixture
-def url(server: Server) -> str:
+def url(server):
     return f"http://127.0.0.1:{server.server_address[1]}/a.fiblets"
 
 
 @pytest.fixture
-def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Cache:
+def cache(tmp_path, monkeypatch):
     monkeypatch.setattr(store, "PAUSE", 0.0)
     return Cache(tmp_path / "cache", 1 << 30)
 
 
-def same(found: pf.FibletSet, wanted: pf.FibletSet) -> None:
+def same(found, wanted):
     np.testing.assert_array_equal(found.decompress(dtype=np.float64).points, wanted.decompress(dtype=np.float64).points)
 
 
-def test_a_set_at_an_address(url: str, cache: Cache, whole: pf.FibletSet) -> None:
+def test_a_set_at_an_address(url, cache, whole):
     same(pf.ShardedSet.open(url, cache=cache).gather(), whole)
 
 
-def test_opening_by_address_alone(url: str, cache: Cache, whole: pf.FibletSet, monkeypatch, tmp_path: Path) -> None:
+def test_opening_by_address_alone(url, cache, whole, monkeypatch, tmp_path):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "home"))
     same(pf.FibletSet.open(url), whole)
     np.testing.assert_array_equal(pf.read(url).points, pf.read(tmp_path / "at" / "a.fiblets").points)
     assert list((tmp_path / "home" / "pvfiblets" / "shards").iterdir())
 
 
-def test_only_what_is_asked_for_is_fetched(url: str, server: Server, cache: Cache) -> None:
+def test_only_what_is_asked_for_is_fetched(url, server, cache):
     shards = pf.ShardedSet.open(url, cache=cache)
     assert server.asked == ["/a.fiblets/manifest.json"]
     shards.shard(2)
@@ -130,20 +126,20 @@ def test_only_what_is_asked_for_is_fetched(url: str, server: Server, cache: Cach
     assert server.asked[before:] == ["/a.fiblets/manifest.json"], "what is in the cache was fetched again"
 
 
-def test_pieces(url: str, server: Server, cache: Cache, whole: pf.FibletSet, monkeypatch) -> None:
+def test_pieces(url, server, cache, whole, monkeypatch):
     monkeypatch.setattr(store, "PIECE", 1000)
     same(pf.ShardedSet.open(url, cache=cache).gather(), whole)
     assert server.asked.count("/a.fiblets/000000.fiblets") > 3
 
 
-def test_a_server_without_ranges(url: str, server: Server, cache: Cache, whole: pf.FibletSet, monkeypatch) -> None:
+def test_a_server_without_ranges(url, server, cache, whole, monkeypatch):
     monkeypatch.setattr(store, "PIECE", 1000)
     server.ranges = False
     same(pf.ShardedSet.open(url, cache=cache).gather(), whole)
     assert server.asked.count("/a.fiblets/000000.fiblets") == 1
 
 
-def test_a_lost_connection_is_told_and_tried_again(url, server: Server, cache: Cache, whole, monkeypatch) -> None:
+def test_a_lost_connection_is_told_and_tried_again(url, server, cache, whole, monkeypatch):
     monkeypatch.setattr(store, "PIECE", 2000)
     shards = pf.ShardedSet.open(url, cache=cache)
     server.lose = 3
@@ -154,7 +150,7 @@ def test_a_lost_connection_is_told_and_tried_again(url, server: Server, cache: C
     same(shards.gather(), whole)
 
 
-def test_a_dead_server_is_one_sentence(url: str, server: Server, cache: Cache) -> None:
+def test_a_dead_server_is_one_sentence(url, server, cache):
     shards = pf.ShardedSet.open(url, cache=cache)
     server.lose = 1000
     with warnings.catch_warnings():
@@ -164,7 +160,7 @@ def test_a_dead_server_is_one_sentence(url: str, server: Server, cache: Cache) -
     assert not [p for p in cache.folder.iterdir() if p.name.startswith(".")], "half a file is left"
 
 
-def test_other_bytes_are_refused(url: str, server: Server, cache: Cache) -> None:
+def test_other_bytes_are_refused(url, server, cache):
     server.altered = True
     with pytest.raises(pf.FormatError, match="other bytes than its manifest names"):
         pf.ShardedSet.open(url, cache=cache).shard(0)
@@ -172,12 +168,12 @@ def test_other_bytes_are_refused(url: str, server: Server, cache: Cache) -> None
     pf.ShardedSet.open(url, cache=cache).shard(0)
 
 
-def test_no_set_there(url: str, cache: Cache) -> None:
+def test_no_set_there(url, cache):
     with pytest.raises(pf.FormatError, match=r"no manifest\.json"):
         pf.ShardedSet.open(url + "x", cache=cache)
 
 
-def test_the_cache_keeps_to_its_size(url: str, tmp_path: Path) -> None:
+def test_the_cache_keeps_to_its_size(url, tmp_path):
     shards = pf.ShardedSet.open(url, cache=Cache(tmp_path / "small", 1))
     n = len(shards.shards)
     kept = [shards.shard(number) for number in range(n)]
@@ -193,7 +189,7 @@ def test_the_cache_keeps_to_its_size(url: str, tmp_path: Path) -> None:
         Cache(tmp_path, 0)
 
 
-def test_another_file_system(whole: pf.FibletSet, tmp_path: Path, cache: Cache) -> None:
+def test_another_file_system(whole, tmp_path, cache):
     import fsspec
 
     write_shards(whole, tmp_path / "b.fiblets", whole.nbytes // 3)
@@ -205,7 +201,7 @@ def test_another_file_system(whole: pf.FibletSet, tmp_path: Path, cache: Cache) 
         memory.store.clear()
 
 
-def test_a_bucket(whole: pf.FibletSet, tmp_path: Path, cache: Cache, monkeypatch) -> None:
+def test_a_bucket(whole, tmp_path, cache, monkeypatch):
     """An object store that speaks S3, here on this machine."""
     import boto3
     from moto.server import ThreadedMotoServer
@@ -230,7 +226,7 @@ def test_a_bucket(whole: pf.FibletSet, tmp_path: Path, cache: Cache, monkeypatch
         served.stop()
 
 
-def test_without_fsspec_the_extra_is_named(monkeypatch, cache: Cache) -> None:
+def test_without_fsspec_the_extra_is_named(monkeypatch, cache):
     import sys
 
     monkeypatch.setitem(sys.modules, "fsspec", None)
@@ -249,17 +245,17 @@ def test_without_fsspec_the_extra_is_named(monkeypatch, cache: Cache) -> None:
         ("c://x", False),
     ],
 )
-def test_what_is_an_address(place: str, address: bool) -> None:
+def test_what_is_an_address(place, address):
     assert is_url(place) is address
 
 
 @pytest.mark.parametrize("work", [pf.read, pf.formats.info, lambda url: next(pf.iter_chunks(url))])
-def test_other_formats_are_not_read_from_addresses(work) -> None:
+def test_other_formats_are_not_read_from_addresses(work):
     with pytest.raises(ValueError, match=r"https://example\.org/a\.tck is an address; .*fetch the file first"):
         work("https://example.org/a.tck")
 
 
-def test_plotters_and_commands_take_addresses(url: str, monkeypatch, tmp_path: Path, capsys) -> None:
+def test_plotters_and_commands_take_addresses(url, monkeypatch, tmp_path, capsys):
     import pyvista as pv
 
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "home"))

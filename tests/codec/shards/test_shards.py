@@ -1,7 +1,5 @@
 """Sets in shards: the same streamlines, bit for bit, divided by place and in files that keep to their size."""
 
-from __future__ import annotations
-
 import json
 import re
 from pathlib import Path
@@ -20,7 +18,7 @@ from ..samples import assert_equal_streamlines, noisy, smooth
 from ..test_extract import with_groups
 
 
-def assert_same(found: Streamlines, wanted: Streamlines) -> None:
+def assert_same(found, wanted):
     assert_equal_streamlines(found, wanted)
     np.testing.assert_array_equal(found.affine, wanted.affine)
     assert found.space == wanted.space
@@ -28,17 +26,17 @@ def assert_same(found: Streamlines, wanted: Streamlines) -> None:
 
 
 @pytest.fixture(scope="module")
-def whole() -> pf.FibletSet:
+def whole():
     return pf.compress(with_groups(), per_point=["height", "fine"], per_point_bits=16, exact=False)
 
 
 @pytest.fixture
-def sharded(whole: pf.FibletSet, tmp_path: Path) -> Path:
+def sharded(whole, tmp_path):
     write_shards(whole, tmp_path / "a.fiblets", whole.nbytes // 5)
     return tmp_path / "a.fiblets"
 
 
-def test_all_shards_together_are_the_set(whole: pf.FibletSet, sharded: Path) -> None:
+def test_all_shards_together_are_the_set(whole, sharded):
     shards = pf.ShardedSet.open(sharded)
     assert len(shards.shards) > 4
     shards.verify()
@@ -54,7 +52,7 @@ def test_all_shards_together_are_the_set(whole: pf.FibletSet, sharded: Path) -> 
 
 @pytest.mark.more
 @pytest.mark.parametrize("max_points", [150, 1000, 100_000])
-def test_chunks_join_to_the_set(whole: pf.FibletSet, sharded: Path, max_points: int) -> None:
+def test_chunks_join_to_the_set(whole, sharded, max_points):
     chunks = list(pf.iter_chunks(sharded, max_points))
     assert all(chunk.n_points <= max_points or len(chunk) == 1 for chunk in chunks)
     whole.save(sharded.with_name("one.fiblets"))
@@ -64,7 +62,7 @@ def test_chunks_join_to_the_set(whole: pf.FibletSet, sharded: Path, max_points: 
     assert sum(map(len, chunks)) == len(wanted)
 
 
-def test_what_reads_files_reads_folders(whole: pf.FibletSet, sharded: Path, tmp_path: Path) -> None:
+def test_what_reads_files_reads_folders(whole, sharded, tmp_path):
     whole.save(tmp_path / "one.fiblets")
     assert_same(pf.read(sharded), pf.read(tmp_path / "one.fiblets"))
     assert_same(pf.FibletSet.open(sharded).decompress(), whole.decompress())
@@ -75,7 +73,7 @@ def test_what_reads_files_reads_folders(whole: pf.FibletSet, sharded: Path, tmp_
     assert set(facts["per_point"]) == {"height", "fine"}
 
 
-def test_each_shard_is_an_ordinary_file_of_its_streamlines(whole: pf.FibletSet, sharded: Path) -> None:
+def test_each_shard_is_an_ordinary_file_of_its_streamlines(whole, sharded):
     shards = pf.ShardedSet.open(sharded)
     wanted = whole.decompress(dtype=np.float64)
     for number in range(len(shards.shards)):
@@ -85,7 +83,7 @@ def test_each_shard_is_an_ordinary_file_of_its_streamlines(whole: pf.FibletSet, 
             np.testing.assert_array_equal(line, wanted[int(streamline)])
 
 
-def test_a_slice_reads_consecutive_streamlines(whole: pf.FibletSet, sharded: Path) -> None:
+def test_a_slice_reads_consecutive_streamlines(whole, sharded):
     shards = pf.ShardedSet.open(sharded)
     for a, b in ((0, 73), (10, 31), (72, 73), (5, 5)):
         part = shards[a:b].decompress(dtype=np.float64)
@@ -94,11 +92,11 @@ def test_a_slice_reads_consecutive_streamlines(whole: pf.FibletSet, sharded: Pat
     with pytest.raises(ValueError, match="in steps of 2"):
         shards[::2]
     with pytest.raises(TypeError, match="give a slice"):
-        shards[3]  # type: ignore[index]
+        shards[3]
 
 
 @pytest.mark.parametrize("lines", [smooth(200, 60), noisy(150, 90)], ids=["smooth", "noisy"])
-def test_no_shard_is_larger_than_asked(lines: Streamlines) -> None:
+def test_no_shard_is_larger_than_asked(lines):
     whole = pf.compress(lines, exact=False)
     sizes = streamline_bytes(whole)
     assert sizes.sum() == pytest.approx(whole.nbytes - whole.pages.nbytes, abs=0)
@@ -110,7 +108,7 @@ def test_no_shard_is_larger_than_asked(lines: Streamlines) -> None:
             assert len(parts) <= -(-sizes.sum() // (size - sizes.max())), "more shards than such sizes need"
 
 
-def test_shards_hold_near_streamlines() -> None:
+def test_shards_hold_near_streamlines():
     """Eight clusters in the corners of a cube, in a random order, make eight shards of one corner each."""
     rng = np.random.default_rng(5)
     corner = rng.permutation(np.repeat(np.arange(8), 30))
@@ -123,7 +121,7 @@ def test_shards_hold_near_streamlines() -> None:
     assert max(len(set(corner[part])) for part in parts) <= 2, "a shard reaches over more than two corners"
 
 
-def test_a_box_chooses_shards(whole: pf.FibletSet, sharded: Path) -> None:
+def test_a_box_chooses_shards(whole, sharded):
     shards = pf.ShardedSet.open(sharded)
     b = np.array(shards.shards[0].bounds)
     numbers = shards.manifest.meeting(b)
@@ -139,7 +137,7 @@ def test_a_box_chooses_shards(whole: pf.FibletSet, sharded: Path) -> None:
 
 @pytest.mark.few(1)
 @pytest.mark.parametrize("exact", [True, False, None])
-def test_a_file_becomes_shards(tmp_path: Path, exact: bool | None) -> None:
+def test_a_file_becomes_shards(tmp_path, exact):
     lines = smooth(60, 100)
     pf.write(tmp_path / "a.tck", lines)
     told = compress_file_in_shards(tmp_path / "a.tck", tmp_path / "b.fiblets", 3_000, exact=exact)
@@ -159,7 +157,7 @@ def test_a_file_becomes_shards(tmp_path: Path, exact: bool | None) -> None:
 
 
 @pytest.mark.more
-def test_a_set_is_divided_as_it_is(whole: pf.FibletSet, tmp_path: Path) -> None:
+def test_a_set_is_divided_as_it_is(whole, tmp_path):
     whole.save(tmp_path / "a.fiblets")
     whole.save(tmp_path / "b.fiblets", shards=4000)
     assert_same(pf.read(tmp_path / "b.fiblets"), pf.read(tmp_path / "a.fiblets"))
@@ -169,7 +167,7 @@ def test_a_set_is_divided_as_it_is(whole: pf.FibletSet, tmp_path: Path) -> None:
         compress_file_in_shards(tmp_path / "a.fiblets", tmp_path / "c.fiblets", 4000, max_error=0.1)
 
 
-def test_nothing_else_is_replaced(whole: pf.FibletSet, tmp_path: Path) -> None:
+def test_nothing_else_is_replaced(whole, tmp_path):
     (tmp_path / "a.fiblets").write_bytes(b"dear")
     with pytest.raises(FileExistsError, match=r"a\.fiblets is a file, which shards would replace"):
         write_shards(whole, tmp_path / "a.fiblets", 1000)
@@ -184,7 +182,7 @@ def test_nothing_else_is_replaced(whole: pf.FibletSet, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("streamlines", [[], [[]], [[], np.zeros((1, 3)), []]], ids=["none", "empty", "one point"])
-def test_sets_of_nothing(streamlines: list, tmp_path: Path) -> None:
+def test_sets_of_nothing(streamlines, tmp_path):
     lines = Streamlines.from_list([np.reshape(np.asarray(line, float), (-1, 3)) for line in streamlines])
     for exact in (True, False):
         write_shards(pf.compress(lines, exact=exact), tmp_path / f"{exact}.fiblets", 1000)
@@ -192,7 +190,7 @@ def test_sets_of_nothing(streamlines: list, tmp_path: Path) -> None:
         assert (len(back), back.n_points) == (len(lines), lines.n_points)
 
 
-def test_damage_is_told(sharded: Path) -> None:
+def test_damage_is_told(sharded):
     with pytest.raises(pf.FormatError, match=r"no manifest\.json"):
         pf.FibletSet.open(sharded.parent)
     path = sharded / "000001.fiblets"
@@ -210,7 +208,7 @@ def test_damage_is_told(sharded: Path) -> None:
         pf.read(sharded)
 
 
-def test_foreign_shards_are_refused(sharded: Path) -> None:
+def test_foreign_shards_are_refused(sharded):
     """A shard of another set of the same length in bytes."""
     text = json.loads((sharded / MANIFEST).read_text())
     text["shards"][0]["streamlines"] += 1
@@ -234,7 +232,7 @@ def test_foreign_shards_are_refused(sharded: Path) -> None:
         (lambda m: m["shards"][0].update(bounds=[0, 1, 0, 1, 0, None]), "does not fit together"),
     ],
 )
-def test_damaged_manifests(sharded: Path, change, told: str) -> None:
+def test_damaged_manifests(sharded, change, told):
     found = json.loads((sharded / MANIFEST).read_text())
     change(found)
     (sharded / MANIFEST).write_text(json.dumps(found))
@@ -243,13 +241,13 @@ def test_damaged_manifests(sharded: Path, change, told: str) -> None:
 
 
 @pytest.mark.parametrize("text", [b"", b"{", b"[]", b"\xff\xfe", b"12"])
-def test_manifests_that_are_none(sharded: Path, text: bytes) -> None:
+def test_manifests_that_are_none(sharded, text):
     (sharded / MANIFEST).write_bytes(text)
     with pytest.raises(pf.FormatError, match="manifest"):
         pf.ShardedSet.open(sharded)
 
 
-def test_commands(whole: pf.FibletSet, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_commands(whole, tmp_path, capsys):
     source, target = str(tmp_path / "a.tck"), str(tmp_path / "b.fiblets")
     pf.write(source, smooth(60, 100))
     assert main(["convert", source, target, "--shards", "2K", "--quiet"]) == 0

@@ -1,11 +1,8 @@
 """Sets in shards that are not put together: every answer is that of the same set put together."""
 
-from __future__ import annotations
-
 import copy
 import pickle
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -26,7 +23,7 @@ from ..test_extract import with_groups
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory) -> Path:
+def folder(tmp_path_factory):
     whole = pf.compress(with_groups(), per_point=["height", "fine"], per_point_bits=16, exact=False)
     place = tmp_path_factory.mktemp("shards") / "a.fiblets"
     write_shards(whole, place, whole.nbytes // 5)
@@ -34,12 +31,12 @@ def folder(tmp_path_factory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def together(folder) -> pf.FibletSet:
+def together(folder):
     return pf.ShardedSet.open(folder).gather()
 
 
 @pytest.fixture
-def unread(folder, monkeypatch) -> pf.FibletSet:
+def unread(folder, monkeypatch):
     """One that cannot be put together."""
     found = pf.FibletSet.open(folder)
     assert isinstance(found, UnreadSet)

@@ -1,7 +1,5 @@
 """The list of bundles: what is changed there, in sets, files and pictures."""
 
-from __future__ import annotations
-
 import nibabel
 import numpy as np
 import pytest

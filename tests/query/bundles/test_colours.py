@@ -1,7 +1,5 @@
 """Colours of numbers: each is the same alone and among others, however large the number is."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Tract profiles and tables of bundles against dipy's, SciPy's and sums by hand."""
 
-from __future__ import annotations
-
 import csv
 import itertools
 

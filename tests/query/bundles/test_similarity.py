@@ -1,7 +1,5 @@
 """Similarity and clusters against dipy's, and against distances in NumPy."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

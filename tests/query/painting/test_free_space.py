@@ -1,7 +1,5 @@
 """How far voxels are from a set, against SciPy's distances."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.ndimage import distance_transform_cdt

@@ -1,7 +1,5 @@
 """All kernels that tell streamlines of painted regions are compiled beforehand."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """Painted regions and their streamlines against every segment and voxel in float64."""
 
-from __future__ import annotations
-
 import itertools
 from dataclasses import replace
 
