@@ -60,18 +60,6 @@ def buffers(renderer):
 # ------------------------------------------------------------------------------------------------------- when it draws
 
 
-def test_redraws_only_when_something_changed(renderer, camera, view):
-    first = renderer.render(view)
-    assert first.generation == 1
-    assert renderer.render(View(SIZE, camera(SIZE, **EYE)), TubeStyle()) is first
-    assert first.generation == 1
-    assert renderer.render(view, TubeStyle(values="number")).generation == 2
-    assert renderer.render(view, TubeStyle(values="number")).generation == 2
-    assert renderer.render(View(SIZE, camera(SIZE, **{**EYE, "near": 25.0}))).generation == 3
-    assert renderer.render(View(SIZE, view.model_view_projection, [[0, 1.0, 0, 3]])).generation == 4
-    assert renderer.render(view).generation == 5
-
-
 def test_pictures_repeat_to_the_bit(renderer, view, camera):
     first = read_splines(renderer.render(view, TubeStyle(values="number")))
     renderer.render(View(SIZE, camera(SIZE, **{**EYE, "near": 59.0}), [[1.0, 0, 0, 0]]), TubeStyle(values="colour"))
@@ -323,16 +311,6 @@ def test_numbers_too_large_for_float32(gl, message):
     array[2] = value
     with pytest.raises(EngineError, match=f"{message}.*more than float32 holds; scale"):
         TubeRenderer(gl, changed(tubes, **{name: array}))
-
-
-def test_release_twice_and_use_after(gl, tubes, view):
-    renderer = TubeRenderer(gl, tubes)
-    renderer.render(view, TubeStyle(values="number"))
-    renderer.release()
-    renderer.release()
-    with pytest.raises(EngineError, match="released"):
-        renderer.render(view)
-    assert buffers(renderer) == {}
 
 
 def test_a_set_without_segments_shows_nothing(gl, tubes, view):

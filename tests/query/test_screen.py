@@ -8,33 +8,20 @@ import pytest
 import pvfiblets as pf
 from pvfiblets.codec import layout
 from pvfiblets.query.screen import area_distances, under_polygon
+from pvfiblets.report.stability import render_checks
 from pvfiblets.streamlines import Streamlines
 from tests.codec.samples import extremes, noisy, smooth, wandering
 
 SIZE = (320.0, 240.0)
+ASIDE = np.array([1.0, -1.3, 0.7]) / np.linalg.norm([1.0, -1.3, 0.7])
 LASSO = np.array([[60, 40], [250, 60], [270, 200], [160, 90], [80, 210]], float)  # not convex
 
 
-def camera(target, distance, up=(0.0, 0.0, 1.0), near=1.0, far=1000.0, parallel=False):
+def camera(target, distance, near=1.0, far=1000.0, parallel=False):
     """Matrix of a camera on the diagonal, looking at a target."""
-    target = np.asarray(target, float)
-    eye = target + distance * np.array([1.0, -1.3, 0.7]) / np.linalg.norm([1.0, -1.3, 0.7])
-    z = (eye - target) / np.linalg.norm(eye - target)
-    x = np.cross(up, z) / np.linalg.norm(np.cross(up, z))
-    view = np.eye(4)
-    view[:3, :3] = [x, np.cross(z, x), z]
-    view[:3, 3] = -view[:3, :3] @ eye
-    aspect, f = SIZE[0] / SIZE[1], 1.0 / np.tan(np.radians(15.0))
-    projection = np.zeros((4, 4))
-    if parallel:
-        half = distance / f
-        projection[[0, 1, 2, 3], [0, 1, 2, 3]] = 1 / (half * aspect), 1 / half, -2 / (far - near), 1.0
-        projection[2, 3] = -(far + near) / (far - near)
-    else:
-        projection[0, 0], projection[1, 1] = f / aspect, f
-        projection[2, 2:] = -(far + near) / (far - near), -2 * far * near / (far - near)
-        projection[3, 2] = -1.0
-    return projection @ view
+    height = 2.0 * distance * np.tan(np.radians(15.0)) if parallel else None
+    eye = np.asarray(target, float) + distance * ASIDE
+    return render_checks.camera(SIZE, eye=eye, target=target, near=near, far=far, angle=30.0, height=height)
 
 
 def crosses(a, b, c, d):
