@@ -11,9 +11,8 @@ from pvfiblets.engine.shaders import assemble
 from .emulated import emulated_renderer
 from .line_tubes import entries, smoothed
 from .pictures import SIZE, assert_same, draw, near, read, unpacked_tangent
-from .polylines import to_clip, to_window
+from .polylines import feet, to_clip, to_window
 from .shader_programs import preprocessed
-from .test_wide_lines import distances_to
 
 PIPELINES = ["compute", "geometry", "tessellation"]
 SMALL = (160, 120)
@@ -183,7 +182,7 @@ def test_far_tubes_are_lines_and_never_vanish(gl, really, fabricate, camera, tol
     fiblets = fabricate([line - line.mean(0)], kind=3)
     matrix = camera(SIZE)
     drawn = draw(gl, fiblets, View(SIZE, matrix), FibletStyle(radius=0.005, tolerance=tolerance), pipeline=pipeline)
-    nearest = distances_to(to_window(to_clip(fiblets.lines[0], matrix), SIZE)[:, :2], SIZE)
+    nearest = feet(to_window(to_clip(fiblets.lines[0], matrix), SIZE)[:, :2], SIZE)[0]
     assert drawn.drawn[nearest < 0.49].all()
     assert not drawn.drawn[nearest > 0.52].any()
     for eye in (-400.0, -2000.0, -8000.0):
