@@ -106,7 +106,7 @@ def mixed():
     return Streamlines.concatenate([smooth(25, 130), noisy(25, 130), wandering(25, 100)])
 
 
-@pytest.mark.few(4)
+@pytest.mark.every("value")
 @pytest.mark.parametrize("parallel", [False, True])
 @pytest.mark.parametrize("tolerance", [0.0, 3.0])
 @pytest.mark.parametrize("polygon", [LASSO, LASSO[:1], LASSO[:2], [[100, 80], [180, 80], [180, 150], [100, 150]]])
@@ -211,3 +211,13 @@ def test_a_damaged_page_table_is_an_error():
     pages[0, 2] += 1 << 40  # far beyond the last point
     with pytest.raises(pf.FormatError, match="points that do not follow on"):
         under_polygon(replace(fiblets, pages=pages), matrix, SIZE, LASSO, points=everything)
+
+
+def test_lines_beside_an_area_are_found_within_the_tolerance():
+    """Two pixels to each of its sides; a mm is a pixel here."""
+    square = [[100, 80], [150, 80], [150, 130], [100, 130]]
+    sides = [(98, 85, 98, 125), (152, 85, 152, 125), (105, 78, 145, 78), (105, 132, 145, 132)]
+    lines = [np.array([[a - 160.0, b - 120.0, 0.0], [c - 160.0, d - 120.0, 0.0]]) for a, b, c, d in sides]
+    fiblets, matrix = pf.compress(Streamlines.from_list(lines), max_error=1e-3), np.diag([1 / 160, 1 / 120, -0.01, 1.0])
+    for tolerance, found in ((1.0, []), (3.0, [0, 1, 2, 3])):
+        assert sorted(under_polygon(fiblets, matrix, SIZE, square, tolerance).ids.tolist()) == found
