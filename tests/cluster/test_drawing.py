@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from pvfiblets import Streamlines, compress, regions
+from pvfiblets import compress, regions
 from pvfiblets.cli import main
 from pvfiblets.cluster import connection
 from pvfiblets.cluster.connection import connected
@@ -21,10 +21,9 @@ from pvfiblets.engine.fiblets.filter_textures import Filter
 from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
 from pvfiblets.engine.fiblets.sparse_picture import SparsePicture, nearer
 from pvfiblets.report.stability.render_checks import camera
-from pvfiblets.synthetic import brain_streamlines
 from pvfiblets.web.scene import Scene
 from pvfiblets.web.slicing import ready_views
-from tests.engine.pictures import SIZE, assert_alike, read
+from tests.engine.pictures import SIZE, assert_alike, brain_with_gaps, read
 
 pytestmark = pytest.mark.more
 
@@ -35,12 +34,8 @@ CLOSE = View(SIZE, camera(SIZE, eye=(60, -60, 90), target=(20, 0, 40), far=900.0
 @pytest.fixture(scope="module")
 def brain(tmp_path_factory):
     """A set of a file, mapped."""
-    lines = brain_streamlines(600, step=2.0, seed=2)
-    values = {"height": np.asarray(lines.points[:, 2])}
-    with_gaps = np.insert(np.asarray(lines.counts), [0, 100, 600], 0)
-    offsets = np.concatenate([[0], np.cumsum(with_gaps)])
     path = tmp_path_factory.mktemp("set") / "brain.fiblets"
-    compress(Streamlines(lines.points, offsets, per_point=values), per_point=["height"]).save(path)
+    brain_with_gaps(600, 2.0).save(path)
     return FibletSet.open(path)
 
 

@@ -1,7 +1,5 @@
 """The capsules that culling goes by hold all that is drawn, and little more."""
 
-import dataclasses
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -108,15 +106,3 @@ def test_kernels_compute_what_the_reference_says():
         word = capsule_kernels.end_word(*vector, 0.01)
         assert word == layout.pack_ends(levels)[0]
         assert [capsule_kernels.end_part(word, axis) for axis in range(3)] == levels.tolist()
-
-
-@pytest.mark.more
-def test_a_mapped_file_has_the_same_bounds(tmp_path):
-    lines = wandering(30, 100)
-    pf.write(tmp_path / "a.trx", lines)
-    pf.compress_file(tmp_path / "a.trx", tmp_path / "a.fiblets")
-    mapped, whole = pf.FibletSet.open(tmp_path / "a.fiblets"), pf.compress(pf.read(tmp_path / "a.trx"))
-    np.testing.assert_array_equal(mapped.ends, whole.ends)
-    assert mapped.largest_radius == whole.largest_radius > 0
-    assert dataclasses.asdict(mapped.parameters) == dataclasses.asdict(whole.parameters)
-    assert mapped.sizes["ends"] == 4 * len(lines)

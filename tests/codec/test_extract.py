@@ -84,8 +84,11 @@ def test_extreme_lines(name):
     assert_equal(whole[ids], whole.decompress(ids, dtype=np.float64), whole)
 
 
-def test_anchors_of_32_bits():
+def test_anchors_of_32_bits(tmp_path):
     whole = pf.compress(smooth(20, 200), max_error=1e-5)
+    whole.save(tmp_path / "a.fiblets")
+    mapped = pf.FibletSet.open(tmp_path / "a.fiblets").decompress(dtype=np.float64)
+    np.testing.assert_array_equal(mapped.points, whole.decompress(dtype=np.float64).points)
     assert whole.anchors_low is not None
     assert_equal(whole[[19, 2]], whole.decompress([19, 2], dtype=np.float64), whole)
 

@@ -314,17 +314,6 @@ def saved(tmp_path):
     return path
 
 
-def test_a_newer_version_is_refused(tmp_path):
-    path = saved(tmp_path)
-    header, arrays = archive.open_archive(path)
-    header["version"] = fiblets_file.VERSION + 1
-    archive.write_archive(
-        tmp_path / "b.fiblets", header, {k: archive.array_member(np.array(v)) for k, v in arrays.items()}
-    )
-    with pytest.raises(FormatError, match=r"version 4 in header.json, expected at most 3: update pvfiblets"):
-        pf.FibletSet.open(tmp_path / "b.fiblets")
-
-
 def test_an_older_version_is_refused(tmp_path):
     """Version 1 had spheres where capsules are now, and no end vectors."""
     header, arrays = archive.open_archive(saved(tmp_path))

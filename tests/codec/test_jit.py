@@ -16,6 +16,11 @@ print(kernels.quantise(3.0, 1.0, 100.0), len(kernels.quantise.stats.cache_hits))
 """
 
 
+def copy_sources(folder):
+    ignored = shutil.ignore_patterns("__pycache__", "shaders")
+    shutil.copytree(Path(pvfiblets.__file__).parent, folder / "pvfiblets", ignore=ignored)
+
+
 def run(folder, **more):
     environment = {**os.environ, "PYTHONPATH": str(folder), **(more or {"NUMBA_CACHE_DIR": str(folder / "kept")})}
     return subprocess.run(
@@ -25,9 +30,7 @@ def run(folder, **more):
 
 @pytest.mark.more
 def test_a_change_in_another_module_compiles_anew(tmp_path):
-    shutil.copytree(
-        Path(pvfiblets.__file__).parent, tmp_path / "pvfiblets", ignore=shutil.ignore_patterns("__pycache__", "shaders")
-    )
+    copy_sources(tmp_path)
     first, second = run(tmp_path), run(tmp_path)
     assert first == ["3.0", "0"]
     assert second == ["3.0", "1"], "an unchanged codec must use what was kept"
@@ -41,11 +44,7 @@ def test_a_change_in_another_module_compiles_anew(tmp_path):
 def test_another_copy_of_the_same_sources_finds_them_compiled(tmp_path):
     home = {"XDG_CACHE_HOME": str(tmp_path / "home"), "NUMBA_CACHE_DIR": ""}
     for name in ("one", "other"):
-        shutil.copytree(
-            Path(pvfiblets.__file__).parent,
-            tmp_path / name / "pvfiblets",
-            ignore=shutil.ignore_patterns("__pycache__", "shaders"),
-        )
+        copy_sources(tmp_path / name)
     old = tmp_path / "home" / "pvfiblets" / "kernels" / "0123456789abcdef"
     old.mkdir(parents=True)
     os.utime(old, (0, 0))
@@ -58,9 +57,7 @@ def test_another_copy_of_the_same_sources_finds_them_compiled(tmp_path):
 @pytest.mark.more
 @pytest.mark.skipif(sys.platform != "linux", reason="the user's folder for such things is set for Linux")
 def test_a_home_that_cannot_be_written_to_is_no_error(tmp_path):
-    shutil.copytree(
-        Path(pvfiblets.__file__).parent, tmp_path / "pvfiblets", ignore=shutil.ignore_patterns("__pycache__", "shaders")
-    )
+    copy_sources(tmp_path)
     (tmp_path / "file").write_text("")
     home = {"XDG_CACHE_HOME": str(tmp_path / "file"), "NUMBA_CACHE_DIR": ""}
     assert run(tmp_path, **home) == ["3.0", "0"]

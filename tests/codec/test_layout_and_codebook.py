@@ -21,13 +21,6 @@ def test_fields_tile_their_words_without_overlap():
         assert used == [0xFFFFFFFF] * words
 
 
-def test_a_full_fiblet_takes_eighty_bytes():
-    record = 2 * 4 + 3 * 4 + 2
-    codes = layout.MAX_POINTS - 2
-    assert record + codes == 80
-    assert (record + codes) / layout.MAX_POINTS <= 1.34
-
-
 def test_field_widths_hold_the_largest_page():
     largest_codes = layout.WIDE_HEADER + (layout.MAX_POINTS - 1) * 4
     assert (layout.PAGE - 1) * largest_codes <= layout.FIELDS["code"].mask
@@ -64,16 +57,6 @@ def test_end_vectors_stand_where_they_are_said_to():
     assert layout.pack_ends(np.array([[1, 2, 3], [-1, 0, 0], [0, 0, -511]])).tolist() == [3147777, 1023, 537919488]
     with pytest.raises(ValueError, match=r"holds -511\.\.511, got 0\.\.512"):
         layout.pack_ends(np.array([[512, 0, 0]]))
-
-
-def test_glsl_states_every_field():
-    source = layout.glsl_source()
-    for f in layout.FIELDS.values():
-        assert f"uint fiblet_{f.name}(" in source
-        assert f"{f.shift}, {f.width})" in source
-    assert "ivec3 fiblet_end_vector(uint word)" in source
-    assert "const uint FIBLET_ANCHORS_WORDS = 2u;" in source
-    assert "const uint FIBLET_DECODING_WORDS = 3u;" in source
 
 
 def test_codes_are_smallest_rotations_within_their_cap():

@@ -4,7 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from pvfiblets import Streamlines, compress
 from pvfiblets.engine import FibletRenderer, FibletStyle
+from pvfiblets.synthetic import brain_streamlines
 
 SIZE = (320, 240)
 EMPTY = 0xFFFFFFFF
@@ -94,3 +96,11 @@ def unpacked_tangent(word):
     z = np.where(x >= 0, v, (1 - abs(u)) * sign(v))
     d = np.stack([x, y, z], axis=-1)
     return d / np.linalg.norm(d, axis=-1, keepdims=True)
+
+
+def brain_with_gaps(n, step):
+    """Return the fiblets of a made-up brain with a value per point, `height`, and three streamlines without points."""
+    lines = brain_streamlines(n, step=step, seed=2)
+    offsets = np.concatenate([[0], np.cumsum(np.insert(np.asarray(lines.counts), [0, 100, n], 0))])
+    values = {"height": np.asarray(lines.points[:, 2])}
+    return compress(Streamlines(lines.points, offsets, per_point=values), per_point=["height"])

@@ -10,6 +10,8 @@ that may lead away, in pixels:
 * in depth: that of the place, but for the shift along the line, ``SHIFT`` pixels' worth of its slope.
 """
 
+from itertools import pairwise
+
 import numpy as np
 
 from .pictures import near, unpacked_tangent
@@ -130,3 +132,16 @@ def assert_like_samples(picture, lines, matrix, size, *, share=0.999):
     assert near(touched)[picture.drawn].mean() >= share
     assert near(picture.drawn)[touched].mean() >= share
     assert_pixels_name_places(picture, lines, matrix, size)
+
+
+def feet(window, size):
+    """Return the nearest place (h, w) of a polyline in the window to every pixel's centre, and its distance."""
+    y, x = np.mgrid[: size[1], : size[0]] + 0.5
+    nearest, place = np.full(x.shape, np.inf), np.zeros(x.shape)
+    for k, (a, b) in enumerate(pairwise(window)):
+        run = b - a
+        t = np.clip(((x - a[0]) * run[0] + (y - a[1]) * run[1]) / (run @ run), 0, 1)
+        away = np.hypot(x - a[0] - t * run[0], y - a[1] - t * run[1])
+        nearer = away < nearest
+        nearest[nearer], place[nearer] = away[nearer], (k + t)[nearer]
+    return nearest, place

@@ -7,6 +7,7 @@ choices in which every pair of features that can occur does: a covering array, f
 
 import itertools
 import random
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
@@ -26,7 +27,7 @@ from pvfiblets.engine.volumes.ray_occlusion import GOLDEN, LIFT
 from pvfiblets.engine.volumes.uniform_blocks import CONSTANTS as OF_VOLUMES
 from pvfiblets.report.baselines.tessellated import LEAST_SIDES, MOST_SIDES, TOLERANCE
 
-__all__ = ["EXCLUSIVE", "KINDS", "NEEDS", "Choice", "Kind", "rows", "varied"]
+__all__ = ["EXCLUSIVE", "KINDS", "NEEDS", "Choice", "Kind", "preprocessed", "rows", "varied"]
 
 VALUES = ("VALUES_STORED", "VALUES_ARC_LENGTH", "VALUES_CURVATURE", "VALUES_VOLUME")
 PAINTS = ("PAINT_DIRECTION", "PAINT_SOLID", "PAINT_STREAMLINE", "PAINT_TABLE", "PAINT_POINT")
@@ -362,3 +363,27 @@ def _others():
 
 KINDS: dict[str, Kind] = {**_fiblets(), **_others()}
 """Every program, by a name for messages."""
+
+
+def preprocessed(source, features):
+    """Lines that are left of a source, composed or not, when its features are decided; without comments and defines."""
+    kept, branches = [], []  # of each #if: whether this branch is on, whether one was
+
+    def holds(condition):
+        condition = re.sub(r"FEATURE_(\w+)", lambda m: str(m[1] in features), condition).replace("__VERSION__", "430")
+        return bool(eval(condition.replace("&&", " and ").replace("||", " or ").replace("!", " not "), {}))
+
+    for line in source.splitlines():
+        words = line.split("//")[0].strip()
+        if words.startswith(("#if ", "#ifndef")):
+            on = words.startswith("#ifndef") or holds(words[4:])
+            branches.append((on, on))
+        elif words.startswith(("#elif ", "#else")):
+            before = branches.pop()[1]
+            on = not before and (words.startswith("#else") or holds(words[6:]))
+            branches.append((on, before or on))
+        elif words.startswith("#endif"):
+            branches.pop()
+        elif words and not words.startswith("#define") and all(on for on, _ in branches):
+            kept.append(words)
+    return kept

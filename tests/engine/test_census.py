@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from pvfiblets import compress
-from pvfiblets.codec import layout
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.synthetic import brain_streamlines
 from tests.drivers import MESH
 
 from .pictures import SIZE, read
+from .test_coverage import capsules
 from .visibility_bits import planned
 
 PLANES = [(0.3, -0.9, 0.1, 12.0), (0.0, 0.0, 1.0, -10.0)]
@@ -18,16 +18,6 @@ PLANES = [(0.3, -0.9, 0.1, 12.0), (0.0, 0.0, 1.0, -10.0)]
 @pytest.fixture(scope="module")
 def brain():
     return compress(brain_streamlines(1000, step=0.5, seed=3))
-
-
-def capsules(fiblets):
-    """(n, 3) both ends, (n,) radii, mm, in float64, from the record's description."""
-    a = np.stack([layout.unpack(f"anchor_{axis}", fiblets.anchors) for axis in "xyz"], axis=1).astype(float)
-    a = fiblets.origin + a * fiblets.anchor_scale
-    b = np.append(a[1:], a[:1], axis=0)
-    ends = layout.unpack("end", fiblets.anchors) == 1
-    b[ends] = a[ends] + layout.unpack_ends(fiblets.ends) * fiblets.end_scale
-    return a, b, fiblets.reach * fiblets.reach_scale
 
 
 def in_view(fiblets, view, slack):

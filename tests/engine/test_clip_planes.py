@@ -12,6 +12,7 @@ from pvfiblets.engine.shaders import assemble
 from .gl_lines import gl_lines
 from .pictures import EMPTY, EVERY_POINT, SIZE, assert_same, differences, draw, near, read
 from .polylines import DEPTH_ROUNDING, assert_pixels_name_places, places, to_clip, to_window
+from .shader_programs import preprocessed
 
 
 def box(half, centre=(0.0, 0.0, 0.0)):
@@ -51,11 +52,11 @@ def heights(planes, points):
 
 
 CUTS = {
+    "a box": box(25.0),
     "one, towards the viewer": [(0.2, 1, -0.1, 0)],
     "one, away from the viewer": [(0, -3, 0, 5)],
     "one, edge on": [(0, 0, 1, 0)],
     "two that face the viewer": [(1, 1, 0.1, 5), (-1, 1, 0.2, 5)],
-    "a box": box(25.0),
     "a thin slab": [(0, 1, 0, 1), (0, -1, 0, 1)],
     "a slab within one step": [(0, 1, 0, 0.05), (0, -1, 0, 0.05)],
     "eight": [*box(25.0), (1, 1, 1, 10), (-1, 1, -1, 10)],
@@ -253,37 +254,13 @@ def test_fiblets_apart_from_the_planes_are_drawn_as_ever(gl, fabricate, random_l
     assert np.abs(value).max() <= 4.0 * np.finfo(np.float32).eps * np.abs(plain.position[rows, columns, 1]).max()
 
 
-def compiled(source, features):
-    """What the preprocessor's #if, #elif, #else and #endif leave of a source."""
-    lines, branches = [], []  # of each #if: whether this branch is on, whether one was
-
-    def holds(condition):
-        words = (f" {word.removeprefix('FEATURE_') in features} " for word in re.findall(r"FEATURE_\w+", condition))
-        condition = re.sub(r"FEATURE_\w+", lambda _: next(words), condition).replace("__VERSION__", "430")
-        return bool(eval(condition.replace("&&", "and").replace("||", "or").replace("!", "not ")))
-
-    for line in source.splitlines():
-        if line.startswith("#if "):
-            on = holds(line[4:])
-            branches.append((on, on))
-        elif line.startswith(("#elif ", "#else")):
-            before = branches.pop()[1]
-            on = not before and (line.startswith("#else") or holds(line[6:]))
-            branches.append((on, before or on))
-        elif line.startswith("#endif"):
-            branches.pop()
-        elif all(on for on, _ in branches) and not line.startswith("#define"):
-            lines.append(line.split("//")[0])
-    return "\n".join(lines)
-
-
 @pytest.mark.parametrize("stage", ["clear", "cull", "depth", "resolve_owner", "resolve_ties", "occlude", "refine"])
 def test_without_planes_no_word_of_them_is_compiled(stage):
     words = re.compile(r"clip_planes|ClipPlanes|clip_height|clip_tilts|clip_rounding")
     for features in (["DIRECTION"], ["WIDE_LINES"], ["CLIPPING", "CLIPPING_DEPTH"]):
-        body = compiled(assemble(f"fiblets/compute/{stage}.comp", features, CONSTANTS), features)
+        body = "\n".join(preprocessed(assemble(f"fiblets/compute/{stage}.comp", features, CONSTANTS), features))
         assert "void main()" in body
         assert not words.search(body)
     features = ["CLIPPING", "CLIPPING_DEPTH", "CLIP_PLANES"]
-    body = compiled(assemble(f"fiblets/compute/{stage}.comp", features, CONSTANTS), features)
+    body = "\n".join(preprocessed(assemble(f"fiblets/compute/{stage}.comp", features, CONSTANTS), features))
     assert bool(words.search(body)) == (stage in ("cull", "depth", "resolve_owner", "resolve_ties"))

@@ -10,29 +10,21 @@ from tests.drivers import MESH
 
 from .likeness import assert_like
 from .pictures import EVERY_POINT, SIZE, assert_same, draw, read
+from .region_shapes import torus
 
 PIPELINES = ["compute", "tessellation", "geometry", *MESH]
 FAR = {"eye": (120, -200, 110), "target": (0, 0, 0), "far": 700.0}
 
 
-def torus(ring=30.0, tube=12.0, n=48, m=24):
-    """A closed surface with a hole, of triangles."""
-    u, v = np.meshgrid(np.arange(n) * 2 * np.pi / n, np.arange(m) * 2 * np.pi / m, indexing="ij")
-    out = ring + tube * np.cos(v)
-    points = np.stack([out * np.cos(u), out * np.sin(u), tube * np.sin(v)], axis=-1).reshape(-1, 3)
-    i, j = (a.ravel() for a in np.meshgrid(np.arange(n), np.arange(m), indexing="ij"))
-    a, b, c, d = (((i + p) % n) * m + (j + q) % m for p, q in ((0, 0), (1, 0), (1, 1), (0, 1)))
-    return regions.Surface(points, np.concatenate([np.c_[a, b, c], np.c_[a, c, d]]))
-
-
+TORUS = regions.Surface(*torus(30.0, 12.0, 48, 24))
 BALL, BOX = regions.Sphere((5.0, -3.0, 2.0), 28.0), regions.Box((-25.0, 25.0, -20.0, 25.0, -25.0, 25.0))
 REGIONS = {
     "ball": BALL,
     "slab": regions.Slab((0.3, 1.0, 0.1), (0.0, 5.0, 0.0), 8.0),
-    "torus": torus(),
-    "outside a torus": ~torus(),
+    "torus": TORUS,
+    "outside a torus": ~TORUS,
     "box without a ball": BOX - BALL,
-    "torus or ball": torus().moved(np.array([[1.0, 0, 0, 5], [0, 0.0, -1, 0], [0, 1, 0, 3], [0, 0, 0, 1]])) | BALL,
+    "torus or ball": TORUS.moved(np.array([[1.0, 0, 0, 5], [0, 0.0, -1, 0], [0, 1, 0, 3], [0, 0, 0, 1]])) | BALL,
 }
 
 
@@ -147,7 +139,7 @@ def test_fiblets_outside_are_culled_and_hidden_ones_stay_exact(gl, camera, pipel
 def test_moving_a_region_uploads_nothing(gl, camera):
     fiblets = compress(brain_streamlines(300, seed=1))
     renderer = FibletRenderer(gl, fiblets)
-    surface = torus()
+    surface = TORUS
     try:
         sizes, pictures = [], []
         for shift in (0.0, 5.0, 10.0):

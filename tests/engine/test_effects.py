@@ -11,22 +11,16 @@ from pvfiblets.engine.effects import AmbientOcclusionPass, HaloPass, OutlinePass
 from pvfiblets.engine.effects.ambient_occlusion import BIAS, GAIN
 from pvfiblets.engine.effects.halos import WIDEST
 
+from . import lenses
+
 EMPTY = 0xFFFFFFFF
 FAR = np.inf
-NEAR_PLANE, FAR_PLANE = 50.0, 400.0
 
 
-def projection(size, *, parallel=False, height=60.0, angle=30.0, shift=0.0):
+def projection(size, *, parallel=False, height=60.0, shift=0.0):
     """OpenGL's matrices, float64; a shift is a stereo eye's off-axis frustum."""
-    aspect, depth = size[0] / size[1], FAR_PLANE - NEAR_PLANE
-    matrix = np.zeros((4, 4))
-    if parallel:
-        matrix[0, 0], matrix[1, 1], matrix[3, 3] = 2 / (height * aspect), 2 / height, 1.0
-        matrix[2, 2:] = -2 / depth, -(FAR_PLANE + NEAR_PLANE) / depth
-    else:
-        t = 1 / np.tan(np.radians(angle) / 2)
-        matrix[0, 0], matrix[1, 1], matrix[0, 2], matrix[3, 2] = t / aspect, t, shift, -1.0
-        matrix[2, 2:] = -(FAR_PLANE + NEAR_PLANE) / depth, -2 * FAR_PLANE * NEAR_PLANE / depth
+    matrix = lenses.parallel(size, height, 50.0, 400.0) if parallel else lenses.perspective(size, 30.0, 50.0, 400.0)
+    matrix[0, 2] = shift
     return matrix
 
 

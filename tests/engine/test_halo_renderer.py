@@ -35,21 +35,6 @@ def renderer(gl, drawn):
 # ------------------------------------------------------------------------------------------------------- when it draws
 
 
-def test_redraws_only_when_something_changed(renderer, camera, view):
-    first = renderer.render(view, STYLE)
-    assert first.generation == 1
-    assert renderer.render(View(SIZE, camera(SIZE, **EYES["perspective"])), styled()) is first
-    assert first.generation == 1
-    changes = [
-        (view, styled(line_width=1.5)), (view, styled(displacement=(0.0, 1.0))), (view, styled("number")),
-        (View(SIZE, camera(SIZE, **EYES["parallel"])), styled("number")),
-        (View(SIZE, view.model_view_projection, [[0, 1.0, 0, 3]]), styled()), (view, STYLE),
-    ]  # fmt: skip
-    for n, (other, style) in enumerate(changes):
-        assert renderer.render(other, style).generation == 2 + n
-        assert renderer.render(other, style).generation == 2 + n
-
-
 def test_pictures_repeat_to_the_bit(renderer, drawn, view, camera):
     """Whatever was drawn between, and in a renderer of its own."""
     some = styled("number", filter_by="number", low=0.2)
@@ -196,16 +181,6 @@ def test_a_picture_pays_for_what_its_look_uses(renderer, drawn, camera, view, mo
     ):
         renderer.render(other, styled("number", **PLAIN))
         assert set(renderer.explain()["features"]) == kind | {"HALO_VALUES"} | used
-
-
-def test_release_twice_and_use_after(gl, drawn, view):
-    renderer = HaloRenderer(gl, drawn)
-    renderer.render(view, styled("number", filter_by="number"))
-    renderer.release()
-    renderer.release()
-    with pytest.raises(EngineError, match="released"):
-        renderer.render(view, STYLE)
-    assert buffers(renderer) == {}
 
 
 @pytest.mark.parametrize("software", [True, False], ids=["software", "card"])

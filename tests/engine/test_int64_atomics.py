@@ -52,6 +52,7 @@ import numpy as np
 from pvfiblets import compress, synthetic
 from pvfiblets.engine import FibletRenderer, FibletStyle, View, shaders
 from pvfiblets.engine.fiblets.pipelines import compute
+from pvfiblets.report.stability.render_checks import camera
 
 ctx = moderngl.create_context(standalone=True, backend="egl")
 if "GL_ARB_gpu_shader_int64" not in ctx.extensions:
@@ -77,16 +78,9 @@ def pictures(culling):
     renderer = FibletRenderer(ctx, fiblets, pipeline="compute", culling=culling)
     cut = [[1.0, 0.2, 0.1, 5.0]]
     for turn, width, planes in ((0, 1.0, ()), (0.3, 1.0, ()), (60, 1.0, ()), (61, 4.0, ()), (61, 2.0, cut)):
-        a = np.radians(turn)
-        z = np.array([np.cos(a), np.sin(a), 0.3]) / np.hypot(1.0, 0.3)
-        x = np.cross([0, 0, 1], z) / np.linalg.norm(np.cross([0, 0, 1], z))
-        view = np.eye(4)
-        view[:3, :3] = x, np.cross(z, x), z
-        view[:3, 3] = -view[:3, :3] @ (np.array([0, -18, 8]) + 300 * z)
-        projection = np.zeros((4, 4))
-        projection[0, 0], projection[1, 1], projection[3, 2] = 2.4, 3.2, -1.0
-        projection[2, 2:] = -600 / 400, -2 * 500 * 100 / 400
-        gbuffer = renderer.render(View((200, 150), projection @ view, planes), FibletStyle(width, values="arc_length"))
+        side = np.array([np.cos(np.radians(turn)), np.sin(np.radians(turn)), 0.3]) / np.hypot(1.0, 0.3)
+        matrix = camera((200, 150), eye=np.array([0, -18, 8]) + 300 * side, target=(0, -18, 8), near=100.0, far=500.0)
+        gbuffer = renderer.render(View((200, 150), matrix, planes), FibletStyle(width, values="arc_length"))
         yield [t.read() for t in (gbuffer.depth, gbuffer.owner)], [t.read() for t in (gbuffer.ids, gbuffer.position)]
     names = [p["name"] for p in renderer.explain()["passes"]]
     print(*names)

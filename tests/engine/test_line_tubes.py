@@ -1,22 +1,18 @@
 """Tubes are exact bodies, in every pipeline and view; wide lines say where across them a pixel lies."""
 
-import re
-
 import numpy as np
 import pytest
 
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS, compute
 from pvfiblets.engine.gbuffer import GBuffer
-from pvfiblets.engine.shaders import EXTENDED, assemble
+from pvfiblets.engine.shaders import assemble
 
 from .emulated import emulated_renderer
 from .line_tubes import entries, smoothed
 from .pictures import SIZE, assert_same, draw, near, read, unpacked_tangent
-from .polylines import to_clip, to_window
-from .test_mesh import link
-from .test_raster_stages import STAGES, switched
-from .test_wide_lines import distances_to
+from .polylines import feet, to_clip, to_window
+from .shader_programs import preprocessed
 
 PIPELINES = ["compute", "geometry", "tessellation"]
 SMALL = (160, 120)
@@ -186,7 +182,7 @@ def test_far_tubes_are_lines_and_never_vanish(gl, really, fabricate, camera, tol
     fiblets = fabricate([line - line.mean(0)], kind=3)
     matrix = camera(SIZE)
     drawn = draw(gl, fiblets, View(SIZE, matrix), FibletStyle(radius=0.005, tolerance=tolerance), pipeline=pipeline)
-    nearest = distances_to(to_window(to_clip(fiblets.lines[0], matrix), SIZE)[:, :2], SIZE)
+    nearest = feet(to_window(to_clip(fiblets.lines[0], matrix), SIZE)[:, :2], SIZE)[0]
     assert drawn.drawn[nearest < 0.49].all()
     assert not drawn.drawn[nearest > 0.52].any()
     for eye in (-400.0, -2000.0, -8000.0):
@@ -288,63 +284,12 @@ def test_a_picture_pays_only_for_what_it_shows(gl, knots, camera):
         "fiblets/hardware_raster/survivors.vert",
     ):
         for features in (set(), {"WIDE_LINES", "CLIPPING", "CLIPPING_DEPTH"}):
-            left = "\n".join(settled(assemble(name, features, CONSTANTS)))
+            left = "\n".join(preprocessed(assemble(name, features, CONSTANTS), features))
             assert "tube" not in left.lower()
             assert "across_" not in left.replace("store_across", "")
 
 
-def settled(source):
-    """Lines that are left of a composed source when its switches are decided; comments are left out."""
-    values = dict(line.split()[1:] for line in source.splitlines() if line.startswith("#define FEATURE_"))
-    values["__VERSION__"] = "430"
-    kept, stack = [], []
-    for line in source.splitlines():
-        words = line.split("//")[0].strip()
-        if words.startswith(("#if ", "#elif ")):
-            text = words.split(" ", 1)[1].replace("&&", " and ").replace("||", " or ").replace("!", " not ")
-            for name, value in values.items():
-                text = re.sub(rf"\b{name}\b", value, text)
-            value = bool(eval(text, {}))
-            if words.startswith("#if "):
-                stack.append([value, value])
-            else:
-                stack[-1] = [value and not stack[-1][1], stack[-1][1] or value]
-        elif words.startswith("#ifndef"):
-            stack.append([True, True])
-        elif words.startswith("#else"):
-            stack[-1] = [not stack[-1][1], True]
-        elif words.startswith("#endif"):
-            stack.pop()
-        elif words and not words.startswith("#define FEATURE_") and all(on for on, _ in stack):
-            kept.append(words)
-    return kept
-
-
 TUBES = ["WIDE_LINES", "TUBES"]
-ASKED = {
-    "plain": TUBES,
-    "normals": [*TUBES, "CROSS_LINE", "LEVEL_OF_DETAIL"],
-    "cut": [*TUBES, "CROSS_LINE", "CLIPPING", "CLIPPING_DEPTH", "CLIP_PLANES", "VALUES_ARC_LENGTH"],
-    "across": ["WIDE_LINES", "CROSS_LINE", "CLIPPING", "CLIPPING_DEPTH", "CLIP_PLANES", "VALUES_STORED"],
-    "hidden": [*TUBES, "CULL_PYRAMID", "SECOND_ROUND", "VALUES_CURVATURE"],
-    "coverage": [*TUBES, "CULL_COVERAGE"],
-}
-RECORDS = ["DIRECTION", "LATTICE", "WIDE_LATTICE", "ANCHORS_LOW", "RANK_TO_ID"]
-
-
-@pytest.mark.few(6)
-@pytest.mark.parametrize("kind", ["together", "serial"])
-@pytest.mark.parametrize("asked", ASKED)
-def test_mesh_stages_link(tmp_path, kind, asked):
-    """By the reference compiler, as drivers with mesh shaders will be asked to."""
-    files = {
-        "task": "fiblets/mesh/fiblets.task",
-        "mesh": f"fiblets/mesh/{kind}.mesh",
-        "frag": "fiblets/hardware_raster/capsule.frag",
-    }
-    features = {*ASKED[asked], *RECORDS, "PER_PRIMITIVE"}
-    done = link(tmp_path, {s: assemble(name, features, CONSTANTS, version=EXTENDED) for s, name in files.items()})
-    assert done.returncode == 0, done.stdout
 
 
 @pytest.mark.few(1)
@@ -365,23 +310,13 @@ def test_mesh_stages_draw_the_same_tubes(gl, monkeypatch, knots, camera, name, p
     assert (np.linalg.norm(unpacked_tangent(packed) - unpacked_tangent(normals), axis=-1)[both] < 1e-2).mean() > 0.99
 
 
-@pytest.mark.parametrize("name", ["geometry, wide", "tessellation, wide"])
-@pytest.mark.parametrize("asked", ASKED)
-def test_raster_stages_link_in_the_oldest_glsl(tmp_path, name, asked):
-    version = 410 if "tessellation" in name else 330
-    features = {*ASKED[asked], *RECORDS, "TEXTURE_DATA"}
-    names = zip(("vert", "tesc", "tese", "geom", "frag"), STAGES[name], strict=True)
-    done = link(tmp_path, {s: assemble(file, features, CONSTANTS, version=version) for s, file in names if file})
-    assert done.returncode == 0, done.stdout
-
-
 def test_tubes_hand_over_no_more_than_wide_lines():
     """So that the geometry and mesh stages' shares hold for them."""
     from pvfiblets.engine.shaders import read_shader
 
     def components(features):
         sizes = {"float": 1, "uint": 1, "vec2": 2, "uvec2": 2, "vec3": 3, "vec4": 4, "uvec4": 4}
-        lines = switched(read_shader("fiblets/hardware_raster/varyings.glsl"), features)
+        lines = preprocessed(read_shader("fiblets/hardware_raster/varyings.glsl"), features)
         return sum(sizes[line.split()[1]] for line in lines if line.startswith("VARYING "))
 
     for more in ([], ["CLIPPING"], ["CLIPPING", "CLIP_PLANES"]):

@@ -15,20 +15,15 @@ from pvfiblets.engine.errors import GPUMemoryError
 from pvfiblets.engine.fiblets import memory_fit, renderer, upload
 from pvfiblets.engine.fiblets.pipelines import Limits
 from pvfiblets.engine.moderngl_extras import INTEGERS, GLExtras
-from pvfiblets.synthetic import brain_streamlines
 
-from .pictures import SIZE, assert_same, draw, read
+from .pictures import SIZE, assert_same, brain_with_gaps, draw, read
 
 WHOLE_BRAIN = {"eye": (0, -300, 40), "target": (0, -10, 20), "far": 900.0}
 
 
 @pytest.fixture(scope="module")
 def brain():
-    lines = brain_streamlines(3000, step=1.0, seed=2)
-    values = {"height": np.asarray(lines.points[:, 2])}
-    with_gaps = np.insert(np.asarray(lines.counts), [0, 100, 3000], 0)
-    offsets = np.concatenate([[0], np.cumsum(with_gaps)])
-    return compress(Streamlines(lines.points, offsets, per_point=values), per_point=["height"])
+    return brain_with_gaps(3000, 1.0)
 
 
 def bytes_of(made):

@@ -1,19 +1,15 @@
 """Pipelines on an OpenGL that has nothing newer than they say they need: pictures of compute, in other processes."""
 
-import os
 import pickle
-import subprocess
-import sys
-from pathlib import Path
 
 import pytest
 
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
 
+from .elsewhere import run_elsewhere
 from .likeness import assert_like
 from .pictures import SIZE, read
 
-ROOT = Path(__file__).resolve().parents[2]
 BOX = [(1.0, 0, 0, 25), (-1.0, 0, 0, 25), (0, 1.0, 0, 25), (0, -1.0, 0, 25), (0, 0, 1.0, 25), (0, 0, -1.0, 25)]
 
 
@@ -39,23 +35,11 @@ def pictures_of(ctx, fiblets, camera, pipeline):
     return found
 
 
-DRAW_ELSEWHERE = """
-import importlib.util, pickle, sys
-import moderngl
-from pathlib import Path
-here = Path(sys.argv[1])
-for name in ("tests", "tests.engine"):
-    spec = importlib.util.spec_from_loader(name, loader=None, is_package=True)
-    sys.modules[name] = importlib.util.module_from_spec(spec)
-sys.modules["tests"].__path__, sys.modules["tests.engine"].__path__ = [str(here.parent)], [str(here)]
-from tests.engine import conftest, test_older_pipelines
-ctx = moderngl.create_standalone_context(require=330, backend="egl")
-assert ctx.version_code == int(float(sys.argv[2]) * 100 + 0.5), ctx.version_code
-unwrapped = lambda fixture: getattr(fixture, "__wrapped__", None) or fixture.__pytest_wrapped__.obj
+DRAW = """
+from tests.engine import test_older_pipelines
 fiblets = conftest._module.fabricate(unwrapped(conftest.random_lines)()(60, seed=3), kind=2, low=True)
-pictures = test_older_pipelines.pictures_of(ctx, fiblets, unwrapped(conftest.camera)(), sys.argv[3])
-assert ctx.error == "GL_NO_ERROR"
-Path(sys.argv[4]).write_bytes(pickle.dumps([tuple(p) for p in pictures]))
+pictures = test_older_pipelines.pictures_of(ctx, fiblets, camera, arguments[0])
+Path(arguments[1]).write_bytes(pickle.dumps([tuple(p) for p in pictures]))
 """
 
 
@@ -70,13 +54,7 @@ Path(sys.argv[4]).write_bytes(pickle.dumps([tuple(p) for p in pictures]))
 def test_older_opengl_draws_the_same(gl, fabricate, random_lines, camera, older_opengl, tmp_path, version, pipeline):
     """In a process whose OpenGL has nothing newer: storage buffers, images and compute do not even compile there."""
     file = tmp_path / "pictures"
-    here = str(Path(__file__).parent)
-    environment = {**older_opengl(version), "PYTHONPATH": os.pathsep.join([str(ROOT), *sys.path])}
-    done = subprocess.run(
-        [sys.executable, "-c", DRAW_ELSEWHERE, here, version, pipeline, str(file)],
-        env=environment, capture_output=True, text=True, check=False, timeout=280,
-    )  # fmt: skip
-    assert done.returncode == 0, done.stderr[-3000:]
+    run_elsewhere(older_opengl, version, DRAW, pipeline, file)
     fiblets = fabricate(random_lines(60, seed=3), kind=2, low=True)
     expected = pictures_of(gl, fiblets, camera, "compute")
     found = [type(expected[0])(*arrays) for arrays in pickle.loads(file.read_bytes())]

@@ -7,6 +7,7 @@ from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine import pieces as pieces_module
 from pvfiblets.engine.passes import Passes
 from pvfiblets.engine.pieces import Pieces, finish
+from pvfiblets.report.stability.render_checks import camera
 from pvfiblets.synthetic import brain_streamlines
 
 from .pictures import SIZE, assert_same, read
@@ -29,16 +30,9 @@ def fiblets():
 
 def look(turn, size=SIZE):
     """Return the view of the brain from a side."""
-    angle = np.radians(turn)
-    z = np.array([np.cos(angle), np.sin(angle), 0.3]) / np.hypot(1.0, 0.3)
-    x = np.cross([0, 0, 1], z) / np.linalg.norm(np.cross([0, 0, 1], z))
-    view = np.eye(4)
-    view[:3, :3] = x, np.cross(z, x), z
-    view[:3, 3] = -view[:3, :3] @ (np.array([0, -18, 8]) + 300 * z)
-    projection = np.zeros((4, 4))
-    projection[0, 0], projection[1, 1], projection[3, 2] = 2.4, 2.4 * size[0] / size[1], -1.0
-    projection[2, 2:] = -600 / 400, -2 * 500 * 100 / 400
-    return View(size, projection @ view)
+    side = np.array([np.cos(np.radians(turn)), np.sin(np.radians(turn)), 0.3]) / np.hypot(1.0, 0.3)
+    eye = np.array([0, -18, 8]) + 300 * side
+    return View(size, camera(size, eye=eye, target=(0, -18, 8), near=100.0, far=500.0, angle=35.0))
 
 
 def drawn_in_pieces(renderer, view, style, between=lambda: None):

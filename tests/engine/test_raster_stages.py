@@ -1,6 +1,5 @@
 """The stages of the pipelines that OpenGL's rasteriser draws for: they link, and keep to OpenGL's promises."""
 
-import ast
 import re
 from types import SimpleNamespace
 
@@ -8,6 +7,8 @@ import pytest
 
 from pvfiblets.engine.fiblets import pipelines
 from pvfiblets.engine.shaders import Programs, read_shader
+
+from .shader_programs import preprocessed
 
 STAGES = {
     "geometry": (
@@ -53,25 +54,6 @@ def test_stages_link_in_the_oldest_glsl(gl, name, values, culling, clipping):
     programs.release()
 
 
-def switched(source, features):
-    """Lines of a source that are left when its features are decided."""
-    kept, stack = [], [True]
-    for line in source.splitlines():
-        if match := re.match(r"#(if|elif) (.*)", line):
-            text = re.sub(r"(!?)FEATURE_(\w+)", lambda m: str((m[2] in features) != bool(m[1])), match[2])
-            value = all(any(ast.literal_eval(term.strip()) for term in part.split("||")) for part in text.split("&&"))
-            stack.append(value)
-        elif line.startswith("#ifndef"):
-            stack.append(True)
-        elif line.startswith("#else"):
-            stack[-1] = not stack[-1]
-        elif line.startswith("#endif"):
-            stack.pop()
-        elif all(stack):
-            kept.append(line)
-    return kept
-
-
 @pytest.mark.parametrize("wide", [False, True])
 @pytest.mark.parametrize("clipping", [(), ("CLIPPING",), ("CLIPPING", "CLIP_PLANES")])
 @pytest.mark.parametrize("values", [(), ("VALUES_STORED",), ("VALUES_CURVATURE",), ("VALUES_VOLUME",)])
@@ -81,10 +63,12 @@ def test_a_geometry_stage_emits_no_more_than_opengl_promises(edges, values, clip
     sizes = {"float": 1, "uint": 1, "vec2": 2, "uvec2": 2, "vec3": 3, "vec4": 4, "uvec4": 4}
     declared = [
         re.match(r"VARYING (\w+) varying", line)
-        for line in switched(read_shader("fiblets/hardware_raster/varyings.glsl"), features)
+        for line in preprocessed(read_shader("fiblets/hardware_raster/varyings.glsl"), features)
     ]
     components = 4 + sum(sizes[match[1]] for match in declared if match)
-    geometry = "\n".join(switched(read_shader(f"fiblets/geometry/{'capsules' if wide else 'lines'}.geom"), features))
+    geometry = "\n".join(
+        preprocessed(read_shader(f"fiblets/geometry/{'capsules' if wide else 'lines'}.geom"), features)
+    )
     vertices = pipelines.CONSTANTS[re.search(r"max_vertices = \{\{ (\w+) \}\}", geometry)[1]]
     share = pipelines.CONSTANTS[re.search(r"SHARE = \{\{ (\w+) \}\}", geometry)[1]]
     assert components > 10

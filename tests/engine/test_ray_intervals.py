@@ -1,11 +1,7 @@
 """Boundaries of regions along rays, against the exact regions: random depths of every pixel, in float64."""
 
 import itertools
-import os
-import subprocess
-import sys
 from dataclasses import replace
-from pathlib import Path
 
 import moderngl
 import numpy as np
@@ -19,6 +15,8 @@ from pvfiblets.engine.regions.layer_stack import Squares
 from pvfiblets.engine.regions.ray_intervals import RegionIntervals
 from pvfiblets.engine.shaders import Programs, assemble
 from pvfiblets.engine.view import View
+
+from .elsewhere import run_elsewhere
 
 pv = pytest.importorskip("pyvista")  # which makes surfaces
 
@@ -400,33 +398,14 @@ def test_state_is_left_as_it_is(gl, cutter, camera, torus):
     texture.release()
 
 
-DRAW_ELSEWHERE = """
-import importlib.util, sys
-import moderngl, numpy as np
-here = sys.argv[1]
-load = lambda name: importlib.util.spec_from_file_location(name, f"{here}/{name}.py")
-modules = []
-for name in ("conftest", "test_ray_intervals"):
-    spec = load(name)
-    modules.append(importlib.util.module_from_spec(spec))
-    spec.loader.exec_module(modules[-1])
-conftest, tests = modules
-ctx = moderngl.create_standalone_context(require=330, backend="egl")
-assert ctx.version_code == 330, ctx.version_code
-camera = conftest.camera
-tests.draw_all(ctx, getattr(camera, "__wrapped__", None) or camera.__pytest_wrapped__.obj)
-assert ctx.error == "GL_NO_ERROR"
-"""
-
-
-def draw_all(ctx, wrapped):
+def draw_all(ctx, camera):
     """Check some regions without fixtures."""
     programs = Programs(ctx, CONSTANTS)
     cutter = RegionIntervals(ctx, GLExtras(ctx), programs)
     ring = surface(pv.ParametricTorus(ringradius=40, crosssectionradius=15, u_res=31, v_res=31, w_res=31))
     a, b = block((-20, -20, -20), (0, 20, 20)), block((-20, -20, -20), (30, 20, 20))
     for region in (BOX - BALL, ring - BOX, joined(a, b) | BALL):
-        for view in cameras(wrapped()):
+        for view in cameras(camera):
             check(ctx, cutter, region, view, rounds=1)
     cutter.release()
     programs.release()
@@ -434,11 +413,8 @@ def draw_all(ctx, wrapped):
 
 @pytest.mark.more
 def test_opengl_3_3_suffices(older_opengl):
-    here = Path(__file__).resolve().parent
-    environment = {**older_opengl("3.3"), "PYTHONPATH": os.pathsep.join([str(here.parents[1]), *sys.path])}
-    command = [sys.executable, "-W", "error", "-c", DRAW_ELSEWHERE, str(here)]
-    result = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
-    assert result.returncode == 0, result.stderr
+    code = "from tests.engine import test_ray_intervals\ntest_ray_intervals.draw_all(ctx, camera)"
+    run_elsewhere(older_opengl, "3.3", code)
 
 
 def test_pictures_that_do_not_wait_are_right_some_later(gl, cutter, camera, shells):

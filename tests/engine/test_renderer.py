@@ -114,15 +114,6 @@ def test_timer_queries_are_read_where_opengl_is_hardware(gl, fabricate, random_l
     renderer.release()
 
 
-def test_release_twice_and_use_after(gl, fabricate, random_lines, camera):
-    renderer = FibletRenderer(gl, fabricate(random_lines(20), kind=2))
-    renderer.render(View(SIZE, camera(SIZE)))
-    renderer.release()
-    renderer.release()
-    with pytest.raises(EngineError, match="released"):
-        renderer.render(View(SIZE, camera(SIZE)))
-
-
 def test_streamlines_without_points_keep_their_numbers(gl, fabricate, random_lines, camera):
     lines = random_lines(30, seed=15)
     ids = np.arange(30) * 2 + 5

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 import pvfiblets as pf
-from pvfiblets import Streamlines, compress
 from pvfiblets.codec.shards.store import Folder
 from pvfiblets.codec.shards.unread_set import UnreadSet
 from pvfiblets.codec.shards.write import write_shards
@@ -15,9 +14,8 @@ from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.fiblets.filter_textures import Filter
 from pvfiblets.engine.fiblets.shard_parts import ShardGroups, ShardParts, gpu_bytes_of_shards
 from pvfiblets.engine.fiblets.streamed_renderer import StreamedRenderer, streamed_renderer
-from pvfiblets.synthetic import brain_streamlines
 
-from .pictures import SIZE, assert_alike, read
+from .pictures import SIZE, assert_alike, brain_with_gaps, read
 
 WHOLE_BRAIN = {"eye": (0, -300, 40), "target": (0, -10, 20), "far": 900.0}
 NEAR = {"eye": (60, -60, 90), "target": (20, 0, 40), "far": 900.0}
@@ -25,11 +23,7 @@ NEAR = {"eye": (60, -60, 90), "target": (20, 0, 40), "far": 900.0}
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    lines = brain_streamlines(1500, step=1.5, seed=2)
-    values = {"height": np.asarray(lines.points[:, 2])}
-    with_gaps = np.insert(np.asarray(lines.counts), [0, 100, 1500], 0)
-    offsets = np.concatenate([[0], np.cumsum(with_gaps)])
-    whole = compress(Streamlines(lines.points, offsets, per_point=values), per_point=["height"])
+    whole = brain_with_gaps(1500, 1.5)
     place = tmp_path_factory.mktemp("shards") / "brain.fiblets"
     write_shards(whole, place, whole.nbytes // 20)
     return place

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pvfiblets import Streamlines, compress, regions
+from pvfiblets import regions
 from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View
 from pvfiblets.engine.errors import GPUMemoryError
 from pvfiblets.engine.fiblets import streamed_renderer as streamed
@@ -12,9 +12,8 @@ from pvfiblets.engine.fiblets.paint import Paint
 from pvfiblets.engine.fiblets.parts import Stretches, in_view, reach_of
 from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
 from pvfiblets.engine.fiblets.streamed_renderer import StreamedRenderer, streamed_renderer
-from pvfiblets.synthetic import brain_streamlines
 
-from .pictures import SIZE, assert_alike, read
+from .pictures import SIZE, assert_alike, brain_with_gaps, read
 
 WHOLE_BRAIN = {"eye": (0, -300, 40), "target": (0, -10, 20), "far": 900.0}
 NEAR = {"eye": (60, -60, 90), "target": (20, 0, 40), "far": 900.0}
@@ -22,11 +21,7 @@ NEAR = {"eye": (60, -60, 90), "target": (20, 0, 40), "far": 900.0}
 
 @pytest.fixture(scope="module")
 def brain():
-    lines = brain_streamlines(1500, step=1.5, seed=2)
-    values = {"height": np.asarray(lines.points[:, 2])}
-    with_gaps = np.insert(np.asarray(lines.counts), [0, 100, 1500], 0)
-    offsets = np.concatenate([[0], np.cumsum(with_gaps)])
-    return compress(Streamlines(lines.points, offsets, per_point=values), per_point=["height"])
+    return brain_with_gaps(1500, 1.5)
 
 
 @pytest.fixture

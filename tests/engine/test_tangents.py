@@ -1,7 +1,5 @@
 """Tangents are continuous along lines, in every pipeline: against float64 tangents of the decoded points."""
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
 
@@ -12,7 +10,7 @@ from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from .emulated import emulated_renderer
 from .line_tubes import entries, smoothed
 from .pictures import draw, read, unpacked_tangent
-from .polylines import to_clip, to_window
+from .polylines import feet, to_clip, to_window
 from .tangents import tangents_at, tangents_at_ends, unit
 
 SIZE = (200, 150)
@@ -148,19 +146,6 @@ def test_far_fiblets_turn_evenly_from_one_to_the_next(drawn, fabricate, camera, 
 
 
 # Wide lines and tubes
-
-
-def feet(window, size):
-    """Return the nearest place (h, w) of a polyline in the window to every pixel's centre, and its distance."""
-    y, x = np.mgrid[: size[1], : size[0]] + 0.5
-    nearest, place = np.full(x.shape, np.inf), np.zeros(x.shape)
-    for k, (a, b) in enumerate(pairwise(window)):
-        run = b - a
-        t = np.clip(((x - a[0]) * run[0] + (y - a[1]) * run[1]) / (run @ run), 0, 1)
-        away = np.hypot(x - a[0] - t * run[0], y - a[1] - t * run[1])
-        nearer = away < nearest
-        nearest[nearer], place[nearer] = away[nearer], (k + t)[nearer]
-    return nearest, place
 
 
 @pytest.mark.few(8)

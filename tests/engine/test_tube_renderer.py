@@ -1,10 +1,6 @@
 """`TubeRenderer`: when it redraws, what it keeps and gives back, what it says and refuses, and older OpenGL."""
 
-import os
 import pickle
-import subprocess
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,6 +11,7 @@ from pvfiblets.engine.tubes import SILHOUETTES, SOLVERS, TubeRenderer, TubeStyle
 from pvfiblets.engine.tubes.options import check_choices
 from pvfiblets.tubes import NodeValues, SplineTubes
 
+from .elsewhere import run_elsewhere
 from .tubes import (
     EYE,
     TubeTarget,
@@ -28,7 +25,6 @@ from .tubes import (
     winding,
 )
 
-ROOT = Path(__file__).resolve().parents[2]
 SIZE = (96, 72)
 
 
@@ -58,18 +54,6 @@ def buffers(renderer):
 
 
 # ------------------------------------------------------------------------------------------------------- when it draws
-
-
-def test_redraws_only_when_something_changed(renderer, camera, view):
-    first = renderer.render(view)
-    assert first.generation == 1
-    assert renderer.render(View(SIZE, camera(SIZE, **EYE)), TubeStyle()) is first
-    assert first.generation == 1
-    assert renderer.render(view, TubeStyle(values="number")).generation == 2
-    assert renderer.render(view, TubeStyle(values="number")).generation == 2
-    assert renderer.render(View(SIZE, camera(SIZE, **{**EYE, "near": 25.0}))).generation == 3
-    assert renderer.render(View(SIZE, view.model_view_projection, [[0, 1.0, 0, 3]])).generation == 4
-    assert renderer.render(view).generation == 5
 
 
 def test_pictures_repeat_to_the_bit(renderer, view, camera):
@@ -325,16 +309,6 @@ def test_numbers_too_large_for_float32(gl, message):
         TubeRenderer(gl, changed(tubes, **{name: array}))
 
 
-def test_release_twice_and_use_after(gl, tubes, view):
-    renderer = TubeRenderer(gl, tubes)
-    renderer.render(view, TubeStyle(values="number"))
-    renderer.release()
-    renderer.release()
-    with pytest.raises(EngineError, match="released"):
-        renderer.render(view)
-    assert buffers(renderer) == {}
-
-
 def test_a_set_without_segments_shows_nothing(gl, tubes, view):
     nodes_only = changed(tubes, segments=np.zeros((0, 2), int), tubes=np.zeros(0, int))
     for some in (empty(), nodes_only):
@@ -359,22 +333,10 @@ def test_views_without_depth_or_size_are_harmless(gl, tubes, silhouettes):
 # ------------------------------------------------------------------------------------------------ older OpenGL
 
 
-DRAW_ELSEWHERE = """
-import importlib.util, pickle, sys
-import moderngl
-from pathlib import Path
-here = Path(sys.argv[1])
-for name in ("tests", "tests.engine"):
-    spec = importlib.util.spec_from_loader(name, loader=None, is_package=True)
-    sys.modules[name] = importlib.util.module_from_spec(spec)
-sys.modules["tests"].__path__, sys.modules["tests.engine"].__path__ = [str(here.parent)], [str(here)]
-from tests.engine import conftest, tubes
-ctx = moderngl.create_standalone_context(require=330, backend="egl")
-assert ctx.version_code == int(float(sys.argv[2]) * 100 + 0.5), ctx.version_code
-camera = getattr(conftest.camera, "__wrapped__", None) or conftest.camera.__pytest_wrapped__.obj
-found = {s: tubes.pictures_of(ctx, camera(), s) for s in tubes.SILHOUETTES}
-assert ctx.error == "GL_NO_ERROR"
-Path(sys.argv[3]).write_bytes(pickle.dumps({s: [tuple(p) for p in pictures] for s, pictures in found.items()}))
+DRAW = """
+from tests.engine import tubes
+found = {s: [tuple(p) for p in tubes.pictures_of(ctx, camera, s)] for s in tubes.SILHOUETTES}
+Path(arguments[0]).write_bytes(pickle.dumps(found))
 """
 
 
@@ -383,12 +345,7 @@ Path(sys.argv[3]).write_bytes(pickle.dumps({s: [tuple(p) for p in pictures] for 
 def test_older_opengl_draws_the_same(gl, camera, older_opengl, tmp_path, version):
     """In a process whose OpenGL has nothing newer: storage buffers, images and compute do not even compile there."""
     file = tmp_path / "pictures"
-    done = subprocess.run(
-        [sys.executable, "-c", DRAW_ELSEWHERE, str(Path(__file__).parent), version, str(file)],
-        env={**older_opengl(version), "PYTHONPATH": os.pathsep.join([str(ROOT), *sys.path])},
-        capture_output=True, text=True, check=False, timeout=280,
-    )  # fmt: skip
-    assert done.returncode == 0, done.stderr[-3000:]
+    run_elsewhere(older_opengl, version, DRAW, file)
     found = pickle.loads(file.read_bytes())
     for silhouettes, pictures in found.items():
         expected = pictures_of(gl, camera, silhouettes, culling=None)  # which older OpenGL has not

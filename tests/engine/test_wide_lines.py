@@ -1,25 +1,12 @@
 """Wide lines: all pixels of a round brush drawn along the line, and no others, however long a loop that takes."""
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
 
 from pvfiblets.engine import EngineError, FibletStyle, View
 
 from .pictures import SIZE, assert_same, draw, near
-from .polylines import to_clip, to_window
-
-
-def distances_to(window, size):
-    """Distance (h, w) of every pixel's centre from a polyline in the window."""
-    y, x = np.mgrid[: size[1], : size[0]] + 0.5
-    nearest = np.full(x.shape, np.inf)
-    for a, b in pairwise(window):
-        run = b - a
-        t = np.clip(((x - a[0]) * run[0] + (y - a[1]) * run[1]) / (run @ run), 0, 1)
-        nearest = np.minimum(nearest, np.hypot(x - a[0] - t * run[0], y - a[1] - t * run[1]))
-    return nearest
+from .polylines import feet, to_clip, to_window
 
 
 @pytest.mark.parametrize("width", [1.5, 3.0, 8.0])
@@ -30,7 +17,7 @@ def test_wide_lines(gl, fabricate, camera, width):
     fiblets = fabricate([line - line.mean(0)], kind=3)
     matrix = camera(SIZE)
     drawn = draw(gl, fiblets, View(SIZE, matrix), FibletStyle(width, tolerance=0.0)).drawn
-    nearest = distances_to(to_window(to_clip(fiblets.lines[0], matrix), SIZE)[:, :2], SIZE)
+    nearest = feet(to_window(to_clip(fiblets.lines[0], matrix), SIZE)[:, :2], SIZE)[0]
     assert drawn[nearest < width / 2 - 0.01].all()
     assert not drawn[nearest > width / 2 + 0.01].any()
 

@@ -17,6 +17,9 @@ from pvfiblets.streamlines import Streamlines
 from pvfiblets.synthetic import brain_streamlines
 from tests.codec.samples import extremes, smooth, wandering
 from tests.codec.test_restrict import every_kind, many_pages
+from tests.engine.region_shapes import torus
+
+EXTREMES = {**extremes(), "one fiblet": smooth(1, 60)}
 
 
 def expected_flags(points, offsets, inside):
@@ -123,9 +126,9 @@ def test_lattices_and_streamlines_without_points(order, mapped, tmp_path):
         assert (assert_flags(whole, region)[empty] == 0).all()
 
 
-@pytest.mark.parametrize("name", extremes())
+@pytest.mark.parametrize("name", EXTREMES)
 def test_extreme_lines(name):
-    lines = extremes()[name]
+    lines = EXTREMES[name]
     whole = pf.compress(lines)
     size = float(np.ptp(lines.points, axis=0).max()) / 60.0 if lines.n_points else 1.0
     middle = tuple(lines.points.mean(axis=0)) if lines.n_points else (0.0, 0.0, 0.0)
@@ -273,25 +276,6 @@ def test_what_is_refused(brains):
         region_flags(replace(whole, anchors=words), box)
 
 
-def test_a_smooth_set_of_one_page_and_one_fiblet():
-    one = pf.compress(smooth(1, 60))
-    assert one.n_fiblets == 1
-    for region in some_regions(1.0, tuple(one.decompress().points[30])).values():
-        assert_flags(one, region)
-
-
-def a_torus():
-    """Points and triangles of a torus about z, radii 30 and 14 mm."""
-    n, m = 48, 24
-    u, v = np.meshgrid(np.arange(n) * 2 * np.pi / n, np.arange(m) * 2 * np.pi / m, indexing="ij")
-    ring = 30 + 14 * np.cos(v)
-    points = np.stack([ring * np.cos(u), ring * np.sin(u), 14 * np.sin(v)], axis=-1).reshape(-1, 3)
-    i, j = np.meshgrid(np.arange(n), np.arange(m), indexing="ij")
-    a, b = i * m + j, (i + 1) % n * m + j
-    c, d = (i + 1) % n * m + (j + 1) % m, i * m + (j + 1) % m
-    return points, np.concatenate([np.stack(t, axis=-1).reshape(-1, 3) for t in ((a, b, c), (a, c, d))])
-
-
 def some_volumes():
     rng = np.random.default_rng(5)
     affine = np.array([[3.0, 0.4, 0, -60], [0, 2.5, 0, -75], [0, 0, 4, -40], [0, 0, 0, 1]])
@@ -299,11 +283,11 @@ def some_volumes():
     for axis in range(3):
         blobs = sum(np.roll(blobs, k, axis) for k in range(-3, 4))
     labels = (blobs > np.quantile(blobs, 0.6)).astype(np.int16) + (blobs > np.quantile(blobs, 0.9))
-    torus = regions.Surface(*a_torus())
+    ring = regions.Surface(*torus(30.0, 14.0, 48, 24))
     every = regions.Labels(labels, affine)
     return {
-        "torus": torus, "labels": every, "label": regions.Labels(labels, affine, labels=[2]),
-        "torus and labels": torus & every, "labels without torus or plane": every - torus | some_regions()["plane"],
+        "torus": ring, "labels": every, "label": regions.Labels(labels, affine, labels=[2]),
+        "torus and labels": ring & every, "labels without torus or plane": every - ring | some_regions()["plane"],
     }  # fmt: skip
 
 
@@ -325,7 +309,7 @@ def test_a_torus_is_a_torus_and_labels_are_voxels(brains):
     wanted = expected_flags(
         decoded.points, decoded.offsets, lambda q: 14 > np.hypot(np.hypot(q[:, 0], q[:, 1]) - 30, q[:, 2])
     )
-    found = region_flags(whole, regions.Surface(*a_torus()), "points")
+    found = region_flags(whole, regions.Surface(*torus(30.0, 14.0, 48, 24)), "points")
     assert sum(clear) > 50
     np.testing.assert_array_equal(found[clear], wanted[clear])
     volume = np.zeros((200, 200, 200), bool)

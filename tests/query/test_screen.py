@@ -8,33 +8,20 @@ import pytest
 import pvfiblets as pf
 from pvfiblets.codec import layout
 from pvfiblets.query.screen import area_distances, under_polygon
+from pvfiblets.report.stability import render_checks
 from pvfiblets.streamlines import Streamlines
 from tests.codec.samples import extremes, noisy, smooth, wandering
 
 SIZE = (320.0, 240.0)
+ASIDE = np.array([1.0, -1.3, 0.7]) / np.linalg.norm([1.0, -1.3, 0.7])
 LASSO = np.array([[60, 40], [250, 60], [270, 200], [160, 90], [80, 210]], float)  # not convex
 
 
-def camera(target, distance, up=(0.0, 0.0, 1.0), near=1.0, far=1000.0, parallel=False):
+def camera(target, distance, near=1.0, far=1000.0, parallel=False):
     """Matrix of a camera on the diagonal, looking at a target."""
-    target = np.asarray(target, float)
-    eye = target + distance * np.array([1.0, -1.3, 0.7]) / np.linalg.norm([1.0, -1.3, 0.7])
-    z = (eye - target) / np.linalg.norm(eye - target)
-    x = np.cross(up, z) / np.linalg.norm(np.cross(up, z))
-    view = np.eye(4)
-    view[:3, :3] = [x, np.cross(z, x), z]
-    view[:3, 3] = -view[:3, :3] @ eye
-    aspect, f = SIZE[0] / SIZE[1], 1.0 / np.tan(np.radians(15.0))
-    projection = np.zeros((4, 4))
-    if parallel:
-        half = distance / f
-        projection[[0, 1, 2, 3], [0, 1, 2, 3]] = 1 / (half * aspect), 1 / half, -2 / (far - near), 1.0
-        projection[2, 3] = -(far + near) / (far - near)
-    else:
-        projection[0, 0], projection[1, 1] = f / aspect, f
-        projection[2, 2:] = -(far + near) / (far - near), -2 * far * near / (far - near)
-        projection[3, 2] = -1.0
-    return projection @ view
+    height = 2.0 * distance * np.tan(np.radians(15.0)) if parallel else None
+    eye = np.asarray(target, float) + distance * ASIDE
+    return render_checks.camera(SIZE, eye=eye, target=target, near=near, far=far, angle=30.0, height=height)
 
 
 def crosses(a, b, c, d):
@@ -119,7 +106,7 @@ def mixed():
     return Streamlines.concatenate([smooth(25, 130), noisy(25, 130), wandering(25, 100)])
 
 
-@pytest.mark.few(4)
+@pytest.mark.every("value")
 @pytest.mark.parametrize("parallel", [False, True])
 @pytest.mark.parametrize("tolerance", [0.0, 3.0])
 @pytest.mark.parametrize("polygon", [LASSO, LASSO[:1], LASSO[:2], [[100, 80], [180, 80], [180, 150], [100, 150]]])
@@ -224,3 +211,13 @@ def test_a_damaged_page_table_is_an_error():
     pages[0, 2] += 1 << 40  # far beyond the last point
     with pytest.raises(pf.FormatError, match="points that do not follow on"):
         under_polygon(replace(fiblets, pages=pages), matrix, SIZE, LASSO, points=everything)
+
+
+def test_lines_beside_an_area_are_found_within_the_tolerance():
+    """Two pixels to each of its sides; a mm is a pixel here."""
+    square = [[100, 80], [150, 80], [150, 130], [100, 130]]
+    sides = [(98, 85, 98, 125), (152, 85, 152, 125), (105, 78, 145, 78), (105, 132, 145, 132)]
+    lines = [np.array([[a - 160.0, b - 120.0, 0.0], [c - 160.0, d - 120.0, 0.0]]) for a, b, c, d in sides]
+    fiblets, matrix = pf.compress(Streamlines.from_list(lines), max_error=1e-3), np.diag([1 / 160, 1 / 120, -0.01, 1.0])
+    for tolerance, found in ((1.0, []), (3.0, [0, 1, 2, 3])):
+        assert sorted(under_polygon(fiblets, matrix, SIZE, square, tolerance).ids.tolist()) == found

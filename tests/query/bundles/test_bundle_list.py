@@ -7,7 +7,7 @@ import pyvista as pv
 
 import pvfiblets
 from pvfiblets import FibletSet, Streamlines, bundles, compress, regions
-from pvfiblets.query.bundles.colours import as_colour
+from pvfiblets.query.bundles.colours import as_colour, distinct_colour, distinct_colours, hex_colour
 
 
 @pytest.fixture
@@ -171,3 +171,13 @@ def test_without_dipy_there_is_one_clear_error(fiblets, monkeypatch):
     monkeypatch.setitem(sys.modules, "dipy.segment.bundles", None)
     with pytest.raises(ImportError, match="pip install dipy"):
         fiblets.recognise({"a": []})
+
+
+def test_colours_of_numbers_are_the_same_alone_and_take_no_memory():
+    np.testing.assert_array_equal([distinct_colour(number) for number in range(50)], distinct_colours(50))
+    assert all(0.0 <= part <= 1.0 for part in distinct_colour(10**15))
+
+
+@pytest.mark.parametrize("text", ["#000000", "#ff8001", "#ffffff"])
+def test_hexadecimal_comes_back(text):
+    assert hex_colour(as_colour(text)) == text
