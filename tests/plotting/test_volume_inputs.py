@@ -76,30 +76,6 @@ def test_volumes_of_one_value(value):
     assert seen.sum() > 1000  # its colours begin at its value
 
 
-@pytest.mark.parametrize(
-    ("values", "told"),
-    [(BALL * np.float32(1e-42), "a range that float32, in which rays are cast, cannot compute with"),
-     (np.where(BALL > 50, 3e38, -3e38), "run from -3e\\+38 to 3e\\+38, a range that"),
-     (BALL.astype(float) * 1e60, "beyond float32's 3.40282e\\+38: scale them"),
-     (BALL.astype(float) + 1e12, "which float32 cannot tell apart"), (BALL.astype("M8[s]"), "of type datetime64"),
-     (BALL.astype(object), "of type object"), (np.ones(4), "three axes"),
-     ([[[1, 2], [3]], [[1, 2], [3, 4]]], "rows are of unlike lengths"),
-     ((BALL, "here"), "affine='here'; expected a \\(4, 4\\) matrix"),
-     ((BALL, np.eye(3)), "give a finite \\(4, 4\\) matrix"),
-     ((BALL, np.full((4, 4), np.nan)), "give a finite \\(4, 4\\) matrix")],
-)  # fmt: skip
-def test_numbers_that_cannot_be_shown_are_refused(plotter, values, told):
-    with pytest.raises(ValueError, match=told):
-        plotter.add_raycast_volume(values)
-    assert not plotter.actors
-
-
-@pytest.mark.parametrize("name", ["spacing", "origin", "direction", "affine"])
-def test_words_for_places_are_refused_by_name(plotter, name):
-    with pytest.raises(ValueError, match=f"{name}='there'; expected "):
-        plotter.add_raycast_volume(BALL, **{name: "there"})
-
-
 def test_ranges_near_the_ends_of_float32_are_right(plain):
     for scale in (1e-29, 1e35):
         scaled = (WHOLE * np.float32(scale), PLACE)
@@ -220,26 +196,3 @@ def _rendered(plotter):
 
 
 RED, BLUE, KAPPA = np.array([1.0, 0.2, 0.0]), np.array([0.0, 0.4, 1.0]), 0.06
-
-
-@pytest.mark.parametrize(
-    ("setting", "wrong", "told"),
-    [("step", "x", "step is 'x'; give a number of voxels from 0.001 to 1000"),
-     ("stop", "x", "stop is 'x'; give an opacity above 0, at most 1"),
-     ("homogeneous", "x", "homogeneous is 'x'; give a difference of values"),
-     ("iterations", 2.5, "iterations is 2.5; give a whole number from 1 to 64"),
-     ("iterations", "x", "iterations is 'x'"), ("box", "corner", "box is 'corner'; give \\(xmin"),
-     ("peak", "x", "peak is 'x'; give the least value of a peak"),
-     ("opacity_unit_distance", "x", "opacity_unit_distance is 'x'; give a length above 0, mm"),
-     ("smooth", "x", "sigma='x'; expected one or three finite numbers"),
-     ("values", 1e40, "finite numbers that float32 holds"), ("cmap", [], "cmap is an empty list")],
-)  # fmt: skip
-def test_words_and_numbers_out_of_range_are_refused_by_name(setting, wrong, told):
-    plotter = pv.Plotter(off_screen=True)
-    actor = plotter.add_raycast_volume(BALL, mode="isosurface" if setting == "values" else "composite")
-    with pytest.raises(ValueError, match=told):
-        plotter.add_raycast_volume(BALL, mode=actor.mode, **{setting: wrong})
-    with pytest.raises(ValueError, match=told):
-        setattr(actor, setting, wrong)
-    assert len(plotter.raycast_volumes) == 1
-    plotter.close()

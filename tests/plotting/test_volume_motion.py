@@ -82,20 +82,3 @@ def test_light_keeps_its_table_unless_told():
     assert (told.of(light).step, told.of(light).sparse) == (1.5, 4)
     assert (InteractiveQuality.of_quality(0.0).step, InteractiveQuality.of_quality(0.0).sparse) == (4.0, 4)
     assert InteractiveQuality.of_quality(1) is InteractiveQuality.of_quality({}) is None
-
-
-@pytest.mark.parametrize(
-    ("bad", "message"),
-    [
-        (1.5, "interactive_quality is 1.5; give a number from 0 to 1"), (float("nan"), "is nan"), ("low", "is 'low'"),
-        (True, "is True"), ({"step": 0.5}, r"\['step'\] is 0.5"), ({"sparse": 3}, r"\['sparse'\] is 3"),
-        ({"speed": 2}, "has \\['speed'\\]"),
-    ],
-)  # fmt: skip
-def test_bad_qualities_are_named(plotter, bad, message):
-    with pytest.raises(ValueError, match=message):
-        plotter.add_raycast_volume(ball(8), interactive_quality=bad)
-    actor = plotter.add_raycast_volume(ball(8))
-    with pytest.raises(ValueError, match=message):
-        actor.interactive_quality = bad
-    assert actor.interactive_quality == 0.5

@@ -235,26 +235,3 @@ def test_off_it_leaves_nothing(plotter):
     assert (shot(plotter) == plain).all()
     after = actor.explain()
     assert (after["features"], after["buffers"]) == (before["features"], before["buffers"])
-
-
-@pytest.mark.parametrize(
-    ("bad", "message"),
-    [
-        ({"samples": 0}, "samples of ray occlusion is 0; give a whole number from 1 to 2048"),
-        ({"samples": 2.5}, "samples of ray occlusion is 2.5"),
-        ({"radius": 0.0}, "radius of ray occlusion is 0.0"),
-        ({"radius": float("nan")}, "radius of ray occlusion is nan"),
-        ({"strength": 1.5}, "strength of ray occlusion is 1.5"),
-        ({"seed": -1}, "seed of ray occlusion is -1"),
-        (
-            {"bias": 1.0},
-            r"ray_occlusion has no settings \['bias'\]; it has \['samples', 'radius', 'strength', 'seed', 'smooth'\]",
-        ),
-        (32, "ray_occlusion is 32; give True, False or a dict"),
-    ],
-)
-def test_bad_settings_are_refused_and_change_nothing(plotter, bad, message):
-    actor = level(plotter, ray_occlusion={"samples": 4})
-    with pytest.raises(ValueError, match=message):
-        actor.ray_occlusion = bad
-    assert actor.ray_occlusion["samples"] == 4

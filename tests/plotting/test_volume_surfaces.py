@@ -133,23 +133,6 @@ def test_picks_sparse_rays_and_copies(plotter):
     assert np.array_equal(plotter.screenshot(None), whole)
 
 
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        ({"surface_opacities": [0.1]}, "surface_opacities is .*one for each of the 2 values"),
-        ({"surface_opacities": [0.1, 1.2]}, "surface_opacities"),
-        ({"surface_opacities": "linear"}, "surface_opacities is 'linear'"),
-        ({"surface_colors": "red"}, "surface_colors is 'red'; give a list"),
-        ({"surface_colors": ["red"]}, "each of the 2 values"),
-    ],
-)
-def test_wrong_ones_are_named(words, message):
-    plotter = pv.Plotter(off_screen=True)
-    with pytest.raises(ValueError, match=message):
-        plotter.add_raycast_volume(ball(), mode="isosurface", values=[5, 12], **words)
-    plotter.close()
-
-
 # Logarithm -----------------------------------------------------------------------------------------
 
 

@@ -75,19 +75,6 @@ def test_thresholds_and_cuts_and_the_octree(plotter, noise):
     assert all(0.35 < hit.value < 0.65 for hit in seen(plotter, actor, PIXELS))
 
 
-def test_words_that_contradict_or_have_no_meaning(plotter, noise):
-    for words, message in (
-        ({"blending": "maximum", "mode": "mip"}, "give one of the two"),
-        ({"blending": "additive"}, "mode 'average'"),
-        ({"blending": "sum"}, "choose one of"),
-        ({"resolution": 2.0, "spacing": 2.0}, "give one of the two"),
-    ):
-        with pytest.raises(ValueError, match=message):
-            plotter.add_raycast_volume(noise, **words)
-    actor = plotter.add_raycast_volume(np.zeros((3, 4, 5)), clim=(-1, 1), resolution=(1, 2, 3))
-    assert np.allclose(actor.volume.spacing, (1, 2, 3))
-
-
 def test_uneven_grids_are_interpolated():
     x, y, z = np.array([0.0, 1.0, 1.5, 4.0]), np.linspace(-1, 1, 5), np.array([2.0, 2.25, 3.0])
     values = np.random.default_rng(0).random((4, 5, 3))
