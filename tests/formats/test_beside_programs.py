@@ -1,0 +1,100 @@
+"""Files between this project and MRtrix3, trx-python, DIPY, nibabel and VTK: what they need of ours, and ours of theirs."""
+
+from __future__ import annotations
+
+import nibabel as nib
+import numpy as np
+import pytest
+
+import pvfiblets as pf
+from pvfiblets import formats
+from pvfiblets.formats.attachments import write_scalars
+from pvfiblets.streamlines import Streamlines
+from pvfiblets.volumes.mif import read_mif
+
+OFFSETS = np.array([0, 5, 5, 12])
+POINTS = np.random.default_rng(3).normal(0, 20, (12, 3)).astype(np.float32)
+LINES = Streamlines(POINTS, OFFSETS)
+KEPT = ["method: iFOD2", "command_history: tckgen a", "command_history: tckedit b", "output_step_size: 1"]
+
+
+def tck(path, points=POINTS, offsets=OFFSETS, fields=(*KEPT, "step_size: 0.5", "timestamp: 1700000000.5"), kind="<f4"):
+    """Write a file as MRtrix lays it out; keys begin with a capital, which MRtrix takes as well."""
+    kind = np.dtype(kind)
+    own = [f"Datatype: Float{kind.itemsize * 8}{'BE' if kind.byteorder == '>' else 'LE'}", f"Count: {len(offsets) - 1}"]
+    rows = [np.r_[points[a:b], np.full((1, 3), np.nan)] for a, b in zip(offsets[:-1], offsets[1:], strict=True)]
+    head = "\n".join(["mrtrix tracks", *own, *fields, "File: . 400", "END", ""]).encode().ljust(400, b"\0")
+    path.write_bytes(head + np.concatenate([*rows, np.full((1, 3), np.inf)]).astype(kind).tobytes())
+    return path
+
+
+def header(path):
+    """Return the lines of a header, sorted."""
+    return sorted(path.read_bytes().split(b"\nEND\n")[0].decode().split("\n")[1:])
+
+
+def value(path, key):
+    return [line.partition(": ")[2] for line in header(path) if line.partition(": ")[0] == key]
+
+
+def largest_step(points, offsets):
+    return max(
+        np.linalg.norm(np.diff(points[a:b].astype(float), axis=0), axis=1).max(initial=0)
+        for a, b in zip(offsets[:-1], offsets[1:], strict=True)
+    )
+
+
+@pytest.mark.parametrize("kind", ["<f4", ">f4", "<f8"])
+@pytest.mark.parametrize("way", ["read", "fiblets", "vtp", "pieces"])
+def test_the_keys_of_a_tck_header_are_kept_while_the_points_are(tmp_path, kind, way):
+    source, target = tck(tmp_path / "a.tck", kind=kind), tmp_path / "b.tck"
+    lines = formats.read(source)
+    if way == "pieces":
+        lines = Streamlines.concatenate(formats.iter_chunks(source, 3))
+    elif way == "vtp":
+        pf.write(tmp_path / "b.vtp", lines)
+        lines = pf.read(tmp_path / "b.vtp")
+    elif way == "fiblets":
+        pf.compress(lines, exact=True).save(tmp_path / "b.fiblets")
+        lines = pf.read(tmp_path / "b.fiblets")
+    pf.write(target, lines)
+    wanted = sorted([*KEPT, "step_size: 0.5", "timestamp: 1700000000.5"])
+    assert [line for line in header(target) if not line.startswith(("datatype", "count", "file"))] == wanted
+    np.testing.assert_array_equal(nib.streamlines.load(target).streamlines.get_data(), POINTS)
+
+
+def test_keys_that_do_not_hold_any_more_are_made_anew_and_told(tmp_path):
+    lines = formats.read(tck(tmp_path / "a.tck"))
+    lines.points *= 2
+    with pytest.warns(UserWarning, match=r"timestamp from 1700000000.5 to .*, step_size from 0.5 to"):
+        pf.write(tmp_path / "b.tck", lines)
+    step = largest_step(POINTS * 2, OFFSETS)
+    assert value(tmp_path / "b.tck", "method") == ["iFOD2"]
+    for key in ("step_size", "output_step_size"):
+        np.testing.assert_allclose([float(text) for text in value(tmp_path / "b.tck", key)], [step], rtol=1e-6)
+    with pytest.warns(UserWarning, match="step_size from 0.5"):
+        pf.write(tmp_path / "c.tck", lines[[2]])
+    stamps = {*value(tmp_path / "b.tck", "timestamp"), *value(tmp_path / "c.tck", "timestamp")}
+    assert len(stamps - {"1700000000.5"}) == 2
+
+
+def test_points_of_another_source_get_a_step_and_a_timestamp_that_their_scalars_share(tmp_path):
+    lines = Streamlines(POINTS.astype(float), OFFSETS, {"v": np.arange(12.0)})
+    pf.write(tmp_path / "a.tck", lines)
+    write_scalars(tmp_path / "a.tsf", lines, "v")
+    assert value(tmp_path / "a.tck", "timestamp") == value(tmp_path / "a.tsf", "timestamp") != []
+    np.testing.assert_allclose(float(value(tmp_path / "a.tck", "step_size")[0]), largest_step(POINTS, OFFSETS), rtol=1e-6)
+    back = formats.read(tmp_path / "a.tck")
+    assert formats.attach(back, tmp_path / "a.tsf") == "per_point"
+    raw = (tmp_path / "a.tsf").read_bytes()
+    (tmp_path / "o.tsf").write_bytes(raw.replace(b"timestamp: 0", b"timestamp: 1"))
+    with pytest.warns(UserWarning, match=r"o.tsf has the timestamp 1.*; make the .tsf file again"):
+        formats.attach(back, tmp_path / "o.tsf")
+
+
+def test_a_mih_header_ends_with_the_file_as_mrtrix_leaves_it(tmp_path):
+    values = np.arange(24, dtype="<f4").reshape(2, 3, 4)
+    (tmp_path / "a.dat").write_bytes(values.tobytes(order="F"))
+    lines = ["mrtrix image", "dim: 2,3,4", "vox: 1,1,1", "layout: +0,+1,+2", "datatype: Float32LE", "file: a.dat"]
+    (tmp_path / "a.mih").write_text("\n".join(lines) + "\n")
+    np.testing.assert_array_equal(read_mif(tmp_path / "a.mih")[0], values)
