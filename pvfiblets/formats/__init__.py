@@ -41,6 +41,9 @@ __all__ = [
     "write",
 ]
 
+DOUBLES = (".tck", ".vtk")
+"""Suffixes of formats whose points are float32 unless doubles are asked for."""
+
 
 def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:
     """Read a tractogram file whole.
@@ -126,9 +129,10 @@ def write(path: str | PathLike[str], streamlines: Streamlines, *, double: bool =
         Its suffix chooses the format.
     streamlines : Streamlines
     double : bool
-        Write the points of a ``.tck`` file as float64 (Float64LE). MRtrix reads such files; nibabel, DIPY and scilpy
-        refuse them. Otherwise they are float32, and a warning states the error where it is over a micrometre. The other
-        formats take no such option: ``.trk`` holds float32 only, ``.trx``, ``.vtk`` and ``.vtp`` keep the type.
+        Write the points of a ``.tck`` or ``.vtk`` file as float64. MRtrix reads such ``.tck`` files; nibabel, DIPY and
+        scilpy refuse them. MRtrix takes the doubles of a ``.vtk`` file for floats. Otherwise points are float32, and a
+        warning states the error where it is over a micrometre. The other formats take no such option: ``.trk`` holds
+        float32 only, ``.trx`` and ``.vtp`` keep the type.
 
     Returns
     -------
@@ -151,8 +155,8 @@ def write(path: str | PathLike[str], streamlines: Streamlines, *, double: bool =
             f"write takes a path and Streamlines, got {type(streamlines).__name__}; Streamlines.from_list(arrays) "
             "makes some, and a FibletSet has save(path)"
         )
-    if double and suffix_of(path) != ".tck":
-        raise ValueError(f"{path}: double is an option of .tck files; leave it out")
+    if double and suffix_of(path) not in DOUBLES:
+        raise ValueError(f"{path}: double is an option of {' and '.join(DOUBLES)} files; leave it out")
     module.write(path, streamlines, **({"double": True} if double else {}))
     holds = getattr(module, "HOLDS", None)
     parts = ("per_point", "per_streamline", "groups", "per_group")

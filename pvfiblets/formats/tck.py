@@ -39,7 +39,7 @@ from numpy.typing import NDArray
 
 from pvfiblets.errors import FormatError
 from pvfiblets.formats.mapped import MappedFile, forget
-from pvfiblets.formats.rows import finite_rows, without_rows
+from pvfiblets.formats.rows import check_rounding, finite_rows, without_rows
 from pvfiblets.formats.scratch import is_long, spans
 from pvfiblets.invalid_points import CUT, NONFINITE
 from pvfiblets.ragged import cut_offsets
@@ -55,9 +55,6 @@ _HEADER_LIMIT = 1 << 24
 
 _BLOCK_POINTS = 1 << 20
 """Points written at a time."""
-
-_TOLD_ROUNDING = 1e-3
-"""Error of float32 (mm) from which the writer warns."""
 
 HOLDS: tuple[str, ...] = ()
 """Parts of Streamlines besides the points that the format can carry."""
@@ -406,20 +403,10 @@ def write(path: str | PathLike[str], streamlines: Streamlines, *, double: bool =
     ValueError
         If a coordinate is beyond float32.
     """
-    points = streamlines.points
-    kind = np.dtype("<f8" if double else "<f4")
-    rounding = 0.0 if double or points.dtype == np.float32 else _rounding(points)
-    if not np.isfinite(rounding):
-        raise ValueError(f"{path}: float32 cannot hold some coordinates; check the units, or write doubles")
+    if not double:
+        check_rounding(path, streamlines.points)
     fields, changes = _header_for(streamlines)
-    write_rows(path, MAGIC_TRACKS, streamlines, points, kind, fields)
-    if rounding > _TOLD_ROUNDING:
-        warnings.warn(
-            f"{path}: float32 moves points by up to {rounding:.2g} mm; doubles (--double, double=True) keep them, and "
-            "MRtrix reads such a file, but nibabel, DIPY and scilpy do not",
-            UserWarning,
-            stacklevel=3,
-        )
+    write_rows(path, MAGIC_TRACKS, streamlines, streamlines.points, np.dtype("<f8" if double else "<f4"), fields)
     if changes:
         warnings.warn(
             f"{path}: the points differ from those that its header describes; changed {', '.join(changes)}",
@@ -466,17 +453,6 @@ def _largest_step(streamlines: Streamlines) -> float:
         most = max(most, float(np.fmax.reduce(squares, initial=0.0)))
         forget(points, 0, first + len(block))
     return math.sqrt(most)
-
-
-def _rounding(points: Array) -> float:
-    """Return by how much float32 changes a coordinate at most; of mapped points nothing stays in memory."""
-    most = 0.0
-    for first in range(0, len(points), _BLOCK_POINTS):
-        block = points[first : first + _BLOCK_POINTS]
-        with np.errstate(over="ignore"):
-            most = max(most, float(np.abs(block - block.astype(np.float32)).max()))
-        forget(points, 0, min(first + _BLOCK_POINTS, len(points)))
-    return most
 
 
 def write_rows(

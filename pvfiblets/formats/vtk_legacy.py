@@ -20,8 +20,11 @@ from collections.abc import Iterator
 from os import PathLike
 from typing import Any
 
+import numpy as np
+
 from pvfiblets.errors import FormatError
 from pvfiblets.formats.read_whole import facts, only_finite, pieces
+from pvfiblets.formats.rows import check_rounding
 from pvfiblets.formats.vtk_parser import LegacyParser
 from pvfiblets.formats.vtk_writer import write_with
 from pvfiblets.streamlines import Streamlines, from_cells
@@ -73,10 +76,11 @@ def info(path: str | PathLike[str]) -> dict[str, Any]:
     return {**facts(streamlines), "space": space}
 
 
-def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
+def write(path: str | PathLike[str], streamlines: Streamlines, *, double: bool = False) -> None:
     """Write a binary legacy vtk file (see :func:`pvfiblets.formats.write`).
 
-    Version 4.2, which programs other than VTK read too; 5.1 where the indices need 64 bits.
+    Version 4.2, which programs other than VTK read too; 5.1 where the indices need 64 bits. MRtrix's tckconvert takes
+    double coordinates for floats, so they are float32 unless `double`.
     """
     from vtkmodules.vtkIOLegacy import vtkPolyDataWriter
 
@@ -85,4 +89,8 @@ def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
     writer.SetHeader(f"pvfiblets SPACE={OURS}")
     words = streamlines.n_points + len(streamlines)
     writer.SetFileVersion(42 if words < 2**31 else 51)
-    write_with(writer, path, streamlines)
+    data = streamlines.to_polydata()
+    if not double:
+        check_rounding(path, streamlines.points)
+        data.points = streamlines.points.astype(np.float32, copy=False)
+    write_with(writer, path, data)

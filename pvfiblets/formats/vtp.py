@@ -11,9 +11,11 @@ NaN or infinity.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from os import PathLike
 from typing import Any
+from xml.sax.saxutils import escape
 
 import numpy as np
 from numpy.typing import NDArray
@@ -139,7 +141,13 @@ def info(path: str | PathLike[str]) -> dict[str, Any]:
 
 
 def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
-    """Write a vtp file, appended raw and zlib-compressed (see :func:`pvfiblets.formats.write`)."""
+    """Write a vtp file, appended raw and zlib-compressed (see :func:`pvfiblets.formats.write`).
+
+    Raises
+    ------
+    ValueError
+        If a name has a control character, which XML cannot hold.
+    """
     from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
     writer = vtkXMLPolyDataWriter()
@@ -147,4 +155,15 @@ def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
     writer.EncodeAppendedDataOff()
     writer.SetCompressorTypeToZLib()
     writer.SetHeaderTypeToUInt64()
-    write_with(writer, path, streamlines, compressed=True)
+    data = streamlines.to_polydata()
+    for holder in (data.GetPointData(), data.GetCellData(), data.GetFieldData()):
+        for i in range(holder.GetNumberOfArrays()):
+            array = holder.GetAbstractArray(i)
+            array.SetName(_escaped(array.GetName()))  # VTK writes names as they are
+    write_with(writer, path, data, compressed=True)
+
+
+def _escaped(name: str) -> str:
+    if bad := re.search(r"[\x00-\x08\x0b\x0c\x0e-\x1f]", name):
+        raise ValueError(f"the name {name!r} has the character {bad[0]!r}, which XML cannot hold; rename it")
+    return escape(name, {'"': "&quot;", "\t": "&#9;", "\n": "&#10;", "\r": "&#13;"})

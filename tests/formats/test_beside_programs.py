@@ -5,6 +5,7 @@ from __future__ import annotations
 import nibabel as nib
 import numpy as np
 import pytest
+import pyvista as pv
 
 import pvfiblets as pf
 from pvfiblets import formats
@@ -98,3 +99,34 @@ def test_a_mih_header_ends_with_the_file_as_mrtrix_leaves_it(tmp_path):
     lines = ["mrtrix image", "dim: 2,3,4", "vox: 1,1,1", "layout: +0,+1,+2", "datatype: Float32LE", "file: a.dat"]
     (tmp_path / "a.mih").write_text("\n".join(lines) + "\n")
     np.testing.assert_array_equal(read_mif(tmp_path / "a.mih")[0], values)
+
+
+def test_points_of_a_vtk_file_are_floats_unless_doubles_are_asked_for(tmp_path):
+    """tckconvert takes the bytes of doubles for floats."""
+    lines = Streamlines(POINTS.astype(float) + 1e-9, OFFSETS)
+    for double, kind in ((False, "float"), (True, "double")):
+        formats.write(tmp_path / "a.vtk", lines, double=double)
+        raw = (tmp_path / "a.vtk").read_bytes()
+        words = f"POINTS 12 {kind}\n".encode()
+        begin = raw.index(words) + len(words)
+        found = np.frombuffer(raw, ">f8" if double else ">f4", 36, begin).reshape(-1, 3)
+        np.testing.assert_array_equal(found, lines.points if double else POINTS)
+    far = Streamlines(POINTS.astype(float) + 1e6, OFFSETS)
+    with pytest.warns(UserWarning, match="float32 moves points by up to"):
+        formats.write(tmp_path / "a.vtk", far)
+
+
+@pytest.mark.parametrize("name", ["SLF & AF", "p<0.05", 'say "x"', "it's > 1", "a\ttab", "two\nlines", "&amp;"])
+def test_vtk_reads_any_name_in_a_vtp_file(tmp_path, name):
+    path = tmp_path / "a.vtp"
+    lines = Streamlines(POINTS, OFFSETS, {name: np.arange(12.0)}, {name: np.arange(3.0)}, {name: [1]}, {name: {name: [4.0]}})
+    formats.write(path, lines)
+    mesh = pv.read(path)
+    assert name in mesh.point_data
+    assert name in mesh.cell_data
+    assert {f"groups/{name}", f"per_group/{name}/{name}"} <= {*mesh.field_data.keys()}
+    back = formats.read(path)
+    assert (list(back.groups), list(back.per_group[name])) == ([name], [name])
+    lines.groups["\x01"] = np.array([1])
+    with pytest.raises(ValueError, match=r"the name 'groups/\\x01' .* XML cannot hold; rename it"):
+        formats.write(path, lines)

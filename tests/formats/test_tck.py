@@ -239,7 +239,7 @@ def test_points_are_written_as_float32_unless_doubles_are_asked_for(tmp_path):
     formats.write(path, far, double=True)
     assert formats.info(path)["dtype"] == "float64"
     assert np.array_equal(formats.read(path).points, far.points)
-    with pytest.raises(ValueError, match=r"double is an option of \.tck files"):
+    with pytest.raises(ValueError, match=r"double is an option of \.tck and \.vtk files"):
         formats.write(tmp_path / "a.trk", far, double=True)
     with pytest.raises(ValueError, match="float32 cannot hold some coordinates"):
         formats.write(path, Streamlines(np.full((2, 3), 1e39), [0, 2]))
