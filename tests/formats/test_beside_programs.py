@@ -130,3 +130,33 @@ def test_vtk_reads_any_name_in_a_vtp_file(tmp_path, name):
     lines.groups["\x01"] = np.array([1])
     with pytest.raises(ValueError, match=r"the name 'groups/\\x01' .* XML cannot hold; rename it"):
         formats.write(path, lines)
+
+
+def test_trx_python_reads_a_file_of_names_with_dots(tmp_path):
+    """It takes a name's part behind a dot for the number of columns."""
+    from trx.trx_file_memmap import load
+
+    values = {"fa.mean": np.arange(12.0, dtype="f4"), "fa_mean": np.ones(12, "f4"), "b.3": np.zeros((12, 3), "f4")}
+    weights = {"w.sift2": np.arange(3.0, dtype="f4")}
+    groups, per_group = {"AF.left": [0, 2]}, {"AF.left": {"mean.fa": [0.5]}}
+    with pytest.warns(UserWarning, match=r"'fa.mean' is 'fa_mean_', 'b.3' is 'b_3'.*'AF.left' is 'AF_left'"):
+        formats.write(tmp_path / "a.trx", Streamlines(POINTS, OFFSETS, values, weights, groups, per_group))
+    found = load(str(tmp_path / "a.trx"))
+    for name, new in {"fa.mean": "fa_mean_", "fa_mean": "fa_mean", "b.3": "b_3"}.items():
+        got = found.data_per_vertex[new].get_data().reshape(values[name].shape)
+        np.testing.assert_array_equal(got, values[name])
+    np.testing.assert_array_equal(np.ravel(found.data_per_streamline["w_sift2"]), weights["w.sift2"])
+    np.testing.assert_array_equal(found.groups["AF_left"], [0, 2])
+    assert float(np.ravel(found.data_per_group["AF_left"]["mean_fa"])[0]) == 0.5
+    found.close()
+
+
+def test_a_trk_file_that_nibabel_would_refuse_is_told_of(tmp_path):
+    lines = Streamlines(POINTS, OFFSETS, per_streamline={"w": np.arange(3.0)})
+    with pytest.warns(UserWarning, match=r"1 streamlines have no points.*counts > 0"):
+        formats.write(tmp_path / "a.trk", lines)
+    assert formats.read(tmp_path / "a.trk").counts.tolist() == [5, 0, 7]
+    formats.write(tmp_path / "b.trk", lines[lines.counts > 0])
+    back = nib.streamlines.load(tmp_path / "b.trk")
+    assert [len(line) for line in back.streamlines] == [5, 7]
+    assert back.tractogram.data_per_streamline["w"].ravel().tolist() == [0, 2]
