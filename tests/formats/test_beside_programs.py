@@ -10,6 +10,7 @@ import pyvista as pv
 import pvfiblets as pf
 from pvfiblets import formats
 from pvfiblets.formats.attachments import write_scalars
+from pvfiblets.query.bundles import statistics
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.volumes.mif import read_mif
 
@@ -160,3 +161,28 @@ def test_a_trk_file_that_nibabel_would_refuse_is_told_of(tmp_path):
     back = nib.streamlines.load(tmp_path / "b.trk")
     assert [len(line) for line in back.streamlines] == [5, 7]
     assert back.tractogram.data_per_streamline["w"].ravel().tolist() == [0, 2]
+
+
+@pytest.mark.parametrize("chunk", [1, 1 << 20])
+def test_means_of_bundles_weigh_by_length_as_tcksample_does(monkeypatch, chunk):
+    """Its -stat_tck mean of the first line is 5.5, by trapezoids; the closed form of all lines is NumPy's trapezoid."""
+    monkeypatch.setattr(statistics, "CHUNK", chunk)
+    image = (np.broadcast_to(np.arange(1.0, 11)[:, None, None], (10, 10, 10)), np.diag([2.0, 2, 2, 1]))
+    along = [np.array([1, 1.1, 1.2, 1.3, 17]), np.array([3.0]), np.array([]), np.array([0.0, 0.5, 9, 9, 40, 2])]
+    lines = Streamlines.from_list(
+        [np.c_[x, np.full((len(x), 2), 4.0)] for x in along], groups={"one": [0], "all": [0, 1, 2, 3], "point": [1]}
+    )
+    lines.per_point["x"] = lines.points[:, 0] ** 2
+    table = statistics.bundle_table(lines, images={"i": image})
+    weights = [np.convolve(np.abs(np.diff(x)), [0.5, 0.5]) if len(x) > 1 else np.zeros(len(x)) for x in along]
+    w, x = np.concatenate(weights), np.concatenate(along)
+    inside = x <= 19
+    wanted = [np.average(x[inside] / 2 + 1, weights=w[inside]), np.average(x**2, weights=w)]
+    np.testing.assert_allclose(table["mean_i"], [5.5, wanted[0], np.nan], rtol=1e-12)
+    np.testing.assert_allclose(table["mean_x"][1:], [wanted[1], np.nan], rtol=1e-12)
+    spread = np.average((x[inside] / 2 + 1 - wanted[0]) ** 2, weights=w[inside]) ** 0.5
+    np.testing.assert_allclose(table["std_i"][1], spread, rtol=1e-12)
+    plain = statistics.bundle_table(lines, images={"i": image}, weights="points")
+    np.testing.assert_allclose(plain["mean_i"], [np.mean(along[0] / 2 + 1), np.mean(x[inside] / 2 + 1), 2.5], rtol=1e-12)
+    with pytest.raises(ValueError, match="unknown weights 'size'; choose 'length' or 'points'"):
+        statistics.bundle_table(lines, weights="size")
