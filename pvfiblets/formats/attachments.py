@@ -195,8 +195,8 @@ def _scalars_of(wanted: NDArray[np.int64], path: str, timestamp: str | None) -> 
         of = header.fields.get("timestamp")
         if None not in (of, timestamp) and of != timestamp:
             warnings.warn(
-                f"{path} has the timestamp {of}, its tracks have {timestamp}: the values may be of other streamlines, and "
-                "mrview refuses the pair; make the .tsf file again from these tracks",
+                f"{path} has the timestamp {of}, its tracks have {timestamp}: the values may be of other streamlines, "
+                "and mrview refuses the pair; make the .tsf file again from these tracks",
                 UserWarning,
                 stacklevel=2,
             )

@@ -58,8 +58,8 @@ def check_rounding(path: str | PathLike[str], points: Array) -> None:
         raise ValueError(f"{path}: float32 cannot hold some coordinates; check the units, or write doubles")
     if most > _TOLD_ROUNDING:
         warnings.warn(
-            f"{path}: float32 moves points by up to {most:.2g} mm; doubles (--double, double=True) keep them, which not "
-            "all programs read",
+            f"{path}: float32 moves points by up to {most:.2g} mm; doubles (--double, double=True) keep them, which "
+            "not all programs read",
             UserWarning,
             stacklevel=4,
         )

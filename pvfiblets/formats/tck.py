@@ -21,8 +21,8 @@ a row of a finite x with NaN or infinity          the point is left out, the lin
 two NaN rows in succession                        a streamline without points, kept
 ================================================  =================================================
 
-The other keys of the header (``step_size``, ``timestamp``, ``command_history``) go along in ``space`` as ``tck_header``.
-``tck_rows``, a fingerprint of the rows, tells the writer whether the points are still those of that header.
+The other keys of the header (``step_size``, ``timestamp``, ``command_history``) go along as ``space["tck_header"]``.
+``space["tck_rows"]``, a fingerprint of the rows, tells the writer whether the points are still those of that header.
 """
 
 from __future__ import annotations

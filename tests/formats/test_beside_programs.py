@@ -1,15 +1,21 @@
-"""Files between this project and MRtrix3, trx-python, DIPY, nibabel and VTK: what they need of ours, and ours of theirs."""
+"""Files that MRtrix3, trx-python, DIPY, nibabel and VTK write for this project, and read from it."""
 
 from __future__ import annotations
 
+from contextlib import suppress
+from itertools import pairwise
+
+import h5py
 import nibabel as nib
 import numpy as np
 import pytest
 import pyvista as pv
+from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkPartitionedDataSetCollection
 
 import pvfiblets as pf
 from pvfiblets import formats
 from pvfiblets.formats.attachments import write_scalars
+from pvfiblets.other_libraries import streamlines_of
 from pvfiblets.query.bundles import statistics
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.volumes.mif import read_mif
@@ -24,7 +30,7 @@ def tck(path, points=POINTS, offsets=OFFSETS, fields=(*KEPT, "step_size: 0.5", "
     """Write a file as MRtrix lays it out; keys begin with a capital, which MRtrix takes as well."""
     kind = np.dtype(kind)
     own = [f"Datatype: Float{kind.itemsize * 8}{'BE' if kind.byteorder == '>' else 'LE'}", f"Count: {len(offsets) - 1}"]
-    rows = [np.r_[points[a:b], np.full((1, 3), np.nan)] for a, b in zip(offsets[:-1], offsets[1:], strict=True)]
+    rows = [np.r_[points[a:b], np.full((1, 3), np.nan)] for a, b in pairwise(offsets)]
     head = "\n".join(["mrtrix tracks", *own, *fields, "File: . 400", "END", ""]).encode().ljust(400, b"\0")
     path.write_bytes(head + np.concatenate([*rows, np.full((1, 3), np.inf)]).astype(kind).tobytes())
     return path
@@ -42,7 +48,7 @@ def value(path, key):
 def largest_step(points, offsets):
     return max(
         np.linalg.norm(np.diff(points[a:b].astype(float), axis=0), axis=1).max(initial=0)
-        for a, b in zip(offsets[:-1], offsets[1:], strict=True)
+        for a, b in pairwise(offsets)
     )
 
 
@@ -85,7 +91,8 @@ def test_points_of_another_source_get_a_step_and_a_timestamp_that_their_scalars_
     pf.write(tmp_path / "a.tck", lines)
     write_scalars(tmp_path / "a.tsf", lines, "v")
     assert value(tmp_path / "a.tck", "timestamp") == value(tmp_path / "a.tsf", "timestamp") != []
-    np.testing.assert_allclose(float(value(tmp_path / "a.tck", "step_size")[0]), largest_step(POINTS, OFFSETS), rtol=1e-6)
+    step = float(value(tmp_path / "a.tck", "step_size")[0])
+    np.testing.assert_allclose(step, largest_step(POINTS, OFFSETS), rtol=1e-6)
     back = formats.read(tmp_path / "a.tck")
     assert formats.attach(back, tmp_path / "a.tsf") == "per_point"
     raw = (tmp_path / "a.tsf").read_bytes()
@@ -120,7 +127,8 @@ def test_points_of_a_vtk_file_are_floats_unless_doubles_are_asked_for(tmp_path):
 @pytest.mark.parametrize("name", ["SLF & AF", "p<0.05", 'say "x"', "it's > 1", "a\ttab", "two\nlines", "&amp;"])
 def test_vtk_reads_any_name_in_a_vtp_file(tmp_path, name):
     path = tmp_path / "a.vtp"
-    lines = Streamlines(POINTS, OFFSETS, {name: np.arange(12.0)}, {name: np.arange(3.0)}, {name: [1]}, {name: {name: [4.0]}})
+    values = {name: np.arange(12.0)}, {name: np.arange(3.0)}, {name: [1]}, {name: {name: [4.0]}}
+    lines = Streamlines(POINTS, OFFSETS, *values)
     formats.write(path, lines)
     mesh = pv.read(path)
     assert name in mesh.point_data
@@ -183,6 +191,79 @@ def test_means_of_bundles_weigh_by_length_as_tcksample_does(monkeypatch, chunk):
     spread = np.average((x[inside] / 2 + 1 - wanted[0]) ** 2, weights=w[inside]) ** 0.5
     np.testing.assert_allclose(table["std_i"][1], spread, rtol=1e-12)
     plain = statistics.bundle_table(lines, images={"i": image}, weights="points")
-    np.testing.assert_allclose(plain["mean_i"], [np.mean(along[0] / 2 + 1), np.mean(x[inside] / 2 + 1), 2.5], rtol=1e-12)
+    wanted = [np.mean(along[0] / 2 + 1), np.mean(x[inside] / 2 + 1), 2.5]
+    np.testing.assert_allclose(plain["mean_i"], wanted, rtol=1e-12)
     with pytest.raises(ValueError, match="unknown weights 'size'; choose 'length' or 'points'"):
         statistics.bundle_table(lines, weights="size")
+
+
+def mesh_of_lines():
+    return pv.PolyData(POINTS[:8], lines=np.array([4, 0, 1, 2, 3, 4, 4, 5, 6, 7]))
+
+
+@pytest.mark.parametrize("name", ["a.vtp", "a.vtu", "a.vtm", "a.vtkhdf"])
+def test_lines_in_files_that_pyvista_writes(tmp_path, name):
+    path, mesh = tmp_path / name, mesh_of_lines()
+    mesh.cell_data["w"] = [1.0, 2.0]
+    if name == "a.vtp":
+        mesh.save(path, compression="lz4")
+    elif name == "a.vtm":
+        pv.MultiBlock({"AF": mesh}).save(path)
+    else:
+        (mesh.cast_to_unstructured_grid() if name == "a.vtu" else mesh).save(path)
+    found = formats.read(path)
+    np.testing.assert_array_equal(found.points, POINTS[:8])
+    assert (found.counts.tolist(), found.per_streamline["w"].tolist()) == ([4, 4], [1, 2])
+    assert list(found.groups) == (["AF"] if name == "a.vtm" else [])
+    assert formats.info(path)["points"] == 8
+    with pytest.raises(formats.UnknownFormatError, match="has no write"):
+        formats.write(path.with_suffix(".vtu"), found)
+    raw = path.read_bytes()
+    path.write_bytes(raw[: len(raw) // 2])
+    with pytest.raises(formats.FormatError):
+        formats.read(path)
+
+
+def test_a_damaged_block_of_lz4_is_an_error(tmp_path):
+    pv.lines_from_points(np.repeat(POINTS, 50, axis=0)).save(tmp_path / "a.vtp", compression="lz4", binary=True)
+    raw = bytearray((tmp_path / "a.vtp").read_bytes())
+    for at in range(len(raw) // 3, len(raw), len(raw) // 60):
+        damaged = raw.copy()
+        damaged[at] ^= 1
+        (tmp_path / "b.vtp").write_bytes(damaged)
+        with suppress(formats.FormatError):
+            formats.read(tmp_path / "b.vtp")
+
+
+def test_partitioned_datasets_are_read(tmp_path):
+    mesh = mesh_of_lines()
+    collection = vtkPartitionedDataSetCollection()
+    for i, part in enumerate((mesh, mesh.translate((1, 0, 0), inplace=False))):
+        collection.SetPartition(0, i, part)
+    collection.SetPartition(1, 0, mesh)
+    collection.GetMetaData(1).Set(vtkCompositeDataSet.NAME(), "AF")
+    found = streamlines_of(collection)
+    assert {name: ids.tolist() for name, ids in found.groups.items()} == {"block 0": [0, 1, 2, 3], "AF": [4, 5]}
+    np.testing.assert_array_equal(found.points[8:16], POINTS[:8] + np.float32([1, 0, 0]))
+    assert len(streamlines_of(pv.PartitionedDataSet([mesh, mesh]))) == 4
+
+
+def test_fib_and_dpy_files_of_dipy_are_read(tmp_path):
+    formats.write(tmp_path / "a.vtk", LINES)
+    (tmp_path / "a.fib").write_bytes((tmp_path / "a.vtk").read_bytes())  # legacy VTK, as DIPY writes it
+    np.testing.assert_array_equal(formats.read(tmp_path / "a.fib").points, POINTS)
+    with h5py.File(tmp_path / "a.dpy", "w") as file:
+        file.create_dataset("streamlines/tracks", data=POINTS)
+        file.create_dataset("streamlines/offsets", data=OFFSETS)
+    found = formats.read(tmp_path / "a.dpy")
+    np.testing.assert_array_equal(found.points, POINTS)
+    np.testing.assert_array_equal(found.offsets, OFFSETS)
+    with h5py.File(tmp_path / "a.dpy", "a") as file:
+        file["streamlines/offsets"][-1] = 13
+    with pytest.raises(formats.FormatError, match="expected tracks of 3 columns, and offsets"):
+        formats.read(tmp_path / "a.dpy")
+    raw = (tmp_path / "a.dpy").read_bytes()
+    for part in (raw[:4], raw[: len(raw) // 2]):
+        (tmp_path / "a.dpy").write_bytes(part)
+        with pytest.raises(formats.FormatError, match="magic|damaged HDF5"):
+            formats.read(tmp_path / "a.dpy")
