@@ -86,8 +86,8 @@ def add_convert(commands: Any) -> None:
     convert.add_argument(
         "--double",
         action="store_true",
-        help="write the points of a .tck or .vtk file as float64 (default: float32); of such files MRtrix reads .tck and "
-        "not .vtk, nibabel, DIPY and scilpy do not read .tck",
+        help="write the points of a .tck or .vtk file as float64 (default: float32); of such files MRtrix reads .tck "
+        "and not .vtk, nibabel, DIPY and scilpy do not read .tck",
     )
     convert.add_argument(
         "--verify",

@@ -1,7 +1,7 @@
 """Lines in files that VTK reads: ``.vtu``, ``.vtm``, ``.vtkhdf``, and files of pieces (``.pvtp``, ``.pvtu``).
 
-VTK's readers trust sizes of a damaged file and may end the process; the formats of tractograms from elsewhere have parsers
-of our own. Names of blocks become groups. Coordinates are RAS+ mm, or LPS+ if the field data say so
+VTK's readers trust sizes of a damaged file and may end the process; the formats of tractograms from elsewhere have
+parsers of our own. Names of blocks become groups. Coordinates are RAS+ mm, or LPS+ if the field data say so
 (:mod:`pvfiblets.vtk_space`).
 """
 
@@ -18,12 +18,23 @@ from pvfiblets.formats.read_whole import facts, only_finite, pieces
 from pvfiblets.formats.vtk_sizes import check_memory
 from pvfiblets.formats.vtk_xml import XmlFile
 from pvfiblets.streamlines import Streamlines
+from pvfiblets.vtk_space import FIELD, OURS, Space, space_of_dataset, space_taken
 
 __all__ = ["info", "iter_chunks", "read"]
 
 
-def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:  # noqa: ARG001
+def read(
+    path: str | PathLike[str],
+    *,
+    progress: bool = False,  # noqa: ARG001
+    space: Space | None = None,
+) -> Streamlines:
     """Read a file through VTK (see :func:`pvfiblets.formats.read`)."""
+    return _read(path, space)[0]
+
+
+def _read(path: str | PathLike[str], given: Space | None) -> tuple[Streamlines, dict[str, str]]:
+    """Read the streamlines, and the facts of their space."""
     import pyvista as pv
 
     from pvfiblets.other_libraries import streamlines_of
@@ -40,19 +51,24 @@ def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:  
     except RuntimeError as error:
         text = str(error).strip().splitlines()[-1]
         raise FormatError(path, None, f"an error of VTK's reader ({text})", "a whole file") from error
+    named = space_of_dataset(dataset)
+    space, why = space_taken(named, given)
+    if named is None and space != OURS:
+        dataset.field_data[FIELD] = [space]
     try:
         found = streamlines_of(dataset)
     except TypeError as error:
         raise FormatError(path, None, str(error), "lines") from error
     assert found is not None
-    return only_finite(found)
+    return only_finite(found), {"space": space, "space_from": why}
 
 
-def iter_chunks(path: str | PathLike[str], max_points: int) -> Iterator[Streamlines]:
+def iter_chunks(path: str | PathLike[str], max_points: int, *, space: Space | None = None) -> Iterator[Streamlines]:
     """Read the whole file, then give it in pieces (see :func:`pvfiblets.formats.iter_chunks`)."""
-    yield from pieces(read(path), max_points)
+    yield from pieces(read(path, space=space), max_points)
 
 
-def info(path: str | PathLike[str]) -> dict[str, Any]:
+def info(path: str | PathLike[str], *, space: Space | None = None) -> dict[str, Any]:
     """Facts of the file, which is read whole (see :func:`pvfiblets.formats.info`)."""
-    return facts(read(path))
+    streamlines, of_space = _read(path, space)
+    return {**facts(streamlines), **of_space}

@@ -1,7 +1,7 @@
 """DIPY's HDF5 files (``.dpy``): points and offsets, RAS+ mm with voxel centres at integer indices.
 
-Format: ``dipy.io.dpy``; group ``streamlines`` with ``tracks``, (n, 3) float, and ``offsets``, n + 1 integers. It stores no
-affine, space or values. The h5py library reads it. The file must be read whole.
+Format: ``dipy.io.dpy``; group ``streamlines`` with ``tracks``, (n, 3) float, and ``offsets``, n + 1 integers. It
+stores no affine, space or values. The h5py library reads it. The file must be read whole.
 """
 
 from __future__ import annotations

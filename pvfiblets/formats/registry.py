@@ -31,7 +31,7 @@ _MODULES: dict[str, str] = {
     ".dpy": "pvfiblets.formats.dpy",
     **pvfiblets.FORMATS,
 }
-_READ_BY_VTK = dict.fromkeys((".vtu", ".pvtu", ".pvtp", ".vtm", ".vtmb", ".vtkhdf"), "pvfiblets.formats.by_vtk")
+READ_BY_VTK = dict.fromkeys((".vtu", ".pvtu", ".pvtp", ".vtm", ".vtmb", ".vtkhdf"), "pvfiblets.formats.by_vtk")
 """Not for files of strangers: VTK trusts their sizes, and opens the files that they name."""
 
 
@@ -69,10 +69,10 @@ def suffix_of(path: str | PathLike[str]) -> str:
         If no registered suffix fits.
     """
     name = fspath(path).lower()
-    for suffix in (*suffixes(), *_READ_BY_VTK):
+    for suffix in (*suffixes(), *READ_BY_VTK):
         if name.endswith(suffix):
             return suffix
-    known = ", ".join(sorted((*_MODULES, *_READ_BY_VTK)))
+    known = ", ".join(sorted((*_MODULES, *READ_BY_VTK)))
     if is_trx_folder(path):
         return ".trx"
     if os.path.isdir(path):  # noqa: PTH112 - of what is no path at all, too
@@ -104,7 +104,7 @@ def module_for(path: str | PathLike[str], *needs: str) -> ModuleType:
         If no module serves the suffix, or it lacks a function of `needs`.
     """
     suffix = suffix_of(path)
-    module = import_module(_MODULES.get(suffix) or _READ_BY_VTK[suffix])
+    module = import_module(_MODULES.get(suffix) or READ_BY_VTK[suffix])
     for need in needs:
         if not hasattr(module, need):
             able = ", ".join(_able(need))

@@ -418,7 +418,8 @@ def _without_lz4(packed: bytes, size: int) -> bytes:
 
     if size > _DENSEST_LZ4 * len(packed):
         return b""
-    compressor, data = vtkLZ4DataCompressor(), np.empty(size, np.uint8)
+    data = np.empty(size, np.uint8)
+    compressor: Any = vtkLZ4DataCompressor()
     compressor.AddObserver("ErrorEvent", lambda *_: None)  # else VTK prints
     return data[: compressor.Uncompress(packed, len(packed), data, size)].tobytes()
 

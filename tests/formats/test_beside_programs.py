@@ -14,6 +14,7 @@ from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkPartitionedDat
 
 import pvfiblets as pf
 from pvfiblets import formats
+from pvfiblets.cli import main
 from pvfiblets.formats.attachments import write_scalars
 from pvfiblets.other_libraries import streamlines_of
 from pvfiblets.query.bundles import statistics
@@ -47,8 +48,7 @@ def value(path, key):
 
 def largest_step(points, offsets):
     return max(
-        np.linalg.norm(np.diff(points[a:b].astype(float), axis=0), axis=1).max(initial=0)
-        for a, b in pairwise(offsets)
+        np.linalg.norm(np.diff(points[a:b].astype(float), axis=0), axis=1).max(initial=0) for a, b in pairwise(offsets)
     )
 
 
@@ -267,3 +267,27 @@ def test_fib_and_dpy_files_of_dipy_are_read(tmp_path):
         (tmp_path / "a.dpy").write_bytes(part)
         with pytest.raises(formats.FormatError, match="magic|damaged HDF5"):
             formats.read(tmp_path / "a.dpy")
+
+
+@pytest.mark.parametrize("suffix", [".vtk", ".vtp", ".vtu", ".vtm"])
+def test_the_space_of_a_file_that_names_none_can_be_given(tmp_path, capsys, suffix):
+    """DIPY writes LPS up to 1.11 and RAS from 1.12; its files are told apart by nothing."""
+    path, mesh = tmp_path / f"a{suffix}", mesh_of_lines()
+    made = {".vtu": mesh.cast_to_unstructured_grid(), ".vtm": pv.MultiBlock([mesh])}.get(suffix, mesh)
+    made.save(path)
+    turned = POINTS[:8] * np.float32([-1, -1, 1])
+    np.testing.assert_array_equal(formats.read(path).points, POINTS[:8])
+    np.testing.assert_array_equal(formats.read(path, space="lps").points, turned)
+    np.testing.assert_array_equal(next(formats.iter_chunks(path, 4, space="LPS")).points, turned[:4])
+    assert formats.info(path)["space_from"].startswith("assumed")
+    assert main(["info", "--space", "lps", str(path)]) == 0
+    assert "given, the file names none" in capsys.readouterr().out
+    assert main(["convert", "--quiet", "--space", "LPS", str(path), str(tmp_path / "a.trx")]) == 0
+    np.testing.assert_array_equal(formats.read(tmp_path / "a.trx").points, turned)
+    made.field_data["SPACE"] = ["RAS"]
+    made.save(path)
+    np.testing.assert_array_equal(formats.read(path, space="LPS").points, POINTS[:8])
+    with pytest.raises(ValueError, match="unknown space 'SCR'; choose 'RAS' or 'LPS'"):
+        formats.read(path, space="SCR")
+    with pytest.raises(ValueError, match="space is an option of .vtk, .vtp"):
+        formats.read(tmp_path / "a.trx", space="LPS")
