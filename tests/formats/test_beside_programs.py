@@ -15,6 +15,7 @@ from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkPartitionedDat
 import pvfiblets as pf
 from pvfiblets import formats
 from pvfiblets.cli import main
+from pvfiblets.formats import registry
 from pvfiblets.formats.attachments import write_scalars
 from pvfiblets.other_libraries import streamlines_of
 from pvfiblets.query.bundles import statistics
@@ -291,3 +292,8 @@ def test_the_space_of_a_file_that_names_none_can_be_given(tmp_path, capsys, suff
         formats.read(path, space="SCR")
     with pytest.raises(ValueError, match="space is an option of .vtk, .vtp"):
         formats.read(tmp_path / "a.trx", space="LPS")
+
+
+def test_pages_do_not_offer_what_other_libraries_read():
+    """Pages take uploads by these suffixes."""
+    assert not {".vtu", ".vtm", ".vtkhdf", ".pvtp", ".dpy"} & set(registry.suffixes())
