@@ -60,7 +60,7 @@ def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
             f"{path}: {empty} streamlines have no points, for which nibabel and DIPY refuse a .trk file of values per "
             "streamline; write streamlines[streamlines.counts > 0], or .trx",
             UserWarning,
-            stacklevel=4,
+            stacklevel=3,
         )
 
 
