@@ -24,6 +24,7 @@ from pvfiblets.cli_parser import Parser
 from pvfiblets.cli_pipes import Pipes
 from pvfiblets.cli_values import angle, count, positive
 from pvfiblets.errors import EXPECTED, sentence
+from pvfiblets.vtk_space import unnamed_as
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -42,9 +43,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = vars(make_parser().parse_args(arguments))
     debug = options.pop("debug")
     module, function = options.pop("run").split(":")
-    pipes = Pipes(options)
+    pipes, space = Pipes(options), options.pop("space", None)
     try:
-        with _plain_warnings(pipes), held_to(options.pop("max_memory", None)), pipes:
+        with _plain_warnings(pipes), held_to(options.pop("max_memory", None)), unnamed_as(space), pipes:
             code = getattr(import_module(module), function)(**options) or 0
         sys.stdout.flush()  # here, where a reader that has gone is no error
         return code

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
@@ -17,6 +17,8 @@ from pvfiblets.query.bundles.tract_profile import TractProfile, Weights, profile
 from pvfiblets.query.table import Table, check_parquet
 
 __all__ = ["bundle_rows", "profile", "table"]
+
+PointWeights: TypeAlias = Literal["length", "points"]
 
 TABLES = (".csv", ".tsv", ".parquet", ".pq")
 PLOTS = (".png", ".svg", ".pdf")
@@ -48,11 +50,11 @@ def profile(
             profile_table(profiles).save(target)
 
 
-def table(source: str, target: str, *, by: str, group: list[str], image: list[str]) -> None:
+def table(source: str, target: str, *, by: str, group: list[str], image: list[str], weights: PointWeights) -> None:
     """Write a row for each streamline, or for each bundle."""
     check_parquet(target)  # before minutes of work, not after
     if by == "bundle":
-        bundle_rows(source, group, image).save(target)
+        bundle_rows(source, group, image, weights).save(target)
         return
     if image:
         raise ValueError("--image is for a row by bundle; add --by bundle")
@@ -64,7 +66,7 @@ def table(source: str, target: str, *, by: str, group: list[str], image: list[st
     data.table(data.groups[group[0]] if group else None).save(target)
 
 
-def bundle_rows(source: str, groups: Sequence[str], images: Sequence[str]) -> Table:
+def bundle_rows(source: str, groups: Sequence[str], images: Sequence[str], weights: PointWeights) -> Table:
     """Return a row for each group of a file, or one for all of it where it has none.
 
     Parameters
@@ -74,6 +76,7 @@ def bundle_rows(source: str, groups: Sequence[str], images: Sequence[str]) -> Ta
         Only these, if any.
     images : sequence of str
         Paths, or ``NAME=PATH``.
+    weights : {"length", "points"}
 
     Raises
     ------
@@ -93,7 +96,8 @@ def bundle_rows(source: str, groups: Sequence[str], images: Sequence[str]) -> Ta
             raise ValueError(f"{path} is no image; give a NIfTI or MGH file, of any name: --image fa={path}.nii.gz")
         known[name] = path
     bundles = list(_bundles([source], groups))
-    return bundle_table(bundles[0][0], {name: ids for _, ids, name in bundles}, images=known)
+    chosen = {name: ids for _, ids, name in bundles}
+    return bundle_table(bundles[0][0], chosen, images=known, weights=weights)
 
 
 def _bundles(sources: Sequence[str], groups: Sequence[str]) -> Iterator[tuple[Any, Any, str]]:

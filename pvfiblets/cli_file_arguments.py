@@ -86,8 +86,8 @@ def add_convert(commands: Any) -> None:
     convert.add_argument(
         "--double",
         action="store_true",
-        help="write the points of a .tck file as float64, which MRtrix reads, and nibabel, DIPY and scilpy do not "
-        "(default: float32)",
+        help="write the points of a .tck or .vtk file as float64 (default: float32); of such files MRtrix reads .tck "
+        "and not .vtk, nibabel, DIPY and scilpy do not read .tck",
     )
     convert.add_argument(
         "--verify",
@@ -223,6 +223,9 @@ def add_table(commands: Any) -> None:
     )
     table.add_argument("--image", action="append", default=[], metavar="[NAME=]IMAGE",
                        help="by bundle: an image whose mean along the streamlines is told; may repeat")  # fmt: skip
+    table.add_argument("--weights", choices=("length", "points"), default="length",
+                       help="by bundle: whether points count by the length they stand for in means, as in tcksample "
+                       "-stat_tck mean, or all the same (default: %(default)s)")  # fmt: skip
     add_format_option(table, reads=["source"])
     add_memory_option(table)
     table.set_defaults(run="pvfiblets.cli_bundles:table")

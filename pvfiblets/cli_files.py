@@ -51,8 +51,10 @@ def convert(
             f"--index is for a {COMPRESSED} file; shards are put together when they are opened, and other formats have "
             "no place for it: leave it out"
         )
-    if double and formats.registry.suffix_of(target) != ".tck":
-        raise ValueError(f"--double is for .tck files; {target} is of another format: leave it out")
+    if double and formats.registry.suffix_of(target) not in formats.DOUBLES:
+        raise ValueError(
+            f"--double is for {' and '.join(formats.DOUBLES)} files; {target} is of another format: leave it out"
+        )
     if Path(target).suffix.lower() == COMPRESSED:
         indexed: list[FibletIndex] = []
         if shards is None:

@@ -27,7 +27,7 @@ _IN, _OUT = "standard input", "standard output"
 def add_format_option(
     parser: argparse.ArgumentParser, *, reads: Sequence[str], writes: str | None = None, usual: str | None = None
 ) -> None:
-    """Let a command take ``-`` for files.
+    """Let a command take ``-`` for files, and be told the space of files that name none.
 
     Parameters
     ----------
@@ -44,6 +44,10 @@ def add_format_option(
     if writes is not None:
         which += f" or output ({f'default: {usual}' if usual else 'needed'}); of both, that of output comes last"
     parser.add_argument("--format", action="append", default=[], metavar="SUFFIX", help=which)
+    parser.add_argument(
+        "--space", choices=("RAS", "LPS"), type=str.upper,
+        help="space of points in VTK's files that name none (default: RAS); DIPY wrote LPS up to 1.11",
+    )  # fmt: skip
     parser.set_defaults(pipes=(tuple(reads), writes, usual))
 
 

@@ -35,7 +35,7 @@ def streamlines_of(source: Any) -> Streamlines | None:
     source : object
         nibabel's ``Tractogram``, ``LazyTractogram``, ``TrkFile``, ``TckFile`` or ``ArraySequence`` (dipy's
         ``Streamlines``), dipy's ``StatefulTractogram``, trx-python's ``TrxFile``, or a PolyData, UnstructuredGrid or
-        MultiBlock with line cells. The names of a MultiBlock's blocks become groups.
+        MultiBlock with line cells, or a partitioned dataset of such. The names of a MultiBlock's blocks become groups.
 
     Returns
     -------
@@ -151,6 +151,10 @@ def _flat(values: npt.NDArray[Any]) -> npt.NDArray[Any]:
 def _of_vtk(source: Any) -> Streamlines:
     import pyvista as pv
 
+    if source.IsA("vtkPartitionedDataSet"):
+        return Streamlines.concatenate(map(_of_vtk, _partitions(source)))
+    if _has_blocks(source):
+        return _of_blocks(source)
     dataset = pv.wrap(source)
     if isinstance(dataset, pv.PolyData):
         return Streamlines.from_polydata(dataset)
@@ -159,33 +163,54 @@ def _of_vtk(source: Any) -> Streamlines:
         if others := dataset.n_cells - len(found):
             found.dropped["cells that are not lines"] = others
         return found
-    if isinstance(dataset, pv.MultiBlock):
-        return _of_blocks(dataset)
     raise TypeError(
-        f"source is a {type(dataset).__name__}, which has no lines; of VTK's datasets PolyData, UnstructuredGrid and "
-        "MultiBlock hold some; extract_all_edges() makes lines of a dataset's edges"
+        f"source is a {type(dataset).__name__}, which has no lines; of VTK's datasets PolyData, UnstructuredGrid, "
+        "MultiBlock and partitioned ones hold some; extract_all_edges() makes lines of a dataset's edges"
     )
+
+
+def _has_blocks(source: Any) -> bool:
+    return bool(source.IsA("vtkMultiBlockDataSet") or source.IsA("vtkPartitionedDataSetCollection"))
+
+
+def _partitions(source: Any) -> list[Any]:
+    return [part for i in range(source.GetNumberOfPartitions()) if (part := source.GetPartition(i)) is not None]
+
+
+def _named_blocks(source: Any) -> list[tuple[str, Any]]:
+    """Return the blocks of a MultiBlock or a collection of partitioned datasets with their names."""
+    from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet
+
+    collection = source.IsA("vtkPartitionedDataSetCollection")
+    number = source.GetNumberOfPartitionedDataSets() if collection else source.GetNumberOfBlocks()
+    found = []
+    for i in range(number):
+        name = source.GetMetaData(i).Get(vtkCompositeDataSet.NAME()) if source.HasMetaData(i) else None
+        found.append((name or f"block {i}", source.GetPartitionedDataSet(i) if collection else source.GetBlock(i)))
+    return found
 
 
 def _of_blocks(blocks: Any, space: Space | None = None) -> Streamlines:
     """From the blocks of a MultiBlock: their names are groups; arrays that some of them lack are dropped."""
-    import pyvista as pv
-
     space = space_of_dataset(blocks) or space  # of blocks that name none
     parts: list[Streamlines] = []
-    taken = {blocks.get_block_name(i) for i in range(len(blocks))}
-    for i, block in enumerate(blocks):
-        if isinstance(block, pv.MultiBlock) or (block is not None and block.n_points):
-            name = blocks.get_block_name(i) or f"block {i}"
-            part = _of_blocks(block, space) if isinstance(block, pv.MultiBlock) else _of_vtk(block)
-            if not isinstance(block, pv.MultiBlock) and space_of_dataset(block) is None:
+    named = [(name, block) for name, block in _named_blocks(blocks) if block is not None]
+    taken = {name for name, _ in named}
+    for name, block in named:
+        if _has_blocks(block):
+            part = _of_blocks(block, space)
+            # Blocks of it may be called as others are.
+            part.groups = {f"{name}/{g}" if g in taken else g: ids for g, ids in part.groups.items()}
+            taken |= part.groups.keys()
+        elif block.GetNumberOfPoints():
+            part = _of_vtk(block)
+            if space_of_dataset(block) is None:
                 part.points = to_ras(part.points, space)
-            if isinstance(block, pv.MultiBlock):  # whose blocks may be called as others are
-                part.groups = {f"{name}/{g}" if g in taken else g: ids for g, ids in part.groups.items()}
-                taken |= part.groups.keys()
-            if len(part):
-                part.groups[name] = np.arange(len(part))
-            parts.append(part)
+        else:
+            continue
+        if len(part):
+            part.groups[name] = np.arange(len(part))
+        parts.append(part)
     dropped: set[str] = set()
     full = [part for part in parts if len(part)]
     for held in ("per_point", "per_streamline"):

@@ -1,20 +1,34 @@
 """The space of points that VTK's files and datasets name, as 3D Slicer writes it: RAS+ or LPS+.
 
 A file names it as ``SPACE=LPS`` in its title or comments, or in a field array of strings called ``SPACE``. Slicer reads
-the title first. Without a name, coordinates are RAS+ here.
+the title first. Without a name, coordinates are RAS+ here, unless the caller says otherwise: DIPY wrote LPS+ up
+to 1.11 and writes RAS+ since 1.12, and nothing in its files tells.
 """
 
 from __future__ import annotations
 
 import re
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
 from pvfiblets.ragged import Array
 
-__all__ = ["FIELD", "OURS", "Space", "space_in_header", "space_named", "space_of_dataset", "to_ras"]
+__all__ = [
+    "FIELD",
+    "OURS",
+    "Space",
+    "checked",
+    "space_in_header",
+    "space_named",
+    "space_of_dataset",
+    "space_taken",
+    "to_ras",
+    "unnamed_as",
+]
 
 Space: TypeAlias = Literal["RAS", "LPS"]
 
@@ -28,6 +42,7 @@ _NAMES: dict[str, Space] = {
     "LPS": "LPS",
     "LEFT-POSTERIOR-SUPERIOR": "LPS",
 }
+_unnamed: Space | None = None
 _TAG = re.compile(r"SPACE=([\w-]+)", re.IGNORECASE)
 
 
@@ -57,6 +72,40 @@ def space_of_dataset(dataset: Any) -> Space | None:
     if array is None or not array.IsA("vtkStringArray") or not array.GetNumberOfValues():
         return None
     return space_named(array.GetValue(0), "the field data")
+
+
+@contextmanager
+def unnamed_as(space: str | None) -> Iterator[None]:
+    """Take files that name no space as `space`, in all threads."""
+    global _unnamed  # of a whole command, whose files are read in many places
+    before, _unnamed = _unnamed, None if space is None else checked(space)
+    try:
+        yield
+    finally:
+        _unnamed = before
+
+
+def checked(space: str) -> Space:
+    """Return a space that a caller gives in any case.
+
+    Raises
+    ------
+    ValueError
+        If it is unknown.
+    """
+    known = _NAMES.get(str(space).upper())
+    if known is None:
+        raise ValueError(f"unknown space {space!r}; choose 'RAS' or 'LPS'")
+    return known
+
+
+def space_taken(named: Space | None, given: Space | None = None) -> tuple[Space, str]:
+    """Return the space of a file, from the name in it and what the caller says of files without one, and the reason."""
+    if named is not None:
+        return named, "named by the file"
+    if (given or _unnamed) is not None:
+        return given or _unnamed or OURS, "given, the file names none"
+    return OURS, "assumed, the file names none; DIPY up to 1.11 wrote LPS: --space LPS"
 
 
 def to_ras(points: Array, space: Space | None) -> Array:

@@ -201,7 +201,7 @@ def test_convert_writes_doubles_if_asked(tmp_path, capsys):
     formats.write(source, Streamlines(np.full((2, 3), 1e6 + 0.1), [0, 2]))
     assert main(["convert", str(source), str(target), "--double"]) == 0
     assert formats.info(target)["dtype"] == "float64"
-    assert "--double is for .tck files" in fails(capsys, "convert", source, tmp_path / "a.trk", "--double")
+    assert "--double is for .tck and .vtk files" in fails(capsys, "convert", source, tmp_path / "a.trk", "--double")
 
 
 def test_info_of_both_forms_agrees(compressed, tractogram, capsys):

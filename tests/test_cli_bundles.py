@@ -125,7 +125,8 @@ def test_files_are_bundles_and_told_apart(folder, capsys):
 def test_a_row_for_each_bundle(folder, tmp_path, capsys):
     target = tmp_path / "bundles.csv"
     image = f"plane={folder / 'plane.nii.gz'}"
-    assert main(["table", str(folder / "brain.trx"), str(target), "--by", "bundle", "--image", image]) == 0
+    words = ["--by", "bundle", "--image", image, "--weights", "points"]
+    assert main(["table", str(folder / "brain.trx"), str(target), *words]) == 0
     found = rows(target.read_text())
     data = pvfiblets.read(folder / "brain.trx")
     for row, (name, ids) in zip(found, data.groups.items(), strict=True):

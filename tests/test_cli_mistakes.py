@@ -51,13 +51,13 @@ MISUSED = [
 
 WRONG = [
     ("info missing.tck", "missing.tck: No such file"),
-    ("info folder", "folder is a folder; give a file of one of .fiblets, .tck"),
-    ("info zeros.nii", "zeros.nii: no format has this suffix; .*.fiblets, .tck"),
+    ("info folder", "folder is a folder; give a file of one of .*.fiblets, .*.tck"),
+    ("info zeros.nii", "zeros.nii: no format has this suffix; .*.fiblets, .*.tck"),
     ("info '~/missing.tck'", "missing.tck: No such file"),
     ("info 'no such ü.tck'", "no such ü.tck: No such file"),
     ("convert '*.nothing' b.fiblets", r"\*.nothing: no format has this suffix"),
-    ("convert a.trx b", "b: no format has this suffix; .*.fiblets, .tck"),
-    ("convert a.trx b.trk.gz", r"b.trk.gz: the format .trk.gz has no write\(\); formats that have: .fiblets"),
+    ("convert a.trx b", "b: no format has this suffix; .*.fiblets, .*.tck"),
+    ("convert a.trx b.trk.gz", r"b.trk.gz: the format .trk.gz has no write\(\); formats that have: .fib, .fiblets"),
     ("convert a.trx nowhere/b.tck", "nowhere/b.tck: there is no folder .*nowhere; make it first"),
     ("convert a.trx ./a.trx", "a.trx would be overwritten by itself; give another name"),
     ("convert a.trx b.fiblets --per-point md", "no per-point array 'md'; the streamlines have: fa"),

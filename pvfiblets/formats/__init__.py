@@ -10,6 +10,9 @@ suffix     reads writes streams in small memory carries
                         inflates on)
 .vtk       yes   yes    after reading the file  points, per point, per streamline
 .vtp       yes   yes    after reading the file  points, per point, per streamline
+.fib       yes   yes    after reading the file  as vtk: DIPY's
+.vtu .vtm  yes   no     after reading the file  as vtp, and blocks as groups; also .vtkhdf .pvtp .pvtu .vtmb
+.dpy       yes   no     after reading the file  points
 .tt.gz     yes   no     after inflating         points, clusters as groups, affine
 .fiblets   yes   yes    yes                     everything
 ========== ===== ====== ======================= ================================================
@@ -28,8 +31,10 @@ from typing import Any
 
 from pvfiblets.addresses import is_url, path_of
 from pvfiblets.errors import FormatError
+from pvfiblets.formats import registry
 from pvfiblets.formats.registry import UnknownFormatError, module_for, suffix_of
 from pvfiblets.streamlines import Streamlines
+from pvfiblets.vtk_space import Space, checked
 
 __all__ = [
     "FormatError",
@@ -41,8 +46,15 @@ __all__ = [
     "write",
 ]
 
+DOUBLES = (".tck", ".vtk")
+"""Suffixes of formats whose points are float32 unless doubles are asked for."""
 
-def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:
+
+SPACED = (".vtk", ".vtp", ".fib", *registry.READ_BY_VTK)
+"""Suffixes of formats that do not fix the space of points."""
+
+
+def read(path: str | PathLike[str], *, progress: bool = False, space: str | None = None) -> Streamlines:
     """Read a tractogram file whole.
 
     Parameters
@@ -51,6 +63,8 @@ def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:
         Its suffix chooses the format.
     progress : bool
         Show a progress bar, for formats whose reading takes long.
+    space : {"RAS", "LPS"}, optional
+        Of the points of a file of VTK's that names none; RAS by default. DIPY wrote LPS up to 1.11.
 
     Returns
     -------
@@ -63,13 +77,17 @@ def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:
         If the file breaks its format in a way that has no safe reading.
     UnknownFormatError
         If no format has this suffix.
+    ValueError
+        If `space` is unknown, or given for a format that fixes the space.
     """
     place = _place(path)
-    streamlines: Streamlines = module_for(place, "read").read(place, progress=progress)
+    streamlines: Streamlines = module_for(place, "read").read(place, progress=progress, **_space(place, space))
     return streamlines
 
 
-def iter_chunks(path: str | PathLike[str], max_points: int = 1 << 22) -> Iterator[Streamlines]:
+def iter_chunks(
+    path: str | PathLike[str], max_points: int = 1 << 22, *, space: str | None = None
+) -> Iterator[Streamlines]:
     """Read a tractogram file piece by piece.
 
     Parameters
@@ -77,6 +95,8 @@ def iter_chunks(path: str | PathLike[str], max_points: int = 1 << 22) -> Iterato
     path : str or PathLike
     max_points : int
         Points per piece; a single streamline that is longer makes a piece of its own.
+    space : {"RAS", "LPS"}, optional
+        As for :func:`read`.
 
     Yields
     ------
@@ -94,11 +114,17 @@ def iter_chunks(path: str | PathLike[str], max_points: int = 1 << 22) -> Iterato
     if max_points < 1:
         raise ValueError(f"max_points is {max_points}, expected at least 1")
     place = _place(path)
-    yield from module_for(place, "iter_chunks").iter_chunks(place, max_points)
+    yield from module_for(place, "iter_chunks").iter_chunks(place, max_points, **_space(place, space))
 
 
-def info(path: str | PathLike[str]) -> dict[str, Any]:
+def info(path: str | PathLike[str], *, space: str | None = None) -> dict[str, Any]:
     """Facts of a file, from its header where the format has them there.
+
+    Parameters
+    ----------
+    path : str or PathLike
+    space : {"RAS", "LPS"}, optional
+        As for :func:`read`.
 
     Returns
     -------
@@ -106,10 +132,19 @@ def info(path: str | PathLike[str]) -> dict[str, Any]:
         ``format`` (suffix), ``streamlines`` and ``points`` (int, or None where only reading the
         data would tell), and per format ``dtype``, ``per_point``, ``per_streamline``,
         ``groups`` (lists of names), ``affine``, ``dimensions``, ``voxel_sizes``,
-        ``voxel_order``, ``header``.
+        ``voxel_order``, ``header``, ``space`` and ``space_from`` (how it is known).
     """
     place = _place(path)
-    return {"format": suffix_of(place), **module_for(place, "info").info(place)}
+    return {"format": suffix_of(place), **module_for(place, "info").info(place, **_space(place, space))}
+
+
+def _space(place: str | Path, space: str | None) -> dict[str, Space]:
+    """Return what modules of formats without a fixed space are told of it."""
+    if space is None:
+        return {}
+    if suffix_of(place) not in SPACED:
+        raise ValueError(f"{place}: space is an option of {', '.join(SPACED)} files; leave it out")
+    return {"space": checked(space)}
 
 
 def _place(path: str | PathLike[str]) -> str | Path:
@@ -126,9 +161,10 @@ def write(path: str | PathLike[str], streamlines: Streamlines, *, double: bool =
         Its suffix chooses the format.
     streamlines : Streamlines
     double : bool
-        Write the points of a ``.tck`` file as float64 (Float64LE). MRtrix reads such files; nibabel, DIPY and scilpy
-        refuse them. Otherwise they are float32, and a warning states the error where it is over a micrometre. The other
-        formats take no such option: ``.trk`` holds float32 only, ``.trx``, ``.vtk`` and ``.vtp`` keep the type.
+        Write the points of a ``.tck`` or ``.vtk`` file as float64. MRtrix reads such ``.tck`` files; nibabel, DIPY and
+        scilpy refuse them. MRtrix takes the doubles of a ``.vtk`` file for floats. Otherwise points are float32, and a
+        warning states the error where it is over a micrometre. The other formats take no such option: ``.trk`` holds
+        float32 only, ``.trx`` and ``.vtp`` keep the type.
 
     Returns
     -------
@@ -151,8 +187,8 @@ def write(path: str | PathLike[str], streamlines: Streamlines, *, double: bool =
             f"write takes a path and Streamlines, got {type(streamlines).__name__}; Streamlines.from_list(arrays) "
             "makes some, and a FibletSet has save(path)"
         )
-    if double and suffix_of(path) != ".tck":
-        raise ValueError(f"{path}: double is an option of .tck files; leave it out")
+    if double and suffix_of(path) not in DOUBLES:
+        raise ValueError(f"{path}: double is an option of {' and '.join(DOUBLES)} files; leave it out")
     module.write(path, streamlines, **({"double": True} if double else {}))
     holds = getattr(module, "HOLDS", None)
     parts = ("per_point", "per_streamline", "groups", "per_group")

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import tokenize
 import warnings
+from collections.abc import Mapping
 from os import PathLike, fspath
 from pathlib import Path
 from typing import Any
@@ -28,7 +29,7 @@ from numpy.typing import NDArray
 from pvfiblets.errors import FormatError
 from pvfiblets.formats.mapped import MappedFile
 from pvfiblets.formats.registry import UnknownFormatError
-from pvfiblets.formats.tck import Data, write_rows
+from pvfiblets.formats.tck import Data, timestamp_in, timestamp_of, write_rows
 from pvfiblets.invalid_points import NONFINITE
 from pvfiblets.streamlines import Streamlines, offsets_from_counts
 
@@ -40,7 +41,7 @@ SUFFIXES = (".tsf", ".npy", ".txt", ".csv")
 
 def attach(streamlines: Streamlines, path: str | PathLike[str], name: str | None = None) -> str:
     """Add a file's values to `streamlines` (see :func:`pvfiblets.formats.attach`)."""
-    where, values = values_for(path, streamlines.counts)
+    where, values = values_for(path, streamlines.counts, streamlines.space)
     getattr(streamlines, where)[name_of(path) if name is None else name] = values
     return where
 
@@ -57,7 +58,9 @@ def name_of(path: str | PathLike[str]) -> str:
     return Path(path).stem
 
 
-def values_for(path: str | PathLike[str], counts: NDArray[np.int64]) -> tuple[str, Array]:
+def values_for(
+    path: str | PathLike[str], counts: NDArray[np.int64], space: Mapping[str, Any] | None = None
+) -> tuple[str, Array]:
     """Read the values of a file for streamlines of so many points.
 
     Parameters
@@ -65,6 +68,8 @@ def values_for(path: str | PathLike[str], counts: NDArray[np.int64]) -> tuple[st
     path : str or PathLike
     counts : (n_streamlines,) int64
         Points of each streamline.
+    space : mapping of str, optional
+        The streamlines' own: a ``.tsf`` file of another timestamp than their ``.tck`` file is a warning.
 
     Returns
     -------
@@ -82,7 +87,7 @@ def values_for(path: str | PathLike[str], counts: NDArray[np.int64]) -> tuple[st
     text = fspath(Path(path).expanduser())
     suffix = Path(text).suffix.lower()
     if suffix == ".tsf":
-        return "per_point", _scalars_of(counts, text)
+        return "per_point", _scalars_of(counts, text, timestamp_in(space or {}))
     return _place(counts, text, _read_rows(text, suffix))
 
 
@@ -180,12 +185,21 @@ def write_scalars(path: str | PathLike[str], streamlines: Streamlines, name: str
         )
     wide = values.dtype.itemsize == 8 and values.dtype.kind == "f"
     kind = np.dtype("<f8" if wide else "<f4")
-    write_rows(path, MAGIC_SCALARS, streamlines, values[:, None], kind)
+    write_rows(path, MAGIC_SCALARS, streamlines, values[:, None], kind, [f"timestamp: {timestamp_of(streamlines)}"])
 
 
-def _scalars_of(wanted: NDArray[np.int64], path: str) -> Array:
+def _scalars_of(wanted: NDArray[np.int64], path: str, timestamp: str | None) -> Array:
     values, counts = read_scalars(path)
+    header = Data(path, MAGIC_SCALARS, 1).header
     if np.array_equal(counts, wanted):
+        of = header.fields.get("timestamp")
+        if None not in (of, timestamp) and of != timestamp:
+            warnings.warn(
+                f"{path} has the timestamp {of}, its tracks have {timestamp}: the values may be of other streamlines, "
+                "and mrview refuses the pair; make the .tsf file again from these tracks",
+                UserWarning,
+                stacklevel=2,
+            )
         return values
     if len(counts) != len(wanted):
         found, expected = f"{len(counts)} streamlines", f"{len(wanted)} as the tractogram has"
@@ -195,7 +209,6 @@ def _scalars_of(wanted: NDArray[np.int64], path: str) -> Array:
         expected = f"{wanted[i]}, one for each of its points"
     at = offsets_from_counts(counts + 1)
     size = values.dtype.itemsize
-    header = Data(path, MAGIC_SCALARS, 1).header
     first = int(np.argmax(counts != wanted)) if len(counts) == len(wanted) else 0
     raise FormatError(path, header.data_position + int(at[first]) * size, found, expected)
 

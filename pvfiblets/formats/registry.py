@@ -27,8 +27,12 @@ _MODULES: dict[str, str] = {
     ".vtk": "pvfiblets.formats.vtk_legacy",
     ".vtp": "pvfiblets.formats.vtp",
     ".tt.gz": "pvfiblets.formats.tinytrack",
+    ".fib": "pvfiblets.formats.vtk_legacy",
     **pvfiblets.FORMATS,
 }
+READ_BY_VTK = (".vtu", ".pvtu", ".pvtp", ".vtm", ".vtmb", ".vtkhdf")
+_READ_BY_LIBRARIES = {**dict.fromkeys(READ_BY_VTK, "pvfiblets.formats.by_vtk"), ".dpy": "pvfiblets.formats.dpy"}
+"""Not for files of strangers: VTK and HDF5 trust their sizes, and VTK opens the files that they name."""
 
 
 class UnknownFormatError(FibletsError, ValueError):
@@ -52,7 +56,7 @@ def register(suffix: str, module_name: str) -> None:
 
 
 def suffixes() -> tuple[str, ...]:
-    """Return every suffix that some module serves, longest first."""
+    """Return every suffix of files of any source, longest first."""
     return tuple(sorted(_MODULES, key=lambda s: (-len(s), s)))
 
 
@@ -65,10 +69,10 @@ def suffix_of(path: str | PathLike[str]) -> str:
         If no registered suffix fits.
     """
     name = fspath(path).lower()
-    for suffix in suffixes():
+    for suffix in (*suffixes(), *_READ_BY_LIBRARIES):
         if name.endswith(suffix):
             return suffix
-    known = ", ".join(sorted(_MODULES))
+    known = ", ".join(sorted((*_MODULES, *_READ_BY_LIBRARIES)))
     if is_trx_folder(path):
         return ".trx"
     if os.path.isdir(path):  # noqa: PTH112 - of what is no path at all, too
@@ -100,7 +104,7 @@ def module_for(path: str | PathLike[str], *needs: str) -> ModuleType:
         If no module serves the suffix, or it lacks a function of `needs`.
     """
     suffix = suffix_of(path)
-    module = import_module(_MODULES[suffix])
+    module = import_module(_MODULES.get(suffix) or _READ_BY_LIBRARIES[suffix])
     for need in needs:
         if not hasattr(module, need):
             able = ", ".join(_able(need))

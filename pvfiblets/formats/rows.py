@@ -8,8 +8,10 @@ from __future__ import annotations
 
 import os
 import threading
+import warnings
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
+from os import PathLike
 from typing import Any
 
 import numpy as np
@@ -28,6 +30,9 @@ BLOCK_BYTES = 3 << 19
 
 _THREADS = min(os.cpu_count() or 1, 8)
 
+_TOLD_ROUNDING = 1e-3
+"""Error of float32 (mm) from which writers warn."""
+
 
 def nonfinite(values: Array) -> Ints:
     """Find the indices (ascending) of NaN and infinity in a one-dimensional float array."""
@@ -39,6 +44,25 @@ def nonfinite(values: Array) -> Ints:
 
     parts = _each_block(part, len(values), values.itemsize)
     return np.concatenate(parts) if parts else np.zeros(0, np.int64)
+
+
+def check_rounding(path: str | PathLike[str], points: Array) -> None:
+    """Refuse points that float32 cannot hold, warn if it moves them; of mapped points nothing stays in memory."""
+    most, step = 0.0, BLOCK_BYTES // 8
+    for first in range(0, len(points) if points.dtype == np.float64 else 0, step):
+        block = points[first : first + step]
+        with np.errstate(over="ignore"):
+            most = max(most, float(np.abs(block - block.astype(np.float32)).max()))
+        forget(points, 0, first + len(block))
+    if not np.isfinite(most):
+        raise ValueError(f"{path}: float32 cannot hold some coordinates; check the units, or write doubles")
+    if most > _TOLD_ROUNDING:
+        warnings.warn(
+            f"{path}: float32 moves points by up to {most:.2g} mm; doubles (--double, double=True) keep them, which "
+            "not all programs read",
+            UserWarning,
+            stacklevel=4,
+        )
 
 
 def finite_rows(rows: Array, dtype: DTypeLike) -> tuple[Array, Ints, Array]:

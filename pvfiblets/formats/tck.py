@@ -20,12 +20,17 @@ a row of a finite x with NaN or infinity          the point is left out, the lin
                                                   both are counted
 two NaN rows in succession                        a streamline without points, kept
 ================================================  =================================================
+
+The other keys of the header (``step_size``, ``timestamp``, ``command_history``) go along as ``space["tck_header"]``.
+``space["tck_rows"]``, a fingerprint of the rows, tells the writer whether the points are still those of that header.
 """
 
 from __future__ import annotations
 
+import math
 import warnings
-from collections.abc import Iterator
+import zlib
+from collections.abc import Iterator, Mapping
 from os import PathLike
 from typing import Any, NamedTuple
 
@@ -34,7 +39,7 @@ from numpy.typing import NDArray
 
 from pvfiblets.errors import FormatError
 from pvfiblets.formats.mapped import MappedFile, forget
-from pvfiblets.formats.rows import finite_rows, without_rows
+from pvfiblets.formats.rows import check_rounding, finite_rows, without_rows
 from pvfiblets.formats.scratch import is_long, spans
 from pvfiblets.invalid_points import CUT, NONFINITE
 from pvfiblets.ragged import cut_offsets
@@ -51,9 +56,6 @@ _HEADER_LIMIT = 1 << 24
 _BLOCK_POINTS = 1 << 20
 """Points written at a time."""
 
-_TOLD_ROUNDING = 1e-3
-"""Error of float32 (mm) from which the writer warns."""
-
 HOLDS: tuple[str, ...] = ()
 """Parts of Streamlines besides the points that the format can carry."""
 
@@ -65,6 +67,15 @@ _DATATYPES = {
     "Float64LE": "<f8",
     "Float64BE": ">f8",
 }
+_OF_THE_FILE = ("datatype", "count", "file")
+"""Keys that each writer sets anew."""
+
+HEADER, ROWS = "tck_header", "tck_rows"
+"""Keys of ``Streamlines.space``."""
+
+_FINGERPRINT_ROWS = 64
+_SAME_STEP = 1e-3
+"""Relative difference below which ``step_size`` stays as it is written."""
 
 NO_END_MARKER = "end marker missing"
 AFTER_END = "bytes after the end marker"
@@ -76,6 +87,7 @@ class Header(NamedTuple):
     """What the text header says (shared with ``.tsf``, which has the same layout)."""
 
     fields: dict[str, str]
+    """By key in lower case; repeated keys have a line each."""
     dtype: np.dtype[Any]
     data_position: int
     n_streamlines: int | None
@@ -111,14 +123,15 @@ def read_header(file: MappedFile, magic: str) -> Header:
             raise FormatError(file.path, len(text), "no END line", "END after the header's fields")
         key, colon, value = line.partition(b":")
         if colon:
-            name = key.decode("utf-8", "replace").strip()
+            name = key.decode("utf-8", "replace").strip().lower()
             text_value = value.decode("utf-8", "replace").strip()
             fields[name] = f"{fields[name]}\n{text_value}" if name in fields else text_value
             places.setdefault(name, position)
         position = newline + 1
 
     datatype = fields.get("datatype", "Float32LE")
-    if datatype not in _DATATYPES:
+    kind = {name.lower(): value for name, value in _DATATYPES.items()}.get(datatype.lower())
+    if kind is None:
         raise FormatError(file.path, places["datatype"], f"datatype {datatype!r}", f"one of {list(_DATATYPES)}")
     words = fields.get("file", f". {end}").split()
     if len(words) != 2 or words[0] != "." or not words[1].isdecimal():
@@ -141,7 +154,7 @@ def read_header(file: MappedFile, magic: str) -> Header:
         raise FormatError(file.path, places["count"], f"count {count!r}", "a number of streamlines")
     return Header(
         fields,
-        np.dtype(_DATATYPES[datatype]),
+        np.dtype(kind),
         data_position,
         None if count is None else int(count[:18]),
     )
@@ -300,19 +313,74 @@ class Data:
 def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:  # noqa: ARG001
     """Read a whole tck file (see :func:`pvfiblets.formats.read`)."""
     data = Data(path, MAGIC_TRACKS, 3)
-    parts = [_streamlines(w, d) for w, d in data.windows(max(1, data.n_rows))]
+    space = _kept_header(data)
+    parts = [_streamlines(w, d, space) for w, d in data.windows(max(1, data.n_rows))]
     return parts[0] if len(parts) == 1 else Streamlines.concatenate(parts)
 
 
 def iter_chunks(path: str | PathLike[str], max_points: int) -> Iterator[Streamlines]:
     """Stream a tck file (see :func:`pvfiblets.formats.iter_chunks`); memory-mapped."""
+    data = Data(path, MAGIC_TRACKS, 3)
+    space = _kept_header(data)
     # One row more than the points: the delimiter that closes the last streamline.
-    for window, dropped in Data(path, MAGIC_TRACKS, 3).windows(max_points + 1):
-        yield _streamlines(window, dropped)
+    for window, dropped in data.windows(max_points + 1):
+        yield _streamlines(window, dropped, space)
 
 
-def _streamlines(window: Window, dropped: dict[str, int]) -> Streamlines:
-    return Streamlines(window.rows, offsets_from_counts(window.counts), dropped=dropped)
+def _streamlines(window: Window, dropped: dict[str, int], space: dict[str, str]) -> Streamlines:
+    return Streamlines(window.rows, offsets_from_counts(window.counts), space=space, dropped=dropped)
+
+
+def _kept_header(data: Data) -> dict[str, str]:
+    lines = [
+        f"{key}: {line}"
+        for key, value in data.header.fields.items()
+        if key not in _OF_THE_FILE
+        for line in value.split("\n")
+    ]
+    if not lines or not data.n_rows:
+        return {}
+    n = data.n_rows - int(np.isinf(data.rows[-1, 0]))
+    return {HEADER: "\n".join(lines), ROWS: _fingerprint(n, data.rows[_fingerprint_rows(n)])}
+
+
+def timestamp_in(space: Mapping[str, Any]) -> str | None:
+    """Return the timestamp of the ``.tck`` file that streamlines come from."""
+    lines = str(space.get(HEADER, "")).split("\n")
+    return next((line.partition(": ")[2] for line in lines if line.startswith("timestamp: ")), None)
+
+
+def timestamp_of(streamlines: Streamlines) -> str:
+    """Return the timestamp of a ``.tck`` file of these streamlines.
+
+    MRtrix compares it as text, to tell which ``.tsf`` files belong to which tracks. New ones are made from the points,
+    not from the time, so that the same points give the same file.
+    """
+    now = _rows_of(streamlines)
+    kept = timestamp_in(streamlines.space) if streamlines.space.get(ROWS) == now else None
+    return kept or f"0.{zlib.crc32(now.encode()):010d}"
+
+
+def _rows_of(streamlines: Streamlines) -> str:
+    """Return the fingerprint of the rows that the streamlines take in a file."""
+    n = streamlines.n_points + len(streamlines)
+    at = _fingerprint_rows(n)
+    closing = streamlines.offsets[1:] + np.arange(len(streamlines))
+    line = np.searchsorted(closing, at)
+    is_point = closing[line] != at
+    rows = np.full((len(at), 3), np.nan)
+    rows[is_point] = streamlines.points[(at - line)[is_point]]
+    return _fingerprint(n, rows)
+
+
+def _fingerprint_rows(n: int) -> Ints:
+    return np.unique(np.linspace(0, max(n - 1, 0), min(n, _FINGERPRINT_ROWS)).astype(np.int64))
+
+
+def _fingerprint(n: int, rows: Array) -> str:
+    with np.errstate(over="ignore", invalid="ignore"):
+        known = np.where(np.isfinite(rows), rows, 0).astype("<f4")
+    return f"{n} rows, {zlib.crc32(known.tobytes()):08x}"
 
 
 def info(path: str | PathLike[str]) -> dict[str, Any]:
@@ -335,32 +403,56 @@ def write(path: str | PathLike[str], streamlines: Streamlines, *, double: bool =
     ValueError
         If a coordinate is beyond float32.
     """
-    points = streamlines.points
-    if double or points.dtype == np.float32:
-        write_rows(path, MAGIC_TRACKS, streamlines, points, np.dtype("<f8" if double else "<f4"))
-        return
-    rounding = _rounding(points)
-    if not np.isfinite(rounding):
-        raise ValueError(f"{path}: float32 cannot hold some coordinates; check the units, or write doubles")
-    write_rows(path, MAGIC_TRACKS, streamlines, points, np.dtype("<f4"))
-    if rounding > _TOLD_ROUNDING:
+    if not double:
+        check_rounding(path, streamlines.points)
+    fields, changes = _header_for(streamlines)
+    write_rows(path, MAGIC_TRACKS, streamlines, streamlines.points, np.dtype("<f8" if double else "<f4"), fields)
+    if changes:
         warnings.warn(
-            f"{path}: float32 moves points by up to {rounding:.2g} mm; doubles (--double, double=True) keep them, and "
-            "MRtrix reads such a file, but nibabel, DIPY and scilpy do not",
+            f"{path}: the points differ from those that its header describes; changed {', '.join(changes)}",
             UserWarning,
             stacklevel=3,
         )
 
 
-def _rounding(points: Array) -> float:
-    """Return by how much float32 changes a coordinate at most; of mapped points nothing stays in memory."""
-    most = 0.0
-    for first in range(0, len(points), _BLOCK_POINTS):
-        block = points[first : first + _BLOCK_POINTS]
-        with np.errstate(over="ignore"):
-            most = max(most, float(np.abs(block - block.astype(np.float32)).max()))
-        forget(points, 0, min(first + _BLOCK_POINTS, len(points)))
-    return most
+def _header_for(streamlines: Streamlines) -> tuple[list[str], list[str]]:
+    """Return the lines of a header that describe the points, and what they change of the kept header."""
+    lines = [line for line in str(streamlines.space.get(HEADER, "")).split("\n") if line]
+    before = {key: value for key, _, value in (line.partition(": ") for line in lines)}
+    after = {"timestamp": timestamp_of(streamlines)}
+    now = _rows_of(streamlines)
+    if "step_size" not in before or streamlines.space.get(ROWS) != now:
+        step = _largest_step(streamlines)
+        for key in ("step_size", *(["output_step_size"] if "output_step_size" in before else [])):
+            if step > 0 and not math.isclose(_number(before.get(key)), step, rel_tol=_SAME_STEP):
+                after[key] = f"{step:.7g}"
+    changes = [f"{key} from {before[key]} to {new}" for key, new in after.items() if before.get(key, new) != new]
+    if not str(streamlines.space.get(ROWS)).startswith(now.split(",")[0]):
+        # Files of values of the other streamlines have another size: their timestamp needs no warning.
+        changes = [change for change in changes if not change.startswith("timestamp")]
+    kept = [line for line in lines if line.partition(": ")[0] not in after]
+    return kept + [f"{key}: {value}" for key, value in after.items()], changes
+
+
+def _number(text: str | None) -> float:
+    try:
+        return float(text or "nan")
+    except ValueError:
+        return math.nan
+
+
+def _largest_step(streamlines: Streamlines) -> float:
+    """Return the length (mm) of the longest segment, 0 without one; of mapped points nothing stays in memory."""
+    points, most = streamlines.points, 0.0
+    ends = streamlines.offsets[1:] - 1  # the segment from such a point leads to another streamline
+    for first in range(0, len(points) - 1, _BLOCK_POINTS):
+        block = points[first : first + _BLOCK_POINTS + 1].astype(np.float64)
+        squares = (np.diff(block, axis=0) ** 2).sum(axis=1)
+        a, b = np.searchsorted(ends, (first, first + len(squares)))
+        squares[ends[a:b] - first] = 0.0
+        most = max(most, float(np.fmax.reduce(squares, initial=0.0)))
+        forget(points, 0, first + len(block))
+    return math.sqrt(most)
 
 
 def write_rows(
@@ -369,17 +461,19 @@ def write_rows(
     streamlines: Streamlines,
     values: Array,
     kind: np.dtype[Any],
+    fields: list[str],
 ) -> None:
-    """Write (n_points, k) `values` in MRtrix' layout, one NaN row after each streamline."""
+    """Write (n_points, k) `values` in MRtrix' layout, one NaN row after each streamline, with more lines of header."""
     k = values.shape[1]
-    fields = f"{magic}\ndatatype: Float{kind.itemsize * 8}LE\ncount: {len(streamlines)}\nfile: . "
+    own = (f"datatype: Float{kind.itemsize * 8}LE", f"count: {len(streamlines)}", "file: . ")
+    head = "\n".join([magic, *fields, *own]).encode()
     # The offset stands in the header whose length it is; blanks before END take up the slack.
-    offset = len(fields) + len("0000\nEND\n")
+    offset = len(head) + len("0000000000\nEND\n")
     offset += -offset % 8
-    header = f"{fields}{offset}".ljust(offset - len("\nEND\n")) + "\nEND\n"
+    header = head + str(offset).encode().ljust(offset - len(head) - len("\nEND\n")) + b"\nEND\n"
     size = len(header) + (len(values) + len(streamlines) + 1) * k * kind.itemsize
     with replacing(path, size) as file:
-        file.write(header.encode())
+        file.write(header)
         for start, stop in streamlines.blocks(_BLOCK_POINTS):
             first, last = streamlines.offsets[start], streamlines.offsets[stop]
             if is_long(int(last - first)):  # one streamline

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from os import PathLike
 from typing import Any
@@ -54,6 +55,13 @@ def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
                 forget(array, 0, int(streamlines.offsets[stop]))
             for array in values.values():
                 forget(array, 0, stop)
+    if n_properties and (empty := int((streamlines.counts == 0).sum())):
+        warnings.warn(
+            f"{path}: {empty} streamlines have no points, for which nibabel and DIPY refuse a .trk file of values per "
+            "streamline; write streamlines[streamlines.counts > 0], or .trx",
+            UserWarning,
+            stacklevel=3,
+        )
 
 
 def _header(streamlines: Streamlines) -> tuple[Any, Array]:

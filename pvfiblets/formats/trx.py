@@ -26,7 +26,7 @@ from __future__ import annotations
 
 import json
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
@@ -331,17 +331,21 @@ def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
         _entry("positions", streamlines.points, "positions"): streamlines.points,
         "offsets.uint64": streamlines.offsets.astype("<u8"),
     }
+    renamed: dict[str, str] = {}
     for folder, columns in (("dpv", streamlines.per_point), ("dps", streamlines.per_streamline)):
+        names = _without_dots(columns, renamed)
         for name, values in columns.items():
-            arrays[_entry(f"{folder}/{name}", values, name)] = values
+            arrays[_entry(f"{folder}/{names[name]}", values, name)] = values
+    groups = _without_dots({**streamlines.groups, **streamlines.per_group}, renamed)
     for name, members in streamlines.groups.items():
         ids = members.astype(np.uint32 if len(streamlines) < 2**32 else np.uint64)
-        arrays[_entry(f"groups/{name}", ids, name)] = ids
+        arrays[_entry(f"groups/{groups[name]}", ids, name)] = ids
     for group, data in streamlines.per_group.items():
+        names = _without_dots(data, renamed)
         for name, values in data.items():
             # The format stores one row per group.
             row = values.reshape(1, -1)
-            arrays[_entry(f"dpg/{_checked(group)}/{name}", row, name)] = row
+            arrays[_entry(f"dpg/{_checked(groups[group])}/{names[name]}", row, name)] = row
     dimensions = streamlines.space.get("dimensions", (1, 1, 1))
     if order := streamlines.space.get("voxel_order"):
         dimensions = along_affine(dimensions, order, streamlines.affine)
@@ -360,6 +364,21 @@ def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
                     part = np.ascontiguousarray(values[i : i + (1 << 20)])
                     target.write(part.astype(part.dtype.newbyteorder("<"), copy=False).data)
                     forget(values, 0, min(i + (1 << 20), len(values)))
+    if renamed:
+        told = ", ".join(f"{name!r} is {new!r}" for name, new in renamed.items())
+        warnings.warn(f"{path}: trx-python and DIPY refuse names with dots; {told} here", UserWarning, stacklevel=3)
+
+
+def _without_dots(names: Iterable[str], renamed: dict[str, str]) -> dict[str, str]:
+    """Return each name's name in the file, one for each, and add those that differ to `renamed`."""
+    found: dict[str, str] = {}
+    for name in sorted(names, key=lambda name: "." in name):  # names without dots stay
+        new = name.replace(".", "_")
+        while new in found.values():
+            new += "_"
+        found[name] = new
+    renamed |= {name: new for name, new in found.items() if name != new}
+    return found
 
 
 def _entry(base: str, values: Array, name: str) -> str:
@@ -372,10 +391,8 @@ def _entry(base: str, values: Array, name: str) -> str:
     if columns == 0:
         raise ValueError(f"{base!r} has no columns; remove it, since a trx file cannot hold such an array")
     _checked(name)
-    # Without the number, a name that itself ends in ".3" would be read as three columns.
-    explicit = columns != 1 or base.rsplit(".", 1)[-1].isdecimal()
     suffix = "bit" if kind.kind == "b" else kind.name
-    return f"{base}.{columns}.{suffix}" if explicit else f"{base}.{suffix}"
+    return f"{base}.{columns}.{suffix}" if columns != 1 else f"{base}.{suffix}"
 
 
 def _checked(name: str) -> str:

@@ -20,12 +20,15 @@ from collections.abc import Iterator
 from os import PathLike
 from typing import Any
 
+import numpy as np
+
 from pvfiblets.errors import FormatError
 from pvfiblets.formats.read_whole import facts, only_finite, pieces
+from pvfiblets.formats.rows import check_rounding
 from pvfiblets.formats.vtk_parser import LegacyParser
 from pvfiblets.formats.vtk_writer import write_with
 from pvfiblets.streamlines import Streamlines, from_cells
-from pvfiblets.vtk_space import OURS, Space, space_in_header, space_named
+from pvfiblets.vtk_space import OURS, Space, space_in_header, space_named, space_taken
 
 __all__ = ["HOLDS", "info", "iter_chunks", "read", "write"]
 
@@ -33,16 +36,22 @@ HOLDS = ("per_point", "per_streamline", "groups", "per_group")
 """Parts of Streamlines besides the points that the format can carry (groups as field data)."""
 
 
-def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:  # noqa: ARG001
+def read(
+    path: str | PathLike[str],
+    *,
+    progress: bool = False,  # noqa: ARG001
+    space: Space | None = None,
+) -> Streamlines:
     """Read a legacy vtk file (see :func:`pvfiblets.formats.read`)."""
-    return _read(path)[0]
+    return _read(path, space)[0]
 
 
-def _read(path: str | PathLike[str]) -> tuple[Streamlines, Space | None]:
-    """Read the streamlines, and the space that the file names."""
+def _read(path: str | PathLike[str], given: Space | None) -> tuple[Streamlines, dict[str, str]]:
+    """Read the streamlines, and the facts of their space."""
     parser = LegacyParser(path)
     parser.parse()
-    space = space_in_header(parser.title, parser.path) or space_named(parser.space, parser.path)
+    named = space_in_header(parser.title, parser.path) or space_named(parser.space, parser.path)
+    space, why = space_taken(named, given)
     offsets, ids = parser.lines
     n = len(offsets) - 1
     first = parser.cells_before_lines
@@ -59,24 +68,25 @@ def _read(path: str | PathLike[str]) -> tuple[Streamlines, Space | None]:
         )
     except ValueError as error:  # groups in the field data that name no streamlines
         raise FormatError(parser.path, None, str(error), "data that agree with each other") from error
-    return only_finite(streamlines, parser.notes), space
+    return only_finite(streamlines, parser.notes), {"space": space, "space_from": why}
 
 
-def iter_chunks(path: str | PathLike[str], max_points: int) -> Iterator[Streamlines]:
+def iter_chunks(path: str | PathLike[str], max_points: int, *, space: Space | None = None) -> Iterator[Streamlines]:
     """Read the whole file, then give it in pieces (see :func:`pvfiblets.formats.iter_chunks`)."""
-    yield from pieces(read(path), max_points)
+    yield from pieces(read(path, space=space), max_points)
 
 
-def info(path: str | PathLike[str]) -> dict[str, Any]:
+def info(path: str | PathLike[str], *, space: Space | None = None) -> dict[str, Any]:
     """Facts of the file, which is read whole (see :func:`pvfiblets.formats.info`)."""
-    streamlines, space = _read(path)
-    return {**facts(streamlines), "space": space}
+    streamlines, of_space = _read(path, space)
+    return {**facts(streamlines), **of_space}
 
 
-def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
+def write(path: str | PathLike[str], streamlines: Streamlines, *, double: bool = False) -> None:
     """Write a binary legacy vtk file (see :func:`pvfiblets.formats.write`).
 
-    Version 4.2, which programs other than VTK read too; 5.1 where the indices need 64 bits.
+    Version 4.2, which programs other than VTK read too; 5.1 where the indices need 64 bits. MRtrix's tckconvert takes
+    double coordinates for floats, so they are float32 unless `double`.
     """
     from vtkmodules.vtkIOLegacy import vtkPolyDataWriter
 
@@ -85,4 +95,8 @@ def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
     writer.SetHeader(f"pvfiblets SPACE={OURS}")
     words = streamlines.n_points + len(streamlines)
     writer.SetFileVersion(42 if words < 2**31 else 51)
-    write_with(writer, path, streamlines)
+    data = streamlines.to_polydata()
+    if not double:
+        check_rounding(path, streamlines.points)
+        data.points = streamlines.points.astype(np.float32, copy=False)
+    write_with(writer, path, data)

@@ -6,21 +6,23 @@ import os
 from contextlib import suppress
 from os import PathLike
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 from pvfiblets.errors import FibletsError
-from pvfiblets.streamlines import Streamlines
 from pvfiblets.whole_files import replacing
 
+if TYPE_CHECKING:
+    import pyvista
 
-def write_with(writer: Any, path: str | PathLike[str], streamlines: Streamlines, *, compressed: bool = False) -> None:
-    """Let a VTK writer write the streamlines as poly data.
+
+def write_with(writer: Any, path: str | PathLike[str], data: pyvista.PolyData, *, compressed: bool = False) -> None:
+    """Let a VTK writer write poly data.
 
     Parameters
     ----------
     writer : vtkAlgorithm
     path : str or PathLike
-    streamlines : Streamlines
+    data : pyvista.PolyData
     compressed : bool
         Whether the file takes fewer bytes than the arrays.
 
@@ -31,7 +33,6 @@ def write_with(writer: Any, path: str | PathLike[str], streamlines: Streamlines,
     FibletsError
         If VTK reports another failure.
     """
-    data = streamlines.to_polydata()
     size = data.GetActualMemorySize() * 1024
     writer.SetInputData(data)
     said: list[str] = []

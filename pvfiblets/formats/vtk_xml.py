@@ -30,7 +30,11 @@ MOST_TIMES = 10_000
 """What a file can hold, in its own size: no compressor of VTK's packs more densely, but for nothing but zeros."""
 
 _MOST_TEXT = 1 << 16  # bytes
-_COMPRESSORS = {"": None, "vtkZLibDataCompressor": "zlib", "vtkLZMADataCompressor": "lzma"}
+_COMPRESSORS = {
+    "": None, "vtkZLibDataCompressor": "zlib", "vtkLZMADataCompressor": "lzma", "vtkLZ4DataCompressor": "lz4"
+}  # fmt: skip
+_DENSEST_LZ4 = 256
+"""Bytes that a byte of LZ4 can become, rounded up."""
 
 
 class Element:
@@ -300,6 +304,8 @@ class XmlFile:
             # The bound stops what inflates to more than it says.
             if self._compressor == "zlib":
                 data = zlib.decompressobj().decompress(packed, size + 1)
+            elif self._compressor == "lz4":
+                data = _without_lz4(bytes(packed), size)
             else:
                 data = lzma.LZMADecompressor(memlimit=1 << 30).decompress(packed, size + 1)
         except (zlib.error, lzma.LZMAError, EOFError) as error:
@@ -404,6 +410,18 @@ class _Base64(_Source):
 
     def data(self, size: int) -> bytes:
         return self._decode(self._at, self._header + size)[self._header : self._header + size]
+
+
+def _without_lz4(packed: bytes, size: int) -> bytes:
+    """Return the bytes of a block, none if it is damaged or holds another number of them than `size`."""
+    from vtkmodules.vtkIOCore import vtkLZ4DataCompressor
+
+    if size > _DENSEST_LZ4 * len(packed):
+        return b""
+    data = np.empty(size, np.uint8)
+    compressor: Any = vtkLZ4DataCompressor()
+    compressor.AddObserver("ErrorEvent", lambda *_: None)  # else VTK prints
+    return data[: compressor.Uncompress(packed, len(packed), data, size)].tobytes()
 
 
 def _bounded(home: XmlFile, element: Element, sizes: Array) -> Array:

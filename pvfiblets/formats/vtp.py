@@ -11,9 +11,11 @@ NaN or infinity.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from os import PathLike
 from typing import Any
+from xml.sax.saxutils import escape
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +25,7 @@ from pvfiblets.formats.read_whole import TEXT_ARRAYS, facts, only_finite, pieces
 from pvfiblets.formats.vtk_writer import write_with
 from pvfiblets.formats.vtk_xml import Element, XmlFile
 from pvfiblets.streamlines import Streamlines, from_cells
-from pvfiblets.vtk_space import FIELD, Space, space_named
+from pvfiblets.vtk_space import FIELD, Space, space_named, space_taken
 
 Array = NDArray[Any]
 
@@ -33,19 +35,24 @@ HOLDS = ("per_point", "per_streamline", "groups", "per_group")
 _CELLS = ("Verts", "Lines", "Polys", "Strips")
 
 
-def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:  # noqa: ARG001
+def read(
+    path: str | PathLike[str],
+    *,
+    progress: bool = False,  # noqa: ARG001
+    space: Space | None = None,
+) -> Streamlines:
     """Read a vtp file (see :func:`pvfiblets.formats.read`)."""
-    return _read(path)[0]
+    return _read(path, space)[0]
 
 
-def _read(path: str | PathLike[str]) -> tuple[Streamlines, Space | None]:
-    """Read the streamlines, and the space that the file names."""
+def _read(path: str | PathLike[str], given: Space | None) -> tuple[Streamlines, dict[str, str]]:
+    """Read the streamlines, and the facts of their space."""
     file = XmlFile(path)
     holder = file.content.child("FieldData")
     field, text = _arrays(file, holder, None)
     named = [e for e in holder.children("Array") if e.attributes.get("Name") == FIELD] if holder else []
     texts = file.strings(named[0]) if named else []
-    space = space_named(texts[0] if texts else None, file.path)
+    space, why = space_taken(space_named(texts[0] if texts else None, file.path), given)
     parts = []
     for piece in file.content.children("Piece"):
         streamlines, more_text = _piece(file, piece)
@@ -66,7 +73,7 @@ def _read(path: str | PathLike[str]) -> tuple[Streamlines, Space | None]:
     except ValueError as error:
         raise FormatError(file.path, None, str(error), "data that agree with each other") from error
     whole.dropped |= joined.dropped
-    return only_finite(whole, {TEXT_ARRAYS: text - len(named)}), space
+    return only_finite(whole, {TEXT_ARRAYS: text - len(named)}), {"space": space, "space_from": why}
 
 
 def _piece(file: XmlFile, piece: Element) -> tuple[Streamlines, int]:
@@ -127,19 +134,25 @@ def _arrays(file: XmlFile, holder: Element | None, rows: int | None) -> tuple[di
     return arrays, text
 
 
-def iter_chunks(path: str | PathLike[str], max_points: int) -> Iterator[Streamlines]:
+def iter_chunks(path: str | PathLike[str], max_points: int, *, space: Space | None = None) -> Iterator[Streamlines]:
     """Read the whole file, then give it in pieces (see :func:`pvfiblets.formats.iter_chunks`)."""
-    yield from pieces(read(path), max_points)
+    yield from pieces(read(path, space=space), max_points)
 
 
-def info(path: str | PathLike[str]) -> dict[str, Any]:
+def info(path: str | PathLike[str], *, space: Space | None = None) -> dict[str, Any]:
     """Facts of the file, which is read whole (see :func:`pvfiblets.formats.info`)."""
-    streamlines, space = _read(path)
-    return {**facts(streamlines), "space": space}
+    streamlines, of_space = _read(path, space)
+    return {**facts(streamlines), **of_space}
 
 
 def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
-    """Write a vtp file, appended raw and zlib-compressed (see :func:`pvfiblets.formats.write`)."""
+    """Write a vtp file, appended raw and zlib-compressed (see :func:`pvfiblets.formats.write`).
+
+    Raises
+    ------
+    ValueError
+        If a name has a control character, which XML cannot hold.
+    """
     from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
     writer = vtkXMLPolyDataWriter()
@@ -147,4 +160,15 @@ def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
     writer.EncodeAppendedDataOff()
     writer.SetCompressorTypeToZLib()
     writer.SetHeaderTypeToUInt64()
-    write_with(writer, path, streamlines, compressed=True)
+    data = streamlines.to_polydata()
+    for holder in (data.GetPointData(), data.GetCellData(), data.GetFieldData()):
+        for i in range(holder.GetNumberOfArrays()):
+            array = holder.GetAbstractArray(i)
+            array.SetName(_escaped(array.GetName()))  # VTK writes names as they are
+    write_with(writer, path, data, compressed=True)
+
+
+def _escaped(name: str) -> str:
+    if bad := re.search(r"[\x00-\x08\x0b\x0c\x0e-\x1f]", name):
+        raise ValueError(f"the name {name!r} has the character {bad[0]!r}, which XML cannot hold; rename it")
+    return escape(name, {'"': "&quot;", "\t": "&#9;", "\n": "&#10;", "\r": "&#13;"})

@@ -105,6 +105,8 @@ def _header(path: Path) -> tuple[dict[str, str], list[str], list[str]]:
                 if text == "END":
                     return fields, files, transform
                 if not line:
+                    if path.suffix.lower() == ".mih":  # whose header MRtrix ends with the file
+                        return fields, files, transform
                     break
                 name, colon, value = text.partition(":")
                 name, value = name.strip().lower(), value.strip()

@@ -65,6 +65,7 @@ def test_ways_to_choose():
         whole[mask[:5]]
 
 
+@pytest.mark.filterwarnings("ignore:.*have no points")
 @pytest.mark.parametrize("ids", [[], np.zeros(73, bool), slice(0, 0), [0]])
 def test_a_part_without_points_is_a_set_and_can_be_saved(ids, tmp_path):
     whole = pf.compress(with_groups(), per_point=["height"])
@@ -94,6 +95,7 @@ def test_anchors_of_32_bits(tmp_path):
 
 
 @pytest.mark.few(3)
+@pytest.mark.filterwarnings("ignore:.*have no points")
 @pytest.mark.parametrize("suffix", [".trk", ".tck", ".trx", ".vtk", ".vtp"])
 def test_a_part_is_saved_in_any_format(suffix, tmp_path):
     whole = pf.compress(every_kind(), per_point=["height"])

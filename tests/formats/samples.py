@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 import struct
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -108,7 +109,9 @@ def corpus(folder: Path) -> dict[str, Path]:
     files: dict[str, Path] = {}
     for suffix in (".tck", ".trk", ".trx", ".vtk", ".vtp"):
         path = folder / f"rich{suffix}"
-        formats.write(path, s)
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", ".*have no points", UserWarning)
+            formats.write(path, s)
         files[suffix] = path
     gz = folder / "rich.trk.gz"
     gz.write_bytes(gzip.compress(files[".trk"].read_bytes(), mtime=0))

@@ -138,6 +138,7 @@ FILES = {
 }
 
 
+@pytest.mark.filterwarnings("ignore:.*have no points")
 @pytest.mark.parametrize("kind", FILES)
 def test_a_long_line_comes_from_disk_as_it_is_read_whole(kind, tmp_path, short_memory) -> None:
     path = FILES[kind](lines(SETS["even"]), tmp_path)

@@ -239,7 +239,7 @@ def test_points_are_written_as_float32_unless_doubles_are_asked_for(tmp_path):
     formats.write(path, far, double=True)
     assert formats.info(path)["dtype"] == "float64"
     assert np.array_equal(formats.read(path).points, far.points)
-    with pytest.raises(ValueError, match=r"double is an option of \.tck files"):
+    with pytest.raises(ValueError, match=r"double is an option of \.tck and \.vtk files"):
         formats.write(tmp_path / "a.trk", far, double=True)
     with pytest.raises(ValueError, match="float32 cannot hold some coordinates"):
         formats.write(path, Streamlines(np.full((2, 3), 1e39), [0, 2]))
@@ -258,7 +258,7 @@ def test_a_failed_write_leaves_the_old_file(tmp_path):
     before = path.read_bytes()
     broken = rich()
     broken.points = broken.points[:5]
-    with pytest.raises(ValueError, match="shape mismatch|cannot assign"):
+    with pytest.raises((ValueError, IndexError), match="shape mismatch|cannot assign|out of bounds"):
         formats.write(path, broken)
     assert path.read_bytes() == before
     assert [p.name for p in tmp_path.iterdir()] == ["a.tck"]

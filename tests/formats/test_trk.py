@@ -151,6 +151,7 @@ def test_gzip_streams_in_pieces(file, tmp_path):
         formats.write(tmp_path / "b.trk.gz", s)
 
 
+@pytest.mark.filterwarnings("ignore:.*have no points")
 @given(st.lists(st.integers(0, 5), max_size=8), st.integers(1, 9))
 def test_round_trip_and_pieces(tmp_path_factory, counts, max_points):
     path = tmp_path_factory.mktemp("trk") / "a.trk"

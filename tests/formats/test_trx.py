@@ -123,7 +123,7 @@ def test_round_trip_keeps_everything(tmp_path_factory, counts, max_points, kind)
     path = tmp_path_factory.mktemp("trx") / "a.trx"
     s = rich(1, counts)
     s.points = s.points.astype(kind)
-    s.per_point["ids.3"] = np.arange(s.n_points, dtype=np.uint16)
+    s.per_point["ids"] = np.arange(s.n_points, dtype=np.uint16)
     s.per_streamline["yes"] = np.arange(len(s)) % 2 == 0
     formats.write(path, s)
     back = formats.read(path)

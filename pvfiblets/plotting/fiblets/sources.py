@@ -218,7 +218,7 @@ def with_values_of(fiblets: FibletSet, path: str | os.PathLike[str], rgb: bool |
     FormatError
         If the file is damaged, or its counts fit neither points nor streamlines.
     """
-    where, values = values_for(path, np.diff(fiblets.offsets()))
+    where, values = values_for(path, np.diff(fiblets.offsets()), fiblets.space)
     name = name_of(path)
     if where == "per_streamline":
         return replace(fiblets, per_streamline={**fiblets.per_streamline, name: values})

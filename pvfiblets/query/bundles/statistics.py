@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -32,6 +32,7 @@ def bundle_table(
     images: Mapping[str, Any] | None = None,
     voxel_size: float | None = None,
     like: Any = None,
+    weights: Literal["length", "points"] = "length",
 ) -> Table:
     """Measure bundles.
 
@@ -46,6 +47,9 @@ def bundle_table(
         mm: side of the voxels that volumes are counted in; 1 by default.
     like : image, optional
         Whose voxels volumes are counted in, instead.
+    weights : {"length", "points"}
+        What counts in means of images and per-point arrays: each point by half the length of the segments beside it, as
+        in MRtrix's ``tcksample -stat_tck mean``, or every point the same.
 
     Returns
     -------
@@ -53,19 +57,22 @@ def bundle_table(
         Columns ``bundle``; ``count``, ``points``; ``length_mean``, ``length_std`` (population), ``length_min``,
         ``length_max`` and ``length_total``, mm; ``volume_voxels``, voxels that a streamline passes, cut exactly at
         their faces, and ``volume_mm3``; then for each image, per-point and per-streamline array of single numbers
-        ``mean_NAME`` and ``std_NAME``, over points or streamlines that have a value. NaN where there is nothing.
+        ``mean_NAME`` and ``std_NAME``, over points (see `weights`) or streamlines that have a value. NaN where there is
+        nothing, such as points without a length.
 
     Raises
     ------
     IndexError
         If a streamline is out of range.
     TypeError, ValueError
-        If an image or a voxel's size is none.
+        If an image or a voxel's size is none, or `weights` is unknown.
     """
     from ..density import Visits
 
     if voxel_size is not None and like is not None:
         raise ValueError("give either voxel_size= (mm) or like= (an image whose grid is taken)")
+    if weights not in ("length", "points"):
+        raise ValueError(f"unknown weights {weights!r}; choose 'length' or 'points'")
     known = {name: as_image(image) for name, image in (images or {}).items()}
     for name, image in known.items():
         if image is None:
@@ -93,9 +100,10 @@ def bundle_table(
         points += np.bincount(owner, minlength=len(counts))
         visits.add(part.points, line, owner)
         values = {key: image.at(part.points) for key, image in known.items() if image is not None}
+        of_points = _half_lengths(part) if weights == "length" else None
         for key, column in (values | part.per_point).items():
             if _single(column):
-                sums.setdefault(key, _Sums(len(counts))).add(column, owner)
+                sums.setdefault(key, _Sums(len(counts))).add(column, owner, of_points)
     for key, column in data.per_streamline.items():
         if _single(column):
             sums.setdefault(key, _Sums(len(counts))).add(np.asarray(column)[ids], bundle)
@@ -119,21 +127,31 @@ def _single(rows: Any) -> bool:
     return rows.dtype.kind in "biuf" and (rows.ndim == 1 or rows.shape[1:] == (1,))
 
 
+def _half_lengths(lines: Streamlines) -> npt.NDArray[np.float64]:
+    """Return half the length (mm) of the segments beside each point."""
+    steps = np.linalg.norm(np.diff(lines.points.astype(np.float64), axis=0), axis=1)
+    steps[np.setdiff1d(lines.offsets[1:-1], [0, len(lines.points)]) - 1] = 0.0  # between streamlines
+    return (np.r_[0.0, steps] + np.r_[steps, 0.0])[: len(lines.points)] / 2
+
+
 class _Sums:
     """Mean and spread of each bundle's numbers, which come in parts (Chan, Golub and LeVeque 1983)."""
 
     def __init__(self, n_bundles: int) -> None:
         self._n, self._mean, self._squares = np.zeros(n_bundles), np.zeros(n_bundles), np.zeros(n_bundles)
 
-    def add(self, values: npt.ArrayLike, owner: npt.NDArray[np.int64]) -> None:
-        """Add numbers, ``(k,)`` or ``(k, 1)``, of bundles."""
+    def add(
+        self, values: npt.ArrayLike, owner: npt.NDArray[np.int64], weights: npt.NDArray[np.float64] | None = None
+    ) -> None:
+        """Add numbers, ``(k,)`` or ``(k, 1)``, of bundles, each with its weight or 1."""
         numbers = np.asarray(values, np.float64).ravel()
-        known = np.isfinite(numbers)
-        numbers, owner, size = numbers[known], owner[known], len(self._n)
-        n = np.bincount(owner, minlength=size)
-        mean = np.bincount(owner, numbers, minlength=size) / np.maximum(n, 1)
-        total, apart = np.maximum(self._n + n, 1), mean - self._mean
-        self._squares += np.bincount(owner, (numbers - mean[owner]) ** 2, minlength=size)
+        weights = np.ones(len(numbers)) if weights is None else weights
+        known = np.isfinite(numbers) & (weights > 0)
+        numbers, owner, weights, size = numbers[known], owner[known], weights[known], len(self._n)
+        n = np.bincount(owner, weights, minlength=size)
+        mean = np.bincount(owner, weights * numbers, minlength=size) / np.where(n > 0, n, 1)
+        total, apart = np.where(self._n + n > 0, self._n + n, 1), mean - self._mean
+        self._squares += np.bincount(owner, weights * (numbers - mean[owner]) ** 2, minlength=size)
         self._squares += apart**2 * self._n * n / total
         self._mean += apart * n / total
         self._n += n
@@ -144,4 +162,4 @@ class _Sums:
 
     @property
     def std(self) -> npt.NDArray[np.float64]:
-        return np.where(self._n > 0, np.sqrt(self._squares / np.maximum(self._n, 1)), np.nan)
+        return np.where(self._n > 0, np.sqrt(self._squares / np.where(self._n > 0, self._n, 1)), np.nan)

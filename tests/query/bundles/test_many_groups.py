@@ -27,7 +27,7 @@ def test_groups_that_overlap_are_measured_as_each_alone(lines, monkeypatch, comp
     monkeypatch.setattr(statistics, "CHUNK", 50)  # bundles go on from part to part
     data = compress(lines, per_point=["fa"]) if compressed else lines
     whole = data.decompress(dtype=np.float64) if compressed else lines
-    table = statistics.bundle_table(data)
+    table = statistics.bundle_table(data, weights="points")
     for row, (name, members) in enumerate(lines.groups.items()):
         ids = np.unique(members)
         alone = whole[ids]

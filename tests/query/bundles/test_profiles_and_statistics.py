@@ -151,7 +151,7 @@ def test_bundles_are_measured(lines, image, tmp_path, compressed):
     made.per_streamline = {"weight": np.arange(30.0)}
     made.per_point = {"x": made.points[:, 0].copy()}
     data = compress(made, exact=True, per_point=["x"]) if compressed else made
-    table = bundles.bundle_table(data, images={"fa": image}, voxel_size=2.0)
+    table = bundles.bundle_table(data, images={"fa": image}, voxel_size=2.0, weights="points")
     assert table["bundle"].tolist() == ["some", "none"]
     assert table["count"].tolist() == [12, 0]
     lengths = [np.linalg.norm(np.diff(line, axis=0), axis=1).sum() for line in lines[:12]]

@@ -1,0 +1,74 @@
+"""Lines in files that VTK reads: ``.vtu``, ``.vtm``, ``.vtkhdf``, and files of pieces (``.pvtp``, ``.pvtu``).
+
+VTK's readers trust sizes of a damaged file and may end the process; the formats of tractograms from elsewhere have
+parsers of our own. Names of blocks become groups. Coordinates are RAS+ mm, or LPS+ if the field data say so
+(:mod:`pvfiblets.vtk_space`).
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from pvfiblets.errors import FormatError
+from pvfiblets.formats.read_whole import facts, only_finite, pieces
+from pvfiblets.formats.vtk_sizes import check_memory
+from pvfiblets.formats.vtk_xml import XmlFile
+from pvfiblets.streamlines import Streamlines
+from pvfiblets.vtk_space import FIELD, OURS, Space, space_of_dataset, space_taken
+
+__all__ = ["info", "iter_chunks", "read"]
+
+
+def read(
+    path: str | PathLike[str],
+    *,
+    progress: bool = False,  # noqa: ARG001
+    space: Space | None = None,
+) -> Streamlines:
+    """Read a file through VTK (see :func:`pvfiblets.formats.read`)."""
+    return _read(path, space)[0]
+
+
+def _read(path: str | PathLike[str], given: Space | None) -> tuple[Streamlines, dict[str, str]]:
+    """Read the streamlines, and the facts of their space."""
+    import pyvista as pv
+
+    from pvfiblets.other_libraries import streamlines_of
+
+    if not str(path).lower().endswith(".vtkhdf"):
+        XmlFile(path, None)  # broken XML is an error before VTK prints it
+    elif not Path(path).is_file():
+        raise FileNotFoundError(2, "No such file", str(path))
+    check_memory(path)
+    try:
+        with warnings.catch_warnings(), pv.VtkErrorCatcher(raise_errors=True, send_to_logging=False):
+            warnings.simplefilter("ignore", UserWarning)  # PyVista's, of the same errors
+            dataset = pv.read(path)
+    except RuntimeError as error:
+        text = str(error).strip().splitlines()[-1]
+        raise FormatError(path, None, f"an error of VTK's reader ({text})", "a whole file") from error
+    named = space_of_dataset(dataset)
+    space, why = space_taken(named, given)
+    if named is None and space != OURS:
+        dataset.field_data[FIELD] = [space]
+    try:
+        found = streamlines_of(dataset)
+    except TypeError as error:
+        raise FormatError(path, None, str(error), "lines") from error
+    assert found is not None
+    return only_finite(found), {"space": space, "space_from": why}
+
+
+def iter_chunks(path: str | PathLike[str], max_points: int, *, space: Space | None = None) -> Iterator[Streamlines]:
+    """Read the whole file, then give it in pieces (see :func:`pvfiblets.formats.iter_chunks`)."""
+    yield from pieces(read(path, space=space), max_points)
+
+
+def info(path: str | PathLike[str], *, space: Space | None = None) -> dict[str, Any]:
+    """Facts of the file, which is read whole (see :func:`pvfiblets.formats.info`)."""
+    streamlines, of_space = _read(path, space)
+    return {**facts(streamlines), **of_space}
