@@ -33,8 +33,15 @@ def refine(window: Any) -> bool:
 
 def finish(window: Any) -> None:
     """Draw all frames that the pictures of a window want."""
-    while refine(window):
-        pass
+    wanting = _unfinished(window)
+    for picture in wanting:
+        picture.at_once = True
+    try:
+        while refine(window):
+            pass
+    finally:
+        for picture in wanting:
+            picture.at_once = False
 
 
 def _unfinished(window: Any) -> list[Any]:
