@@ -13,7 +13,7 @@ The last frame is of the camera as it is: the last sample, or a frame of the mea
 thinner in samples. So G-buffers and depths are
 in the end those of the picture without refinement. Until then `pvfiblets.mappers.shifted_cameras` knows better.
 
-A picture of nothing but one set of lines that is to be finished at once (`Picture.at_once`) gets all samples in one
+A picture of nothing but one set of lines that is to be finished at once (`Picture.finishing`) gets all samples in one
 frame, as layers of the lines that they show (`pvfiblets.engine.fiblets.sample_layers`).
 
 A picture that ``vtkWindowToImageFilter`` puts together of tiles gets all samples of a tile in the tile's one frame.
@@ -24,13 +24,16 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Generator, Hashable, Iterable, Iterator
 from enum import Enum, auto
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pvfiblets.engine.effects.antialias_accumulation import Accumulation
 from pvfiblets.engine.effects.picture_passes import Attachment
 from pvfiblets.engine.effects.sample_positions import sample_positions
 from pvfiblets.mappers.shifted_cameras import exact_wanted, note_depths, note_sample, shift, shifted_copy
 from pvfiblets.mappers.windows import Slot
+
+if TYPE_CHECKING:
+    from pvfiblets.mappers.antialias_windows import Finishing
 
 __all__ = ["SHOWN_FROM", "Refinement"]
 
@@ -95,6 +98,11 @@ class Refinement:
     def taken(self) -> int:
         """Samples in the picture that was drawn last; 0 for a plain one."""
         return 0 if self._frame is _Frame.PLAIN else self._taken
+
+    @property
+    def few(self) -> bool:
+        """Whether the picture that was drawn last would be better without its samples."""
+        return bool(self._left) and 0 < self.taken < SHOWN_FROM
 
     def unfinished(self, state: Hashable) -> bool:
         """Say whether more frames are wanted of a state, of which one has been drawn."""
@@ -162,10 +170,18 @@ class Refinement:
         """Whether the frame is to show all samples at once."""
         return self._frame is _Frame.ADDED
 
-    def layer_frames(self, layers: Iterable[Any]) -> Generator[Any, None, None]:
-        """Yield the layers of all samples (`pvfiblets.engine.fiblets.sample_layers`), each to be drawn as it is."""
+    def layer_frames(self, layers: Iterable[Any], finishing: Finishing) -> Generator[Any, None, None]:
+        """Yield the layers of all samples (`pvfiblets.engine.fiblets.sample_layers`), each to be drawn as it is.
+
+        Before them come shares of the work that have been done.
+        """
         try:
             for layer in layers:
+                if isinstance(layer, float):
+                    if not finishing.reach(int(layer * len(self.positions))):
+                        self.draw_singly()
+                        return
+                    continue
                 self._shares = layer.owner
                 yield layer
             self._frame, self._taken = _Frame.MEAN, len(self.positions)

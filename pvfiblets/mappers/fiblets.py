@@ -265,13 +265,18 @@ class FibletMapper(CutMapper[EngineOptions]):
         assert context is not None
         frame, view, style = self._sampled(renderer)
         rectangle = frame.pixel_rectangle(self._drawn.bounds, self._drawn.promise, style.half_width + 1.0)
-        with context.foreign():
-            engine = self._engine(context, context.slot(self))
-            layers = engine.sample_layers(view, style, rectangle)
+        engine = self._engine(context, context.slot(self))
+        steps = engine.sample_layers(view, style, rectangle)
         try:
-            yield from layers
+            while True:
+                with context.foreign():
+                    layer = next(steps, None)
+                if layer is None:
+                    break
+                yield layer
         finally:
             with context.foreign():
+                steps.close()
                 engine.drop_samples()
 
     def _context_in(self, renderer: vtkRenderer) -> WindowContext | None:

@@ -28,7 +28,7 @@ from pvfiblets.engine.effects.picture import Attachment, PictureEffects
 from pvfiblets.engine.effects.tone import Tone
 from pvfiblets.engine.errors import EngineError
 from pvfiblets.mappers.antialias_refinement import Refinement
-from pvfiblets.mappers.antialias_windows import finish, shown_pictures
+from pvfiblets.mappers.antialias_windows import Finishing, finish, shown_pictures
 from pvfiblets.mappers.lens_focus import FOLLOWED, DepthOfField, Focusing, lens_of
 from pvfiblets.mappers.overlays import Overlay
 from pvfiblets.mappers.picture_prop import COLOUR, DEPTH, PictureProp, attachment
@@ -65,8 +65,8 @@ class Picture:
         Called after each frame of a picture that is refined.
     paced : callable
         Says whether somebody asks for more frames of the picture while it rests.
-    at_once : bool
-        Whether nobody sees the frames before the finished picture.
+    finishing : Finishing or None
+        Told of samples where nobody sees the frames before the finished picture.
     """
 
     def __init__(self, renderer: vtkRenderer) -> None:
@@ -87,7 +87,7 @@ class Picture:
         self.focusing = Focusing()
         self.drawn: Callable[[], None] | None = None
         self.paced: Callable[[], bool] = lambda: False
-        self.at_once = False
+        self.finishing: Finishing | None = None
         self._lacks_memory = False
         shown_pictures.add(self)
 
@@ -280,7 +280,7 @@ class Picture:
             return
         refinement = self._refinement
         if refinement is not None and tuple(renderer.GetRenderWindow().GetTileScale()) == (1, 1):
-            lines = self._layered_lines(renderer) if self.at_once and not self._lacks_memory else None
+            lines = self._layered_lines(renderer) if self.finishing is not None and not self._lacks_memory else None
             refinement.start(renderer, self._state(renderer), layered=lines is not None)
             if refinement.layered:
                 self._draw_layers(renderer, lines)
@@ -312,8 +312,9 @@ class Picture:
     def _draw_layers(self, renderer: Any, lines: Any) -> None:
         """Add up the layers of all samples, each in a frame inside of the one that the renderer is about to draw."""
         assert self._refinement is not None
+        assert self.finishing is not None
         self._insert()
-        frames = self._refinement.layer_frames(lines.sample_layers(renderer))
+        frames = self._refinement.layer_frames(lines.sample_layers(renderer), self.finishing)
         try:
             for self._smoothing.layer in frames:
                 self._draw_inside(renderer)

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import re
+import signal
+from contextlib import contextmanager
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,6 +16,8 @@ from pvfiblets.engine.effects.sample_positions import sample_positions
 from pvfiblets.engine.errors import EngineError
 from pvfiblets.engine.fiblets import sample_layers
 from pvfiblets.engine.fiblets.sample_layers import SampleLayers
+from pvfiblets.mappers import antialias_windows
+from pvfiblets.mappers.antialias_windows import Finishing
 from pvfiblets.mappers.picture import Picture
 from pvfiblets.regions import Box
 from pvfiblets.synthetic import brain_streamlines
@@ -187,3 +192,60 @@ def test_samples_lie_where_those_one_after_the_other_do():
     np.testing.assert_allclose(found[order[0]], wanted[order[1]], atol=1e-5)
     assert np.abs(places).max() < float(re.search(r"ASIDE = (0\.\d+)", text)[1])
     assert np.abs(found).max() <= 0.5  # or culling would have to look beyond the picture
+
+
+@pytest.mark.parametrize("at_once", [True, False])
+def test_an_interrupt_leaves_the_picture_so_far_and_the_next_one_goes_on(scene, at_once, monkeypatch):
+    plotter, _ = scene
+    plotter.show(auto_close=False)
+    finished, _ = shown(plotter, monkeypatch, singly=not at_once)
+    plain = shown_plain(plotter)
+    monkeypatch.setattr(sample_layers, "MOST_TEXELS", 16 * SIZE[0] * SIZE[1] // 4)
+    if not at_once:
+        monkeypatch.setattr(Picture, "_layered_lines", lambda *_: None)
+    reach, count = Finishing.reach, 2
+
+    def interrupted(self, done):
+        nonlocal count
+        count -= 1
+        if count == 0:
+            signal.raise_signal(signal.SIGINT)
+        return reach(self, done)
+
+    monkeypatch.setattr(Finishing, "reach", interrupted)
+    plotter.picture.antialias = "off"
+    plotter.picture.antialias = "refined"
+    plotter.render()
+    with pytest.warns(RuntimeWarning, match=r"stopped after \d+ of 16 samples"):
+        np.testing.assert_array_equal(shot(plotter), plain)
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    assert np.percentile(off_by(shot(plotter), finished), 99) <= 1.0
+
+
+def shown_plain(plotter):
+    """Return the picture with smooth edges of one sample."""
+    plotter.picture.antialias = "coverage"
+    plotter.render()
+    return shot(plotter)
+
+
+def test_progress_is_shown_after_a_while(scene, monkeypatch):
+    plotter, _ = scene
+    plotter.show(auto_close=False)
+    told = []
+
+    @contextmanager
+    def bar(show, **how):
+        told.append((show, how["total"]))
+        yield SimpleNamespace(update=told.append)
+
+    monkeypatch.setattr(antialias_windows, "progress_bar", bar)
+    shown(plotter, monkeypatch, singly=True)
+    assert told == []
+    monkeypatch.setattr(antialias_windows, "PATIENCE", 0.0)
+    shown(plotter, monkeypatch, singly=True)
+    assert told[0][1] == 16
+    assert sum(told[1:]) >= 15
+    told.clear()
+    shown(plotter, monkeypatch)
+    assert sum(told[1:]) == 16

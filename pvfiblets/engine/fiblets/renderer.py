@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Iterator
 from contextlib import nullcontext
 from dataclasses import replace
 from functools import partial
@@ -267,7 +267,9 @@ class FibletRenderer(LinesBehind):
         plain = style.radius is None and style.relief is None and view.region is None
         return plain and isinstance(self._pipeline, ComputePipeline)
 
-    def sample_layers(self, view: View, style: FibletStyle, rectangle: tuple[int, int, int, int]) -> Sequence[GBuffer]:
+    def sample_layers(
+        self, view: View, style: FibletStyle, rectangle: tuple[int, int, int, int]
+    ) -> Iterator[float | GBuffer]:
         """Draw sixteen samples of every pixel, as layers of the lines that they show (:mod:`.sample_layers`).
 
         The picture of :meth:`render` stays as it is.
@@ -280,10 +282,11 @@ class FibletRenderer(LinesBehind):
         rectangle : tuple of 4 ints
             x, y, width, height of the part of the picture in which anything can be.
 
-        Returns
-        -------
-        sequence of GBuffer
-            The renderer's own, until :meth:`drop_samples`; ``owner`` is the number of samples that show a layer.
+        Yields
+        ------
+        float or GBuffer
+            The share of the work that is done, at times; then the layers. These are the renderer's own, until
+            :meth:`drop_samples`; ``owner`` is the number of samples that show a layer.
 
         Raises
         ------
@@ -294,8 +297,8 @@ class FibletRenderer(LinesBehind):
         assert isinstance(self._pipeline, ComputePipeline)
         if self._samples is None:
             self._samples = self._keep(SampleLayers(self._ctx, self._gl, self._programs), "samples")
-        self._samples.draw(view, replace(style, edges=False), rectangle, self._request, self._pipeline)
-        return self._samples.layers
+        yield from self._samples.draw(view, replace(style, edges=False), rectangle, self._request, self._pipeline)
+        yield from self._samples.layers
 
     def drop_samples(self) -> None:
         """Give back what :meth:`sample_layers` keeps; twice is harmless."""

@@ -78,8 +78,8 @@ class SampleLayers:
         rectangle: Rectangle,
         request: Callable[[View, FibletStyle, GBuffer], DrawRequest],
         pipeline: ComputePipeline,
-    ) -> None:
-        """Draw anew.
+    ) -> Iterator[float]:
+        """Draw anew, part by part; yield the share of the work that is done after each.
 
         Parameters
         ----------
@@ -111,12 +111,13 @@ class SampleLayers:
             restore = held.enter_context(self._marks_kept(pipeline))
             undo = held.enter_context(ExitStack())
             undo.callback(self._drop_layers)
-            for corner in tiles:
+            for done, corner in enumerate(tiles, start=1):
                 wanted = request(_part(view, corner, size), sub, samples)
                 restore()
                 pipeline.draw(replace(wanted, occlusion=pyramid, samples=("SUBSAMPLES",)))
                 with self._gl.framebuffers_kept():
                     self._sort(view.size, samples, entries, listed, corner)
+                yield done / len(tiles)
             undo.pop_all()
 
     @contextmanager
@@ -207,14 +208,14 @@ def _target(
         raise EngineError(f"no memory for {SAMPLES} samples of {size[0]} x {size[1]} pixels") from error
 
 
-def _tiles(rectangle: Rectangle) -> tuple[tuple[int, int], Iterator[tuple[int, int]]]:
+def _tiles(rectangle: Rectangle) -> tuple[tuple[int, int], list[tuple[int, int]]]:
     """Return the size of parts that hold a rectangle, and where each begins."""
     x, y, width, height = rectangle
     parts = math.ceil(SAMPLES * width * height / MOST_TEXELS)
     rows = min(math.ceil(math.sqrt(parts * height / width)), height)
     columns = min(math.ceil(parts / rows), width)
     size = -(-width // columns), -(-height // rows)
-    return size, ((x + size[0] * i, y + size[1] * j) for j in range(rows) for i in range(columns))
+    return size, [(x + size[0] * i, y + size[1] * j) for j in range(rows) for i in range(columns)]
 
 
 def _part(view: View, corner: tuple[int, int], size: tuple[int, int]) -> View:
