@@ -17,7 +17,6 @@ import moderngl
 import numpy as np
 
 from ..bindings import SAMPLE_LAYER
-from ..culling import DepthPyramid
 from ..errors import EngineError
 from ..gbuffer import EMPTY, GBuffer
 from ..moderngl_extras import GLExtras
@@ -106,15 +105,13 @@ class SampleLayers:
             entries, listed = _target(self._ctx, size, 4)
             held.callback(entries.release)
             held.callback(listed.release)
-            pyramid = DepthPyramid(self._ctx, self._gl, self._programs)
-            held.callback(pyramid.release)
             restore = held.enter_context(self._marks_kept(pipeline))
             undo = held.enter_context(ExitStack())
             undo.callback(self._drop_layers)
             for done, corner in enumerate(tiles, start=1):
                 wanted = request(_part(view, corner, size), sub, samples)
                 restore()
-                pipeline.draw(replace(wanted, occlusion=pyramid, samples=("SUBSAMPLES",)))
+                pipeline.draw(replace(wanted, occlusion=None, samples=("SUBSAMPLES",)))
                 with self._gl.framebuffers_kept():
                     self._sort(view.size, samples, entries, listed, corner)
                 yield done / len(tiles)
@@ -149,7 +146,7 @@ class SampleLayers:
         self._ctx.enable_only(moderngl.NOTHING)
         self._ctx.scissor = None
         program, array = self._programs.screen("fiblets/samples/entries.frag", [])
-        _use(program, {"owner": samples.owner})
+        _use(program, {"owner": samples.owner, "drawn_ids": samples.ids})
         listed.use()
         array.render(moderngl.TRIANGLES, vertices=3)
         program, array = self._programs.screen("fiblets/samples/layer.frag", [])
