@@ -28,7 +28,6 @@ from .lines_behind import LinesBehind
 from .memory_fit import MemoryBudget
 from .pipelines import CONSTANTS, ComputePipeline, DrawRequest, Limits, Pipeline, make_measurer, make_pipeline
 from .point_values import ValueSources
-from .sample_layers import SampleLayers
 from .style import FibletStyle
 from .uniform_blocks import SharedBlocks, decoding_features
 from .upload import release_chunks, upload_fitting
@@ -42,6 +41,7 @@ if TYPE_CHECKING:
     from ...query.point_flags import Sampling
     from ...query.region import Region
     from .region_query import RegionQuery
+    from .sample_layers import SampleLayers
     from .sampled_volume import VolumeSource
 
 __all__ = ["FibletRenderer"]
@@ -293,6 +293,8 @@ class FibletRenderer(LinesBehind):
         EngineError
             After :meth:`release`, or if memory does not suffice.
         """
+        from .sample_layers import SampleLayers
+
         self._check_alive()
         assert isinstance(self._pipeline, ComputePipeline)
         if self._samples is None:
