@@ -11,7 +11,7 @@ from typing import Any
 from pvfiblets.engine.effects.antialias_coverage import Coverage, SmoothedLines
 from pvfiblets.engine.effects.picture import Attachment
 from pvfiblets.mappers.engine_mapper import EngineMapper
-from pvfiblets.mappers.scene import smoothers
+from pvfiblets.mappers.scene import items_of, smoothers
 from pvfiblets.mappers.windows import weak
 
 __all__ = ["EdgeSmoothing"]
@@ -30,6 +30,8 @@ class EdgeSmoothing:
         Whether the picture is one of many whose mean is shown (`antialias_refinement.py`). Its edges are not smoothed,
         and lines take those pixels whose middles they cover: none is widened to a pixel, and OpenGL's rule
         for thin lines, which makes slanted ones thinner, does not count.
+    layer : GBuffer or None
+        What the only lines show in the frame instead of their picture: a layer of their samples.
     widened : bool
         Whether any is drawn otherwise in the picture of one sample: mappers say so.
     """
@@ -39,6 +41,7 @@ class EdgeSmoothing:
         self._address: str = renderer.GetAddressAsString("")
         self._noted: dict[str, SmoothedLines] = {}
         self.sample = self.widened = False
+        self.layer: Any = None
         smoothers[self._address] = self
 
     def begin(self, *, sample: bool = False) -> None:
@@ -67,22 +70,30 @@ class EdgeSmoothing:
     ) -> None:
         """Smooth the picture, once."""
         noted, self._noted = list(self._noted.values()), {}
-        effects.smooth(colour, depth, viewport, noted, alike=not self._others())
+        effects.smooth(colour, depth, viewport, noted, alike=not self.others)
 
-    def _others(self) -> bool:
-        """Say whether anything is shown that may cover some samples of a pixel and not the others: no drawable does."""
+    @property
+    def others(self) -> bool:
+        """Whether anything is shown that may cover some samples of a pixel and not the others: no drawable does."""
+        return not all(_is_ours(prop) for prop in self._shown())
+
+    def only_lines(self) -> Any:
+        """Return the mapper of the only thing that is shown, if that is one of lines; else None."""
+        shown = self._shown()
+        return shown[0].GetMapper() if len(shown) == 1 and _is_ours(shown[0]) else None
+
+    def _shown(self) -> list[Any]:
+        """Return what is visible but for what lies over the picture."""
         renderer: Any = self._renderer.Get()
-        props = renderer.GetViewProps()
-        for index in range(props.GetNumberOfItems()):
-            prop = props.GetItemAsObject(index)
-            flat = prop.IsA("vtkActor2D") or prop.IsA("vtkContextActor")
-            ours = prop.IsA("vtkActor") and isinstance(prop.GetMapper(), EngineMapper)
-            if prop.GetVisibility() and not (flat or ours):
-                return True
-        return False
+        props = items_of(renderer.GetViewProps())
+        return [p for p in props if p.GetVisibility() and not (p.IsA("vtkActor2D") or p.IsA("vtkContextActor"))]
 
     def release(self) -> None:
         """Have mappers leave edges alone; twice is harmless."""
         self._noted.clear()
         if smoothers.get(self._address) is self:
             del smoothers[self._address]
+
+
+def _is_ours(prop: Any) -> bool:
+    return prop.IsA("vtkActor") and isinstance(prop.GetMapper(), EngineMapper)

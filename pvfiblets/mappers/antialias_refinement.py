@@ -13,15 +13,18 @@ The last frame is of the camera as it is: the last sample, or a frame of the mea
 thinner in samples. So G-buffers and depths are
 in the end those of the picture without refinement. Until then `pvfiblets.mappers.shifted_cameras` knows better.
 
+A picture of nothing but one set of lines that is to be finished at once (`Picture.finishing`) gets all samples in one
+frame, as layers of the lines that they show (`pvfiblets.engine.fiblets.sample_layers`).
+
 A picture that ``vtkWindowToImageFilter`` puts together of tiles gets all samples of a tile in the tile's one frame.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Hashable, Iterator
+from collections.abc import Callable, Generator, Hashable, Iterable, Iterator
 from enum import Enum, auto
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pvfiblets.engine.effects.antialias_accumulation import Accumulation
 from pvfiblets.engine.effects.picture_passes import Attachment
@@ -29,9 +32,15 @@ from pvfiblets.engine.effects.sample_positions import sample_positions
 from pvfiblets.mappers.shifted_cameras import exact_wanted, note_depths, note_sample, shift, shifted_copy
 from pvfiblets.mappers.windows import Slot
 
+if TYPE_CHECKING:
+    from pvfiblets.mappers.antialias_windows import Finishing
+
 __all__ = ["SHOWN_FROM", "Refinement"]
 
 MIDDLE = (0.0, 0.0)
+
+SAMPLES = 16
+"""Samples that can be drawn in one frame."""
 
 SHOWN_FROM = 8
 """Samples whose mean is better than one picture with smooth edges, which is shown until then to who sees each frame."""
@@ -43,7 +52,7 @@ class _Frame(Enum):
     PLAIN = auto()
     SAMPLE = auto()
     MEAN = auto()
-    ADDED = auto()  # a sample of a tile, not shown
+    ADDED = auto()  # a sample of a tile, or a layer of all samples: not shown
 
 
 class Refinement:
@@ -78,6 +87,7 @@ class Refinement:
         self._changed = True
         self._exact = True
         self._painted = False
+        self._shares: Any = None
         self._back: Callable[[], None] | None = None
 
     def same_as(self, other: Refinement) -> bool:
@@ -88,6 +98,11 @@ class Refinement:
     def taken(self) -> int:
         """Samples in the picture that was drawn last; 0 for a plain one."""
         return 0 if self._frame is _Frame.PLAIN else self._taken
+
+    @property
+    def few(self) -> bool:
+        """Whether the picture that was drawn last would be better without its samples."""
+        return bool(self._left) and 0 < self.taken < SHOWN_FROM
 
     def unfinished(self, state: Hashable) -> bool:
         """Say whether more frames are wanted of a state, of which one has been drawn."""
@@ -117,7 +132,7 @@ class Refinement:
 
     # Steps of a frame
 
-    def start(self, renderer: Any, state: Hashable) -> None:
+    def start(self, renderer: Any, state: Hashable, *, layered: bool = False) -> None:
         """Decide what the frame is that a renderer is about to draw, and shift its camera for a sample.
 
         Parameters
@@ -125,6 +140,8 @@ class Refinement:
         renderer : vtkRenderer
         state : hashable
             What the picture is made of; None if it changes from frame to frame.
+        layered : bool
+            Whether all samples can be drawn in one frame: see `layer_frames`.
         """
         due, self.due = self.due, False
         self._name, self._painted, self._begun = _WHOLE, False, time.perf_counter()
@@ -138,11 +155,45 @@ class Refinement:
         if self._over:
             self._left = []
         if self._left and (due or self._taken) and not exact_wanted(renderer):
-            self._frame = _Frame.SAMPLE
-            self._shift(renderer, self._left[0])
+            layered = layered and not self._taken and len(self.positions) == SAMPLES and self.seconds is None
+            self._frame = _Frame.ADDED if layered else _Frame.SAMPLE
+            if layered:
+                self._left = []
+            else:
+                self._shift(renderer, self._left[0])
         elif self._taken >= (SHOWN_FROM if self._left else 1):
             self._frame = _Frame.MEAN
         note_sample(renderer, begun=self._frame is not _Frame.PLAIN)
+
+    @property
+    def layered(self) -> bool:
+        """Whether the frame is to show all samples at once."""
+        return self._frame is _Frame.ADDED
+
+    def layer_frames(self, layers: Iterable[Any], finishing: Finishing) -> Generator[Any, None, None]:
+        """Yield the layers of all samples (`pvfiblets.engine.fiblets.sample_layers`), each to be drawn as it is.
+
+        Before them come shares of the work that have been done.
+        """
+        try:
+            for layer in layers:
+                if isinstance(layer, float):
+                    if not finishing.reach(int(layer * len(self.positions))):
+                        self.draw_singly()
+                        return
+                    continue
+                self._shares = layer.owner
+                yield layer
+            self._frame, self._taken = _Frame.MEAN, len(self.positions)
+        finally:
+            self._shares = None
+            if self._frame is _Frame.ADDED:
+                self._frame = _Frame.PLAIN
+        self._spent += time.perf_counter() - self._begun
+
+    def draw_singly(self) -> None:
+        """Begin anew, with one sample after the other."""
+        self._left, self._taken = list(self.positions), 0
 
     def other_tile_frames(self, renderer: Any) -> Iterator[None]:
         """Yield for each sample of a tile but that which the renderer is about to draw, with the camera shifted."""
@@ -179,7 +230,9 @@ class Refinement:
         """Whether the frame stays as it is drawn, and nothing of it is taken."""
         return self._frame is _Frame.PLAIN and not (self._changed and self._left and self.seen())
 
-    def paint(self, ctx: Any, slot: Slot, colour: Attachment, viewport: tuple[int, int, int, int]) -> None:
+    def paint(
+        self, ctx: Any, slot: Slot, colour: Attachment, viewport: tuple[int, int, int, int], *, alike: bool
+    ) -> None:
         """Take the picture that has been drawn, and draw what is to be seen instead.
 
         Parameters
@@ -190,6 +243,8 @@ class Refinement:
         colour : Attachment
             What the picture was drawn into.
         viewport : tuple of 4 ints
+        alike : bool
+            Whether all samples of a pixel of that are the same.
         """
         if self._name == _WHOLE and _TILE in slot.effects:
             slot.drop_effect(_TILE)
@@ -200,9 +255,9 @@ class Refinement:
             sums.keep(colour, viewport)
             return
         if self._frame is not _Frame.MEAN:
-            if not (self._painted if self._name == _TILE else self._taken):
+            if not (self._painted if self._name == _TILE or self._shares is not None else self._taken):
                 sums.restart()
-            sums.add(colour, viewport)
+            sums.add(colour, viewport, self._shares, alike=alike)
             self._painted = True
         if self._frame is _Frame.SAMPLE and sums.kept and sums.samples < min(SHOWN_FROM, len(self.positions)):
             sums.show_kept(colour, viewport)

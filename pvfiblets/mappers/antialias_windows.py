@@ -2,10 +2,21 @@
 
 from __future__ import annotations
 
+import signal
+import sys
+import threading
+import time
+import warnings
 import weakref
-from typing import Any
+from contextlib import ExitStack
+from typing import Any, Self
 
-__all__ = ["finish", "picture_of", "refine", "shown_pictures"]
+from pvfiblets.progress_bar import progress_bar
+
+__all__ = ["Finishing", "finish", "picture_of", "refine", "shown_pictures"]
+
+PATIENCE = 1.0
+"""Seconds after which it is shown how far pictures are."""
 
 shown_pictures: weakref.WeakSet[Any] = weakref.WeakSet()
 """All `pvfiblets.mappers.picture.Picture` that there are."""
@@ -33,8 +44,71 @@ def refine(window: Any) -> bool:
 
 def finish(window: Any) -> None:
     """Draw all frames that the pictures of a window want."""
-    while refine(window):
-        pass
+    wanting = _unfinished(window)
+    total = sum(len(picture.refinement.positions) for picture in wanting)
+    with Finishing(total) as finishing:
+        for picture in wanting:
+            picture.finishing = finishing
+        try:
+            while refine(window) and finishing.reach(sum(picture.refinement.taken for picture in wanting)):
+                pass
+        finally:
+            for picture in wanting:
+                picture.finishing = None
+        few = [picture for picture in wanting if finishing.stopped and picture.refinement.few]
+        for picture in few:
+            picture.refinement.forget()
+        if few:
+            window.Render()
+
+
+class Finishing:
+    """Shows in a terminal or a notebook how many samples there are, and ends at Ctrl-C.
+
+    VTK ends the program where a `KeyboardInterrupt` leaves what it calls: the first Ctrl-C only keeps `reach` from
+    being true any more, a second one interrupts as usual.
+
+    Parameters
+    ----------
+    total : int
+        Samples to come.
+    """
+
+    def __init__(self, total: int) -> None:
+        self._total = total
+        self._done = self._shown = 0
+        self._bar: Any = None
+        self._held = ExitStack()
+        self._begun = time.monotonic()
+        self.stopped = False
+
+    def __enter__(self) -> Self:
+        main = threading.current_thread() is threading.main_thread()
+        if main and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+            signal.signal(signal.SIGINT, self._stop)
+            self._held.callback(signal.signal, signal.SIGINT, signal.default_int_handler)
+        return self
+
+    def _stop(self, *_: Any) -> None:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        self.stopped = True
+
+    def reach(self, done: int) -> bool:
+        """Show how many samples there are; return whether to go on."""
+        if self._bar is None and time.monotonic() - self._begun >= PATIENCE:
+            watched = sys.stderr.isatty() or "ipykernel" in sys.modules
+            bar = progress_bar(watched, total=self._total, desc="smoothing", unit=" samples", leave=False)
+            self._bar = self._held.enter_context(bar)
+        if self._bar is not None:
+            self._bar.update(done - self._shown)
+            self._shown = done
+        self._done = done
+        return not self.stopped
+
+    def __exit__(self, *_: object) -> None:
+        self._held.close()
+        if self.stopped:
+            warnings.warn(f"stopped after {self._done} of {self._total} samples", RuntimeWarning, stacklevel=2)
 
 
 def _unfinished(window: Any) -> list[Any]:

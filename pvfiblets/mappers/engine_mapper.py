@@ -259,10 +259,12 @@ class EngineMapper(Attached, Readable, Connected, Questions, vtkOpenGLPolyDataMa
                 from pvfiblets.mappers.streaming import pace
 
                 pace(engine, renderer)
-            outside = None
-            if engine.needs_outside(view, style):
-                outside = self._outside(context, slot, renderer, viewport)
-            buffer = engine.render(view, style, outside=outside)
+            buffer = None if smoother is None else smoother.layer
+            if buffer is None:
+                outside = None
+                if engine.needs_outside(view, style):
+                    outside = self._outside(context, slot, renderer, viewport)
+                buffer = engine.render(view, style, outside=outside)
             textures = resolve_textures(context.ctx, slot, buffer, self._colouring)
             draw = Draw(
                 context.ctx, engine, buffer, frame, view, style, renderer, self._drawn, actor,
@@ -288,6 +290,10 @@ class EngineMapper(Attached, Readable, Connected, Questions, vtkOpenGLPolyDataMa
         address = renderer.GetAddressAsString("")
         slot.drawn.pop(address, None)  # the last one stands last
         slot.drawn[address] = Drawn(weak(renderer), viewport, view, style)
+
+    def layers_samples(self, renderer: vtkRenderer) -> bool:  # noqa: ARG002
+        """Say whether samples of all that a renderer shows can be drawn at once."""
+        return False
 
     def _wanted(self, renderer: vtkRenderer, frame: Frame, sample: bool | None) -> tuple[View, Style]:
         """Return what the engine is to draw for a frame; `sample`, where edges are smoothed: whether it is one."""

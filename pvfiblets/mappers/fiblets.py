@@ -10,12 +10,14 @@ import numpy as np
 from vtkmodules.vtkRenderingCore import vtkRenderer
 
 from pvfiblets.engine.fiblets.style import FibletStyle
+from pvfiblets.engine.view import Style, View
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.engine_mapper import CutMapper
 from pvfiblets.mappers.engine_options import EngineOptions, engine_renderer
 from pvfiblets.mappers.line_data import SIDES
 from pvfiblets.mappers.picking import nearest_pixel
 from pvfiblets.mappers.scene import Frame, frame_of, slack, smoothers, wanted_share
+from pvfiblets.mappers.shader_effects import ShaderEffect
 from pvfiblets.mappers.windows import Slot, WindowContext, contexts_with
 from pvfiblets.query.point_flags import Sampling
 
@@ -219,12 +221,10 @@ class FibletMapper(CutMapper[EngineOptions]):
         sample_camera : vtkCamera, optional
             The camera of the next frame, if that is a sample (`antialias_refinement.py`).
         """
-        window, actor = renderer.GetRenderWindow(), self.actor
-        address = window.GetAddressAsString("")
-        found = [context for context in contexts_with(self) if context.alive and context.address == address]
-        if not found or actor is None or self.is_readable or self._empty or renderer.GetSelector() is not None:
+        window, actor, context = renderer.GetRenderWindow(), self.actor, self._context_in(renderer)
+        if context is None or actor is None or self.is_readable or self._empty or renderer.GetSelector() is not None:
             return
-        context, slot = found[0], found[0].slot(self)
+        slot = context.slot(self)
         origin, size = renderer.GetOrigin(), renderer.GetSize()
         if slot.renderer is None or min(size) < 1:
             return
@@ -242,6 +242,47 @@ class FibletMapper(CutMapper[EngineOptions]):
             yield
             if not context.alive or slot.renderer is None:
                 return
+
+    def layers_samples(self, renderer: vtkRenderer) -> bool:
+        """Say whether samples of what a renderer shows can be drawn at once: of opaque lines, each pixel by itself."""
+        actor, context = self.actor, self._context_in(renderer)
+        if actor is None or context is None or self.is_readable or self._empty or not self._has_edges or self._sums_up:
+            return False
+        if actor.HasTranslucentPolygonalGeometry() or wanted_share(context.window) < 1.0:
+            return False
+        alone = all(isinstance(effect, ShaderEffect) and effect.looks_at_pixel for effect in self._effects.values())
+        layers = getattr(context.slot(self).renderer, "layers_samples", None)
+        return alone and layers is not None and layers(*self._sampled(renderer)[1:])
+
+    def _sampled(self, renderer: vtkRenderer) -> tuple[Frame, View, Style]:
+        """Return what the engine is to draw for samples of a renderer's picture."""
+        frame = frame_of(renderer, self.actor, (*renderer.GetOrigin(), *renderer.GetSize()))
+        return frame, *self._wanted(renderer, frame, True)
+
+    def sample_layers(self, renderer: vtkRenderer) -> Iterator[Any]:
+        """Yield the layers of the samples (`pvfiblets.engine.fiblets.sample_layers`) of what a renderer shows."""
+        context = self._context_in(renderer)
+        assert context is not None
+        frame, view, style = self._sampled(renderer)
+        rectangle = frame.pixel_rectangle(self._drawn.bounds, self._drawn.promise, style.half_width + 1.0)
+        engine = self._engine(context, context.slot(self))
+        steps = engine.sample_layers(view, style, rectangle)
+        try:
+            while True:
+                with context.foreign():
+                    layer = next(steps, None)
+                if layer is None:
+                    break
+                yield layer
+        finally:
+            with context.foreign():
+                steps.close()
+                engine.drop_samples()
+
+    def _context_in(self, renderer: vtkRenderer) -> WindowContext | None:
+        """Return the context in which a renderer's window shows it; None before the first frame."""
+        address = renderer.GetRenderWindow().GetAddressAsString("")
+        return next((c for c in contexts_with(self) if c.alive and c.address == address), None)
 
     def pick_at(
         self, x: float, y: float, *, renderer: vtkRenderer | None = None, tolerance: int = 2

@@ -26,8 +26,9 @@ from vtkmodules.vtkRenderingCore import vtkRenderer
 
 from pvfiblets.engine.effects.picture import Attachment, PictureEffects
 from pvfiblets.engine.effects.tone import Tone
+from pvfiblets.engine.errors import EngineError
 from pvfiblets.mappers.antialias_refinement import Refinement
-from pvfiblets.mappers.antialias_windows import finish, shown_pictures
+from pvfiblets.mappers.antialias_windows import Finishing, finish, shown_pictures
 from pvfiblets.mappers.lens_focus import FOLLOWED, DepthOfField, Focusing, lens_of
 from pvfiblets.mappers.overlays import Overlay
 from pvfiblets.mappers.picture_prop import COLOUR, DEPTH, PictureProp, attachment
@@ -64,6 +65,8 @@ class Picture:
         Called after each frame of a picture that is refined.
     paced : callable
         Says whether somebody asks for more frames of the picture while it rests.
+    finishing : Finishing or None
+        Told of samples where nobody sees the frames before the finished picture.
     """
 
     def __init__(self, renderer: vtkRenderer) -> None:
@@ -84,6 +87,8 @@ class Picture:
         self.focusing = Focusing()
         self.drawn: Callable[[], None] | None = None
         self.paced: Callable[[], bool] = lambda: False
+        self.finishing: Finishing | None = None
+        self._lacks_memory = False
         shown_pictures.add(self)
 
     @property
@@ -275,7 +280,10 @@ class Picture:
             return
         refinement = self._refinement
         if refinement is not None and tuple(renderer.GetRenderWindow().GetTileScale()) == (1, 1):
-            refinement.start(renderer, self._state(renderer))
+            lines = self._layered_lines(renderer) if self.finishing is not None and not self._lacks_memory else None
+            refinement.start(renderer, self._state(renderer), layered=lines is not None)
+            if refinement.layered:
+                self._draw_layers(renderer, lines)
         elif refinement is not None and _refinable(renderer) and _starts_empty(renderer):
             self._insert()
             for _ in refinement.other_tile_frames(renderer):
@@ -293,6 +301,30 @@ class Picture:
             lenses[self._address] = {}
         if self._smoothing is not None:
             self._smoothing.begin(sample=self._refinement is not None and not self._refinement.plain)
+
+    def _layered_lines(self, renderer: Any) -> Any:
+        """Return the mapper whose samples can be drawn at once; None where they are drawn one after the other."""
+        if self._smoothing is None or self._depth_of_field is not None or renderer.GetPass() is not None:
+            return None
+        lines = self._smoothing.only_lines() if _starts_empty(renderer) else None
+        return lines if lines is not None and lines.layers_samples(renderer) else None
+
+    def _draw_layers(self, renderer: Any, lines: Any) -> None:
+        """Add up the layers of all samples, each in a frame inside of the one that the renderer is about to draw."""
+        assert self._refinement is not None
+        assert self.finishing is not None
+        self._insert()
+        frames = self._refinement.layer_frames(lines.sample_layers(renderer), self.finishing)
+        try:
+            for self._smoothing.layer in frames:
+                self._draw_inside(renderer)
+        except EngineError:
+            self._lacks_memory = True
+            self._refinement.draw_singly()
+        finally:
+            self._smoothing.layer = None
+            frames.close()
+        self._overlay.hold(renderer)
 
     def _draw_around(self, renderer: Any) -> None:
         """Copy what lies around a tile, if effects look there; the tile itself is drawn after that."""
@@ -405,7 +437,8 @@ class Picture:
         if self.has_effects:
             self._paint_effects(context, slot, colour, viewport)
         if taken and self._refinement is not None:
-            self._refinement.paint(context.ctx, slot, colour, viewport)
+            alike = self._smoothing is not None and not self._smoothing.others
+            self._refinement.paint(context.ctx, slot, colour, viewport, alike=alike)
 
     def _paint_effects(
         self, context: WindowContext, slot: Slot, colour: Attachment, viewport: tuple[int, int, int, int]

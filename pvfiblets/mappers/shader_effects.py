@@ -117,6 +117,11 @@ class ShaderEffect:
         """Nothing of the engine."""
         return {}
 
+    @property
+    def looks_at_pixel(self) -> bool:
+        """Whether it needs nothing but the G-buffer's pixel."""
+        return type(self).prepare is ShaderEffect.prepare
+
     def make(self, ctx: Any) -> Any:  # noqa: ARG002 - as of all effects
         """Keep nothing on the GPU."""
         return None

@@ -53,12 +53,15 @@ class Variant:
         Of ``plotter.picture``.
     vtk : callable, optional
         Called with a plotter: what VTK does about edges.
+    singly : bool
+        Whether one sample is drawn after the other where all could be drawn at once, as windows on a screen do.
     """
 
     method: str
     setting: str
     antialias: str | int = "off"
     vtk: Callable[[Any], object] = _nothing
+    singly: bool = False
 
 
 def variants(quick: bool) -> list[Variant]:
@@ -71,6 +74,7 @@ def variants(quick: bool) -> list[Variant]:
         plotter.renderer.SetUseFXAA(True)  # PyVista has SSAA instead where it is not sure that this works
 
     found = [Variant(OURS, "refined", "refined"), Variant(OURS, "off"), Variant(OURS, "coverage", "coverage")]
+    found.append(Variant(OURS, "refined, singly", "refined", singly=True))
     found += [Variant(OURS, f"refined, {n}", n) for n in ((4,) if quick else (2, 4, 8))]
     found += [Variant(VTK, f"MSAA {n}", vtk=multi(n)) for n in ((8,) if quick else (8, 4))]
     return [*found, Variant(VTK, "SSAA", vtk=lambda plotter: plotter.enable_anti_aliasing("ssaa")),
@@ -156,8 +160,9 @@ class AntialiasStudy:
     notes = (
         "PyVista windows, all of VTK's work included; the camera turns by 1.14° between frames. *moving*: a frame as "
         "it is shown while the camera turns; *at rest*: the finished picture, and the time from the change to it. Both "
-        "are the same but for *refined*, which then draws one picture after the other, 16 unless a number says "
-        "otherwise, with the camera moved by parts of a pixel. *samples*: pictures that the finished one is the mean "
+        "are the same but for *refined*, which then draws as many samples as a screenshot has, 16 unless a number says "
+        "otherwise, each with the camera moved by parts of a pixel: those of one set of lines at once, *singly* one "
+        "after the other, as in windows on a screen. *samples*: pictures that the finished one is the mean "
         "of. *shimmer*: the mean difference of the colours of two frames while the camera turns by 0.1° between them, "
         "over the pixels that show anything in either.",
         "Errors are root mean squares over the pixels that show anything, beside the mean of 256 pictures (64 in quick "
@@ -264,9 +269,13 @@ class PictureWindow:
             frames.append(self.pixels())
         return float(np.mean([differences(after, before)["mean"] for before, after in itertools.pairwise(frames)]))
 
-    def samples(self) -> float:
+    def samples(self, *, singly: bool) -> float:
         """Draw what is left of the picture, and return the seconds that it took."""
+        from pvfiblets.mappers.antialias_windows import finish
+
         begun = self.clock()
+        if not singly:
+            finish(self.plotter.render_window)
         while self.plotter.picture.refine():
             pass
         self._finish()
@@ -345,14 +354,14 @@ def _measured(subject: Subject, options: Options, left_out: list[LeftOut]) -> It
 def _record(subject: Subject, variant: Variant, window: PictureWindow, reference: Pixels, options: Options) -> Record:
     window.look_back()
     moving = window.pixels()
-    window.samples()
+    window.samples(singly=variant.singly)
     still, n = window.pixels(), window.plotter.picture.samples
     window.look_back()
     shimmer = window.shimmer(TURNS)
     frames, whole = [], []
     for _ in range(options.repeats):
         frames.append(window.frame())
-        whole.append(frames[-1] + (window.samples() if n > 1 else 0.0))
+        whole.append(frames[-1] + (window.samples(singly=variant.singly) if n > 1 else 0.0))
     found = {"at rest": differences(still, reference), "moving": differences(moving, reference)}
     errors = {name: Figure(figures["rms"], "levels") for name, figures in found.items()}
     errors["shimmer"] = Figure(shimmer, "levels")

@@ -44,6 +44,7 @@ EXCLUSIVE = (
     ("ONE_SEGMENT", "LEVEL_OF_DETAIL"),
     ("GATHER", "PEEL", "EDGES"),
     ("GATHER", "CROSS_LINE"),
+    *(("SUBSAMPLES", other) for other in ("TUBES", "CROSS_LINE", "GATHER", "PEEL", "EDGES", "CLIP_REGION")),
     ("TUBE_ILLINOIS", "TUBE_ITP", "TUBE_NEWTON"),
     ("TUBE_VALUES", "TUBE_COLOURS"),
     ("HALO_VALUES", "HALO_COLOURS"),
@@ -60,6 +61,7 @@ NEEDS: dict[str, tuple[tuple[str, ...], ...]] = {
     "WIDE_LATTICE": (("LATTICE",),),
     "TUBES": (("WIDE_LINES",),),
     "CROSS_LINE": (("WIDE_LINES",),),
+    "SUBSAMPLES": (("WIDE_LINES",),),
     "SECOND_ROUND": (("CULL_PYRAMID",),),
     **dict.fromkeys(("GATHER_SLICES", "GATHER_OUTSIDE", "PAINTED"), (("GATHER",),)),
     "PAINTED": tuple((source, "GATHER") for source in PAINTS),
@@ -305,6 +307,7 @@ def _others():
 
     screen("fiblets/gather/greatest", "fiblets/gather/slice_keys", "fiblets/hardware_raster/between", "screen/keys")
     screen("fiblets/layers/copy", needs={"TUBES": (("CROSS_LINE",),), "CROSS_LINE": ()})
+    screen("fiblets/samples/entries", "fiblets/samples/layer")
     screen("fiblets/parts/nearer", needs={"TUBES": (("CROSS_LINE",),), "CROSS_LINE": (), "EDGES": ()})
     screen("culling/coverage_dilate", "culling/pyramid_reduce")
     screen("regions/inspect", "regions/tally", always=("PEEL",))

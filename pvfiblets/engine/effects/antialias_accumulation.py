@@ -33,7 +33,14 @@ class Accumulation(PicturePasses):
         """Begin anew with the next picture."""
         self.samples = 0
 
-    def add(self, colour: Attachment, viewport: Viewport) -> None:
+    def add(
+        self,
+        colour: Attachment,
+        viewport: Viewport,
+        shares: moderngl.Texture | None = None,
+        *,
+        alike: bool = False,
+    ) -> None:
         """Add a part of an attachment; the mean of its samples, where it has several a pixel.
 
         Parameters
@@ -41,10 +48,14 @@ class Accumulation(PicturePasses):
         colour : Attachment
         viewport : tuple of 4 ints
             x, y, width, height of that part; of the same size each time, or `restart` comes before.
+        shares : moderngl.Texture, optional
+            r32ui, the 16ths of each pixel that it is: all pictures up to the next `restart` are one sample together.
+        alike : bool
+            Whether all samples of a pixel are the same: then one of them is read.
         """
         sums = self._texture("sums", viewport[2:], 4, "f4")
-        self._copy(colour, viewport, sums.size, "sums", mixed=self.samples > 0)
-        self.samples += 1
+        self._copy(colour, viewport, sums.size, "sums", mixed=self.samples > 0, shares=shares, alike=alike)
+        self.samples = 1 if shares is not None else self.samples + 1
 
     def show(self, target: Attachment, viewport: Viewport) -> None:
         """Draw the mean into a part of an attachment; all samples of a pixel get the same."""
@@ -69,9 +80,20 @@ class Accumulation(PicturePasses):
         if self.kept:
             self._drop("kept")
 
-    def _copy(self, colour: Attachment, viewport: Viewport, size: tuple[int, int], name: str, *, mixed: bool) -> None:
-        features = ["PICTURE_SAMPLES"] if colour.samples else []
-        uniforms = {"samples": colour.samples, "origin": viewport[:2], "corner": (0, 0)}
+    def _copy(
+        self,
+        colour: Attachment,
+        viewport: Viewport,
+        size: tuple[int, int],
+        name: str,
+        *,
+        mixed: bool,
+        shares: moderngl.Texture | None = None,
+        alike: bool = False,
+    ) -> None:
+        features = [*(["PICTURE_SAMPLES"] if colour.samples else []), *([] if shares is None else ["PICTURE_SHARES"])]
+        uniforms = {"samples": 1 if alike else colour.samples, "origin": viewport[:2], "corner": (0, 0)}
+        textures = {"drawn": self._outside(colour, 4)} | ({} if shares is None else {"shares": shares})
         with self._plain_state():
             if mixed:
                 self._ctx.enable(moderngl.BLEND)
@@ -79,7 +101,7 @@ class Accumulation(PicturePasses):
                 self._ctx.blend_func = moderngl.ONE, moderngl.ONE
             target = self._framebuffer((name,))
             target.viewport = (0, 0, *size)
-            self._pass("copy", target, {"drawn": self._outside(colour, 4)}, uniforms, features)
+            self._pass("copy", target, textures, uniforms, features)
             if mixed:
                 self._ctx.disable(moderngl.BLEND)
                 self._ctx.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA

@@ -16,10 +16,10 @@ from ..gbuffer import EMPTY, GBuffer
 from ..moderngl_extras import GLExtras
 from ..shaders import Programs
 
-__all__ = ["PartPictures"]
+__all__ = ["PartPictures", "PictureTarget"]
 
 
-class _Kept:
+class PictureTarget:
     """A G-buffer and what draws into it."""
 
     def __init__(self, ctx: moderngl.Context, size: tuple[int, int], relief: str | None, edges: bool) -> None:
@@ -33,6 +33,7 @@ class _Kept:
             raise EngineError(f"no memory for a picture of {size[0]} x {size[1]} pixels: {error}") from error
 
     def release(self) -> None:
+        """Give both back."""
         self.framebuffer.release()
         self.picture.release()
 
@@ -52,7 +53,7 @@ class PartPictures:
         self._gl = gl
         self._programs = programs
         self._key: tuple[tuple[int, int], str | None, bool] | None = None
-        self._kept: list[_Kept] = []
+        self._kept: list[PictureTarget] = []
 
     def begin(self, size: tuple[int, int], relief: str | None, edges: bool) -> None:
         """Begin with nothing, in a picture of that size and kind.
@@ -65,7 +66,7 @@ class PartPictures:
         if self._key != (size, relief, edges):
             self.release()
             for _ in range(2):
-                self._kept.append(_Kept(self._ctx, size, relief, edges))
+                self._kept.append(PictureTarget(self._ctx, size, relief, edges))
             self._key = size, relief, edges
         for attachment in (0, 1):  # depth and owner; the others are undefined where depth is empty
             self._gl.clear_integers(self._kept[0].framebuffer, (EMPTY,), attachment)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Generator, Iterator
 from contextlib import nullcontext
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
     from ...query.point_flags import Sampling
     from ...query.region import Region
     from .region_query import RegionQuery
+    from .sample_layers import SampleLayers
     from .sampled_volume import VolumeSource
 
 __all__ = ["FibletRenderer"]
@@ -127,6 +129,7 @@ class FibletRenderer(LinesBehind):
         self._last: tuple[View, FibletStyle] | None = None
         self._known_times: dict[str, tuple[float, int]] = {}
         self._query: RegionQuery | None = None
+        self._samples: SampleLayers | None = None
         self._choice: CullingChoice | None = None
         self._limits = limits = Limits.of(ctx, self._gl, pipeline, max_buffer_bytes, max_groups)
         with self._making():
@@ -248,7 +251,7 @@ class FibletRenderer(LinesBehind):
             kept=kept,
             tubes=("TUBES",) if style.radius is not None else (),
             across=("CROSS_LINE",) if style.relief is not None else (),
-            edges=("EDGES",) if style.edges else (),
+            edges=("EDGES",) if style.edges and not style.exact else (),  # nobody reads those of a sample
         )
 
     def needs_outside(self, view: View, style: Style) -> bool:
@@ -258,6 +261,51 @@ class FibletRenderer(LinesBehind):
         """
         two_phase = self._occlusion is not None and self._occlusion.halfway
         return two_phase and self._last != (view, style)
+
+    def layers_samples(self, view: View, style: FibletStyle) -> bool:
+        """Say whether :meth:`sample_layers` can draw a picture: of lines without a surface, cut by planes at most."""
+        plain = style.radius is None and style.relief is None and view.region is None
+        return plain and isinstance(self._pipeline, ComputePipeline)
+
+    def sample_layers(
+        self, view: View, style: FibletStyle, rectangle: tuple[int, int, int, int]
+    ) -> Iterator[float | GBuffer]:
+        """Draw sixteen samples of every pixel, as layers of the lines that they show (:mod:`.sample_layers`).
+
+        The picture of :meth:`render` stays as it is.
+
+        Parameters
+        ----------
+        view : View
+        style : FibletStyle
+            Of which, with the view, :meth:`layers_samples` is true.
+        rectangle : tuple of 4 ints
+            x, y, width, height of the part of the picture in which anything can be.
+
+        Yields
+        ------
+        float or GBuffer
+            The share of the work that is done, at times; then the layers. These are the renderer's own, until
+            :meth:`drop_samples`; ``owner`` is the number of samples that show a layer.
+
+        Raises
+        ------
+        EngineError
+            After :meth:`release`, or if memory does not suffice.
+        """
+        from .sample_layers import SampleLayers
+
+        self._check_alive()
+        assert isinstance(self._pipeline, ComputePipeline)
+        if self._samples is None:
+            self._samples = self._keep(SampleLayers(self._ctx, self._gl, self._programs), "samples")
+        yield from self._samples.draw(view, replace(style, edges=False), rectangle, self._request, self._pipeline)
+        yield from self._samples.layers
+
+    def drop_samples(self) -> None:
+        """Give back what :meth:`sample_layers` keeps; twice is harmless."""
+        self._drop_one(self._samples)
+        self._samples = None
 
     def value_range(self, values: str | VolumeSource) -> tuple[float, float]:
         """Return the least and the greatest of a per-point value, for a colour map's range.

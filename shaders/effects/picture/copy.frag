@@ -5,6 +5,7 @@
 //   samples    per pixel, of both                     (FEATURE_PICTURE_SAMPLES)
 //   origin     pixel of the attachments that becomes the target's pixel corner
 //   corner     pixel of the target
+//   shares     16ths of each pixel of the target that it shows    (FEATURE_PICTURE_SHARES)
 //
 // Colours are the mean of a pixel's samples, as VTK's own resolve makes them: of colours ^ 2.2, which are proportional to
 // light. Of the depths the nearest counts: a pixel at the edge of something belongs to what is in front, or an edge in
@@ -23,6 +24,9 @@ uniform sampler2D depths;
 #endif
 uniform ivec2 origin;
 uniform ivec2 corner;
+#if FEATURE_PICTURE_SHARES
+uniform usampler2D shares;
+#endif
 layout(location = 0) out vec4 colour;
 #if FEATURE_PICTURE_DEPTH
 layout(location = 1) out float depth;
@@ -31,6 +35,10 @@ layout(location = 1) out float depth;
 void main()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy) - corner + origin;
+#if FEATURE_PICTURE_SHARES
+    float share = float(texelFetch(shares, ivec2(gl_FragCoord.xy), 0).x) / 16.0;
+    if (share == 0.0) discard;
+#endif
 #if FEATURE_PICTURE_SAMPLES
     vec4 sum = vec4(0.0);
     for (int i = 0; i < samples; ++i) sum += pow(texelFetch(drawn, pixel, i), LIGHT);
@@ -44,5 +52,8 @@ void main()
 #if FEATURE_PICTURE_DEPTH
     depth = texelFetch(depths, pixel, 0).r;
 #endif
+#endif
+#if FEATURE_PICTURE_SHARES
+    colour *= share;
 #endif
 }

@@ -50,8 +50,9 @@ class DrawRequest:
         Tests what earlier depth hides.
     kept : Visibility
         The caller's filter and region.
-    tubes, across, edges : tuple of str
-        ``TUBES``, ``CROSS_LINE`` and ``EDGES``, if asked for. With tubes the uniform block ``Tubes`` is bound too.
+    tubes, across, edges, samples : tuple of str
+        ``TUBES``, ``CROSS_LINE``, ``EDGES`` and ``SUBSAMPLES``, if asked for. With tubes the uniform block ``Tubes`` is
+        bound too.
     peel : Peel, optional
         Layers behind which the picture begins.
     gather : Gather, optional
@@ -73,6 +74,7 @@ class DrawRequest:
     tubes: tuple[str, ...] = ()
     across: tuple[str, ...] = ()
     edges: tuple[str, ...] = ()
+    samples: tuple[str, ...] = ()
     peel: Peel | None = None
     gather: Gather | None = None
 
@@ -85,7 +87,7 @@ class DrawRequest:
     @property
     def extra(self) -> tuple[str, ...]:
         """What else drawing programs write; nothing of layers behind others."""
-        return () if self.peel is not None else self.edges
+        return () if self.peel is not None else (*self.edges, *self.samples)
 
     @property
     def peeling(self) -> tuple[str, ...]:

@@ -8,11 +8,28 @@
 //   from, to     ends of the piece, the longer axis first
 //   foot, s      where on the piece a pixel is nearest to it, and the same within the piece
 //   away         from there to the pixel
+//
+// FEATURE_SUBSAMPLES: sixteen of the pixels are samples of one of the picture. PLACES tells how far each lies from the middle of its square,
+// in these squares: together they are those of pvfiblets/engine/effects/sample_positions.py.
 
 #include "fiblets/compute/software_raster/brush_planes.glsl"
 #include "fiblets/segments/joint.glsl"
 
 uniform uvec2 share;  // of every fiblet: first segment, and the one after the last; see pvfiblets/engine/fiblets/pipelines/compute.py
+
+#if FEATURE_SUBSAMPLES
+const float ASIDE = 0.57;   // at most
+const vec2 PLACES[16] = vec2[](
+    vec2(-0.123947, 0.045449), vec2(-0.102468, 0.005378), vec2(-0.086256, -0.100299), vec2(0.037171, -0.035177),
+    vec2(0.561390, -0.085308), vec2(0.500000, 0.500000), vec2(-0.021070, -0.165393), vec2(-0.038614, -0.016146),
+    vec2(-0.161150, -0.479104), vec2(-0.273790, 0.090791), vec2(0.216017, 0.198177), vec2(0.132082, -0.009444),
+    vec2(-0.148137, -0.167483), vec2(-0.201669, 0.100203), vec2(-0.231628, -0.012162), vec2(-0.049409, 0.115960)
+);
+vec2 sample_aside(ivec2 texel) { return PLACES[4 * (texel.y & 3) + (texel.x & 3)]; }
+#else
+const float ASIDE = 0.0;
+vec2 sample_aside(ivec2 texel) { return vec2(0.0); }
+#endif
 
 void cover(Segment segment) {
     if (segment.index < share.x || segment.index >= share.y) return;
@@ -29,24 +46,25 @@ void cover(Segment segment) {
     if (steep) onward = onward.yx;
     vec2 left = (steep ? vec2(d.x, -d.y) : vec2(-d.y, d.x)) * sqrt(inverse) / r;
     float slope = abs(run.x) > 1e-6 ? run.y / run.x : 0.0;
-    float reach = r * sqrt(1.0 + slope * slope);  // half the capsule's height over a column
+    float reach = r * sqrt(1.0 + slope * slope) + ASIDE * (1.0 + abs(slope));  // half the capsule's height over a column
     float behind = piece.start ? r : r * min(abs(slope), 1.0), least = piece.start ? -3.0e38 : 0.0;  // before the start
     vec2 before = run.x < 0.0 ? vec2(r, behind) : vec2(behind, r);
-    int column0 = int(max(ceil(min(from.x, to.x) - before.x - 0.5), 0.0));
-    int column1 = int(min(floor(max(from.x, to.x) + before.y - 0.5), size.x - 1.0));
+    int column0 = int(max(ceil(min(from.x, to.x) - before.x - 0.5 - ASIDE), 0.0));
+    int column1 = int(min(floor(max(from.x, to.x) + before.y - 0.5 + ASIDE), size.x - 1.0));
     for (int column = column0; column <= column1; ++column) {
         float x = float(column) + 0.5;
         float y = from.y + slope * (clamp(x, min(from.x, to.x), max(from.x, to.x)) - from.x);
         int row0 = int(max(ceil(y - reach - 0.5), 0.0)), row1 = int(min(floor(y + reach - 0.5), size.y - 1.0));
         for (int row = row0; row <= row1; ++row) {
-            vec2 centre = vec2(x, float(row) + 0.5) - from;
+            ivec2 texel = steep ? ivec2(row, column) : ivec2(column, row);
+            vec2 aside = sample_aside(texel), centre = vec2(x, float(row) + 0.5) + (steep ? aside.yx : aside) - from;
             float foot = dot(centre, run) * inverse;
             precise float s = clamp(foot, 0.0, 1.0);
             vec2 away = centre - s * run;
             precise float z = piece.a.z + (piece.b.z - piece.a.z) * s;
             bool covered = foot >= least && dot(away, away) <= r * r && !(foot > 1.0 && beyond_joint(onward, centre - run)) && brush_kept(heights, s, steep ? away.yx : away);
             vec3 relief = vec3(clamp(dot(left, centre), -1.0, 1.0), 0.0, 0.0);
-            if (covered) put(Fragment(steep ? ivec2(row, column) : ivec2(column, row), z, s, relief), segment);
+            if (covered) put(Fragment(texel, z, s, relief), segment);
         }
     }
 }

@@ -1,0 +1,50 @@
+// Which lines the sixteen samples of a pixel show: of each, how many samples, and one sample that stands for them.
+//
+// Samples of a fiblet that bends within the pixel count as lines of their own, by the tangents that their light depends on.
+//
+//   owner     fiblets by sample (FEATURE_SUBSAMPLES), 4 x 4 texels a pixel; that of no fiblet is one of them
+//   drawn_ids streamlines and tangents
+//   entries   16 bytes, from the lowest, those with most samples first: 16 (samples - 1) + the sample's number
+
+#version 430
+
+uniform usampler2D owner;
+uniform usampler2D drawn_ids;
+out uvec4 entries;
+
+const int ALIKE = 3000;   // of the 32767 steps of a tangent's packed halves
+
+bool alike(uint one, uint other) {
+    ivec2 apart = abs(ivec2(int(one << 16) >> 16, int(one) >> 16) - ivec2(int(other << 16) >> 16, int(other) >> 16));
+    return max(apart.x, apart.y) <= ALIKE;
+}
+
+void main() {
+    ivec2 at = 4 * ivec2(gl_FragCoord.xy);
+    uint owners[16], tangents[16];
+    uint differing = 0u;
+    for (int i = 0; i < 16; ++i) {
+        owners[i] = texelFetch(owner, at + ivec2(i & 3, i >> 2), 0).x;
+        tangents[i] = owners[i] == 0xFFFFFFFFu ? 0u : texelFetch(drawn_ids, at + ivec2(i & 3, i >> 2), 0).y;
+        differing |= (owners[i] ^ owners[0]) | (alike(tangents[i], tangents[0]) ? 0u : 1u);
+    }
+    entries = uvec4(0xF0u, 0u, 0u, 0u);
+    if (differing == 0u) return;
+    uint found[16];
+    int count = 0;
+    for (uint left = 0xFFFFu; left != 0u; ++count) {
+        int first = findLSB(left);
+        uint mine = owners[first], tangent = tangents[first], same = 0u;
+        for (int i = 0; i < 16; ++i) same |= owners[i] == mine && alike(tangents[i], tangent) ? 1u << i : 0u;
+        same &= left;
+        left &= ~same;
+        uint samples = uint(bitCount(same)), middle = same;
+        for (uint skipped = (samples - 1u) / 2u; skipped > 0u; --skipped) middle &= middle - 1u;
+        uint entry = (samples - 1u) << 4u | uint(findLSB(middle));
+        int place = count;
+        for (; place > 0 && found[place - 1] < entry; --place) found[place] = found[place - 1];
+        found[place] = entry;
+    }
+    entries = uvec4(0u);
+    for (int i = 0; i < count; ++i) entries[i >> 2] |= found[i] << (8 * (i & 3));
+}

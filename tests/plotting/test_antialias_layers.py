@@ -1,0 +1,251 @@
+"""All samples of a picture of lines in one frame, beside the same samples one after the other."""
+
+from __future__ import annotations
+
+import re
+import signal
+from contextlib import contextmanager
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+from pvfiblets.engine import shaders
+from pvfiblets.engine.effects.sample_positions import sample_positions
+from pvfiblets.engine.errors import EngineError
+from pvfiblets.engine.fiblets import sample_layers
+from pvfiblets.engine.fiblets.sample_layers import SampleLayers
+from pvfiblets.mappers import antialias_windows
+from pvfiblets.mappers.antialias_windows import Finishing
+from pvfiblets.mappers.picture import Picture
+from pvfiblets.regions import Box
+from pvfiblets.synthetic import brain_streamlines
+
+from .refined_scene import Renders, real_default, shot  # noqa: F401 - a fixture
+
+SIZE = (180, 140)
+
+
+@pytest.fixture(scope="module")
+def lines():
+    return brain_streamlines(250, step=2.0, seed=3)
+
+
+@pytest.fixture
+def scene(lines):
+    plotter = pv.Plotter(off_screen=True, window_size=SIZE)
+    plotter.set_background("black", top="blue")
+    # What a line shows is the same all along it: then lighting it once a pixel changes nothing.
+    colours = np.random.default_rng(0).uniform(size=len(lines))
+    actor = plotter.add_fiblets(lines, scalars=colours, lighting=False, show_scalar_bar=False)
+    yield plotter, actor
+    plotter.close()
+
+
+def cut(_plotter, actor):
+    actor.clip(((0.0, 0.0, 1.0), (0.0, 0.0, 3.0)))
+
+
+def hide(_plotter, actor):
+    actor.subset(every=3)
+
+
+def look_close(plotter, actor):
+    actor.line_width = 0.7
+    plotter.enable_parallel_projection()
+    plotter.camera.zoom(2.0)
+
+
+def write(plotter, _actor):
+    plotter.add_text("above")
+
+
+
+def nothing(_plotter, _actor):
+    """Leave the scene as it is."""
+
+
+def shown(plotter, monkeypatch, *, singly=False):
+    """Return a screenshot and the frames that it took, drawn anew."""
+    with monkeypatch.context() as patch:
+        if singly:
+            patch.setattr(Picture, "_layered_lines", lambda *_: None)
+        plotter.renderer.Modified()
+        plotter.picture.antialias = "off"
+        plotter.picture.antialias = "refined"
+        plotter.render()
+        renders = Renders(plotter)
+        return shot(plotter), renders.since()
+
+
+def off_by(one, other):
+    """Return how far pictures are apart in each pixel of lines, levels."""
+    lit = (one != one[:, :1]).any(axis=-1) | (other != other[:, :1]).any(axis=-1)
+    return np.abs(one - other).max(axis=-1)[lit]
+
+
+@pytest.mark.parametrize(
+    ("change", "parts"), [(nothing, 1), (cut, 1), (cut, 12), (hide, 1), (look_close, 1), (write, 1)]
+)
+def test_the_picture_is_that_of_samples_one_after_the_other(scene, change, parts, monkeypatch):
+    monkeypatch.setattr(sample_layers, "MOST_TEXELS", 16 * SIZE[0] * SIZE[1] // parts)
+    plotter, actor = scene
+    change(plotter, actor)
+    plotter.show(auto_close=False)
+    at_once, frames = shown(plotter, monkeypatch)
+    assert frames == 1
+    mean, frames = shown(plotter, monkeypatch, singly=True)
+    assert frames >= 15
+    apart = off_by(at_once, mean)
+    assert apart.size > 5000
+    assert np.percentile(apart, 99.8) <= 1.0
+    assert apart.max() <= 32  # two samples, as cameras round
+    actor.lighting = True
+    actor.scalars = None
+    at_once, mean = shown(plotter, monkeypatch)[0], shown(plotter, monkeypatch, singly=True)[0]
+    assert np.sqrt((off_by(at_once, mean) ** 2.0).mean()) < 6.0
+
+
+def add_mesh(plotter, _actor):
+    plotter.add_mesh(pv.Sphere(radius=30.0))
+
+
+def add_lines(plotter, _actor):
+    plotter.add_fiblets([[(0.0, 0.0, -50.0), (0.0, 0.0, 50.0)]], color="white")
+
+
+def thicken(_plotter, actor):
+    actor.tube_radius = 0.5
+
+
+def fade(_plotter, actor):
+    actor.opacity = 0.5
+
+
+def keep_outside(_plotter, actor):
+    actor.clip(~Box((-20, 20, -20, 20, -20, 20)))
+
+
+def occlude(_plotter, actor):
+    actor.ambient_occlusion = True
+
+
+@pytest.mark.parametrize("change", [add_mesh, add_lines, thicken, fade, keep_outside, occlude])
+def test_other_pictures_have_one_sample_after_the_other(scene, change, monkeypatch):
+    plotter, actor = scene
+    change(plotter, actor)
+    plotter.show(auto_close=False)
+    plotter.picture.antialias = 4
+    plotter.render()
+    monkeypatch.setattr(SampleLayers, "draw", None)
+    monkeypatch.setattr("pvfiblets.mappers.antialias_refinement.SAMPLES", 4)
+    renders = Renders(plotter)
+    shot(plotter)
+    assert renders.since() >= 4
+
+
+def test_picks_depths_and_memory_are_those_of_the_picture_before(scene, monkeypatch):
+    plotter, actor = scene
+    plotter.show(auto_close=False)
+
+    def seen():
+        found = [actor.GetMapper().pick_at(x, y, tolerance=0) for x in range(60, 120, 7) for y in range(40, 100, 7)]
+        return found, plotter.get_image_depth(), actor.explain()["fiblets"]
+
+    plotter.picture.antialias = "off"
+    plotter.render()
+    picks, depths, counts = seen()
+    assert any(picks)
+    plotter.picture.antialias = "refined"
+    plotter.render()
+    before = {buffer["name"] for buffer in actor.explain()["buffers"]}
+    shot(plotter)
+    after = seen()
+    assert after[0] == picks
+    assert after[2] == counts
+    np.testing.assert_array_equal(after[1], depths)
+    assert {buffer["name"] for buffer in actor.explain()["buffers"]} == before
+
+
+def test_where_memory_lacks_samples_come_one_after_the_other(scene, monkeypatch):
+    plotter, _ = scene
+    plotter.show(auto_close=False)
+    mean, _ = shown(plotter, monkeypatch, singly=True)
+
+    def lacking(*_args):
+        raise EngineError("no memory")
+
+    monkeypatch.setattr(SampleLayers, "draw", lacking)
+    found, frames = shown(plotter, monkeypatch)
+    assert frames >= 16
+    np.testing.assert_array_equal(found, mean)
+
+
+def test_samples_lie_where_those_one_after_the_other_do():
+    text = shaders.read_shader("fiblets/compute/software_raster/cover_wide.glsl")
+    places = np.array([[float(n) for n in pair] for pair in re.findall(r"vec2\((-?\d\.\d+), (-?\d\.\d+)\)", text)])
+    squares = np.stack(np.meshgrid(np.arange(4), np.arange(4)), axis=-1).reshape(-1, 2)
+    found = (squares + 0.5 + places) / 4.0 - 0.5
+    wanted = np.array(sample_positions(16))
+    order = [np.lexsort(points.round(4).T) for points in (found, wanted)]
+    np.testing.assert_allclose(found[order[0]], wanted[order[1]], atol=1e-5)
+    assert np.abs(places).max() < float(re.search(r"ASIDE = (0\.\d+)", text)[1])
+    assert np.abs(found).max() <= 0.5  # or culling would have to look beyond the picture
+
+
+@pytest.mark.parametrize("at_once", [True, False])
+def test_an_interrupt_leaves_the_picture_so_far_and_the_next_one_goes_on(scene, at_once, monkeypatch):
+    plotter, _ = scene
+    plotter.show(auto_close=False)
+    finished, _ = shown(plotter, monkeypatch, singly=not at_once)
+    plain = shown_plain(plotter)
+    monkeypatch.setattr(sample_layers, "MOST_TEXELS", 16 * SIZE[0] * SIZE[1] // 4)
+    if not at_once:
+        monkeypatch.setattr(Picture, "_layered_lines", lambda *_: None)
+    reach, count = Finishing.reach, 2
+
+    def interrupted(self, done):
+        nonlocal count
+        count -= 1
+        if count == 0:
+            signal.raise_signal(signal.SIGINT)
+        return reach(self, done)
+
+    monkeypatch.setattr(Finishing, "reach", interrupted)
+    plotter.picture.antialias = "off"
+    plotter.picture.antialias = "refined"
+    plotter.render()
+    with pytest.warns(RuntimeWarning, match=r"stopped after \d+ of 16 samples"):
+        np.testing.assert_array_equal(shot(plotter), plain)
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    assert np.percentile(off_by(shot(plotter), finished), 99) <= 1.0
+
+
+def shown_plain(plotter):
+    """Return the picture with smooth edges of one sample."""
+    plotter.picture.antialias = "coverage"
+    plotter.render()
+    return shot(plotter)
+
+
+def test_progress_is_shown_after_a_while(scene, monkeypatch):
+    plotter, _ = scene
+    plotter.show(auto_close=False)
+    told = []
+
+    @contextmanager
+    def bar(show, **how):
+        told.append((show, how["total"]))
+        yield SimpleNamespace(update=told.append)
+
+    monkeypatch.setattr(antialias_windows, "progress_bar", bar)
+    shown(plotter, monkeypatch, singly=True)
+    assert told == []
+    monkeypatch.setattr(antialias_windows, "PATIENCE", 0.0)
+    shown(plotter, monkeypatch, singly=True)
+    assert told[0][1] == 16
+    assert sum(told[1:]) >= 15
+    told.clear()
+    shown(plotter, monkeypatch)
+    assert sum(told[1:]) == 16
