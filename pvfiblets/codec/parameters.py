@@ -26,6 +26,7 @@ __all__ = [
     "Parameters",
     "Survey",
     "bounds_of",
+    "median_step",
     "survey",
 ]
 
@@ -189,6 +190,14 @@ def _segments(points: npt.NDArray[np.floating], offsets: npt.NDArray[np.int64], 
         if is_long(len(points)):
             forget(points, 0, int(first[b - 1]))
     return lengths
+
+
+def median_step(streamlines: Streamlines) -> float:
+    """Median length of segments that have one, mm; 0 without any."""
+    points = streamlines.points
+    lengths = _segments(points, np.asarray(streamlines.offsets), max(1, len(points) // SAMPLE))
+    moving = lengths[lengths > 0.0]
+    return float(np.median(moving)) if moving.size else 0.0
 
 
 def survey(chunks: Iterable[Streamlines], per_point: Iterable[str] = ()) -> Survey:
