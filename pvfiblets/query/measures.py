@@ -18,9 +18,9 @@ Curvature does not depend on how a set is stored. A tenth of a step, which codin
 segment by a tenth of a radian; so chords of a streamline lead over as many points as it takes for such an error (or the
 set's promise where that is coarser) to change its mean curvature by no more than 2 %, of coded sets and of exact ones
 alike: over ``2 sqrt(error / curvature)`` mm at least. The points at its ends take the value of the nearest one that has
-both chords; of fewer than three points it is 0. A warning tells where coded lines are too short or too bent for
-that, or the promise is coarser than a tenth of a step, and the `max_error` that is needed. Colours by curvature turn from segment to segment
-(``shaders/fiblets/attributes/turn.glsl``).
+both chords; of fewer than three points it is 0. A warning tells where coded lines are too short or too bent for that,
+or the promise is coarser than a tenth of a step, and the `max_error` that is needed. Colours by curvature turn from
+segment to segment (``shaders/fiblets/attributes/turn.glsl``).
 
 Values per point stand in the order in which points are coded, as float32. Stored arrays come before the names above, as
 they do for colours.
