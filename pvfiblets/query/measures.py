@@ -309,9 +309,11 @@ class Curvatures:
     """
 
     def __init__(self, data: FibletSet | Streamlines) -> None:
-        plain = isinstance(data, Streamlines)
-        self._fine = DEFAULT_PROMISE_STEPS * (median_step(data) if plain else data.step)
-        self._promise = 0.0 if plain else data.points_promise
+        if isinstance(data, Streamlines):
+            step, self._promise = median_step(data), 0.0
+        else:
+            step, self._promise = data.step, data.points_promise
+        self._fine = DEFAULT_PROMISE_STEPS * step
         self._bears: list[Floats] = []
 
     def __enter__(self) -> Self:

@@ -81,6 +81,7 @@ def streamlines(name: str, kind: type) -> Streamlines:
 NONSENSE = re.compile(r"\bnan\b|\binf\b|\bNone\b|e[-+][0-9]{3}|Traceback")
 
 
+@pytest.mark.filterwarnings("ignore:most points lie within")
 @pytest.mark.few(4)
 @pytest.mark.parametrize("kind", [np.float32, np.float64])
 @pytest.mark.parametrize("name", lines_of(np.float32))
