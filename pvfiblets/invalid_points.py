@@ -26,7 +26,7 @@ CUT = "streamlines added where others were cut at non-finite points"
 """The reason under which `dropped` counts the pieces, less one, of each line that such points divide."""
 LARGEST = 1e35  # mm
 BEYOND = 0.02  # of the points, on either side of each axis: few enough to be a mistake
-MOST_LOOKED_AT = 20_000
+MOST_LOOKED_AT = 2_000  # points, or some more
 
 
 def refuse_beyond(reach: float) -> None:

@@ -43,6 +43,7 @@ LEAST = float(np.finfo(np.float64).tiny) * 2.0**60  # mm, about 2.6e-290: what c
 STEP_BAND = 0.06  # steps within this of the median can be coded by direction; others vary too much for it
 SAMPLE = 1_000_000  # segment lengths kept at most; a median needs no more
 BLOCK_POINTS = 2_000_000
+MOST_CHUNKS = 64  # of which places are remembered before every other one goes
 OF_VIEWS = 50_000  # segments that tell whether steps are even, and how long they are in a view
 SAMPLED = 4_000_000  # points of which segments are sampled at a time
 EXACT_BELOW = 1_000_000  # bytes of points: nobody counts those of smaller sets, which keep every bit by default
@@ -129,6 +130,8 @@ class Survey:
             self.sample = [part[::2].copy() for part in self.sample]
             self.stride *= 2
         self.places.append(np.array(points[:: max(1, len(points) // MOST_LOOKED_AT)], np.float64))
+        if len(self.places) > MOST_CHUNKS:
+            self.places = [np.concatenate(self.places)[::2].copy()]
         self.sample.append(_segments(points, streamlines.offsets, self.stride))
 
 

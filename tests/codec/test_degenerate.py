@@ -78,10 +78,10 @@ def streamlines(name: str, kind: type) -> Streamlines:
     return Streamlines(points, np.cumsum([0, *map(len, lines)]))
 
 
+pytestmark = pytest.mark.filterwarnings("ignore:most points lie within")  # which test_far_lines.py expects
 NONSENSE = re.compile(r"\bnan\b|\binf\b|\bNone\b|e[-+][0-9]{3}|Traceback")
 
 
-@pytest.mark.filterwarnings("ignore:most points lie within")
 @pytest.mark.few(4)
 @pytest.mark.parametrize("kind", [np.float32, np.float64])
 @pytest.mark.parametrize("name", lines_of(np.float32))
