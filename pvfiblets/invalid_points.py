@@ -5,15 +5,18 @@ And those so far away that float32, which is what graphics cards compute with, e
 
 from __future__ import annotations
 
+import math
+import warnings
 from collections.abc import Callable
 from typing import Literal, get_args
 
 import numpy as np
+import numpy.typing as npt
 
 from .ragged import Array, Ints, cut_offsets
 from .streamlines import Streamlines
 
-__all__ = ["CUT", "LARGEST", "NONFINITE", "Invalid", "refuse_beyond", "valid_points", "without_points"]
+__all__ = ["CUT", "LARGEST", "NONFINITE", "Invalid", "refuse_beyond", "valid_points", "warn_of_far", "without_points"]
 
 Invalid = Literal["error", "drop", "split"]
 
@@ -22,6 +25,8 @@ NONFINITE = "non-finite points"
 CUT = "streamlines added where others were cut at non-finite points"
 """The reason under which `dropped` counts the pieces, less one, of each line that such points divide."""
 LARGEST = 1e35  # mm
+BEYOND = 0.02  # of the points, on either side of each axis: few enough to be a mistake
+MOST_LOOKED_AT = 2_000  # points, or some more
 
 
 def refuse_beyond(reach: float) -> None:
@@ -40,6 +45,33 @@ def refuse_beyond(reach: float) -> None:
     if reach > LARGEST:
         raise ValueError(
             f"a coordinate of {reach:g} mm is beyond {LARGEST:g} mm, where float32 ends: check the units"
+        )
+
+
+def warn_of_far(points: Array, low: npt.NDArray[np.float64], high: npt.NDArray[np.float64], share: float) -> None:
+    """Warn if a few points are so far away that all others are drawn visibly off: by half a pixel of a view of those.
+
+    Parameters
+    ----------
+    points : numpy.ndarray
+        ``(n, 3)`` mm, finite: all, or some evenly taken.
+    low, high : numpy.ndarray
+        ``(3,)`` bounds of all, mm.
+    share : float
+        Of the bounds' diagonal, that points are drawn off by.
+    """
+    some = np.asarray(points[:: max(1, len(points) // MOST_LOOKED_AT)], np.float64)
+    if not len(some):
+        return
+    most = np.quantile(some, [BEYOND, 1.0 - BEYOND], axis=0)
+    wide, off = math.hypot(*(most[1] - most[0])), share * math.hypot(*(high - low))
+    if off > wide / 4000.0 > 0.0:
+        far = high if (high - most[1]).max() >= (most[0] - low).max() else low
+        warnings.warn(
+            f"most points lie within {wide:.3g} mm of each other, but the farthest reach {far.tolist()}: what is drawn "
+            f"may be {off:.2g} mm off, more than half a pixel; leave out the lines that are far away",
+            UserWarning,
+            stacklevel=3,
         )
 
 

@@ -20,7 +20,7 @@ from .exact import plain_records, raw_bytes
 from .fibletset import FibletSet
 from .layout import WORDS
 from .ordering import Order, check_order, hilbert_order
-from .parameters import CUT_SHARE, DEFAULT_ANGLE, Parameters, Survey, bounds_of, survey
+from .parameters import CUT_SHARE, DEFAULT_ANGLE, Parameters, Survey, bounds_of, survey, tell_far
 from .quantised import QuantisedPoints, quantise_values
 from .record_writer import FibletChunk, RecordWriter, join
 
@@ -83,8 +83,9 @@ def compress(
     max_error : float, optional
         Promise in mm: no decoded point is farther from its original; of lines that are resampled, no point of one line
         from the other. Default: a tenth of the median step. Where steps
-        vary, or are longer than a 20th of the diagonal of the bounds, it is no more than a 4000th of that diagonal:
-        half a pixel of a full-screen view.
+        vary, or are longer than a 20th of the diagonal of the bounds, it is no more than a 4000th of that diagonal as
+        seen along any of the axes: half a pixel of a full-screen view. Where units differ, such as degrees beside
+        metres, it is no more than a tenth of the steps that are seen along an axis either.
     max_angle : float, optional
         Largest angle between the tangents of the original and of the decoded line, degrees, up to 90, at both ends of
         every segment longer than a pixel of a full-screen view (a 2000th of the diagonal of the bounds). Fiblets that
@@ -168,6 +169,7 @@ def compress(
             bar.update(chunk.n_points)
     if exact is None and step == "auto" and grows(encoder, raw_bytes(streamlines)):
         return _kept_exactly(streamlines, found, per_point, per_point_bits)
+    tell_far(found)
     return FibletSet(
         parameters=encoder.parameters if promise is None else replace(encoder.parameters, promise=promise),
         pages=encoder.page_table(),
@@ -203,6 +205,7 @@ def check_exact(exact: bool | None, step: float | str, order: str, max_error: fl
 
 
 def _kept_exactly(streamlines: Streamlines, found: Survey, per_point: Sequence[str], bits: int) -> FibletSet:
+    tell_far(found)
     return FibletSet(
         bounds=bounds_of(found),
         per_point=quantise_chosen(streamlines, found, per_point, bits),

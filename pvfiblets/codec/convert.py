@@ -39,7 +39,7 @@ from .fibletset import FibletSet
 from .file_error import compare_file
 from .layout import WORDS
 from .ordering import Order, check_order
-from .parameters import CUT_SHARE, DEFAULT_ANGLE, Parameters, Survey, bounds_of
+from .parameters import CUT_SHARE, DEFAULT_ANGLE, Parameters, Survey, bounds_of, tell_far
 from .progress import Progress, shown
 from .quantised import QuantisedPoints
 
@@ -180,6 +180,7 @@ def compress_file(
         # To keep them as they are, all are in memory at once, and their records.
         if exact is None and step == "auto" and grows(encoder, raw) and fits(6 * raw):
             return _keep_exactly(chunks(), target, names, per_point_bits, started)
+        tell_far(found)
         if not encoder.n_fiblets:
             spool.add_empty(names, per_point_bits, whole)
         pages, ids = encoder.page_table(), encoder.rank_to_id()

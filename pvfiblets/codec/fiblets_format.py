@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Sequence
 from os import PathLike, fspath
 from typing import Any
+
+import numpy as np
 
 from ..streamlines import Streamlines
 from .check import check_file
@@ -12,6 +15,7 @@ from .compress import compress
 from .decompress import held_in_bounds
 from .fiblets_file import index_bytes, is_sharded
 from .fibletset import FibletSet
+from .tangents import PIXELS
 
 __all__ = ["info", "iter_chunks", "read", "verify_file", "write"]
 
@@ -63,6 +67,7 @@ def info(path: str | PathLike[str]) -> dict[str, Any]:
         "step_mm": f.step,
         "exact": f.exact is not None,
         "promise_mm": f.points_promise,
+        "promise_pixels": _pixels(f.points_promise, f.bounds),
         "bounds_mm": list(f.bounds),
         "per_point": {k: {"min": v.lo, "max": v.hi, "max_error": v.max_error} for k, v in f.per_point.items()},
         "per_streamline": sorted(f.per_streamline),
@@ -70,6 +75,13 @@ def info(path: str | PathLike[str]) -> dict[str, Any]:
         "affine": f.affine.tolist(),
         "dropped": f.dropped,
     }
+
+
+def _pixels(promise: float, bounds: Sequence[float]) -> dict[str, float]:
+    """How far a point may move in a full-screen view along each axis, pixels, whatever the units of the axes are."""
+    extent = np.diff(np.reshape(bounds, (3, 2)), axis=1).ravel()
+    wide = {name: math.hypot(*np.delete(extent, axis)) / PIXELS for axis, name in enumerate("xyz")}
+    return {f"along_{name}": promise / side if side else 0.0 for name, side in wide.items()}
 
 
 def _info_of_shards(path: str | PathLike[str]) -> dict[str, Any]:
@@ -86,7 +98,8 @@ def _info_of_shards(path: str | PathLike[str]) -> dict[str, Any]:
         "fiblets": manifest.n_fiblets,
         "bytes": whole.nbytes,
         "shards": len(manifest.shards),
-        "promise_mm": 0.0 if first["exact"] else manifest.promise_mm,
+        "promise_mm": (promise := 0.0 if first["exact"] else manifest.promise_mm),
+        "promise_pixels": _pixels(promise, manifest.bounds),
         "bounds_mm": list(manifest.bounds),
         "groups": manifest.groups,
         "dropped": manifest.dropped,

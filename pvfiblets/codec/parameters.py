@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from ..formats.mapped import forget
 from ..formats.scratch import is_long, spans
-from ..invalid_points import refuse_beyond
+from ..invalid_points import MOST_LOOKED_AT, refuse_beyond, warn_of_far
 from ..ragged import blocks
 from ..streamlines import Streamlines
 from .layout import END_LEVELS, MAX_POINTS
@@ -26,19 +26,25 @@ __all__ = [
     "Parameters",
     "Survey",
     "bounds_of",
+    "median_step",
     "survey",
+    "tell_far",
 ]
 
 DEFAULT_ANGLE = 10.0  # degrees between true and drawn tangents
 DEFAULT_PROMISE_STEPS = 0.1
-DEFAULT_PROMISE_EXTENT = 1.0 / 4000.0  # of the bounds' diagonal: half a pixel of a full-screen view
+DEFAULT_PROMISE_EXTENT = 1.0 / 4000.0  # of the diagonal of a view along an axis: half a pixel on a full screen
 EVEN_SHARE = 0.9  # of the segments within STEP_BAND of the median: steps are constant, and directions code nearly all
 COARSE = 1.0 / 20.0  # of the bounds' diagonal: errors of longer steps show, constant or not
+DRAWN_SHARE = 2.0**-28  # of the bounds' diagonal that points of exact sets are drawn off by at most
+UNEQUAL = 1.0 / 20.0  # of the extent or the steps in space: where a view along an axis has less, units differ
 CONSTANT_STEP = 1e-4  # relative spread of steps under which one step serves the whole file
 LEAST = float(np.finfo(np.float64).tiny) * 2.0**60  # mm, about 2.6e-290: what coding divides by stays normal
 STEP_BAND = 0.06  # steps within this of the median can be coded by direction; others vary too much for it
 SAMPLE = 1_000_000  # segment lengths kept at most; a median needs no more
 BLOCK_POINTS = 2_000_000
+MOST_CHUNKS = 64  # of which places are remembered before every other one goes
+OF_VIEWS = 50_000  # segments that tell whether steps are even, and how long they are in a view
 SAMPLED = 4_000_000  # points of which segments are sampled at a time
 EXACT_BELOW = 1_000_000  # bytes of points: nobody counts those of smaller sets, which keep every bit by default
 EXACT_UP_TO = 1 << 30  # bytes of points up to which a set that coding would enlarge keeps every bit; opening reads all
@@ -62,7 +68,9 @@ class Survey:
     widest_end : float
         Largest component of a vector between a streamline's last point and another of the last (at most) 60, mm.
     sample : list of numpy.ndarray
-        Segment lengths, mm: every ``stride``-th, so few that memory stays bounded.
+        Segments ``(n, 3)``, mm: every ``stride``-th, so few that memory stays bounded.
+    places : list of numpy.ndarray
+        Some points of each chunk ``(n, 3)``, mm.
     n_points, n_streamlines : int
         Totals.
     """
@@ -72,6 +80,7 @@ class Survey:
     longest: float = 0.0
     widest_end: float = 0.0
     sample: list[npt.NDArray[np.float64]] = field(default_factory=list)
+    places: list[npt.NDArray[np.float64]] = field(default_factory=list)
     stride: int = 1
     n_points: int = 0
     n_streamlines: int = 0
@@ -120,6 +129,9 @@ class Survey:
         while self.n_points > self.stride * SAMPLE:
             self.sample = [part[::2].copy() for part in self.sample]
             self.stride *= 2
+        self.places.append(np.array(points[:: max(1, len(points) // MOST_LOOKED_AT)], np.float64))
+        if len(self.places) > MOST_CHUNKS:
+            self.places = [np.concatenate(self.places)[::2].copy()]
         self.sample.append(_segments(points, streamlines.offsets, self.stride))
 
 
@@ -177,18 +189,30 @@ def _scanned(offsets: npt.NDArray[np.int64]) -> Iterator[tuple[npt.NDArray[np.in
 
 
 def _segments(points: npt.NDArray[np.floating], offsets: npt.NDArray[np.int64], stride: int) -> Vector:
-    """Lengths of every ``stride``-th segment, mm."""
+    """Every ``stride``-th segment, ``(n, 3)``, mm."""
     first = np.arange(0, max(len(points) - 1, 0), stride)
     joins = np.searchsorted(offsets, first + 1)  # a segment that would cross into the next streamline is none
     inside = offsets[np.minimum(joins, len(offsets) - 1)] != first + 1
     first = first[inside]
-    lengths = np.empty(len(first))
+    found = np.empty((len(first), 3))
     for a, b in spans(len(first), max(SAMPLED // stride, 1)):
-        delta = points[first[a:b] + 1].astype(np.float64) - points[first[a:b]].astype(np.float64)
-        lengths[a:b] = np.sqrt((delta**2).sum(1))
+        found[a:b] = points[first[a:b] + 1].astype(np.float64) - points[first[a:b]].astype(np.float64)
         if is_long(len(points)):
             forget(points, 0, int(first[b - 1]))
-    return lengths
+    return found
+
+
+def _moving(segments: Vector) -> Vector:
+    """Lengths of those that have one, mm."""
+    lengths = np.sqrt((segments**2).sum(axis=1))
+    return lengths[lengths > 0.0]
+
+
+def median_step(streamlines: Streamlines) -> float:
+    """Median length of segments that have one, mm; 0 without any."""
+    points = streamlines.points
+    moving = _moving(_segments(points, np.asarray(streamlines.offsets), max(1, len(points) // SAMPLE)))
+    return float(np.median(moving)) if moving.size else 0.0
 
 
 def survey(chunks: Iterable[Streamlines], per_point: Iterable[str] = ()) -> Survey:
@@ -259,7 +283,8 @@ class Parameters:
             The data.
         max_error : float, optional
             Promise in mm. Default: a tenth of the median step; where steps vary or are coarse, no more than a 4000th of
-            the bounds' diagonal. The finest that anchors hold if that is coarser.
+            the diagonal of the bounds as seen along any axis; where units differ, no more than a tenth of the steps
+            that are seen there. The finest that anchors hold if that is coarser.
 
         Raises
         ------
@@ -271,12 +296,12 @@ class Parameters:
         empty = found.n_points == 0
         lower = np.zeros(3) if empty else found.lower
         extent = np.zeros(3) if empty else found.upper - found.lower
-        lengths = np.concatenate(found.sample) if found.sample else np.empty(0)
-        moving = lengths[lengths > 0.0]
+        segments = np.concatenate(found.sample) if found.sample else np.empty((0, 3))
+        moving = _moving(segments)
         step = float(np.median(moving)) if moving.size else found.longest
         finest = _finest(found)
         if max_error is None:
-            promise = max(_default_promise(moving, step, float(np.sqrt((extent**2).sum()))), finest)
+            promise = max(_default_promise(segments, step, extent), finest)
             if step == 0.0:  # no segment has a length: as fine as 16-bit anchors are
                 promise = max(finest, _anchor_error(extent, 16) / _ANCHOR_SHARE) if found.n_points else 1e-6
         elif max_error < finest:
@@ -314,12 +339,18 @@ class Parameters:
         """Choose parameters of a set that keeps its points exactly; what is drawn is as fine as int32 can count."""
         empty = found.n_points == 0
         diagonal = 0.0 if empty else float(np.sqrt(((found.upper - found.lower) ** 2).sum()))
-        return cls.choose(found, max(_finest(found), diagonal * 2.0**-28))
+        return cls.choose(found, max(_finest(found), diagonal * DRAWN_SHARE))
 
     @property
     def budget(self) -> float:
         """Largest error that coding may cause, mm: the promise less what rounding decoded points may add."""
         return self.promise * BUDGET
+
+
+def tell_far(found: Survey) -> None:
+    """Warn of few points so far away that the others are drawn visibly off."""
+    if found.places:
+        warn_of_far(np.concatenate(found.places), found.lower, found.upper, DRAWN_SHARE)
 
 
 def _finest(found: Survey) -> float:
@@ -335,17 +366,27 @@ def _anchor_error(extent: Vector, bits: int) -> float:
     return float(np.sqrt((extent**2).sum())) / (2.0**bits - 1.0) / 2.0
 
 
-def _default_promise(moving: Vector, step: float, diagonal: float) -> float:
-    """Greatest error in mm, for segments of these lengths in bounds of this diagonal.
+def _default_promise(segments: Vector, step: float, extent: Vector) -> float:
+    """Greatest error in mm, for such segments in bounds of this extent.
 
     Direction codes err by some hundredths of a step, and where steps are constant a finer promise would take a second
-    byte a point. Lattice codes err by all that they may: there a tenth of a long step shows.
+    byte a point. Lattice codes err by all that they may: there a tenth of a long step shows. So it does in a view along
+    an axis whose unit hides those of the others, as metres do degrees.
     """
-    promise = DEFAULT_PROMISE_STEPS * step
+    segments = segments[:: max(1, len(segments) // OF_VIEWS)]
+    moving, diagonal = _moving(segments), math.hypot(*extent)
     even = moving.size and float((np.abs(moving - step) <= STEP_BAND * step).mean()) >= EVEN_SHARE
-    if even and step <= COARSE * diagonal:
-        return promise
-    return min(promise, DEFAULT_PROMISE_EXTENT * diagonal)
+    coarse = not even or step > COARSE * diagonal
+    promise = DEFAULT_PROMISE_STEPS * step
+    for axis in range(3):
+        seen = [i for i in range(3) if i != axis]
+        wide, moving = math.hypot(*extent[seen]), _moving(segments[:, seen])
+        own = float(np.median(moving)) if moving.size else step
+        if own < UNEQUAL * step:
+            promise = min(promise, DEFAULT_PROMISE_STEPS * own)
+        if wide > 0.0 and (coarse or wide < UNEQUAL * diagonal or own < UNEQUAL * step):
+            promise = min(promise, DEFAULT_PROMISE_EXTENT * wide)
+    return promise
 
 
 def _step_range(moving: Vector, step: float) -> tuple[float, float]:

@@ -6,11 +6,13 @@ the origin a set lies, a segment is as exact as its own size in float32.
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from ..invalid_points import warn_of_far
 from .errors import EngineError
 
 __all__ = ["TOP", "lattice", "places"]
@@ -48,7 +50,9 @@ def lattice(
     # A set without extent gets steps that keep its widths in range; none are taken.
     step = extent / TOP if extent > TOP * 1e-36 else 1e-36
     # A power of two, so that integers times it are exact in float32's range and in float64.
-    return low, np.full(3, 2.0 ** np.ceil(np.log2(step)))
+    scale = 2.0 ** np.ceil(np.log2(step))
+    warn_of_far(points, low, high, scale / (math.hypot(*(high - low)) or 1.0))
+    return low, np.full(3, scale)
 
 
 def places(

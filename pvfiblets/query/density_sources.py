@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import formats
-from ..codec.decompress import decode_fiblets
+from ..codec.decompress import decode_fiblets, held_in_bounds
 from ..codec.fibletset import FibletSet
 from ..codec.progress import Progress, shown
 from ..codec.quantised import QuantisedPoints
@@ -149,14 +149,15 @@ class _Compressed:
         if not self._fiblets.n_points:
             return np.zeros(3), np.zeros(3)
         ends = np.array(self._fiblets.bounds, np.float64).reshape(3, 2)
-        return ends[:, 0] - self._fiblets.promise, ends[:, 1] + self._fiblets.promise
+        return ends[:, 0], ends[:, 1]
 
     def parts(self, progress: Progress) -> Iterator[Part]:
         fiblets, rank, point = self._fiblets, 0, 0
         if not fiblets.n_ranks:
             return
         ids = fiblets.rank_to_id
-        for chunk in shown(decoded_by_rank(fiblets, CHUNK, np.float64), fiblets.n_points, "adding up", progress):
+        decoded = held_in_bounds(fiblets, decoded_by_rank(fiblets, CHUNK, np.float64))
+        for chunk in shown(decoded, fiblets.n_points, "adding up", progress):
             ranks, points = slice(rank, rank + len(chunk)), slice(point, point + chunk.n_points)
             yield Part(
                 chunk.points.astype(np.float64, copy=False),

@@ -7,16 +7,20 @@ name                  a value per  unit  what it is, of the decoded points
 ``'n_points'``        streamline         number of points
 ``'mean_curvature'``  streamline   1/mm  mean of its points' ``'curvature'``; NaN without points
 ``'end_distance'``    streamline   mm    distance between its first and last point; NaN without points
-``'curvature'``       point        1/mm  angle between the segments before and after over half their joint length
+``'curvature'``       point        1/mm  angle between the chords before and after over half the line along both
 ``'arc_length'``      point        mm    length of the streamline up to the point
 ``'coding_error'``    point        mm    distance to the point it was coded from, which must be given
 a stored array        either             as it is stored, under the name that it has
 :class:`Distance`     either       mm    distance to a region or position, or a streamline's least one
 ====================  ===========  ====  =======================================================================
 
-Curvature is that of ``shaders/fiblets/attributes/turn.glsl``: a streamline's ends take their neighbour's, a segment
-without length turns nothing, and of fewer than three points it is 0. It carries the codec's error: a tenth of a step
-is a tenth of a radian per step.
+Curvature does not depend on how a set is stored. A tenth of a step, which coding may move points by, would turn each
+segment by a tenth of a radian; so chords of a streamline lead over as many points as it takes for such an error (or the
+set's promise where that is coarser) to change its mean curvature by no more than 2 %, of coded sets and of exact ones
+alike: over ``2 sqrt(error / curvature)`` mm at least. The points at its ends take the value of the nearest one that has
+both chords; of fewer than three points it is 0. A warning tells where coded lines are too short or too bent for that,
+or the promise is coarser than a tenth of a step, and the `max_error` that is needed. Colours by curvature turn from
+segment to segment (``shaders/fiblets/attributes/turn.glsl``).
 
 Values per point stand in the order in which points are coded, as float32. Stored arrays come before the names above, as
 they do for colours.
@@ -24,26 +28,40 @@ they do for colours.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, Self
 
 import numpy as np
 import numpy.typing as npt
 
+from ..codec.parameters import DEFAULT_PROMISE_STEPS, median_step
 from ..codec.quantised import QuantisedPoints
 from ..codec.stored_parts import stored_parts
+from ..streamlines import Streamlines
 from .region import Region
 
 if TYPE_CHECKING:
     from ..codec.fibletset import FibletSet
-    from ..streamlines import Streamlines
 
-__all__ = ["COMPUTED", "Distance", "Kind", "Values", "by_rank", "decoded_by_rank", "measure", "measure_names"]
+__all__ = [
+    "COMPUTED",
+    "Curvatures",
+    "Distance",
+    "Kind",
+    "Values",
+    "by_rank",
+    "decoded_by_rank",
+    "measure",
+    "measure_names",
+]
 
 Kind = Literal["streamline", "point"]
 Floats = npt.NDArray[np.float64]
 CHUNK = 1 << 21  # points decoded together: 50 MB
+SLACK = 0.99  # of a promise: it is a tenth of a step but for rounding
+UNCERTAIN = 0.05  # of the streamlines may be too short for their curvature: every set has some
 
 COMPUTED: dict[Kind, dict[str, str]] = {
     "streamline": {"length": "mm", "n_points": "", "mean_curvature": "1/mm", "end_distance": "mm"},
@@ -281,24 +299,64 @@ def _placed(fiblets: FibletSet, ranked: Floats, without: float) -> Floats:
     return out
 
 
-def mean_curvatures(points: npt.NDArray[np.floating[Any]], offsets: npt.NDArray[np.int64]) -> Floats:
-    """Mean of the curvature (1/mm) of each streamline's points, ``(n,)``, of float64 points."""
-    from . import measure_kernels as kernels
+class Curvatures:
+    """Curvature of streamlines, chunk by chunk; used as a context, it warns in the end of what could not be measured.
 
-    each = np.empty(len(points), np.float32)
-    kernels.curvatures(points, offsets, each)
-    out = np.empty(len(offsets) - 1)
-    kernels.means(each, offsets, out)
-    return out
+    Parameters
+    ----------
+    data : FibletSet or Streamlines
+        All of them.
+    """
+
+    def __init__(self, data: FibletSet | Streamlines) -> None:
+        if isinstance(data, Streamlines):
+            step, self._promise = median_step(data), 0.0
+        else:
+            step, self._promise = data.step, data.points_promise
+        self._fine = DEFAULT_PROMISE_STEPS * step
+        self._bears: list[Floats] = []
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        if kind is not None or not self._promise or not self._bears:
+            return
+        bears = np.concatenate(self._bears)
+        short = bears[bears < self._promise * SLACK]
+        if 0.0 < self._fine < self._promise * SLACK:
+            why, needed = "needs chords longer than those of the points themselves", self._fine
+        elif len(short) > UNCERTAIN * len(bears):
+            why = f"is lost in {len(short)} of {len(bears)} streamlines, which are too short or too bent"
+            needed = max(float(np.quantile(short, UNCERTAIN)), 0.01 * self._promise)
+        else:
+            return
+        warnings.warn(
+            f"points may be {self._promise:.3g} mm off, and curvature {why}: to have it within 2 %, compress with "
+            f"max_error={needed:.2g}, or exact=True",
+            stacklevel=4,
+        )
+
+    def points(self, points: npt.NDArray[np.floating[Any]], offsets: npt.NDArray[np.int64]) -> npt.NDArray[np.float32]:
+        """Curvature of each of some streamlines' float64 points, ``(n_points,)``, 1/mm."""
+        from . import measure_kernels as kernels
+
+        each, bears = np.empty(len(points), np.float32), np.empty(len(offsets) - 1)
+        kernels.curvatures(points, offsets, max(self._fine, self._promise), each, bears)
+        self._bears.append(bears)
+        return each
+
+    def means(self, points: npt.NDArray[np.floating[Any]], offsets: npt.NDArray[np.int64]) -> Floats:
+        """Mean of the curvature of each streamline's points, ``(n,)``, 1/mm; NaN without points."""
+        from . import measure_kernels as kernels
+
+        out = np.empty(len(offsets) - 1)
+        kernels.means(self.points(points, offsets), offsets, out)
+        return out
 
 
 def _computed(fiblets: FibletSet, name: str, original: Streamlines | None) -> npt.NDArray[Any]:
     from . import measure_kernels as kernels
-
-    def curvatures(chunk: Streamlines) -> npt.NDArray[np.float32]:
-        out = np.empty(chunk.n_points, np.float32)
-        kernels.curvatures(chunk.points, chunk.offsets, out)
-        return out
 
     def arc_lengths(_: int, chunk: Streamlines) -> npt.NDArray[np.float32]:
         out = np.empty(chunk.n_points, np.float32)
@@ -310,7 +368,8 @@ def _computed(fiblets: FibletSet, name: str, original: Streamlines | None) -> np
     if name == "n_points":
         return np.diff(fiblets.offsets()).astype(np.float64)
     if name == "mean_curvature":
-        return _per_streamline(fiblets, lambda chunk: mean_curvatures(chunk.points, chunk.offsets), np.nan)
+        with Curvatures(fiblets) as found:
+            return _per_streamline(fiblets, lambda chunk: found.means(chunk.points, chunk.offsets), np.nan)
     if name == "end_distance":
         from .endpoints import end_points
 
@@ -318,7 +377,8 @@ def _computed(fiblets: FibletSet, name: str, original: Streamlines | None) -> np
         apart: Floats = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
         return apart
     if name == "curvature":
-        return _per_point(fiblets, lambda _, chunk: curvatures(chunk))
+        with Curvatures(fiblets) as found:
+            return _per_point(fiblets, lambda _, chunk: found.points(chunk.points, chunk.offsets))
     if name == "arc_length":
         return _per_point(fiblets, arc_lengths)
     return _coding_error(fiblets, original)

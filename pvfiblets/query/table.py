@@ -19,7 +19,7 @@ import numpy.typing as npt
 
 from ..streamlines import Streamlines
 from ..whole_files import replacing
-from .measures import CHUNK, mean_curvatures
+from .measures import CHUNK, Curvatures
 
 if TYPE_CHECKING:
     from ..codec.fibletset import FibletSet
@@ -149,13 +149,14 @@ def table(data: FibletSet | Streamlines, ids: npt.ArrayLike | slice | None = Non
     """
     from ..codec.decompress import select_streamlines
 
-    numbers = np.arange(len(data))
+    curvatures, numbers = Curvatures(data), np.arange(len(data))
     if ids is not None:
         chosen = select_streamlines(len(data), ids)
         numbers = chosen[np.sort(np.unique(chosen, return_index=True)[1])]
         data = data[numbers]
     bare = without_groups(data)
-    parts = [_measured(chunk) for chunk in _chunks(bare)] or [_measured(_decoded(bare))]
+    with curvatures:
+        parts = [_measured(chunk, curvatures) for chunk in _chunks(bare)] or [_measured(_decoded(bare), curvatures)]
     found = Table(streamline=numbers, **{name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
     if data.groups:
         found["groups"] = _groups(data)
@@ -187,14 +188,14 @@ def _chunks(data: FibletSet | Streamlines) -> Iterator[Streamlines]:
         yield from data.iter_chunks(CHUNK)
 
 
-def _measured(chunk: Streamlines) -> dict[str, npt.NDArray[Any]]:
+def _measured(chunk: Streamlines, curvatures: Curvatures) -> dict[str, npt.NDArray[Any]]:
     """All columns that come from points."""
     points = np.asarray(chunk.points, np.float64)
     there, curvature = np.flatnonzero(chunk.counts), np.full(len(chunk), np.nan)
     ends = np.full((len(chunk), 2, 3), np.nan)
     if len(there):
         ends[there, 0], ends[there, 1] = points[chunk.offsets[:-1][there]], points[chunk.offsets[1:][there] - 1]
-        curvature[there] = mean_curvatures(points, chunk.offsets)[there]
+        curvature[there] = curvatures.means(points, chunk.offsets)[there]
     found = {
         "n_points": chunk.counts,
         "length": chunk.lengths(),

@@ -145,7 +145,7 @@ class CodecStudy:
         "Sets are cut to a bounded number of points by leaving streamlines out evenly, which their names say. Those of "
         f"fewer than {SMALL:,} points are measured but not drawn: their times are those of a call.",
         "*fiblets*: greedy encoder, with the error bound as the setting (*default*: a tenth of the step, where steps "
-        "vary or are coarse a 4000th of the bounds' diagonal at most, and directions within 10°; others do not bound "
+        "vary or are coarse a 4000th of a view's diagonal at most, and directions within 10°; others do not bound "
         "directions); *look-ahead*: effort high; *fiblets of 30 "
         "points*: records of at most so many points instead of 60. *QFib*, *paper's fiblets*: from their description "
         "in Schertzer et al. 2022 (pvfiblets/report/baselines/directions.py says what it leaves open), with the file's "

@@ -10,8 +10,10 @@ from pvfiblets.streamlines import Streamlines
 from .samples import smooth, wandering
 
 
-def diagonal(lines):
-    return float(np.linalg.norm(np.ptp(np.asarray(lines.points, np.float64), axis=0)))
+def diagonal(lines: Streamlines) -> float:
+    """Of the bounds as seen along the axis that has the least."""
+    extent = np.ptp(np.asarray(lines.points, np.float64), axis=0)
+    return float(min(np.linalg.norm(np.delete(extent, axis)) for axis in range(3)))
 
 
 @pytest.mark.parametrize("step", [0.1, 0.5, 2.0])

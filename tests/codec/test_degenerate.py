@@ -75,6 +75,7 @@ def streamlines(name, kind):
     return Streamlines(points, np.cumsum([0, *map(len, lines)]))
 
 
+pytestmark = pytest.mark.filterwarnings("ignore:most points lie within")  # which test_far_lines.py expects
 NONSENSE = re.compile(r"\bnan\b|\binf\b|\bNone\b|e[-+][0-9]{3}|Traceback")
 
 

@@ -168,7 +168,7 @@ def test_grids_of_images_may_be_sheared_and_cover_a_part(part_of, kind):
     np.testing.assert_allclose(found.values, exact["length"], rtol=1e-9, atol=1e-12)
     outside = 1.0 - exact["length"].sum() / everything
     assert 0.05 < outside < 0.95
-    assert found.share_outside == pytest.approx(outside, rel=1e-9)
+    assert found.share_outside == pytest.approx(outside, rel=1e-7)  # points are held within the originals' bounds
     np.testing.assert_array_equal(coded.density(like=like).values, exact["count"])
 
 

@@ -51,16 +51,23 @@ def small_chunks(monkeypatch):
     monkeypatch.setattr(measures, "CHUNK", 300)
 
 
-def curvature(p):
-    """By the angle between segments, from its cosine and sine."""
-    k = np.zeros(len(p))
-    for i in range(1, len(p) - 1):
-        a, b = p[i] - p[i - 1], p[i + 1] - p[i]
-        la, lb = np.linalg.norm(a), np.linalg.norm(b)
-        if la > 0 and lb > 0:
-            k[i] = 2 * np.arctan2(np.linalg.norm(np.cross(a, b)), a @ b) / (la + lb)
-    if len(p) > 2:
-        k[0], k[-1] = k[1], k[-2]
+def curvature(p: np.ndarray, error: float) -> np.ndarray:
+    """By the angle between chords, from its cosine and sine; chords as long as the error asks for."""
+    n, s, along = len(p), 1, arc_length(p)
+    if n < 3:
+        return np.zeros(n)
+    while True:
+        k = np.zeros(n)
+        for i in range(s, n - s):
+            a, b, whole = p[i] - p[i - s], p[i + s] - p[i], along[i + s] - along[i - s]
+            if a.any() and b.any():
+                k[i] = 2 * np.arctan2(np.linalg.norm(np.cross(a, b)), a @ b) / whole
+        chord, most = s * along[-1] / (n - 1), (n - 1) // 2
+        turn = k[s : n - s].mean() * chord
+        if turn * chord >= 4 * error or turn > 1 or s == most:
+            break
+        s = min(max(s + 1, s * 5 // 4), most)
+    k[:s], k[n - s :] = k[s], k[n - s - 1]
     return k
 
 
@@ -79,11 +86,11 @@ def coded(whole, lines):
 # ------------------------------------------------------------------------------------------------------------ measures
 
 
-def test_measures_of_points(whole):
-    lines = by_line(whole)
+def test_measures_of_points(whole: pf.FibletSet) -> None:
+    lines, error = by_line(whole), max(whole.step / 10, whole.points_promise)
     original = [np.asarray(p, np.float64) for p in LINES]
     for name, unit, wanted in (
-        ("curvature", "1/mm", [curvature(p) for p in lines]),
+        ("curvature", "1/mm", [curvature(p, error) for p in lines]),
         ("arc_length", "mm", [arc_length(p) for p in lines]),
         ("coding_error", "mm", [np.linalg.norm(p - q, axis=1) for p, q in zip(lines, original, strict=True)]),
         (Distance((1, 2, 3), "point"), "mm", [np.linalg.norm(p - [1, 2, 3], axis=1) for p in lines]),
@@ -96,13 +103,13 @@ def test_measures_of_points(whole):
     assert errors.array().max() == pytest.approx(pf.measure_error(LINES, whole).max_mm, rel=1e-3)
 
 
-def test_measures_of_streamlines(whole):
-    lines = by_line(whole)
+def test_measures_of_streamlines(whole: pf.FibletSet) -> None:
+    lines, error = by_line(whole), max(whole.step / 10, whole.points_promise)
     full = [i for i, p in enumerate(lines) if len(p)]
     for name, unit, make, without in (
         ("length", "mm", lambda p: arc_length(p)[-1], 0.0),
         ("n_points", "", len, 0.0),
-        ("mean_curvature", "1/mm", lambda p: curvature(p).mean(), np.nan),
+        ("mean_curvature", "1/mm", lambda p: curvature(p, error).mean(), np.nan),
         ("end_distance", "mm", lambda p: np.linalg.norm(p[-1] - p[0]), np.nan),
         (Distance((1, 2, 3)), "mm", lambda p: np.linalg.norm(p - [1, 2, 3], axis=1).min(), np.nan),
     ):
@@ -198,7 +205,7 @@ def test_extreme_lines(name):
     wanted = coded(whole, [arc_length(p) for p in lines])
     np.testing.assert_allclose(measure(whole, "arc_length").array(), wanted, rtol=1e-6)
     scale = np.median(measure(whole, "curvature").array())
-    wanted = coded(whole, [curvature(p) for p in lines])
+    wanted = coded(whole, [curvature(p, max(whole.step / 10, whole.points_promise)) for p in lines])
     np.testing.assert_allclose(measure(whole, "curvature").array(), wanted, rtol=1e-4, atol=1e-6 * scale + 1e-12)
 
 
