@@ -1,8 +1,5 @@
 """The benchmark of spline tubes runs from one command, and what it measures by is right."""
 
-from __future__ import annotations
-
-import argparse
 import dataclasses
 from types import SimpleNamespace
 
@@ -73,7 +70,7 @@ def test_the_reference_covers_what_a_sphere_does(bench, ball):
     assert reference.length == pytest.approx(2.0 * np.pi * radius, rel=0.02)
 
 
-def test_distance_between_silhouettes(bench):
+def test_distances_and_lengths_of_outlines(bench):
     y, x = np.indices((400, 400)) + 0.5
     away = np.hypot(x - 200.0, y - 200.0)
     fine = (np.indices((1600, 1600)) + 0.5) / 4.0
@@ -83,9 +80,6 @@ def test_distance_between_silhouettes(bench):
     assert exact["differing"] == exact["gross"] == 0
     assert wider["off_pixels"] == pytest.approx(2.0, rel=0.02)
     assert 0.0 < wider["gross"] < wider["off_pixels"]
-
-
-def test_length_of_an_outline(bench):
     y, x = np.indices((1000, 1000))
     for degrees in (0.0, 20.0, 45.0, 70.0):
         turn = np.radians(degrees)
@@ -125,19 +119,3 @@ def test_normals_turn_as_little_as_can_be(bench):
     turns = np.linalg.norm(np.diff(normals, axis=0), axis=1)
     unit = tangents / np.linalg.norm(tangents, axis=1, keepdims=True)
     assert turns.max() <= np.linalg.norm(np.diff(unit, axis=0), axis=1).max() * 1.001
-
-
-def test_polylines_go_through_the_nodes(bench):
-    tubes = bench.methods.helices(3, 5)
-    mesh = bench.methods.polylines(tubes)
-    np.testing.assert_allclose(mesh.points, tubes.points, atol=1e-6)
-    np.testing.assert_allclose(mesh["radius"], tubes.radius)
-    finer = bench.methods.polylines(tubes, 4)
-    assert finer.n_lines == 3
-    np.testing.assert_allclose(finer.points.reshape(3, 17, 3)[:, ::4].reshape(-1, 3), tubes.points, atol=1e-6)
-
-
-def test_an_unknown_method_is_refused(bench):
-    with pytest.raises(argparse.ArgumentTypeError, match="unknown method 'tubes', expected one of lines-as-tubes, "):
-        bench.command.known_method("tubes")
-    assert bench.command.known_method("tube-8x2") == "tube-8x2"

@@ -1,8 +1,5 @@
 """The benchmarks of ray-cast volumes run from one command each, and what they measure by is right."""
 
-from __future__ import annotations
-
-import argparse
 import json
 import math
 import subprocess
@@ -170,17 +167,6 @@ def test_the_step_of_an_error_is_found(bench, power, target, step):
     assert step / bench.timing.CLOSE <= found <= step * 1.04
 
 
-def test_an_error_that_is_never_reached_is_said(bench):
-    class Method:
-        def step(self, voxels):
-            self.voxels = voxels
-
-        def error(self, _):
-            return 0.1 + self.voxels
-
-    assert bench.timing.search(Method(), None, 0.05, (0.5, 0.6), 1e-9) == (0.25, pytest.approx(0.35), False)
-
-
 def test_memory_is_what_was_made(gl, bench):
     before = bench.memory.allocated()
     made = [
@@ -247,14 +233,6 @@ def test_goals_are_judged_against_vtk_with_the_same_error(bench):
     )
 
 
-def test_data_by_name(bench, tmp_path):
-    for name in ("vessels", "vessels-1", "brains", "brain-0"):
-        with pytest.raises(argparse.ArgumentTypeError, match=f"unknown data '{name}', expected vessels-N, brain-N or"):
-            bench.data.known_data(name)
-    assert bench.data.make_data("vessels-10").shape == (10, 10, 10)
-    assert bench.data.make_data("brain-12", folder=tmp_path).shape == (12, 12, 12)
-
-
 def test_what_was_measured_before_time_is_up_is_kept(bench, monkeypatch, tmp_path):
     said = {
         "truth": b'{"shape": [4], "bytes": 8, "name": "n"}\n',
@@ -270,17 +248,8 @@ def test_what_was_measured_before_time_is_up_is_kept(bench, monkeypatch, tmp_pat
 
     monkeypatch.setattr(bench.common.subprocess, "run", started)
     command = [
-        "--data",
-        "vessels-16",
-        "--modes",
-        "mip",
-        "isosurface",
-        "--methods",
-        "plotter",
-        "vtk-gpu",
-        "--limit",
-        "9",
-    ]
+        "--data", "vessels-16", "--modes", "mip", "isosurface", "--methods", "plotter", "vtk-gpu", "--limit", "9",
+    ]  # fmt: skip
     rows = bench.command.measure_all(bench.command.parsed().parse_args(command), tmp_path)
     assert [(row["mode"], row["method"], "unmeasured" in row) for row in rows] == [
         ("mip", "plotter", False), ("mip", "vtk-gpu", False), ("mip", "vtk-gpu-equal", True),

@@ -1,7 +1,5 @@
 """A page in use: by mouse and keys, without a network, damaged, and with graphics that go and come back."""
 
-from __future__ import annotations
-
 import base64
 import io
 import re

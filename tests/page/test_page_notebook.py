@@ -1,7 +1,5 @@
 """Pages in notebooks: what a cell keeps, and camera and choice that a page shares with the kernel."""
 
-from __future__ import annotations
-
 import json
 import re
 import tomllib

@@ -1,7 +1,5 @@
 """Whole tractograms and their pixels: tables 1 and figure 8 of the fiblets paper, on very little data."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,9 +1,6 @@
 """The study of spline tubes: what it measures, what it leaves out, and where it cannot be done."""
 
-from __future__ import annotations
-
 import math
-import sys
 from dataclasses import replace
 
 import numpy as np
@@ -12,7 +9,7 @@ import pytest
 from pvfiblets.report import tubes, tubes_solvers
 from pvfiblets.report.cameras import Lens, by_turns, orbit
 from pvfiblets.report.record import LeftOut
-from pvfiblets.report.study import Budget, Unavailable
+from pvfiblets.report.study import Budget
 from pvfiblets.report.tubes_pictures import FORMATS, Truth, helices
 from pvfiblets.tubes import SplineTubes
 
@@ -77,12 +74,6 @@ def test_what_there_was_no_time_for_is_told(gl, small):
     assert isinstance(left[0], LeftOut)
 
 
-def test_without_opengl_it_is_unavailable(monkeypatch):
-    monkeypatch.setitem(sys.modules, "moderngl", None)
-    with pytest.raises(Unavailable, match="moderngl"):
-        next(tubes.STUDY.run(little(), []))
-
-
 # -------------------------------------------------------------------------------------------------------- its reference
 
 
@@ -94,7 +85,7 @@ def ball():
     return lens, Truth.of(tubes_, lens)
 
 
-def test_what_is_right_is_a_balls_own_formula():
+def test_what_is_right_is_a_balls_own_formula_and_errors_are_in_radii_and_pixels():
     lens, truth = ball()
     directions, _ = lens.rays(np.arange(120 * 80))
     towards = directions @ [0.0, 10.0, 0.0]
@@ -102,10 +93,6 @@ def test_what_is_right_is_a_balls_own_formula():
     assert np.array_equal(truth.there, inside >= 0.0)
     np.testing.assert_allclose(truth.along[truth.there], (towards - np.sqrt(np.maximum(inside, 0.0)))[truth.there])
     np.testing.assert_allclose(truth.radius[truth.there], 2.0)
-
-
-def test_errors_are_in_radii_and_in_pixels():
-    lens, truth = ball()
     right = np.where(truth.there, truth.along * truth.forwards, 1.0)
     found = truth.errors(right, truth.there)
     assert found == {"silhouette": 0.0, "depth p50": pytest.approx(0.0, abs=1e-12), "depth p99": pytest.approx(0.0)}
@@ -113,21 +100,6 @@ def test_errors_are_in_radii_and_in_pixels():
     assert off["depth p50"] == pytest.approx(0.25)
     wide = np.roll(truth.there.reshape(80, 120), 1, axis=1).ravel()  # moved by a pixel: 2/pi of one on average
     assert truth.errors(right, wide)["silhouette"] == pytest.approx(2.0 / np.pi, rel=0.05)
-
-
-def test_no_picture_is_asked_for_twice_in_a_row():
-    seen = []
-    cameras = orbit(helices(1), "far", 2, (8, 8))
-    draw = by_turns(lambda camera: seen.append(camera.far), cameras)
-    for _ in range(3):
-        draw()
-    assert seen[:2] != seen[2:4] != seen[4:]
-    assert seen[:2] == seen[4:]
-    np.testing.assert_allclose(seen, [camera.far for camera in cameras] * 3, rtol=1e-6)
-
-
-def test_depth_is_rounded_as_a_format_has_it():
-    lens, truth = ball()
     camera = orbit(helices(1), "far", 2, (8, 8))[0]
     assert Lens.of(camera).distance(1.0 - Lens.of(camera).depth(camera.far)) == pytest.approx(camera.far)
     near = 20.0 / 1e6
@@ -140,3 +112,14 @@ def test_depth_is_rounded_as_a_format_has_it():
     ):
         assert seen.stored(FORMATS[name]) <= 0.51 * quantum / slope / 2.0 * 1.6  # the ball's rim is 9.6 mm away
         assert seen.stored(FORMATS[name]) >= 0.2 * quantum / slope / 2.0
+
+
+def test_no_picture_is_asked_for_twice_in_a_row():
+    seen = []
+    cameras = orbit(helices(1), "far", 2, (8, 8))
+    draw = by_turns(lambda camera: seen.append(camera.far), cameras)
+    for _ in range(3):
+        draw()
+    assert seen[:2] != seen[2:4] != seen[4:]
+    assert seen[:2] == seen[4:]
+    np.testing.assert_allclose(seen, [camera.far for camera in cameras] * 3, rtol=1e-6)
