@@ -72,7 +72,6 @@ def test_convert_reports_what_it_made(tractogram, tmp_path, capsys):
     assert result["dropped"] == {}
     assert set(result["error_mm"]) == set(result["error_steps"]) == {"max", "mean", "p999"}
     assert captured.err == ""
-
     back = formats.read(target)
     error = np.linalg.norm(back.points.astype(float) - brain.points.astype(float), axis=1)
     assert result["error_mm"]["max"] == pytest.approx(error.max(), rel=0.02)
@@ -238,11 +237,9 @@ def test_verify_finds_flipped_bits_a_moved_point_and_another_original(compressed
     brain.points[1000] += 1.0
     formats.write(moved, brain)
     assert "more than" in fails(capsys, "verify", compressed, moved)
-
     other = tmp_path / "other.tck"
     formats.write(other, brain_streamlines(300, seed=9))
     assert "was not made from" in fails(capsys, "verify", compressed, other)
-
     content = bytearray(compressed.read_bytes())
     content[len(content) // 2] ^= 4
     damaged = tmp_path / "damaged.fiblets"
@@ -614,7 +611,6 @@ def test_each_format_goes_in_and_out(shell, files, brain, suffix, tmp_path):
     assert "standard output: 60 streamlines" in err
     assert "of standard input" in err
     assert "pvfiblets-pipe" not in err
-
     code, out, err = shell(b"", "convert", files / "a.tck", "-", "--format", suffix)
     assert code == 0, err
     (tmp_path / f"b{suffix}").write_bytes(out)

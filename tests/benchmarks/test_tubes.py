@@ -46,17 +46,6 @@ def test_one_command_measures_and_says_what_it_left_out(tmp_path):
     assert rows["tube-90x40"]["unmeasured"] in path.with_suffix(".md").read_text()
 
 
-def test_the_camera_is_the_plotters(bench, ball):
-    import pyvista as pv
-
-    tubes, camera = ball
-    plotter = pv.Plotter(off_screen=True, window_size=SIZE)
-    camera.aim(plotter)
-    matrix = plotter.camera.GetCompositeProjectionTransformMatrix(SIZE[0] / SIZE[1], -1.0, 1.0)
-    np.testing.assert_allclose(camera.model_view_projection, pv.array_from_vtkmatrix(matrix), rtol=1e-9, atol=1e-9)
-    plotter.close()
-
-
 def test_the_reference_covers_what_a_sphere_does(bench, ball):
     tubes, camera = ball
     reference = bench.reference.fine_coverage(tubes, camera, 4)
@@ -107,15 +96,3 @@ def test_a_tessellated_tube_is_as_wide_as_it_should_be(bench):
     tilt = np.cos(np.radians(ELEVATION))
     expected = 2.0 * np.tan(np.arcsin(1.0 / distance)) * camera.pixels * tilt
     assert shown[450].sum() == pytest.approx(expected, abs=2.0)
-
-
-def test_normals_turn_as_little_as_can_be(bench):
-    t = np.linspace(0.0, 6.0, 200)
-    tangents = np.stack([-np.sin(t), np.cos(t), np.full(200, 0.3)], axis=1)
-    segments = np.stack([np.arange(199), np.arange(1, 200)], axis=1)
-    normals = tessellated.carried_normals(tangents, segments)
-    np.testing.assert_allclose(np.einsum("ij,ij->i", normals, tangents), 0.0, atol=1e-12)
-    np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1.0)
-    turns = np.linalg.norm(np.diff(normals, axis=0), axis=1)
-    unit = tangents / np.linalg.norm(tangents, axis=1, keepdims=True)
-    assert turns.max() <= np.linalg.norm(np.diff(unit, axis=0), axis=1).max() * 1.001

@@ -8,6 +8,8 @@ import nibabel as nib
 import numpy as np
 import pytest
 import pyvista as pv
+from hypothesis import given
+from hypothesis import strategies as st
 from nibabel.streamlines.trk import header_2_dtype
 
 import pvfiblets as pf
@@ -16,7 +18,7 @@ from pvfiblets.cli import main
 from pvfiblets.formats import registry
 from pvfiblets.streamlines import Streamlines
 
-from .samples import corpus, rich
+from .samples import corpus, rich, same
 
 
 def test_suffixes_and_formats_are_known(tmp_path):
@@ -157,3 +159,45 @@ def test_the_rest_of_a_header_goes_through_a_mesh(tmp_path):
     back.space["voxel_sizes"] = (1.0, 0.0, 1.0)
     with pytest.raises(ValueError, match=r"voxel_sizes.* is \[1.0, 0.0, 1.0\]; three positive numbers"):
         formats.write(tmp_path / "a.trk", back)
+
+
+@pytest.mark.parametrize("suffix", [".tck", ".trk"])
+@given(counts=st.lists(st.integers(0, 5), max_size=8), max_points=st.integers(1, 9))
+def test_round_trip_and_pieces(tmp_path_factory, suffix, counts, max_points):
+    path = tmp_path_factory.mktemp("round") / f"a{suffix}"
+    s = rich(1, counts)
+    formats.write(path, s)
+    back = formats.read(path)
+    kept = s if suffix == ".trk" else Streamlines(s.points, s.offsets)
+    same(back, kept, atol=1e-4 if suffix == ".trk" else 0.0)
+    assert back.dropped == {}
+    pieces = list(formats.iter_chunks(path, max_points))
+    assert all(len(p) == 1 or p.n_points <= max_points for p in pieces)
+    same(Streamlines.concatenate(pieces), back)
+
+
+@pytest.mark.parametrize(
+    ("suffix", "part", "name", "values", "words"),
+    [
+        (".trk", "per_point", "a name of more than twenty letters", np.zeros(27), "too long"),
+        (".trk", "per_point", "long", np.full(27, 2**24 + 1), "float32"),
+        (".trk", "per_streamline", "text", np.array(["a"] * 6), "numbers only"),
+        (".trx", "per_point", "a/b", np.zeros(27), "slashes"),
+        (".trx", "per_point", "", np.zeros(27), "cannot be a name"),
+        (".trx", "per_point", "text", np.array(["a"] * 27), "integers and floats"),
+        (".trx", "per_streamline", "cube", np.zeros((6, 2, 2)), "2 axes"),
+    ],
+)
+def test_what_a_format_cannot_hold(suffix, part, name, values, words, tmp_path):
+    s = rich()
+    getattr(s, part)[name] = values
+    with pytest.raises(ValueError, match=words):
+        formats.write(tmp_path / f"a{suffix}", s)
+    assert not list(tmp_path.iterdir())
+
+
+def test_trk_holds_ten_arrays(tmp_path):
+    s = rich()
+    s.per_point = {f"v{i}": np.zeros(27) for i in range(11)}
+    with pytest.raises(ValueError, match="at most 10"):
+        formats.write(tmp_path / "a.trk", s)

@@ -3,8 +3,6 @@
 import nibabel
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from pvfiblets import formats
 from pvfiblets.errors import FormatError
@@ -84,19 +82,6 @@ def test_files_of_nibabel_are_read_and_ours_by_nibabel(tmp_path):
     theirs = nibabel.streamlines.load(tmp_path / "ours.tck")
     assert int(theirs.header["count"]) == len(s)
     assert np.array_equal(theirs.streamlines.get_data(), s.points)
-
-
-@given(st.lists(st.integers(0, 5), max_size=8), st.integers(1, 9))
-def test_round_trip_and_pieces(tmp_path_factory, counts, max_points):
-    path = tmp_path_factory.mktemp("tck") / "a.tck"
-    s = rich(1, counts)
-    formats.write(path, s)
-    back = formats.read(path)
-    same(back, Streamlines(s.points, s.offsets))
-    assert back.dropped == {}
-    pieces = list(formats.iter_chunks(path, max_points))
-    assert all(len(p) == 1 or p.n_points <= max_points for p in pieces)
-    same(Streamlines.concatenate(pieces), back)
 
 
 def test_odd_lines_are_kept_and_small_blocks_give_the_same(load, monkeypatch):

@@ -8,8 +8,6 @@ import warnings
 import nibabel
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from nibabel.streamlines.trk import TrkFile
 
 from pvfiblets import formats
@@ -147,19 +145,6 @@ def test_gzip_streams_in_pieces(file, tmp_path):
         same(Streamlines.concatenate(pieces), s)
     with pytest.raises(formats.UnknownFormatError, match=r"\.trk\.gz has no write"):
         formats.write(tmp_path / "b.trk.gz", s)
-
-
-@given(st.lists(st.integers(0, 5), max_size=8), st.integers(1, 9))
-def test_round_trip_and_pieces(tmp_path_factory, counts, max_points):
-    path = tmp_path_factory.mktemp("trk") / "a.trk"
-    s = rich(1, counts)
-    formats.write(path, s)
-    back = formats.read(path)
-    same(back, s, atol=1e-4)
-    assert back.dropped == {}
-    pieces = list(formats.iter_chunks(path, max_points))
-    assert all(len(p) == 1 or p.n_points <= max_points for p in pieces)
-    same(Streamlines.concatenate(pieces), back)
 
 
 def patched(data: bytes, position: int, form: str, *values) -> bytes:
@@ -309,22 +294,6 @@ def test_damaged_gzip(file, tmp_path):
         path.write_bytes(bad)
         with pytest.raises(FormatError):
             formats.read(path)
-
-
-@pytest.mark.parametrize(
-    ("part", "name", "values", "words"),
-    [
-        ("per_point", "a name of more than twenty letters", np.zeros(27), "too long"),
-        ("per_point", "long", np.full(27, 2**24 + 1), "float32"),
-        ("per_streamline", "text", np.array(["a"] * 6), "numbers only"),
-    ],
-)
-def test_what_trk_cannot_hold(part, name, values, words, tmp_path):
-    s = rich()
-    getattr(s, part)[name] = values
-    with pytest.raises(ValueError, match=words):
-        formats.write(tmp_path / "a.trk", s)
-    assert not list(tmp_path.iterdir())
 
 
 def test_far_from_the_origin_keeps_float32_precision(tmp_path):

@@ -262,23 +262,6 @@ def test_what_is_no_archive_or_damaged_is_refused(tmp_path):
     assert "damaged" in refused(path).expected
 
 
-@pytest.mark.parametrize(
-    ("part", "name", "values", "words"),
-    [
-        ("per_point", "a/b", np.zeros(27), "slashes"),
-        ("per_point", "", np.zeros(27), "cannot be a name"),
-        ("per_point", "text", np.array(["a"] * 27), "integers and floats"),
-        ("per_streamline", "cube", np.zeros((6, 2, 2)), "2 axes"),
-    ],
-)
-def test_what_trx_cannot_hold(part, name, values, words, tmp_path):
-    s = rich()
-    getattr(s, part)[name] = values
-    with pytest.raises(ValueError, match=words):
-        formats.write(tmp_path / "a.trx", s)
-    assert not list(tmp_path.iterdir())
-
-
 @pytest.mark.parametrize("name", ["a.trx", "unpacked"])
 def test_a_folder_is_read_as_its_archive(name, tmp_path, capsys):
     """The format allows both; trx-python opens both."""

@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pvfiblets import compress, regions
+from pvfiblets import compress
 from pvfiblets.report import features, features_window
 from pvfiblets.report.features_pictures import PICTURE_EFFECTS, PictureEffect, WholePicture
 from pvfiblets.report.features_scenes import PLAIN, Drawn
-from pvfiblets.report.features_subjects import brain_subject, torus
+from pvfiblets.report.features_subjects import brain_subject
 from pvfiblets.report.pareto import mark_fronts
 from pvfiblets.report.study import Budget
 from pvfiblets.synthetic import brain_streamlines
@@ -59,6 +59,7 @@ def test_every_subject_is_beside_its_plain_self(measured):
         assert record.costs["memory"].value > PIXELS * 24 / 1e6  # the G-buffer alone
 
 
+@pytest.mark.more
 def test_features_in_a_window_cost_frames_and_changes(measured):
     found = {key[1:]: record for key, record in measured.items() if key[0] == "window"}
     assert {group for group, _ in found} == {"cut", "criterion", "effects", "colours", PLAIN}
@@ -70,6 +71,7 @@ def test_features_in_a_window_cost_frames_and_changes(measured):
     assert ("colours", "one") not in varied
 
 
+@pytest.mark.more
 def test_figures_are_finite_and_no_feature_is_better_for_being_cheaper(measured):
     for record in measured.values():
         assert all(math.isfinite(figure.value) for figure in record.costs.values())
@@ -81,6 +83,7 @@ def test_figures_are_finite_and_no_feature_is_better_for_being_cheaper(measured)
     assert not any(record.front for record in measured.values())
 
 
+@pytest.mark.more
 def test_bytes_are_those_that_a_feature_asks_for(measured):
     """By the formats of textures: what is said of a pixel, how often."""
     assert more(measured, "streamlines", "lines", "3 pixels wide") == 0
@@ -138,15 +141,3 @@ def test_time_that_is_used_up_is_told(gl, small):
         f"{name}: everything"
         for name in ("streamlines", "spline tubes", "lines with halos", "volume", "streamlines in a window, 96 x 64")
     ]
-
-
-def test_the_torus_is_one():
-    """By its volume, 2 pi^2 R r^2, of which a mesh of so many triangles lacks little."""
-    ring = torus(np.array([1.0, 2.0, 3.0]), 10.0, 96, 48)
-    assert isinstance(ring, regions.Surface)
-    points, triangles = ring.mesh.points, ring.mesh.triangles
-    a, b, c = (points[triangles[:, corner]] for corner in range(3))
-    volume = np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6.0
-    assert volume == pytest.approx(2.0 * np.pi**2 * 10.0 * 4.0**2, rel=0.01)
-    assert not ring.contains([(1.0, 2.0, 3.0)])[0]
-    assert ring.contains([(11.0, 2.0, 3.0)])[0]

@@ -184,15 +184,6 @@ def test_a_picture_is_as_dark_as_its_line_is_wide(gl, times):
     renderer.release()
 
 
-def test_the_least_width_is_in_pixels_of_the_picture(gl):
-    line, look, camera = across()
-    thin = HaloStyle(1e-3, 1.0, 1.0, n_tapered=0, smooth=False, min_width=4.0)
-    renderer = HaloRenderer(gl, line)
-    for times in (1, 4):
-        assert picture(renderer, camera, thin, times).sum() == 64 * 4
-    renderer.release()
-
-
 def test_tiles_make_the_whole_picture(gl):
     lines = helices(6)
     camera = orbit(lines, 1, 1, (64, 48))[0][0]

@@ -139,10 +139,10 @@ def test_times_are_medians_of_calls_that_take_turns_until_told_to_stop():
     (first, at_first), (second, at_second) = taking(clock, [0.1, 0.3, 0.2, 0.4, 0.2]), taking(clock, [0.05])
     assert [turns.add(first), turns.add(second)] == [0, 1]
     turns.run(5)
-    timing = turns.timing(0, 10, "ray")
-    assert (timing.repeats, timing.items, timing.item, timing.clock) == (5, 10.0, "ray", "fake")
-    assert (timing.median, timing.low, timing.high) == pytest.approx((0.2, 0.1, 0.4))
-    assert timing.each == pytest.approx(0.02)
+    told = turns.timing(0, 10, "ray")
+    assert (told.repeats, told.items, told.item, told.clock) == (5, 10.0, "ray", "fake")
+    assert (told.median, told.low, told.high) == pytest.approx((0.2, 0.1, 0.4))
+    assert told.each == pytest.approx(0.02)
     order = sorted([(at, 0) for at in at_first] + [(at, 1) for at in at_second])
     assert [which for _, which in order] == [0, 1] * 5
     clock = Clock()
@@ -258,31 +258,6 @@ def test_other_wrong_calls_are_told_before_anything_is_measured(tmp_path, capsys
     assert "minutes is -1.0; give a number above 0" in capsys.readouterr().err
     with pytest.raises(SystemExit):
         main(["report"])
-
-
-def test_each_default_is_told_at_its_own_figures_only():
-    axes = [Axes("a", "costs/size", "errors/max", "bytes", "mm"), Axes("b", "costs/size", "errors/wrong", "bytes", "%")]
-    records = [
-        Record(data, "g", "", method, "", {error: Figure(0.5, "mm")}, {"size": Figure(2.0, "bytes")}, default=True)
-        for data, method, error in (("points", "ours", "max"), ("pixels", "theirs", "wrong"))
-    ]
-    text = page(Report(dict(ABOUT), [StudyResult("x", "X", "", [], axes, records)]), {})
-    assert "By default: **ours**, **theirs**." in text
-    assert "| points | 0.5 / 2 |  |" in text
-    assert "| pixels |  | 0.5 / 2 |" in text
-
-
-def test_data_sets_without_a_pairs_figures_take_no_room_in_its_picture(tmp_path):
-    def widths(extra):
-        records = [Record("points", "g", "", "ours", "", {"max": Figure(0.5, "mm")}, {"size": Figure(2.0, "bytes")})]
-        records += [Record(name, "g", "", "ours", "", {"wrong": Figure(0.5, "%")}, {"size": Figure(2.0, "bytes")})
-                    for name in extra]  # fmt: skip
-        axes = [Axes("a", "costs/size", "errors/max", "bytes", "mm")]
-        plots.draw(Report(dict(ABOUT), [StudyResult("x", "X", "", [], axes, records)]), tmp_path)
-        with Image.open(tmp_path / "x-a-g.png") as picture:
-            return picture.size
-
-    assert widths(["pixels", "voxels"]) == widths([])
 
 
 def test_pictures_are_told_in_milliseconds_per_frame():

@@ -34,14 +34,12 @@ def test_all_parts_are_measured_and_exact_solvers_are_exact(gl, small):
     assert options.driver.startswith(gl.info["GL_RENDERER"])
     assert all(math.isfinite(figure.value) for record in records for figure in record.errors.values())
     assert all(record.machine == "m" for record in records)
-
     rays = {(record.method, record.setting): record for record in records if record.group == "rays"}
     default = next(record for record in rays.values() if record.default)
     assert default.label == "illinois, loop (48 iterations)"
     assert 0.0 < default.errors["hit p50"].value <= default.errors["hit p99"].value < 1e-4  # float32 rounds, no more
     assert rays["bisection, chain", "2 iterations"].errors["hit p99"].value > 1e-2  # a quarter of a bracket is no root
     assert all(record.times["hit"].each > 0.0 for record in rays.values())
-
     shown = {(record.data, record.setting): record for record in records if record.group == "pictures"}
     assert {view for view, _ in shown} == {"2 helices, far", "2 helices, close"}
     for view in ("far", "close"):
@@ -51,7 +49,6 @@ def test_all_parts_are_measured_and_exact_solvers_are_exact(gl, small):
         assert cast.errors["depth p99"].value < 1e-3 < coarse.errors["depth p99"].value
         assert coarse.errors["silhouette"].value > shown[f"2 helices, {view}", "30 sides"].errors["silhouette"].value
         assert cast.times["draw"].item == "frame"
-
     stiff = [record for record in records if record.group == "stiff"]
     length = next(record for record in stiff if record.data == "length over radius" and record.ours)
     assert length.errors["p99 at ratio 1"].value < 1e-5 < length.errors["p99 at ratio 100000"].value

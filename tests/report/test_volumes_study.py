@@ -50,7 +50,6 @@ def test_all_parts_are_measured_and_what_converges_is_right(gl, small):
     assert all(math.isfinite(figure.value) for record in bounded for figure in record.errors.values())
     assert all(record.machine == "m" for record in records)
     assert all(timing.item == "frame" and timing.median > 0.0 for record in records for timing in record.times.values())
-
     light = {(record.data, record.method): record for record in records if "light rms" in record.errors}
     bare = {record.method: record.errors for record in records if record.data == "bare formulae"}
     assert bare["riemann"]["leaves 0 to 1"].value > 0.0 == bare["preintegrated"]["leaves 0 to 1"].value
@@ -62,7 +61,6 @@ def test_all_parts_are_measured_and_what_converges_is_right(gl, small):
     assert light["peaks, κΔ 1000", "riemann"].errors["light max"].value > 0.5  # an entry that a step passes over
     stiff = {(record.data, record.method): record.errors for record in records if record.group == "stiff"}
     assert stiff["peaks", "riemann"]["max at κΔ 1000"] == light["peaks, κΔ 1000", "riemann"].errors["light max"]
-
     shown = {
         (record.data, record.method, record.setting): record.errors for record in records if record.group == "pictures"
     }
@@ -80,7 +78,6 @@ def test_all_parts_are_measured_and_what_converges_is_right(gl, small):
     surface = "24³ vessels, isosurface"
     place = {method: shown[surface, method, ""]["place"].value for method in ("default", "no refinement")}
     assert place["default"] < place["no refinement"]
-
     openness = {(record.data, record.method, record.setting): record.errors["openness rms"].value
                 for record in records if record.group == "occlusion"}  # fmt: skip
     for name in ("vessels", "head"):

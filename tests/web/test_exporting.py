@@ -153,10 +153,8 @@ async def test_a_cancelled_export_leaves_nothing(desk, folder, monkeypatch, suff
 
     monkeypatch.setattr(exporting, "write", cancelled)
     desk.page.export_what, desk.page.export_to = "shown", to
-
     desk.exports.export(suffix)
     await desk.done()
-
     assert jobs == [{"text": f"lines_shown{suffix}: stopping", "share": -1.0, "cancellable": False, "then": ""}]
     assert desk.said == [("info", f"lines_shown{suffix} was not written: cancelled.")]
     assert (desk.page.download, desk.page.job) == ({}, {})

@@ -55,7 +55,6 @@ async def test_unfinished_requests_keep_nobody_out_and_fill_no_log(tmp_path, cap
                 assert (await socket.receive_bytes()) == message(b"still here")
                 assert await answered(inside, "/index.html") == 200
                 assert await answered(outside) == 401
-
     assert len(caplog.records) < 40
 
 
@@ -69,7 +68,6 @@ async def test_connections_that_are_all_at_work_leave_a_short_answer_for_others(
         for _ in range(8):
             await stack.enter_async_context(browser.socket())
         assert b"503 Service Unavailable" in await raw(server, b"")
-
     assert "too many are busy" in caplog.text
 
 
@@ -128,7 +126,6 @@ async def test_an_upload_is_not_inflated_on_its_way(tmp_path):
     import gzip
 
     packed = gzip.compress(bytes(1_000_000))
-
     async with gate(tmp_path, upload=10_000) as server, Browser(server) as browser:
         await browser.enter()
         headers = {"Content-Encoding": "gzip"}
@@ -152,14 +149,12 @@ async def test_requests_count_by_the_address_that_a_known_proxy_names(tmp_path, 
                 break
             await asyncio.sleep(0.02)
         assert status == 200
-
     assert "from 10.0.0.1: too many requests" in caplog.text
 
 
 async def test_nobody_else_is_believed_about_addresses(tmp_path, caplog):
     async with gate(tmp_path) as server, Browser(server) as browser:
         await browser.get("/", headers={"X-Forwarded-For": "10.0.0.1"})
-
     assert "from 127.0.0.1: no token" in caplog.text
     assert "10.0.0.1" not in caplog.text
 
@@ -210,7 +205,6 @@ async def test_running_out_of_file_descriptors_is_a_few_lines_and_passes(tmp_pat
             crowd.communicate()
         await asyncio.sleep(1.1)
         assert await answered(browser) == 401
-
     assert "out of system resource" in caplog.text
     assert len(caplog.records) < 30
 
@@ -396,8 +390,7 @@ async def test_frames_that_are_or_announce_a_gigabyte_take_no_memory(tmp_path):
 
 
 async def test_a_reader_that_never_reads_takes_no_memory_and_is_given_up(tmp_path, monkeypatch, caplog):
-    monkeypatch.setattr(relay, "UNREAD", 1.5)
-
+    monkeypatch.setattr(relay, "UNREAD", 0.6)
     async with gate(tmp_path) as server, Browser(server) as browser:
         await browser.enter()
         before = resident() if Path("/proc/self/statm").exists() else None
@@ -409,7 +402,7 @@ async def test_a_reader_that_never_reads_takes_no_memory_and_is_given_up(tmp_pat
             if reader.at_eof() or "did not read" in caplog.text:
                 break
         assert "did not read" in caplog.text
-        assert time.monotonic() - started > 1.4
+        assert time.monotonic() - started > 0.5
         if before is not None:
             assert resident() - before < 64 * MIB
         writer.close()
@@ -418,7 +411,7 @@ async def test_a_reader_that_never_reads_takes_no_memory_and_is_given_up(tmp_pat
         size = 0
         async for piece in answer.content.iter_chunked(MIB):
             size += len(piece)
-            await asyncio.sleep(0.3)
+            await asyncio.sleep(0.1)
         assert size == 10 * MIB
 
 
@@ -455,7 +448,6 @@ async def test_bodies_whose_sizes_lie_smuggle_nothing(tmp_path, lines, body):
 @pytest.mark.parametrize("known", [False, True], ids=["stranger", "guest"])
 async def test_no_answer_can_be_framed_sniffed_or_kept(tmp_path, known):
     """Clickjacking, scripts of uploaded text, tokens in Referer and in caches."""
-
     async with gate(tmp_path) as server, Browser(server) as browser:
         if known:
             await browser.enter()

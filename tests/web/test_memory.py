@@ -116,7 +116,6 @@ async def test_what_is_opened_meanwhile_waits_for_its_turn_and_the_page_names_it
     seen.append(desk.page.job)
     go.set()
     assert await asyncio.gather(*others) == ["done"] * 16
-
     assert seen[0]["text"] == "a.trk: reading"
     assert seen[0]["then"].startswith("then 0.trk, 1.trk, ")
     assert seen[1]["text"] == "0.trk: reading"  # what is cancelled makes room for the next

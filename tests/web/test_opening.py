@@ -50,7 +50,6 @@ async def test_a_session_is_read_beside_the_page_and_the_page_goes_on(desk, scen
     text = json.dumps(saved(scene))
     threads.clear()
     jobs, ticks = [], []
-
     files = desk.files
     files.load_session(text)
     while not scene.layers:
@@ -59,7 +58,6 @@ async def test_a_session_is_read_beside_the_page_and_the_page_goes_on(desk, scen
         if desk.page.job:
             jobs.append(desk.page.job)
     await desk.done()
-
     assert threads == [False] * len(threads)
     assert len(threads) >= 3
     assert [layer.kind for layer in scene.layers] == ["volume", "tractogram"]
@@ -130,34 +128,26 @@ def test_what_a_process_keeps_is_restored_by_the_next_after_its_first_files(desk
 
 async def test_what_changes_while_a_session_is_read_is_one_step_before_it(desk, scene):
     text = json.dumps(saved(scene))
-
     desk.files.load_session(text)
     await asyncio.sleep(0)
     scene.open("ball.ply")
     scene.forget_unused()
     await desk.done()
-
     assert [layer.name for layer in scene.layers] == ["head.nii.gz", "lines.trk"]
     desk.history.undo()
     assert [layer.name for layer in scene.layers] == ["ball.ply"]
 
 
-async def test_files_are_opened_beside_the_page(desk, scene, threads):
+async def test_files_and_volumes_that_colour_lines_are_read_beside_the_page(desk, scene, threads):
     await desk.files.open("lines.trk")
-
     assert threads == [False]
     assert desk.page.chosen == scene.layers[0].id
     assert desk.refreshed == 1
-
-
-async def test_a_volume_that_colours_lines_is_read_beside_the_page(desk, scene, threads):
     scene.open("head.nii.gz")
     layer = scene.open("lines.fiblets")
     threads.clear()
     value = {"volume": {"path": "head.nii.gz"}}
-
     await desk.files.colour_by(layer.id, "scalars", value, Source("head.nii.gz"))
-
     assert threads == [False]
     assert scene.layer(layer.id).settings["scalars"] == value
 
@@ -168,7 +158,6 @@ async def test_sessions_in_the_served_folder_are_files_like_others(desk, scene, 
     (folder / "ball.ply").rename(home / "ball.ply")
     scene.open("study/ball.ply")
     scene.open("lines.fiblets")
-
     desk.files.store_session("study/mine")
     with pytest.raises(ValueError, match="exists already"):
         desk.files.store_session("study/mine.json")
@@ -181,7 +170,6 @@ async def test_sessions_in_the_served_folder_are_files_like_others(desk, scene, 
     assert [entry["name"] for entry in desk.page.entries] == ["ball.ply", "mine.json"]
     desk.files.take("study/mine.json", False)
     await desk.done()
-
     assert desk.said[0] == ("success", "The session is saved in the served folder as study/mine.json.")
     assert [layer.path for layer in scene.layers] == ["study/ball.ply", "lines.fiblets"]
     with (folder / "long.json").open("wb") as file:
@@ -261,10 +249,8 @@ def test_a_cut_goes_through_the_layers_that_are_chosen(desk, scene):
 
 async def test_the_demo_is_made_beside_the_page(desk, scene, threads, monkeypatch):
     monkeypatch.setattr(type(scene).load_demo, "__defaults__", (20, 8))
-
     desk.files.open_demo()
     await desk.done()
-
     assert threads == [False, False]
     assert [(layer.kind, layer.visible) for layer in scene.layers] == [("tractogram", True), ("volume", False)]
 
@@ -280,10 +266,8 @@ async def test_the_tractogram_stays_chosen_when_a_volume_or_a_mesh_is_opened(des
 async def test_undo_starts_empty(desk, scene, folder):
     desk.options = replace(desk.options, files=(str(folder / "lines.trk"),), mesh=(str(folder / "ball.ply"),))
     desk.stream.warm = lambda: None
-
     desk.files.open_given()
     await desk.done()
-
     assert [layer.name for layer in scene.layers] == ["lines.trk", "ball.ply"]
     assert (len(desk.history), desk.history.undo_label) == (0, None)
     scene.rename(scene.layers[0].id, "tract")
@@ -293,12 +277,10 @@ async def test_undo_starts_empty(desk, scene, folder):
 
 async def test_what_was_done_while_given_files_were_opened_can_be_undone(desk, scene, folder):
     desk.options = replace(desk.options, files=(str(folder / "lines.trk"),))
-
     desk.files.open_given()
     await asyncio.sleep(0)
     scene.open("ball.ply")
     await desk.done()
-
     assert [layer.name for layer in scene.layers] == ["ball.ply", "lines.trk"]
     desk.history.undo()
     desk.history.undo()

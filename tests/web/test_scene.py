@@ -3,8 +3,6 @@
 import itertools
 import json
 import os
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -377,16 +375,6 @@ def test_layers_are_drawn_in_their_order_whenever_they_came(flat):
     flat.become(state)
     np.testing.assert_array_equal(flat.screenshot(), picture)
     assert flat.info(second.id)["gpu_bytes"] >= bytes_before > 0
-
-
-@pytest.mark.more
-def test_documents_need_no_server():
-    code = (
-        "import sys; from pvfiblets.web import history, layers, scene, script, session\n"
-        "assert not {'trame', 'trame_server', 'aiohttp', 'wslink'} & set(sys.modules)"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
 
 
 def test_a_pixel_picks_the_line_that_is_there(flat):

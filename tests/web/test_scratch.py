@@ -41,7 +41,6 @@ def temporary(tmp_path, monkeypatch):
 async def test_what_a_session_left_goes_with_it(tmp_path, temporary, how):
     (tmp_path / ".pvfiblets-part").mkdir()
     (tmp_path / ".pvfiblets-part" / "half.trk").write_text("half of it")
-
     async with gate(tmp_path) as found, Browser(found) as browser:
         pid = await browser.enter()
         (session,) = found.launcher.sessions.values()

@@ -62,7 +62,6 @@ async def test_nothing_is_shown_without_the_token(tmp_path, caplog):
         status, text = await browser.post("/token", data={"token": "wrong-wrong"})
         assert status == 401
         assert "not the token" in text
-
     assert caplog.text.count("refused") == 8
     assert TOKEN not in caplog.text
     assert "wrong-wrong" not in caplog.text
@@ -104,7 +103,6 @@ async def test_foreign_pages_and_names_are_refused(tmp_path, caplog):
             assert answer.status in (400, 403)
         async with browser.http.request("DELETE", browser.base + "/") as answer:
             assert answer.status == 405
-
     assert "foreign origin" in caplog.text
 
 
@@ -160,7 +158,6 @@ async def test_what_is_cut_off_is_said_on_the_page(tmp_path):
 
 async def test_sessions_are_larger_than_messages_and_where_nothing_may_be_uploaded(tmp_path, monkeypatch):
     monkeypatch.setattr("pvfiblets.web.server.LARGEST_SESSION", 8 * LARGEST_MESSAGE)
-
     async with gate(tmp_path, upload=0) as server, Browser(server) as browser:
         await browser.enter()
         most = 8 * LARGEST_MESSAGE
@@ -286,7 +283,6 @@ async def test_the_last_state_of_a_dead_session_is_restored_to_its_browser_alone
 
 async def test_a_session_that_cannot_start_says_why(tmp_path):
     (tmp_path / "fail").write_text("there is no OpenGL <here>")
-
     async with gate(tmp_path) as server, Browser(server) as browser:
         await browser.get(f"/?token={TOKEN}")
         assert await browser.begin() == "ask again"

@@ -87,7 +87,6 @@ def test_a_token_is_kept_where_only_its_user_looks(tmp_path):
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 async def test_processes_of_sessions_are_told_nothing_in_public(tmp_path, monkeypatch):
     monkeypatch.setenv("PVFIBLETS_TOKEN", TOKEN)
-
     async with gate(tmp_path) as server, Browser(server) as browser:
         pid = await browser.enter()
         (session,) = server.launcher.sessions.values()

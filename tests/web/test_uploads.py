@@ -78,10 +78,8 @@ def test_uploads_by_a_real_session(tmp_path):
                     status, text = await post(browser, name, good)
                     assert (status, "\n" in text, str(root) in text) == (400, False, False), (name, text)
                 assert names() == []
-
                 await aborted(browser, "half.ply")
                 await until(lambda: names() == [])
-
                 assert (await post(browser, "good.ply", good))[0] == 200
                 status, text = await post(browser, "good.ply", b"other")
                 assert status == 409
@@ -90,7 +88,6 @@ def test_uploads_by_a_real_session(tmp_path):
                     assert (await post(browser, name, body))[0] == 200
                 await until(lambda: names() == ["good.ply"])
                 assert (root / "good.ply").read_bytes() == good
-
                 # VTK ends the process on this one.
                 (session,) = server.launcher.sessions.values()
                 assert (await post(browser, "bomb.gltf", (apart / "bomb.gltf").read_bytes()))[0] == 200
@@ -174,7 +171,6 @@ async def test_what_cannot_be_read_has_an_answer_and_no_traceback(tmp_path, capl
 
     async with gate(tmp_path) as server:
         await asyncio.gather(*(check(server, text, status) for text, status in REQUESTS))
-
     assert len(caplog.records) > 10
     assert not [record for record in caplog.records if record.exc_info]
     assert TOKEN not in caplog.text
@@ -200,7 +196,6 @@ async def test_a_session_is_told_nothing_malformed(tmp_path, caplog):
             found = int(answer.split()[1])
             assert found == status or (status is None and found < 500), (text, answer)
         assert await browser.pid()
-
     assert not [record for record in caplog.records if record.exc_info]
 
 
@@ -289,7 +284,6 @@ async def test_malformed_messages_close_their_connection_with_a_line_in_the_log(
     await handler.onMessage(True, Told(message(msgpack.packb(call(1, [])))), "one")
     assert not connection.closed
     assert b"Unregistered" in connection.sent
-
     assert caplog.text.count("refused a message") == 12
     assert not [record for record in caplog.records if record.exc_info]
 
@@ -297,7 +291,6 @@ async def test_malformed_messages_close_their_connection_with_a_line_in_the_log(
 async def test_what_a_worker_says_is_limited_and_cannot_move_the_cursor(tmp_path, caplog):
     """Browsers report errors of their scripts, which workers write to their log."""
     (tmp_path / "noise").write_text("\x1b[2J" + "x" * 20_000)
-
     caplog.set_level("INFO", "pvfiblets.web")
     async with gate(tmp_path) as server, Browser(server) as browser:
         await browser.enter()
@@ -315,5 +308,4 @@ async def test_a_worker_that_goes_in_the_middle_of_an_answer_is_no_mistake_of_th
         await browser.enter()
         with pytest.raises(aiohttp.ClientError):
             await browser.get("/half")
-
     assert not [record for record in caplog.records if record.exc_info]

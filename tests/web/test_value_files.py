@@ -44,12 +44,10 @@ async def test_a_file_of_values_colours_the_chosen_tractogram(desk, scene, heigh
     scene.select(first.id, [4, 5])
     scene.open("lines.fiblets")
     desk.page.chosen = first.id
-
     desk.files.browse("")
     assert "heights.tsf" in {entry["name"] for entry in desk.page.entries}
     desk.files.take("heights.tsf", False)
     await desk.done()
-
     layer = scene.layer(first.id)
     assert layer.settings["scalars"] == "heights"
     assert len(layer.selected) == 2
