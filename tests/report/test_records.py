@@ -16,6 +16,7 @@ from pvfiblets.cli import main
 from pvfiblets.errors import FormatError
 from pvfiblets.report import plots
 from pvfiblets.report.dot_plot import in_rows
+from pvfiblets.report.drawing import timing
 from pvfiblets.report.errors_and_times import Turns, distances, error_figures, median_step
 from pvfiblets.report.page import page
 from pvfiblets.report.pareto import mark_fronts, pareto
