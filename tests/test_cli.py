@@ -476,6 +476,11 @@ MISUSED = [
     ("screenshot a.trx -o a.png --size 10", "'10' is not WIDTHxHEIGHT, such as 1200x900"),
     ("screenshot a.trx -o a.png --clim 1", "--clim: expected 2 arguments"),
     ("batch convert a.trx", "the following arguments are required: -o/--output"),
+    ("screenshot a.trx -o a.png --view sideways", "argument --view"),
+    ("screenshot a.trx -o a.png --antialias much", "argument --antialias"),
+    ("convert a.trx b.fiblets --step -1", "argument --step"),
+    ("convert a.trx b.fiblets --max-error nan", "argument --max-error"),
+    ("demo --streamlines 0", "argument --streamlines"),
 ]
 
 WRONG = [
