@@ -57,9 +57,9 @@ LONGEST = (
     "page/test_page_browser.py", "stability/test_cases.py", "web/test_browser_drawing.py", "web/test_firefox.py",
     "web/test_browser_layers.py", "stability/test_load.py", "engine/test_volume_steep.py",
     "benchmarks/test_soak.py", "engine/test_coverage.py",
-    "web/test_browser_attacks.py", "web/test_browser_bundles.py", "engine/test_region_query.py",
+    "web/test_browser_attacks.py", "engine/test_region_query.py",
     "web/test_browser_exports.py", "engine/test_clip_regions.py", "web/test_browser_touch.py",
-    "web/test_browser_memory.py", "engine/test_filter_textures.py", "engine/test_line_tubes.py",
+    "engine/test_filter_textures.py", "engine/test_line_tubes.py",
     "report/test_features_study.py", "report/test_tubes_study.py", "formats/test_fuzz.py", "engine/test_volume.py",
 )  # fmt: skip
 """Files that take longest. They begin first, so that in the end no process works on while the others have nothing."""

@@ -1,14 +1,16 @@
 """The command: what it prints, writes and returns, called as a user calls it."""
 
-from __future__ import annotations
-
 import argparse
 import gzip
+import io
 import json
 import os
 import re
+import shlex
 import subprocess
 import sys
+from pathlib import Path
+from types import SimpleNamespace
 
 import nibabel as nib
 import numpy as np
@@ -18,6 +20,8 @@ from PIL import Image
 from pvfiblets import formats, memory, regions
 from pvfiblets.cli import main, make_parser
 from pvfiblets.codec.fibletset import FibletSet
+from pvfiblets.engine.capabilities import PIPELINES
+from pvfiblets.formats.recognise import suffix_by_content
 from pvfiblets.report.errors_and_times import direction_angles
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.synthetic import brain_streamlines
@@ -68,7 +72,6 @@ def test_convert_reports_what_it_made(tractogram, tmp_path, capsys):
     assert result["dropped"] == {}
     assert set(result["error_mm"]) == set(result["error_steps"]) == {"max", "mean", "p999"}
     assert captured.err == ""
-
     back = formats.read(target)
     error = np.linalg.norm(back.points.astype(float) - brain.points.astype(float), axis=1)
     assert result["error_mm"]["max"] == pytest.approx(error.max(), rel=0.02)
@@ -119,9 +122,11 @@ def test_convert_keeps_values_of_points_and_names_those_that_stay_behind(tmp_pat
         assert ("not kept" in out) == bool(behind)
 
 
-def test_an_array_named_beside_all_or_none_is_refused(tractogram, tmp_path, capsys):
+def test_refusals_of_arrays_list_those_that_exist(tractogram, tmp_path, capsys):
     words = ["--per-point", "none", "--per-point", "fa"]
     assert "give all, or none, or names" in fails(capsys, "convert", tractogram[0], tmp_path / "a.fiblets", *words)
+    assert "fa" in fails(capsys, "convert", tractogram[0], tmp_path / "a.fiblets", "--per-point", "md")
+    assert "curvature" in fails(capsys, "screenshot", tractogram[0], "-o", tmp_path / "a.png", "--scalars", "md")
 
 
 def test_convert_keeps_the_colours_of_a_real_file(shared_data, tmp_path, capsys):
@@ -135,12 +140,9 @@ def test_convert_keeps_the_colours_of_a_real_file(shared_data, tmp_path, capsys)
         np.testing.assert_allclose(back.per_point[name].ravel(), values, atol=0.002 * np.ptp(values))
 
 
-def test_convert_keeps_the_promise_that_was_asked_for(tractogram, tmp_path, capsys):
+def test_convert_keeps_the_error_and_the_directions_that_were_asked_for(tractogram, tmp_path, capsys):
     main(["convert", str(tractogram[0]), str(tmp_path / "a.fiblets"), "--max-error", "0.004", "--json"])
     assert json.loads(capsys.readouterr().out)["error_mm"]["max"] <= 0.004 * 1.01
-
-
-def test_convert_keeps_the_directions_that_were_asked_for(tractogram, tmp_path, capsys):
     largest = []
     for angle in ("none", "1.5"):
         words = ["--max-error", "0.2", "--max-angle", angle, "--json"]
@@ -190,7 +192,7 @@ def test_info_and_table_state_what_a_header_gets_wrong(tmp_path, capsys):
         facts = json.loads(capsys.readouterr().out)
         assert ((facts["streamlines"], facts["points"]), facts["dropped"]) == (found, dropped)
         assert main(["info", str(tmp_path / name)]) == 0
-        (reason, count), = dropped.items()
+        ((reason, count),) = dropped.items()
         assert f"{count}: {reason}" in capsys.readouterr().out
         assert main(["table", str(tmp_path / name), str(tmp_path / "a.csv")]) == 0
         assert f"{reason}: {count}" in capsys.readouterr().err
@@ -228,27 +230,22 @@ def test_verify_measures_against_the_original(compressed, tractogram, capsys):
     assert main(["verify", str(compressed)]) == 0
 
 
-def test_verify_finds_a_flipped_bit_a_moved_point_and_another_original(compressed, tractogram, tmp_path, capsys):
+def test_verify_finds_flipped_bits_a_moved_point_and_another_original(compressed, tractogram, tmp_path, capsys):
     moved = tmp_path / "moved.trx"
     brain = tractogram[1][:]
     brain.points = brain.points.copy()
     brain.points[1000] += 1.0
     formats.write(moved, brain)
     assert "more than" in fails(capsys, "verify", compressed, moved)
-
     other = tmp_path / "other.tck"
     formats.write(other, brain_streamlines(300, seed=9))
     assert "was not made from" in fails(capsys, "verify", compressed, other)
-
     content = bytearray(compressed.read_bytes())
     content[len(content) // 2] ^= 4
     damaged = tmp_path / "damaged.fiblets"
     damaged.write_bytes(content)
     assert "damaged.fiblets" in fails(capsys, "verify", damaged, tractogram[0])
-
-
-def test_verify_alone_finds_a_changed_byte_that_leaves_sense(compressed, tmp_path, capsys):
-    """A direction code may be any byte: only the checksum knows."""
+    # A direction code may be any byte: only the checksum knows.
     from pvfiblets.codec.fibletset import FibletSet
 
     codes = FibletSet.open(compressed).codes
@@ -259,68 +256,12 @@ def test_verify_alone_finds_a_changed_byte_that_leaves_sense(compressed, tmp_pat
     assert "changed bytes in codes.npy" in fails(capsys, "verify", changed)
 
 
-@pytest.mark.parametrize(
-    ("arguments", "says"),
-    [
-        (["info", "missing.trk"], "missing.trk"),
-        (["convert", "missing.trk", "a.fiblets"], "missing.trk"),
-        (["convert", "missing.trk", "a.xyz"], "suffix"),
-        (["convert", "same.tck", "same.tck"], "overwritten by itself"),
-        (["verify", "missing.tck"], "no .fiblets file"),
-        (["screenshot", "missing.tck", "-o", "a.png"], "missing.tck"),
-        (["screenshot", "missing.tck", "-o", "a.doc"], "a.doc"),
-    ],
-)
-def test_failures_are_one_plain_sentence(arguments, says, capsys, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    assert says in fails(capsys, *arguments)
-    assert not list(tmp_path.iterdir())
-
-
-def test_a_broken_file_is_one_plain_sentence_and_leaves_nothing(tmp_path, capsys):
-    (tmp_path / "a.trk").write_bytes(b"TRACK" + bytes(300))
-    assert "a.trk" in fails(capsys, "convert", tmp_path / "a.trk", tmp_path / "b.fiblets")
-    assert [path.name for path in tmp_path.iterdir()] == ["a.trk"]
-
-
-def test_an_unknown_array_lists_those_that_exist(tractogram, tmp_path, capsys):
-    assert "fa" in fails(capsys, "convert", tractogram[0], tmp_path / "a.fiblets", "--per-point", "md")
-    assert "curvature" in fails(capsys, "screenshot", tractogram[0], "-o", tmp_path / "a.png", "--scalars", "md")
-
-
-@pytest.mark.parametrize(
-    "arguments",
-    [
-        [],
-        ["compress", "a.trk"],
-        ["convert", "a.trk"],
-        ["convert", "a.trk", "b.fiblets", "--step", "-1"],
-        ["convert", "a.trk", "b.fiblets", "--max-error", "nan"],
-        ["screenshot", "a.trk"],
-        ["screenshot", "a.trk", "-o", "a.png", "--size", "big"],
-        ["screenshot", "a.trk", "-o", "a.png", "--size", "0x5"],
-        ["screenshot", "a.trk", "-o", "a.png", "--view", "sideways"],
-        ["screenshot", "a.trk", "-o", "a.png", "--antialias", "much"],
-        ["serve", "--antialias", "1"],
-        ["demo", "--streamlines", "0"],
-    ],
-)
-def test_wrong_usage_is_exit_code_2(arguments, capsys):
-    with pytest.raises(SystemExit) as exit_:
-        main(arguments)
-    assert exit_.value.code == 2
-    assert "usage:" in capsys.readouterr().err
-
-
-def test_every_command_and_each_of_its_arguments_says_what_it_does():
+def test_help_is_exit_code_0_and_every_command_and_argument_says_what_it_does(capsys):
     commands = next(action for action in make_parser()._actions if isinstance(action, argparse._SubParsersAction))
     for name, command in commands.choices.items():
         assert command.description, name
         silent = [action.dest for action in command._actions if not action.help]
         assert not silent, name
-
-
-def test_help_and_version_are_exit_code_0(capsys):
     for arguments in (["--help"], ["--version"], ["convert", "--help"]):
         with pytest.raises(SystemExit) as exit_:
             main(arguments)
@@ -470,3 +411,304 @@ def test_convert_keeps_a_spatial_index_and_says_what_it_takes(tractogram, tmp_pa
     assert main(["convert", str(source), str(target), "--exact", "--index"]) == 0
     assert "index    none" in capsys.readouterr().out
     assert "leave it out" in fails(capsys, "convert", source, tmp_path / "a.tck", "--index")
+
+
+def test_gl_lists_the_driver_its_limits_and_every_pipeline_also_as_json(gl, capsys):
+    assert gl.info["GL_VERSION"]
+    assert main(["gl"]) == 0
+    text = capsys.readouterr().out
+    assert gl.info["GL_RENDERER"] in text
+    assert gl.info["GL_VERSION"] in text
+    assert f"{gl.info['GL_MAX_TEXTURE_SIZE']:,}" in text
+    for name in PIPELINES[1:]:
+        assert sum(line.split()[:1] == [name] for line in text.splitlines()) == 1
+    assert text.count("(auto)") == 1
+    assert gl.extensions
+    assert gl.info
+    assert main(["gl", "--json"]) == 0
+    report = json.loads(capsys.readouterr().out)
+    assert report["renderer"] == gl.info["GL_RENDERER"]
+    assert set(report["extensions"]) == set(gl.extensions)
+    assert {entry["name"] for entry in report["pipelines"]} == set(PIPELINES[1:])
+    assert all(entry["available"] == (entry["why_not"] is None) for entry in report["pipelines"])
+    assert report["auto"] == next(entry["name"] for entry in report["pipelines"] if entry["available"])
+
+
+def test_without_opengl_there_is_one_sentence_and_exit_code_1():
+    nothing = {"GLCONTEXT_LINUX_LIBEGL": "libnothing.so", "GLCONTEXT_LINUX_LIBGL": "libnothing.so"}
+    result = subprocess.run(
+        [sys.executable, "-m", "pvfiblets.cli", "gl"],
+        capture_output=True, text=True, check=False, env=os.environ | nothing,
+    )  # fmt: skip
+    assert (result.returncode, result.stdout, result.stderr.count("\n")) == (1, "", 1)
+    assert result.stderr.startswith("pvfiblets: no OpenGL 3.2 or later could be started on this machine (egl: ")
+    assert "Install a graphics driver" in result.stderr
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("mistakes")
+    brain = brain_streamlines(20, 2.0, seed=3, fa=True)
+    formats.write(folder / "a.trx", brain)
+    formats.write(folder / "a b ü.tck", brain)
+    assert main(["convert", str(folder / "a.trx"), str(folder / "a.fiblets"), "--quiet"]) == 0
+    (folder / "folder").mkdir()
+    (folder / "empty.tck").touch()
+    (folder / "text.tck").write_text("hello")
+    nib.save(nib.Nifti1Image(np.zeros((4, 4, 4), np.int16), np.eye(4)), folder / "zeros.nii")
+    return folder
+
+
+MISUSED = [
+    ("convert a.trx b.fiblets --max-eror 1", "unrecognized arguments: --max-eror 1; did you mean --max-error?"),
+    ("compres a.trx b.fiblets", "invalid choice: 'compres'"),
+    ("infos a.trx", "did you mean info?"),
+    ("convert a.trx b.fiblets --effort hihg", "did you mean high?"),
+    ("convert a.trx b.fiblets c.fiblets", "unrecognized arguments: c.fiblets"),
+    ("convert a.trx", "the following arguments are required: OUT"),
+    ("convert a.trx b.fiblets --max-error big", "--max-error: 'big' is no number"),
+    ("convert a.trx b.fiblets --max-error 0", "--max-error: 0 is not above zero"),
+    ("convert a.trx b.fiblets --max-error -1", "--max-error: -1 is not above zero"),
+    ("convert a.trx b.fiblets --max-angle 900", "--max-angle: 900 is not above 0 and up to 90 degrees, or none"),
+    ("convert a.trx b.fiblets --per-point-bits 12", "invalid choice: 12 (choose from"),
+    ("demo --streamlines 1.5", "--streamlines: '1.5' is no whole number"),
+    ("density a.trx d.nii", "one of the arguments --voxel --like is required"),
+    ("screenshot a.trx -o a.png --size 10", "'10' is not WIDTHxHEIGHT, such as 1200x900"),
+    ("screenshot a.trx -o a.png --size 10x16385", "10x16385: each side must be from 1 to 16384 pixels"),
+    ("screenshot a.trx -o a.png --clim 1", "--clim: expected 2 arguments"),
+    ("batch convert a.trx", "the following arguments are required: -o/--output"),
+    ("screenshot a.trx -o a.png --view sideways", "argument --view"),
+    ("screenshot a.trx -o a.png --antialias much", "argument --antialias"),
+    ("convert a.trx b.fiblets --step -1", "argument --step"),
+    ("convert a.trx b.fiblets --max-error nan", "argument --max-error"),
+    ("demo --streamlines 0", "argument --streamlines"),
+]
+
+WRONG = [
+    ("info missing.tck", "missing.tck: No such file"),
+    ("info folder", "folder is a folder; give a file of one of .*.fiblets, .*.tck"),
+    ("info zeros.nii", "zeros.nii: no format has this suffix; .*.fiblets, .*.tck"),
+    ("info '~/missing.tck'", "missing.tck: No such file"),
+    ("info 'no such ü.tck'", "no such ü.tck: No such file"),
+    ("convert '*.nothing' b.fiblets", r"\*.nothing: no format has this suffix"),
+    ("convert a.trx b", "b: no format has this suffix; .*.fiblets, .*.tck"),
+    ("convert a.trx b.trk.gz", r"b.trk.gz: the format .trk.gz has no write\(\); formats that have: .fib, .fiblets"),
+    ("convert a.trx nowhere/b.tck", "nowhere/b.tck: there is no folder .*nowhere; make it first"),
+    ("convert a.trx ./a.trx", "a.trx would be overwritten by itself; give another name"),
+    ("convert a.trx b.fiblets --per-point md", "no per-point array 'md'; the streamlines have: fa"),
+    ("convert a.trx b.trk --max-error 1", "--max-error, .* are for .fiblets files; b.trk is of another format"),
+    ("convert empty.tck b.fiblets", "empty.tck, byte 0: found b'', expected the line 'mrtrix tracks'"),
+    ("convert text.tck b.fiblets", "text.tck, byte 0: found b'hello', expected the line"),
+    ("convert https://example.org/a.tck b.fiblets", "https://example.org/a.tck is an address; .*fetch the file first"),
+    ("convert a.trx https://example.org/b.tck", "https://example.org/b.tck is an address, and files are written here"),
+    ("screenshot https://example.org/a.tck -o a.png", "https://example.org/a.tck is an address; .*fetch the file"),
+    ("convert a.trx b.fiblets --max-memory much", "'much' is no size of memory; give one such as 4G"),
+    ("verify a.trx a.fiblets", "a.trx is no .fiblets file; give the compressed file first, then its original"),
+    ("verify a.fiblets text.tck", "text.tck, byte 0: found b'hello'"),
+    ("table a.trx t.csv --group AF", "a.trx has no group 'AF'; it has: callosum"),
+    ("table a.trx nowhere/t.csv", "nowhere/t.csv: there is no folder .*nowhere; make it first"),
+    ("density a.trx d.png --voxel 2", "d.png is no name of a NIfTI file; let it end in .nii or .nii.gz"),
+    ("density a.trx d.nii --voxel 1 2", "--voxel has 2 numbers; give one side in mm, or three"),
+    ("density a.trx d.nii --voxel 2 --contrast md", "a.trx has no array 'md' of single numbers; there are: bundle, fa"),
+    ("connectome a.trx zeros.nii m.xyz", "m.xyz has no suffix of a matrix; use one of .csv"),
+    ("connectome a.trx zeros.nii m.csv --radius -1", "radius is -1.0; give mm, 0 or more"),
+    ("screenshot a.trx -o a.doc", "a.doc: pictures are written as .png, .jpg, .bmp or .tif"),
+    ("screenshot missing.tck -o a.png", "missing.tck: No such file"),
+    ("serve missing.tck --port 0", "missing.tck: No such file"),
+    ("serve a.trx --port 99999999", "--port 99999999: a port is from 0 to 65535"),
+    ("serve --root nowhere", "nowhere: not a folder; --root names the one"),
+    ("report --only nothing -o out", "no study 'nothing'; choose among codec"),
+    ("report -o a.trx", "a.trx: it is a file; name a folder"),
+    ("demo --output a.trx", "a.trx: it is a file; name a folder"),
+]  # fmt: skip
+
+DRAWN = [
+    ("screenshot a.trx -o nowhere/a.png", "nowhere/a.png: there is no folder .*nowhere; make it first"),
+    ("screenshot a.trx -o a.png --scalars md", "no array 'md'. Per point: "),
+    ("screenshot a.trx -o a.png --color blurple", "Invalid color input: .blurple."),
+    ("screenshot a.trx -o a.png --cmap blurple", "cmap is 'blurple', which is no colour map; give a name"),
+    ("screenshot a.trx -o a.png --groups AF", "no group 'AF'; there are: 'callosum'"),
+    ("screenshot a.trx -o a.png --clip blob", "the kind of --clip is 'blob'; choose one of plane, slab"),
+]  # fmt: skip
+
+
+@pytest.fixture
+def here(folder, monkeypatch, tmp_path):
+    monkeypatch.chdir(folder)
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.delenv("DISPLAY", raising=False)
+    before = sorted(folder.iterdir())
+    yield folder
+    left = [path for path in sorted(folder.iterdir()) if path not in before]
+    assert all(path.name == "out" for path in left), left  # a report's folder is made first
+
+
+@pytest.mark.parametrize(("words", "says"), MISUSED)
+def test_misused_commands_end_with_2_and_say_how_to_use_them(here, capsys, words, says):
+    with pytest.raises(SystemExit) as done:
+        main(shlex.split(words))
+    assert done.value.code == 2
+    said = capsys.readouterr().err
+    assert said.startswith("usage: pvfiblets ")
+    last = said.splitlines()[-1]
+    assert says in last
+    assert last.startswith("pvfiblets")
+    command = words.split()[0]
+    assert command in ("compres", "infos") or f"usage: pvfiblets {command}" in said
+
+
+@pytest.mark.parametrize(("words", "says"), [*WRONG, *DRAWN])
+def test_what_cannot_be_done_ends_with_1_and_one_sentence(here, capsys, words, says):
+    assert main(shlex.split(words)) == 1
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err.count("\n") == 1
+    assert re.match(f"pvfiblets: (|.*/|there is |--step, ){says}", captured.err), captured.err
+
+
+def test_names_with_blanks_and_other_letters_are_as_good(here, capsys, tmp_path):
+    target = tmp_path / "ö ü.fiblets"
+    assert main(["convert", "a b ü.tck", str(target), "--json"]) == 0
+    assert main(["info", str(target)]) == 0
+    assert "ö ü.fiblets" in capsys.readouterr().out
+    assert Path(target).exists()
+
+
+WRITTEN = (".tck", ".trk", ".trx", ".vtk", ".vtp", ".fiblets")
+
+
+@pytest.fixture(scope="module")
+def brain():
+    return brain_streamlines(60, 1.0, seed=3)
+
+
+@pytest.fixture(scope="module")
+def files(brain, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("pipes")
+    for suffix in (".tck", ".trk", ".trx", ".vtk", ".vtp"):
+        formats.write(folder / f"a{suffix}", brain)
+    assert main(["convert", str(folder / "a.trx"), str(folder / "a.fiblets"), "--no-exact"]) == 0
+    return folder
+
+
+@pytest.fixture
+def shell(monkeypatch, capfdbinary):
+    """Run a command with bytes as its standard input; return exit code, standard output and standard error."""
+
+    def run(data, *words):
+        monkeypatch.setattr(sys, "stdin", SimpleNamespace(buffer=io.BytesIO(data), isatty=lambda: False))
+        capfdbinary.readouterr()
+        code = main([str(word) for word in words])
+        out, err = capfdbinary.readouterr()
+        return code, out, err.decode()
+
+    return run
+
+
+@pytest.mark.parametrize("suffix", WRITTEN)
+def test_each_format_goes_in_and_out(shell, files, brain, suffix, tmp_path):
+    source = (files / f"a{suffix}").read_bytes()
+    code, out, err = shell(source, "convert", "-", "-", "--format", "tck")
+    assert code == 0, err
+    assert out.startswith(b"mrtrix tracks")
+    (tmp_path / "a.tck").write_bytes(out)
+    points = nib.streamlines.load(tmp_path / "a.tck").streamlines.get_data()
+    np.testing.assert_allclose(points, brain.points, atol=0.11 if suffix == ".fiblets" else 1e-4)
+    assert "standard output: 60 streamlines" in err
+    assert "of standard input" in err
+    assert "pvfiblets-pipe" not in err
+    code, out, err = shell(b"", "convert", files / "a.tck", "-", "--format", suffix)
+    assert code == 0, err
+    (tmp_path / f"b{suffix}").write_bytes(out)
+    assert suffix_by_content(tmp_path / f"b{suffix}") == suffix
+    assert len(formats.read(tmp_path / f"b{suffix}")) == 60
+
+
+@pytest.mark.parametrize("name", ["nv_stroke.trk.gz", "trxrs_tinytrack_small.tt.gz", "trxpy_small_compressed.trx",
+                                  "nv_colby.trx", "nib_complex_big_endian.trk", "vtk_track1.binary.vtk"])  # fmt: skip
+def test_real_files_are_known_by_their_content(shared_data, name):
+    assert name.endswith(suffix_by_content(shared_data / name))
+
+
+def test_what_is_said_of_standard_input(shell, files):
+    code, out, _ = shell((files / "a.trk").read_bytes(), "info", "-", "--json")
+    facts = json.loads(out)
+    assert (code, facts["file"], facts["format"], facts["streamlines"]) == (0, "standard input", ".trk", 60)
+    assert facts["bytes"] == (files / "a.trk").stat().st_size
+    code, out, _ = shell((files / "a.fiblets").read_bytes(), "verify", "-", files / "a.trx", "--json")
+    assert json.loads(out)["kept"] is True
+    code, out, _ = shell((files / "a.trx").read_bytes(), "verify", files / "a.fiblets", "-", "--json")
+    assert json.loads(out)["kept"] is True
+    code, out, _ = shell((files / "a.trx").read_bytes(), "table", "-")
+    assert out.count(b"\n") == 61
+
+
+def test_volumes_matrices_and_pictures_leave_clean(shell, files, tmp_path):
+    tracks = (files / "a.tck").read_bytes()
+    code, out, err = shell(tracks, "density", "-", "-", "--voxel", "5", "--format", "nii.gz")
+    assert code == 0, err
+    (tmp_path / "a.nii.gz").write_bytes(out)
+    image = nib.load(tmp_path / "a.nii.gz")
+    (tmp_path / "b.nii").write_bytes(shell(tracks, "density", "-", "-", "--voxel", "5")[1])
+    np.testing.assert_array_equal(nib.load(tmp_path / "b.nii").get_fdata(), image.get_fdata())
+    assert image.get_fdata().max() >= 1
+    labels = nib.Nifti1Image((image.get_fdata() > 0).astype(np.int16), image.affine)
+    nib.save(labels, tmp_path / "labels.nii")
+    code, out, err = shell(tracks, "connectome", "-", tmp_path / "labels.nii", "-")
+    assert code == 0, err
+    assert out == b",1\n1,60\n"
+    code, out, err = shell(tracks, "screenshot", "-", "-o", "-", "--size", "60x40")
+    assert code == 0, err
+    assert Image.open(io.BytesIO(out)).size == (60, 40)
+
+
+@pytest.mark.parametrize(
+    ("data", "words", "says"),
+    [
+        (b"", ["info", "-"], "standard input is empty"),
+        (b"GIF89a", ["info", "-"], "of no format known by its first bytes; add --format"),
+        (b"TRACK", ["info", "-"], "standard input"),
+        (b"mrtrix tracks\n", ["convert", "-", "b.fiblets"], "standard input"),
+        (b"TRACK", ["info", "-", "--format", "xyz"], "no format has this suffix"),
+        (b"TRACK", ["info", "a.trk", "--format", "tck"], "no file is -"),
+        (b"TRACK", ["convert", "-", "-"], "add --format"),
+        (b"TRACK", ["convert", "a.trk", "-"], "add --format"),
+        (b"TRACK", ["verify", "-", "-"], "one standard input"),
+        (b"TRACK", ["screenshot", "-", "-", "-o", "b.png"], "one standard input"),
+        (b"TRACK", ["convert", "-", "b.tck", "--format", "trk", "--format", "tck"], "only one -"),
+    ],
+)
+def test_what_cannot_be_is_one_sentence_without_temporary_names(shell, tmp_path, monkeypatch, data, words, says):
+    monkeypatch.chdir(tmp_path)
+    code, out, err = shell(data, *words)
+    assert (code, out) == (1, b"")
+    assert says in err
+    assert err.count("\n") == 1
+    assert "pvfiblets-pipe" not in err
+    assert not list(tmp_path.iterdir())
+
+
+def test_terminals_are_neither_read_nor_filled_with_bytes(monkeypatch, capsys, files):
+    monkeypatch.setattr(sys, "stdin", SimpleNamespace(isatty=lambda: True))
+    assert main(["info", "-"]) == 1
+    assert "a terminal here" in capsys.readouterr().err
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True, raising=False)
+    assert main(["convert", str(files / "a.tck"), "-", "--format", "trk"]) == 1
+    assert "a terminal here" in capsys.readouterr().err
+
+
+@pytest.mark.more
+def test_programs_joined_by_a_shell(files, brain, tmp_path):
+    """Through three processes and real pipes; and into one that does not read, without a word."""
+    command = f"{sys.executable} -m pvfiblets"
+    line = (
+        f"{command} convert {files}/a.trx - --format trk | {command} convert - - --format fiblets --quiet"
+        f" | {command} convert - {tmp_path}/b.tck"
+    )
+    done = subprocess.run(["bash", "-o", "pipefail", "-c", line], capture_output=True, check=False, timeout=200)
+    assert done.returncode == 0, done.stderr
+    assert len(formats.read(tmp_path / "b.tck")) == len(brain)
+    line = f"{command} convert {files}/a.trx - --format vtk | true; {command} info {files}/a.trx | true"
+    done = subprocess.run(["bash", "-c", line], capture_output=True, check=False, timeout=200)
+    assert b"Traceback" not in done.stderr
+    assert b"Broken" not in done.stderr

@@ -1,7 +1,5 @@
 """``pvfiblets profile`` and ``pvfiblets table --by bundle``, against NumPy and dipy."""
 
-from __future__ import annotations
-
 import csv
 import io
 

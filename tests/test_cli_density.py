@@ -1,7 +1,5 @@
 """``pvfiblets density``: what it writes, prints and refuses."""
 
-from __future__ import annotations
-
 import json
 
 import nibabel as nib

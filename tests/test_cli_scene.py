@@ -1,7 +1,5 @@
 """Scenes from the command line: what options show is what the same calls in Python show."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 

@@ -1,7 +1,5 @@
 """Every example runs as its user runs it, and its pictures show something."""
 
-from __future__ import annotations
-
 import os
 import re
 import subprocess

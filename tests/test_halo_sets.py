@@ -1,7 +1,5 @@
 """The made-up sets of lines and points are of the sizes and kinds that they are named after."""
 
-from __future__ import annotations
-
 import functools
 
 import numpy as np
@@ -138,8 +136,3 @@ def test_a_seed_fixes_every_number(name):
     if isinstance(first, HaloLines):
         np.testing.assert_array_equal(first.offsets, again.offsets)
     assert not np.array_equal(first.points, other.points)
-
-
-def test_no_such_set():
-    with pytest.raises(ValueError, match="no halo set 'sea'; choose one of 'shape-small'"):
-        halo_set("sea")

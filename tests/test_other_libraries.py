@@ -1,7 +1,5 @@
 """Streamlines of nibabel, dipy, trx-python and VTK: their own readers of the same data say what must come out."""
 
-from __future__ import annotations
-
 import copy
 
 import nibabel as nib
@@ -85,10 +83,16 @@ def test_lazy_tractograms_with_pending_affines_and_generators_that_run_once(trac
     assert len(streamlines_of(empty)) == 0
 
 
-def test_a_tractogram_that_is_nowhere_is_refused(tractogram):
+def test_what_is_nowhere_or_cannot_be_written_is_refused(tractogram, tmp_path):
     tractogram.affine_to_rasmm = None
     with pytest.raises(ValueError, match="affine_to_rasmm is None"):
         streamlines_of(tractogram)
+    with pytest.raises(TypeError, match=r"write takes a path and Streamlines, got list; Streamlines\.from_list"):
+        pf.write(tmp_path / "a.trk", lines())
+    assert not list(tmp_path.iterdir())
+    with pytest.raises(pf.formats.UnknownFormatError, match=r"a\.xyz: no format has this suffix.*\.fiblets"):
+        pf.compress(Streamlines.from_list(lines())).save(tmp_path / "a.xyz")
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("chosen", [slice(None), slice(2, 6), [5, 1, 1], slice(None, None, -1)])
@@ -203,14 +207,6 @@ def test_groups_that_a_filter_passed_on_with_fewer_lines(counted):
     assert found.dropped["groups of other lines"] == 2
 
 
-def test_blocks_of_blocks_and_of_triangles():
-    """Blocks of one name in two places are two groups, and what is no line is counted."""
-    inner = pv.MultiBlock({"a": a_mesh(1)})
-    found = streamlines_of(pv.MultiBlock({"a": a_mesh(0), "n": inner, "ball": pv.Sphere()}))
-    assert {name: ids.tolist() for name, ids in found.groups.items()} == {"a": [0, 1], "n/a": [2, 3], "n": [2, 3]}
-    assert found.dropped["cells that are not lines"] == pv.Sphere().n_cells
-
-
 def test_blocks_are_groups():
     """Of blocks in blocks too; arrays that one lacks are dropped, and counted."""
     one, other = a_mesh(0), a_mesh(1)
@@ -224,6 +220,11 @@ def test_blocks_are_groups():
     np.testing.assert_array_equal(found.per_streamline["weight"], [2.0, 5.0, 2.0, 5.0])
     assert found.dropped == {"arrays that some blocks lack (more)": 1}
     assert gather(blocks).counts.tolist() == [3, 5, 3, 5]
+    # Blocks of one name in two places are two groups, and what is no line is counted.
+    inner = pv.MultiBlock({"a": a_mesh(1)})
+    found = streamlines_of(pv.MultiBlock({"a": a_mesh(0), "n": inner, "ball": pv.Sphere()}))
+    assert {name: ids.tolist() for name, ids in found.groups.items()} == {"a": [0, 1], "n/a": [2, 3], "n": [2, 3]}
+    assert found.dropped["cells that are not lines"] == pv.Sphere().n_cells
 
 
 @pytest.mark.parametrize(
@@ -288,12 +289,6 @@ def test_a_tck_file_with_words_about_voxels(tmp_path):
     check(streamlines_of(file), list(given))
 
 
-def test_what_cannot_be_written_is_told(tmp_path):
-    with pytest.raises(TypeError, match=r"write takes a path and Streamlines, got list; Streamlines\.from_list"):
-        pf.write(tmp_path / "a.trk", lines())
-    assert not list(tmp_path.iterdir())
-
-
 def test_they_are_drawn(tractogram):
     plotter = pv.Plotter(off_screen=True, window_size=(80, 60))
     actor = plotter.add_fiblets(tractogram, scalars="weight", show_scalar_bar=False)
@@ -317,9 +312,3 @@ def test_a_home_folder_is_found(tmp_path, monkeypatch):
     for name in ("~/a.tck", "~/a.fiblets"):
         assert plotter.add_fiblets(name).fiblets.n_streamlines == 7
     plotter.close()
-
-
-def test_a_suffix_that_nobody_opens_is_refused(tmp_path):
-    with pytest.raises(pf.formats.UnknownFormatError, match=r"a\.xyz: no format has this suffix.*\.fiblets"):
-        pf.compress(Streamlines.from_list(lines())).save(tmp_path / "a.xyz")
-    assert not list(tmp_path.iterdir())

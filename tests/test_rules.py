@@ -1,15 +1,16 @@
 """The rules about skips on continuous integration and about what `make test` leaves out hold."""
 
-from __future__ import annotations
-
 import json
 import os
 import shutil
 import subprocess
 import sys
+from graphlib import CycleError, TopologicalSorter
+from importlib.metadata import entry_points
 from itertools import combinations
 from pathlib import Path
 
+import grimp
 import numpy as np
 import pytest
 from PIL import Image
@@ -118,3 +119,71 @@ def test_products_are_thinned_but_every_pair_is_there(tmp_path, arguments, fewes
 def test_commands_of_the_makefile_can_be_read(goal):
     read = subprocess.run(["make", "--dry-run", goal], cwd=CONFTEST.parents[1], capture_output=True, text=True)
     assert read.returncode == 0, read.stderr
+
+
+ROOT = Path(__file__).resolve().parents[1]
+HEAVY = ("vtkmodules", "vtk", "pyvista", "numba", "moderngl", "trame", "matplotlib", "nibabel")
+
+
+def modules_after(statement: str) -> set[str]:
+    code = f"{statement}\nimport sys, json\nprint(json.dumps(sorted(sys.modules)))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    return set(json.loads(done.stdout.splitlines()[-1]))
+
+
+def test_each_room_needs_nothing_heavier():
+    loaded = modules_after("import pvfiblets")
+    assert not loaded & set(HEAVY)
+    loaded = modules_after("import pvfiblets.formats, pvfiblets.streamlines")
+    assert not loaded & set(HEAVY)
+    loaded = modules_after("import pvfiblets.codec")
+    assert not loaded & {"vtkmodules", "vtk", "pyvista", "moderngl"}
+    loaded = modules_after("import pvfiblets.engine")
+    assert not loaded & {"vtkmodules", "vtk", "pyvista"}
+    assert "pyvista" not in modules_after("import pvfiblets.mappers")
+
+
+def test_one_machine_pays_nothing_for_clusters(tmp_path):
+    """Neither the commands nor a file that is written and read load anything of them."""
+    loaded = modules_after(
+        "import pvfiblets, pvfiblets.cli, pvfiblets.cluster, numpy\n"
+        "pvfiblets.cli.make_parser()\n"
+        f"path = {str(tmp_path / 'a.fiblets')!r}\n"
+        "pvfiblets.write(path, pvfiblets.Streamlines.from_list([numpy.eye(3)]))\n"
+        "pvfiblets.cli.main(['info', path])\n"
+        "pvfiblets.read(path)"
+    )
+    assert not loaded & {"dask", "distributed", "pyarrow", "fsspec", "pandas", "pvfiblets.cluster.cohort"}
+
+
+def test_imports_follow_the_flow_in_no_circle():
+    program = Path(sys.executable).with_name("lint-imports")
+    done = subprocess.run([program], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert circles({"a": {"b"}, "b": {"c"}, "c": {"a"}, "d": {"a"}})
+    assert not circles({"a": {"b", "c"}, "b": {"c"}, "d": {"a"}})
+    # Imports within functions count; those for type checkers do not.
+    graph = grimp.build_graph("pvfiblets", exclude_type_checking_imports=True, cache_dir=None)
+    assert len(graph.modules) > 300
+    found = circles({name: graph.find_modules_directly_imported_by(name) for name in graph.modules})
+    assert not found, " imports ".join(reversed(found[0]))
+
+
+def circles(imports: dict[str, set[str]]) -> list[list[str]]:
+    """Modules that import each other, straight or by way of others, as far as they cannot be put in an order."""
+    sorter = TopologicalSorter(imports)
+    try:
+        sorter.prepare()
+    except CycleError as error:
+        return [error.args[1]]
+    return []
+
+
+@pytest.mark.parametrize(
+    "group", ["pyvista.plotter_components", "pyvista.accessors", "pyvista.readers", "pyvista.writers"]
+)
+def test_every_entry_point_resolves(group):
+    ours = [point for point in entry_points(group=group) if point.value.startswith("pvfiblets")]
+    assert ours
+    for point in ours:
+        assert point.load() is not None

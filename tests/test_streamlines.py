@@ -1,17 +1,17 @@
 """Streamlines: selection, joining, measures and conversions, against plain lists of arrays."""
 
-from __future__ import annotations
-
 import pickle
-import subprocess
-import sys
 
 import numpy as np
 import pytest
+import pyvista as pv
 from hypothesis import given
 from hypothesis import strategies as st
 
+import pvfiblets
 from pvfiblets.errors import FibletsError, FormatError
+from pvfiblets.invalid_points import CUT, NONFINITE, valid_points
+from pvfiblets.lines import gather
 from pvfiblets.streamlines import Streamlines
 
 
@@ -87,10 +87,14 @@ def test_polydata_and_back(counts, dtype):
     assert back.per_group["even"]["color"].tolist() == [1, 2, 3]
 
 
-def test_polydata_has_one_polyline_per_streamline():
+def test_polydata_has_one_polyline_per_streamline_and_other_kinds_are_refused():
     mesh = made([3, 1, 2]).to_polydata()
     assert mesh.n_lines == 3
     assert [mesh.get_cell(i).point_ids for i in range(3)] == [[0, 1, 2], [3], [4, 5]]
+    import pyvista as pv
+
+    with pytest.raises(ValueError, match="expected a PolyData"):
+        Streamlines.from_polydata(pv.ImageData(dimensions=(2, 2, 2)))
 
 
 def test_polydata_with_shared_points_and_other_cells():
@@ -107,48 +111,37 @@ def test_polydata_with_shared_points_and_other_cells():
     assert s.dropped == {"cells that are not lines": 1, "points of no line": 2}
 
 
-def test_polydata_of_another_kind_is_refused():
-    import pyvista as pv
-
-    with pytest.raises(ValueError, match="expected a PolyData"):
-        Streamlines.from_polydata(pv.ImageData(dimensions=(2, 2, 2)))
-
-
-def test_lengths_by_arithmetic():
+def test_lengths_and_bounds_by_arithmetic_also_far_from_the_origin():
     s = Streamlines.from_list([[[0, 0, 0], [3, 4, 0], [3, 4, 12]], [[1, 1, 1]], [], [[0, 0, 0], [0, 0, 0], [0, 2, 0]]])
     assert s.lengths().tolist() == [17, 0, 0, 2]
     assert s.counts.tolist() == [3, 1, 0, 3]
-
-
-def test_lengths_across_internal_blocks_and_far_from_the_origin():
     rng = np.random.default_rng(3)
     counts = rng.integers(0, 400_000, 4)
     points = rng.normal(size=(counts.sum(), 3)) + 1e6
     s = Streamlines(points, np.concatenate([[0], np.cumsum(counts)]))
     expected = [np.linalg.norm(np.diff(p, axis=0), axis=1).sum() for p in s]
     assert np.allclose(s.lengths(), expected, rtol=1e-12)
-
-
-def test_bounds():
     s = Streamlines.from_list([[[-5, 2, 3], [1, -2, 9]], [[0, 7, -1]]])
     assert s.bounds == (-5, 1, -2, 7, -1, 9)
     assert all(isinstance(v, float) for v in s.bounds)
     assert np.isnan(Streamlines.from_list([]).bounds).all()
 
 
-def test_types_are_kept_or_widened():
+def test_types_are_kept_or_widened_and_memory_shared():
     for given_type, kept in [("f2", "f4"), ("f4", "f4"), ("f8", "f8"), (">f8", "f8"), ("i2", "f8")]:
         s = Streamlines(np.ones((2, 3), given_type), [0, 2])
         assert s.points.dtype == np.dtype(kept)
         assert s.points.dtype.isnative
-
-
-def test_integer_index_and_slices_share_memory():
     s = made([3, 2, 4])
     assert np.shares_memory(s[1], s.points)
     assert np.shares_memory(s[1:].points, s.points)
     assert s[-1].tolist() == s[2].tolist()
     assert s[np.int32(0)].shape == (3, 3)
+    with pytest.raises(IndexError, match="integers or a mask"):
+        made([1, 1])[np.array([0.5])]
+    text = repr(made([3, 2]))
+    assert "2 streamlines; 5 points; float32" in text
+    assert "fa" in text
 
 
 @pytest.mark.parametrize(
@@ -181,26 +174,12 @@ def test_index_out_of_range(index):
         made([1, 1, 1])[index]
 
 
-def test_float_index_is_refused():
-    with pytest.raises(IndexError, match="integers or a mask"):
-        made([1, 1])[np.array([0.5])]
-
-
-def test_joining_parts_that_differ_is_refused():
+def test_parts_that_differ_are_not_joined():
     a, b = made([2]), made([2])
     del b.per_point["fa"]
     with pytest.raises(ValueError, match=r"per_point \['fa'\]"):
         Streamlines.concatenate([a, b])
-
-
-def test_joining_nothing():
     assert len(Streamlines.concatenate([])) == 0
-
-
-def test_repr_tells_sizes_and_names():
-    text = repr(made([3, 2]))
-    assert "2 streamlines; 5 points; float32" in text
-    assert "fa" in text
 
 
 def test_format_error_tells_four_facts_and_travels_between_processes():
@@ -212,11 +191,106 @@ def test_format_error_tells_four_facts_and_travels_between_processes():
     assert isinstance(error, ValueError)
 
 
-def test_the_room_imports_numpy_alone():
-    code = (
-        "import sys, pvfiblets.formats, pvfiblets.streamlines\n"
-        "heavy = {'vtk', 'vtkmodules', 'pyvista', 'nibabel', 'trx', 'numba', 'scipy'}\n"
-        "print(sorted(heavy & {m.split('.')[0] for m in sys.modules}))"
+NAN, INF = np.nan, np.inf
+X = [0, 2, 3, 4, 6, 7, 13, 14]  # of the points that are left of `lines`
+
+
+@pytest.fixture
+def lines():
+    """Five lines of x = 0, 1, 2 ...: two with holes, one of nothing, one that is bad throughout, one good."""
+    x = [[0, NAN, 2, 3, 4], [INF, 6, 7, NAN], [], [NAN, NAN], [13, 14]]
+    points = np.array([[v, i, 0.0] for i, row in enumerate(x) for v in row])
+    return pvfiblets.Streamlines(
+        points,
+        np.cumsum([0, *map(len, x)]),
+        {"at": np.arange(13.0)},
+        {"weight": np.arange(5.0)},
+        {"some": np.array([4, 0]), "bad": np.array([3, 1])},
+        {"some": {"n": np.array([2])}},
     )
-    out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert out.stdout.strip() == "[]"
+
+
+def told(streamlines):
+    return [line[:, 0].tolist() for line in streamlines]
+
+
+def test_left_out_with_their_data(lines):
+    kept = valid_points(lines, "drop")
+    assert told(kept) == [[0, 2, 3, 4], [6, 7], [], [], [13, 14]]
+    np.testing.assert_array_equal(kept.per_point["at"], [0, 2, 3, 4, 6, 7, 11, 12])
+    np.testing.assert_array_equal(kept.per_streamline["weight"], lines.per_streamline["weight"])
+    np.testing.assert_array_equal(kept.groups["bad"], [3, 1])
+    assert kept.dropped == {"non-finite points": 5}
+    assert lines.n_points == 13
+
+
+def test_split_where_they_were(lines):
+    kept = valid_points(lines, "split")
+    assert told(kept) == [[0], [2, 3, 4], [6, 7], [], [], [13, 14]]
+    np.testing.assert_array_equal(kept.per_streamline["weight"], [0, 0, 1, 2, 3, 4])
+    np.testing.assert_array_equal(kept.per_point["at"], [0, 2, 3, 4, 6, 7, 11, 12])
+    np.testing.assert_array_equal(kept.groups["some"], [5, 0, 1])
+    np.testing.assert_array_equal(kept.groups["bad"], [4, 2])
+    assert kept.per_group["some"]["n"] == 2
+    assert kept.dropped == {NONFINITE: 5, CUT: 1}
+
+
+def test_compress_says_so_or_does_so(lines):
+    with pytest.raises(ValueError, match=r"point 1 is \[nan.*nan='drop' or nan='split'"):
+        pvfiblets.compress(lines, nan="error")
+    with pytest.raises(ValueError, match="nan is 'skip'; choose one of"):
+        pvfiblets.compress(lines, nan="skip")
+    whole = pvfiblets.compress(lines[[4]], nan="split")
+    assert "non-finite points" not in whole.dropped
+    for options, count in (({"nan": "drop"}, 5), ({}, 6)):
+        fiblets = pvfiblets.compress(lines, **options, per_point="all")
+        assert len(fiblets) == count
+        assert fiblets.dropped["non-finite points"] == 5
+        finite = lines.points[[0, 2, 3, 4, 6, 7, 11, 12]]
+        np.testing.assert_allclose(fiblets.decompress().points, finite, atol=0.005)
+
+
+@pytest.mark.parametrize("nan", ["drop", "split"])
+def test_scalars_of_plotters_follow(lines, nan):
+    plotter = pv.Plotter(off_screen=True)
+    actor = plotter.add_fiblets(lines, nan=nan, scalars=np.arange(5.0) * 2.0)
+    values = actor.fiblets.per_streamline["Data"] if nan == "split" else actor.scalars
+    np.testing.assert_array_equal(values, 2.0 * (np.array([0, 0, 1, 2, 3, 4]) if nan == "split" else np.arange(5)))
+    actor = plotter.add_fiblets(lines, nan=nan, scalars=np.arange(13.0))
+    np.testing.assert_allclose(actor.fiblets.decompress().per_point["Data"], [0, 2, 3, 4, 6, 7, 11, 12], atol=0.05)
+    with pytest.raises(ValueError, match="finite coordinates"):
+        plotter.add_fiblets(lines, nan="error")
+    assert lines.to_polydata().fiblets.compress(nan=nan).n_points == 8
+    plotter.close()
+
+
+@pytest.mark.parametrize("add", ["add_spline_tubes", "add_halo_lines"])
+@pytest.mark.parametrize("source", ["streamlines", "polydata", "arrays"])
+def test_tubes_and_halos_are_cut_as_files_are(lines, add, source):
+    given = {"streamlines": lines, "polydata": lines.to_polydata(), "arrays": list(lines)}[source]
+    plotter = pv.Plotter(off_screen=True)
+    of_pieces = [0, 0, 10, 20, 30, 40]
+    for values, expected in ((np.arange(13.0), [0, 2, 3, 4, 6, 7, 11, 12]), (10.0 * np.arange(5.0), of_pieces)):
+        with pytest.warns(UserWarning, match=r"non-finite points: 5; streamlines added .*: 1\)"):
+            actor = getattr(plotter, add)(given, scalars=values)
+        if add == "add_spline_tubes":
+            drawn, stored = actor.tubes, {**actor.tubes.tube_values, **actor.tubes.values}["Data"]
+        else:
+            drawn = actor.lines
+            stored = drawn.values["Data"] if len(values) == 13 else actor.scalars
+        np.testing.assert_array_equal(getattr(drawn, "points", getattr(drawn, "positions", None))[:, 0], X)
+        np.testing.assert_array_equal(getattr(stored, "values", stored), expected)
+
+
+def test_cells_of_two_points_are_cut(lines):
+    points = np.c_[[0, 1, NAN, 3, 4, 5.0], np.zeros((6, 2))]
+    cells = np.c_[np.arange(5), np.arange(1, 6)]
+    mesh = pv.PolyData(points, lines=np.c_[np.full(5, 2), cells])
+    for mesh_or_cells in (mesh, (points, cells)):
+        with pytest.warns(UserWarning, match="non-finite points: 1; streamlines added .*: 1"):
+            found = gather(mesh_or_cells)
+        ends, tubes = found.segments()
+        np.testing.assert_array_equal(found.points[found.ids[ends], 0], [[0, 1], [3, 4], [4, 5]])
+        np.testing.assert_array_equal(tubes, [0, 3, 4] if mesh_or_cells is mesh else [0, 1, 1])
+        assert np.isfinite(found.points).all()
+        assert found.n_rows == (5 if mesh_or_cells is mesh else 1)

@@ -1,14 +1,11 @@
 """The made-up brain has the measures it promises, checked with plain NumPy."""
 
-from __future__ import annotations
-
 import itertools
 import sys
 
 import numpy as np
 import pytest
 
-import pvfiblets as pf
 from pvfiblets import synthetic
 from pvfiblets.codec import copies, fiblets_format, layout
 from pvfiblets.synthetic import tracking
@@ -16,12 +13,10 @@ from pvfiblets.synthetic import tracking
 
 def steps_and_turns(points, offsets):
     """Distances between consecutive points and turns between consecutive steps (degrees)."""
-    moves = [np.diff(points[a:b].astype(np.float64), axis=0)
-             for a, b in itertools.pairwise(offsets)]
+    moves = [np.diff(points[a:b].astype(np.float64), axis=0) for a, b in itertools.pairwise(offsets)]
     steps = np.concatenate([np.linalg.norm(move, axis=1) for move in moves])
     cosines = [
-        np.sum(move[1:] * move[:-1], axis=1)
-        / (np.linalg.norm(move[1:], axis=1) * np.linalg.norm(move[:-1], axis=1))
+        np.sum(move[1:] * move[:-1], axis=1) / (np.linalg.norm(move[1:], axis=1) * np.linalg.norm(move[:-1], axis=1))
         for move in moves
     ]
     return steps, np.degrees(np.arccos(np.clip(np.concatenate(cosines), -1.0, 1.0)))
@@ -48,12 +43,6 @@ def test_noise_turns_like_probabilistic_tracking_and_its_absence_like_smooth_tra
     assert noisy_turns.mean() == pytest.approx(4.0 * np.sqrt(2.0) * np.sqrt(np.pi / 2.0), rel=0.05)
 
 
-def test_a_seed_fixes_every_number_and_another_gives_others():
-    first, again, other = (synthetic.brain_streamlines(50, seed=seed) for seed in (5, 5, 6))
-    np.testing.assert_array_equal(first.points, again.points)
-    assert first.n_points != other.n_points or not np.array_equal(first.points, other.points)
-
-
 def test_chunks_join_to_the_whole(monkeypatch):
     monkeypatch.setattr(tracking, "CHUNK", 40)
     whole = synthetic.brain_streamlines(100, seed=2, fa=True)
@@ -66,20 +55,20 @@ def test_chunks_join_to_the_whole(monkeypatch):
     np.testing.assert_array_equal(members, np.arange(100))
 
 
-def test_it_is_the_size_of_a_brain_and_left_right_even():
+def test_brains_are_of_the_size_of_a_brain_even_empty_and_nonsense_is_refused():
     brain = synthetic.brain_streamlines(2000, 1.0)
     extent = np.ptp(brain.points, axis=0)
     assert np.all(extent > [120, 150, 110])
     assert np.all(extent < [150, 185, 165])
     assert abs(brain.points[:, 0].mean()) < 3.0
-
-
-def test_none_is_a_tractogram_too_and_nonsense_is_refused():
     assert len(synthetic.brain_streamlines(0)) == 0
     with pytest.raises(ValueError, match="n_streamlines is -1"):
         synthetic.brain_streamlines(-1)
     with pytest.raises(ValueError, match="step is 0"):
         synthetic.brain_streamlines(1, step=0)
+    first, again, other = (synthetic.brain_streamlines(50, seed=seed) for seed in (5, 5, 6))
+    np.testing.assert_array_equal(first.points, again.points)
+    assert first.n_points != other.n_points or not np.array_equal(first.points, other.points)
 
 
 # ---------------------------------------------------------------------------------------------- compressed, any size
@@ -206,7 +195,3 @@ def test_small_brains_are_brains(small_pool, n, tmp_path):
         synthetic.brain(-1)
     with pytest.raises(ValueError, match="step is 0"):
         synthetic.brain(1, step=0)
-
-
-def test_the_package_offers_it():
-    assert pf.synthetic is synthetic

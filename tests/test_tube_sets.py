@@ -1,7 +1,5 @@
 """The made-up tube sets are of the sizes and kinds that they are named after."""
 
-from __future__ import annotations
-
 import time
 
 import numpy as np
@@ -9,8 +7,13 @@ import pytest
 
 from pvfiblets.synthetic import TUBE_SETS, tube_set
 
-PAPER = {"fibers": (241, 3530), "hotroom": (722, 30948), "bundle": (1250, 105640), "brain": (1701, 114489),
-         "furball": (10000, 787327)}  # Russig et al. 2020, section 4
+PAPER = {
+    "fibers": (241, 3530),
+    "hotroom": (722, 30948),
+    "bundle": (1250, 105640),
+    "brain": (1701, 114489),
+    "furball": (10000, 787327),
+}  # Russig et al. 2020, section 4
 
 
 @pytest.fixture(scope="module", params=TUBE_SETS)
@@ -69,8 +72,3 @@ def test_a_seed_fixes_every_number(name):
     for part in ("points", "segments", "radius", "tangents", "radius_slopes"):
         np.testing.assert_array_equal(getattr(first, part), getattr(again, part))
     assert not np.array_equal(first.points, other.points)
-
-
-def test_no_such_set():
-    with pytest.raises(ValueError, match="no tube set 'hair'; choose one of 'fibers'"):
-        tube_set("hair")

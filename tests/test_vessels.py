@@ -1,7 +1,5 @@
 """The made-up angiogram and head are what they say, at every size."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -37,15 +35,6 @@ def test_brightness_is_that_of_the_nearest_vessels(tree):
     share = np.clip(0.5 + depth / edge, 0.0, 1.0)
     value = (0.6 + 0.4 * np.minimum(radius / 2.0, 1.0)) * share**2 * (3.0 - 2.0 * share)
     np.testing.assert_allclose(volume.values[tuple(voxels.T)], 255.0 * value.max(axis=1), atol=0.51)
-
-
-def test_most_is_empty_and_wide_vessels_are_bright(tree):
-    volume, segments = tree
-    assert volume.values.dtype == np.uint8
-    assert 0.005 < (volume.values > 60).mean() < 0.03
-    assert (volume.values == 0).mean() > 0.9
-    assert volume.value_range == (0.0, 255.0)
-    np.testing.assert_allclose(volume.bounds, [-80.0, 80.0] * 3)
 
 
 def test_vessels_fork_by_murrays_law(tree):

@@ -1,12 +1,15 @@
 """Files that cannot be written: the user's path, why, what to do, and nothing half left behind."""
 
-from __future__ import annotations
-
+import ast
 import errno
+import io
 import os
+import re
 import subprocess
 import sys
+import tokenize
 import warnings
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -38,17 +41,10 @@ def written(lines, path):
 @pytest.mark.parametrize("suffix", SUFFIXES)
 def test_a_folder_that_is_not_there_is_named(lines, tmp_path, suffix):
     path = tmp_path / "nowhere" / f"lines{suffix}"
-    with pytest.raises(FileNotFoundError, match="there is no folder .*nowhere; make it first") as caught:
-        written(lines, path)
-    assert caught.value.filename == str(path)
-
-
-@pytest.mark.parametrize("suffix", SUFFIXES)
-def test_saving_a_set_names_that_folder_too(lines, tmp_path, suffix):
-    path = tmp_path / "nowhere" / f"lines{suffix}"
-    with pytest.raises(FileNotFoundError, match="there is no folder .*nowhere; make it first") as caught:
-        pvfiblets.compress(lines).save(path)
-    assert caught.value.filename == str(path)
+    for write in (written, lambda lines, path: pvfiblets.compress(lines).save(path)):
+        with pytest.raises(FileNotFoundError, match="there is no folder .*nowhere; make it first") as caught:
+            write(lines, path)
+        assert caught.value.filename == str(path)
 
 
 @pytest.mark.skipif(not Path("/proc/self").is_dir(), reason="/proc is a folder that nobody can write to")
@@ -87,21 +83,18 @@ def test_a_full_disk_is_told_with_what_is_free_and_leaves_the_old_file(lines, tm
     path = tmp_path / f"lines{suffix}"
     path.write_bytes(b"old")
     before = Path.open
-    monkeypatch.setattr(Path, "open", lambda self, mode="r", *more, **named: (
-        Full(before(self, mode, *more, **named), 100) if mode == "wb" else before(self, mode, *more, **named)))
+    monkeypatch.setattr(
+        Path,
+        "open",
+        lambda self, mode="r", *more, **named: (
+            Full(before(self, mode, *more, **named), 100) if mode == "wb" else before(self, mode, *more, **named)
+        ),
+    )
     with pytest.raises(OSError, match=r"no space is left for it \(.*free in .*MB\); make room there") as caught:
         written(lines, path)
     assert (caught.value.errno, caught.value.filename) == (errno.ENOSPC, str(path))
     assert path.read_bytes() == b"old"
     assert [found.name for found in tmp_path.iterdir()] == [path.name]
-
-
-def test_the_command_says_it_in_one_line(lines, tmp_path, capsys):
-    tck.write(tmp_path / "lines.tck", lines)
-    target = tmp_path / "nowhere" / "lines.fiblets"
-    assert main(["convert", str(tmp_path / "lines.tck"), str(target), "--quiet"]) == 1
-    said = capsys.readouterr().err
-    assert said == f"pvfiblets: {target}: there is no folder {target.parent}; make it first\n"
 
 
 def test_errors_of_other_files_stay_as_they_are(tmp_path):
@@ -255,3 +248,74 @@ def test_what_is_being_written_is_never_removed(tmp_path):
     assert sorted(entry.name for entry in tmp_path.iterdir()) == sorted([name, other, "mine.part", ".mine.part"])
     assert remove_unfinished(tmp_path) == []
     assert remove_unfinished(tmp_path / "nowhere") == []
+
+
+ROOT = Path(__file__).resolve().parents[1]
+KINDS = ("glsl", "comp", "frag", "vert", "geom", "tesc", "tese", "task", "mesh", "py")
+NAMED = re.compile(
+    rf"(?<![\w/.*{{}}<>-])((?:[\w-]+/)*[a-z][\w-]*\.(?:{'|'.join(KINDS)})|shaders(?:/[\w-]+)+)(?![\w*/(-]|\.\w)"
+)
+FOLDERS = ("pvfiblets", "shaders", "tests", "benchmarks", "docs", "examples", "scripts")
+FILES = {
+    path.relative_to(ROOT).as_posix()
+    for folder in FOLDERS
+    for path in (ROOT / folder).rglob("*")
+    if "__pycache__" not in path.parts and "_build" not in path.parts
+} | set(FOLDERS)
+NAMES = {name.rpartition("/")[2] for name in FILES}
+WRITTEN = re.compile(r"codec/layout\.glsl|uniforms/\w+\.glsl")  # by the package itself
+ELSEWHERE = ("shaders/resolve/emission.glsl", "wslink/chunking.py")  # an example, and another library's
+
+
+def prose(source: str, python: bool) -> Iterator[tuple[int, str]]:
+    """Yield lines with their numbers; of Python, comments and docstrings."""
+    if not python:
+        yield from enumerate(source.splitlines(), 1)
+        return
+    for token in tokenize.generate_tokens(io.StringIO(source).readline):
+        if token.type == tokenize.COMMENT:
+            yield token.start[0], token.string
+    for node in ast.walk(ast.parse(source)):
+        value = node.value if isinstance(node, ast.Expr) else None
+        if isinstance(value, ast.Constant) and isinstance(value.value, str):
+            yield from enumerate(value.value.splitlines(), value.lineno)
+
+
+def exists(name: str, source: str) -> bool:
+    """Say whether a path is there: from the root, from a room, or from a folder that its source lies in."""
+    if "/" not in name:
+        return name in NAMES
+    inside = source.split("/")[:-1]
+    bases = ["", "shaders/", "pvfiblets/", *("/".join(inside[:end]) + "/" for end in range(1, len(inside) + 1))]
+    return any(base + name in FILES for base in bases)
+
+
+def unknown(path: str, text: str) -> list[str]:
+    """Return what a file names that is not there."""
+    if not NAMED.search(text):
+        return []
+    named = [(line, name) for line, words in prose(text, path.endswith(".py")) for name in NAMED.findall(words)]
+    return [
+        f"{path}:{line}: {name}"
+        for line, name in named
+        if name not in ELSEWHERE and name == name.lower() and not WRITTEN.fullmatch(name) and not exists(name, path)
+    ]
+
+
+def test_a_dead_pointer_is_seen():
+    text = '"""See ``shaders/nowhere``\n``culling/frustum.glsl``, now.comp."""\nx = "no/code.py"  # codec/nothing.py\n'
+    assert [line.split(": ") for line in unknown("pvfiblets/a.py", text)] == [
+        ["pvfiblets/a.py:3", "codec/nothing.py"],
+        ["pvfiblets/a.py:1", "shaders/nowhere"],
+        ["pvfiblets/a.py:2", "now.comp"],
+    ]
+
+
+@pytest.mark.more
+def test_every_named_path_is_there():
+    kinds = (*(f".{kind}" for kind in KINDS), ".md", ".rst")
+    sources = [name for name in FILES if name.endswith(kinds) and not name.startswith("docs/benchmarks/")]
+    sources += [name for name in ("README.md", "CONTRIBUTING.md") if (ROOT / name).is_file()]
+    assert len(sources) > 500
+    missing = [line for name in sources for line in unknown(name, (ROOT / name).read_text(encoding="utf-8"))]
+    assert not missing, "\n".join(sorted(missing))

@@ -1,7 +1,5 @@
 """How tests use benchmarks, which are scripts and no package: import their modules, and run their commands."""
 
-from __future__ import annotations
-
 import contextlib
 import importlib
 import json

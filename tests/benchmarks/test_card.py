@@ -1,7 +1,5 @@
 """``benchmarks/card.py``: each of its cells draws, and its page tells what there is and what there is not."""
 
-from __future__ import annotations
-
 import io
 import json
 import subprocess
@@ -50,23 +48,6 @@ def test_a_cell_draws(card, folder, cell):
         assert shown.shape == (270, 480, 3)
         assert shown.any()
         assert not shown.all()
-
-
-def test_a_cell_that_cannot_be_drawn_says_why(card, folder):
-    row = card.draw_cell({**CELLS[0], "pipeline": "mesh", "culling": "none"}, folder)
-    assert "frames" in row or "GL_EXT_mesh_shader" in row["unmeasured"]
-
-
-def test_sections_name_every_pipeline_size_and_culling(card):
-    options = SimpleNamespace(small=False, step=0.1, segments=[1e6, 5.4e9])
-    sections = card.sections(options, ["compute", "mesh"])
-    found = dict(sections)
-    assert list(found) == list(card.TITLES)
-    table = [cell for name, cells in sections if name == "table 2" for cell in cells]
-    assert len(table) == 2 * 2 * 2 * 3
-    assert {tuple(row["size"]) for row in table} == {(1920, 1080), (3840, 2160)}
-    assert {row["segments"] for row in found["figures"]} == {60e6}
-    assert {row["kind"] for row in found["others"]} == {"tubes", "halos", "volume"}
 
 
 def test_the_page_tells_times_and_what_is_unmeasured(card, tmp_path):

@@ -1,14 +1,9 @@
 """The benchmark of halos runs from one command, and what it measures by is right."""
 
-from __future__ import annotations
-
-import argparse
 import math
 
 import numpy as np
 import pytest
-
-from pvfiblets.halos import HaloLines, HaloPoints
 
 from .scripts import imported, run
 
@@ -73,14 +68,6 @@ def test_data_fill_the_window_at_every_place(bench, size):
     assert math.degrees(math.acos(turn[0] @ turn[1])) == pytest.approx(1.14)
 
 
-def test_vtk_draws_the_same_lines(bench):
-    lines = HaloLines(np.arange(18.0).reshape(6, 3), [0, 2, 2, 6])
-    mesh = bench.methods.polydata(lines)
-    assert mesh.n_points == 6
-    np.testing.assert_array_equal(mesh.lines, [2, 0, 1, 0, 4, 2, 3, 4, 5])
-    assert bench.methods.polydata(HaloPoints(lines.points)).n_verts == 6
-
-
 def test_goals_are_judged_where_there_are_many_vertices(bench):
     about = {"kind": "lines", "vertices": 2_000_000}
     told = bench.command.goals([
@@ -91,13 +78,6 @@ def test_goals_are_judged_where_there_are_many_vertices(bench):
     ])  # fmt: skip
     assert told[-1] == "- a, engine: 1.40 times VTK's time, kept; 20.1 bytes a vertex, missed."
     assert len([line for line in told if line.startswith("- ")]) == 1
-
-
-def test_an_unknown_row_is_refused(bench):
-    with pytest.raises(argparse.ArgumentTypeError, match="unknown row 'lines', expected one of shape-small, "):
-        bench.command.known_row("lines")
-    assert bench.command.known_row("points-8-anaglyph") == "points-8-anaglyph"
-    assert bench.methods.row_of("office-anaglyph").data == bench.methods.row_of("office").data == "office"
 
 
 def test_rows_are_the_papers(bench):

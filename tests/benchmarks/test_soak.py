@@ -1,9 +1,8 @@
 """Frames of whatever a plotter offers, at random: no error of OpenGL, and nothing is left behind."""
 
-from __future__ import annotations
-
 import ctypes
 import os
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,10 +11,9 @@ import pyvista as pv
 from pvfiblets import compress
 from pvfiblets.mappers import windows
 from pvfiblets.streamlines import Streamlines
+from tests.gl_calls import possible, recording
 
 from .scripts import imported
-
-pytestmark = pytest.mark.more
 
 FRAMES = int(os.environ.get("PVFIBLETS_SOAK", "60"))
 PER_ROUND = max(FRAMES // 5, 10)
@@ -40,6 +38,7 @@ def walked(bench):
     return bench.soak.walk(FRAMES, PER_ROUND, seed=3, size=100)
 
 
+@pytest.mark.more
 def test_most_kinds_of_acts_were_done(bench, walked):
     soak, rounds = walked
     assert soak.frames == FRAMES
@@ -47,6 +46,7 @@ def test_most_kinds_of_acts_were_done(bench, walked):
     assert sum(soak.refused.values()) <= 0.05 * sum(soak.acts.values()), soak.refused
 
 
+@pytest.mark.more
 def test_all_objects_of_opengl_are_given_back(bench, walked):
     kinds = [kind for kind in bench.soak.KINDS if kind != "Program"]  # VTK keeps programs as long as the window is
     for row in walked[1]:
@@ -56,17 +56,20 @@ def test_all_objects_of_opengl_are_given_back(bench, walked):
         assert row["after"]["bytes"] <= row["before"]["bytes"] + 200 * row["size"] ** 2, row
 
 
+@pytest.mark.more
 def test_nothing_is_kept_of_actors(walked):
     for row in walked[1]:
         assert row["contexts"] == 0
         assert row["actors"] == 0
 
 
+@pytest.mark.more
 def test_resident_memory_stays_after_the_first_rounds(walked):
     memory = [row["resident_mb"] for row in walked[1]]
     assert memory[-1] - memory[1] < MOST_GROWTH, memory
 
 
+@pytest.mark.more
 @pytest.mark.exhaustive
 def test_the_same_seed_does_the_same(bench):
     log = []
@@ -78,6 +81,7 @@ def test_the_same_seed_does_the_same(bench):
     assert len(log[0]) > 4
 
 
+@pytest.mark.more
 def test_a_failing_act_is_reported_with_those_before_it(bench, monkeypatch):
     soak = bench.soak.Soak(5, 64)
     soak.open()
@@ -92,6 +96,7 @@ def test_a_failing_act_is_reported_with_those_before_it(bench, monkeypatch):
     soak.windows.pop().close()
 
 
+@pytest.mark.more
 def test_what_leaks_is_found(bench):
     """A texture that nobody gives back, and an actor that somebody keeps."""
     soak = bench.soak.Soak(5, 64)
@@ -117,6 +122,7 @@ def test_what_leaks_is_found(bench):
     kept.clear()
 
 
+@pytest.mark.more
 def test_an_error_that_vtk_left_behind_is_not_taken_for_ours(bench):
     """Depth peeling in a multi-sampled window leaves one; making the first buffer was then said to lack memory."""
     others = sum(bench.soak.unreleased().values())
@@ -141,3 +147,20 @@ def test_an_error_that_vtk_left_behind_is_not_taken_for_ours(bench):
         plotter.close()
     assert not windows._contexts
     assert sum(bench.soak.unreleased().values()) == others
+
+
+@pytest.mark.skipif(not possible(), reason="calls are recorded on x86-64 and Linux only")
+@pytest.mark.more
+@pytest.mark.parametrize(("pipeline", "most"), [("compute", 90), ("geometry", 12)])
+def test_a_chunk_more_asks_little_of_opengl(gl, pipeline, most):
+    """Whatever the graphics card, the processor makes these calls in every picture for each chunk."""
+    rows = []
+    with imported(cost="frame_cost") as modules:
+        for chunks in (1, 3):
+            fiblets = modules.cost.tiny_fiblets(chunks)
+            case = {"pipeline": pipeline, "culling": "two-phase"}
+            with modules.cost.as_on_a_card(), recording() as calls:
+                rows.append(modules.cost.engine(calls, fiblets, case, SimpleNamespace(frames=2)))
+    assert [row["chunks"] for row in rows] == [1, 3]
+    assert (rows[1]["calls"] - rows[0]["calls"]) / 2 <= most
+    assert rows[0]["ms"] > 0.0

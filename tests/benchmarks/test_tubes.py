@@ -1,8 +1,5 @@
 """The benchmark of spline tubes runs from one command, and what it measures by is right."""
 
-from __future__ import annotations
-
-import argparse
 import dataclasses
 from types import SimpleNamespace
 
@@ -49,17 +46,6 @@ def test_one_command_measures_and_says_what_it_left_out(tmp_path):
     assert rows["tube-90x40"]["unmeasured"] in path.with_suffix(".md").read_text()
 
 
-def test_the_camera_is_the_plotters(bench, ball):
-    import pyvista as pv
-
-    tubes, camera = ball
-    plotter = pv.Plotter(off_screen=True, window_size=SIZE)
-    camera.aim(plotter)
-    matrix = plotter.camera.GetCompositeProjectionTransformMatrix(SIZE[0] / SIZE[1], -1.0, 1.0)
-    np.testing.assert_allclose(camera.model_view_projection, pv.array_from_vtkmatrix(matrix), rtol=1e-9, atol=1e-9)
-    plotter.close()
-
-
 def test_the_reference_covers_what_a_sphere_does(bench, ball):
     tubes, camera = ball
     reference = bench.reference.fine_coverage(tubes, camera, 4)
@@ -73,7 +59,7 @@ def test_the_reference_covers_what_a_sphere_does(bench, ball):
     assert reference.length == pytest.approx(2.0 * np.pi * radius, rel=0.02)
 
 
-def test_distance_between_silhouettes(bench):
+def test_distances_and_lengths_of_outlines(bench):
     y, x = np.indices((400, 400)) + 0.5
     away = np.hypot(x - 200.0, y - 200.0)
     fine = (np.indices((1600, 1600)) + 0.5) / 4.0
@@ -83,9 +69,6 @@ def test_distance_between_silhouettes(bench):
     assert exact["differing"] == exact["gross"] == 0
     assert wider["off_pixels"] == pytest.approx(2.0, rel=0.02)
     assert 0.0 < wider["gross"] < wider["off_pixels"]
-
-
-def test_length_of_an_outline(bench):
     y, x = np.indices((1000, 1000))
     for degrees in (0.0, 20.0, 45.0, 70.0):
         turn = np.radians(degrees)
@@ -113,31 +96,3 @@ def test_a_tessellated_tube_is_as_wide_as_it_should_be(bench):
     tilt = np.cos(np.radians(ELEVATION))
     expected = 2.0 * np.tan(np.arcsin(1.0 / distance)) * camera.pixels * tilt
     assert shown[450].sum() == pytest.approx(expected, abs=2.0)
-
-
-def test_normals_turn_as_little_as_can_be(bench):
-    t = np.linspace(0.0, 6.0, 200)
-    tangents = np.stack([-np.sin(t), np.cos(t), np.full(200, 0.3)], axis=1)
-    segments = np.stack([np.arange(199), np.arange(1, 200)], axis=1)
-    normals = tessellated.carried_normals(tangents, segments)
-    np.testing.assert_allclose(np.einsum("ij,ij->i", normals, tangents), 0.0, atol=1e-12)
-    np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1.0)
-    turns = np.linalg.norm(np.diff(normals, axis=0), axis=1)
-    unit = tangents / np.linalg.norm(tangents, axis=1, keepdims=True)
-    assert turns.max() <= np.linalg.norm(np.diff(unit, axis=0), axis=1).max() * 1.001
-
-
-def test_polylines_go_through_the_nodes(bench):
-    tubes = bench.methods.helices(3, 5)
-    mesh = bench.methods.polylines(tubes)
-    np.testing.assert_allclose(mesh.points, tubes.points, atol=1e-6)
-    np.testing.assert_allclose(mesh["radius"], tubes.radius)
-    finer = bench.methods.polylines(tubes, 4)
-    assert finer.n_lines == 3
-    np.testing.assert_allclose(finer.points.reshape(3, 17, 3)[:, ::4].reshape(-1, 3), tubes.points, atol=1e-6)
-
-
-def test_an_unknown_method_is_refused(bench):
-    with pytest.raises(argparse.ArgumentTypeError, match="unknown method 'tubes', expected one of lines-as-tubes, "):
-        bench.command.known_method("tubes")
-    assert bench.command.known_method("tube-8x2") == "tube-8x2"

@@ -1,12 +1,7 @@
 """The benchmarks of ray-cast volumes run from one command each, and what they measure by is right."""
 
-from __future__ import annotations
-
-import argparse
 import json
-import math
 import subprocess
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -170,56 +165,7 @@ def test_the_step_of_an_error_is_found(bench, power, target, step):
     assert step / bench.timing.CLOSE <= found <= step * 1.04
 
 
-def test_an_error_that_is_never_reached_is_said(bench):
-    class Method:
-        def step(self, voxels):
-            self.voxels = voxels
-
-        def error(self, _):
-            return 0.1 + self.voxels
-
-    assert bench.timing.search(Method(), None, 0.05, (0.5, 0.6), 1e-9) == (0.25, pytest.approx(0.35), False)
-
-
-def test_memory_is_what_was_made(gl, bench):
-    before = bench.memory.allocated()
-    made = [
-        gl.texture3d((8, 4, 2), 1, dtype="nu2"),
-        gl.texture((16, 16), 4, dtype="f4"),
-        gl.buffer(reserve=1000),
-        gl.depth_renderbuffer((10, 10)),
-        gl.renderbuffer((32, 8), 4, dtype="f1"),
-    ]
-    for texture in made[:2]:
-        texture.use(0)
-    gl.framebuffer([made[4]]).use()
-    sizes = 8 * 4 * 2 * 2 + 16 * 16 * 16 + 1000 + 32 * 8 * 4
-    assert bench.memory.allocated() - before - sizes in (10 * 10 * 3, 10 * 10 * 4)  # 24 bits of depth, or 32
-    for one in made:
-        one.release()
-    assert bench.memory.allocated() == before
-
-
 # ------------------------------------------------------------------------------------------------------- what is told
-
-
-def test_pictures_that_differ(bench):
-    one = np.zeros((10, 10, 3))
-    other = one.copy()
-    other[0, 0, 1], other[0, 1, 0], other[0, 2] = 2.0 / 255.0, 5.0 / 255.0, 1.0
-    told = bench.effects.differing([(one, other), (one, one)])
-    assert told["differing_at_all"] == 3 / 200
-    assert told["differing"] == 2 / 200
-    assert told["rms"] == pytest.approx(math.sqrt((3.0 + 29.0 / 255.0**2) / 600))
-
-
-def test_an_effect_that_is_not_there_is_said(bench, monkeypatch):
-    monkeypatch.setitem(bench.effects.EFFECTS, "recon", bench.effects._of_actor("no_such_thing", True))
-    options = SimpleNamespace(seed=0, data_folder=Path(), still=32, size=32, frames=1, seconds=1.0, step=0.5)
-    rows = list(bench.effects.effects("vessels-16", "isosurface", ["recon"], options))
-    assert [row["unmeasured"] for row in rows] == ["volumes have no no_such_thing here"] * 2
-    told = "\n".join(bench.effects.table(rows))
-    assert "| vessels-16, composite | recon | static | unmeasured: volumes have no no_such_thing here |" in told
 
 
 def test_goals_are_judged_against_vtk_with_the_same_error(bench):
@@ -247,14 +193,6 @@ def test_goals_are_judged_against_vtk_with_the_same_error(bench):
     )
 
 
-def test_data_by_name(bench, tmp_path):
-    for name in ("vessels", "vessels-1", "brains", "brain-0"):
-        with pytest.raises(argparse.ArgumentTypeError, match=f"unknown data '{name}', expected vessels-N, brain-N or"):
-            bench.data.known_data(name)
-    assert bench.data.make_data("vessels-10").shape == (10, 10, 10)
-    assert bench.data.make_data("brain-12", folder=tmp_path).shape == (12, 12, 12)
-
-
 def test_what_was_measured_before_time_is_up_is_kept(bench, monkeypatch, tmp_path):
     said = {
         "truth": b'{"shape": [4], "bytes": 8, "name": "n"}\n',
@@ -270,17 +208,8 @@ def test_what_was_measured_before_time_is_up_is_kept(bench, monkeypatch, tmp_pat
 
     monkeypatch.setattr(bench.common.subprocess, "run", started)
     command = [
-        "--data",
-        "vessels-16",
-        "--modes",
-        "mip",
-        "isosurface",
-        "--methods",
-        "plotter",
-        "vtk-gpu",
-        "--limit",
-        "9",
-    ]
+        "--data", "vessels-16", "--modes", "mip", "isosurface", "--methods", "plotter", "vtk-gpu", "--limit", "9",
+    ]  # fmt: skip
     rows = bench.command.measure_all(bench.command.parsed().parse_args(command), tmp_path)
     assert [(row["mode"], row["method"], "unmeasured" in row) for row in rows] == [
         ("mip", "plotter", False), ("mip", "vtk-gpu", False), ("mip", "vtk-gpu-equal", True),

@@ -3,8 +3,6 @@
 ``python tests/docs/pages.py PAGE TARGET`` writes it.
 """
 
-from __future__ import annotations
-
 import re
 import sys
 from pathlib import Path

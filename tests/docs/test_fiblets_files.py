@@ -1,7 +1,5 @@
 """What the docs say of ``.fiblets`` files is enough to read them: the reader that they print reads what we write."""
 
-from __future__ import annotations
-
 import json
 import re
 import zipfile

@@ -1,19 +1,17 @@
 """Every command and every piece of Python on these pages runs, in their order, as a reader would run them."""
 
-from __future__ import annotations
-
+import ast
 import importlib.util
 import os
 import re
 import subprocess
 import sys
 from pathlib import Path
+from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
 from PIL import Image
-
-pytestmark = pytest.mark.more
 
 
 def _pages():
@@ -26,6 +24,7 @@ def _pages():
 pages = _pages()
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("page", pages.GIVEN)
 def test_a_page_runs(page, tmp_path):
     script = tmp_path / "page.py"
@@ -49,5 +48,64 @@ def test_a_page_runs(page, tmp_path):
         assert len(np.unique(lines.reshape(-1, 3), axis=0)) > 100, f"{name} of {page} has hardly any colours"
 
 
+@pytest.mark.more
 def test_every_page_with_something_to_run_is_run():
     assert pages.pages_with_blocks() == {*pages.GIVEN, *pages.RUN_ELSEWHERE}
+
+
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+FENCED = re.compile(r"^(```|~~~).*?^\1", re.DOTALL | re.MULTILINE)
+DISPLAYED = re.compile(r"\$\$(.+?)\$\$", re.DOTALL)
+INLINE = re.compile(r"(?<![\\$`])\$([^$\n]+?)\$")
+NAMESPACE = "{http://www.w3.org/1998/Math/MathML}"
+
+
+def _mathml():
+    spec = importlib.util.spec_from_file_location("docs_mathml", DOCS / "mathml.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+mathml = _mathml()
+
+
+def formulas(page: Path) -> list[tuple[str, bool]]:
+    """Return (TeX, whether it has a line of its own) of all formulas of a page."""
+    text = re.sub(r"`[^`\n]*`", "", FENCED.sub("", page.read_text()))
+    displayed = [(tex, True) for tex in DISPLAYED.findall(text)]
+    return displayed + [(tex, False) for tex in INLINE.findall(DISPLAYED.sub("", text))]
+
+
+PAGES = sorted(page for page in (DOCS / "explanation").glob("*.md") if formulas(page))
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_every_formula_of_a_page_becomes_mathml_with_no_tex_left_in_it(page):
+    for tex, display in formulas(page):
+        root = ET.fromstring(mathml.formula(tex, display=display))
+        assert root.tag == NAMESPACE + "math", tex
+        left = [part for part in root.itertext() if "\\" in part or "$" in part]
+        assert not left, f"{tex}: {left} is no MathML"
+
+
+def test_bold_letters_are_bold_by_style_since_browsers_know_no_other_way():
+    assert 'style="font-weight: bold">P</mi>' in mathml.formula(r"\mathbf P", display=False)
+    assert 'mathvariant="bold"' not in mathml.formula(r"\mathbf{P}_i + \mathbf X", display=True)
+
+
+def test_the_four_papers_have_their_pages():
+    assert {"fiblets", "tubes", "halos", "volumes"} <= {page.stem for page in PAGES}
+
+
+EXAMPLES = sorted((Path(__file__).resolve().parents[2] / "examples").glob("[0-9]*.py"))
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda example: example.stem)
+def test_every_example_begins_with_a_title_and_asks_for_nothing_else(example):
+    names = {node.id for node in ast.walk(ast.parse(example.read_text())) if isinstance(node, ast.Name)}
+    assert "__file__" not in names, "sphinx-gallery defines no __file__: take sys.argv[0]"
+    title, line, *rest = (ast.get_docstring(ast.parse(example.read_text())) or "\n").splitlines()
+    assert set(line) == {"="}
+    assert len(line) == len(title)
+    assert f"python examples/{example.name}" in " ".join(rest)

@@ -12,8 +12,6 @@ anything else is left in SCRATCH, and told on the error stream.
 - *No crash*: this process would end, and its exit status tells.
 """
 
-from __future__ import annotations
-
 import faulthandler
 import gzip
 import importlib

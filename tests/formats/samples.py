@@ -1,7 +1,5 @@
 """Small tractograms, and files of every format made from them by independent writers."""
 
-from __future__ import annotations
-
 import gzip
 import struct
 import warnings
@@ -24,10 +22,7 @@ def rich(seed: int = 0, counts=(5, 1, 12, 0, 2, 7)) -> Streamlines:
     return Streamlines(
         points,
         np.cumsum([0, *counts]),
-        per_point={
-            "fa": rng.random(n).astype(np.float32),
-            "rgb": rng.random((n, 3)).astype(np.float32),
-        },
+        per_point={"fa": rng.random(n).astype(np.float32), "rgb": rng.random((n, 3)).astype(np.float32)},
         per_streamline={
             "weight": rng.random(m).astype(np.float32),
             "pair": rng.integers(0, 99, (m, 2)).astype(np.float32),
@@ -35,11 +30,7 @@ def rich(seed: int = 0, counts=(5, 1, 12, 0, 2, 7)) -> Streamlines:
         groups={"left": np.arange(0, m, 2), "all of them": np.arange(m)},
         per_group={"left": {"color": np.array([1, 2, 3], np.uint8)}},
         affine=AFFINE,
-        space={
-            "dimensions": (91, 109, 91),
-            "voxel_sizes": (2.0, 2.5, 3.0),
-            "voxel_order": "LAS",
-        },
+        space={"dimensions": (91, 109, 91), "voxel_sizes": (2.0, 2.5, 3.0), "voxel_order": "LAS"},
     )
 
 

@@ -1,7 +1,5 @@
 """Values in side files: where they go, and files that do not fit."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given

@@ -4,8 +4,6 @@
 ``fuzzing.py`` is the process that reads them.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import re

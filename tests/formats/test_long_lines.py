@@ -1,7 +1,5 @@
 """A line longer than memory should hold comes from disk, in parts, and is what it is read whole."""
 
-from __future__ import annotations
-
 import gzip
 import subprocess
 import sys

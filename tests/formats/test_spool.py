@@ -1,7 +1,5 @@
 """Pieces joined on disk equal pieces joined in memory, and streaming keeps memory flat."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path

@@ -1,12 +1,8 @@
 """MRtrix tracks: values against nibabel, layout by hand, and every kind of bad input."""
 
-from __future__ import annotations
-
 import nibabel
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from pvfiblets import formats
 from pvfiblets.errors import FormatError
@@ -88,27 +84,16 @@ def test_files_of_nibabel_are_read_and_ours_by_nibabel(tmp_path):
     assert np.array_equal(theirs.streamlines.get_data(), s.points)
 
 
-@given(st.lists(st.integers(0, 5), max_size=8), st.integers(1, 9))
-def test_round_trip_and_pieces(tmp_path_factory, counts, max_points):
-    path = tmp_path_factory.mktemp("tck") / "a.tck"
-    s = rich(1, counts)
-    formats.write(path, s)
-    back = formats.read(path)
-    same(back, Streamlines(s.points, s.offsets))
-    assert back.dropped == {}
-    pieces = list(formats.iter_chunks(path, max_points))
-    assert all(len(p) == 1 or p.n_points <= max_points for p in pieces)
-    same(Streamlines.concatenate(pieces), back)
-
-
-def test_zero_and_one_point_streamlines_and_repeats_are_kept(load):
+def test_odd_lines_are_kept_and_small_blocks_give_the_same(load, monkeypatch):
     s = load([A, NAN, NAN, B, B, NAN, INF])
     assert s.counts.tolist() == [1, 0, 2]
     assert s[2].tolist() == [B, B]
     assert s.dropped == {}
-
-
-def test_small_blocks_give_the_same(load, monkeypatch):
+    odd = np.array([0x7FC00001, 0xFFFFFFFF, 0x7F800001], np.uint32).view(np.float32)
+    s = load(np.array([A, odd, B, NAN, INF], np.float32))
+    assert s.counts.tolist() == [1, 1]
+    assert load([A, NAN, B, C, INF]).counts.tolist() == [1, 2]
+    assert load([A, NAN, B, NAN], header="count: 2\n").dropped == {tck.NO_END_MARKER: 1}
     rows = [A, B, NAN, C, [np.nan, 1, 2], NAN, NAN, A, INF]
     expected = load(rows)
     monkeypatch.setattr(row_tools, "BLOCK_BYTES", 12)
@@ -130,25 +115,9 @@ def test_x_alone_delimits_as_in_mrtrix(load):
     assert s.dropped == {tck.AFTER_END: 12}
 
 
-def test_any_nan_pattern_ends_a_streamline(load):
-    odd = np.array([0x7FC00001, 0xFFFFFFFF, 0x7F800001], np.uint32).view(np.float32)
-    s = load(np.array([A, odd, B, NAN, INF], np.float32))
-    assert s.counts.tolist() == [1, 1]
-
-
-def test_last_streamline_closed_by_the_end_marker(load):
-    assert load([A, NAN, B, C, INF]).counts.tolist() == [1, 2]
-
-
 @pytest.mark.parametrize(
     ("count", "report"),
-    [
-        ("2", {}),
-        ("0000000002", {}),
-        ("5", {tck.FEWER: 3}),
-        ("0", {tck.MORE: 2}),
-        ("1", {tck.MORE: 1}),
-    ],
+    [("2", {}), ("0000000002", {}), ("5", {tck.FEWER: 3}), ("0", {tck.MORE: 2}), ("1", {tck.MORE: 1})],
 )
 def test_count_that_differs_is_reported(count, report, load):
     s = load([A, NAN, B, C, NAN, INF], header=f"count: {count}\n")
@@ -156,18 +125,9 @@ def test_count_that_differs_is_reported(count, report, load):
     assert s.dropped == report
 
 
-def test_missing_end_marker_with_everything_there_is_reported(load):
-    assert load([A, NAN, B, NAN], header="count: 2\n").dropped == {tck.NO_END_MARKER: 1}
-
-
 @pytest.mark.parametrize(
     ("rows", "header"),
-    [
-        ([A, NAN, B], ""),
-        ([A, NAN, B, NAN], "count: 3\n"),
-        ([A, NAN, B, NAN], "count: 1\n"),
-        ([A, B, C], "count: 1\n"),
-    ],
+    [([A, NAN, B], ""), ([A, NAN, B, NAN], "count: 3\n"), ([A, NAN, B, NAN], "count: 1\n"), ([A, B, C], "count: 1\n")],
 )
 def test_missing_end_marker_with_doubt_is_an_error(rows, header, tmp_path):
     data = tck_bytes(np.array(rows), header=header)
@@ -176,13 +136,10 @@ def test_missing_end_marker_with_doubt_is_an_error(rows, header, tmp_path):
     assert "truncated" in error.expected
 
 
-def test_truncated_inside_a_row(tmp_path):
+def test_what_is_truncated_is_refused_and_bytes_after_the_end_counted(tmp_path):
     data = tck_bytes(np.array([A, NAN, B, NAN, INF]))
     error = refused(tmp_path, data[:-5])
     assert error.position == len(data) - 5
-
-
-def test_bytes_after_the_end_are_counted(tmp_path):
     path = tmp_path / "a.tck"
     path.write_bytes(tck_bytes(np.array([A, NAN, INF, B, NAN])) + b"xyz")
     assert formats.read(path).dropped == {tck.AFTER_END: 27}
@@ -243,13 +200,6 @@ def test_points_are_written_as_float32_unless_doubles_are_asked_for(tmp_path):
         formats.write(tmp_path / "a.trk", far, double=True)
     with pytest.raises(ValueError, match="float32 cannot hold some coordinates"):
         formats.write(path, Streamlines(np.full((2, 3), 1e39), [0, 2]))
-
-
-def test_info_counts_without_reading(tmp_path):
-    s = rich()
-    formats.write(tmp_path / "a.tck", s)
-    facts = formats.info(tmp_path / "a.tck")
-    assert (facts["format"], facts["streamlines"], facts["points"]) == (".tck", len(s), s.n_points)
 
 
 def test_a_failed_write_leaves_the_old_file(tmp_path):

@@ -1,7 +1,5 @@
 """DSI Studio's TinyTrack: the layout by hand, the real file, and bad input."""
 
-from __future__ import annotations
-
 import gzip
 import shutil
 import struct
@@ -64,9 +62,14 @@ def test_malformed_real_file(shared_data):
         formats.read(shared_data / "trxrs_tinytrack_malformed.tt.gz")
 
 
-def test_unknown_matrices_are_counted(tmp_path):
+def test_what_cannot_be_is_counted_or_refused(tmp_path):
     data = tt_bytes([np.zeros((2, 3), int)], extra=[("extra", np.zeros(3, "<f4"))])
     assert formats.read(packed(tmp_path / "a.tt.gz", data)).dropped == {tinytrack.UNKNOWN: 1}
+    data = tt_bytes([np.zeros((2, 3), int)], extra=[("cluster", np.zeros(3, "<u2"))])
+    with pytest.raises(FormatError, match="3 clusters"):
+        formats.read(packed(tmp_path / "a.tt.gz", data))
+    with pytest.raises(formats.UnknownFormatError, match=r"\.tt\.gz has no write"):
+        formats.write(tmp_path / "a.tt.gz", Streamlines.from_list([]))
 
 
 @pytest.mark.parametrize(
@@ -88,14 +91,3 @@ def test_damage(change, words, tmp_path):
     data = tt_bytes([np.cumsum(np.full((4, 3), 5), axis=0)])
     with pytest.raises(FormatError, match=words):
         formats.read(packed(tmp_path / "a.tt.gz", change(data)))
-
-
-def test_clusters_that_do_not_fit(tmp_path):
-    data = tt_bytes([np.zeros((2, 3), int)], extra=[("cluster", np.zeros(3, "<u2"))])
-    with pytest.raises(FormatError, match="3 clusters"):
-        formats.read(packed(tmp_path / "a.tt.gz", data))
-
-
-def test_it_is_not_written(tmp_path):
-    with pytest.raises(formats.UnknownFormatError, match=r"\.tt\.gz has no write"):
-        formats.write(tmp_path / "a.tt.gz", Streamlines.from_list([]))

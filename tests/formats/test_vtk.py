@@ -1,7 +1,5 @@
 """Legacy vtk and vtp lines: values against VTK's own readers, and bad input."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np
@@ -65,15 +63,12 @@ def by_vtk(path) -> Streamlines:
     return Streamlines.from_polydata(pv.read(path))
 
 
-def test_real_files_agree_with_vtk(shared_data):
+def test_real_files_agree_with_vtk_and_those_of_other_datasets_are_refused(shared_data):
     names = ["ukf_2T_fw_fiber.vtk", "wma_brain_0002.vtk", "nv_tract.FAT_R.vtk"]
     for name in [*names, "vtk_track1.binary.vtk", "vtk_Coastlines_Los_Alamos.vtp"]:
         ours, theirs = formats.read(shared_data / name), by_vtk(shared_data / name)
         same(ours, theirs)
         assert ours.dropped == theirs.dropped
-
-
-def test_real_files_of_other_datasets_are_refused(shared_data):
     for name in ("vtk_office.binary.vtk", "vtk_carotid.vtk"):
         assert "DATASET POLYDATA" in refused(shared_data / name).expected
 
@@ -241,17 +236,13 @@ def test_pieces_of_vtp_are_joined(tmp_path):
     assert np.array_equal(both.points, np.concatenate([one.points] * 2))
 
 
-def test_nonfinite_points(tmp_path):
+def test_nonfinite_points_and_a_last_number_without_newline_are_reported(tmp_path):
     path = tmp_path / "a.vtk"
     path.write_bytes((OLD % b"").replace(b"1 1 0", b"1 nan 0"))
     s = formats.read(path)
     assert s.counts.tolist() == [2, 2]
     assert s.dropped[NONFINITE] == 1
     assert CUT not in s.dropped
-
-
-def test_a_last_number_without_newline_is_reported(tmp_path):
-    path = tmp_path / "a.vtk"
     whole = (OLD % b"").split(b"POINT_DATA")[0].rstrip()
     path.write_bytes(whole)
     assert formats.read(path).dropped[vtk_parser.LAST_NUMBER] == 1

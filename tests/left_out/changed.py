@@ -1,7 +1,5 @@
 """What each scene has more than its plain one or, after a minus, less."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from .what import What
@@ -27,12 +25,9 @@ TUBES = What(
 )
 
 CHANGED = {
-    "one colour": What(
-        resolve="-colour_orientation, colour_solid",
-    ),
+    "one colour": What(resolve="-colour_orientation, colour_solid"),
     "colours: per streamline": What(
-        resolve="-colour_orientation, -line_light, legend_colours, colour_streamline",
-        buffers="fibletStreamlineColours",
+        resolve="-colour_orientation, -line_light, legend_colours, colour_streamline", buffers="fibletStreamlineColours"
     ),
     "colours: stored": What(
         features="VALUES_STORED",
@@ -57,16 +52,10 @@ CHANGED = {
         buffers="fibletTable, volume",
     ),
     "colours: logarithm": What(
-        resolve="-colour_orientation, -line_light, legend_colours, colour_streamline",
-        buffers="fibletStreamlineColours",
+        resolve="-colour_orientation, -line_light, legend_colours, colour_streamline", buffers="fibletStreamlineColours"
     ),
-    "wide lines": What(
-        features="WIDE_LINES",
-    ),
-    "wide lines, shaded": What(
-        features="CROSS_LINE, WIDE_LINES",
-        resolve="-line_light, tube_shading",
-    ),
+    "wide lines": What(features="WIDE_LINES"),
+    "wide lines, shaded": What(features="CROSS_LINE, WIDE_LINES", resolve="-line_light, tube_shading"),
     "tubes": TUBES,
     "tubes, shaded": replace(
         TUBES,
@@ -113,9 +102,7 @@ CHANGED = {
         resolve="layers, layers_covered, layers_geometry",
         buffers="across (no layer), layers, normal (no layer)",
     ),
-    "illuminated": What(
-        resolve="-line_light, illuminated",
-    ),
+    "illuminated": What(resolve="-line_light, illuminated"),
     "ambient occlusion": What(
         ran="screen/triangle.vert, effects/ssao.frag, effects/ssao_blur.frag",
         resolve="ambient_occlusion",
@@ -123,9 +110,7 @@ CHANGED = {
         buffers="occlusion (effect), rough occlusion (effect)",
         modules=f"{MEASURING}, engine.effects.ambient_occlusion",
     ),
-    "depth cue": What(
-        resolve="depth_cue",
-    ),
+    "depth cue": What(resolve="depth_cue"),
     "halos": What(
         ran="screen/triangle.vert, effects/linear_depth.frag, effects/halo.frag, effects/tile_min_distance.frag",
         resolve="halo",
@@ -140,20 +125,9 @@ CHANGED = {
         buffers="distances (effect), halos (effect), tiles (effect)",
         modules=f"{MEASURING}, engine.effects.halos",
     ),
-    "clip: plane": What(
-        features="CLIP_PLANES",
-        buffers="clip_planes",
-        modules="engine.regions.clip_planes, regions",
-    ),
-    "clip: planes of VTK": What(
-        features="CLIP_PLANES",
-        buffers="clip_planes",
-    ),
-    "clip: box": What(
-        features="CLIP_PLANES",
-        buffers="clip_planes",
-        modules="engine.regions.clip_planes, regions",
-    ),
+    "clip: plane": What(features="CLIP_PLANES", buffers="clip_planes", modules="engine.regions.clip_planes, regions"),
+    "clip: planes of VTK": What(features="CLIP_PLANES", buffers="clip_planes"),
+    "clip: box": What(features="CLIP_PLANES", buffers="clip_planes", modules="engine.regions.clip_planes, regions"),
     "clip: plane and ball": What(
         ran="screen/triangle.vert, regions/combine.frag",
         features="CLIP_PLANES, CLIP_REGION",
@@ -183,10 +157,7 @@ CHANGED = {
         modules="codec.decode_arrays, query.measure_kernels",
     ),
     "criterion: per point": What(
-        features="POINT_MASK",
-        buffers="filter",
-        packages="numba",
-        modules="query.bit_kernels",
+        features="POINT_MASK", buffers="filter", packages="numba", modules="query.bit_kernels"
     ),
     "include": What(
         features="STREAMLINE_MASK",
@@ -194,10 +165,7 @@ CHANGED = {
         packages="numba",
         modules="engine.fiblets.region_query, query.passing, regions",
     ),
-    "selection": What(
-        resolve="highlight",
-        buffers="fibletChosenMap",
-    ),
+    "selection": What(resolve="highlight", buffers="fibletChosenMap"),
     "selection as tubes": What(
         ran="screen/near.vert, tubes/attributes.frag, tubes/rectangles.vert, tubes/tube.frag",
         features="TUBE_ILLINOIS, TUBES",
@@ -290,58 +258,29 @@ CHANGED = {
         modules="plotting.picture_component",
     ),
     "spline tubes: values": What(
-        features="TUBE_VALUES",
-        resolve="-colour_solid, colour_point_scalar",
-        buffers="fibletTable, values",
+        features="TUBE_VALUES", resolve="-colour_solid, colour_point_scalar", buffers="fibletTable, values"
     ),
     "spline tubes: colours": What(
-        features="TUBE_COLOURS",
-        resolve="-colour_solid, colour_point_rgba",
-        buffers="colours",
+        features="TUBE_COLOURS", resolve="-colour_solid, colour_point_rgba", buffers="colours"
     ),
-    "spline tubes: solver": What(
-        features="-TUBE_ILLINOIS, TUBE_NEWTON",
-    ),
-    "spline tubes: planes": What(
-        features="CLIP_PLANES, TUBE_CHAIN",
-        buffers="clip_planes",
-    ),
-    "halo lines: tapered": What(
-        features="HALO_TAPER",
-    ),
-    "halo lines: cue": What(
-        features="HALO_CUE",
-    ),
-    "halo lines: bent": What(
-        features="HALO_BENT",
-    ),
-    "halo lines: filter": What(
-        features="HALO_FILTER",
-        buffers="filters",
-    ),
+    "spline tubes: solver": What(features="-TUBE_ILLINOIS, TUBE_NEWTON"),
+    "spline tubes: planes": What(features="CLIP_PLANES, TUBE_CHAIN", buffers="clip_planes"),
+    "halo lines: tapered": What(features="HALO_TAPER"),
+    "halo lines: cue": What(features="HALO_CUE"),
+    "halo lines: bent": What(features="HALO_BENT"),
+    "halo lines: filter": What(features="HALO_FILTER", buffers="filters"),
     "halo lines: values": What(
-        features="HALO_VALUES",
-        resolve="-colour_solid, colour_point_scalar",
-        buffers="fibletTable, values",
+        features="HALO_VALUES", resolve="-colour_solid, colour_point_scalar", buffers="fibletTable, values"
     ),
-    "halo lines: colours": What(
-        features="HALO_COLOURS",
-        resolve="-colour_solid, colour_point_rgba",
-        buffers="colours",
-    ),
+    "halo lines: colours": What(features="HALO_COLOURS", resolve="-colour_solid, colour_point_rgba", buffers="colours"),
     "halo points": What(
         ran="-halos/strips.vert, halos/discs.vert",
         features="HALO_POINTS",
         passes="-strips, discs",
         buffers="-masks, -offsets",
     ),
-    "volume: local mip": What(
-        features="VOLUME_LOCAL",
-    ),
-    "volume: surface": What(
-        features="VOLUME_SURFACE",
-        resolve="tube_normal",
-    ),
+    "volume: local mip": What(features="VOLUME_LOCAL"),
+    "volume: surface": What(features="VOLUME_SURFACE", resolve="tube_normal"),
     "volume: gentle light": What(
         features="VOLUME_COMPOSITE, VOLUME_PREINTEGRATED",
         resolve="-colour_point_scalar, colour_point_rgba, own_light",
@@ -376,33 +315,14 @@ CHANGED = {
         buffers="-fibletTable",
         modules="engine.volumes.shading",
     ),
-    "volume: minimum": What(
-        features="VOLUME_MINIMUM",
-    ),
-    "volume: average": What(
-        features="VOLUME_AVERAGE",
-    ),
-    "volume: nearest": What(
-        features="VOLUME_NEAREST",
-    ),
-    "volume: tricubic": What(
-        features="VOLUME_TRICUBIC",
-    ),
-    "volume: jitter": What(
-        features="VOLUME_JITTER",
-    ),
-    "volume: no octree": What(
-        features="VOLUME_WHOLE",
-        buffers="-nodes",
-    ),
-    "volume: sparse": What(
-        ran="volumes/fill.frag",
-        passes="-rays, between, other rays, sparse rays",
-        buffers="sparse",
-    ),
-    "volume: cut by planes": What(
-        modules="engine.regions.clip_planes, regions",
-    ),
+    "volume: minimum": What(features="VOLUME_MINIMUM"),
+    "volume: average": What(features="VOLUME_AVERAGE"),
+    "volume: nearest": What(features="VOLUME_NEAREST"),
+    "volume: tricubic": What(features="VOLUME_TRICUBIC"),
+    "volume: jitter": What(features="VOLUME_JITTER"),
+    "volume: no octree": What(features="VOLUME_WHOLE", buffers="-nodes"),
+    "volume: sparse": What(ran="volumes/fill.frag", passes="-rays, between, other rays, sparse rays", buffers="sparse"),
+    "volume: cut by planes": What(modules="engine.regions.clip_planes, regions"),
     "volume: cut": What(
         ran="regions/combine.frag",
         features="CLIP_REGION",

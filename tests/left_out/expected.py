@@ -4,8 +4,6 @@ Whoever adds a pass or a buffer says there which scenes ask for it. Of modules a
 for itself; what these import when they are imported is found in their text.
 """
 
-from __future__ import annotations
-
 from .changed import CHANGED
 from .imports import closure
 from .plain import PLAIN

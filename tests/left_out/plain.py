@@ -1,7 +1,5 @@
 """What the plain scenes are made of, as a whole."""
 
-from __future__ import annotations
-
 from .what import What
 
 PLAIN = {

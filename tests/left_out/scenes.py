@@ -3,8 +3,6 @@
 PyVista is imported first and the process forked, so that what a scene imports is what it adds to PyVista.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import os

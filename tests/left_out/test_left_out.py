@@ -4,8 +4,6 @@ Each feature alone is drawn in a process of its own by ``scenes.py``, and what i
 OpenGL, and among the imported modules, must be what ``plain.py`` and ``changed.py`` name: no more and no less.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess
@@ -93,34 +91,21 @@ def test_every_scene_is_expected():
 
 
 @pytest.mark.parametrize("name", EACH)
-def test_nothing_unasked_is_there(seen, name):
+def test_a_scene_has_what_it_asks_for_tells_all_of_it_and_waits_for_nothing(seen, name):
     found = seen[name]
     assert "error" not in found, found["error"]
     for kind in KINDS:
         there, wanted = of_kind(found, kind), expected(name, kind)
         assert there == wanted, f"{kind}: unasked {sorted(there - wanted)}, missing {sorted(wanted - there)}"
-
-
-@pytest.mark.parametrize("name", EACH)
-def test_all_memory_is_told_kept_and_given_back(seen, name):
-    """The bytes of ``explain()`` are those of OpenGL; a frame makes nothing anew; a closed plotter leaves nothing."""
-    found = seen[name]
+    # The bytes of ``explain()`` are those of OpenGL; a frame makes nothing anew; a closed plotter leaves nothing.
     assert sum(found["buffers"].values()) + found["selection"] == found["nbytes"] > 0
     assert found["made"] == 0
     assert found["left"] == 0
-
-
-@pytest.mark.parametrize("name", EACH)
-def test_all_switches_that_were_on_are_told_and_no_others(seen, name):
-    """``explain()`` of an actor names them; effects on whole pictures are no actor's."""
+    # ``explain()`` of an actor names them; effects on whole pictures are no actor's.
     told = set(seen[name]["told"] + seen[name]["told apart"]) & set(FEATURES)
     of_pictures = {switch for switch in FEATURES if switch.startswith(("PICTURE_", "TONE_"))}
     assert told == set(seen[name]["features"]) - of_pictures
-
-
-@pytest.mark.parametrize("name", EACH)
-def test_no_frame_waits_for_the_gpu(seen, name):
-    """None of a camera in motion; at rest, what is to be exact at once and no card can tell without being asked."""
+    # None of a camera in motion; at rest, what is to be exact at once and no card can tell without being asked.
     waits = seen[name]["waits"]
     if not waits:
         pytest.skip("calls of OpenGL are recorded on x86-64 and Linux only")

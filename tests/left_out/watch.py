@@ -1,7 +1,5 @@
 """Sees what a scene asks of OpenGL, without asking the program: it stands between the program and moderngl."""
 
-from __future__ import annotations
-
 import functools
 import re
 

@@ -1,7 +1,5 @@
 """How it is written down what a scene is made of."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 KINDS = ("ran", "features", "resolve", "passes", "buffers", "packages", "modules")

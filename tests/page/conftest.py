@@ -1,7 +1,5 @@
 """Pages that draw by themselves, in Chromium with WebGL 2 on the processor."""
 
-from __future__ import annotations
-
 import pytest
 
 from tests.page.pages import Page

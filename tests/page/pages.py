@@ -1,7 +1,5 @@
 """A page in Chromium, and how its picture differs from another one; fixtures are in conftest.py."""
 
-from __future__ import annotations
-
 import base64
 import threading
 import time

@@ -1,7 +1,5 @@
 """A page in use: by mouse and keys, without a network, damaged, and with graphics that go and come back."""
 
-from __future__ import annotations
-
 import base64
 import io
 import re
@@ -198,7 +196,6 @@ def test_a_click_tells_the_streamline_and_balls_and_boxes_there_choose_with_swit
         ball.get_by_label("y, mm").fill(place)
         until(page.page, f"document.getElementById('status').textContent.startsWith('{count} ')")
     assert _ink(page, middle) == 0 < _ink(page, above)
-
     page.page.get_by_role("button", name="Add a box").click()  # around the picked place: no line passes through both
     assert status.inner_text() == "0 streamlines are shown"
     box = page.page.locator("details", has=page.page.locator("summary", has_text=re.compile("^Box 2$"))).last

@@ -1,7 +1,5 @@
 """Files of pages: what they hold, what they forbid, and the script in them."""
 
-from __future__ import annotations
-
 import base64
 import hashlib
 import importlib.util
@@ -22,6 +20,7 @@ from pvfiblets.codec.archive import open_archive
 from pvfiblets.page.scene import PageScene, fiblet_layer
 from pvfiblets.page.writing import write_page
 from pvfiblets.plotting.page_scene import page_of
+from tests.page.pages import differing
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -187,3 +186,50 @@ def test_command_writes_a_page(fiblets, tmp_path, capsys):
     assert said["layers"][0]["colours"] == {"mode": "solid", "colour": [1.0, 0.0, 0.0]}
     assert main(["page", str(tmp_path / "lines.fiblets"), "-o", str(tmp_path / "figure.png")]) == 1
     assert "a page is written as .html" in capsys.readouterr().err
+
+
+CULLING = {
+    "front": {"culling": "front"},
+    "back": {"culling": "back"},
+    "front, of a mirrored one": {"culling": "front", "user_matrix": np.diag([-1.0, 1.0, 1.0, 1.0])},
+}
+
+
+@pytest.fixture
+def plotter():
+    plotter = pv.Plotter(off_screen=True, window_size=(200, 160))
+    plotter.set_background("white")
+    plotter.disable_anti_aliasing()
+    yield plotter
+    plotter.close()
+
+
+def _agrees(plotter, visit, tmp_path):
+    plotter.view_vector((1.0, -0.7, 0.4))
+    plotter.camera.zoom(1.5)
+    expected = plotter.screenshot(return_img=True)
+    page = visit(plotter.fiblets.export_page(tmp_path / "figure.html")[0])
+    wrong, drawn = differing(page.picture(), expected)
+    assert drawn > 0.15
+    assert wrong < 0.015  # of which most are where surfaces end
+
+
+def test_edges_of_triangles_and_of_polygons(plotter, visit, tmp_path):
+    """By values of points, by colours of cells, smooth, translucent; with edges of any width and opacity."""
+    ball = pv.Sphere(radius=1.0, theta_resolution=12, phi_resolution=9)
+    ball["height"] = ball.points[:, 2]
+    plotter.add_mesh(ball, scalars="height", show_edges=True, edge_color="red", line_width=3, show_scalar_bar=False)
+    cube = pv.Cube(center=(0.0, -2.0, 0.0))
+    cube.cell_data["side"] = np.arange(6.0)
+    plotter.add_mesh(cube, scalars="side", show_edges=True, edge_opacity=0.5, line_width=5, show_scalar_bar=False)
+    prism = pv.Cylinder(center=(0.0, 2.0, 0.0), direction=(0.0, 0.0, 1.0), resolution=7)
+    plotter.add_mesh(prism, color="tan", smooth_shading=True, show_edges=True, specular=0.6, opacity=0.7)
+    _agrees(plotter, visit, tmp_path)
+
+
+@pytest.mark.few(1)
+@pytest.mark.parametrize("case", CULLING)
+def test_culled_faces(case, plotter, visit, tmp_path):
+    shell = pv.Sphere(radius=1.0, theta_resolution=24, phi_resolution=18).clip("z", value=0.4)
+    plotter.add_mesh(shell, color="teal", **CULLING[case])
+    _agrees(plotter, visit, tmp_path)

@@ -1,7 +1,5 @@
 """Pages whose data lie beside them, from servers with and without ranges of bytes."""
 
-from __future__ import annotations
-
 import re
 import threading
 from contextlib import ExitStack

@@ -1,7 +1,5 @@
 """Pages in notebooks: what a cell keeps, and camera and choice that a page shares with the kernel."""
 
-from __future__ import annotations
-
 import json
 import re
 import tomllib
@@ -134,7 +132,6 @@ def test_frame_and_model_of_a_notebook_talk(plotter, visit, tmp_path):
     frame.wait_for_selector("body[data-state=drawn]")
     frame.evaluate("pvfiblets.settled()")
     assert page.evaluate("kernel.saved") == 0  # what both know is not told
-
     canvas = frame.locator("#view")
     box = canvas.bounding_box()
     canvas.click(position={"x": box["width"] / 2, "y": box["height"] / 2})
@@ -143,13 +140,11 @@ def test_frame_and_model_of_a_notebook_talk(plotter, visit, tmp_path):
     view.state.set_state({"picked": picked})
     assert (view.picked.name, view.picked.streamline) == ("lines", 0)
     np.testing.assert_allclose(view.picked.place, (0.0, 0.0, 0.0), atol=0.6)
-
     canvas.press("ArrowRight")
     until(page, "kernel.values.camera.position[0] !== 0")
     view.state.set_state({"camera": page.evaluate("kernel.values.camera")})
     assert np.linalg.norm(plotter.camera.position) == pytest.approx(200.0)
     assert plotter.camera.position[0] != 0.0
-
     saved = page.evaluate("kernel.saved")
     plotter.view_xy()
     page.evaluate("(camera) => kernel.set('camera', camera)", view.state.camera)

@@ -1,7 +1,5 @@
 """What a page draws beside the engine's picture of the same scene."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

@@ -1,7 +1,5 @@
 """Shaders of pages, as they are shortened for the script: every choice of switches is still a program."""
 
-from __future__ import annotations
-
 import importlib.util
 import itertools
 import re

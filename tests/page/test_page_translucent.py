@@ -1,7 +1,5 @@
 """Lines of pages that one looks through, and surfaces before and behind them, beside the engine's picture."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

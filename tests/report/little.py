@@ -1,7 +1,5 @@
 """Options of a study that is to measure hardly anything."""
 
-from __future__ import annotations
-
 from pvfiblets.report.study import Options
 
 

@@ -1,7 +1,5 @@
 """The study of smooth edges on very little data."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

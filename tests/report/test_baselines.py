@@ -1,7 +1,5 @@
 """What other methods of keeping streamlines decode to, against closed forms."""
 
-from __future__ import annotations
-
 import sys
 import types
 import zlib
@@ -37,12 +35,18 @@ def test_octahedral_codes_are_off_by_no_more_than_the_grid_allows(levels):
     assert angles.max() > 0.2 * octahedral.worst_angle(levels)  # and the bound is not an empty one
 
 
-def test_codes_on_the_octahedron_stand_for_themselves():
+def test_codes_on_the_octahedron_stand_for_themselves_and_what_is_beyond_the_cap_goes_to_its_edge():
     for i in range(16):
         for j in range(16):
             v = np.array(octahedral.unpack(i, j, 16))
             again = np.array(octahedral.unpack(*octahedral.pack(*v, 16), 16))
             np.testing.assert_allclose(again, v, atol=1e-12)  # on the folded edge two codes are one direction
+    ratio = octahedral.ratio_of(np.radians(30.0))
+    v = np.array([np.cos(1.0), np.sin(1.0) * np.cos(2.0), np.sin(1.0) * np.sin(2.0)])  # 57 degrees off
+    back = np.array(octahedral.to_cap(*octahedral.from_cap(*v, ratio, 1.0, 1.0), ratio, 1.0))
+    assert np.degrees(np.arccos(back[0])) == pytest.approx(30.0)
+    assert np.arctan2(back[2], back[1]) == pytest.approx(2.0)
+    assert octahedral.from_cap(1.0, 0.0, 0.0, ratio, 2.0, 2.0) == (1.0, 0.0, 0.0)
 
 
 @pytest.mark.parametrize("spread", [1.0, 2.0])
@@ -60,15 +64,6 @@ def test_the_stretched_cap_keeps_ratios_of_areas_and_comes_back(spread, degrees)
         assert 1.0 - w[0] == pytest.approx(spread * s, abs=1e-7)
         assert np.cos(np.arctan2(w[2], w[1]) - a) == pytest.approx(1.0)
         np.testing.assert_allclose(octahedral.to_cap(*w, ratio, spread), v, atol=1e-8)
-
-
-def test_what_is_beyond_the_cap_goes_to_its_edge_at_its_azimuth():
-    ratio = octahedral.ratio_of(np.radians(30.0))
-    v = np.array([np.cos(1.0), np.sin(1.0) * np.cos(2.0), np.sin(1.0) * np.sin(2.0)])  # 57 degrees off
-    back = np.array(octahedral.to_cap(*octahedral.from_cap(*v, ratio, 1.0, 1.0), ratio, 1.0))
-    assert np.degrees(np.arccos(back[0])) == pytest.approx(30.0)
-    assert np.arctan2(back[2], back[1]) == pytest.approx(2.0)
-    assert octahedral.from_cap(1.0, 0.0, 0.0, ratio, 2.0, 2.0) == (1.0, 0.0, 0.0)
 
 
 @pytest.mark.few(1)
@@ -117,7 +112,7 @@ def test_short_straight_and_still_streamlines(pack, counts):
     assert distances(points * 0.0, pack(points * 0.0, offsets).points()).max() == 0.0
 
 
-def test_float16_is_off_by_half_an_ulp():
+def test_numbers_are_off_by_half_a_unit_and_zlib_by_nothing():
     points = np.random.default_rng(2).uniform(-127, 127, (500, 3))
     got = float16(points, np.array([0, 500])).points()
     ulp = 2.0 ** (np.floor(np.log2(np.abs(points))) - 10)
@@ -125,45 +120,23 @@ def test_float16_is_off_by_half_an_ulp():
     assert np.abs(got - points).max() > 0.4 * ulp.max() / 2
     with pytest.raises(ValueError, match="65504"):
         float16(points * 1e4, np.array([0, 500]))
-
-
-def test_int16_is_off_by_half_a_quantum():
     points = np.random.default_rng(3).uniform(-1, 1, (900, 3)) * [100, 1, 0] + [5, -7, 3]
     packed = int16(points, np.array([0, 900]))
     quantum = (points.max(0) - points.min(0)) / 65535
     assert (np.abs(packed.points() - points) <= 0.5 * quantum + 1e-12).all()
     assert packed.nbytes == 900 * 6 + 48 + 4
-
-
-def test_zlib_gives_every_bit_back():
     points = np.random.default_rng(4).normal(size=(300, 3)).astype(np.float32)
     packed = squeezed_by_zlib(6)(points, np.array([0, 100, 300]))
     np.testing.assert_array_equal(packed.points(), points)
     assert packed.nbytes == len(zlib.compress(points.tobytes(), 6)) + 8
 
 
-def test_missing_packages_are_told_by_name(monkeypatch):
+def test_dipy_is_asked_with_its_tolerance_and_missing_packages_are_named(monkeypatch):
     monkeypatch.setitem(sys.modules, "zstandard", None)
     monkeypatch.setitem(sys.modules, "dipy.tracking.streamlinespeed", None)
     for make in (squeezed_by_zstd, linearised):
         with pytest.raises(ImportError):
             make(1)
-
-
-def test_errors_of_simplified_lines_are_distances_from_them():
-    line = np.stack([np.arange(7.0), [0, 0.1, 0.2, 0, -0.3, 0, 0], np.zeros(7)], 1)
-    other = line[::-1] + [0.0, 10.0, 0.0]
-    points, offsets = np.concatenate([line, other]), np.array([0, 7, 14])
-    packed = LinesPacked([line[[0, 3, 6]], other[[0, 6]]])
-    apart = packed.distances(points, offsets)
-    np.testing.assert_allclose(apart[:7], np.abs(line[:, 1]), atol=1e-12)
-    np.testing.assert_allclose(apart[7:], np.abs(other[:, 1] - 10.0), atol=1e-12)
-    assert packed.nbytes == 5 * 12 + 8
-    with pytest.raises(ValueError, match="none of its points"):
-        LinesPacked([line[[0, 3]] + 0.5, other]).distances(points, offsets)
-
-
-def test_dipy_is_asked_with_its_tolerance(monkeypatch):
     asked = []
 
     def compress_streamlines(lines, tol_error):
@@ -179,3 +152,16 @@ def test_dipy_is_asked_with_its_tolerance(monkeypatch):
     packed = linearised(0.25)(points, np.array([0, 5, 7, 12]))
     assert asked == [(2, 0.25)]  # of two points nothing can be left out
     assert [len(line) for line in packed.kept] == [2, 2, 2]
+
+
+def test_errors_of_simplified_lines_are_distances_from_them():
+    line = np.stack([np.arange(7.0), [0, 0.1, 0.2, 0, -0.3, 0, 0], np.zeros(7)], 1)
+    other = line[::-1] + [0.0, 10.0, 0.0]
+    points, offsets = np.concatenate([line, other]), np.array([0, 7, 14])
+    packed = LinesPacked([line[[0, 3, 6]], other[[0, 6]]])
+    apart = packed.distances(points, offsets)
+    np.testing.assert_allclose(apart[:7], np.abs(line[:, 1]), atol=1e-12)
+    np.testing.assert_allclose(apart[7:], np.abs(other[:, 1] - 10.0), atol=1e-12)
+    assert packed.nbytes == 5 * 12 + 8
+    with pytest.raises(ValueError, match="none of its points"):
+        LinesPacked([line[[0, 3]] + 0.5, other]).distances(points, offsets)

@@ -1,7 +1,5 @@
 """The study of culling on very little data, and what it measures by."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -9,13 +7,11 @@ import pytest
 
 from pvfiblets import formats
 from pvfiblets.codec.reference import first_frame
-from pvfiblets.engine import standalone
-from pvfiblets.engine.errors import EngineError
 from pvfiblets.report import culling, data_sets
 from pvfiblets.report.culling_pictures import Visible, averaged, colours, difference, directions, errors, views
 from pvfiblets.report.flights import Flight
 from pvfiblets.report.record import LeftOut
-from pvfiblets.report.study import Budget, Unavailable
+from pvfiblets.report.study import Budget
 
 from .little import little
 
@@ -81,15 +77,6 @@ def test_a_few_of_many_files_are_enough_and_it_says_so(gl, small, tmp_path, monk
     assert left == [LeftOut("smaller files", "the largest are enough to see what culling does")]
 
 
-def test_without_opengl_it_is_unavailable(small, monkeypatch):
-    def none():
-        raise EngineError("no OpenGL 3.2 or later could be started")
-
-    monkeypatch.setattr(standalone, "bare_context", none)
-    with pytest.raises(Unavailable, match=r"no OpenGL 3\.2"):
-        list(culling.STUDY.run(little(), []))
-
-
 # ----------------------------------------------------------------------------------------------------- what it measures
 
 
@@ -98,7 +85,7 @@ def picture(streamline, tangent=None):
     return Visible(streamline, np.zeros(streamline.shape, np.uint32) if tangent is None else np.asarray(tangent))
 
 
-def test_errors_are_shares_of_what_the_right_picture_covers():
+def test_what_is_compared_is_right():
     right = picture([[1, 2], [3, 4], [-1, -1]])
     shown = picture([[1, 9], [-1, 4], [5, -1]])
     found = errors([shown, right], [right, right])
@@ -107,6 +94,15 @@ def test_errors_are_shares_of_what_the_right_picture_covers():
     assert {figure.unit for figure in found.values()} == {"%"}
     nothing = picture([[-1]])
     assert {figure.value for figure in errors([nothing], [nothing]).values()} == {0.0}
+    fine = np.arange(4 * 6 * 3, dtype=np.float32).reshape(4, 6, 3)
+    found = averaged(fine, 2)
+    assert found.shape == (2, 3, 3)
+    np.testing.assert_allclose(found[1, 2], fine[2:4, 4:6].reshape(4, 3).mean(axis=0))
+    rng = np.random.default_rng(0)
+    words = np.array([u & 0xFFFF | (v & 0xFFFF) << 16 for u, v in rng.integers(-32767, 32768, (200, 2)).tolist()])
+    w, x, y, z = np.array([first_frame(int(word))[1] for word in words]).T
+    forward = np.stack([1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)], axis=1)
+    np.testing.assert_allclose(directions(words), forward, atol=1e-6)
 
 
 def test_colours_are_those_of_directions_and_black_elsewhere():
@@ -117,21 +113,6 @@ def test_colours_are_those_of_directions_and_black_elsewhere():
     other = colours(picture([[7, 7, -1]], np.array([[along_y, along_y, along_x]], np.uint32)))
     assert difference([found], [other]).value == pytest.approx(100.0 * (2 / 3) / 2)
     assert difference([found], [found]).value == 0.0
-
-
-def test_directions_are_those_that_the_codec_packs():
-    rng = np.random.default_rng(0)
-    words = np.array([u & 0xFFFF | (v & 0xFFFF) << 16 for u, v in rng.integers(-32767, 32768, (200, 2)).tolist()])
-    w, x, y, z = np.array([first_frame(int(word))[1] for word in words]).T
-    forward = np.stack([1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)], axis=1)
-    np.testing.assert_allclose(directions(words), forward, atol=1e-6)
-
-
-def test_samples_of_a_pixel_are_averaged():
-    fine = np.arange(4 * 6 * 3, dtype=np.float32).reshape(4, 6, 3)
-    found = averaged(fine, 2)
-    assert found.shape == (2, 3, 3)
-    np.testing.assert_allclose(found[1, 2], fine[2:4, 4:6].reshape(4, 3).mean(axis=0))
 
 
 @pytest.mark.parametrize("size", [(160, 90), (90, 160)])

@@ -1,22 +1,18 @@
 """The study of features on very little data."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from pvfiblets import compress, regions
-from pvfiblets.engine import standalone
-from pvfiblets.engine.errors import EngineError
+from pvfiblets import compress
 from pvfiblets.report import features, features_window
 from pvfiblets.report.features_pictures import PICTURE_EFFECTS, PictureEffect, WholePicture
 from pvfiblets.report.features_scenes import PLAIN, Drawn
-from pvfiblets.report.features_subjects import brain_subject, torus
+from pvfiblets.report.features_subjects import brain_subject
 from pvfiblets.report.pareto import mark_fronts
-from pvfiblets.report.study import Budget, Unavailable
+from pvfiblets.report.study import Budget
 from pvfiblets.synthetic import brain_streamlines
 
 from .little import little
@@ -63,6 +59,7 @@ def test_every_subject_is_beside_its_plain_self(measured):
         assert record.costs["memory"].value > PIXELS * 24 / 1e6  # the G-buffer alone
 
 
+@pytest.mark.more
 def test_features_in_a_window_cost_frames_and_changes(measured):
     found = {key[1:]: record for key, record in measured.items() if key[0] == "window"}
     assert {group for group, _ in found} == {"cut", "criterion", "effects", "colours", PLAIN}
@@ -74,14 +71,19 @@ def test_features_in_a_window_cost_frames_and_changes(measured):
     assert ("colours", "one") not in varied
 
 
-def test_figures_are_finite(measured):
+@pytest.mark.more
+def test_figures_are_finite_and_no_feature_is_better_for_being_cheaper(measured):
     for record in measured.values():
         assert all(math.isfinite(figure.value) for figure in record.costs.values())
         assert record.value("times/draw") > 0.0
         assert record.times["draw"].item == "frame"
         assert record.errors == {}
+    # None is better than another for being cheaper.
+    mark_fronts(measured.values(), features.STUDY.axes)
+    assert not any(record.front for record in measured.values())
 
 
+@pytest.mark.more
 def test_bytes_are_those_that_a_feature_asks_for(measured):
     """By the formats of textures: what is said of a pixel, how often."""
     assert more(measured, "streamlines", "lines", "3 pixels wide") == 0
@@ -104,12 +106,6 @@ def test_bytes_are_those_that_a_feature_asks_for(measured):
     assert more(measured, "volume", "mode", "surface") == pytest.approx(4 * PIXELS)  # normals
     assert more(measured, "volume", "rays", "tricubic") == 0
     assert more(measured, "lines-with-halos", "look", "thinner far away") == 0
-
-
-def test_no_feature_is_better_for_being_cheaper(measured):
-    """None is better than another for being cheaper."""
-    mark_fronts(measured.values(), features.STUDY.axes)
-    assert not any(record.front for record in measured.values())
 
 
 @pytest.mark.few(3)
@@ -145,24 +141,3 @@ def test_time_that_is_used_up_is_told(gl, small):
         f"{name}: everything"
         for name in ("streamlines", "spline tubes", "lines with halos", "volume", "streamlines in a window, 96 x 64")
     ]
-
-
-def test_without_opengl_it_is_unavailable(small, monkeypatch):
-    def none():
-        raise EngineError("no OpenGL 3.2 or later could be started")
-
-    monkeypatch.setattr(standalone, "bare_context", none)
-    with pytest.raises(Unavailable, match=r"no OpenGL 3\.2"):
-        list(features.STUDY.run(little(), []))
-
-
-def test_the_torus_is_one():
-    """By its volume, 2 pi^2 R r^2, of which a mesh of so many triangles lacks little."""
-    ring = torus(np.array([1.0, 2.0, 3.0]), 10.0, 96, 48)
-    assert isinstance(ring, regions.Surface)
-    points, triangles = ring.mesh.points, ring.mesh.triangles
-    a, b, c = (points[triangles[:, corner]] for corner in range(3))
-    volume = np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6.0
-    assert volume == pytest.approx(2.0 * np.pi**2 * 10.0 * 4.0**2, rel=0.01)
-    assert not ring.contains([(1.0, 2.0, 3.0)])[0]
-    assert ring.contains([(11.0, 2.0, 3.0)])[0]

@@ -1,24 +1,24 @@
 """The study of halos on very little data, and what it measures by."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from pvfiblets import formats
 from pvfiblets.codec.compress import compress
-from pvfiblets.engine import standalone
-from pvfiblets.engine.errors import EngineError
+from pvfiblets.engine.halos import HaloRenderer
+from pvfiblets.halos import HaloLines, HaloStyle
 from pvfiblets.halos.reference import picture as reference
 from pvfiblets.report import data_sets, halos
+from pvfiblets.report.cameras import Camera
 from pvfiblets.report.halos_drawing import FibletHalos, Strips
 from pvfiblets.report.halos_exact import crossings, gaps, pixel_errors
-from pvfiblets.report.halos_pictures import helices, look_of, orbit
+from pvfiblets.report.halos_pictures import helices, look_of, orbit, picture
 from pvfiblets.report.record import LeftOut
-from pvfiblets.report.study import Budget, Unavailable
+from pvfiblets.report.study import Budget
 
 from .little import little
 
@@ -87,15 +87,6 @@ def test_a_few_of_many_files_are_enough_and_it_says_so(gl, small, tmp_path):
     left = []
     assert [s.name for s in halos.scenes(little(points=1500, files=(tmp_path,)), left)] == ["brain, 0.5 mm", "a.tck"]
     assert left == [LeftOut("smaller files", "the largest are enough to see what halos are off by")]
-
-
-def test_without_opengl_it_is_unavailable(small, monkeypatch):
-    def none():
-        raise EngineError("no OpenGL 3.2 or later could be started")
-
-    monkeypatch.setattr(standalone, "bare_context", none)
-    with pytest.raises(Unavailable, match=r"no OpenGL 3\.2"):
-        list(halos.STUDY.run(little(points=1500), []))
 
 
 # ----------------------------------------------------------------------------------------------------- what it measures
@@ -172,3 +163,38 @@ def test_halos_of_fiblets_are_those_of_the_same_lines(gl):
     assert shown[1].mean() > 0.01
     assert np.abs(shown[0] - shown[1]).mean() < 0.35 * shown[1].mean()
     assert shown[0].mean() == pytest.approx(shown[1].mean(), rel=0.15)
+
+
+def across(size=(64, 48)):
+    """Return one line across a picture, its look and a camera that shows it 64 x 16 pixels wide."""
+    camera = Camera(size, np.array([0.0, -100.0, 0.0]), np.zeros(3), 50.0, 150.0)
+    k = camera.pixels / 100.0
+    line = HaloLines([[-80.0, 0.0, 0.0], [80.0, 0.0, 0.0]], [0, 2])
+    return line, HaloStyle(16.0 / k, 24.0 / k, 1.0, n_tapered=0, smooth=False, min_width=0.0), camera
+
+
+@pytest.mark.parametrize("times", [1, 2, 3])
+def test_a_picture_is_as_dark_as_its_line_is_wide(gl, times):
+    line, look, camera = across()
+    renderer = HaloRenderer(gl, line)
+    shown = picture(renderer, camera, look, times)
+    assert shown.shape == (48, 64)
+    np.testing.assert_array_equal(np.flatnonzero(shown.mean(axis=1) == 1.0), np.arange(16, 32))
+    assert shown.sum() == 64 * 16
+    renderer.release()
+
+
+def test_tiles_make_the_whole_picture(gl):
+    lines = helices(6)
+    camera = orbit(lines, 1, 1, (64, 48))[0][0]
+    look = look_of(lines)
+    renderer = HaloRenderer(gl, lines)
+    whole = picture(renderer, camera, look, 4)
+    tiled = picture(renderer, camera, look, 4, most=64 * 48)
+    assert whole.mean() > 0.02
+    # Coordinates are rounded otherwise, so that samples on an edge may turn out otherwise.
+    assert abs(tiled - whole).max() <= 1.0 / 16.0 + 1e-6
+    assert abs(tiled - whole).mean() < 1e-3
+    with pytest.raises(ValueError, match="a picture of 64 x 49 pixels, 4x4 samples each, has no tiles of 100 samples"):
+        picture(renderer, SimpleNamespace(size=(64, 49)), look, 4, most=100)
+    renderer.release()

@@ -1,7 +1,5 @@
 """The table of extreme cases in the report: run, written, read again and printed."""
 
-from __future__ import annotations
-
 import json
 import math
 
@@ -15,7 +13,7 @@ from pvfiblets.report.stability import study
 from pvfiblets.report.stability.case import Case, Cases, Outcome, Setting, refused, worst
 from pvfiblets.report.study import Budget, Options, Unavailable
 
-from .test_pages import ABOUT
+from .test_records import ABOUT
 
 
 def some_cases():
@@ -81,9 +79,12 @@ def test_a_budget_that_is_used_up_is_told(monkeypatch):
     assert [item.what for item in result.left_out if "time" in item.reason] == ["roots: 1 cases"]
 
 
-def test_every_system_has_its_turn_and_long_cases_come_last():
+def test_cases_budgets_and_refusals_are_told():
     some = [Case(system, name, "", "", len, long=name == "long") for system in "ab" for name in ("long", "x", "y")]
     assert [case.system + case.name for case in study.in_turn(some)] == ["ax", "bx", "ay", "by", "along", "blong"]
+    some = [Outcome(1.0, 2.0, "mm"), Outcome(math.nan, 2.0, "mm"), Outcome(3.0, 2.0, "mm")]
+    assert math.isnan(worst(some).measured)
+    assert worst(some[::2]).measured == 3.0
 
 
 def test_an_opengl_error_is_no_success(gl):
@@ -107,9 +108,3 @@ def test_refusals_are_judged_by_kind_and_text():
     assert refused(TypeError, "above 0", fails).measured == 1.0
     assert refused(ValueError, "below 0", fails, fails).measured == 2.0
     assert refused(ValueError, "", lambda: None).note == "no error"
-
-
-def test_the_worst_of_outcomes_is_one_that_is_no_number():
-    some = [Outcome(1.0, 2.0, "mm"), Outcome(math.nan, 2.0, "mm"), Outcome(3.0, 2.0, "mm")]
-    assert math.isnan(worst(some).measured)
-    assert worst(some[::2]).measured == 3.0

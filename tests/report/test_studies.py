@@ -1,7 +1,7 @@
 """The studies on very little data, and the report that comes of them."""
 
-from __future__ import annotations
-
+import os
+import subprocess
 import sys
 from itertools import pairwise
 
@@ -11,7 +11,7 @@ import pytest
 from pvfiblets import formats
 from pvfiblets.codec.compress import compress
 from pvfiblets.codec.reference import encode_direction
-from pvfiblets.report import codec, data_sets, decode, decoders, run, studies
+from pvfiblets.report import codec, data_sets, decode, decoders, drawing, run, studies
 from pvfiblets.report.record import Axes, Figure, LeftOut, Record
 from pvfiblets.report.study import Budget, Options, Unavailable
 from pvfiblets.streamlines import Streamlines
@@ -54,12 +54,6 @@ def test_thinned_sets_are_whole_streamlines_from_all_over(limit):
         np.testing.assert_array_equal(line, whole[int(np.searchsorted(starts, first))])
 
 
-def test_one_long_streamline_is_cut_and_said_so():
-    kept, note = data_sets.thinned([ragged([500])], 100)
-    assert (len(kept), kept.n_points, note) == (1, 100, "its first 100 points")
-    assert data_sets.thinned([], 100)[0].n_points == 0
-
-
 def test_files_are_taken_from_folders_and_what_cannot_be_read_is_named(tmp_path, monkeypatch):
     formats.write(tmp_path / "good.tck", ragged([20, 30]))
     (tmp_path / "bad.tck").write_bytes(b"GIF89a")
@@ -98,7 +92,7 @@ def of_codec():
     return list(codec.STUDY.run(little(), left)), left
 
 
-def test_every_way_is_measured_on_every_set_or_named(of_codec):
+def test_every_way_is_measured_on_every_set_or_named_and_keeps_its_bound(of_codec):
     records, left = of_codec
     sets = {record.data for record in records}
     assert len(sets) == 4
@@ -109,9 +103,6 @@ def test_every_way_is_measured_on_every_set_or_named(of_codec):
     assert all(record.default for record in records if record.label == "fiblets (default)")
     assert all(record.costs["size"].value > 0.5 for record in records)
     assert all(timing.median > 0.0 for record in records for timing in record.times.values())
-
-
-def test_fiblets_keep_their_promise_by_this_measure_too(of_codec):
     for record in of_codec[0]:
         if record.ours:
             promise = 0.1 if record.setting == codec.DEFAULT else float(record.setting.split()[0])
@@ -171,12 +162,6 @@ def test_all_variants_of_decoding_mean_the_same(cap):
     assert np.abs(sequential - right).max() < 1e-11
 
 
-def test_float32_stays_float32():
-    made = decode.made(20, 7, 0.2, 0)
-    for how in EVERY:
-        assert not np.array_equal(decoded(made, np.float32, how), decoded(made, np.float64, how).astype(np.float32))
-
-
 def test_what_codes_mean_is_what_the_codec_decodes():
     rng = np.random.default_rng(0)
     points = np.cumsum(0.2 * np.array([1.0, 0.0, 0.0]) + rng.normal(0.0, 0.01, (60, 3)), axis=0)
@@ -185,15 +170,6 @@ def test_what_codes_mean_is_what_the_codec_decodes():
 
     made = decode.Made(points[None, 0], first_frame(piece.shape)[1][None], piece.codes[None], 9, 0.2)
     assert np.abs(decode.exact(made)[0] - piece.points).max() < 1e-12
-
-
-def test_straight_codes_give_a_straight_line():
-    made = decode.made(5, 15, 0.5, 0)
-    straight = decode.Made(made.anchors, made.frames, made.codes * 0, 15, 0.5)
-    points = decoded(straight, np.float64, (decoders.PREFIX, decoders.QUATERNION, decoders.TABLE))
-    apart = points - points[:, :1]
-    np.testing.assert_allclose(np.linalg.norm(apart, axis=2), np.broadcast_to(0.5 * np.arange(60), (5, 60)), rtol=1e-9)
-    np.testing.assert_allclose(apart[:, 59], 59 * apart[:, 1], rtol=1e-9, atol=1e-12)
 
 
 def test_the_study_of_decoding_measures_all_variants(monkeypatch):
@@ -262,12 +238,17 @@ def test_a_quick_report_keeps_to_its_time(fakes, tmp_path):
     assert [len(study.records) + len(study.left_out) for study in report.studies] == [100, 3, 100]
 
 
-def test_a_whole_report_has_no_limit(fakes, tmp_path):
+def test_a_whole_report_has_no_limit_and_minutes_are_shared(fakes, tmp_path):
     clock = Clock()
     fakes(FakeStudy("slow", clock, 1000.0, 5))
     report = run.make_report(tmp_path, log=quiet, clock=clock)
     assert len(report.studies[0].records) == 5
     assert all(record.front == ["cost"] for record in report.studies[0].records)
+    fakes(FakeStudy("slow", clock, 50.0, 10), FakeStudy("brief", clock, 1.0, 3))
+    report = run.make_report(tmp_path, minutes=10.0, log=quiet, clock=clock)
+    assert [len(study.records) for study in report.studies] == [6, 3]
+    assert len(report.studies[0].left_out) == 4
+    assert report.about["quick"] is False
 
 
 def test_a_budget_looks_at_what_the_longest_took():
@@ -296,15 +277,6 @@ def test_a_study_that_cannot_be_done_is_named_with_its_reason(fakes, tmp_path):
     assert "| away | not available | no OpenGL context can be made here |" in text
 
 
-def test_minutes_are_shared_and_what_does_not_fit_is_named(fakes, tmp_path):
-    clock = Clock()
-    fakes(FakeStudy("slow", clock, 50.0, 10), FakeStudy("brief", clock, 1.0, 3))
-    report = run.make_report(tmp_path, minutes=10.0, log=quiet, clock=clock)
-    assert [len(study.records) for study in report.studies] == [6, 3]
-    assert len(report.studies[0].left_out) == 4
-    assert report.about["quick"] is False
-
-
 @pytest.mark.parametrize(("wrong", "said"), [({"minutes": 0.0}, "minutes is 0.0"), ({"seed": -1}, "seed is -1"),
                                              ({"minutes": float("nan")}, "minutes is nan")])  # fmt: skip
 def test_wrong_minutes_and_seeds_are_told(fakes, tmp_path, wrong, said):
@@ -320,3 +292,52 @@ def test_registered_studies_are_what_they_say(name):
     assert study.title
     assert study.axes or name == "stability"  # whose cases are told in words
     assert set(studies.chosen_names()) >= {name}
+
+
+def test_a_study_that_draws_has_a_context_and_the_report_its_driver(gl, monkeypatch, tmp_path):
+    class Drawing:
+        name, title, approximates, axes, notes = "drawing", "Drawing", "", (), ()
+
+        def run(self, options, left_out):
+            with drawing.drawing_context(options) as ctx:
+                self.version = ctx.info["GL_VERSION"]
+                yield from ()
+
+    study = Drawing()
+    monkeypatch.setattr(studies, "MODULES", {"drawing": ""})
+    monkeypatch.setattr(studies, "find", lambda name: study)
+    report = run.make_report(tmp_path, log=lambda line: None)
+    assert report.about["driver"] == f"{gl.info['GL_RENDERER']}, {study.version}"
+
+
+def test_pictures_that_the_processor_draws_are_timed_by_its_time(gl):
+    turns = drawing.turns_of(gl)
+    turns.add(gl.finish)
+    software = "llvmpipe" in gl.info["GL_RENDERER"] or "softpipe" in gl.info["GL_RENDERER"]
+    assert turns.timing(0, 1, "frame").clock == ("cpu" if software else "wall")
+
+
+def test_without_opengl_a_study_is_unavailable_with_the_reason(monkeypatch):
+    code = (
+        "from pvfiblets.report.drawing import drawing_context\n"
+        "from pvfiblets.report.study import Options, Unavailable\n"
+        "try:\n"
+        "    with drawing_context(Options()):\n"
+        "        print('there is one')\n"
+        "except Unavailable as error:\n"
+        "    print(error)"
+    )
+    nothing = {"GLCONTEXT_LINUX_LIBEGL": "libnothing.so", "GLCONTEXT_LINUX_LIBGL": "libnothing.so"}
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True,
+                          env=os.environ | nothing)  # fmt: skip
+    assert done.stdout.startswith("no OpenGL 3.2 or later could be started on this machine")
+    monkeypatch.setitem(sys.modules, "moderngl", None)
+    with pytest.raises(Unavailable, match="moderngl"), drawing.drawing_context(Options()):
+        pass
+
+
+@pytest.mark.parametrize("name", ["culling", "features", "halos", "tubes", "volumes"])
+def test_a_study_that_draws_is_unavailable_without_opengl(name, monkeypatch):
+    monkeypatch.setitem(sys.modules, "moderngl", None)
+    with pytest.raises(Unavailable, match="moderngl"):
+        list(studies.find(name).run(little(), []))

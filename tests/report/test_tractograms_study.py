@@ -1,7 +1,5 @@
 """Whole tractograms and their pixels: tables 1 and figure 8 of the fiblets paper, on very little data."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -43,17 +41,6 @@ def test_made_up_tracking_turns_as_its_algorithm_does(algorithm):
         assert (np.quantile(angles, 0.999) > 8.0 * np.median(angles)) == (algorithm == "EuDX")
     again = tracked_streamlines(algorithm, 40, 0.5, seed=3)
     np.testing.assert_array_equal(made.points, again.points)
-
-
-def test_arcs_share_their_tangents_with_the_noise_that_they_are_made_of():
-    """A chord of an arc has the direction midway between the tangents at its ends: turns are means of two."""
-    first, second = (turns_of(tracked_streamlines(name, 40, 0.5, seed=3))[1] for name in ("iFOD1", "iFOD2"))
-    assert np.sqrt((second**2).mean()) == pytest.approx(np.sqrt((first**2).mean() / 4.0), rel=0.05)
-
-
-def test_an_algorithm_that_is_none():
-    with pytest.raises(ValueError, match="algorithm is 'fact'; choose one of iFOD1"):
-        tracked_streamlines("fact", 1, 0.5)
 
 
 def test_whole_sets_and_whole_files(tmp_path):

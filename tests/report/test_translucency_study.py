@@ -1,7 +1,5 @@
 """The study of translucent lines on very little data."""
 
-from __future__ import annotations
-
 import pytest
 
 from pvfiblets.report import translucency

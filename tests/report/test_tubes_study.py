@@ -1,9 +1,6 @@
 """The study of spline tubes: what it measures, what it leaves out, and where it cannot be done."""
 
-from __future__ import annotations
-
 import math
-import sys
 from dataclasses import replace
 
 import numpy as np
@@ -12,7 +9,7 @@ import pytest
 from pvfiblets.report import tubes, tubes_solvers
 from pvfiblets.report.cameras import Lens, by_turns, orbit
 from pvfiblets.report.record import LeftOut
-from pvfiblets.report.study import Budget, Unavailable
+from pvfiblets.report.study import Budget
 from pvfiblets.report.tubes_pictures import FORMATS, Truth, helices
 from pvfiblets.tubes import SplineTubes
 
@@ -37,14 +34,12 @@ def test_all_parts_are_measured_and_exact_solvers_are_exact(gl, small):
     assert options.driver.startswith(gl.info["GL_RENDERER"])
     assert all(math.isfinite(figure.value) for record in records for figure in record.errors.values())
     assert all(record.machine == "m" for record in records)
-
     rays = {(record.method, record.setting): record for record in records if record.group == "rays"}
     default = next(record for record in rays.values() if record.default)
     assert default.label == "illinois, loop (48 iterations)"
     assert 0.0 < default.errors["hit p50"].value <= default.errors["hit p99"].value < 1e-4  # float32 rounds, no more
     assert rays["bisection, chain", "2 iterations"].errors["hit p99"].value > 1e-2  # a quarter of a bracket is no root
     assert all(record.times["hit"].each > 0.0 for record in rays.values())
-
     shown = {(record.data, record.setting): record for record in records if record.group == "pictures"}
     assert {view for view, _ in shown} == {"2 helices, far", "2 helices, close"}
     for view in ("far", "close"):
@@ -54,7 +49,6 @@ def test_all_parts_are_measured_and_exact_solvers_are_exact(gl, small):
         assert cast.errors["depth p99"].value < 1e-3 < coarse.errors["depth p99"].value
         assert coarse.errors["silhouette"].value > shown[f"2 helices, {view}", "30 sides"].errors["silhouette"].value
         assert cast.times["draw"].item == "frame"
-
     stiff = [record for record in records if record.group == "stiff"]
     length = next(record for record in stiff if record.data == "length over radius" and record.ours)
     assert length.errors["p99 at ratio 1"].value < 1e-5 < length.errors["p99 at ratio 100000"].value
@@ -77,12 +71,6 @@ def test_what_there_was_no_time_for_is_told(gl, small):
     assert isinstance(left[0], LeftOut)
 
 
-def test_without_opengl_it_is_unavailable(monkeypatch):
-    monkeypatch.setitem(sys.modules, "moderngl", None)
-    with pytest.raises(Unavailable, match="moderngl"):
-        next(tubes.STUDY.run(little(), []))
-
-
 # -------------------------------------------------------------------------------------------------------- its reference
 
 
@@ -94,7 +82,7 @@ def ball():
     return lens, Truth.of(tubes_, lens)
 
 
-def test_what_is_right_is_a_balls_own_formula():
+def test_what_is_right_is_a_balls_own_formula_and_errors_are_in_radii_and_pixels():
     lens, truth = ball()
     directions, _ = lens.rays(np.arange(120 * 80))
     towards = directions @ [0.0, 10.0, 0.0]
@@ -102,10 +90,6 @@ def test_what_is_right_is_a_balls_own_formula():
     assert np.array_equal(truth.there, inside >= 0.0)
     np.testing.assert_allclose(truth.along[truth.there], (towards - np.sqrt(np.maximum(inside, 0.0)))[truth.there])
     np.testing.assert_allclose(truth.radius[truth.there], 2.0)
-
-
-def test_errors_are_in_radii_and_in_pixels():
-    lens, truth = ball()
     right = np.where(truth.there, truth.along * truth.forwards, 1.0)
     found = truth.errors(right, truth.there)
     assert found == {"silhouette": 0.0, "depth p50": pytest.approx(0.0, abs=1e-12), "depth p99": pytest.approx(0.0)}
@@ -113,21 +97,6 @@ def test_errors_are_in_radii_and_in_pixels():
     assert off["depth p50"] == pytest.approx(0.25)
     wide = np.roll(truth.there.reshape(80, 120), 1, axis=1).ravel()  # moved by a pixel: 2/pi of one on average
     assert truth.errors(right, wide)["silhouette"] == pytest.approx(2.0 / np.pi, rel=0.05)
-
-
-def test_no_picture_is_asked_for_twice_in_a_row():
-    seen = []
-    cameras = orbit(helices(1), "far", 2, (8, 8))
-    draw = by_turns(lambda camera: seen.append(camera.far), cameras)
-    for _ in range(3):
-        draw()
-    assert seen[:2] != seen[2:4] != seen[4:]
-    assert seen[:2] == seen[4:]
-    np.testing.assert_allclose(seen, [camera.far for camera in cameras] * 3, rtol=1e-6)
-
-
-def test_depth_is_rounded_as_a_format_has_it():
-    lens, truth = ball()
     camera = orbit(helices(1), "far", 2, (8, 8))[0]
     assert Lens.of(camera).distance(1.0 - Lens.of(camera).depth(camera.far)) == pytest.approx(camera.far)
     near = 20.0 / 1e6
@@ -140,3 +109,14 @@ def test_depth_is_rounded_as_a_format_has_it():
     ):
         assert seen.stored(FORMATS[name]) <= 0.51 * quantum / slope / 2.0 * 1.6  # the ball's rim is 9.6 mm away
         assert seen.stored(FORMATS[name]) >= 0.2 * quantum / slope / 2.0
+
+
+def test_no_picture_is_asked_for_twice_in_a_row():
+    seen = []
+    cameras = orbit(helices(1), "far", 2, (8, 8))
+    draw = by_turns(lambda camera: seen.append(camera.far), cameras)
+    for _ in range(3):
+        draw()
+    assert seen[:2] != seen[2:4] != seen[4:]
+    assert seen[:2] == seen[4:]
+    np.testing.assert_allclose(seen, [camera.far for camera in cameras] * 3, rtol=1e-6)

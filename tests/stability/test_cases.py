@@ -1,7 +1,5 @@
 """What must hold of extreme cases does: one test for each of the table that the report prints."""
 
-from __future__ import annotations
-
 import pytest
 
 from pvfiblets.report.stability import MODULES, all_cases

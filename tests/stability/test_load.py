@@ -1,7 +1,5 @@
 """Files are converted in memory that does not grow with them: a billion points take what a million do."""
 
-from __future__ import annotations
-
 import importlib
 import mmap
 import sys

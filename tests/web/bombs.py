@@ -4,8 +4,6 @@ Run as a program: ``python -m tests.web.bombs FOLDER ROOM NAME...`` opens files 
 and prints what became of each.
 """
 
-from __future__ import annotations
-
 import asyncio
 import gzip
 import io

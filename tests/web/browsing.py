@@ -4,8 +4,6 @@ The fixtures are in conftest.py: ``served`` starts servers, ``visit`` opens page
 error to its console.
 """
 
-from __future__ import annotations
-
 import base64
 import contextlib
 import io
@@ -81,10 +79,7 @@ class Served:
         self.root = Path(root)
         self.log = self.root.parent / f"serve-{time.monotonic_ns()}.log"
         command = [
-            sys.executable,
-            "-m",
-            "pvfiblets.cli",
-            "serve",
+            sys.executable, "-m", "pvfiblets.cli", "serve",
             *map(str, arguments),
             "--port",
             "0",
@@ -92,7 +87,7 @@ class Served:
             str(root),
             "--token-file",
             str(self.log.with_suffix(".token")),
-        ]
+        ]  # fmt: skip
         with self.log.open("w") as log:
             self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=log, text=True)
         line = self.process.stdout.readline()

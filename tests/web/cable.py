@@ -1,7 +1,5 @@
 """A cable between a browser and a server on loopback, which tests can cut."""
 
-from __future__ import annotations
-
 import contextlib
 import socket
 import threading

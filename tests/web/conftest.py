@@ -1,6 +1,7 @@
 """What the tests of the web room share: a folder of small files, and a scene that has it as its root."""
 
-from __future__ import annotations
+import asyncio
+import inspect
 
 import numpy as np
 import pytest
@@ -8,6 +9,16 @@ import pyvista as pv
 
 import pvfiblets
 from pvfiblets.streamlines import Streamlines
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_pyfunc_call(pyfuncitem):
+    """Run tests that are coroutines, a minute at most."""
+    if not inspect.iscoroutinefunction(pyfuncitem.obj):
+        return None
+    arguments = {name: pyfuncitem.funcargs[name] for name in pyfuncitem._fixtureinfo.argnames}
+    asyncio.run(asyncio.wait_for(pyfuncitem.obj(**arguments), 60))
+    return True
 
 
 def sixty_lines():

@@ -1,10 +1,11 @@
 """An application without trame: what a page's actions need of one, so that they are tested without a browser."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 from types import SimpleNamespace
+
+import numpy as np
+import pyvista as pv
 
 from pvfiblets.web.bundle_finding import FindingActions
 from pvfiblets.web.bundle_measures import MeasureActions
@@ -18,8 +19,34 @@ from pvfiblets.web.history import History
 from pvfiblets.web.matrix_panel import MatrixActions
 from pvfiblets.web.opening import FileActions
 from pvfiblets.web.options import Options
+from pvfiblets.web.scene import Scene
 from pvfiblets.web.scratch import Notes
+from pvfiblets.web.script import as_script
+from pvfiblets.web.slicing import VIEWS, ready_views
 from pvfiblets.web.state import Page
+
+
+@contextlib.contextmanager
+def scene_of_views(folder):
+    """Open a scene whose root is a folder, with slices beside the 3-D view."""
+    plotter = pv.Plotter(off_screen=True, window_size=(240, 160), shape=VIEWS, border=False)
+    plotter.set_background("black")
+    plotter.disable_anti_aliasing()
+    ready_views(plotter)
+    scene = Scene(plotter, folder)
+    try:
+        yield scene
+    finally:
+        scene.close()
+        plotter.close()
+
+
+def assert_script_draws(scene, folder, picture):
+    """Run the script of a scene whose root is a folder, and compare what it draws with a picture."""
+    text = as_script(scene, str(folder / "found.png"))
+    exec(compile(text.replace('FOLDER = Path(".")', f"FOLDER = Path({str(folder)!r})"), "script", "exec"), {})
+    found = np.asarray(pv.read(folder / "found.png").active_scalars).reshape(*picture.shape[:2], -1)[::-1]
+    assert (abs(found[..., :3].astype(int) - picture).max(axis=-1) > 8).mean() < 0.002
 
 
 class Desk:

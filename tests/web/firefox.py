@@ -3,8 +3,6 @@
 Without a window (`--headless`) it finds no OpenGL.
 """
 
-from __future__ import annotations
-
 import contextlib
 import os
 import shutil
@@ -20,11 +18,9 @@ from tests.display import display
 RELAY = Path(__file__).with_name("firefox_relay.py")
 # Files may not read other files, as users have it: what drives browsers would allow it. Nothing opens over the page.
 PREFERENCES = {
-    "webgl.force-enabled": True,
-    "browser.download.alwaysOpenPanel": False,
-    "remote.prefs.recommended": False,
+    "webgl.force-enabled": True, "browser.download.alwaysOpenPanel": False, "remote.prefs.recommended": False,
     "security.fileuri.strict_origin_policy": True,
-}
+}  # fmt: skip
 
 
 def firefox() -> str | None:

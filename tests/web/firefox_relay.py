@@ -7,8 +7,6 @@ answered as if done, and downloads of what a page itself has made, which those r
 address. All else is passed on as it is.
 """
 
-from __future__ import annotations
-
 import asyncio
 import json
 import re

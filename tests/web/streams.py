@@ -1,7 +1,5 @@
 """What tests of streams of pictures share: slow ones, somebody who watches, and a hand that drags."""
 
-from __future__ import annotations
-
 import asyncio
 
 from pvfiblets.web.stream import REST, PictureStream

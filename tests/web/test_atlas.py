@@ -1,7 +1,5 @@
 """Labels of an image as a list: asking for the streamlines of one, and for what connects two."""
 
-from __future__ import annotations
-
 import asyncio
 from types import SimpleNamespace
 

@@ -1,7 +1,5 @@
 """Pages of ``pvfiblets serve`` in a real browser."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -186,24 +184,3 @@ def test_files_are_opened_uploaded_and_refused(revisit, tmp_path, lines):
     here.page.set_input_files("[data-upload]", tmp_path / "sent.tck")
     here.wait(lambda: here.layers() == 3, "the upload")
     assert (here.served.root / "sent.tck").read_bytes() == (tmp_path / "sent.tck").read_bytes()
-
-
-def test_two_browsers_are_two_sessions(revisit, visit):
-    one, other = revisit("lines.fiblets"), visit("lines.fiblets")
-    still = other.rests()
-    before = one.rests()
-    one.choose("scalars", "length")
-    one.drag()
-    one.changed(before)
-    assert np.array_equal(other.rests(), still)
-    assert other.state("undo_label") != one.state("undo_label")
-
-
-def test_a_shared_view_is_one_for_all(visit):
-    one, other = visit("lines.fiblets", "--shared"), visit("lines.fiblets", "--shared")
-    before = other.rests()
-    one.drag()
-    other.changed(before)
-    one.choose("scalars", "length")
-    other.wait(lambda: "scalars" in other.state("undo_label"), "what the other one did")
-    assert np.array_equal(one.rests(), other.rests())

@@ -1,7 +1,5 @@
 """Names that are HTML, templates, scripts or tricks of writing, wherever a page shows them, in a real browser."""
 
-from __future__ import annotations
-
 import base64
 import json
 
@@ -18,11 +16,9 @@ NAMES = (
     '<img src=x onerror="window.hacked=1">',
     "{{ constructor.constructor('window.hacked=1')() }}",
     "${window.hacked=1}",
-    '"><svg onload="window.hacked=1">',
-    "javascript:window.hacked=1",
-    "</script><script>window.hacked=1</script>",
+    '"><svg onload="window.hacked=1">', "javascript:window.hacked=1", "</script><script>window.hacked=1</script>",
     "';window.hacked=1;//",
-)
+)  # fmt: skip
 
 
 def unharmed(here):

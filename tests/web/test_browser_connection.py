@@ -1,7 +1,5 @@
 """Connections that are lost, conversions that wait or are cancelled, and places that are taken, in a real browser."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import re
@@ -262,32 +260,3 @@ def test_a_file_that_is_opened_while_another_one_is_waits_and_is_named(revisit):
     names = here.page.locator("[data-layer]").all_inner_texts()
     assert any("ball.ply" in name for name in names)
     (here.served.root / "large.tck").unlink()
-
-
-def test_beyond_the_limit_a_page_says_so_until_a_place_is_free(visit):
-    one = visit("lines.fiblets", "--limit", "1")
-    other = visit("lines.fiblets", "--limit", "1", opened=False)
-    answer = other.page.goto(other.served.url)
-    assert answer.status == 503
-    assert "All sessions are taken" in other.page.inner_text("h1")
-    one.page.click("[data-action=end]")
-    one.page.click("[data-action=end-session]")
-    one.page.wait_for_selector("h1:has-text('Session ended')")
-    other.page.click("a.button")
-    other.ready()
-    assert all("503" in error or "/ws" in error for error in one.errors + other.errors), one.errors + other.errors
-    one.errors.clear()  # Chromium logs what was refused, and so it should be
-    other.errors.clear()
-
-
-def test_files_that_cannot_be_read_leave_the_page_as_it_was(revisit):
-    here = revisit("lines.fiblets")
-    for name in ("bad.trk", "bad.ply", "bad.nii.gz"):
-        (here.served.root / name).write_bytes(b"neither lines nor surface nor volume" * 40)
-        here.press("o")
-        here.page.click(f"[data-entry='{name}']")
-        here.wait(lambda name=name: here.state("toast_open") and name in here.toast(), "why it was not opened")
-        assert str(here.served.root) not in here.toast()
-        assert here.layers() == 1
-        assert here.picture().std() > 1.0
-        (here.served.root / name).unlink()

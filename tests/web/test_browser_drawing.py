@@ -1,7 +1,5 @@
 """Scenes that the browser draws (``serve --draw there``), in Chromium with WebGL 2 on the processor."""
 
-from __future__ import annotations
-
 import base64
 import io
 import json

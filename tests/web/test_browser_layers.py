@@ -1,7 +1,5 @@
 """Volumes and meshes as layers of a page, in a real browser: opened, shown, changed, cut and removed."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -88,30 +86,6 @@ def test_a_volume_is_a_layer(here):
     assert len(np.unique(projected.reshape(-1, 3), axis=0)) > 30
     here.press("Control+z")
     assert same(here.changed(projected), shown)
-    hide_and_remove(here, before, shown)
-
-
-def test_a_mesh_is_a_layer(here):
-    before = here.rests()
-    shown = add(here, "ball.ply", "mesh", before)
-    assert lit(shown) > lit(before) + 200
-    colour(here, "color", "#20ff00")
-    green = here.changed(shown)
-    ball = np.abs(green - before).max(axis=2) > 24
-    assert ball.sum() > 200
-    # Round: as wide as high, and as full as a circle.
-    rows, columns = np.flatnonzero(ball.any(axis=1)), np.flatnonzero(ball.any(axis=0))
-    high, wide = np.ptp(rows) + 1, np.ptp(columns) + 1
-    assert high / wide == pytest.approx(1.0, abs=0.1)
-    assert ball.sum() / (high * wide) == pytest.approx(np.pi / 4, abs=0.12)
-    assert (green[ball][:, 1] > green[ball][:, 2]).mean() > 0.9
-    type_(here, "opacity", "0.3")
-    thin = here.changed(green)
-    assert thin[ball].mean() < 0.8 * green[ball].mean()
-    here.press("Control+z")
-    here.changed(thin)
-    here.press("Control+z")
-    assert same(here.changed(green), shown)
     hide_and_remove(here, before, shown)
 
 

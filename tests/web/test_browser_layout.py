@@ -1,7 +1,5 @@
 """What lies where on a page, in a real browser: nothing is cut off, over something else, or out of reach."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

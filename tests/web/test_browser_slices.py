@@ -1,7 +1,5 @@
 """Slices beside the 3-D view, in a real browser."""
 
-from __future__ import annotations
-
 import json
 import shutil
 

@@ -1,12 +1,6 @@
 """What a page's tools, keys and dialogs do, in a real browser."""
 
-from __future__ import annotations
-
 import json
-import os
-import re
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -166,67 +160,6 @@ def test_menus_close_files_are_found_and_sentences_are_said_once(revisit):
     here.ready()
     here.wait(lambda: here.state("toast_open") is False, "no sentence that was said before")
     (here.served.root / "bad_lines.trk").unlink()
-
-
-def test_the_script_of_a_page_makes_its_picture(revisit):
-    from PIL import Image
-
-    here = revisit("lines.fiblets")
-    before = here.rests()
-    here.choose("scalars", "length")
-    coloured = here.changed(before)
-    here.page.click("[data-cut=plane]")
-    here.changed(coloured)
-    here.press("2")
-    picture = here.rests()
-    here.page.click("[data-action=script]")
-    text = here.page.locator("#script").inner_text()
-    with here.page.expect_download() as download:
-        here.page.click("#dialog-script button:has-text('Download')")
-    assert download.value.path().read_text().split() == text.split()
-    script = here.served.root / "scene.py"
-    script.write_text(
-        re.sub(r"plotter\.show\(\)", 'plotter.screenshot("again.png")', download.value.path().read_text())
-    )
-    subprocess.run(
-        [sys.executable, script.name],
-        cwd=here.served.root,
-        env=os.environ | {"PYVISTA_OFF_SCREEN": "true"},
-        check=True,
-        timeout=300,
-    )
-    again = np.asarray(Image.open(here.served.root / "again.png").convert("RGB")).astype(np.int16)
-    assert again.shape == picture.shape
-    assert np.abs(again - picture).mean() < 0.5
-    script.unlink()
-
-
-def test_groups_shares_and_regions_choose_streamlines(revisit):
-    here = revisit("lines.fiblets")
-    counted = here.page.locator("[data-value=counted]")
-
-    def left(count):
-        here.wait(lambda: counted.inner_text() == f"{count} of 60 streamlines", f"{count} streamlines")
-
-    here.tab("filter")
-    left(60)
-    here.page.click("#tab-filter .v-select:has-text('all'), #tab-filter .v-select--chips .v-field")
-    here.page.click(".v-overlay--active .v-list-item:has-text('near')")
-    left(30)
-    here.press("Escape")
-    here.page.click("#tab-filter button:has-text('Show all')")
-    left(60)
-    # A sphere in the middle of everything: those that pass, and those that do not, are all of them.
-    here.page.click("[data-region=sphere]")
-    here.wait(lambda: counted.inner_text() != "60 of 60 streamlines", "fewer streamlines")
-    passing = int(counted.inner_text().split()[0])
-    assert 0 < passing < 60
-    here.page.locator("[data-region-row] button:has-text('not')").first.click()
-    left(60 - passing)
-    here.press("Control+z")
-    left(passing)
-    here.page.click("#tab-filter button:has-text('Show all')")
-    left(60)
 
 
 def passing(lines, sphere):

@@ -1,7 +1,5 @@
 """Bundles that are found on the page: more like this, clusters, models."""
 
-from __future__ import annotations
-
 import asyncio
 import threading
 

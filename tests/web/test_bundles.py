@@ -1,14 +1,15 @@
 """Bundles on the page: what is edited, undone, saved, and shown."""
 
-from __future__ import annotations
+import csv
+import io
+import xml.etree.ElementTree as ET
 
 import numpy as np
 import pytest
-import pyvista as pv
 
 from pvfiblets.web import session
 from pvfiblets.web.history import History
-from pvfiblets.web.script import as_script
+from tests.web.desk import Desk, assert_script_draws
 
 
 @pytest.fixture
@@ -71,6 +72,12 @@ def test_colours_are_those_of_the_list(scene, lines_layer):
     scene.set(lines_layer, "scalars", "group")
     scene.set(lines_layer, "lighting", False)
     scene.set(lines_layer, "line_width", 3)
+    scene.view("coronal")
+    listed = {tuple(int(one.color[k : k + 2], 16) for k in (1, 3, 5)) for one in scene.bundles(lines_layer)}
+    assert len(listed) == 2
+    found = scene.screenshot().reshape(-1, 3)
+    lit = found[found.max(axis=1) > 0]
+    assert {tuple(one) for one in np.unique(lit, axis=0).tolist()} == listed
     scene.set_bundle(lines_layer, "near", color="#ff0000")
     scene.set_bundle(lines_layer, "far", color="#0000ff")
     scene.view("coronal")
@@ -79,18 +86,6 @@ def test_colours_are_those_of_the_list(scene, lines_layer):
     assert {tuple(one) for one in np.unique(lit, axis=0).tolist()} == {(255, 0, 0), (0, 0, 255)}
     scene.remove_bundles(lines_layer, ["near", "far"])
     assert scene.layer(lines_layer).settings["scalars"] == "orientation"
-
-
-def test_groups_have_the_colours_of_the_list_from_the_beginning(scene, lines_layer):
-    scene.set(lines_layer, "scalars", "group")
-    scene.set(lines_layer, "lighting", False)
-    scene.set(lines_layer, "line_width", 3)
-    scene.view("coronal")
-    listed = {tuple(int(one.color[k : k + 2], 16) for k in (1, 3, 5)) for one in scene.bundles(lines_layer)}
-    assert len(listed) == 2
-    found = scene.screenshot().reshape(-1, 3)
-    lit = found[found.max(axis=1) > 0]
-    assert {tuple(one) for one in np.unique(lit, axis=0).tolist()} == listed
 
 
 def test_sessions_and_scripts_have_bundles(scene, lines_layer, folder):
@@ -104,11 +99,7 @@ def test_sessions_and_scripts_have_bundles(scene, lines_layer, folder):
     scene.view("coronal")
     state, wanted = session.to_dict(scene), told(scene, lines_layer)
     picture = scene.screenshot()
-    text = as_script(scene, str(folder / "found.png"))
-    text = text.replace('FOLDER = Path(".")', f"FOLDER = Path({str(folder)!r})")
-    exec(compile(text, "script", "exec"), {})
-    found = np.asarray(pv.read(folder / "found.png").active_scalars).reshape(160, 200, -1)[::-1]
-    assert (abs(found[..., :3].astype(int) - picture).max(axis=-1) > 8).mean() < 0.002
+    assert_script_draws(scene, folder, picture)
     scene.remove(lines_layer)
     scene.forget_unused()
     session.from_dict(scene, state)
@@ -142,3 +133,89 @@ def test_what_makes_no_sense_is_refused(scene, lines_layer):
         scene.select_bundles(lines_layer, ["other"])
     scene.select_bundles(lines_layer, ["far"])
     assert scene.count() == 30
+
+
+@pytest.fixture
+def desk(scene, folder):
+    made = Desk(scene, folder)
+    made.choose(scene.open("lines.fiblets"))
+    scene.open("head.nii.gz")
+    made.measuring.fold(True)
+    return made
+
+
+def rows(text, between=","):
+    head, *found = csv.reader(io.StringIO(text), delimiter=between)
+    return [dict(zip(head, row, strict=True)) for row in found]
+
+
+def test_a_profile_is_plotted_and_fetched(desk):
+    assert [one["title"] for one in desk.page.measures["values"]] == ["fa", "curvature", "arc_length", "head.nii.gz"]
+    desk.run(desk.measuring.profile)
+    shown = desk.page.measures["profile"]
+    assert [one["name"] for one in shown["legend"]] == ["near", "far"]
+    assert ET.fromstring(shown["chart"]).tag.endswith("svg")
+    assert len(shown["rows"]) == 100
+    found = rows(desk.measuring.fetch("profile", "csv"))
+    assert {row["bundle"] for row in found} == {"near", "far"}
+    # fa rises from 0 to 1 along each line, which has 8 bits.
+    for name in ("near", "far"):
+        mean = [float(row["mean"]) for row in found if row["bundle"] == name]
+        assert np.allclose(mean, np.linspace(0, 1, 100), atol=1 / 255)
+    assert rows(desk.measuring.fetch("profile", "tsv"), "\t") == found
+
+
+def test_a_profile_of_an_image_is_what_lies_there(desk):
+    desk.measuring.set_value("image head.nii.gz")
+    desk.bundles.check("near", True)
+    desk.run(desk.measuring.profile)
+    found = rows(desk.measuring.fetch("profile", "csv"))
+    assert {row["bundle"] for row in found} == {"near"}
+    # At their beginnings, which voxel centres are, by the formula that made the image.
+    i = np.array([[0, line % 10, line // 10] for line in range(30)])
+    values = 1.0 - np.linalg.norm(2.0 * i / 15.0 - 1.0, axis=1)
+    starts = np.array([[0.0, 4.0 * (line % 10), 4.0 * (line // 10)] for line in range(30)])
+    apart = starts - starts.mean(axis=0)
+    inverse = np.linalg.pinv(apart.T @ apart / 30)
+    weight = 1.0 / np.sqrt(np.einsum("ni,ij,nj->n", apart, inverse, apart))  # near the core more
+    assert float(found[0]["mean"]) == pytest.approx((values * weight).sum() / weight.sum(), abs=2e-3)
+
+
+def test_statistics_are_a_row_for_each_bundle(desk):
+    desk.run(desk.measuring.statistics)
+    shown = desk.page.measures["table"]
+    assert shown["columns"][:3] == ["bundle", "count", "mm"]
+    near, far = rows(desk.measuring.fetch("table", "csv"))
+    assert (near["bundle"], near["count"], far["bundle"], far["count"]) == ("near", "30", "far", "30")
+    assert float(near["length_mean"]) == pytest.approx(np.arange(10, 40).mean(), abs=0.1)
+    assert float(far["length_total"]) == pytest.approx(np.arange(40, 70).sum(), abs=3)
+    assert float(far["mean_weight"]) == pytest.approx(np.arange(30, 60).mean())
+    assert "mean_head.nii.gz" in near
+    parquet = pytest.importorskip("pyarrow.parquet")
+    table = parquet.read_table(io.BytesIO(desk.measuring.fetch("table", "parquet")))
+    assert table.column("count").to_pylist() == [30, 30]
+
+
+def test_what_was_measured_goes_when_its_bundles_change(desk):
+    layer = desk.page.chosen
+    desk.scene.add_bundle(layer, [1, 2], "=cmd()")
+    desk.run(desk.measuring.statistics)
+    assert "'=cmd()" in desk.measuring.fetch("table", "csv")
+    desk.scene.move_bundles(layer, ["far"], 0)
+    desk.measuring.refresh()
+    assert desk.page.measures["table"]["rows"]  # still of these bundles
+    desk.scene.remove_bundles(layer, ["far"])
+    desk.measuring.refresh()
+    assert not desk.page.measures["table"]
+    with pytest.raises(ValueError, match="nothing was measured"):
+        desk.measuring.fetch("table", "csv")
+
+
+def test_hidden_and_empty_bundles_are_left_out(desk):
+    layer = desk.page.chosen
+    desk.scene.set_bundle(layer, "near", visible=False)
+    desk.run(desk.measuring.statistics)
+    assert [row[0] for row in desk.page.measures["table"]["rows"]] == ["far"]
+    desk.scene.set_bundle(layer, "far", visible=False)
+    with pytest.raises(ValueError, match="no bundle"):
+        desk.measuring.profile()

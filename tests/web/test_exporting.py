@@ -1,8 +1,8 @@
 """Exports: into the served folder, or to be fetched, and where they are is said."""
 
-from __future__ import annotations
-
 import asyncio
+import csv
+import io
 import re
 import threading
 from pathlib import Path
@@ -15,9 +15,11 @@ from aiohttp import web
 import pvfiblets
 from pvfiblets.formats import attachments
 from pvfiblets.streamlines import Streamlines
-from pvfiblets.web import exporting
+from pvfiblets.web import csv_tables, exporting
+from pvfiblets.web.csv_tables import profile_csv, selection_csv
 from pvfiblets.web.exporting import ExportActions
 from pvfiblets.web.loading import Cancelled
+from pvfiblets.web.selection_tab import SelectionActions
 from pvfiblets.web.writing import EXPORTS, write
 from tests.web.desk import Desk
 
@@ -140,7 +142,7 @@ def test_files_are_written_beside_the_page(desk, monkeypatch):
 
 @pytest.mark.parametrize("to", ["folder", "computer"])
 @pytest.mark.parametrize("suffix", EXPORTS)
-def test_a_cancelled_export_leaves_nothing(desk, folder, monkeypatch, suffix, to):
+async def test_a_cancelled_export_leaves_nothing(desk, folder, monkeypatch, suffix, to):
     before = sorted(folder.iterdir())
     jobs = []
 
@@ -151,12 +153,8 @@ def test_a_cancelled_export_leaves_nothing(desk, folder, monkeypatch, suffix, to
 
     monkeypatch.setattr(exporting, "write", cancelled)
     desk.page.export_what, desk.page.export_to = "shown", to
-
-    async def test():
-        desk.exports.export(suffix)
-        await desk.done()
-
-    asyncio.run(test())
+    desk.exports.export(suffix)
+    await desk.done()
     assert jobs == [{"text": f"lines_shown{suffix}: stopping", "share": -1.0, "cancellable": False, "then": ""}]
     assert desk.said == [("info", f"lines_shown{suffix} was not written: cancelled.")]
     assert (desk.page.download, desk.page.job) == ({}, {})
@@ -309,3 +307,56 @@ def test_names_that_no_file_should_have_are_refused(desk, folder, given):
     with pytest.raises(ValueError, match="file's name"):
         export(desk, ".tck")
     assert sorted(folder.iterdir()) == before
+
+
+def rows(text):
+    return list(csv.DictReader(io.StringIO(text, newline="")))
+
+
+def test_the_table_has_every_selected_streamline_in_full(scene, folder, lines, monkeypatch):
+    monkeypatch.setattr(csv_tables, "PIECE", 4)
+    layer = scene.open("lines.fiblets")
+    scene.rename(layer.id, 'tracts, "all"')
+    scene.set(layer.id, "scalars", "fa")
+    with pytest.raises(ValueError, match="nothing is selected"):
+        selection_csv(scene)
+    chosen = [1, 2, 3, 29, 30, 40, 59]
+    scene.select(layer.id, chosen)
+    found = rows(selection_csv(scene))
+    assert [int(row["streamline"]) for row in found] == chosen
+    assert {row["layer"] for row in found} == {'tracts, "all"'}
+    assert [row["groups"] for row in found] == 4 * ["near"] + 3 * ["far"]
+    np.testing.assert_allclose([float(row["length_mm"]) for row in found], lines.lengths()[chosen], rtol=1e-4)
+    assert {row["value_of"] for row in found} == {"mean of fa"}
+    np.testing.assert_allclose([float(row["value"]) for row in found], 0.5, atol=0.01)
+    monkeypatch.setattr(csv_tables, "MOST_ROWS", 6)
+    with pytest.raises(ValueError, match="7 streamlines are selected, and a table takes 6"):
+        selection_csv(scene)
+
+
+def test_the_profile_is_the_one_that_is_shown(scene, folder):
+    layer = scene.open("lines.fiblets")
+    desk = Desk(scene, folder)
+    desk.selecting = SelectionActions(desk)
+    scene.select(layer.id, [3, 4])
+    desk.selecting.set_profile("fa")
+    found = rows(desk.selecting.profile_csv())
+    assert list(found[0]) == ["share_of_length", "mean of fa", "standard deviation of fa"]
+    along = [float(row["share_of_length"]) for row in found]
+    np.testing.assert_allclose(along, np.linspace(0, 1, 100))
+    np.testing.assert_allclose([float(row["mean of fa"]) for row in found], along, atol=0.01)
+    desk.selecting.set_profile("curvature")
+    assert "mean of curvature [1/mm]" in rows(desk.selecting.profile_csv())[0]
+
+
+@pytest.mark.parametrize("name", ["=cmd|' /C calc'!A0", "+1+1", "-2", "@SUM(A1)", "\t=1"])
+def test_names_are_no_formulas(scene, name):
+    layer = scene.open("lines.fiblets")
+    scene.become(type(scene.state)((__import__("dataclasses").replace(scene.layer(layer.id), name=name),)))
+    scene.select(layer.id, [3])
+    (row,) = rows(selection_csv(scene))
+    assert row["layer"] == f"'{name}"
+    text = profile_csv({"position": [0.0], "mean": [-1.5], "std": [None]}, name)
+    head, values = list(csv.reader(io.StringIO(text, newline="")))
+    assert not any(cell.startswith(("=", "+", "-", "@", "\t")) for cell in head)
+    assert values == ["0.0", "-1.5", ""]  # numbers are numbers

@@ -1,7 +1,5 @@
 """Pages that draw by themselves and those of ``pvfiblets serve``, in Firefox: much of what is asked of Chromium."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import pyvista as pv

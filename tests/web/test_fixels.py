@@ -1,16 +1,11 @@
 """Fixel directories on the page: how they open, what is set, sessions and scripts, and where their files must lie."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
-import pyvista as pv
 
 from pvfiblets.web import session
-from pvfiblets.web.scene import Scene
-from pvfiblets.web.script import as_script
-from pvfiblets.web.slicing import VIEWS, ready_views
 from tests.slices.test_fixels import AFFINE, write_mif
+from tests.web.desk import assert_script_draws, scene_of_views
 
 
 @pytest.fixture
@@ -23,14 +18,8 @@ def scene(tmp_path):
     write_mif(made / "index.mif", counts, AFFINE)
     write_mif(made / "directions.mif", np.tile(np.float32([1, 0, 0]), (64, 1))[..., None])
     write_mif(made / "fd.mif", np.linspace(0.5, 1.0, 64, dtype=np.float32)[:, None, None])
-    plotter = pv.Plotter(off_screen=True, window_size=(240, 160), shape=VIEWS, border=False)
-    plotter.set_background("black")
-    plotter.disable_anti_aliasing()
-    ready_views(plotter)
-    scene = Scene(plotter, tmp_path / "root")
-    yield scene
-    scene.close()
-    plotter.close()
+    with scene_of_views(tmp_path / "root") as scene:
+        yield scene
 
 
 def red(picture):
@@ -49,10 +38,7 @@ def test_a_file_of_fixels_opens_as_lines_and_is_kept(scene, tmp_path):
     picture = scene.screenshot()
     assert red(picture) == 0
     folder = tmp_path / "root"
-    text = as_script(scene, "found.png").replace('FOLDER = Path(".")', f"FOLDER = Path({str(folder)!r})")
-    exec(compile(text.replace("'found.png'", repr(str(folder / "found.png"))), "script", "exec"), {})
-    found = np.asarray(pv.read(folder / "found.png").active_scalars).reshape(160, 240, -1)[::-1]
-    assert (abs(found[..., :3].astype(int) - picture).max(axis=-1) > 8).mean() < 0.002
+    assert_script_draws(scene, folder, picture)
     kept = session.to_dict(scene)
     scene.remove(layer.id)
     session.from_dict(scene, kept)

@@ -1,7 +1,5 @@
 """The matrix of the page: made beside, undone, kept, scripted, and cells that filter."""
 
-from __future__ import annotations
-
 import base64
 import io
 

@@ -1,7 +1,5 @@
 """Small files that swell: a session refuses them in a sentence, keeps nothing of them, and goes on."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import os
@@ -23,7 +21,7 @@ from pvfiblets.web.options import SMALLEST_MEMORY, Options, chosen_memory
 from pvfiblets.web.server import FrontServer
 from tests.web import bombs
 from tests.web.desk import Desk
-from tests.web.test_server import Browser, gate, run
+from tests.web.visitors import Browser, gate, run
 
 pytestmark = pytest.mark.skipif(not memory.CAN_LIMIT, reason="only Linux limits the data of a process")
 
@@ -84,19 +82,16 @@ def test_a_bomb_is_refused_in_one_sentence_and_leaves_nothing(opened, name):
     assert found["job"] == {}
 
 
-def test_the_page_answers_while_bombs_are_opened(opened):
+def test_bombs_leave_a_page_that_answers_and_memory_that_is_free(opened):
     for found in opened.values():
         assert found["gap"] < 2.0, found
-
-
-def test_after_all_bombs_a_file_opens_and_memory_is_free(opened):
     assert opened["after.trk"]["said"] == ""
     assert opened["after.trk"]["layers"] == ["lines.trk", "after.trk"]
     # What the first bombs made the program load and compile stays, and the allocator keeps some pieces.
     assert sum(found["more"] for found in opened.values()) < 60_000_000
 
 
-def test_what_is_opened_meanwhile_waits_for_its_turn_and_the_page_names_it(scene, folder):
+async def test_what_is_opened_meanwhile_waits_for_its_turn_and_the_page_names_it(scene, folder):
     desk = Desk(scene, folder)
     go, seen = threading.Event(), []
 
@@ -106,24 +101,21 @@ def test_what_is_opened_meanwhile_waits_for_its_turn_and_the_page_names_it(scene
                 raise ValueError("stopped")
         return "done"
 
-    async def test():
-        files = desk.files
-        first = asyncio.create_task(files.beside("a.trk", slow, "reading"))
-        await asyncio.sleep(0.05)
-        others = [asyncio.create_task(files.beside(f"{i}.trk", slow, "reading")) for i in range(16)]
-        await asyncio.sleep(0.05)
-        seen.append(desk.page.job)
-        with pytest.raises(ValueError, match="16 others wait"):
-            await files.beside("one too many.trk", slow, "reading")
-        files.cancel()
-        with pytest.raises(ValueError, match="stopped"):
-            await first
-        await asyncio.sleep(0.05)
-        seen.append(desk.page.job)
-        go.set()
-        assert await asyncio.gather(*others) == ["done"] * 16
-
-    asyncio.run(test())
+    files = desk.files
+    first = asyncio.create_task(files.beside("a.trk", slow, "reading"))
+    await asyncio.sleep(0.05)
+    others = [asyncio.create_task(files.beside(f"{i}.trk", slow, "reading")) for i in range(16)]
+    await asyncio.sleep(0.05)
+    seen.append(desk.page.job)
+    with pytest.raises(ValueError, match="16 others wait"):
+        await files.beside("one too many.trk", slow, "reading")
+    files.cancel()
+    with pytest.raises(ValueError, match="stopped"):
+        await first
+    await asyncio.sleep(0.05)
+    seen.append(desk.page.job)
+    go.set()
+    assert await asyncio.gather(*others) == ["done"] * 16
     assert seen[0]["text"] == "a.trk: reading"
     assert seen[0]["then"].startswith("then 0.trk, 1.trk, ")
     assert seen[1]["text"] == "0.trk: reading"  # what is cancelled makes room for the next
@@ -146,7 +138,7 @@ def test_what_cannot_be_drawn_for_want_of_memory_is_not_kept(scene, folder, monk
     assert scene.store.loaded == kept
 
 
-def test_shares_of_the_machine(monkeypatch):
+def test_what_a_session_may_have_is_chosen_checked_and_said(monkeypatch, tmp_path):
     monkeypatch.setattr("pvfiblets.web.options.of_machine", lambda: 100 * 2**30)
     assert chosen_memory("auto", 1) == 80 * 2**30
     assert chosen_memory("auto", 2) == 40 * 2**30
@@ -156,9 +148,6 @@ def test_shares_of_the_machine(monkeypatch):
     assert chosen_memory("auto", 8) == SMALLEST_MEMORY
     monkeypatch.setattr("pvfiblets.web.options.of_machine", lambda: 0)
     assert chosen_memory("auto", 8) is None
-
-
-def test_too_little_is_refused_before_anything_starts(tmp_path, monkeypatch):
     with pytest.raises(ValueError, match="--max-memory 'lots' is no size of memory; give one such as 4G"):
         chosen_memory("lots", 8)
     with pytest.raises(ValueError, match=r"--max-memory 100 MB: a session needs 640 MB .* give as much or more"):
@@ -166,9 +155,6 @@ def test_too_little_is_refused_before_anything_starts(tmp_path, monkeypatch):
     monkeypatch.setattr("pvfiblets.web.options.CAN_LIMIT", False)
     with pytest.raises(ValueError, match="--max-memory: this system cannot"):
         Options(root=str(tmp_path), token=None, memory=2**30).checked()
-
-
-def test_what_a_session_may_have_is_said_at_the_start(tmp_path):
     options = Options(root=str(tmp_path), token=None, memory=3 * 2**30)
     assert memory_of(options) == "A session may have 3.0 GB of memory (--max-memory)."
     assert "no limit of memory: this system cannot" in memory_of(Options(root=str(tmp_path), token=None))

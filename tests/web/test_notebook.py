@@ -1,7 +1,5 @@
 """``plotter.show()`` in a notebook: the kernel draws, and the page that it shows is a picture of fiblets."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 import sys

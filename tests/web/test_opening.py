@@ -1,7 +1,5 @@
 """What takes long runs beside the page: sessions, files and volumes, with progress, and can be stopped."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import threading
@@ -48,22 +46,18 @@ def saved(scene):
     return data
 
 
-def test_a_session_is_read_beside_the_page_and_the_page_goes_on(desk, scene, threads):
+async def test_a_session_is_read_beside_the_page_and_the_page_goes_on(desk, scene, threads):
     text = json.dumps(saved(scene))
     threads.clear()
     jobs, ticks = [], []
-
-    async def test():
-        files = desk.files
-        files.load_session(text)
-        while not scene.layers:
-            await asyncio.sleep(0.001)
-            ticks.append(1)
-            if desk.page.job:
-                jobs.append(desk.page.job)
-        await desk.done()
-
-    asyncio.run(test())
+    files = desk.files
+    files.load_session(text)
+    while not scene.layers:
+        await asyncio.sleep(0.001)
+        ticks.append(1)
+        if desk.page.job:
+            jobs.append(desk.page.job)
+    await desk.done()
     assert threads == [False] * len(threads)
     assert len(threads) >= 3
     assert [layer.kind for layer in scene.layers] == ["volume", "tractogram"]
@@ -132,68 +126,50 @@ def test_what_a_process_keeps_is_restored_by_the_next_after_its_first_files(desk
     assert desk.history.undo_label == "open a session"
 
 
-def test_what_changes_while_a_session_is_read_is_one_step_before_it(desk, scene):
+async def test_what_changes_while_a_session_is_read_is_one_step_before_it(desk, scene):
     text = json.dumps(saved(scene))
-
-    async def test():
-        desk.files.load_session(text)
-        await asyncio.sleep(0)
-        scene.open("ball.ply")
-        scene.forget_unused()
-        await desk.done()
-
-    asyncio.run(test())
+    desk.files.load_session(text)
+    await asyncio.sleep(0)
+    scene.open("ball.ply")
+    scene.forget_unused()
+    await desk.done()
     assert [layer.name for layer in scene.layers] == ["head.nii.gz", "lines.trk"]
     desk.history.undo()
     assert [layer.name for layer in scene.layers] == ["ball.ply"]
 
 
-def test_files_are_opened_beside_the_page(desk, scene, threads):
-    async def test():
-        await desk.files.open("lines.trk")
-
-    asyncio.run(test())
+async def test_files_and_volumes_that_colour_lines_are_read_beside_the_page(desk, scene, threads):
+    await desk.files.open("lines.trk")
     assert threads == [False]
     assert desk.page.chosen == scene.layers[0].id
     assert desk.refreshed == 1
-
-
-def test_a_volume_that_colours_lines_is_read_beside_the_page(desk, scene, threads):
     scene.open("head.nii.gz")
     layer = scene.open("lines.fiblets")
     threads.clear()
     value = {"volume": {"path": "head.nii.gz"}}
-
-    async def test():
-        await desk.files.colour_by(layer.id, "scalars", value, Source("head.nii.gz"))
-
-    asyncio.run(test())
+    await desk.files.colour_by(layer.id, "scalars", value, Source("head.nii.gz"))
     assert threads == [False]
     assert scene.layer(layer.id).settings["scalars"] == value
 
 
-def test_sessions_in_the_served_folder_are_files_like_others(desk, scene, folder):
+async def test_sessions_in_the_served_folder_are_files_like_others(desk, scene, folder):
     home = folder / "study"
     home.mkdir()
     (folder / "ball.ply").rename(home / "ball.ply")
     scene.open("study/ball.ply")
     scene.open("lines.fiblets")
-
-    async def test():
-        desk.files.store_session("study/mine")
-        with pytest.raises(ValueError, match="exists already"):
-            desk.files.store_session("study/mine.json")
-        for outside in ("../mine", "/tmp/mine", "nowhere/mine"):
-            with pytest.raises(ValueError, match="folder"):
-                desk.files.store_session(outside)
-        for layer in scene.layers:
-            scene.remove(layer.id)
-        desk.files.browse("study")
-        assert [entry["name"] for entry in desk.page.entries] == ["ball.ply", "mine.json"]
-        desk.files.take("study/mine.json", False)
-        await desk.done()
-
-    asyncio.run(test())
+    desk.files.store_session("study/mine")
+    with pytest.raises(ValueError, match="exists already"):
+        desk.files.store_session("study/mine.json")
+    for outside in ("../mine", "/tmp/mine", "nowhere/mine"):
+        with pytest.raises(ValueError, match="folder"):
+            desk.files.store_session(outside)
+    for layer in scene.layers:
+        scene.remove(layer.id)
+    desk.files.browse("study")
+    assert [entry["name"] for entry in desk.page.entries] == ["ball.ply", "mine.json"]
+    desk.files.take("study/mine.json", False)
+    await desk.done()
     assert desk.said[0] == ("success", "The session is saved in the served folder as study/mine.json.")
     assert [layer.path for layer in scene.layers] == ["study/ball.ply", "lines.fiblets"]
     with (folder / "long.json").open("wb") as file:
@@ -271,38 +247,27 @@ def test_a_cut_goes_through_the_layers_that_are_chosen(desk, scene):
             desk.cuts.set_layers(clip.id, wrong)
 
 
-def test_the_demo_is_made_beside_the_page(desk, scene, threads, monkeypatch):
+async def test_the_demo_is_made_beside_the_page(desk, scene, threads, monkeypatch):
     monkeypatch.setattr(type(scene).load_demo, "__defaults__", (20, 8))
-
-    async def test():
-        desk.files.open_demo()
-        await desk.done()
-
-    asyncio.run(test())
+    desk.files.open_demo()
+    await desk.done()
     assert threads == [False, False]
     assert [(layer.kind, layer.visible) for layer in scene.layers] == [("tractogram", True), ("volume", False)]
 
 
-def test_the_tractogram_stays_chosen_when_a_volume_or_a_mesh_is_opened(desk, scene):
-    async def test():
-        for name in ("ball.ply", "lines.trk", "head.nii.gz", "ball.ply", "lines.fiblets"):
-            await desk.files.open(name)
-            names.append(scene.layer(desk.page.chosen).name)
-
+async def test_the_tractogram_stays_chosen_when_a_volume_or_a_mesh_is_opened(desk, scene):
     names = []
-    asyncio.run(test())
+    for name in ("ball.ply", "lines.trk", "head.nii.gz", "ball.ply", "lines.fiblets"):
+        await desk.files.open(name)
+        names.append(scene.layer(desk.page.chosen).name)
     assert names == ["ball.ply", "lines.trk", "lines.trk", "lines.trk", "lines.fiblets"]
 
 
-def test_undo_starts_empty(desk, scene, folder):
+async def test_undo_starts_empty(desk, scene, folder):
     desk.options = replace(desk.options, files=(str(folder / "lines.trk"),), mesh=(str(folder / "ball.ply"),))
     desk.stream.warm = lambda: None
-
-    async def test():
-        desk.files.open_given()
-        await desk.done()
-
-    asyncio.run(test())
+    desk.files.open_given()
+    await desk.done()
     assert [layer.name for layer in scene.layers] == ["lines.trk", "ball.ply"]
     assert (len(desk.history), desk.history.undo_label) == (0, None)
     scene.rename(scene.layers[0].id, "tract")
@@ -310,16 +275,12 @@ def test_undo_starts_empty(desk, scene, folder):
     assert [layer.name for layer in scene.layers] == ["lines.trk", "ball.ply"]
 
 
-def test_what_was_done_while_given_files_were_opened_can_be_undone(desk, scene, folder):
+async def test_what_was_done_while_given_files_were_opened_can_be_undone(desk, scene, folder):
     desk.options = replace(desk.options, files=(str(folder / "lines.trk"),))
-
-    async def test():
-        desk.files.open_given()
-        await asyncio.sleep(0)
-        scene.open("ball.ply")
-        await desk.done()
-
-    asyncio.run(test())
+    desk.files.open_given()
+    await asyncio.sleep(0)
+    scene.open("ball.ply")
+    await desk.done()
     assert [layer.name for layer in scene.layers] == ["ball.ply", "lines.trk"]
     desk.history.undo()
     desk.history.undo()

@@ -1,7 +1,5 @@
 """Controls of the page in a real browser that act before they are let go, or whose effect outlives the page."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

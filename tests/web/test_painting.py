@@ -1,15 +1,13 @@
 """Regions painted on slices: voxels, undo, sessions, files, and the streamlines that pass them."""
 
-from __future__ import annotations
-
 import nibabel
 import numpy as np
 import pytest
-import pyvista as pv
 
 from pvfiblets.web import session
 from pvfiblets.web.history import History
 from pvfiblets.web.script import as_script
+from tests.web.desk import assert_script_draws
 from tests.web.test_slicing import scene  # noqa: F401 - a fixture
 
 
@@ -115,11 +113,7 @@ def test_sessions_and_scripts_have_the_regions(painted, folder):
     painted.set_slices(position=[6.0, 14.0, 8.0])
     wanted, labels = shown(painted), painted.canvas.painter.labels.copy()
     told, picture = session.to_dict(painted), painted.screenshot()
-    text = as_script(painted, str(folder / "found.png"))
-    text = text.replace('FOLDER = Path(".")', f"FOLDER = Path({str(folder)!r})")
-    exec(compile(text, "script", "exec"), {})
-    found = np.asarray(pv.read(folder / "found.png").active_scalars).reshape(160, 240, -1)[::-1]
-    assert (abs(found[..., :3].astype(int) - picture).max(axis=-1) > 8).mean() < 0.002
+    assert_script_draws(painted, folder, picture)
     painted.remove_painted("region 1")
     assert len(shown(painted)) == 60
     session.from_dict(painted, told)

@@ -3,8 +3,6 @@
 Each runs where its program is installed.
 """
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import os

@@ -1,7 +1,5 @@
 """Files that name other files are opened only if those lie in the served folder; uploads have plain names."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 

@@ -1,7 +1,5 @@
 """No reader opens a file that another file names outside of the root: the system itself says which are opened."""
 
-from __future__ import annotations
-
 import contextlib
 import ctypes
 import gzip

@@ -1,19 +1,18 @@
 """Scenes: files become layers, settings pictures, and what is refused leaves everything as it was."""
 
-from __future__ import annotations
-
+import itertools
 import json
 import os
-import subprocess
-import sys
 
 import numpy as np
 import pytest
 import pyvista as pv
 
+import pvfiblets
 from pvfiblets.errors import FibletsError
 from pvfiblets.formats.registry import UnknownFormatError
 from pvfiblets.web.loading import Cancelled
+from pvfiblets.web.scalar_bar_layout import DOTS, Wanted, arrange
 from pvfiblets.web.scene import Scene
 
 
@@ -378,11 +377,418 @@ def test_layers_are_drawn_in_their_order_whenever_they_came(flat):
     assert flat.info(second.id)["gpu_bytes"] >= bytes_before > 0
 
 
-@pytest.mark.more
-def test_documents_need_no_server():
-    code = (
-        "import sys; from pvfiblets.web import history, layers, scene, script, session\n"
-        "assert not {'trame', 'trame_server', 'aiohttp', 'wslink'} & set(sys.modules)"
+def test_a_pixel_picks_the_line_that_is_there(flat):
+    # From above, line 50 + j lies over those below at y = 4 j; x = 10 mm is 40 columns left of the middle.
+    row = 80 + round((4 * 3 - 18) / 0.5)
+    found = flat.pick_at(100 + round((55 - 30) / 0.5), row)
+    assert found["streamline"] == 53
+    assert found["position"][0] == pytest.approx(55.0, abs=0.6)
+    assert flat.layers[0].selected.array().tolist() == [53]
+    other = 80 + round((4 * 7 - 18) / 0.5)
+    assert flat.pick_at(100, other, mode="add")["streamline"] == 57
+    assert flat.layers[0].selected.array().tolist() == [53, 57]
+    flat.pick_at(100, row, mode="toggle")
+    assert flat.layers[0].selected.array().tolist() == [57]
+    assert flat.pick_at(2, 2) is None
+    assert flat.count() == 0
+
+
+def test_boxes_and_lassos_select_what_they_hold(flat, lines):
+    (layer,) = flat.layers
+    x0 = 100 + round((50 - 30) / 0.5)
+    reach = np.array([line[-1, 0] for line in lines])
+    flat.select_box(x0, 0, 199, 159, through=True)
+    beyond = set(np.flatnonzero(reach > 51).tolist())
+    found = set(flat.layers[0].selected.array().tolist())
+    assert beyond <= found <= set(np.flatnonzero(reach >= 49).tolist())
+    before = flat.count()
+    flat.select_polygon([[x0, 0], [199, 0], [199, 80], [x0, 80]], mode="remove", through=True)
+    y = np.array([line[0, 1] for line in lines])
+    assert set(flat.layers[0].selected.array().tolist()) == {i for i in found if y[i] > 18}
+    assert 0 < flat.count() < before
+    flat.deselect()
+    assert flat.layers[0].selected is None
+    assert len(flat.actor(layer.id).selection) == 0
+    with pytest.raises(ValueError, match="lasso"):
+        flat.select_polygon([[0, 0]])
+    with pytest.raises(ValueError, match="mode"):
+        flat.select_box(0, 0, 9, 9, mode="perhaps")
+
+
+def test_the_table_says_what_is_selected(scene, lines):
+    layer = scene.open("lines.fiblets")
+    scene.set(layer.id, "scalars", "fa")
+    scene.select(layer.id, [7, 31, 59])
+    table = scene.table()
+    assert table["total"] == 3
+    assert [row["streamline"] for row in table["rows"]] == [7, 31, 59]
+    np.testing.assert_allclose([row["length"] for row in table["rows"]], lines.lengths()[[7, 31, 59]], atol=0.1)
+    assert [row["points"] for row in table["rows"]] == lines.counts[[7, 31, 59]].tolist()
+    np.testing.assert_allclose([row["value"] for row in table["rows"]], 0.5, atol=0.01)
+    assert [row["groups"] for row in table["rows"]] == [["near"], ["far"], ["far"]]
+    assert [row["streamline"] for row in scene.table(first=1, limit=1)["rows"]] == [31]
+    json.dumps(table, allow_nan=False)
+    profile = scene.profile(layer.id, n=5)
+    np.testing.assert_allclose(profile["mean"], [0, 0.25, 0.5, 0.75, 1], atol=0.01)
+    assert (profile["name"], profile["count"]) == ("fa", 3)
+    for ids in ([60], [-1], [0.5]):
+        with pytest.raises(ValueError, match="streamlines are"):
+            scene.select(layer.id, ids)
+
+
+@pytest.mark.parametrize("suffix", [".trk", ".tck", ".trx", ".vtp", ".vtk", ".fiblets"])
+def test_exports_hold_what_was_selected(scene, lines, suffix):
+    layer = scene.open("lines.fiblets")
+    with pytest.raises(ValueError, match="nothing"):
+        scene.export(layer.id, f"some{suffix}")
+    scene.select(layer.id, [3, 10, 11, 40])
+    said = scene.export(layer.id, f"some{suffix}")
+    assert (said["path"], said["streamlines"]) == (f"some{suffix}", 4)
+    place = scene.root / f"some{suffix}"
+    found = pvfiblets.FibletSet.open(place).decompress() if suffix == ".fiblets" else pvfiblets.read(place)
+    assert len(found) == 4
+    np.testing.assert_allclose(found.points, lines[[3, 10, 11, 40]].points, atol=0.06)
+    with pytest.raises(FileExistsError):
+        scene.export(layer.id, f"some{suffix}")
+    scene.set_groups(layer.id, ["far"])
+    assert scene.export(layer.id, f"some{suffix}", what="shown", overwrite=True)["streamlines"] == 30
+    with pytest.raises(ValueError, match="end in one of"):
+        scene.export(layer.id, "some.txt")
+
+
+def test_what_is_selected_becomes_a_layer_of_its_own(scene, lines):
+    layer = scene.open("lines.fiblets")
+    scene.select(layer.id, np.arange(20, 50))
+    part = scene.keep_selection(layer.id)
+    assert part.kind == "selection"
+    scene.select(part.id, [0, 5, 29], mode="replace")
+    nested = scene.keep_selection(part.id)
+    assert nested.source.ids.array().tolist() == [20, 25, 49]
+    np.testing.assert_allclose(
+        scene.actor(nested.id).fiblets.decompress().points, lines[[20, 25, 49]].points, atol=0.06
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
+    scene.remove(layer.id)
+    scene.screenshot()
+
+
+def test_criteria_groups_and_subsets_add_up(flat, lines):
+    (layer,) = flat.layers
+    length = lines.lengths()
+    flat.set_filter(layer.id, "length", 30.25, None)
+    np.testing.assert_array_equal(flat.actor(layer.id).shown, length >= 30.25)
+    flat.set_filter(layer.id, "length", 30.25, 50.25)
+    expected = (length >= 30.25) & (length <= 50.25)
+    np.testing.assert_array_equal(flat.actor(layer.id).shown, expected)
+    flat.set_subset(layer.id, every=3)
+    expected &= np.arange(60) % 3 == 0
+    np.testing.assert_array_equal(flat.actor(layer.id).shown, expected)
+    assert flat.info(layer.id)["streamlines"] == {"total": 60, "shown": int(expected.sum())}
+    flat.remove_filter(layer.id, "length")
+    np.testing.assert_array_equal(flat.actor(layer.id).shown, np.arange(60) % 3 == 0)
+    flat.remove_filter(layer.id)
+    assert flat.actor(layer.id).shown.all()
+
+
+def test_groups_of_a_file_are_shown(scene):
+    layer = scene.open("lines.fiblets")
+    scene.set_groups(layer.id, ["far"])
+    np.testing.assert_array_equal(scene.actor(layer.id).shown, np.arange(60) >= 30)
+    scene.set_groups(layer.id, None)
+    assert scene.actor(layer.id).shown.all()
+
+
+@pytest.mark.more
+def test_regions_are_joined_by_and_or_not(flat, lines):
+    (layer,) = flat.layers
+    box = {"kind": "box", "bounds": [-1, 100, -1, 9, -1, 100]}
+    far = {"kind": "plane", "normal": [1, 0, 0], "origin": [40.25, 0, 0]}
+    ball = {"kind": "mesh", "path": "ball.ply"}
+    y, ends = np.array([line[0, 1] for line in lines]), np.array([line[-1, 0] for line in lines])
+    mesh = pv.Sphere(radius=8.0, center=(20.0, 18.0, 10.0))
+    inside = pv.PolyData(lines.points.astype(float)).select_interior_points(mesh)["selected_points"].astype(bool)
+    through = np.array([inside[a:b].any() for a, b in zip(lines.offsets[:-1], lines.offsets[1:], strict=True)])
+    passes = {"how": "passes", "region": box}
+    reaches = {"how": "ends_in", "region": far}
+    hits = {"how": "passes", "region": ball}
+    flat.set_regions(layer.id, {"op": "and", "of": [passes, {"op": "not", "of": [reaches]}]})
+    np.testing.assert_array_equal(flat.actor(layer.id).shown, (y <= 9) & ~(ends >= 40.25))
+    flat.set_regions(layer.id, {"op": "or", "of": [passes, hits]})
+    np.testing.assert_array_equal(flat.actor(layer.id).shown, (y <= 9) | through)
+    between = {"kind": "sphere", "center": [float(n) for n in lines[0][:2].mean(axis=0)], "radius": 1e-3}
+    flat.set_regions(layer.id, {"how": "passes", "region": between})
+    assert flat.actor(layer.id).shown.sum() == 1
+    flat.set_regions(layer.id, {"how": "passes", "region": between, "sampling": "points"})
+    assert not flat.actor(layer.id).shown.any()
+    flat.set_regions(layer.id, {"how": "stays_in", "region": box})
+    np.testing.assert_array_equal(flat.actor(layer.id).shown, y <= 9)
+    flat.set_regions(layer.id, {"how": "both_ends_in", "region": far})
+    assert not flat.actor(layer.id).shown.any()
+    flat.set_regions(layer.id, {"how": "ends_in", "region": {"kind": "labels", "path": "atlas.nii.gz", "labels": [5]}})
+    np.testing.assert_array_equal(flat.actor(layer.id).shown, (ends >= 14.3) & (ends < 30.3))
+    flat.set_regions(layer.id, None)
+    assert flat.actor(layer.id).shown.all()
+
+
+@pytest.mark.few(3)
+@pytest.mark.parametrize(
+    "condition",
+    [
+        {},
+        [],
+        {"how": "passes"},
+        {"how": "passes", "region": {"kind": "sphere", "center": [0, 0, 0], "radius": 1}, "sampling": 0.5},
+        {"how": "ends_in", "region": {"kind": "sphere", "center": [0, 0, 0], "radius": 1}, "sampling": "points"},
+        {"how": "flies over", "region": {"kind": "sphere", "center": [0, 0, 0], "radius": 1}},
+        {"how": "passes", "region": {"kind": "sphere", "center": [0, 0], "radius": 1}},
+        {"how": "passes", "region": {"kind": "sphere", "center": [0, 0, 0], "radius": 0}},
+        {"how": "passes", "region": {"kind": "box", "bounds": [1, 0, 0, 1, 0, 1]}},
+        {"how": "passes", "region": {"kind": "mesh", "path": "../ball.ply"}},
+        {"op": "xor", "of": []},
+        {"op": "not", "of": [{}, {}]},
+    ],
+)
+def test_conditions_that_are_none_are_refused(flat, condition):
+    with pytest.raises((ValueError, PermissionError)):
+        flat.set_regions(flat.layers[0].id, condition)
+    nested = {"how": "passes", "region": {"kind": "sphere", "center": [0, 0, 0], "radius": 1}}
+    for _ in range(50):
+        nested = {"op": "not", "of": [nested]}
+    with pytest.raises(ValueError, match="nested"):
+        flat.set_regions(flat.layers[0].id, nested)
+
+
+def test_cuts_leave_the_side_that_they_say(flat):
+    (layer,) = flat.layers
+    whole = drawn(flat.screenshot())
+    clip = flat.add_clip("plane", normal=[1, 0, 0], origin=[20, 0, 0])
+    right = drawn(flat.screenshot())
+    flat.set_clip(clip.id, inside=False)
+    left = drawn(flat.screenshot())
+    column = 100 + round((20 - 30) / 0.5)  # of 200, at half a millimetre a pixel
+    assert not right[:, : column - 1].any()
+    assert not left[:, column + 2 :].any()
+    assert right.any()
+    assert left.any()
+    assert (whole == (right | left)).mean() > 0.99
+    flat.set_clip(clip.id, enabled=False)
+    np.testing.assert_array_equal(drawn(flat.screenshot()), whole)
+    flat.set_clip(clip.id, enabled=True, origin=[30.0, 0.0, 0.0])
+    assert drawn(flat.screenshot())[:, 80:98].any()
+    flat.remove_clip(clip.id)
+    np.testing.assert_array_equal(drawn(flat.screenshot()), whole)
+
+
+def test_cuts_are_for_the_layers_that_they_name(flat):
+    ball = flat.open("ball.ply")
+    flat.show(flat.layers[0].id, False)
+    whole = drawn(flat.screenshot())
+    clip = flat.add_clip("plane", normal=[1, 0, 0], origin=[20, 0, 0])
+    np.testing.assert_array_equal(drawn(flat.screenshot()), whole)  # by default, lines only
+    flat.set_clip(clip.id, layers=[ball.id])
+    assert 0.35 < drawn(flat.screenshot()).sum() / whole.sum() < 0.65
+    flat.set(ball.id, "opacity", 0.99)  # of meshes another actor, cut all the same
+    assert 0.35 < drawn(flat.screenshot()).sum() / whole.sum() < 0.65
+    flat.remove(ball.id)
+    assert flat.state.clips[0].layers == ()
+    tubes = flat.open("vessel.vtp")
+    with pytest.raises(ValueError, match="tubes are cut by planes"):
+        flat.set_clip(clip.id, kind="sphere", layers=[tubes.id])
+    flat.set_clip(clip.id, layers=[tubes.id])
+    with pytest.raises(ValueError, match="VTK allows 6"):
+        flat.add_clip("box", layers=[tubes.id])
+
+
+def test_meshes_are_cut_by_balls_boxes_and_meshes_from_either_side(flat):
+    """A ball of 8 mm, 16 pixels, around (20, 18, 10), seen from above."""
+    ball = flat.open("ball.ply")
+    flat.show(flat.layers[0].id, False)
+    whole = drawn(flat.screenshot())
+    clip = flat.add_clip("sphere", center=[20, 18, 18], radius=4, layers=[ball.id])
+    inner = drawn(flat.screenshot())
+    # Both balls meet where z - 10 = (64 + 64 - 16) / 16 = 7: a ring of sqrt(64 - 49) mm.
+    assert inner.sum() == pytest.approx(np.pi * 15.0 * 4.0, rel=0.05)
+    flat.set_clip(clip.id, inside=False)
+    outer = flat.actor(ball.id).mapper.dataset
+    assert outer.area == pytest.approx(flat.data(ball).data.area - 2 * np.pi * 8.0 * 1.0, rel=0.01)
+    flat.set(ball.id, "color", "#00ff00")  # another actor, cut all the same
+    assert flat.actor(ball.id).mapper.dataset.area == pytest.approx(outer.area)
+    flat.set_clip(clip.id, kind="box", bounds=[0, 20, 0, 100, 0, 100], inside=True)
+    flat.add_clip("slab", inside=False, normal=[0, 1, 0], origin=[20, 18, 10], thickness=4.0, layers=[ball.id])
+    left = drawn(flat.screenshot())
+    assert left.sum() == pytest.approx(0.5 * whole.sum() - 4.0 * 2.0 * 8.0 * 2.0, rel=0.1)
+    flat.remove_clip(flat.state.clips[-1].id)
+    flat.set_clip(clip.id, kind="mesh", path="ball.ply", inside=False)
+    flat.screenshot()
+    flat.set_clip(clip.id, enabled=False)
+    np.testing.assert_array_equal(drawn(flat.screenshot()), whole)
+
+
+def test_a_mesh_of_which_nothing_is_left_comes_back(flat):
+    ball = flat.open("ball.ply")
+    flat.show(flat.layers[0].id, False)
+    whole = drawn(flat.screenshot())
+    clip = flat.add_clip("sphere", center=[500, 0, 0], radius=4, layers=[ball.id])
+    assert not drawn(flat.screenshot()).any()
+    flat.remove_clip(clip.id)
+    np.testing.assert_array_equal(drawn(flat.screenshot()), whole)
+
+
+SIZES = [(760, 856), (800, 556), (320, 596), (320, 276), (276, 320), (1600, 400)]  # of pictures in pages
+VALUES = ("length", "fa", "group", "weight")
+
+
+def rectangle(picture):
+    """Return left, right, top and bottom of what is drawn on black."""
+    lit = picture.max(axis=2) > 30
+    columns, rows = np.flatnonzero(lit.any(axis=0)), np.flatnonzero(lit.any(axis=1))
+    return (columns[0], columns[-1] + 1, rows[0], rows[-1] + 1) if columns.size else None
+
+
+def apart(one, other, least):
+    """Whether two rectangles are so many pixels from each other, across or down."""
+    across = max(one[0], other[0]) - min(one[1], other[1])
+    down = max(one[2], other[2]) - min(one[3], other[3])
+    return max(across, down) >= least
+
+
+class Bars:
+    """The bars of a scene, whose layers are not to be seen."""
+
+    def __init__(self, scene, values=VALUES):
+        self.scene = scene
+        for name in values:
+            layer = scene.open("lines.fiblets")
+            scene.set(layer.id, "scalars", name)
+            scene.set(layer.id, "opacity", 0.0)
+        scene.screenshot()
+
+    @property
+    def shown(self):
+        return {title: bar for title, bar in self.scene.plotter.scalar_bars.items() if bar.GetVisibility()}
+
+    def alone(self, bar):
+        """Return a picture of one bar alone."""
+        others = [other for other in self.shown.values() if other is not bar]
+        for other in others:
+            other.VisibilityOff()
+        try:
+            return self.scene.screenshot()
+        finally:
+            for other in others:
+                other.VisibilityOn()
+
+    def parts(self, bar):
+        """Return the rectangles of a bar's title, and of all else."""
+        title, rest = bar.GetTitleTextProperty(), (bar.GetLabelTextProperty(), bar.GetAnnotationTextProperty())
+        found = []
+        for hidden in ((title,), (*rest, None)):
+            for letters in hidden:
+                letters.SetOpacity(0.0) if letters else bar.DrawColorBarOff()
+            bar.SetDrawAnnotations(None not in hidden)
+            found.append(rectangle(self.alone(bar)))
+            for letters in hidden:
+                letters.SetOpacity(1.0) if letters else bar.DrawColorBarOn()
+        bar.DrawAnnotationsOn()
+        return found[1], found[0]
+
+
+@pytest.mark.more
+@pytest.mark.parametrize(
+    ("size", "dpi"),
+    [*((size, 72) for size in SIZES[:1]), ((320, 276), 144),
+     *(pytest.param(size, 72, marks=pytest.mark.exhaustive) for size in SIZES[1:])],
+)  # fmt: skip
+def test_nothing_of_a_bar_touches_anything(scene, size, dpi):
+    width, height = scene.plotter.window_size = size[0] * dpi // 72, size[1] * dpi // 72
+    scene.plotter.render_window.SetDPI(dpi)
+    bars = Bars(scene)
+    shown = bars.shown
+    assert len(shown) + len(scene.bars.left_out) == 4
+    assert len(shown) >= (4 if min(size) > 320 else 3)
+    whole = {}
+    for title, bar in shown.items():
+        above, below = bars.parts(bar)
+        assert apart(above, below, 2 * dpi // 72), f"the title of {title} at {above} touches what is at {below}"
+        whole[title] = rectangle(bars.alone(bar))
+        left, right, top, bottom = whole[title]
+        scale = dpi / 72
+        assert left >= 46 * scale  # where tools are
+        assert right <= width - 4 * scale
+        assert bottom <= height - 24 * scale  # where a line of text is
+        assert top >= height / 2 + 12 * scale  # where letters are
+    for one, other in itertools.combinations(shown, 2):
+        assert apart(whole[one], whole[other], 6 * dpi // 72), f"{one} at {whole[one]}, {other} at {whole[other]}"
+
+
+@pytest.mark.more
+def test_bars_follow_the_size_of_the_window(scene):
+    bars = Bars(scene)
+    scene.plotter.window_size = 800, 600
+    scene.screenshot()
+    assert len(bars.shown) == 4
+    wide = [rectangle(bars.alone(bar)) for bar in bars.shown.values()]
+    scene.plotter.window_size = 200, 160
+    scene.screenshot()
+    assert not bars.shown
+    assert scene.bars.left_out == ["length [mm]", "fa", "group", "weight"]
+    assert rectangle(scene.screenshot()) is None
+    scene.plotter.window_size = 800, 600
+    scene.screenshot()
+    assert scene.bars.left_out == []
+    assert [rectangle(bars.alone(bar)) for bar in bars.shown.values()] == wide
+
+
+@pytest.mark.more
+def test_half_as_many_pixels_show_the_same_bars(scene):
+    """As they are drawn while the camera moves: letters have half the size, too."""
+    scene.plotter.window_size = 800, 600
+    bars = Bars(scene, ("length", "fa"))
+    whole = {title: rectangle(bars.alone(bar)) for title, bar in bars.shown.items()}
+    scene.plotter.window_size = 400, 300
+    scene.plotter.render_window.SetDPI(36)
+    scene.screenshot()
+    for title, bar in bars.shown.items():
+        np.testing.assert_allclose(2 * np.array(rectangle(bars.alone(bar))), whole[title], atol=8)
+
+
+def test_long_titles_are_shortened_and_no_more_bars_shown_than_fit():
+    def measure(text, font):
+        return 0.6 * font * len(text)
+
+    wanted = [Wanted(f"a title of many words {k}", ("0.00", "-12.5")) for k in range(6)]
+    for width, font, count in ((1600, 13, 6), (800, 13, 6), (400, 9, 6), (320, 9, 4), (120, 13, 1), (80, 0, 0)):
+        places = arrange(wanted, (width, 600), 1.0, measure)
+        shown = [place for place in places if place is not None]
+        assert len(shown) == count
+        assert places[count:] == [None] * (6 - count)  # the first layers keep theirs
+        assert all(place.font >= font for place in shown)
+        ends = [(place.left, place.left + place.width) for place in shown]
+        assert all(start >= 48 and end <= width - 8 for start, end in ends)
+        assert all(right[0] > left[1] for right, left in itertools.pairwise(ends))
+        short = [place.title for place in shown if place.title.endswith(DOTS)]
+        assert len(short) == (0 if width == 1600 else count)
+
+
+def test_names_that_find_no_room_are_left_out():
+    def measure(text, font):
+        return 0.6 * font * len(text)
+
+    def place(names, size):
+        (found,) = arrange([Wanted("group", tuple(names), named=True)], size, 1.0, measure)
+        return found
+
+    assert place(["near", "far"], (320, 600)).label_font == 13
+    small = place([f"part {k}" for k in range(14)], (320, 600))
+    assert 7 <= small.label_font < 13
+    assert place([f"part {k}" for k in range(100)], (320, 600)) is None
+    assert place(["a name that is much longer than the picture is wide"], (320, 600)) is None
+
+
+@pytest.mark.more
+def test_enlarged_pictures_have_their_bars_where_the_page_has_them(scene):
+    bars = Bars(scene, ["length"])
+    scene.plotter.window_size = 400, 320
+    before = np.array(rectangle(scene.screenshot()))
+    after = np.array(rectangle(scene.screenshot(scale=3)))
+    assert len(bars.shown) == 1
+    np.testing.assert_allclose(after / 3, before, atol=3)

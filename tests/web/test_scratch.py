@@ -1,7 +1,5 @@
 """Temporary files of sessions and servers that were killed."""
 
-from __future__ import annotations
-
 import asyncio
 import os
 import signal
@@ -13,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from pvfiblets.web.scratch import PRIVATE, Notes, Scratch
-from tests.web.test_server import Browser, gate, run
+from tests.web.test_server import Browser, gate
 
 SERVER = """
 import sys, time
@@ -40,27 +38,23 @@ def temporary(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("how", ["killed", "ended"])
-def test_what_a_session_left_goes_with_it(tmp_path, temporary, how):
+async def test_what_a_session_left_goes_with_it(tmp_path, temporary, how):
     (tmp_path / ".pvfiblets-part").mkdir()
     (tmp_path / ".pvfiblets-part" / "half.trk").write_text("half of it")
-
-    async def test():
-        async with gate(tmp_path) as found, Browser(found) as browser:
-            pid = await browser.enter()
-            (session,) = found.launcher.sessions.values()
-            assert (session.folder / "session.tmp").read_text() == str(pid)
-            assert session.folder.is_relative_to(temporary)
-            if how == "killed":
-                os.kill(pid, signal.SIGKILL)
-            else:
-                await found.launcher.end(session)
-            while session.folder.exists():
-                await asyncio.sleep(0.02)
-            assert not (tmp_path / ".pvfiblets-part").exists()
-            assert len(list(temporary.iterdir())) == 1  # the server's own
-        assert list(temporary.iterdir()) == []
-
-    run(test())
+    async with gate(tmp_path) as found, Browser(found) as browser:
+        pid = await browser.enter()
+        (session,) = found.launcher.sessions.values()
+        assert (session.folder / "session.tmp").read_text() == str(pid)
+        assert session.folder.is_relative_to(temporary)
+        if how == "killed":
+            os.kill(pid, signal.SIGKILL)
+        else:
+            await found.launcher.end(session)
+        while session.folder.exists():
+            await asyncio.sleep(0.02)
+        assert not (tmp_path / ".pvfiblets-part").exists()
+        assert len(list(temporary.iterdir())) == 1  # the server's own
+    assert list(temporary.iterdir()) == []
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="locks of files are POSIX's")

@@ -1,7 +1,5 @@
 """Scripts: plain Python that makes the same picture, run as anybody would."""
 
-from __future__ import annotations
-
 import builtins
 import keyword
 import re
@@ -174,7 +172,7 @@ def test_no_file_is_called_as_what_the_script_uses(scene, folder, lines):
     assert "drawn:" in done.stdout
 
 
-def test_demos_are_made_in_a_script(scene):
+def test_a_script_can_be_read_and_makes_demos(scene):
     tracts, head = scene.add_demo(50, 8)
     assert tracts.visible
     assert not head.visible
@@ -182,6 +180,8 @@ def test_demos_are_made_in_a_script(scene):
     assert "brain_streamlines(50, 0.5)" in script
     assert "brain_like(8)" in script
     compile(script, "script", "exec")
+    (prop,) = (prop for prop in layers.TABLES["volume"] if prop.name == "integrator")
+    assert [value for value, _ in prop.choices] == list(INTEGRATORS)
 
 
 @pytest.mark.parametrize(
@@ -199,8 +199,3 @@ def test_what_is_not_said_is_so_anyhow(kind, method, what):
     unsaid.pop("scalars", None)  # None of an actor, whose colours are then by orientation
     assert {name: getattr(actor, name) for name in unsaid} == unsaid
     plotter.close()
-
-
-def test_all_integrators_can_be_chosen():
-    (prop,) = (prop for prop in layers.TABLES["volume"] if prop.name == "integrator")
-    assert [value for value, _ in prop.choices] == list(INTEGRATORS)

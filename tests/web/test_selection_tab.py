@@ -1,7 +1,5 @@
 """Tools over the picture: what they do to the page, and what they leave in the picture."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """What a browser is sent to draw, and whether it is to, without a browser."""
 
-from __future__ import annotations
-
 import asyncio
 import zlib
 from dataclasses import replace

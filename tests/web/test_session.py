@@ -1,7 +1,5 @@
 """Sessions: what was saved comes back, and nothing that is malformed does anything."""
 
-from __future__ import annotations
-
 import contextlib
 import copy
 import json
@@ -15,9 +13,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import pvfiblets
+from pvfiblets.engine.fiblets import streamed_renderer
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.web import session
+from pvfiblets.web.confined import Confined
 from pvfiblets.web.history import History
+from pvfiblets.web.loading import Files
+from pvfiblets.web.options import Options
 from pvfiblets.web.runs import numbers_in, pack, runs_of, unpack
 from pvfiblets.web.scene import Scene
 from pvfiblets.web.script import as_script
@@ -104,7 +106,7 @@ def test_random_halves_of_many_streamlines_are_saved_small_and_come_back(scene, 
     names = {}
     text = script[script.index("def unpacked") : script.index("plotter = ")]
     exec(f"import base64\nimport numpy as np\n{text}", names)
-    (call,) = re.findall(r'\.bundles\.add\(.half., (unpacked\([^)]*\))', script)
+    (call,) = re.findall(r"\.bundles\.add\(.half., (unpacked\([^)]*\))", script)
     np.testing.assert_array_equal(eval(call, names), halves[1])
 
 
@@ -308,3 +310,65 @@ def test_whatever_is_changed_is_refused_or_shown(scene, saved):
             opened += 1
             assert json.dumps(session.to_dict(scene), allow_nan=False)
     assert 0 < opened < 150
+
+
+@pytest.fixture
+def shards(folder, lines):
+    """The sixty lines in shards, which alone would be gathered: they keep every bit of so few points."""
+    coded = pvfiblets.compress(lines, per_point=["fa"], exact=False)
+    coded.save(folder / "many.fiblets", shards=coded.nbytes // 4)
+    return folder / "many.fiblets"
+
+
+@pytest.fixture
+def _apart(monkeypatch):
+    monkeypatch.setattr(streamed_renderer, "free_host_memory", lambda: 100)
+    monkeypatch.setattr(pvfiblets.ShardedSet, "gather", lambda *_: pytest.fail("all shards were put together"))
+
+
+def test_shards_are_listed_as_a_file_and_stay_in_the_root(folder, shards, tmp_path):
+    found = {entry.name: entry for entry in Confined(folder).listing("")}["many.fiblets"]
+    assert not found.folder
+    assert found.size == sum(file.stat().st_size for file in shards.iterdir())
+    assert Confined(folder).existing("many.fiblets") == shards
+    assert not any(path == "many.fiblets" for path, _ in Confined(folder).walk())
+    assert Options(root=str(folder), files=[str(shards)], token=None, host="127.0.0.1").checked()
+    with pytest.raises(FileNotFoundError):
+        Options(root=str(folder), files=[str(folder)], token=None, host="127.0.0.1").checked()
+    outside = tmp_path / "secret.fiblets"
+    (shards / "000001.fiblets").rename(outside)
+    (shards / "000001.fiblets").symlink_to(outside)
+    with pytest.raises(PermissionError, match="names a file that is not in the folder"):
+        Files(folder).resolve("many.fiblets")
+
+
+@pytest.mark.more
+@pytest.mark.usefixtures("_apart")
+def test_a_session_of_shards_brings_everything_back(scene, shards, tmp_path):
+    layer = scene.open("many.fiblets")
+    scene.set(layer.id, "scalars", "fa")
+    scene.set_filter(layer.id, "length", 20, None)
+    box = {"how": "ends_in", "region": {"kind": "box", "bounds": [-1, 5, -1, 50, -1, 50]}}
+    scene.set_regions(layer.id, box)
+    scene.set_groups(layer.id, ["far"])
+    scene.add_clip("plane", normal=[0, 0, 1], origin=[0, 0, 4], layers=[layer.id])
+    scene.view("axial")
+    picture = scene.screenshot()
+    actor = scene.actor(layer.id)
+    assert actor.explain()["parts"]["total"] > 3
+    assert actor.explain()["share"] == 1.0
+    assert scene.select_box(0, 0, 200, 160) > 5
+    told = scene.table()
+    assert len(told["rows"]) > 5
+    scene.export(layer.id, "some.tck")
+    assert len(pvfiblets.read(shards.parent / "some.tck")) == scene.count()
+    scene.deselect()
+    session.save(scene, "a.json")
+    plotter = pv.Plotter(off_screen=True, window_size=(200, 160))
+    plotter.disable_anti_aliasing()
+    other = Scene(plotter, shards.parent)
+    session.load(other, "a.json")
+    assert (other.screenshot() == picture).all()
+    assert picture.max() > 50
+    other.close()
+    plotter.close()

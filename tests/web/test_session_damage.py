@@ -1,7 +1,5 @@
 """Session files with wounds: refused with the scene as it was, or shown; in bounded time."""
 
-from __future__ import annotations
-
 import importlib.util
 import json
 import os

@@ -1,12 +1,14 @@
 """Sliders that are dragged: the picture follows, the page's record waits, and all of it is one step."""
 
-from __future__ import annotations
-
 import asyncio
 
+import numpy as np
 import pytest
 
 from pvfiblets.web import sliders
+from pvfiblets.web.controls import axis_of, controls, moved
+from pvfiblets.web.describe import typed
+from pvfiblets.web.filter_regions import condition, flat
 from pvfiblets.web.sliders import SlideActions
 from tests.web.desk import Desk
 
@@ -93,3 +95,120 @@ def test_what_no_slider_sends_is_refused_and_changes_nothing(desk, scene, move, 
         drag(desk, move)
     assert scene.state is state
     assert not desk.sliders.moving
+
+
+BOUNDS = (-10.0, 30.0, 0.0, 20.0, -5.0, 5.0)
+SPHERE = {"kind": "sphere", "center": [1.0, 2.0, 3.0], "radius": 4.0}
+
+
+def test_sliders_of_shapes_give_back_what_they_were_moved_to():
+    shapes = [
+        {"kind": "plane", "normal": [0.0, 2.0, 0.0], "origin": [1.0, 2.0, 3.0]},
+        {"kind": "slab", "normal": [1.0, 1.0, 0.0], "origin": [1.0, 2.0, 3.0], "thickness": 2.0},
+        {"kind": "box", "bounds": [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]},
+        SPHERE,
+    ]
+    for shape in shapes:
+        for found in controls(shape, BOUNDS):
+            low, high = found["limits"]
+            assert low <= np.min(found["value"]) <= np.max(found["value"]) <= high
+            wanted = [low, high] if found["type"] == "range" else 0.5 * (low + high)
+            changed = {**shape, **moved(shape, found["name"], wanted)}
+            again = next(item for item in controls(changed, BOUNDS) if item["name"] == found["name"])
+            np.testing.assert_allclose(again["value"], wanted, atol=1e-9)
+        with pytest.raises(ValueError, match="has no 'colour'"):
+            moved(shape, "colour", 1.0)
+
+
+def test_planes_move_along_their_normal_and_numbers_are_typed_with_units():
+    plane = {"kind": "plane", "normal": [0.0, 2.0, 0.0], "origin": [1.0, 2.0, 3.0]}
+    assert moved(plane, "position", 7.0)["origin"] == [1.0, 7.0, 3.0]
+    assert axis_of([0.0, -3.0, 0.0]) == "y"
+    assert axis_of([1.0, 1.0, 0.0]) == ""
+    assert typed("1.5", "x", optional=False) == 1.5
+    assert typed(" 1,5 mm", "x", optional=False) == 1.5
+    assert typed("", "x", optional=True) is None
+    for text in ("", "nan", "inf", "two"):
+        with pytest.raises(ValueError, match="is not a number"):
+            typed(text, "x", optional=False)
+    from xml.etree import ElementTree as ET
+
+    from pvfiblets.web.charts import profile_chart
+
+    chart = profile_chart([0.0, 1.0], [1.0, 2.0], [1.0, 2.0], [1.0, 2.0], "<img src=x>")
+    assert "<img" not in chart
+    assert "<img src=x>" in [text.text for text in ET.fromstring(chart).iter("text")]
+
+
+def test_regions_are_rows_joined_by_a_word_and_back():
+    rows = [
+        {"not": False, "how": "passes", "region": SPHERE},
+        {"not": True, "how": "ends_in", "region": SPHERE},
+        {"not": True, "how": "stays_in", "region": SPHERE, "sampling": "points"},
+    ]
+    assert flat(condition("or", rows)) == ("or", rows)
+    assert condition("and", []) is None
+    assert flat(None) == ("and", [])
+    nested = {"op": "and", "of": [{"op": "or", "of": [{"how": "passes", "region": SPHERE}]}]}
+    with pytest.raises(ValueError, match="nested"):
+        flat(nested)
+
+
+def test_profiles_have_axes_with_units_and_tell_what_lies_under_the_pointer():
+    from xml.etree import ElementTree as ET
+
+    from pvfiblets.web.charts import profile_chart
+
+    mean = np.array([1.0, np.nan, 3.0])
+    chart = ET.fromstring(profile_chart([0.0, 0.5, 1.0], mean, mean - 0.5, mean + 0.5, "curvature [1/mm]"))
+    told = [title.text for title in chart.iter("title")]
+    assert told == [
+        "0 % of the way: curvature [1/mm] 1 (0.5 to 1.5)",
+        "100 % of the way: curvature [1/mm] 3 (2.5 to 3.5)",
+    ]
+    written = [text.text for text in chart.iter("text")]
+    assert {"share of the streamline's length", "curvature [1/mm]", "0 %", "100 %"} <= set(written)
+
+
+def test_facts_are_tables_with_units(scene):
+    from pvfiblets.web.info_tables import tables
+
+    lines = scene.open("lines.trk")
+    scene.screenshot()
+    found = {table["title"]: table for table in tables(scene.info(lines.id))}
+    layer = dict(found["Layer"]["rows"])
+    assert layer["Streamlines"] == "60 of 60 shown"
+    assert layer["File"] == "lines.trk"
+    assert layer["GPU memory"].split()[1] in ("bytes", "kB", "MB")
+    assert found["Extent"]["columns"] == ["mm", "from", "to", "size"]
+    assert found["Extent"]["rows"] == [
+        ["left – right", "0", "69", "69"], ["back – front", "0", "36", "36"], ["down – up", "0", "20", "20"],
+    ]  # fmt: skip
+    assert found["Measured error"]["columns"] == ["", "mm", "steps"]
+    assert [row[0] for row in found["Measured error"]["rows"]] == ["mean", "99.9 % below", "largest"]
+    assert {title for title, table in found.items() if table["folded"]} == {
+        "Passes of the last redraw",
+        "Buffers",
+        "Drawing",
+    }
+    assert all(isinstance(cell, str) for table in found.values() for row in table["rows"] for cell in row)
+    head = {table["title"]: table for table in tables(scene.info(scene.open("head.nii.gz").id))}
+    assert head["Voxels to mm"]["rows"][0] == ["4", "0", "0", "0"]
+    assert tables({}) == []
+
+
+def test_volumes_begin_with_the_window_of_their_percentiles(scene, folder):
+    import nibabel
+
+    rng = np.random.default_rng(2)
+    values = rng.normal(500.0, 100.0, (20, 20, 20)).astype(np.float32)
+    values[:, :8] = 0.0
+    values[3, 12, 4] = 1e6  # one voxel of a vessel, as T1 images have them
+    nibabel.save(nibabel.Nifti1Image(values, np.eye(4)), folder / "t1.nii.gz")
+    layer = scene.open("t1.nii.gz")
+    head = values[values != 0]
+    assert scene.actor(layer.id).clim == pytest.approx(tuple(np.percentile(head, (1, 99))), rel=1e-6)
+    labels = scene.open("atlas.nii.gz")
+    assert scene.layer(labels.id).settings["clim"] is None
+    scene.set(layer.id, "clim", None)
+    assert scene.actor(layer.id).clim == pytest.approx((0.0, 1e6))

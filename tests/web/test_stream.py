@@ -1,9 +1,8 @@
 """The sequence of pictures, without a browser."""
 
-from __future__ import annotations
-
 import asyncio
 import io
+import itertools
 import time
 from types import SimpleNamespace
 
@@ -13,10 +12,13 @@ import pyvista as pv
 from PIL import Image
 from scipy import ndimage
 
+from pvfiblets.engine.pieces import Pieces
+from pvfiblets.mappers.ahead import draw_ahead
 from pvfiblets.mappers.scene import hurry, slack
+from pvfiblets.synthetic import brain_streamlines
 from pvfiblets.web import stream as stream_module
 from pvfiblets.web.encoding import encode
-from pvfiblets.web.pace import LEVELS
+from pvfiblets.web.pace import BUDGET, LEVELS, Pace
 from pvfiblets.web.stream import REST, PictureStream
 
 from .streams import Streamer, drag, slow_stream
@@ -403,3 +405,151 @@ def test_a_stream_is_closed_at_the_very_moment_of_an_event(plotter):
         assert stream._task.done()
 
     asyncio.run(run())
+
+
+@pytest.fixture
+def pieced(plotter, monkeypatch):
+    """A plotter of a brain whose pieces end after a group of fiblets each, and its stream, whose frames seem slow."""
+    monkeypatch.setattr(Pieces.__init__, "__defaults__", (0.0,))
+    plotter.add_fiblets(brain_streamlines(150, 0.5, seed=2))
+    return plotter, slow_stream(plotter, codec="png")
+
+
+def act_at(monkeypatch, stream, act):
+    """Have something happen after the second piece of the first whole picture; return the pieces of each."""
+    counts = []
+
+    def pieces(window, **how):
+        counts.append(0)
+        for _ in draw_ahead(window, **how):
+            counts[-1] += 1
+            if len(counts) == 1 and counts[0] == 2:
+                act()
+            yield
+
+    monkeypatch.setattr(stream_module, "draw_ahead", pieces)
+    return counts
+
+
+def pictures_of(stream, streamer):
+    """Let a picture be drawn for somebody who moves the camera, wait until it is whole, and return what was sent."""
+    sent = []
+
+    def push(name, meta, content):
+        Streamer.push_content(streamer, name, meta, content)
+        sent.append(np.asarray(Image.open(io.BytesIO(content))))
+
+    streamer.push_content = push
+
+    async def run():
+        stream.set_streamer(streamer)
+        stream.hasten()
+        async with asyncio.timeout(60):
+            while not sent or streamer.sizes[-1] != (200, 120):
+                await asyncio.sleep(0.002)
+        await asyncio.sleep(2 * REST)
+        await stream.close()
+
+    asyncio.run(run())
+    return sent
+
+
+def move(stream):
+    keys = {"ctrlKey": False, "altKey": False, "shiftKey": False}
+    for kind, x in (("LeftButtonPress", 40), ("MouseMove", 60)):
+        stream.on_interaction("", {"type": kind, "x": x, "y": 50, "w": 200, "h": 120, **keys})
+
+
+def test_a_whole_picture_is_given_up_when_somebody_acts_and_comes_later(pieced, monkeypatch):
+    plotter, stream = pieced
+    streamer = Streamer()
+    stream.warm()
+    counts = act_at(monkeypatch, stream, lambda: move(stream))
+    sent = pictures_of(stream, streamer)
+    assert stream.given_up == 1
+    assert counts[0] == 2
+    assert counts[1] > 3
+    assert [size[0] < 200 for size in streamer.sizes] == [True, True, False]  # before the move, after it, at rest
+    assert len(sent) == 3
+    plotter.camera.Azimuth(1.0)  # drawn anew, at once
+    plotter.render()
+    plotter.camera.Azimuth(-1.0)
+    plotter.render()
+    assert np.array_equal(sent[-1], stream._read())
+
+
+def test_a_whole_picture_is_finished_at_once_when_others_than_the_camera_want_one(pieced, monkeypatch):
+    _, stream = pieced
+    streamer = Streamer()
+    stream.warm()
+    counts = act_at(monkeypatch, stream, stream.request)
+    pictures_of(stream, streamer)
+    assert stream.given_up == 0
+    assert counts[0] == 2
+    assert streamer.sizes[0][0] < 200
+    assert streamer.sizes[1] == (200, 120)
+
+
+def test_quick_scenes_are_not_drawn_in_pieces(plotter, monkeypatch):
+    monkeypatch.setattr(Pieces.__init__, "__defaults__", (0.0,))
+    plotter.add_fiblets(brain_streamlines(150, 0.5, seed=2))
+    stream = slow_stream(plotter, 0.01)
+    stream.warm()
+    counts = act_at(monkeypatch, stream, lambda: None)
+    drag(stream, Streamer())
+    assert not counts
+
+
+def settled(seconds, frames=40, slower=1.0):
+    """Return the levels of frames that take a time in proportion to their costs; the tenth and on take more."""
+    pace, found = Pace(), []
+    for k in range(frames):
+        level = pace.choose()
+        pace.took(level, seconds * level.cost * (slower if k >= 10 else 1.0))
+        found.append(LEVELS.index(level))
+    return found
+
+
+def test_quick_scenes_are_fine_and_slow_ones_find_their_level_at_once():
+    assert set(settled(0.5 * BUDGET)) == {0}
+    pace = Pace()
+    for level, seconds in ((LEVELS[0], 4.0), (LEVELS[2], 0.8), (LEVELS[2], 0.8), (LEVELS[1], 3.0), (LEVELS[1], 3.0)):
+        pace.took(level, seconds * BUDGET)
+    assert pace.choose() is LEVELS[2]
+    pace = Pace()
+    pace.took(LEVELS[0], 4.0 * BUDGET)
+    assert pace.untried
+    pace.took(pace.level, 0.9 * BUDGET)
+    assert not pace.untried
+
+
+@pytest.mark.parametrize(("seconds", "level"), [(1.5, 1), (4.0, 2), (7.0, 3), (14.0, 4), (1000.0, 4)])
+def test_one_slow_frame_is_enough_to_find_the_level(seconds, level):
+    assert settled(seconds * BUDGET)[1:] == [level] * 39
+
+
+def test_levels_change_once_and_stay():
+    found = settled(7.0 * BUDGET, slower=0.05)
+    assert found[9] == 3
+    assert found[-5:] == [0] * 5
+    assert sum(a != b for a, b in itertools.pairwise(found)) <= 5
+    for share in (0.9, 0.98, 1.02, 1.1):
+        found = settled(share * BUDGET / LEVELS[1].cost, frames=60)
+        assert len(set(found[5:])) == 1
+    pace = Pace()
+    for k in range(20):
+        pace.took(pace.choose(), 5.0 * BUDGET if k == 12 else 0.3 * BUDGET)
+        assert pace.choose() is LEVELS[0]
+    pace, level = Pace(), LEVELS[4]
+    pace.took(LEVELS[0], 16.0 * BUDGET)
+    for k in range(60):
+        assert pace.choose() is level
+        pace.took(level, BUDGET * (0.2 if k % 4 == 1 else 0.9))
+    pace = Pace()
+    pace.took(LEVELS[0], 1.5 * BUDGET)
+    assert pace.choose() is LEVELS[1]
+    pace.took(LEVELS[1], 1.2 * BUDGET)  # compiles and copies
+    pace.took(LEVELS[0], 0.4 * BUDGET, moved=False)  # the camera is where it was
+    for seconds in (0.3, 0.31, 0.29, 0.3, 0.3, 0.32, 0.3):
+        assert pace.choose() is LEVELS[1]
+        pace.took(LEVELS[1], seconds * BUDGET)

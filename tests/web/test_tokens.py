@@ -1,7 +1,5 @@
 """The token: where it comes from, and that it is nowhere else."""
 
-from __future__ import annotations
-
 import os
 import re
 import signal
@@ -15,19 +13,16 @@ import pytest
 
 from pvfiblets.web import tokens
 from pvfiblets.web.tokens import chosen_token
-from tests.web.visitors import STUB, TOKEN, Browser, gate, run
+from tests.web.visitors import STUB, TOKEN, Browser, gate
 
 POSIX = pytest.mark.skipif(os.name != "posix", reason="modes of files")
 
 
-def test_tokens_are_made_or_left_out():
+def test_a_token_comes_from_a_file_before_the_environment_and_from_no_command_line(tmp_path, capsys):
     assert chosen_token("none") is None
     made = {chosen_token("auto") for _ in range(20)}
     assert len(made) == 20
     assert all(len(token) >= 32 for token in made)
-
-
-def test_a_token_comes_from_the_environment_and_a_file_comes_first(tmp_path):
     file = tmp_path / "token"
     tokens.write(file, "of-the-file")
     environment = {"PVFIBLETS_TOKEN": f" {TOKEN} "}
@@ -35,12 +30,13 @@ def test_a_token_comes_from_the_environment_and_a_file_comes_first(tmp_path):
     assert chosen_token("auto", str(file), environment) == "of-the-file"
     assert chosen_token("none", None, environment) is None
     assert chosen_token("auto", None, {"PVFIBLETS_TOKEN": ""}) not in ("", None)
-
-
-def test_a_token_on_the_command_line_is_refused_without_being_repeated(capsys):
     with pytest.raises(ValueError, match="--token-file FILE") as caught:
         chosen_token(TOKEN)
     assert TOKEN not in str(caught.value)
+    with pytest.raises(ValueError, match="leave one"):
+        chosen_token("none", str(tmp_path / "token"))
+    with pytest.raises(ValueError, match="not a file"):
+        chosen_token("auto", str(tmp_path))
 
 
 @POSIX
@@ -77,13 +73,6 @@ def test_files_that_hold_no_token_are_refused(tmp_path, content, mode, named):
     assert "correct-horse" not in str(caught.value)
 
 
-def test_none_and_a_file_contradict_each_other(tmp_path):
-    with pytest.raises(ValueError, match="leave one"):
-        chosen_token("none", str(tmp_path / "token"))
-    with pytest.raises(ValueError, match="not a file"):
-        chosen_token("auto", str(tmp_path))
-
-
 @POSIX
 def test_a_token_is_kept_where_only_its_user_looks(tmp_path):
     for environment, folder in (({"XDG_RUNTIME_DIR": str(tmp_path)}, tmp_path), ({}, None)):
@@ -97,20 +86,16 @@ def test_a_token_is_kept_where_only_its_user_looks(tmp_path):
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
-def test_processes_of_sessions_are_told_nothing_in_public(tmp_path, monkeypatch):
+async def test_processes_of_sessions_are_told_nothing_in_public(tmp_path, monkeypatch):
     monkeypatch.setenv("PVFIBLETS_TOKEN", TOKEN)
-
-    async def test():
-        async with gate(tmp_path) as server, Browser(server) as browser:
-            pid = await browser.enter()
-            (session,) = server.launcher.sessions.values()
-            for name in ("cmdline", "environ"):
-                public = Path(f"/proc/{pid}/{name}").read_bytes()
-                assert public
-                for secret in (TOKEN, session.key, session.id):
-                    assert secret.encode() not in public
-
-    run(test())
+    async with gate(tmp_path) as server, Browser(server) as browser:
+        pid = await browser.enter()
+        (session,) = server.launcher.sessions.values()
+        for name in ("cmdline", "environ"):
+            public = Path(f"/proc/{pid}/{name}").read_bytes()
+            assert public
+            for secret in (TOKEN, session.key, session.id):
+                assert secret.encode() not in public
 
 
 SERVE = """

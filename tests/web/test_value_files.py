@@ -1,8 +1,7 @@
 """Track scalar files on the page: read beside it, kept by sessions and scripts, undone like all else."""
 
-from __future__ import annotations
-
 import asyncio
+import json
 import subprocess
 import sys
 
@@ -11,10 +10,13 @@ import pytest
 import pyvista as pv
 
 import pvfiblets
+from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
 from pvfiblets.errors import FormatError
 from pvfiblets.formats import attachments
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.web import session
+from pvfiblets.web.history import History
+from pvfiblets.web.sampling import sampled
 from pvfiblets.web.script import as_script
 from tests.web.desk import Desk
 
@@ -37,19 +39,15 @@ def values_of(scene, layer):
 
 
 @pytest.mark.parametrize("name", ["lines.trk", "lines.fiblets"])
-def test_a_file_of_values_colours_the_chosen_tractogram(desk, scene, heights, name):
+async def test_a_file_of_values_colours_the_chosen_tractogram(desk, scene, heights, name):
     first = scene.open(name)
     scene.select(first.id, [4, 5])
     scene.open("lines.fiblets")
     desk.page.chosen = first.id
-
-    async def test():
-        desk.files.browse("")
-        assert "heights.tsf" in {entry["name"] for entry in desk.page.entries}
-        desk.files.take("heights.tsf", False)
-        await desk.done()
-
-    asyncio.run(test())
+    desk.files.browse("")
+    assert "heights.tsf" in {entry["name"] for entry in desk.page.entries}
+    desk.files.take("heights.tsf", False)
+    await desk.done()
     layer = scene.layer(first.id)
     assert layer.settings["scalars"] == "heights"
     assert len(layer.selected) == 2
@@ -112,3 +110,115 @@ def test_values_of_other_lines_change_nothing(desk, scene, folder, lines):
     with pytest.raises(FormatError):
         scene.load_values(layer.id, "part.tsf")
     assert pvfiblets.read(folder / "lines.trk").n_points == lines.n_points
+
+
+HEAD = {"volume": {"path": "head.nii.gz"}}
+
+
+def distance_from_corner(points):
+    """Return what head.nii.gz holds at points, mm, where no cell of it is bent: 1 - the distance from its middle."""
+    return 1.0 - np.linalg.norm(points / 4.0 / 7.5 - 1.0, axis=1)
+
+
+def test_samples_are_trilinear_inside_and_nothing_outside():
+    rng = np.random.default_rng(0)
+
+    def field(i, j, k):  # which trilinear interpolation reproduces
+        return 3.0 - 2.0 * i + 0.5 * j + 0.25 * k + 0.1 * i * k
+
+    values = field(*np.indices((5, 1, 7)).astype(float))
+    affine = np.array([[0.0, 2.0, 0.0, 3.0], [-1.5, 0.0, 0.1, 4.0], [0.0, 0.0, 0.5, -2.0], [0, 0, 0, 1]])
+    voxels = rng.uniform((-1, -1, -1), (5, 1, 7), (500, 3))
+    points = voxels @ affine[:3, :3].T + affine[:3, 3]
+    found = sampled(VolumeSource(values, affine), points)
+    inside = ((voxels >= -0.5) & (voxels <= (4.5, 0.5, 6.5))).all(axis=1)
+    assert 50 < inside.sum() < 450
+    np.testing.assert_array_equal(np.isnan(found), ~inside)
+    expected = field(*np.clip(voxels[inside], 0.0, (4.0, 0.0, 6.0)).T)
+    np.testing.assert_allclose(found[inside], expected, atol=1e-9)
+    labels = rng.integers(0, 9, (5, 1, 7))
+    nearest = np.rint(voxels[inside]).astype(int)
+    np.testing.assert_array_equal(sampled(VolumeSource(labels, affine), points)[inside], labels[tuple(nearest.T)])
+    values[2, 0, 3] = np.nan
+    assert np.isnan(sampled(VolumeSource(values, affine), (affine @ [2.5, 0, 3, 1])[:3][None])).all()
+    assert np.isfinite(sampled(VolumeSource(values, affine), (affine @ [3, 0, 3, 1])[:3][None])).all()
+
+
+def test_volumes_of_the_scene_are_choices_and_stay_when_their_layer_goes(scene, lines):
+    layer = scene.open("lines.fiblets")
+
+    def choices():
+        (scalars,) = (item for item in scene.properties(layer.id) if item["name"] == "scalars")
+        return {choice["title"]: choice["value"] for choice in scalars["choices"]}
+
+    assert "volume head.nii.gz" not in choices()
+    with pytest.raises(ValueError, match="choose one of"):
+        scene.set(layer.id, "scalars", HEAD)
+    head = scene.open("head.nii.gz")
+    assert choices()["volume head.nii.gz"] == HEAD
+    history = History(scene)
+    scene.set(layer.id, "scalars", HEAD)
+    volume = scene.actor(layer.id).scalars
+    assert isinstance(volume, VolumeSource)
+    scene.remove(head.id)
+    scene.forget_unused()
+    scene.set(layer.id, "line_width", 2.0)
+    assert scene.actor(layer.id).scalars is volume
+    assert choices()["volume head.nii.gz"] == HEAD
+    assert scene.legend[0]["title"] == "head"
+    assert list(scene.plotter.scalar_bars.keys()) == ["head"]
+    while history.undo():
+        pass
+    assert scene.actor(layer.id).scalars != volume
+    found = scene.histogram(layer.id)
+    assert found["name"] != "head"
+    history.redo()
+    found = scene.histogram(layer.id)
+    assert (found["name"], sum(found["counts"])) == ("head", 16**3)
+
+
+def test_tables_and_profiles_say_what_the_volume_has_there(scene, lines):
+    scene.open("head.nii.gz")
+    layer = scene.open("lines.trk")
+    scene.set(layer.id, "scalars", HEAD)
+    scene.select(layer.id, [30, 47])
+    rows = scene.table()["rows"]
+    assert {row["of"] for row in rows} == {"mean of head"}
+    for row, line in zip(rows, (lines[30], lines[47]), strict=True):
+        inside = line[line[:, 0] <= 62.0]
+        assert row["value"] == pytest.approx(distance_from_corner(inside).mean(), abs=0.01)
+    scene.select(layer.id, [30])
+    found = scene.profile(layer.id, n=5)
+    assert (found["name"], found["count"]) == ("head", 1)
+    places = np.linspace(lines[30][0], lines[30][-1], 5)
+    np.testing.assert_allclose(found["mean"], distance_from_corner(places), atol=0.02)
+    assert scene.profile(layer.id, "curvature")["name"] == "curvature"
+
+
+def test_a_session_finds_its_volume_again_or_is_refused(scene, folder):
+    scene.open("head.nii.gz")
+    layer = scene.open("lines.fiblets")
+    scene.set(layer.id, "scalars", HEAD)
+    scene.remove(scene.layers[0].id)
+    home = folder / "study"
+    home.mkdir()
+    for name in ("head.nii.gz", "lines.fiblets"):
+        (folder / name).rename(home / name)
+    data = session.to_dict(scene)
+    assert data["layers"][0]["settings"]["scalars"] == HEAD
+    with pytest.raises(session.SessionError, match="no such file"):
+        session.from_dict(scene, data)
+    session.from_dict(scene, data, home)
+    assert scene.layers[0].settings["scalars"] == {"volume": {"path": "study/head.nii.gz"}}
+    for bad, says in (
+        ({"volume": {"path": "lines.fiblets"}}, "cannot be opened"),
+        ({"volume": {"path": "../head.nii.gz"}}, "outside of the folder"),
+        ({"volume": {"demo": "tracts", "size": 9}}, "no demonstration"),
+        ({"volume": "head.nii.gz"}, "source"),
+        ({"volume": {"path": "head.nii.gz", "ids": [0, 1]}}, "ids"),
+        ({"image": {}}, "no 'volume'"),
+    ):
+        broken = json.loads(json.dumps(data))
+        broken["layers"][0]["settings"]["scalars"] = bad
+        with pytest.raises(session.SessionError, match=says):
+            session.from_dict(scene, broken, home)

@@ -1,7 +1,5 @@
 """A gate whose sessions draw nothing (stub_worker.py), and who comes to it: browsers, sockets that misbehave."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import sys
