@@ -29,7 +29,7 @@ vec3 film(vec3 x)
 
 vec4 toned(vec4 colour)
 {
-    vec3 x = exposure * colour.rgb;
+    vec3 x = min(exposure * colour.rgb, 1e4);      // white by every operator; their squares stay below infinity
 #if FEATURE_TONE_REINHARD
     x = x * (1.0 + x / (white * white)) / (1.0 + x);
 #elif FEATURE_TONE_EXPONENTIAL
