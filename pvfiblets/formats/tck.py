@@ -34,6 +34,7 @@ from numpy.typing import NDArray
 
 from pvfiblets.errors import FormatError
 from pvfiblets.formats.mapped import MappedFile, forget
+from pvfiblets.formats.rounding import largest_change
 from pvfiblets.formats.rows import finite_rows, without_rows
 from pvfiblets.formats.scratch import is_long, spans
 from pvfiblets.invalid_points import CUT, NONFINITE
@@ -339,7 +340,7 @@ def write(path: str | PathLike[str], streamlines: Streamlines, *, double: bool =
     if double or points.dtype == np.float32:
         write_rows(path, MAGIC_TRACKS, streamlines, points, np.dtype("<f8" if double else "<f4"))
         return
-    rounding = _rounding(points)
+    rounding = largest_change(points)
     if not np.isfinite(rounding):
         raise ValueError(f"{path}: float32 cannot hold some coordinates; check the units, or write doubles")
     write_rows(path, MAGIC_TRACKS, streamlines, points, np.dtype("<f4"))
@@ -350,17 +351,6 @@ def write(path: str | PathLike[str], streamlines: Streamlines, *, double: bool =
             UserWarning,
             stacklevel=3,
         )
-
-
-def _rounding(points: Array) -> float:
-    """Return by how much float32 changes a coordinate at most; of mapped points nothing stays in memory."""
-    most = 0.0
-    for first in range(0, len(points), _BLOCK_POINTS):
-        block = points[first : first + _BLOCK_POINTS]
-        with np.errstate(over="ignore"):
-            most = max(most, float(np.abs(block - block.astype(np.float32)).max()))
-        forget(points, 0, min(first + _BLOCK_POINTS, len(points)))
-    return most
 
 
 def write_rows(

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pvfiblets.formats.mapped import forget
+from pvfiblets.formats.rounding import warn_of_changes
 from pvfiblets.formats.rows import transformed
 from pvfiblets.formats.trk_header import trackvis_to_ras, unrecorded_affine
 from pvfiblets.streamlines import Streamlines
@@ -54,6 +55,8 @@ def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
                 forget(array, 0, int(streamlines.offsets[stop]))
             for array in values.values():
                 forget(array, 0, stop)
+    fix = ".trx keeps them, or subtract an offset first"
+    warn_of_changes(path, streamlines.points, {**streamlines.per_point, **streamlines.per_streamline}, fix)
 
 
 def _header(streamlines: Streamlines) -> tuple[Any, Array]:
