@@ -39,7 +39,8 @@ def value_reference(values: npt.NDArray[Any]) -> float:
         return 0.0
     typical = float(sample[len(sample) // 2])
     low, high = (float(sample[int(share * (len(sample) - 1))]) for share in (0.01, 0.99))
-    exact = float(np.float32(typical)) == typical and low == high
+    with np.errstate(over="ignore"):
+        exact = float(np.float32(typical)) == typical and low == high
     return 0.0 if exact or abs(typical) <= _NEAR * (high - low) else typical
 
 

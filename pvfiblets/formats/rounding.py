@@ -37,14 +37,11 @@ def _change_and_range(array: NDArray[Any]) -> tuple[float, float]:
     return most, float(high - low) if high >= low else 0.0
 
 
-def warn_of_changes(path: str | PathLike[str], points: NDArray[Any], values: Mapping[str, NDArray[Any]], fix: str) -> None:
-    """Warn of the largest change of each array that float32 changes by more than drawing or measuring hides.
-
-    Those are 1 micrometre of points, and of other arrays 1e-5 of their range.
-    """
+def warn_of_changes(path: str | PathLike[str], moved: float, values: Mapping[str, NDArray[Any]], fix: str) -> None:
+    """Warn of points that float32 moves by more than 1 micrometre, and of values that it changes by 1e-5 of their range."""
     told = []
-    if points.dtype == np.float64 and (change := largest_change(points)) > _POINTS:
-        told.append(f"points by up to {change:.2g} mm")
+    if moved > _POINTS:
+        told.append(f"points by up to {moved:.2g} mm")
     for name, array in values.items():
         if array.dtype == np.float64:
             change, spread = _change_and_range(array)

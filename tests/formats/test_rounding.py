@@ -17,7 +17,8 @@ def test_trk_tells_the_largest_change_of_each_array(tmp_path):
     rng = np.random.default_rng(0)
     points = rng.uniform(0, 80, (60, 3)) + (512345.678, 5423456.789, 312.5)
     times, mild = 1.7e9 + np.linspace(0, 60, 60), np.linspace(0, 1, 60)
-    lines = Streamlines(points, np.array([0, 30, 60]), {"time": times, "fa": mild}, {"id": np.array([1.7e18, 1.7e18 + 1e9])})
+    ids = {"id": np.array([1.7e18, 1.7e18 + 1e9])}
+    lines = Streamlines(points, np.array([0, 30, 60]), {"time": times, "fa": mild}, ids)
     with pytest.warns(UserWarning, match="float32") as told:
         pvfiblets.write(tmp_path / "a.trk", lines)
     text = str(told[0].message)
@@ -31,7 +32,8 @@ def test_trk_tells_the_largest_change_of_each_array(tmp_path):
 
 
 def test_ordinary_numbers_are_written_without_a_word(tmp_path):
-    lines = Streamlines(np.random.default_rng(0).uniform(0, 200, (60, 3)), np.array([0, 60]), {"fa": np.linspace(0, 1, 60)})
+    points = np.random.default_rng(0).uniform(0, 200, (60, 3))
+    lines = Streamlines(points, np.array([0, 60]), {"fa": np.linspace(0, 1, 60)})
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         pvfiblets.write(tmp_path / "a.trk", lines)

@@ -98,7 +98,6 @@ def test_volumes_of_one_value(value):
         (BALL * np.float32(1e-42), "a range that float32, in which rays are cast, cannot compute with"),
         (np.where(BALL > 50, 3e38, -3e38), "run from -3e\\+38 to 3e\\+38, a range that"),
         (BALL.astype(float) * 1e60, "beyond float32's 3.40282e\\+38: scale them"),
-        (BALL.astype(float) + 1e12, "which float32 cannot tell apart"),
         (BALL.astype("M8[s]"), "of type datetime64"),
         (BALL.astype(object), "of type object"),
         (np.ones(4), "three axes"),
