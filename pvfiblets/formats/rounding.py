@@ -38,7 +38,7 @@ def _change_and_range(array: NDArray[Any]) -> tuple[float, float]:
 
 
 def warn_of_changes(path: str | PathLike[str], moved: float, values: Mapping[str, NDArray[Any]], fix: str) -> None:
-    """Warn of points that float32 moves by more than 1 micrometre, and of values that it changes by 1e-5 of their range."""
+    """Warn of points that move by more than a micrometre, and of values that change by 1e-5 of their range."""
     told = []
     if moved > _POINTS:
         told.append(f"points by up to {moved:.2g} mm")

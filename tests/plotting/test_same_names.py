@@ -26,7 +26,7 @@ def test_the_preferred_array_colours_as_in_add_mesh(plotter, mesh, add, preferen
     wanted = plotter.add_mesh(mesh.copy(), scalars="d", preference=preference).mapper.scalar_range
     assert actor.clim == wanted
     assert sorted(mesh.point_data) == sorted(mesh.cell_data) == ["d"]
-    assert mesh["d"].tolist() == [10, 11, 12]
+    assert mesh.point_data["d"].tolist() == [10, 11, 12]
 
 
 @pytest.mark.parametrize(("preference", "limits"), [("point", (10.0, 11.0)), ("cell", (0, 1))])

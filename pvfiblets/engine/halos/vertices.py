@@ -111,7 +111,8 @@ class Vertices:
             if values.ndim == 2:
                 self._put(sampler, "r32ui", _packed(values), values)
             else:
-                self._put(sampler, "r32f", _singles(values, self._drawn.value_reference(name), most), values)
+                reference = self._drawn.value_reference(name)
+                self._put(sampler, "r32f", _singles(values, reference, most), values)
         return values is not None
 
     def _put(self, sampler: str, texel: str, data: npt.NDArray[Any], holds: object) -> None:
@@ -190,7 +191,7 @@ def mask_places(offsets: npt.NDArray[np.int64], n_tapered: int, t_tapered: float
 
 
 def _singles(numbers: npt.NDArray[Any], reference: float, most: float) -> npt.NDArray[np.float32]:
-    """Less the reference as float32, none beyond +-most; what is finite and larger than float32 holds becomes its largest."""
+    """Less the reference as float32, none beyond +-most; what float32 does not hold becomes its largest."""
     if numbers.dtype == np.float32 and most == np.inf and not reference:
         return np.asarray(numbers, "<f4")
     wide = np.clip(relative(numbers, reference), -most, most)

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from os import PathLike
 
     from pvfiblets.codec.fibletset import FibletSet
-    from pvfiblets.plotting.tubes.actor import TubeActor
     from pvfiblets.plotting.same_names import Preference
+    from pvfiblets.plotting.tubes.actor import TubeActor
     from pvfiblets.streamlines import Streamlines
     from pvfiblets.tubes.spline_tubes import SplineTubes
 

@@ -24,7 +24,9 @@ _BLOCK = 1 << 15  # segments measured at a time
 _GAUSS = ((0.5 - 0.15**0.5, 5 / 18), (0.5, 4 / 9), (0.5 + 0.15**0.5, 5 / 18))
 
 
-def as_tubes(source: Any, *, scalars: Any = None, rgb: bool | None = None, preference: Preference = "point", **shape: Any) -> tuple[SplineTubes, Any]:
+def as_tubes(
+    source: Any, *, scalars: Any = None, rgb: bool | None = None, preference: Preference = "point", **shape: Any
+) -> tuple[SplineTubes, Any]:
     """Return the tubes that a source means, and what colours them.
 
     Parameters
