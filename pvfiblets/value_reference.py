@@ -1,4 +1,4 @@
-"""The number to subtract from an array before its values become float32, which keeps steps of 128 s only of 1.7e9 s.
+"""The number to subtract from an array before it becomes float32, which keeps steps of 128 s of 1.7e9 s.
 
 Every drawable has ``value_reference(name)``. What is uploaded is ``relative(values, reference)``; ranges, thresholds and
 isovalues of that array have the same reference subtracted in float64 before they become uniforms, and whatever is read

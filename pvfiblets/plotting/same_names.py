@@ -48,9 +48,8 @@ def with_preference(source: Any, preference: Preference) -> Any:
     if not isinstance(points, Mapping) or not isinstance(lines, Mapping) or not set(points) & set(lines):
         return source
     data = lines if preference == "point" else points
-    both = set(points) & set(lines)
-    renamed = {f"{name} ({other})" if name in both else name: values for name, values in data.items()}
-    if is_dataclass(source):
+    renamed = {f"{name} ({other})" if name in points and name in lines else name: values for name, values in data.items()}
+    if is_dataclass(source) and not isinstance(source, type):
         return replace(source, **{held: renamed})
     copy = source[:]
     setattr(copy, held, renamed)

@@ -78,11 +78,11 @@ class VolumeStyle(Style):
 class VolumeRenderer(Drawable[VolumeStyle]):
     """Casts rays through one volume; a view's region cuts in all modes, and rays end at what is outside.
 
-    In its `GBuffer` ``owner`` holds the nearest voxel of what shows, counted along the first axis first; ``position``
-    the place along the ray (mm) and the value; ``across`` normals of surfaces; ``colours`` those of ``'composite'``.
-    `explain` also says ``voxels_total``; ``nodes`` of the octree; ``skipped``, the share of its leaves in which there
-    is nothing to see; and ``octree``, what it costs: ``bytes``, their ``share`` of the volume's, and the ``ms`` that
-    building it took, all 0 while there is none.
+    In its `GBuffer` ``owner`` holds the nearest voxel of what shows, counted along the first axis first;
+    ``position`` the place along the ray (mm) and the value less the volume's ``offset``; ``across`` normals of
+    surfaces; ``colours`` those of ``'composite'``. `explain` also says ``voxels_total``; ``nodes`` of the octree;
+    ``skipped``, the share of its leaves in which there is nothing to see; and ``octree``, what it costs: ``bytes``,
+    their ``share`` of the volume's, and the ``ms`` that building it took, all 0 while there is none.
 
     Parameters
     ----------
