@@ -1,8 +1,8 @@
 """The number to subtract from an array before it becomes float32, which keeps steps of 128 s of 1.7e9 s.
 
-Every drawable has ``value_reference(name)``. What is uploaded is ``relative(values, reference)``; ranges, thresholds and
-isovalues of that array have the same reference subtracted in float64 before they become uniforms, and whatever is read
-back has it added. Users see true numbers everywhere.
+Every drawable has ``value_reference(name)``. What is uploaded is ``relative(values, reference)``; ranges, thresholds
+and isovalues of that array have the same reference subtracted in float64 before they become uniforms, and whatever is
+read back has it added. Users see true numbers everywhere.
 """
 
 from __future__ import annotations

@@ -48,7 +48,8 @@ def with_preference(source: Any, preference: Preference) -> Any:
     if not isinstance(points, Mapping) or not isinstance(lines, Mapping) or not set(points) & set(lines):
         return source
     data = lines if preference == "point" else points
-    renamed = {f"{name} ({other})" if name in points and name in lines else name: values for name, values in data.items()}
+    rest = lines if data is points else points
+    renamed = {f"{name} ({other})" if name in rest else name: values for name, values in data.items()}
     if is_dataclass(source) and not isinstance(source, type):
         return replace(source, **{held: renamed})
     copy = source[:]
