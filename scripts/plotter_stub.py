@@ -25,6 +25,7 @@ KNOWN = {
     "Displacement": "from pvfiblets.halos.displacement import Displacement",
     "Iterable": "from collections.abc import Iterable",
     "PerPoint": "from pvfiblets.codec.compress import PerPoint",
+    "Preference": "from pvfiblets.plotting.same_names import Preference",
     "Sequence": "from collections.abc import Sequence",
     "Threshold": "from pvfiblets.plotting.halos.style import Threshold",
     "TransformLike": "from pyvista.core._typing_core import TransformLike",

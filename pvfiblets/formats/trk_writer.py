@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pvfiblets.formats.mapped import forget
+from pvfiblets.formats.rounding import largest_change, warn_of_changes
 from pvfiblets.formats.rows import transformed
 from pvfiblets.formats.trk_header import trackvis_to_ras, unrecorded_affine
 from pvfiblets.streamlines import Streamlines
@@ -62,6 +63,20 @@ def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
             UserWarning,
             stacklevel=3,
         )
+    fix = ".trx keeps them, or subtract an offset first"
+    warn_of_changes(path, _moved(streamlines, from_ras), {**streamlines.per_point, **streamlines.per_streamline}, fix)
+
+
+def _moved(streamlines: Streamlines, from_ras: NDArray[np.float64]) -> float:
+    """Return by how much the file's float32 moves float64 points at most, mm."""
+    if streamlines.points.dtype != np.float64:
+        return 0.0
+    most = 0.0
+    for first in range(0, streamlines.n_points, _BLOCK_POINTS):
+        last = min(first + _BLOCK_POINTS, streamlines.n_points)
+        most = max(most, largest_change(streamlines.points[first:last] @ from_ras[:3, :3].T + from_ras[:3, 3]))
+        forget(streamlines.points, 0, last)
+    return most
 
 
 def _header(streamlines: Streamlines) -> tuple[Any, Array]:

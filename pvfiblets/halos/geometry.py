@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pvfiblets.ragged import as_offsets
+from pvfiblets.value_reference import value_reference
 
 __all__ = ["HaloLines", "HaloPoints"]
 
@@ -70,6 +71,14 @@ class HaloLines:
         """Segments between neighbouring points of a line, those without length included."""
         return int(np.maximum(np.diff(self.offsets) - 1, 0).sum())
 
+    @cached_property
+    def _references(self) -> dict[str, float]:
+        return {name: value_reference(held) for name, held in self.values.items() if held.ndim == 1}
+
+    def value_reference(self, name: Any) -> float:
+        """Return the number to subtract from values on the graphics card; see :mod:`pvfiblets.value_reference`."""
+        return self._references.get(name, 0.0)
+
     @property
     def promise(self) -> float:
         """Nothing lies outside the bounds."""
@@ -117,6 +126,14 @@ class HaloPoints:
     def n_points(self) -> int:
         """Points."""
         return len(self.points)
+
+    @cached_property
+    def _references(self) -> dict[str, float]:
+        return {name: value_reference(held) for name, held in self.values.items() if held.ndim == 1}
+
+    def value_reference(self, name: Any) -> float:
+        """Return the number to subtract from values on the graphics card; see :mod:`pvfiblets.value_reference`."""
+        return self._references.get(name, 0.0)
 
     @property
     def promise(self) -> float:

@@ -194,12 +194,20 @@ class Colouring:
         above = self.lut[-1] if self.above_color is None else _bytes(self.above_color)
         return np.concatenate([self.lut, [below, above, _bytes(self.nan_color)]]).astype(np.uint8)
 
-    def scaled_range(self, clim: tuple[float, float] | None = None) -> tuple[float, float, float]:
-        """Return lo, hi and entries per unit of the table's scale (logarithms on a log scale), or of other ends."""
+    def scaled_range(
+        self, clim: tuple[float, float] | None = None, *, reference: float = 0.0
+    ) -> tuple[float, float, float]:
+        """Return lo, hi and entries per unit of the table's scale, or of other ends, less a reference of the values.
+
+        On a log scale, lo and hi are logarithms, and above 0 the reference's own is subtracted.
+        """
         clim = self.clim if clim is None else clim
         if self.lut is None or clim is None:
             raise ValueError(f"mode {self.mode!r} has no look-up table")
-        low, high = np.log10(clim) if self.log_scale else clim
+        if self.log_scale:
+            low, high = np.log10(clim) - (np.log10(reference) if reference > 0.0 else 0.0)
+        else:
+            low, high = clim[0] - reference, clim[1] - reference
         span = float(high) - float(low)
         return float(low), float(high), len(self.lut) / span if span > 0.0 else 3.0e38
 

@@ -242,7 +242,7 @@ class VolumeMapper(CutMapper[Options]):
         voxel = self._voxel(int(found.texels["owner"][0]), place)
         light = found.shown.drawn.style.casting.mode == "composite"
         value = self.volume.values[voxel] if light else found.texels["position"][1]
-        return RayHit(voxel, place, float(value))
+        return RayHit(voxel, place, float(value) + self.volume.offset)
 
     def _voxel(self, owner: int, place: npt.NDArray[np.float64]) -> tuple[int, int, int]:
         """Return a pixel's voxel: by its number, or where there are more than 32 bits count the nearest to a place."""
@@ -281,7 +281,7 @@ class VolumeMapper(CutMapper[Options]):
         shown = np.flatnonzero(colours.lut[:, 3] >= FAINTEST * 255.0)
         if not shown.size:
             return SeenThrough(buffer.depth, positions=buffer.position, values=(math.inf, -math.inf))
-        low, high = colours.clim
+        low, high = (end - self.volume.offset for end in colours.clim)
         ends = low + (high - low) * np.array([shown[0], shown[-1] + 1]) / len(colours.lut)
         least = -math.inf if shown[0] == 0 else float(ends[0])
         greatest = math.inf if shown[-1] == len(colours.lut) - 1 else float(ends[1])

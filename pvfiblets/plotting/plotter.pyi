@@ -18,6 +18,7 @@ from pvfiblets.plotting.halos.component import HaloLinesComponent, HaloPointsCom
 from pvfiblets.plotting.halos.component import LineSource as HaloLinesSource, PointSource as HaloPointsSource
 from pvfiblets.plotting.halos.style import Threshold
 from pvfiblets.plotting.picture_component import PictureComponent
+from pvfiblets.plotting.same_names import Preference
 from pvfiblets.plotting.slices.component import SlicesComponent
 from pvfiblets.plotting.slices.component import Source as SlicesSource
 from pvfiblets.plotting.slices.stack import SliceStack
@@ -34,11 +35,12 @@ class _AddFiblets(Protocol):
     def __call__(
         self, source: FibletsSource, *, scalars: str | np.ndarray | pv.ImageData | tuple[Any, Any] | None = None,
         per_point: PerPoint | Iterable[str] = "fit", max_error: float | None = None, progress: bool = False,
-        look: str | None = None, color: ColorLike | None = None, rgb: bool | None = None,
-        cmap: ColormapOptions | pv.LookupTable | None = None, clim: float | Sequence[float] | None = None,
-        n_colors: int = 256, log_scale: bool = False, nan_color: ColorLike | None = None,
-        below_color: ColorLike | None = None, above_color: ColorLike | None = None,
-        annotations: dict[float, str] | None = None, flip_scalars: bool = False, categories: bool = False,
+        preference: Preference = "point", look: str | None = None, color: ColorLike | None = None,
+        rgb: bool | None = None, cmap: ColormapOptions | pv.LookupTable | None = None,
+        clim: float | Sequence[float] | None = None, n_colors: int = 256, log_scale: bool = False,
+        nan_color: ColorLike | None = None, below_color: ColorLike | None = None,
+        above_color: ColorLike | None = None, annotations: dict[float, str] | None = None,
+        flip_scalars: bool = False, categories: bool = False,
         opacity: float | str | Sequence[float] | np.ndarray | None = None, transparency: str | int | None = "all",
         line_width: float | None = None, style: Any = "surface", lighting: bool | None = None,
         pipeline: str = "auto", culling: str | None = "auto", fit: str | None = None, cluster: Any = None,
@@ -57,16 +59,17 @@ class _AddSplineTubes(Protocol):
         self, source: SplineTubesSource, *, radius: float | str | np.ndarray | None = None,
         scalars: str | np.ndarray | None = None, tangents: str | np.ndarray | None = None, method: str = "finite",
         radius_slopes: float | str | np.ndarray | None = None, scalar_slopes: str | np.ndarray | None = None,
-        scaled: bool | None = None, rgb: bool | None = None, color: ColorLike | None = None,
-        cmap: ColormapOptions | pv.LookupTable | None = None, clim: float | Sequence[float] | None = None,
-        n_colors: int = 256, log_scale: bool = False, nan_color: ColorLike | None = None,
-        below_color: ColorLike | None = None, above_color: ColorLike | None = None,
-        annotations: dict[float, str] | None = None, flip_scalars: bool = False,
-        opacity: float | str | Sequence[float] | np.ndarray | None = None, lighting: bool | None = None,
-        min_width: float = 1.0, silhouettes: str = "auto", solver: str = "auto", iterations: int | None = None,
-        culling: str | None = "two-phase", name: str | None = None, label: str | None = None,
-        show_scalar_bar: bool | None = None, scalar_bar_args: dict[str, Any] | None = None, pickable: bool = True,
-        user_matrix: TransformLike | None = None, reset_camera: bool | None = None, render: bool = True,
+        scaled: bool | None = None, rgb: bool | None = None, preference: Preference = "point",
+        color: ColorLike | None = None, cmap: ColormapOptions | pv.LookupTable | None = None,
+        clim: float | Sequence[float] | None = None, n_colors: int = 256, log_scale: bool = False,
+        nan_color: ColorLike | None = None, below_color: ColorLike | None = None,
+        above_color: ColorLike | None = None, annotations: dict[float, str] | None = None,
+        flip_scalars: bool = False, opacity: float | str | Sequence[float] | np.ndarray | None = None,
+        lighting: bool | None = None, min_width: float = 1.0, silhouettes: str = "auto", solver: str = "auto",
+        iterations: int | None = None, culling: str | None = "two-phase", name: str | None = None,
+        label: str | None = None, show_scalar_bar: bool | None = None, scalar_bar_args: dict[str, Any] | None = None,
+        pickable: bool = True, user_matrix: TransformLike | None = None, reset_camera: bool | None = None,
+        render: bool = True,
     ) -> TubeActor: ...
 
 class _SplineTubesComponent(SplineTubesComponent):
@@ -76,8 +79,8 @@ class _SplineTubesComponent(SplineTubesComponent):
 class _AddHaloLines(Protocol):
     def __call__(
         self, source: HaloLinesSource, *, scalars: str | np.ndarray | None = None,
-        filter_by: str | np.ndarray | None = None, rgb: bool | None = None, line_width: float | None = None,
-        strip_width: float | None = None, tapering: bool | tuple[int, float] = True,
+        filter_by: str | np.ndarray | None = None, rgb: bool | None = None, preference: Preference = "point",
+        line_width: float | None = None, strip_width: float | None = None, tapering: bool | tuple[int, float] = True,
         filter_taper: float | None = None, max_displacement: float | None = None,
         displacement: Displacement = "linear", width_cue: float = 0.5, threshold: Threshold = None,
         color: ColorLike | None = None, halo_color: ColorLike | None = None, light_on_dark: bool = False,

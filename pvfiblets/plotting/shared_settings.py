@@ -138,7 +138,8 @@ N_COLORS: Setting[int] = Setting(
 LOG_SCALE: Setting[bool] = Setting(
     False,
     "Whether the colours spread over the logarithm of the values.",
-    argument="Spread the colours over the logarithm of the values.",
+    argument="Spread the colours over the logarithm of the values. Between points the value is interpolated, not its "
+    "logarithm (as VTK does): colour, scalar bar, pick and filter then agree.",
     kind="bool",
     where=COLOURS,
     check=truth,

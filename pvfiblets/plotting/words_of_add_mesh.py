@@ -8,7 +8,6 @@ __all__ = ["why_not"]
 
 _FACETS = "what is drawn has no facets"
 _POINTS = "what is drawn are no points"
-_NAMED = "arrays of points and of lines are found by their names, so no array is meant twice"
 
 _WORDS = {
     "backface_params": f"{_FACETS}, and so no backs",
@@ -25,7 +24,7 @@ _WORDS = {
     "pbr": "set actor.prop.interpolation = 'pbr'",
     "point_shape": _POINTS,
     "point_size": _POINTS,
-    "preference": _NAMED,
+    "preference": "points have no cells whose arrays could be meant",
     "remove_existing_actor": "name='...' replaces the actor of that name",
     "render_points_as_spheres": _POINTS,
     "show_edges": _FACETS,

@@ -17,6 +17,8 @@ from typing import Any, TypeAlias, cast
 import numpy as np
 import numpy.typing as npt
 
+from pvfiblets.value_reference import value_reference
+
 __all__ = ["NodeValues", "SplineTubes"]
 
 Doubles: TypeAlias = npt.NDArray[np.float64]
@@ -64,6 +66,11 @@ class NodeValues:
 
     def __len__(self) -> int:
         return len(self.values)
+
+    @cached_property
+    def reference(self) -> float:
+        """What is subtracted from numbers on the graphics card; 0 of colours."""
+        return 0.0 if self.is_colour else value_reference(self.values)
 
     @property
     def is_colour(self) -> bool:
@@ -200,6 +207,10 @@ class SplineTubes:
     def n_streamlines(self) -> int:
         """The tubes, by the name that mappers ask for."""
         return self.n_tubes
+
+    def value_reference(self, name: Any) -> float:
+        """Return what is subtracted from values on the graphics card."""
+        return self.values[name].reference if name in self.values else 0.0
 
     @property
     def n_points(self) -> int:

@@ -73,7 +73,7 @@ def read_image(path: Path) -> tuple[npt.NDArray[Any], Array, str, bool]:
     from .sources import as_raycast_volume
 
     volume = as_raycast_volume(path)
-    return volume.values, volume.affine, name, False
+    return volume.numbers, volume.affine, name, False
 
 
 def values_of_nibabel(image: Any) -> tuple[npt.NDArray[Any], Array, bool]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -168,6 +168,22 @@ class RaycastOptions:
     def coloured(self) -> bool:
         """Whether what rays find is a colour and an opacity: light, or that of several surfaces."""
         return self.mode == "composite" or self.layered
+
+    def less(self, reference: float) -> RaycastOptions:
+        """Return the same rays through values that are less by a reference."""
+        if not reference:
+            return self
+        transfer = self.transfer
+        if transfer is not None:
+            transfer = replace(transfer, clim=(transfer.clim[0] - reference, transfer.clim[1] - reference))
+        return replace(
+            self,
+            values=tuple(value - reference for value in self.values),
+            transfer=transfer,
+            threshold=self.threshold - reference,
+            low=self.low - reference,
+            high=self.high - reference,
+        )
 
     def step_mm(self, spacing: npt.ArrayLike, shape: tuple[int, int, int]) -> float:
         """Return the length of a step, mm.

@@ -53,7 +53,8 @@ def smoothed(volume: RaycastVolume, sigma: Any, unit: Literal["voxels", "mm"] = 
     if colours is not None:
         channels = [np.rint(gaussian(colours[..., k], deviations)).astype(np.uint8) for k in range(3)]
         colours = np.stack(channels, axis=-1)
-    return RaycastVolume(gaussian(values, deviations), volume.affine, name=volume.name, colours=colours)
+    field = gaussian(values, deviations)
+    return RaycastVolume(field, volume.affine, name=volume.name, colours=colours, offset=volume.offset)
 
 
 def gaussian(values: npt.NDArray[Any], sigma: Any) -> Floats:

@@ -9,6 +9,8 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
+from pvfiblets.value_reference import value_reference
+
 from .smoothing import smoothed
 from .volume import RaycastVolume
 
@@ -106,7 +108,7 @@ def as_raycast_volume(
     if isinstance(source, RaycastVolume):
         volume = source
         if any(part is not None for part in given):
-            values = source.values
+            values = source.numbers
             if source.missing is not None:
                 values = np.where(source.missing, np.float32(np.nan), values)
             place = _placed(source.affine, *given)
@@ -356,9 +358,9 @@ def _nothing(found: list[Any]) -> bool:
     return all(array is None for array in found)
 
 
-def _at_points(cells: npt.NDArray[Any], dims: tuple[int, int, int]) -> npt.NDArray[np.float32]:
-    """The mean of the cells around each point."""
-    values = cells.astype(np.float32)
+def _at_points(cells: npt.NDArray[Any], dims: tuple[int, int, int]) -> npt.NDArray[Any]:
+    """The mean of the cells around each point; as float64 where float32 would lose differences."""
+    values = cells.astype(np.float64 if value_reference(cells) else np.float32)
     for axis in range(3):
         if dims[axis] > 1:
             first, last = values.take([0], axis), values.take([-1], axis)

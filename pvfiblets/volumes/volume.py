@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from pvfiblets.value_reference import relative, value_reference
+
 __all__ = ["FILTERS", "RaycastVolume"]
 
 FILTERS = ("nearest", "trilinear", "tricubic")
@@ -41,8 +43,9 @@ class RaycastVolume:
     ----------
     values : array_like
         ``(nx, ny, nz)`` numbers. uint8, uint16, int16 and float32 are kept as they are, memory maps included; bool
-        becomes uint8, int8 int16, and everything else float32, in which integers beyond 2^24 are rounded. Not to be
-        changed afterwards. NaN counts as the least value and infinities as the nearest finite one: `values` of the
+        becomes uint8, int8 int16, and everything else float32. Of those whose values lie far from 0 for their range,
+        as 1e8 to 1e8 + 100, `offset` is subtracted first: true numbers are `values` plus `offset`. Not to be changed
+        afterwards. NaN counts as the least value and infinities as the nearest finite one: `values` of the
         volume holds those instead (a copy, where there are any), so that they are all finite.
     affine : array_like, optional
         ``(4, 4)`` voxel indices, whole at the voxels' centres as in NIfTI, to mm; may be oblique. Default: identity.
@@ -50,6 +53,8 @@ class RaycastVolume:
         Of the numbers, for people.
     colours : numpy.ndarray, optional
         ``(nx, ny, nz, 3)`` uint8, the voxels' own RGB: `values` are then alpha, and light has these colours.
+    offset : float, default: 0.0
+        What `values` are less than the true numbers by; of values that are stored as they are, as was given.
 
     Raises
     ------
@@ -63,11 +68,12 @@ class RaycastVolume:
     affine: Array = None  # type: ignore[assignment]
     name: str = field(default="values", kw_only=True)
     colours: npt.NDArray[np.uint8] | None = field(default=None, kw_only=True)
+    offset: float = field(default=0.0, kw_only=True)
     inverse: Array = field(init=False, repr=False)  # (4, 4) mm to voxel indices
     missing: npt.NDArray[np.bool_] | None = field(init=False, repr=False)  # (nx, ny, nz) where NaN was; None: nowhere
 
     def __post_init__(self) -> None:
-        values = _checked_values(self.values)
+        values, offset = _checked_values(self.values)
         affine, inverse = _checked_affine(self.affine)
         values, missing = _finite(values)
         if self.colours is not None and (
@@ -78,6 +84,7 @@ class RaycastVolume:
                 f"{(*values.shape, 3)} and uint8"
             )
         object.__setattr__(self, "values", values)
+        object.__setattr__(self, "offset", self.offset + offset)
         object.__setattr__(self, "missing", missing)
         object.__setattr__(self, "affine", affine)
         object.__setattr__(self, "inverse", inverse)
@@ -120,13 +127,24 @@ class RaycastVolume:
 
     @cached_property
     def value_range(self) -> tuple[float, float]:
-        """Least and greatest finite value; (0, 0) where there is none."""
-        return _range(self.values)
+        """Least and greatest finite number, `offset` included; (0, 0) where there is none."""
+        low, high = _range(self.values)
+        return low + self.offset, high + self.offset
+
+    @property
+    def numbers(self) -> npt.NDArray[Any]:
+        """``(nx, ny, nz)`` true numbers: `values`, or a float64 copy plus `offset`."""
+        return self.values.astype(np.float64) + self.offset if self.offset else self.values
+
+    def value_reference(self, name: Any = None) -> float:  # noqa: ARG002 - of other drawables
+        """Return `offset`: the number to subtract from values on the graphics card."""
+        return self.offset
 
     @cached_property
     def least_positive(self) -> float:
         """Least value above 0, where a logarithmic scale may begin; 1e-6 where there is none."""
-        found = [float(slab[slab > 0].min()) for slab in _slabs(self.values) if (slab > 0).any()]
+        least = -self.offset
+        found = [float(slab[slab > least].min()) + self.offset for slab in _slabs(self.values) if (slab > least).any()]
         return min(found, default=1e-6)
 
     @cached_property
@@ -148,8 +166,8 @@ class RaycastVolume:
         return (*x, *y, *z)
 
 
-def _checked_values(given: Any) -> npt.NDArray[Any]:
-    """Numbers of a type that is kept, on three axes; still with NaN and infinities."""
+def _checked_values(given: Any) -> tuple[npt.NDArray[Any], float]:
+    """Numbers of a type that is kept, on three axes, and what was subtracted; still with NaN and infinities."""
     values = np.asarray(given)  # of a memory map still only a view
     if values.dtype.names is not None:
         what = ", ".join(values.dtype.names)
@@ -168,26 +186,22 @@ def _checked_values(given: Any) -> npt.NDArray[Any]:
         )
     native = values.dtype.newbyteorder("=")
     if native.type in KEPT:
-        return values.astype(native, copy=False)
+        return values.astype(native, copy=False), 0.0
     if native.str[1:] in WIDENED:
-        return values.astype(WIDENED[native.str[1:]])
+        return values.astype(WIDENED[native.str[1:]]), 0.0
     return _as_floats(values)
 
 
-def _as_floats(values: npt.NDArray[Any]) -> npt.NDArray[np.float32]:
-    """Wider numbers as float32, if it can hold them."""
+def _as_floats(values: npt.NDArray[Any]) -> tuple[npt.NDArray[np.float32], float]:
+    """Wider numbers less an offset as float32, if it can hold them, and the offset."""
+    offset = value_reference(values)
     with np.errstate(over="ignore", under="ignore"):
-        floats = values.astype(np.float32)
+        floats = (relative(values, offset) if offset else values).astype(np.float32)
     low, high = _range(values)
     limit = float(np.finfo(np.float32).max)
     if not -limit <= low <= high <= limit:
         raise ValueError(f"the volume's values run from {low:g} to {high:g}, beyond float32's {limit:g}: scale them")
-    if low < high and np.float32(low) == np.float32(high):
-        raise ValueError(
-            f"the volume's values run from {low!r} to {high!r}, which float32 cannot tell apart: subtract their mean "
-            "or scale them"
-        )
-    return floats
+    return floats, offset
 
 
 def _finite(values: npt.NDArray[Any]) -> tuple[npt.NDArray[Any], npt.NDArray[np.bool_] | None]:

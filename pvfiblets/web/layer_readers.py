@@ -75,7 +75,7 @@ def read_colours(place: Path) -> Any:
     if place.name.lower().endswith(VTK_SUFFIXES):
         return as_volume(read_vtk(place))
     volume = as_raycast_volume(place)
-    return VolumeSource(volume.values, volume.affine, name=place.name.partition(".")[0])
+    return VolumeSource(volume.numbers, volume.affine, name=place.name.partition(".")[0])
 
 
 def volume_facts(volume: Any) -> dict[str, Any]:

@@ -127,7 +127,7 @@ def _window(volume: Any) -> tuple[float, float] | None:
     flat = volume.values.ravel(order="K")
     if len(np.unique(flat[:: max(1, flat.size // SAMPLED)])) <= FEW:
         return None
-    low, high = window_of(volume.values, *PERCENTILES)
+    low, high = window_of(volume.numbers, *PERCENTILES)
     return (low, high) if volume.value_range[0] < high else None
 
 

@@ -136,6 +136,13 @@ def test_numbers_of_numpy_are_numbers():
     assert Tone(gamma=np.float32(2), exposure=np.int64(2)).uniforms()["gamma"] == 2.0
 
 
+@pytest.mark.parametrize("operator", OPERATORS)
+@pytest.mark.parametrize("exposure", [1e20, 1e39])
+def test_no_exposure_turns_white_black(film, operator, exposure):
+    before = np.full((1, 1, 4), 255, np.uint8)
+    assert (film(before).shown(tone=Tone(operator=operator, exposure=exposure)) >= 254).all()
+
+
 # Depth of field
 
 

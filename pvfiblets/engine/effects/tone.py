@@ -14,6 +14,8 @@ OPERATORS = ("none", "reinhard", "exponential", "aces", "hable")
 _WHITE = {"hable": 11.2}
 """What becomes white where nothing else is asked for; of the other operators, the brightest that was drawn."""
 
+_BRIGHTEST = 1e4
+
 
 @dataclass(frozen=True)
 class Tone:
@@ -77,7 +79,9 @@ class Tone:
         """Return what ``shaders/effects/picture/tone.glsl`` asks for."""
         white = _WHITE.get(self.operator, self.exposure) if self.white is None else self.white
         names = ("exposure", "brightness", "contrast", "gamma")
-        return {"white": float(white)} | {name: float(getattr(self, name)) for name in names}
+        given = {name: float(getattr(self, name)) for name in names}
+        # Beyond, float32 knows infinity only, and infinity over infinity is black.
+        return given | {"exposure": min(self.exposure, 1e30), "white": min(white, _BRIGHTEST), "brightest": _BRIGHTEST}
 
 
 def is_number(value: object) -> bool:

@@ -129,7 +129,8 @@ class HaloRenderer(HitDrawable[HaloDrawStyle]):
         filtered = vertices.show_filter(look.filter_by)
         vertices.show_mask(look.n_tapered, look.t_tapered)
         target = self._hit_target(view.size, coloured=reads == "HALO_COLOURS", edges=style.edges)
-        planes, beside = self._blocks.write(view, look, self._n, style.drawn_width)
+        reference = self._drawn.value_reference(look.filter_by)
+        planes, beside = self._blocks.write(view, look, self._n, style.drawn_width, reference)
         wanted = {
             "HALO_TAPER": look.n_tapered > 0 and not self._kind,
             "HALO_CUE": look.width_cue > 0.0,

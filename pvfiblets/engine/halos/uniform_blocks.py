@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...halos.style import DISPLACEMENTS, TABLE_SIZE, HaloStyle
+from ...value_reference import relative
 from ..bindings import BLOCKS
 from ..clipping import CLIP_PLANES_BLOCK, clip_planes_block
 from ..frame import FRAME_BLOCK, frame_block, local_frame
@@ -82,7 +83,9 @@ class HaloBlocks:
         self._corners = np.array([np.where(pick, high, low) for pick in np.ndindex(2, 2, 2)])
         self.buffers: dict[str, moderngl.Buffer] = {}
 
-    def write(self, view: View, look: HaloStyle, n_items: int, drawn_width: float) -> tuple[bool, bool]:
+    def write(
+        self, view: View, look: HaloStyle, n_items: int, drawn_width: float, reference: float
+    ) -> tuple[bool, bool]:
         """Bring all up to date and bind them.
 
         Parameters
@@ -92,6 +95,8 @@ class HaloBlocks:
         n_items : int
         drawn_width : float
             Pixels that a line is drawn with at least, ``look.min_width`` or more.
+        reference : float
+            What the numbers that filter are less by.
 
         Returns
         -------
@@ -101,7 +106,7 @@ class HaloBlocks:
             Whether anything may lie before the near plane, beyond the far one or far beside the picture.
         """
         self._put("frame", FRAME_BLOCK, frame_block(view, Style(), *self._place)[0])
-        self._put("halos", HALOS_BLOCK, self._block(view, look, n_items, drawn_width))
+        self._put("halos", HALOS_BLOCK, self._block(view, look, n_items, drawn_width, reference))
         planes = clip_planes_block(view, 0.0, *self._place, 0.0)
         if planes is not None:
             self._put("clip_planes", CLIP_PLANES_BLOCK, planes)
@@ -114,7 +119,7 @@ class HaloBlocks:
         inside = (np.abs(z) < w) & (np.maximum(np.abs(x), np.abs(y)) < BESIDE * w)
         return not inside.all()
 
-    def _block(self, view: View, look: HaloStyle, n_items: int, drawn_width: float) -> bytes:
+    def _block(self, view: View, look: HaloStyle, n_items: int, drawn_width: float, reference: float) -> bytes:
         _, to_data, (x, y, z, w) = local_frame(view, *self._place)
         half_size = np.array(view.size) / 2.0
         axis, scale_of_w, perspective = _axis(z, w)
@@ -127,7 +132,7 @@ class HaloBlocks:
             swing = max(bend, 0.0) * scale_of_w
         else:
             per_mm = float(np.linalg.norm(z[:3])) / 2.0 / abs(w[3] or 1.0)
-        low, high = np.clip((look.low, look.high), -MOST, MOST)
+        low, high = np.clip(relative((look.low, look.high), reference), -MOST, MOST)
         f = look.displacement
         table = np.zeros(TABLE_SIZE)
         if not isinstance(f, str):

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...halos.geometry import HaloLines, HaloPoints
+from ...value_reference import relative
 from ..bindings import HALOS
 from ..errors import EngineError
 from ..lattice import lattice, places
@@ -83,14 +84,14 @@ class Vertices:
 
     def show_filter(self, name: str | None) -> bool:
         """Have the numbers that filter, and no others; say whether there are."""
-        return self._show("filter_texels", None if name is None else self._values(name, 1), MOST)
+        return self._show("filter_texels", None if name is None else self._values(name, 1), name, MOST)
 
     def show_values(self, name: Any) -> str | None:
         """Have the numbers or colours that show, and no others; return the feature that reads them."""
         values = None if name is None else self._values(name, 2)
         coloured = values is not None and values.ndim == 2
-        self._show("colour_texels", values if coloured else None)
-        self._show("value_texels", None if coloured else values)
+        self._show("colour_texels", values if coloured else None, name)
+        self._show("value_texels", None if coloured else values, name)
         if values is None:
             return None
         return "HALO_COLOURS" if coloured else "HALO_VALUES"
@@ -103,14 +104,15 @@ class Vertices:
             raise EngineError(f"values {name!r} are colours, and cannot filter; give numbers")
         return known[name]
 
-    def _show(self, sampler: str, values: npt.NDArray[Any] | None, most: float = np.inf) -> bool:
+    def _show(self, sampler: str, values: npt.NDArray[Any] | None, name: Any, most: float = np.inf) -> bool:
         if values is None:
             self._drop(sampler)
         elif self.n_items and self._holds.get(sampler) is not values:
             if values.ndim == 2:
                 self._put(sampler, "r32ui", _packed(values), values)
             else:
-                self._put(sampler, "r32f", _singles(values, most), values)
+                reference = self._drawn.value_reference(name)
+                self._put(sampler, "r32f", _singles(values, reference, most), values)
         return values is not None
 
     def _put(self, sampler: str, texel: str, data: npt.NDArray[Any], holds: object) -> None:
@@ -188,11 +190,11 @@ def mask_places(offsets: npt.NDArray[np.int64], n_tapered: int, t_tapered: float
     return places
 
 
-def _singles(numbers: npt.NDArray[Any], most: float) -> npt.NDArray[np.float32]:
-    """As float32, none beyond +-most; what is finite and larger than float32 holds becomes its largest."""
-    if numbers.dtype == np.float32 and most == np.inf:
+def _singles(numbers: npt.NDArray[Any], reference: float, most: float) -> npt.NDArray[np.float32]:
+    """Less the reference as float32, none beyond +-most; what float32 does not hold becomes its largest."""
+    if numbers.dtype == np.float32 and most == np.inf and not reference:
         return np.asarray(numbers, "<f4")
-    wide = np.clip(numbers.astype(np.float64), -most, most)
+    wide = np.clip(relative(numbers, reference), -most, most)
     return np.where(np.isfinite(wide), np.clip(wide, -_LARGEST, _LARGEST), wide).astype("<f4")
 
 

@@ -13,6 +13,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
+from ...value_reference import relative
 from ..bindings import TUBES
 from ..errors import EngineError
 from ..lattice import lattice, places
@@ -106,7 +107,7 @@ class Nodes:
             self._shown = None
             if values is not None and self._tubes.n_segments:
                 numbers = values.values.ndim == 1
-                data = _singles(np.stack([values.values, values.slopes], axis=1))
+                data = _singles(np.stack([relative(values.values, values.reference), values.slopes], axis=1))
                 if numbers:
                     self._put("value_texels", "values", "rg32f", data)
                 else:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import moderngl
@@ -78,11 +78,11 @@ class VolumeStyle(Style):
 class VolumeRenderer(Drawable[VolumeStyle]):
     """Casts rays through one volume; a view's region cuts in all modes, and rays end at what is outside.
 
-    In its `GBuffer` ``owner`` holds the nearest voxel of what shows, counted along the first axis first; ``position``
-    the place along the ray (mm) and the value; ``across`` normals of surfaces; ``colours`` those of ``'composite'``.
-    `explain` also says ``voxels_total``; ``nodes`` of the octree; ``skipped``, the share of its leaves in which there
-    is nothing to see; and ``octree``, what it costs: ``bytes``, their ``share`` of the volume's, and the ``ms`` that
-    building it took, all 0 while there is none.
+    In its `GBuffer` ``owner`` holds the nearest voxel of what shows, counted along the first axis first;
+    ``position`` the place along the ray (mm) and the value less the volume's ``offset``; ``across`` normals of
+    surfaces; ``colours`` those of ``'composite'``. `explain` also says ``voxels_total``; ``nodes`` of the octree;
+    ``skipped``, the share of its leaves in which there is nothing to see; and ``octree``, what it costs: ``bytes``,
+    their ``share`` of the volume's, and the ``ms`` that building it took, all 0 while there is none.
 
     Parameters
     ----------
@@ -112,7 +112,10 @@ class VolumeRenderer(Drawable[VolumeStyle]):
 
     def __init__(self, ctx: moderngl.Context, volume: RaycastVolume) -> None:
         super().__init__(ctx, CONSTANTS)
-        self._volume = volume
+        # Values on the card are less by the volume's offset; so is all that is compared with them.
+        self._offset = volume.offset
+        self._volume = volume = replace(volume, offset=0.0) if volume.offset else volume
+        self._shifted: tuple[RaycastOptions, RaycastOptions] | None = None
         self._shading: Shading | None = None
         self._clim: tuple[float, float] = (0.0, 1.0)
         self._surfaces: tuple[tuple[float, ...], ...] | None = None
@@ -128,6 +131,10 @@ class VolumeRenderer(Drawable[VolumeStyle]):
             self._cuts = self._keep(VolumeRegionIntervals(ctx, self._gl, self._programs, volume))
 
     def _draw(self, view: View, style: VolumeStyle, outside: moderngl.Texture | None) -> GBuffer:
+        if self._offset:
+            if self._shifted is None or self._shifted[0] is not style.casting:
+                self._shifted = style.casting, style.casting.less(self._offset)
+            style = replace(style, casting=self._shifted[1])
         casting = style.casting
         self._nodes.make(casting)
         self._clim = self._volume.value_range if casting.transfer is None else casting.transfer.clim

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from pvfiblets.engine.capabilities import PipelineTable
     from pvfiblets.plotting.fiblets.actor import FibletActor
     from pvfiblets.plotting.notebook_view import PageView
+    from pvfiblets.plotting.same_names import Preference
     from pvfiblets.streamlines import Streamlines
 
     Source: TypeAlias = str | PathLike[str] | FibletSet | Streamlines | pv.PolyData | list[Any]
@@ -72,6 +73,7 @@ class FibletsComponent(ActorRegistry["FibletActor"], Picking, Widgets):
         per_point: PerPoint | Iterable[str] = "fit",
         max_error: float | None = None,
         progress: bool = False,
+        preference: Preference = "point",
         **options: Any,
     ) -> FibletActor:
         """Add streamlines to the scene, compressed.
@@ -107,6 +109,9 @@ class FibletsComponent(ActorRegistry["FibletActor"], Picking, Widgets):
             Greatest distance (mm) of a drawn from a given point; by default as :func:`pvfiblets.compress` has it.
         progress : bool, default: False
             Show a progress bar while reading, compressing, and copying to the GPU.
+        preference : {'point', 'cell'}, default: 'point'
+            Which array a name means that both points and lines (cells) have, here and in criteria; the other is
+            called ``"NAME (line)"`` or ``"NAME (point)"``.
         **options
             Further arguments of :func:`pvfiblets.codec.compress`, such as ``step`` or ``effort``.
 
@@ -139,7 +144,7 @@ class FibletsComponent(ActorRegistry["FibletActor"], Picking, Widgets):
         EngineOptions(**settings.at(OPTIONS))  # what is wrong with them is said before the slow part
         fiblets, scalars = as_fiblets(
             source, scalars=scalars, per_point=per_point, max_error=max_error, progress=progress,
-            rgb=settings["rgb"], opacity=settings["opacity"], **options,
+            rgb=settings["rgb"], opacity=settings["opacity"], preference=preference, **options,
         )  # fmt: skip
         return FibletActor(
             fiblets, scalars=scalars, settings=settings, theme=self._plotter.theme, progress=progress

@@ -102,7 +102,9 @@ class Scalars:
         """The range, or one of which equal values that differ by rounding all have the first colour."""
         low, high = self.range
         with np.errstate(over="ignore"):
-            stored_single = bool(np.float32(low) == low and np.float32(high) == high)
+            # Compared as Python floats: NumPy would round the other side to float32.
+            stored_single = float(np.float32(low)) == low and float(np.float32(high)) == high
+            stored_single &= not (float(low).is_integer() and float(high).is_integer())
         relative = 2.0 * float(np.finfo(np.float32).eps) if stored_single else 64.0 * float(np.finfo(np.float64).eps)
         if high - low <= max(self.rounding, relative * max(abs(low), abs(high))):
             high = low + 1000.0 * (high - low)
@@ -155,7 +157,7 @@ def find_scalars(
         to; ``None`` means orientation.
     rgb : bool, optional
         Whether 3 or 4 columns are colours, or vectors to be mapped by their magnitude; by default
-        colours where they are uint8, or floats from 0 to 1.
+        colours where they are uint8, or floats from 0 to 1. Other integers are vectors.
 
     Returns
     -------
@@ -259,7 +261,9 @@ def are_colours(values: np.ndarray, rgb: bool | None) -> bool:
         return False
     if rgb or values.dtype == np.uint8:
         return True
-    return values.dtype.kind == "f" and (not values.size or bool(np.nanmin(values) >= 0.0 and np.nanmax(values) <= 1.0))
+    if values.dtype.kind != "f":
+        return False
+    return not values.size or bool(np.nanmin(values) >= 0.0 and np.nanmax(values) <= 1.0)
 
 
 def magnitudes(values: np.ndarray) -> np.ndarray:

@@ -22,6 +22,7 @@ from pvfiblets.lines import refuse_words, rows_of
 from pvfiblets.other_libraries import EXPECTED, streamlines_of
 from pvfiblets.plotting.fiblets.scalars import UNNAMED, are_colours, magnitudes, refuse_unknown
 from pvfiblets.plotting.fiblets.volume_sources import as_volume
+from pvfiblets.plotting.same_names import Preference, with_preference
 from pvfiblets.query.measures import Distance, measure
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.summary import warn_of_losses
@@ -42,6 +43,7 @@ def as_fiblets(
     progress: bool = False,
     rgb: bool | None = None,
     opacity: Any = None,
+    preference: Preference = "point",
     **options: Any,
 ) -> tuple[FibletSet, Colours]:
     """Compress ``source`` unless it is compressed already.
@@ -66,6 +68,8 @@ def as_fiblets(
         :func:`~pvfiblets.plotting.fiblets.scalars.find_scalars`.
     opacity : Any
         If this names per-point data of ``source``, that is kept.
+    preference : {'point', 'cell'}
+        As :func:`~pvfiblets.plotting.same_names.with_preference` has it.
     **options
         Further arguments of :func:`pvfiblets.codec.compress`.
 
@@ -97,8 +101,8 @@ def as_fiblets(
             raise ValueError(
                 f"{given} cannot be applied: the source is compressed already. Give it where the source is compressed"
             )
-        return with_point_values(source, scalars, rgb)
-    streamlines = as_streamlines(source)
+        return with_point_values(with_preference(source, preference), scalars, rgb)
+    streamlines = with_preference(as_streamlines(source), preference)
     _warn_of_nothing(streamlines)
     from pvfiblets.codec.compress import choose_per_point, compress  # what is compressed already needs no compiler
 

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.halos import HaloLines, HaloPoints
     from pvfiblets.plotting.halos.actors import HaloLineActor, HaloPointActor
+    from pvfiblets.plotting.same_names import Preference
     from pvfiblets.streamlines import Streamlines
 
     Lines: TypeAlias = pv.PolyData | Streamlines | FibletSet | HaloLines | np.ndarray | list[Any] | tuple[Any, Any]
@@ -62,6 +63,7 @@ class HaloLinesComponent(Printing, ActorRegistry["HaloLineActor"]):
         scalars: str | np.ndarray | None = None,
         filter_by: str | np.ndarray | None = None,
         rgb: bool | None = None,
+        preference: Preference = "point",
     ) -> HaloLineActor:
         """Add lines with depth-dependent halos to the scene.
 
@@ -86,6 +88,9 @@ class HaloLinesComponent(Printing, ActorRegistry["HaloLineActor"]):
         rgb : bool, optional
             Whether ``scalars`` of three or four columns are colours, or vectors to be mapped by their magnitude. By
             default those of uint8 are, and those whose name ends in ``"_rgb"`` or ``"_rgba"``.
+        preference : {'point', 'cell'}, default: 'point'
+            Which array a name means that both points and lines (cells) have; the other is called ``"NAME (line)"`` or
+            ``"NAME (point)"``.
 
         Returns
         -------
@@ -131,7 +136,7 @@ class HaloLinesComponent(Printing, ActorRegistry["HaloLineActor"]):
         HaloOptions(**settings.at(OPTIONS))  # what is wrong with them is said before the slow part
         if scalars is None:
             scalars = active_scalars(source, settings["color"], rgb)
-        held = as_lines(source, scalars=scalars, rgb=rgb, filter_by=filter_by)
+        held = as_lines(source, scalars=scalars, rgb=rgb, filter_by=filter_by, preference=preference)
         if not getattr(held.drawn, "n_segments", 0):
             warnings.warn("the source holds no lines: nothing is drawn", UserWarning, stacklevel=5)
         actor = HaloLineActor(held, settings=settings, theme=self._plotter.theme)

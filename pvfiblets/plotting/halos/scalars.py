@@ -14,6 +14,7 @@ from pvfiblets.halos import HaloLines, HaloPoints
 from pvfiblets.halos.build import FILTER, SCALARS, as_halo_lines, as_halo_points
 from pvfiblets.lines import told_lines, with_values
 from pvfiblets.plotting.fiblets.scalars import ORIENTATION, UNNAMED, Scalars, are_colours, of_streamlines
+from pvfiblets.plotting.same_names import Preference, with_preference
 
 ARC_LENGTH, LENGTH = "arc_length", "length"
 BUILT_IN = (ORIENTATION, ARC_LENGTH, LENGTH)
@@ -44,7 +45,14 @@ class Held:
     line_values: Mapping[str, Any] = field(default_factory=dict)
 
 
-def as_lines(source: Any, *, scalars: Any = None, rgb: bool | None = None, filter_by: Any = None) -> Held:
+def as_lines(
+    source: Any,
+    *,
+    scalars: Any = None,
+    rgb: bool | None = None,
+    filter_by: Any = None,
+    preference: Preference = "point",
+) -> Held:
     """Return the lines that a source means, and what colours and filters them.
 
     Parameters
@@ -56,6 +64,8 @@ def as_lines(source: Any, *, scalars: Any = None, rgb: bool | None = None, filte
         (:mod:`pvfiblets.formats.attachments`).
     rgb : bool, optional
         Whether three or four columns are colours; see :func:`pvfiblets.lines.numbers_or_colours`.
+    preference : {'point', 'cell'}
+        As :func:`~pvfiblets.plotting.same_names.with_preference` has it.
 
     Returns
     -------
@@ -63,7 +73,7 @@ def as_lines(source: Any, *, scalars: Any = None, rgb: bool | None = None, filte
     """
     if isinstance(source, HaloLines):
         return filtered(coloured(Held(source), scalars, rgb=rgb), filter_by)
-    source = _read_lines(source)
+    source = with_preference(_read_lines(source), preference)
     if is_values_file(scalars, source):
         source, scalars = with_values(source, scalars)
     if is_values_file(filter_by, source):

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from os import PathLike
 
     from pvfiblets.codec.fibletset import FibletSet
+    from pvfiblets.plotting.same_names import Preference
     from pvfiblets.plotting.tubes.actor import TubeActor
     from pvfiblets.streamlines import Streamlines
     from pvfiblets.tubes.spline_tubes import SplineTubes
@@ -65,6 +66,7 @@ class SplineTubesComponent(ActorRegistry["TubeActor"]):
         scalar_slopes: str | np.ndarray | None = None,
         scaled: bool | None = None,
         rgb: bool | None = None,
+        preference: Preference = "point",
     ) -> TubeActor:
         """Add tubes of varying radius around Hermite splines to the scene.
 
@@ -86,6 +88,9 @@ class SplineTubesComponent(ActorRegistry["TubeActor"]):
             ``"length"``, or ``"orientation"`` (the absolute value of the direction as red, green,
             blue); an array with one number or one colour (3 or 4 columns; floats with ``rgb``)
             per point or per line; or a file of numbers: ``.tsf``, ``.npy``, ``.txt``, ``.csv``.
+        preference : {'point', 'cell'}, default: 'point'
+            Which array a name means that both points and lines (cells) have, here and in criteria; the other is
+            called ``"NAME (line)"`` or ``"NAME (point)"``.
         tangents : str or array, optional
             ``(n_points, 3)`` derivatives of the positions, or the name of such point data. By
             default they are found from the points.
@@ -151,6 +156,7 @@ class SplineTubesComponent(ActorRegistry["TubeActor"]):
             source,
             scalars=scalars,
             rgb=rgb,
+            preference=preference,
             radius=radius,
             tangents=tangents,
             method=method,

@@ -11,6 +11,7 @@ import numpy as np
 from pvfiblets.formats.attachments import is_values_file
 from pvfiblets.lines import are_words, refuse_words, rows_of, told_lines, with_values
 from pvfiblets.plotting.fiblets.scalars import ORIENTATION, UNNAMED, Scalars, are_colours, magnitudes, of_streamlines
+from pvfiblets.plotting.same_names import Preference, with_preference
 from pvfiblets.tubes.build import as_spline_tubes
 from pvfiblets.tubes.curves import controls, derivative
 from pvfiblets.tubes.spline_tubes import NodeValues, SplineTubes
@@ -23,7 +24,9 @@ _BLOCK = 1 << 15  # segments measured at a time
 _GAUSS = ((0.5 - 0.15**0.5, 5 / 18), (0.5, 4 / 9), (0.5 + 0.15**0.5, 5 / 18))
 
 
-def as_tubes(source: Any, *, scalars: Any = None, rgb: bool | None = None, **shape: Any) -> tuple[SplineTubes, Any]:
+def as_tubes(
+    source: Any, *, scalars: Any = None, rgb: bool | None = None, preference: Preference = "point", **shape: Any
+) -> tuple[SplineTubes, Any]:
     """Return the tubes that a source means, and what colours them.
 
     Parameters
@@ -35,6 +38,8 @@ def as_tubes(source: Any, *, scalars: Any = None, rgb: bool | None = None, **sha
         (:mod:`pvfiblets.formats.attachments`).
     rgb : bool, optional
         Whether three or four columns are colours; see :func:`pvfiblets.lines.numbers_or_colours`.
+    preference : {'point', 'cell'}
+        As :func:`~pvfiblets.plotting.same_names.with_preference` has it.
     **shape
         Further arguments of ``as_spline_tubes``.
 
@@ -47,7 +52,7 @@ def as_tubes(source: Any, *, scalars: Any = None, rgb: bool | None = None, **sha
     """
     if isinstance(source, SplineTubes):
         return with_node_values(as_spline_tubes(source, **shape), scalars, rgb=rgb)
-    source = _read(source)
+    source = with_preference(_read(source), preference)
     if is_values_file(scalars, source):
         source, scalars = with_values(source, scalars)
     if isinstance(scalars, str) and not _has(source, scalars):

@@ -19,6 +19,7 @@ uniform float white;
 uniform float brightness;
 uniform float contrast;
 uniform float gamma;
+uniform float brightest;                    // white by every operator
 
 #if FEATURE_TONE_HABLE
 vec3 film(vec3 x)
@@ -29,7 +30,7 @@ vec3 film(vec3 x)
 
 vec4 toned(vec4 colour)
 {
-    vec3 x = exposure * colour.rgb;
+    vec3 x = min(exposure * colour.rgb, brightest);      // so that squares stay below infinity
 #if FEATURE_TONE_REINHARD
     x = x * (1.0 + x / (white * white)) / (1.0 + x);
 #elif FEATURE_TONE_EXPONENTIAL
