@@ -240,7 +240,8 @@ def _candidates(
     """Fiblets that may be hit, and the region if it must be asked for each of their places."""
     p, low = fiblets.parameters, fiblets.anchors_low
     lower = np.zeros((1, 3), np.uint16) if low is None else low
-    arrays = tuple(map(fixed, (fiblets.anchors, lower, fiblets.reach, fiblets.ends, fiblets.pages[:, 0])))
+    held = fiblets.anchors, lower, fiblets.reach, fiblets.ends, fiblets.pages[:, 0]
+    arrays = tuple(fixed(array) for array in held)
     largest = max(float(np.abs(fiblets.origin).max(initial=0.0)), float(np.abs(fiblets.bounds).max(initial=0.0)))
     slack = 64.0 * float(np.spacing(largest)) if np.isfinite(largest) else 0.0
     scale = np.array(p.anchor_scale, np.float64)

@@ -302,7 +302,6 @@ def held():
         (BALL, {"affine": "there"}, ValueError, "affine='there'; expected "),
         (BALL * np.float32(1e-42), {}, ValueError, "a range that float32, in which rays are cast, cannot compute with"),
         (np.where(BALL > 5, 3e38, -3e38), {}, ValueError, r"run from -3e\+38 to 3e\+38, a range that"),
-        (BALL.astype(float) + 1e12, {}, ValueError, "which float32 cannot tell apart"),
         (BALL.astype("M8[s]"), {}, ValueError, "of type datetime64"),
         (BALL.astype(object), {}, ValueError, "of type object"),
         ([[[1, 2], [3]], [[1, 2], [3, 4]]], {}, ValueError, "rows are of unlike lengths"),
