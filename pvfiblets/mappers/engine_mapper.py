@@ -210,8 +210,11 @@ class EngineMapper(Attached, Readable, Connected, Questions, vtkOpenGLPolyDataMa
     def raise_pending(self) -> None:
         """Raise the exception of the last draw, if there was one, once."""
         error, self._error = self._error, None
-        if error is not None:
-            raise error
+        try:
+            if error is not None:
+                raise error
+        finally:
+            del error  # held here it would keep itself, and VTK's objects in its frames, for Python's collector
 
     def _update(self, program: Any) -> None:
         """Answer VTK's ``UpdateShaderEvent``: G-buffer, textures and uniforms for this draw."""

@@ -255,8 +255,11 @@ class Picture:
     def raise_pending(self) -> None:
         """Raise the exception of the last draw, if there was one, once."""
         error, self._error = self._error, None
-        if error is not None:
-            raise error
+        try:
+            if error is not None:
+                raise error
+        finally:
+            del error  # held here it would keep itself, and VTK's objects in its frames, for Python's collector
 
     def explain(self) -> dict[str, Any]:
         """Return what the effects cost: ``buffers``, name and bytes of what they keep on the GPU."""

@@ -354,9 +354,11 @@ def test_a_refused_change_leaves_the_actor_as_it_was(plotter, three_lines):
         actor.scalars = "nothing"
     with pytest.raises(ValueError, match="n_colors"):
         actor.n_colors = -1
+    with pytest.raises(ValueError, match="above zero"):
+        actor.log_scale = True
     with pytest.raises(AttributeError):
         actor.colour = "red"
-    assert (actor.clim, actor.scalars) == ((0, 50), "weight")
+    assert (actor.clim, actor.scalars, actor.log_scale) == ((0, 50), "weight", False)
     np.testing.assert_array_equal(shot(plotter), before)
 
 
