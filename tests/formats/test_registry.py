@@ -161,6 +161,7 @@ def test_the_rest_of_a_header_goes_through_a_mesh(tmp_path):
         formats.write(tmp_path / "a.trk", back)
 
 
+@pytest.mark.filterwarnings("ignore:.*have no points")
 @pytest.mark.parametrize("suffix", [".tck", ".trk"])
 @given(counts=st.lists(st.integers(0, 5), max_size=8), max_points=st.integers(1, 9))
 def test_round_trip_and_pieces(tmp_path_factory, suffix, counts, max_points):

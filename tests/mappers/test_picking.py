@@ -105,7 +105,7 @@ def test_picking_leaves_no_error_when_vtk_has_other_framebuffers(make_plotter, l
     plotter = make_plotter()
     plotter.add_actor(actor)
     tools.picture(plotter, mapper)
-    (context,) = windows._contexts.values()
+    context = windows.context_of(plotter.render_window)
     if change == "size":
         plotter.window_size = (310, 170)
     elif change == "multisampling":

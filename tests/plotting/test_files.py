@@ -263,6 +263,7 @@ def with_outlier(value):
 
 
 @pytest.mark.few(5)
+@pytest.mark.filterwarnings("ignore:most points lie within")  # which an outlier moves
 @pytest.mark.parametrize("add", ADDS)
 @pytest.mark.parametrize("lines", [brain(1e30), with_outlier(-1e30), brain(1e18)], ids=["1e30", "outlier", "1e18"])
 def test_coordinates_beyond_the_cameras_reach_are_named_once(plotter, add, lines):
@@ -270,9 +271,9 @@ def test_coordinates_beyond_the_cameras_reach_are_named_once(plotter, add, lines
     with pytest.warns(UserWarning, match="check the units, leave outliers out, or scale the points") as said:
         getattr(plotter, add)(lines)
     plotter.screenshot()  # warns of nothing more
-    assert len(said) == 1
-    assert said[0].filename == __file__
-    named = float(str(said[0].message).split()[2])
+    (beyond,) = [warning for warning in said if "most points lie within" not in str(warning.message)]
+    assert beyond.filename == __file__
+    named = float(str(beyond.message).split()[2])
     assert reach * 0.99 <= named <= reach * 1.05  # tubes and lines have a width
 
 

@@ -179,6 +179,7 @@ def test_bad_input_is_one_sentence(streamlines, atlas, changes, message):
         connectome(streamlines, (np.zeros((4, 4, 4), int), np.eye(4)))
 
 
+@pytest.mark.filterwarnings("ignore:.*have no points")
 def test_the_command_writes_every_kind_of_matrix(streamlines, atlas, tmp_path, capsys):
     pvfiblets.write(tmp_path / "some.trk", streamlines)
     image = nibabel.Nifti1Image(atlas[0], atlas[1])
