@@ -341,7 +341,7 @@ def _kept_header(data: Data) -> dict[str, str]:
     if not lines or not data.n_rows:
         return {}
     n = data.n_rows - int(np.isinf(data.rows[-1, 0]))
-    return {HEADER: "\n".join(lines), ROWS: _fingerprint(n, data.rows[_fingerprint_rows(n)])}
+    return {HEADER: "\n".join(lines), ROWS: _fingerprint(n, _picked(data.rows, _fingerprint_rows(n)))}
 
 
 def timestamp_in(space: Mapping[str, Any]) -> str | None:
@@ -369,8 +369,17 @@ def _rows_of(streamlines: Streamlines) -> str:
     line = np.searchsorted(closing, at)
     is_point = closing[line] != at
     rows = np.full((len(at), 3), np.nan)
-    rows[is_point] = streamlines.points[(at - line)[is_point]]
+    rows[is_point] = _picked(streamlines.points, (at - line)[is_point])
     return _fingerprint(n, rows)
+
+
+def _picked(array: Array, rows: Ints) -> Array:
+    """Return some rows of what may be mapped; with each, a system may bring a megabyte into memory."""
+    picked = np.empty((len(rows), array.shape[1]), array.dtype)
+    for to, row in enumerate(rows.tolist()):
+        picked[to] = array[row]
+        forget(array, 0, row + 1)
+    return picked
 
 
 def _fingerprint_rows(n: int) -> Ints:

@@ -166,6 +166,7 @@ def test_selections_are_those_of_numpy(client, cohort, tmp_path, compressed):
         np.testing.assert_allclose(made.points, np.concatenate(keep), atol=1e-5)
 
 
+@pytest.mark.filterwarnings("ignore:.*changed step_size")
 @pytest.mark.parametrize("suffix", [".tck", ".fiblets"])
 def test_what_crosses_a_region_between_its_points_passes_it(tmp_path, suffix):
     """Of 21 segments that cross a ball, 12 have no point in it."""

@@ -54,8 +54,9 @@ def _written(streamlines: Streamlines) -> Iterator[tuple[str, Streamlines]]:
 @CASES.add("coordinates of ±1e7 mm and of 1e30 mm", "tracking moved, and random points", HELD)
 def _far(_: Setting) -> Outcome:
     base = tracking(3)
-    huge = lines_of(np.random.default_rng(5).normal(size=(70, 3)) * 1e30)
-    sets = [Streamlines(base.points + 1e7, base.offsets), Streamlines(base.points - 1e7, base.offsets), huge]
+    huge = lines_of((np.random.default_rng(5).normal(size=(70, 3)) * 1e30).astype(np.float32))
+    away = [(base.points + by).astype(np.float32) for by in (1e7, -1e7)]  # of float64, writers say what is rounded
+    sets = [*(Streamlines(points, base.offsets) for points in away), huge]
     return worst([through_files(some) for some in sets])
 
 
