@@ -13,8 +13,8 @@ from typing import Literal, get_args
 import numpy as np
 import numpy.typing as npt
 
-from .ragged import Array, Ints, cut_offsets
 from .streamlines import Streamlines
+from .support.ragged import Array, Ints, cut_offsets
 
 __all__ = ["CUT", "LARGEST", "NONFINITE", "Invalid", "refuse_beyond", "valid_points", "warn_of_far", "without_points"]
 

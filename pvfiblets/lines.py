@@ -12,10 +12,10 @@ import numpy.typing as npt
 
 from pvfiblets.invalid_points import CUT, NONFINITE, refuse_beyond
 from pvfiblets.other_libraries import lines_of_grid, streamlines_of
-from pvfiblets.ragged import cut_offsets, offsets_from_counts
 from pvfiblets.streamlines import Streamlines
-from pvfiblets.summary import warn_of_losses
-from pvfiblets.vtk_space import space_of_dataset, to_ras
+from pvfiblets.support.ragged import cut_offsets, offsets_from_counts
+from pvfiblets.support.summary import warn_of_losses
+from pvfiblets.support.vtk_space import space_of_dataset, to_ras
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet

@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.ragged import offsets_from_counts
 from pvfiblets.streamlines import Streamlines
-from pvfiblets.vtk_space import Space, space_of_dataset, to_ras
+from pvfiblets.support.ragged import offsets_from_counts
+from pvfiblets.support.vtk_space import Space, space_of_dataset, to_ras
 
 __all__ = ["EXPECTED", "lines_of_grid", "streamlines_of"]
 

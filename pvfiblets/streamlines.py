@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pvfiblets.line_cells import field_of, parts_of_cells, parts_of_polydata, polydata_of
-from pvfiblets.ragged import (
+from pvfiblets.support.ragged import (
     Array,
     Floats,
     Ints,
@@ -38,8 +38,8 @@ if TYPE_CHECKING:
 
     from pvfiblets.query.bundles.clusters import Clusters
     from pvfiblets.query.bundles.similar import Similar
-    from pvfiblets.query.table import Table
-    from pvfiblets.vtk_space import Space
+    from pvfiblets.query.measures.table import Table
+    from pvfiblets.support.vtk_space import Space
 
 __all__ = ["Streamlines", "blocks", "from_cells", "offsets_from_counts"]
 
@@ -125,7 +125,7 @@ class Streamlines:
         return f"<Streamlines: {'; '.join(facts)}>"
 
     def _repr_html_(self) -> str:
-        from pvfiblets.summary import summary_html
+        from pvfiblets.support.summary import summary_html
 
         return summary_html("Streamlines", self)
 

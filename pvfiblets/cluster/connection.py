@@ -9,8 +9,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from pvfiblets import memory
 from pvfiblets.errors import FibletsError
+from pvfiblets.support import memory
 
 if TYPE_CHECKING:
     from distributed import Client

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from pvfiblets.whole_files import replacing
+from pvfiblets.support.whole_files import replacing
 
 __all__ = ["Columns", "join_parts", "write_part"]
 

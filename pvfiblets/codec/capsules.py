@@ -15,7 +15,7 @@ error: ``r`` is measured from the rounded ``B``.
 The GPU decodes in float32, to within a thousandth of a step. ``r`` is enlarged by ``MARGIN`` times the length of the
 line drawn, about as much for a full fiblet, so that what a GPU decodes stays within its capsule too.
 
-This is the literal reference; :mod:`.capsule_kernels` compute the same.
+This is the literal reference; `capsule_kernels` compute the same.
 """
 
 from __future__ import annotations

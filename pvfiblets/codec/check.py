@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import FormatError
-from .archive import check_members
 from .capsules import capsule_ends
+from .files.archive import check_members
 from .layout import (
     DIRECTION,
     END_BITS,
@@ -131,8 +131,8 @@ def _check_capsules(
     ends: npt.NDArray[np.bool_],
 ) -> None:
     """Decode the fiblets of one page, and see that culling is told the truth about each."""
-    from .capsule_kernels import leaving
     from .decompress import decode_fiblets
+    from .kernels.capsule_kernels import leaving
 
     more = rows.stop < fiblets.n_fiblets  # the last chord ends at the next page's first anchor
     which = np.arange(rows.start, rows.stop + more)

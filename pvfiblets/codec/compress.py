@@ -13,8 +13,8 @@ import numpy.typing as npt
 from ..formats.mapped import forget
 from ..formats.scratch import is_long, spans
 from ..invalid_points import Invalid, valid_points
-from ..progress_bar import progress_bar
 from ..streamlines import Streamlines
+from ..support.progress_bar import progress_bar
 from . import parameters as limits
 from .exact import plain_records, raw_bytes
 from .fibletset import FibletSet

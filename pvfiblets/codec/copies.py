@@ -22,11 +22,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..progress_bar import progress_bar
-from . import copy_kernels
-from .archive import Member, array_member, write_archive
-from .fiblets_file import make_header
+from ..support.progress_bar import progress_bar
 from .fibletset import FibletSet
+from .files.archive import Member, array_member, write_archive
+from .files.fiblets_file import make_header
+from .kernels import copy_kernels
 from .layout import PAGE, WORDS, unpack
 
 __all__ = ["CHUNK", "Copies"]

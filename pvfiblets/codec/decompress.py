@@ -10,10 +10,10 @@ import numpy.typing as npt
 
 from ..errors import FormatError
 from ..formats.scratch import SPAN, is_long, scratch_array, spans
-from ..ragged import blocks
 from ..streamlines import Streamlines
-from .archive import forget
+from ..support.ragged import blocks
 from .direction_codebook import quaternions
+from .files.archive import forget
 from .layout import MAX_POINTS, PAGE_BITS, unpack
 from .small_sets import without_kernels
 from .streamline_ranges import StreamlineRanges, ranges_of
@@ -83,7 +83,7 @@ def decode_fiblets(
 
 
 def decoding_arrays(fiblets: FibletSet) -> tuple[Any, ...]:
-    """What :func:`.decode_kernels.decode_one` takes of a set, from ``arrays`` to ``tables``."""
+    """What `decode_kernels.decode_one` takes of a set, from ``arrays`` to ``tables``."""
     p, low = fiblets.parameters, fiblets.anchors_low
     return (
         (fixed(fiblets.anchors), fixed(fiblets.decoding), fixed(fiblets.codes), fixed(fiblets.pages[:, 1])),
@@ -102,10 +102,10 @@ def fixed(array: npt.NDArray[Any]) -> npt.NDArray[Any]:
 
 def _decoder(small: bool) -> Any:
     if small:
-        from .decode_arrays import decode
+        from .arrays.decode_arrays import decode
 
         return decode
-    from . import decode_kernels  # numba loads only for what is worth it
+    from .kernels import decode_kernels  # numba loads only for what is worth it
 
     return decode_kernels.decode
 

@@ -18,8 +18,8 @@ import numpy.typing as npt
 
 from ..formats.mapped import forget
 from ..formats.scratch import is_long
-from ..ragged import blocks
 from ..streamlines import Streamlines
+from ..support.ragged import blocks
 from .layout import MAX_POINTS
 from .parameters import DEFAULT_ANGLE
 from .record_writer import FibletChunk, RecordWriter
@@ -27,7 +27,7 @@ from .small_sets import without_kernels
 from .tangents import PIXELS
 
 if TYPE_CHECKING:
-    from .array_coder import ArrayCoder
+    from .arrays.array_coder import ArrayCoder
     from .compiled_coder import CompiledCoder
 
 __all__ = ["Encoder"]
@@ -74,7 +74,7 @@ class Encoder(RecordWriter):
             from .compiled_coder import CompiledCoder  # numba loads only for what is worth it
 
             return CompiledCoder(points, offsets, self.parameters, self._bound(), self.effort)
-        from .array_coder import ArrayCoder
+        from .arrays.array_coder import ArrayCoder
 
         return ArrayCoder(points, offsets, self.parameters, self._bound())
 

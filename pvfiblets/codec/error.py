@@ -96,7 +96,7 @@ class ErrorTally:
                 self._add_parts(original.points, decoded.points, int(offsets[first]), int(offsets[last]), offsets)
             return
         if self.resampled:
-            from .line_distance import line_distances
+            from .kernels.line_distance import line_distances
 
             # Points come in the set's own type by default, and its rounding is part of their error.
             drawn = decoded.points.astype(self._dtype).astype(np.float64)
@@ -131,7 +131,7 @@ class ErrorTally:
 
     def _distances(self, true: npt.NDArray[Any], drawn: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         """Distances of points in the set's own type, whose rounding is part of their error."""
-        from .error_kernels import distances  # numba loads only for those who measure
+        from .kernels.error_kernels import distances  # numba loads only for those who measure
 
         distance = np.empty(len(true))
         distances(true, drawn, self._dtype == np.float32, distance)
@@ -139,7 +139,7 @@ class ErrorTally:
 
     def _add_distances(self, distance: npt.NDArray[np.float64], offsets: npt.NDArray[np.int64]) -> None:
         """Take in distances, of streamlines whose own begin at these offsets."""
-        from .error_kernels import add_up
+        from .kernels.error_kernels import add_up
 
         total, largest = add_up(distance, np.ones(len(distance), np.uint8), _BINS / self._edge, False, self._histogram)
         self._sum += total
@@ -165,8 +165,8 @@ class ErrorTally:
         firsts: npt.NDArray[np.bool_],
         which: slice = slice(None),
     ) -> None:
-        from .error_kernels import add_up
-        from .tangent_kernels import tangent_angles
+        from .kernels.error_kernels import add_up
+        from .kernels.tangent_kernels import tangent_angles
 
         degrees, uses = np.empty(len(true)), np.empty(len(true), np.uint8)
         tangent_angles(true, drawn, offsets, firsts, self._pixel, degrees, uses)

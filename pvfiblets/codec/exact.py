@@ -3,7 +3,7 @@
 Coding pays by many points to a fiblet. Of small sets nobody counts the bytes, and lines of one or two points take more
 bytes as fiblets than as numbers. Such sets hold their points as they came (:attr:`.FibletSet.exact`). What is drawn and
 culled by is made of the points when the set is made or opened, by NumPy alone: fiblets on a lattice so fine that a view
-cannot tell, 12 bytes a point (:data:`.layout.PLAIN_BYTES`). A file has the points only (:mod:`.exact_file`).
+cannot tell, 12 bytes a point (:data:`.layout.PLAIN_BYTES`). A file has the points only (`exact_file`).
 
 A kind of fiblet for single lines within a coded set would save nothing: the record of a fiblet alone takes 22 bytes, as
 much as the coordinates of two points, so that no line is smaller as 12 bytes a point with a record than on a lattice.

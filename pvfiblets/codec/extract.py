@@ -126,7 +126,7 @@ def save_as(fiblets: FibletSet, path: str | PathLike[str]) -> list[str]:
     """
     from ..formats import registry, write
     from ..formats.spool import gathered
-    from ..whole_files import naming_target
+    from ..support.whole_files import naming_target
 
     registry.module_for(path, "write")  # before the decoding, not after
     chunks = fiblets.iter_chunks() if len(fiblets) else iter([fiblets.decompress()])

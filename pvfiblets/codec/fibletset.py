@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..addresses import is_url
 from ..streamlines import Streamlines
+from ..support.addresses import is_url
 from .layout import PAGE, PAGE_BITS, unpack
 from .parameters import LEAST, Parameters
 from .quantised import QuantisedPoints
@@ -102,7 +102,7 @@ class FibletSet(SetQueries):
         )
 
     def _repr_html_(self) -> str:
-        from ..summary import summary_html
+        from ..support.summary import summary_html
 
         error = "none: exact" if self.exact is not None else f"{self.promise:.3g} mm"
         more = {"Bytes": f"{self.nbytes:,}", "Greatest error": error}
@@ -398,7 +398,7 @@ class FibletSet(SetQueries):
             If shards are asked for of another format.
         """
         from ..formats import registry
-        from .fiblets_file import save
+        from .files.fiblets_file import save
 
         path = Path(path).expanduser()
         if shards is not None:
@@ -428,14 +428,14 @@ class FibletSet(SetQueries):
         FormatError
             If the file at `path` is damaged, or of another version.
         """
-        from .fiblets_file import open_fiblets
+        from .files.fiblets_file import open_fiblets
 
         return open_fiblets(path if is_url(path) else Path(path).expanduser(), cls)
 
     def verify(self) -> None:
         """Check that all records agree with each other.
 
-        The bytes of a file are checked by :func:`pvfiblets.codec.fiblets_format.verify_file`.
+        The bytes of a file are checked by :func:`pvfiblets.codec.files.fiblets_format.verify_file`.
 
         Raises
         ------

@@ -12,8 +12,8 @@ import numpy.typing as npt
 from ..formats.mapped import forget
 from ..formats.scratch import is_long, spans
 from ..invalid_points import MOST_LOOKED_AT, refuse_beyond, warn_of_far
-from ..ragged import blocks
 from ..streamlines import Streamlines
+from ..support.ragged import blocks
 from .layout import END_LEVELS, MAX_POINTS
 from .small_sets import without_kernels
 
@@ -140,7 +140,7 @@ def _scan(
 ) -> tuple[Vector, Vector, float, float]:
     """Bounds, longest segment and widest end (mm) of streamlines that have points; bounds are infinite if one is."""
     if not small:
-        from .direction_kernels import scan  # numba loads only for what is worth it
+        from .kernels.direction_kernels import scan  # numba loads only for what is worth it
 
         parts = []
         for own, goes_on in _scanned(offsets):

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from typing import TypeAlias
 
-from ..progress_bar import progress_bar
 from ..streamlines import Streamlines
+from ..support.progress_bar import progress_bar
 
 __all__ = ["Progress", "shown"]
 

@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from .archive import forget
 from .check import code_bytes
 from .decompress import select_streamlines
+from .files.archive import forget
 from .layout import FIELDS, PAGE, PAGE_BITS, WORDS, unpack
 
 if TYPE_CHECKING:

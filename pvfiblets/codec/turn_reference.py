@@ -1,4 +1,4 @@
-"""How far the encoder may turn segments, in plain NumPy and float64; :mod:`.turn_kernels` compute the same.
+"""How far the encoder may turn segments, in plain NumPy and float64; `turn_kernels` compute the same.
 
 Symbols: ``u`` and ``v`` are the unit vectors of the segments before and after a point, ``u'`` and ``v'`` what they
 decode to, and ``A`` is the largest angle that is promised between the tangents, which are the directions of

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from .frame import Array, local_frame
-from .uniform_struct import Field, UniformStruct
+from .gl.uniform_struct import Field, UniformStruct
 from .view import MAX_CLIP_PLANES, View
 
 __all__ = ["CLIP_PLANES_BLOCK", "clip_planes_block"]

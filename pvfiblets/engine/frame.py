@@ -14,7 +14,7 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from .uniform_struct import Field, UniformStruct
+from .gl.uniform_struct import Field, UniformStruct
 from .view import Style, View
 
 __all__ = ["FRAME_BLOCK", "frame_block", "local_frame", "reference_anchor", "segment_pixels"]

@@ -10,14 +10,14 @@ from typing import Any, ClassVar
 
 import moderngl
 
-from .bindings import HIT_KEYS
 from .culling.two_phase_items import LEAST_SEGMENTS, Listing, supports_listing
-from .depth_texture import depth_texture
 from .drawable import AnyStyle, Drawable
 from .errors import EngineError
 from .gbuffer import EMPTY, GBuffer
-from .moderngl_extras import GLExtras
-from .shaders import Programs
+from .gl.bindings import HIT_KEYS
+from .gl.depth_texture import depth_texture
+from .gl.moderngl_extras import GLExtras
+from .gl.shaders import Programs
 
 __all__ = ["HitDrawable", "HitTarget"]
 

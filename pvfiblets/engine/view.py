@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 if TYPE_CHECKING:
-    from ..query.shapes import Region
-    from .fiblets.sampled_volume import VolumeSource
+    from ..query.regions.shapes import Region
+    from .fiblets.data.sampled_volume import VolumeSource
 
 __all__ = ["MAX_CLIP_PLANES", "Style", "View", "check_at_least"]
 

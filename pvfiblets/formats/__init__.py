@@ -29,12 +29,12 @@ from os import PathLike, fspath
 from pathlib import Path
 from typing import Any
 
-from pvfiblets.addresses import is_url, path_of
 from pvfiblets.errors import FormatError
 from pvfiblets.formats import registry
 from pvfiblets.formats.registry import UnknownFormatError, module_for, suffix_of
 from pvfiblets.streamlines import Streamlines
-from pvfiblets.vtk_space import Space, checked
+from pvfiblets.support.addresses import is_url, path_of
+from pvfiblets.support.vtk_space import Space, checked
 
 __all__ = [
     "FormatError",

@@ -11,7 +11,7 @@ from pathlib import Path
 from zipfile import BadZipFile, ZipFile
 
 from pvfiblets.errors import FibletsError, FormatError
-from pvfiblets.memory import check_room, shown
+from pvfiblets.support.memory import check_room, shown
 
 DENSEST = 1032
 """How many bytes of deflate's come out of one, at most."""

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from pvfiblets.whole_files import naming_target
+from pvfiblets.support.whole_files import naming_target
 
 __all__ = ["LONG", "is_long", "scratch_array", "scratch_bytes", "spans"]
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pvfiblets.streamlines import Streamlines
-from pvfiblets.unfinished import scratch_beside
+from pvfiblets.support.unfinished import scratch_beside
 
 Array = NDArray[Any]
 

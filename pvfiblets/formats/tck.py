@@ -42,9 +42,9 @@ from pvfiblets.formats.mapped import MappedFile, forget
 from pvfiblets.formats.rows import check_rounding, finite_rows, without_rows
 from pvfiblets.formats.scratch import is_long, spans
 from pvfiblets.invalid_points import CUT, NONFINITE
-from pvfiblets.ragged import cut_offsets
 from pvfiblets.streamlines import Streamlines, offsets_from_counts
-from pvfiblets.whole_files import replacing
+from pvfiblets.support.ragged import cut_offsets
+from pvfiblets.support.whole_files import replacing
 
 Array = NDArray[Any]
 Ints = NDArray[np.int64]

@@ -15,7 +15,7 @@ from pvfiblets.formats.rounding import largest_change, warn_of_changes
 from pvfiblets.formats.rows import transformed
 from pvfiblets.formats.trk_header import trackvis_to_ras, unrecorded_affine
 from pvfiblets.streamlines import Streamlines
-from pvfiblets.whole_files import replacing
+from pvfiblets.support.whole_files import replacing
 
 Array = NDArray[Any]
 

@@ -42,7 +42,7 @@ from pvfiblets.formats.scratch import is_long
 from pvfiblets.formats.trk_header import along_affine
 from pvfiblets.formats.ziparrays import ArrayEntry, FolderArrays, ZipArrays
 from pvfiblets.streamlines import Streamlines, blocks
-from pvfiblets.whole_files import replacing
+from pvfiblets.support.whole_files import replacing
 
 Array = NDArray[Any]
 

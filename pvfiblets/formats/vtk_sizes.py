@@ -8,7 +8,7 @@ from pathlib import Path
 
 from pvfiblets.errors import FormatError
 from pvfiblets.formats.vtk_xml import XmlFile
-from pvfiblets.memory import check_room, limited_to
+from pvfiblets.support.memory import check_room, limited_to
 
 _XML = (".vtp", ".vtu", ".vti")
 _HEAD = 1 << 16  # bytes in which a header is looked for

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 from pvfiblets.errors import FibletsError
-from pvfiblets.whole_files import replacing
+from pvfiblets.support.whole_files import replacing
 
 if TYPE_CHECKING:
     import pyvista

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from pvfiblets.lines import Lines, are_words, flat, gather, joined, numbers_or_colours, refuse_words
 from pvfiblets.streamlines import Streamlines
-from pvfiblets.vtk_space import space_of_dataset, to_ras
+from pvfiblets.support.vtk_space import space_of_dataset, to_ras
 
 from .geometry import HaloLines, HaloPoints
 

@@ -15,7 +15,7 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.ragged import offsets_from_counts
+from pvfiblets.support.ragged import offsets_from_counts
 
 from .geometry import HaloLines
 from .grid import Grid

@@ -11,7 +11,7 @@ import weakref
 from contextlib import ExitStack
 from typing import Any, Self
 
-from pvfiblets.progress_bar import progress_bar
+from pvfiblets.support.progress_bar import progress_bar
 
 __all__ = ["Finishing", "finish", "picture_of", "refine", "shown_pictures"]
 

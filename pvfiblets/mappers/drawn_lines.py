@@ -12,7 +12,7 @@ from pvfiblets.mappers.line_data import COLOURS, RADIUS, STEPS, LineData, segmen
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
-    from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
+    from pvfiblets.engine.fiblets.data.sampled_volume import VolumeSource
     from pvfiblets.mappers.colouring import Colouring
     from pvfiblets.streamlines import Streamlines
 
@@ -65,7 +65,7 @@ def near_ray(fiblets: FibletSet, filtering: Any, ray: Any, budget: int) -> npt.N
     budget : int
         Points.
     """
-    from pvfiblets.query.endpoints import anchor_points
+    from pvfiblets.query.selection.endpoints import anchor_points
 
     (start, stop), reach = ray
     owners = fiblets.fiblet_streamlines()
@@ -134,7 +134,7 @@ def _fiblet_colours(lines: LineData, decoded: Streamlines, colouring: Colouring)
 
 def _measured(name: str, lines: LineData) -> npt.NDArray[Any]:
     """Arc length or curvature at points."""
-    from pvfiblets.query import measure_kernels as kernels
+    from pvfiblets.query.measures import measure_kernels as kernels
 
     found = np.empty(len(lines.points), np.float32)
     measured = kernels.arc_lengths if name == "arc_length" else kernels.curvatures

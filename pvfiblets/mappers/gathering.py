@@ -1,7 +1,7 @@
 """What effects share that show all lines of a pixel: the sums that the engine makes of them, as textures and uniforms.
 
-The engine adds up what lines add (`pvfiblets.engine.fiblets.gathering`); which colours they have is the mapper's to
-say.
+The engine adds up what lines add (`pvfiblets.engine.fiblets.gather.gathering`); which colours they have is the
+mapper's to say.
 """
 
 from __future__ import annotations
@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pvfiblets.engine.fiblets.gathering import Gathered
-from pvfiblets.engine.fiblets.paint import Paint
+from pvfiblets.engine.fiblets.gather.gathering import Gathered
+from pvfiblets.engine.fiblets.gather.paint import Paint
 from pvfiblets.mappers.blank_arrays import BlankArrays
 from pvfiblets.mappers.scene import others_opaque
 from pvfiblets.mappers.scene_depth import OutsideDepth

@@ -249,7 +249,7 @@ def pick_area(
     streamlines. What is translucent leaves no depth and hides nothing. Under supersampling a pixel of the window
     counts as a whole.
     """
-    from pvfiblets.query.screen import area_distances
+    from pvfiblets.query.selection.screen import area_distances
 
     pictures = [(shown_by(layer.mapper, renderer), layer) for layer in layers]
     seen = [(shown, layer) for shown, layer in pictures if shown is not None]

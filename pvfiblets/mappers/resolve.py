@@ -20,7 +20,7 @@ from functools import cache
 from typing import Any
 
 from pvfiblets.engine.errors import EngineError
-from pvfiblets.engine.shaders import read_shader
+from pvfiblets.engine.gl.shaders import read_shader
 
 FEATURES = (
     "gbuffer",

@@ -13,8 +13,8 @@ from typing import Any
 import moderngl
 from vtkmodules.vtkRenderingCore import vtkMapper, vtkRenderer
 
-from pvfiblets.engine.moderngl_extras import GLExtras
-from pvfiblets.engine.shaders import read_shader
+from pvfiblets.engine.gl.moderngl_extras import GLExtras
+from pvfiblets.engine.gl.shaders import read_shader
 
 _DRAW_FRAMEBUFFER, _DEPTH_ATTACHMENT = 0x8CA9, 0x8D00
 _OBJECT_TYPE, _OBJECT_NAME, _TEXTURE_LEVEL = 0x8CD0, 0x8CD1, 0x8CD2

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pvfiblets.codec.archive import array_member, write_archive
-from pvfiblets.codec.fiblets_file import make_header
+from pvfiblets.codec.files.archive import array_member, write_archive
+from pvfiblets.codec.files.fiblets_file import make_header
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet

@@ -17,7 +17,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from pvfiblets.whole_files import made_folder, replacing
+from pvfiblets.support.whole_files import made_folder, replacing
 
 from .scene import PageScene
 

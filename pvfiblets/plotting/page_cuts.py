@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from pvfiblets.engine.regions.clip_planes import placed_sides, planes_of
 from pvfiblets.engine.view import MAX_CLIP_PLANES
-from pvfiblets.query.shapes import SPHERE, SURFACE
+from pvfiblets.query.regions.shapes import SPHERE, SURFACE
 
 __all__ = ["cuts_of"]
 

@@ -29,10 +29,10 @@ def with_values(fiblets: FibletSet, source: Any) -> tuple[FibletSet, str]:
     if isinstance(source, str):
         if source in fiblets.per_point:
             return fiblets, source
-        from pvfiblets.query.measures import measure
+        from pvfiblets.query.measures.measures import measure
 
         return with_coded_values(fiblets, source, measure(fiblets, source).array(), _BITS), source
-    from pvfiblets.query.image_samples import sample_image
+    from pvfiblets.query.measures.image_samples import sample_image
 
     points = fiblets.decompress().points
     if source.nearest:  # centres of voxels have the voxels' own values

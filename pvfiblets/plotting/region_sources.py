@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyvista as pv
 
-from pvfiblets.query.image_samples import three_axes
-from pvfiblets.vtk_space import space_of_dataset, to_ras
+from pvfiblets.query.measures.image_samples import three_axes
+from pvfiblets.support.vtk_space import space_of_dataset, to_ras
 
 if TYPE_CHECKING:
     from pvfiblets.regions import Region

@@ -4,7 +4,7 @@ A drawable's settings are the body of one class, a :class:`Settings`, from which
 :class:`Setting` in it is the live property of the actor, with its check and doc; the keyword argument of ``add_...``
 (`pvfiblets.plotting.actor_registry`), with the same check; the argument in the type stub ``plotter.pyi``; and, where it
 has a :class:`Row`, the row on the web page, the entry in saved sessions and the line of scripts
-(`pvfiblets.web.layer_properties`). A place (`pvfiblets.plotting.setting_places`) says what a setting changes.
+(`pvfiblets.web.scene.layer_properties`). A place (`pvfiblets.plotting.setting_places`) says what a setting changes.
 
 The module, and the modules of settings, import nothing that draws: arguments can be read before anything is loaded.
 """

@@ -8,10 +8,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from . import machine, studies
-from .data_sets import files_of
 from .pareto import mark_fronts
 from .record import CaseResult, StudyResult
 from .report_file import Report
+from .studies.codec.data_sets import files_of
 from .study import Budget, Options, Unavailable
 
 __all__ = ["QUICK_SECONDS", "make_report", "one_study", "write_pages"]

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from pvfiblets.errors import FormatError
-from pvfiblets.memory import check_room
+from pvfiblets.support.memory import check_room
 
 __all__ = ["opened"]
 

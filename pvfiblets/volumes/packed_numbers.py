@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pvfiblets.errors import FormatError
-from pvfiblets.memory import check_room
+from pvfiblets.support.memory import check_room
 
 __all__ = ["Packing", "data_file", "numbers"]
 

@@ -9,7 +9,7 @@ from typing import Any
 from pvfiblets.errors import FormatError
 from pvfiblets.formats.vtk_sizes import stated_bytes
 from pvfiblets.formats.vtk_xml import Element, XmlFile
-from pvfiblets.memory import check_room
+from pvfiblets.support.memory import check_room
 
 __all__ = ["check_sizes", "read"]
 

@@ -9,11 +9,11 @@ import time
 from collections.abc import AsyncIterator, Callable
 from typing import TYPE_CHECKING, Any
 
-from pvfiblets import memory
+from pvfiblets.support import memory
 from pvfiblets.web.actions import Actions
 
 if TYPE_CHECKING:
-    from pvfiblets.web.loading import Cancel, Progress
+    from pvfiblets.web.scene.loading import Cancel, Progress
 
     Work = Callable[[Progress, Cancel], Any]
 

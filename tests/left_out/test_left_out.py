@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from pvfiblets.engine.shaders import FEATURES
+from pvfiblets.engine.gl.shaders import FEATURES
 from tests.reference_compiler import complaints
 
 from .changed import CHANGED

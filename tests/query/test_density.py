@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 
 import pvfiblets as pf
 from pvfiblets import formats
-from pvfiblets.query import density as room
-from pvfiblets.query import density_sources, voxel_grid
-from pvfiblets.query.density_map import DensityMap
-from pvfiblets.query.measures import Distance, measure
-from pvfiblets.query.voxel_grid import VoxelGrid, grid_about, grid_like
+from pvfiblets.query.density import density_sources, voxel_grid
+from pvfiblets.query.density import volume as room
+from pvfiblets.query.density.density_map import DensityMap
+from pvfiblets.query.density.voxel_grid import VoxelGrid, grid_about, grid_like
+from pvfiblets.query.measures.measures import Distance, measure
 from pvfiblets.streamlines import Streamlines
 from tests.codec.test_restrict import every_kind
 

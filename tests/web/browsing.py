@@ -87,7 +87,7 @@ class Served:
         self.root = Path(root)
         self.log = self.root.parent / f"serve-{time.monotonic_ns()}.log"
         command = [
-            sys.executable, "-m", "pvfiblets.cli", "serve",
+            sys.executable, "-m", "pvfiblets", "serve",
             *map(str, arguments),
             "--port",
             "0",

@@ -92,7 +92,7 @@ def plotter():
 @pytest.fixture
 def scene(plotter, folder):
     """Return an empty scene whose root is the folder."""
-    from pvfiblets.web.scene import Scene
+    from pvfiblets.web.scene.scene import Scene
 
     scene = Scene(plotter, folder)
     yield scene

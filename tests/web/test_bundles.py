@@ -7,8 +7,8 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 
-from pvfiblets.web import session
-from pvfiblets.web.history import History
+from pvfiblets.web.session import files as session
+from pvfiblets.web.session.history import History
 from tests.web.desk import Desk, assert_script_draws
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pvfiblets.web import session
+from pvfiblets.web.session import files as session
 from tests.slices.test_fixels import AFFINE, write_mif
 from tests.web.desk import assert_script_draws, scene_of_views
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from pvfiblets.web.document import LINES
-from pvfiblets.web.history import History
-from pvfiblets.web.region_marks import Sight, dragged, mark
+from pvfiblets.web.session.document import LINES
+from pvfiblets.web.session.history import History
+from pvfiblets.web.view.region_marks import Sight, dragged, mark
 from tests.web.desk import Desk, scene_of_views
 
 
@@ -298,8 +298,8 @@ def test_layers_share_a_region_and_lose_it_again(desk, scene, lines):
 
 
 def test_named_regions_are_in_sessions_and_scripts(desk, scene):
-    from pvfiblets.web import session
-    from pvfiblets.web.script import as_script
+    from pvfiblets.web.session import files as session
+    from pvfiblets.web.session.script import as_script
 
     desk.regions.add("sphere")
     desk.regions.rename(0, "A'; import os")

@@ -19,10 +19,11 @@ from pvfiblets.plotting.gifti import read_surface, with_vertex_values
 from pvfiblets.slices.image import as_slice_image
 from pvfiblets.tubes.build import as_spline_tubes
 from pvfiblets.volumes import RaycastVolume
-from pvfiblets.web import layers, session
-from pvfiblets.web.document import Ids
-from pvfiblets.web.history import History
-from pvfiblets.web.loading import Files
+from pvfiblets.web.scene import layers
+from pvfiblets.web.scene.loading import Files
+from pvfiblets.web.session import files as session
+from pvfiblets.web.session.document import Ids
+from pvfiblets.web.session.history import History
 from tests.web.desk import Desk, assert_script_draws, scene_of_views
 
 TURN = np.array([[0.8, -0.6, 0.0], [0.6, 0.8, 0.0], [0.0, 0.0, 1.0]])

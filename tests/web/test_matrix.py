@@ -6,10 +6,11 @@ import io
 import numpy as np
 import pytest
 
-from pvfiblets.query import connectome as kernels
-from pvfiblets.web import scene_matrix, session
-from pvfiblets.web.matrix_panel import matrix_image
-from pvfiblets.web.script import as_script
+from pvfiblets.query.connectome import matrix as kernels
+from pvfiblets.web.panels.matrix_panel import matrix_image
+from pvfiblets.web.scene import matrix as scene_matrix
+from pvfiblets.web.session import files as session
+from pvfiblets.web.session.script import as_script
 from tests.web.desk import Desk
 
 

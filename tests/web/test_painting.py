@@ -4,9 +4,9 @@ import nibabel
 import numpy as np
 import pytest
 
-from pvfiblets.web import session
-from pvfiblets.web.history import History
-from pvfiblets.web.script import as_script
+from pvfiblets.web.session import files as session
+from pvfiblets.web.session.history import History
+from pvfiblets.web.session.script import as_script
 from tests.web.desk import assert_script_draws
 from tests.web.test_slicing import scene  # noqa: F401 - a fixture
 

@@ -11,9 +11,9 @@ import pyvista as pv
 import pvfiblets
 from pvfiblets.errors import FibletsError
 from pvfiblets.formats.registry import UnknownFormatError
-from pvfiblets.web.loading import Cancelled
-from pvfiblets.web.scalar_bar_layout import DOTS, Wanted, arrange
-from pvfiblets.web.scene import Scene
+from pvfiblets.web.scene.loading import Cancelled
+from pvfiblets.web.scene.scalar_bar_layout import DOTS, Wanted, arrange
+from pvfiblets.web.scene.scene import Scene
 
 
 def drawn(picture):

@@ -13,9 +13,9 @@ import pyvista as pv
 import pvfiblets
 from pvfiblets.volumes import RaycastVolume
 from pvfiblets.volumes.raycast_options import INTEGRATORS
-from pvfiblets.web import layers
-from pvfiblets.web.layers import USUAL
-from pvfiblets.web.script import as_script
+from pvfiblets.web.scene import layers
+from pvfiblets.web.scene.layers import USUAL
+from pvfiblets.web.session.script import as_script
 
 
 def tracts(scene):

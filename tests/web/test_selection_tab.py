@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pvfiblets.web.selection_tab import SelectionActions
+from pvfiblets.web.panels.selection_tab import SelectionActions
 from tests.web.desk import Desk
 
 
@@ -83,8 +83,8 @@ def test_a_region_is_placed_on_what_lies_behind_a_measured_line(desk, scene):
 def test_sessions_and_scripts_have_all_distances(desk, scene, tmp_path):
     import json
 
-    from pvfiblets.web import session
-    from pvfiblets.web.script import as_script
+    from pvfiblets.web.session import files as session
+    from pvfiblets.web.session.script import as_script
 
     places = [[share(84, 80), share(116, 80)], [share(100, 60), share(100, 100)]]
     for pair in places:

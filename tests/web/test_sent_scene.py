@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from pvfiblets.web.browser_drawing import BrowserDrawing
-from pvfiblets.web.options import Options
-from pvfiblets.web.scene import Scene
-from pvfiblets.web.sent_scene import LARGEST, SentScene, SentScenes
-from pvfiblets.web.slicing import LAYOUTS, ready_views
+from pvfiblets.web.scene.scene import Scene
+from pvfiblets.web.scene.slicing import LAYOUTS, ready_views
+from pvfiblets.web.server.options import Options
+from pvfiblets.web.view.browser_drawing import BrowserDrawing
+from pvfiblets.web.view.sent_scene import LARGEST, SentScene, SentScenes
 from tests.web.desk import Desk
 
 CARD = "ANGLE (NVIDIA GeForce RTX 3060)"

@@ -13,16 +13,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import pvfiblets
-from pvfiblets.engine.fiblets import streamed_renderer
+from pvfiblets.engine.fiblets.parts import streamed_renderer
 from pvfiblets.streamlines import Streamlines
-from pvfiblets.web import session
-from pvfiblets.web.confined import Confined
-from pvfiblets.web.history import History
-from pvfiblets.web.loading import Files
-from pvfiblets.web.options import Options
-from pvfiblets.web.runs import numbers_in, pack, runs_of, unpack
-from pvfiblets.web.scene import Scene
-from pvfiblets.web.script import as_script
+from pvfiblets.web.scene.confined import Confined
+from pvfiblets.web.scene.loading import Files
+from pvfiblets.web.scene.scene import Scene
+from pvfiblets.web.server.options import Options
+from pvfiblets.web.session import files as session
+from pvfiblets.web.session.history import History
+from pvfiblets.web.session.runs import numbers_in, pack, runs_of, unpack
+from pvfiblets.web.session.script import as_script
 
 
 def fill(scene):

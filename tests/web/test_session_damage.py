@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from pvfiblets.web import session
-from pvfiblets.web.scene import Scene
+from pvfiblets.web.scene.scene import Scene
+from pvfiblets.web.session import files as session
 
 N = int(os.environ.get("PVFIBLETS_FUZZ", "20"))
 

@@ -6,11 +6,11 @@ import pytest
 import pyvista as pv
 
 from pvfiblets.plotting.slices.oblique import HANDLE
-from pvfiblets.web import session
-from pvfiblets.web.history import History
-from pvfiblets.web.scene import Scene
-from pvfiblets.web.slicing import NAMES, angles_of, normal_of
-from pvfiblets.web.touch import Fingers
+from pvfiblets.web.scene.scene import Scene
+from pvfiblets.web.scene.slicing import NAMES, angles_of, normal_of
+from pvfiblets.web.session import files as session
+from pvfiblets.web.session.history import History
+from pvfiblets.web.view.touch import Fingers
 from tests.web.desk import assert_script_draws, scene_of_views
 
 

@@ -10,14 +10,14 @@ import pytest
 import pyvista as pv
 
 import pvfiblets
-from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
+from pvfiblets.engine.fiblets.data.sampled_volume import VolumeSource
 from pvfiblets.errors import FormatError
 from pvfiblets.formats import attachments
 from pvfiblets.streamlines import Streamlines
-from pvfiblets.web import session
-from pvfiblets.web.history import History
-from pvfiblets.web.sampling import sampled
-from pvfiblets.web.script import as_script
+from pvfiblets.web.scene.sampling import sampled
+from pvfiblets.web.session import files as session
+from pvfiblets.web.session.history import History
+from pvfiblets.web.session.script import as_script
 from tests.web.desk import Desk
 
 

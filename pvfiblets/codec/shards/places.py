@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from ..archive import forget
+from ..files.archive import forget
 from ..layout import PAGE, WORDS, unpack
 from ..ordering import hilbert_keys
 

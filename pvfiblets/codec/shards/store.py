@@ -17,10 +17,10 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
-from ...addresses import is_url
-from ...cache_folder import cache_folder
 from ...errors import FormatError
-from ...whole_files import replacing
+from ...support.addresses import is_url
+from ...support.cache_folder import cache_folder
+from ...support.whole_files import replacing
 from .manifest import StoredFile
 
 __all__ = ["Cache", "Folder", "Remote", "store_at"]

@@ -16,8 +16,8 @@ import numpy as np
 import numpy.typing as npt
 from tqdm import tqdm
 
-from ...unfinished import locked, remove_unfinished, scratch_beside, unfinished
-from ...whole_files import naming_target
+from ...support.unfinished import locked, remove_unfinished, scratch_beside, unfinished
+from ...support.whole_files import naming_target
 from ..extract import extract
 from ..progress import Progress
 from ..restrict import even_share

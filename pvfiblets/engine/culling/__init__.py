@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ...lazy_imports import names_from
+from ...support.lazy_imports import names_from
 from ..errors import EngineError
 from .occlusion import Occlusion
 
@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     import moderngl
 
     from ...codec.fibletset import FibletSet
-    from ..moderngl_extras import GLExtras
-    from ..shaders import Programs
+    from ..gl.moderngl_extras import GLExtras
+    from ..gl.shaders import Programs
     from .coverage import CoverageBuffer
     from .pyramid import DepthPyramid
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterator
 from contextlib import contextmanager
 
-from ..picture_clock import PictureClock
+from ..gl.picture_clock import PictureClock
 
 __all__ = ["FEW_FIBLETS", "CullingChoice"]
 

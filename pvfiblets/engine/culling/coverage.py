@@ -32,12 +32,12 @@ import moderngl
 import numpy as np
 
 from ...codec import layout
-from ..bindings import CULLING
 from ..errors import EngineError
 from ..frame import Array, local_frame
 from ..gbuffer import GBuffer
-from ..moderngl_extras import GLExtras
-from ..shaders import Programs
+from ..gl.bindings import CULLING
+from ..gl.moderngl_extras import GLExtras
+from ..gl.shaders import Programs
 from ..view import Style, View
 from .pyramid import DepthPyramid
 

@@ -15,19 +15,19 @@ from typing import TYPE_CHECKING
 
 import moderngl
 
-from ..bindings import ITEM_STORAGE, ITEMS, ITEMS_SHOWN
-from ..gl_version import version_of
-from ..moderngl_extras import BufferTexture, GLExtras
-from ..passes import dispatch, work_groups
-from ..shaders import Programs
-from ..vertex_pulling import BATCH
+from ..gl.bindings import ITEM_STORAGE, ITEMS, ITEMS_SHOWN
+from ..gl.gl_version import version_of
+from ..gl.moderngl_extras import BufferTexture, GLExtras
+from ..gl.passes import dispatch, work_groups
+from ..gl.shaders import Programs
+from ..gl.vertex_pulling import BATCH
 from .pyramid import DepthPyramid
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from ..gl.passes import Passes
     from ..hit_target import HitTarget
-    from ..passes import Passes
 
 __all__ = ["LEAST_SEGMENTS", "Listing", "supports_listing"]
 

@@ -15,7 +15,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ..delayed_read import DelayedRead
+from ..gl.delayed_read import DelayedRead
 from .depth_of_field import STEPS, TILE, Focus, disc_areas
 from .picture_passes import Attachment, PicturePasses, bytes_of
 from .projection import Projection

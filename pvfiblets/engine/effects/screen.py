@@ -7,11 +7,11 @@ from typing import Any
 
 import moderngl
 
-from ..bindings import FIRST_UNIT
 from ..errors import EngineError
-from ..moderngl_extras import GLExtras
-from ..queries import Timers
-from ..shaders import Programs
+from ..gl.bindings import FIRST_UNIT
+from ..gl.moderngl_extras import GLExtras
+from ..gl.queries import Timers
+from ..gl.shaders import Programs
 
 __all__ = ["ScreenEffect"]
 

@@ -18,14 +18,14 @@ from typing import TYPE_CHECKING
 import moderngl
 import numpy as np
 
-from ..bindings import BLOCKS, COUNT_STORAGE, STORAGE
 from ..gbuffer import EMPTY, GBuffer
-from ..moderngl_extras import GLExtras
-from ..passes import GROUP_SIZE, dispatch, nowhere
-from ..queries import Query
-from ..shaders import Programs
-from .chunks import Chunk, storage_buffer
-from .data_textures import DataTextures, set_data_samplers
+from ..gl.bindings import BLOCKS, COUNT_STORAGE, STORAGE
+from ..gl.moderngl_extras import GLExtras
+from ..gl.passes import GROUP_SIZE, dispatch, nowhere
+from ..gl.queries import Query
+from ..gl.shaders import Programs
+from .data.chunks import Chunk, storage_buffer
+from .data.data_textures import DataTextures, set_data_samplers
 from .pipelines import ComputePipeline
 
 if TYPE_CHECKING:

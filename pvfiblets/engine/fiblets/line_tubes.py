@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..frame import Array, local_frame
-from ..uniform_struct import Field, UniformStruct
+from ..gl.uniform_struct import Field, UniformStruct
 from ..view import View
 
 __all__ = ["TUBES_BLOCK", "tubes_block"]

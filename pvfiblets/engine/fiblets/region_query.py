@@ -2,7 +2,7 @@
 
 The GPU classifies fiblets by their capsules and decodes those that a capsule leaves undecided, in float32 with a
 margin (``shaders/fiblets/compute/query.comp``). What the margin leaves open, and only that, is settled from the same
-records in float64 by :func:`pvfiblets.query.passing.region_flags`: the answers are its own, bit for bit.
+records in float64 by :func:`pvfiblets.query.selection.passing.region_flags`: the answers are its own, bit for bit.
 """
 
 from __future__ import annotations
@@ -15,20 +15,20 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ...query.point_flags import ALL, ANY, FIRST, LAST, Sampling, check_sampling
-from ..bindings import ANSWER_STORAGE, BLOCKS
+from ...query.selection.point_flags import ALL, ANY, FIRST, LAST, Sampling, check_sampling
 from ..errors import GPUMemoryError
 from ..frame import FRAME_BLOCK, Array
-from ..gl_version import version_of
-from ..moderngl_extras import GLExtras
-from ..passes import GROUP_SIZE, dispatch, work_groups
+from ..gl.bindings import ANSWER_STORAGE, BLOCKS
+from ..gl.gl_version import version_of
+from ..gl.moderngl_extras import GLExtras
+from ..gl.passes import GROUP_SIZE, dispatch, work_groups
+from ..gl.shaders import Programs
 from ..regions.uniform_block import RegionBlock
-from ..shaders import Programs
-from .chunks import Chunk, reserve_buffer, storage_buffer
+from .data.chunks import Chunk, reserve_buffer, storage_buffer
 
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
-    from ...query.region import Region
+    from ...query.regions.region import Region
 
 __all__ = ["ALL", "ANY", "FIRST", "LAST", "RegionQuery", "nearest_anchor"]
 
@@ -102,7 +102,7 @@ class RegionQuery:
         region : Region
             In data mm.
         sampling : {'lines', 'points'}
-            As for :func:`pvfiblets.query.passing.region_flags`.
+            As for :func:`pvfiblets.query.selection.passing.region_flags`.
 
         Returns
         -------
@@ -116,7 +116,7 @@ class RegionQuery:
         ValueError
             If the sampling is neither.
         """
-        from ...query.passing import region_flags
+        from ...query.selection.passing import region_flags
 
         lines = check_sampling(sampling) == "lines"
         fiblets = self._fiblets

@@ -16,14 +16,14 @@ from typing import TYPE_CHECKING
 import moderngl
 import numpy as np
 
-from ..bindings import SAMPLE_LAYER
 from ..errors import EngineError
 from ..gbuffer import EMPTY, GBuffer
-from ..moderngl_extras import GLExtras
-from ..queries import Query
-from ..shaders import Programs
+from ..gl.bindings import SAMPLE_LAYER
+from ..gl.moderngl_extras import GLExtras
+from ..gl.queries import Query
+from ..gl.shaders import Programs
 from ..view import View
-from .part_pictures import PictureTarget
+from .parts.part_pictures import PictureTarget
 from .pipelines import ComputePipeline, DrawRequest
 from .style import FibletStyle
 

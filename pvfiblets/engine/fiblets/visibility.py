@@ -9,18 +9,18 @@ import numpy as np
 import numpy.typing as npt
 
 from ..frame import local_frame
-from .filter_textures import Filter, FilterTextures
+from .data.filter_textures import Filter, FilterTextures
 
 if TYPE_CHECKING:
     import moderngl
 
     from ...codec.fibletset import FibletSet
-    from ..moderngl_extras import GLExtras
+    from ..gl.moderngl_extras import GLExtras
+    from ..gl.shaders import Programs
     from ..regions.ray_intervals import RegionIntervals
     from ..regions.uniform_block import RegionBlock
-    from ..shaders import Programs
     from ..view import View
-    from .chunks import Chunk
+    from .data.chunks import Chunk
 
 __all__ = ["Visibility"]
 
@@ -96,7 +96,7 @@ class Visibility:
 
     @property
     def culling(self) -> tuple[str, ...]:
-        """Keys of :data:`pvfiblets.engine.shaders.FEATURES` that programs need which look for fiblets to leave out."""
+        """Keys of `pvfiblets.engine.gl.shaders.FEATURES` that programs need which look for fiblets to leave out."""
         return (*self._filter.features, *self._region_features())
 
     @property

@@ -10,12 +10,12 @@ import numpy as np
 import numpy.typing as npt
 
 from ...halos.style import DISPLACEMENTS, TABLE_SIZE, HaloStyle
-from ...value_reference import relative
-from ..bindings import BLOCKS
+from ...support.value_reference import relative
 from ..clipping import CLIP_PLANES_BLOCK, clip_planes_block
 from ..frame import FRAME_BLOCK, frame_block, local_frame
+from ..gl.bindings import BLOCKS
+from ..gl.uniform_struct import Field, UniformStruct
 from ..lattice import TOP
-from ..uniform_struct import Field, UniformStruct
 from ..view import Style, View
 from .vertices import MOST
 

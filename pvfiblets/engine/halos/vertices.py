@@ -14,11 +14,11 @@ import numpy as np
 import numpy.typing as npt
 
 from ...halos.geometry import HaloLines, HaloPoints
-from ...value_reference import relative
-from ..bindings import HALOS
+from ...support.value_reference import relative
 from ..errors import EngineError
+from ..gl.bindings import HALOS
+from ..gl.moderngl_extras import TEXEL_FORMATS, BufferTexture, GLExtras
 from ..lattice import lattice, places
-from ..moderngl_extras import TEXEL_FORMATS, BufferTexture, GLExtras
 
 __all__ = ["LAST", "MOST", "Vertices", "mask_places"]
 

@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...query.shapes import AND, BOX, LABELS, NOT, PLANE, SLAB, Shape
+from ...query.regions.shapes import AND, BOX, LABELS, NOT, PLANE, SLAB, Shape
 
 if TYPE_CHECKING:
-    from ...query.region import Region
+    from ...query.regions.region import Region
     from ..frame import Array
 
 __all__ = ["SIDES", "check_region", "placed_sides", "planes_of"]

@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from ...query.region import MAX_LEAVES
-from ...query.shapes import AND, BOX, NOT, SPHERE, SURFACE
+from ...query.regions.region import MAX_LEAVES
+from ...query.regions.shapes import AND, BOX, NOT, SPHERE, SURFACE
 from ..frame import Array
-from ..uniform_struct import Field, UniformStruct
+from ..gl.uniform_struct import Field, UniformStruct
 from .clip_planes import SIDES
 
 if TYPE_CHECKING:
-    from ...query.shapes import Region, Shape
+    from ...query.regions.shapes import Region, Shape
 
 __all__ = ["RAYS_BLOCK", "RegionSignature", "rays_block", "to_unit", "window_matrix"]
 
@@ -81,9 +81,9 @@ class RegionSignature:
     Attributes
     ----------
     kinds : tuple of int
-        Of each leaf, :data:`pvfiblets.query.shapes.PLANE` and so on.
+        Of each leaf, :data:`pvfiblets.query.regions.shapes.PLANE` and so on.
     program : tuple of int
-        As :attr:`pvfiblets.query.shapes.Region.program`.
+        As :attr:`pvfiblets.query.regions.shapes.Region.program`.
     """
 
     kinds: tuple[int, ...]

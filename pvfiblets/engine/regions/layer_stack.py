@@ -8,10 +8,10 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ..delayed_read import DelayedRead
 from ..errors import EngineError
-from ..moderngl_extras import GLExtras
-from ..shaders import Programs
+from ..gl.delayed_read import DelayedRead
+from ..gl.moderngl_extras import GLExtras
+from ..gl.shaders import Programs
 
 __all__ = ["LayerStack", "Rectangle", "Squares"]
 

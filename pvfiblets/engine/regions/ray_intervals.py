@@ -23,14 +23,14 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ...query.shapes import SURFACE
-from ..bindings import BLOCKS, REGIONS
-from ..delayed_read import DelayedRead
+from ...query.regions.shapes import SURFACE
 from ..errors import EngineError
 from ..frame import Array, local_frame
-from ..gl_version import version_of
-from ..moderngl_extras import GLExtras
-from ..shaders import NEWEST, Programs, assemble, switched_on
+from ..gl.bindings import BLOCKS, REGIONS
+from ..gl.delayed_read import DelayedRead
+from ..gl.gl_version import version_of
+from ..gl.moderngl_extras import GLExtras
+from ..gl.shaders import NEWEST, Programs, assemble, switched_on
 from ..view import View
 from .clip_planes import check_region
 from .convex_rays import RAYS_BLOCK, RegionSignature, rays_block, to_unit, window_matrix
@@ -38,8 +38,8 @@ from .layer_stack import LayerStack, Rectangle, Squares
 from .surface_crossings import SurfaceLayers, rectangle_of
 
 if TYPE_CHECKING:
-    from ...query.shapes import Region
-    from ...query.surfaces import Surface
+    from ...query.regions.shapes import Region
+    from ...query.regions.surfaces import Surface
 
 __all__ = ["RegionIntervals"]
 

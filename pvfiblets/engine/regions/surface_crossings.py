@@ -23,16 +23,16 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ..bindings import CROSSINGS
-from ..delayed_read import DelayedRead
 from ..errors import EngineError, GPUMemoryError
 from ..frame import Array
-from ..moderngl_extras import GLExtras
-from ..shaders import Programs
+from ..gl.bindings import CROSSINGS
+from ..gl.delayed_read import DelayedRead
+from ..gl.moderngl_extras import GLExtras
+from ..gl.shaders import Programs
 from .layer_stack import LayerStack, Rectangle, Squares
 
 if TYPE_CHECKING:
-    from ...query.surfaces import Surface
+    from ...query.regions.surfaces import Surface
 
 __all__ = ["Peeled", "SurfaceLayers", "rectangle_of"]
 

@@ -17,17 +17,17 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ...query.region import MAX_LEAVES, MAX_OPS
-from ...query.shapes import LABELS, SURFACE
-from ..bindings import BLOCKS, REGIONS
+from ...query.regions.region import MAX_LEAVES, MAX_OPS
+from ...query.regions.shapes import LABELS, SURFACE
 from ..errors import GPUMemoryError
-from ..uniform_struct import Field, UniformStruct
+from ..gl.bindings import BLOCKS, REGIONS
+from ..gl.uniform_struct import Field, UniformStruct
 
 if TYPE_CHECKING:
-    from ...query.fields import Field as DistanceField
-    from ...query.region import Region
-    from ...query.shapes import Shape
-    from ..moderngl_extras import GLExtras
+    from ...query.regions.fields import Field as DistanceField
+    from ...query.regions.region import Region
+    from ...query.regions.shapes import Shape
+    from ..gl.moderngl_extras import GLExtras
 
 __all__ = ["REGIONS_BLOCK", "FieldTextures", "RegionBlock", "region_block", "region_features"]
 

@@ -13,9 +13,9 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ..bindings import BLOCKS, TUBE_PROBE
-from ..moderngl_extras import GLExtras
-from ..shaders import Programs
+from ..gl.bindings import BLOCKS, TUBE_PROBE
+from ..gl.moderngl_extras import GLExtras
+from ..gl.shaders import Programs
 from .options import SOLVERS, check_choices
 from .uniform_blocks import SPLINES_BLOCK
 

@@ -9,11 +9,11 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ..bindings import BLOCKS
 from ..clipping import CLIP_PLANES_BLOCK, clip_planes_block
 from ..fiblets.line_tubes import TUBES_BLOCK, tubes_block
 from ..frame import FRAME_BLOCK, frame_block, local_frame
-from ..uniform_struct import Field, UniformStruct
+from ..gl.bindings import BLOCKS
+from ..gl.uniform_struct import Field, UniformStruct
 from ..view import Style, View
 
 __all__ = ["SPLINES_BLOCK", "TubeBlocks"]

@@ -13,9 +13,9 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ..bindings import VOLUMES
-from ..moderngl_extras import GLExtras
-from ..passes import nowhere
+from ..gl.bindings import VOLUMES
+from ..gl.moderngl_extras import GLExtras
+from ..gl.passes import nowhere
 
 __all__ = ["interpolates_finely"]
 

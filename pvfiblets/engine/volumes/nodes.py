@@ -12,9 +12,9 @@ import numpy.typing as npt
 from ...volumes.octree import HOMOGENEOUS, SKIP, Octree, build_octree, flags, homogeneous
 from ...volumes.raycast_options import PROJECTIONS, RaycastOptions
 from ...volumes.volume import RaycastVolume
-from ..bindings import VOLUMES
 from ..errors import EngineError
-from ..moderngl_extras import BufferTexture, GLExtras
+from ..gl.bindings import VOLUMES
+from ..gl.moderngl_extras import BufferTexture, GLExtras
 
 __all__ = ["NodeList"]
 

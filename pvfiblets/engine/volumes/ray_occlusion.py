@@ -11,10 +11,10 @@ import numpy as np
 import numpy.typing as npt
 
 from ...volumes.octree import LEAF
-from ..bindings import VOLUME_OCCLUSION
 from ..effects.screen import ScreenEffect
 from ..errors import EngineError
-from ..work_limits import WorkLimits
+from ..gl.bindings import VOLUME_OCCLUSION
+from ..gl.work_limits import WorkLimits
 from .renderer import VolumeRenderer
 from .uniform_blocks import CONSTANTS
 

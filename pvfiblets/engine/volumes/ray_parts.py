@@ -10,9 +10,9 @@ if TYPE_CHECKING:
     import moderngl
 
     from ...volumes.volume import RaycastVolume
-    from ..moderngl_extras import GLExtras
+    from ..gl.moderngl_extras import GLExtras
+    from ..gl.shaders import Programs
     from ..regions.ray_intervals import RegionIntervals
-    from ..shaders import Programs
     from ..view import View
 
 __all__ = ["VolumeRegionIntervals"]

@@ -12,9 +12,9 @@ from ...volumes.raycast_options import MAX_VALUES, RaycastOptions
 from ...volumes.steepness import PARTS
 from ...volumes.transfer import ALLOWED, FINEST
 from ...volumes.volume import RaycastVolume
-from ..bindings import BLOCKS
 from ..errors import EngineError
-from ..uniform_struct import Field, UniformStruct
+from ..gl.bindings import BLOCKS
+from ..gl.uniform_struct import Field, UniformStruct
 from ..view import MAX_CLIP_PLANES, View
 
 __all__ = ["CONSTANTS", "MAX_LEVELS", "MOST_LAMPS", "RayBlock"]

@@ -129,7 +129,7 @@ def point_values(fiblets: Any, ids: np.ndarray, name: str) -> tuple[np.ndarray, 
         lines = fiblets.decompress(ids)
         return np.asarray(lines.per_point[name], np.float64).reshape(len(lines.points), -1)[:, 0], lines.offsets
     from pvfiblets.codec.streamline_ranges import StreamlineRanges
-    from pvfiblets.query.measures import measure
+    from pvfiblets.query.measures.measures import measure
 
     part = fiblets.extract(ids)
     try:
@@ -186,7 +186,7 @@ def everything(
     there. What is seen in the area is always among them, although its pixel may lie in it where the
     line's middle does not.
     """
-    from pvfiblets.query.screen import under_polygon
+    from pvfiblets.query.selection.screen import under_polygon
 
     shown = shown_by(actor.mapper, renderer)
     if shown is None:

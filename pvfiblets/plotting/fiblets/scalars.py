@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pvfiblets.codec.point_arrays import colour_columns
-from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
+from pvfiblets.engine.fiblets.data.sampled_volume import VolumeSource
 from pvfiblets.mappers.colouring import Mode
 from pvfiblets.query.bundles.bundle_list import group_colours, hidden_groups
 from pvfiblets.query.bundles.colours import distinct_colours
-from pvfiblets.query.endpoints import anchor_points, end_points
-from pvfiblets.query.measures import COMPUTED, Distance, measure
+from pvfiblets.query.measures.measures import COMPUTED, Distance, measure
+from pvfiblets.query.selection.endpoints import anchor_points, end_points
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet

@@ -325,7 +325,7 @@ def part_of_filter(filtering: Any, fiblets: FibletSet, ids: np.ndarray) -> Any:
     Filter or None
         Of the part.
     """
-    from pvfiblets.engine.fiblets.filter_textures import Filter
+    from pvfiblets.engine.fiblets.data.filter_textures import Filter
 
     if filtering is None:
         return None

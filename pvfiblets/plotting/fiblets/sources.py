@@ -11,11 +11,10 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from pvfiblets import formats
-from pvfiblets.addresses import path_of
 from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.codec.point_arrays import unit_colours, with_coded_values, with_point_colours
 from pvfiblets.codec.point_arrays import with_point_values as add_values
-from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
+from pvfiblets.engine.fiblets.data.sampled_volume import VolumeSource
 from pvfiblets.formats.attachments import is_values_file, name_of, values_for
 from pvfiblets.invalid_points import Invalid, valid_points
 from pvfiblets.lines import refuse_words, rows_of
@@ -23,9 +22,10 @@ from pvfiblets.other_libraries import EXPECTED, streamlines_of
 from pvfiblets.plotting.fiblets.scalars import UNNAMED, are_colours, magnitudes, refuse_unknown
 from pvfiblets.plotting.fiblets.volume_sources import as_volume
 from pvfiblets.plotting.same_names import Preference, with_preference
-from pvfiblets.query.measures import Distance, measure
+from pvfiblets.query.measures.measures import Distance, measure
 from pvfiblets.streamlines import Streamlines
-from pvfiblets.summary import warn_of_losses
+from pvfiblets.support.addresses import path_of
+from pvfiblets.support.summary import warn_of_losses
 
 if TYPE_CHECKING:
     from pvfiblets.codec.compress import PerPoint

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 
-from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
+from pvfiblets.engine.fiblets.data.sampled_volume import VolumeSource
 
 SUFFIXES = (".nii", ".nii.gz", ".mgh", ".mgz")
 """Of a text that is not the name of an array but the path of a volume."""
@@ -26,7 +26,7 @@ def as_volume(scalars: Any) -> VolumeSource | None:
         - ``(array, affine)``: ``(i, j, k)`` numbers, and the ``(4, 4)`` matrix from voxel indices
           to mm.
         - An image of nibabel, or the path of one (``.nii``, ``.nii.gz``, ``.mgh``, ``.mgz``).
-        - A :class:`~pvfiblets.engine.fiblets.sampled_volume.VolumeSource`.
+        - A :class:`~pvfiblets.engine.fiblets.data.sampled_volume.VolumeSource`.
 
         It lies in the coordinates of the streamlines' data, as they were given: what moves the
         actor moves it along.

@@ -317,7 +317,7 @@ def _read_lines(source: Any) -> Any:
     """Return the data of a file, or of an object of another library; anything else as it is."""
     if not isinstance(source, (str, os.PathLike)):
         return told_lines(source)
-    from pvfiblets.codec.open_lines import open_lines
+    from pvfiblets.codec.files.open_lines import open_lines
 
     return open_lines(source)
 

@@ -11,8 +11,8 @@ import numpy.typing as npt
 
 from ...codec.progress import Progress
 from ...codec.small_sets import prefer_kernels
-from ...progress_bar import progress_bar
 from ...streamlines import Streamlines
+from ...support.progress_bar import progress_bar
 
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet

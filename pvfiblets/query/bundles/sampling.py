@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..image_samples import three_axes
-from ..voxel_grid import grid_like
+from ..density.voxel_grid import grid_like
+from ..measures.image_samples import three_axes
 
 __all__ = ["Image", "as_image"]
 
@@ -87,7 +87,7 @@ def as_image(given: Any) -> Image | None:
     if isinstance(given, Image):
         return given
     if isinstance(given, (str, os.PathLike)):
-        from ..voxel_grid import SUFFIXES
+        from ..density.voxel_grid import SUFFIXES
 
         if not os.fspath(given).lower().endswith(SUFFIXES):
             return None

@@ -9,7 +9,7 @@
 //
 // `step` and `rest` are t in steps from point to point, where a segment stands for a whole fiblet (far views).
 // value_of_point(i) serves stages that hand values on with points: that of the point which start_values() came to last, but 0
-// where fragments look it up. pvfiblets/engine/fiblets/point_values.py makes the buffers. Between points a value is interpolated; next to NaN the nearer counts.
+// where fragments look it up. pvfiblets/engine/fiblets/data/point_values.py makes the buffers. Between points a value is interpolated; next to NaN the nearer counts.
 
 #include "fiblets/data/values.glsl"
 

@@ -43,15 +43,15 @@ import moderngl
 import numpy as np
 
 from ....codec.layout import MAX_POINTS
-from ...bindings import IMAGES, STORAGE
 from ...errors import EngineError
-from ...gl_version import version_of
-from ...moderngl_extras import GLExtras
-from ...passes import GROUP_SIZE, dispatch, is_software
+from ...gl.bindings import IMAGES, STORAGE
+from ...gl.gl_version import version_of
+from ...gl.moderngl_extras import GLExtras
+from ...gl.passes import GROUP_SIZE, dispatch, is_software
+from ...gl.program_uniforms import set_uniforms
+from ...gl.shaders import EXTENDED, Programs
 from ...pieces import Pieces, finish
-from ...program_uniforms import set_uniforms
-from ...shaders import EXTENDED, Programs
-from ..chunks import Chunk, storage_buffer
+from ..data.chunks import Chunk, storage_buffer
 from .constants import GROUP_WORDS, VISIBILITY_WORDS
 from .draw_request import DrawRequest
 from .segment_shares import segment_shares

@@ -29,13 +29,13 @@ from typing import Any, TypeVar
 
 import moderngl
 
-from ...bindings import BETWEEN_ROUNDS, FIBLET_ROUNDS
-from ...depth_texture import depth_texture
 from ...errors import EngineError
 from ...gbuffer import EMPTY, GBuffer
-from ...moderngl_extras import GLExtras
-from ...shaders import Programs
-from ..chunks import Chunk
+from ...gl.bindings import BETWEEN_ROUNDS, FIBLET_ROUNDS
+from ...gl.depth_texture import depth_texture
+from ...gl.moderngl_extras import GLExtras
+from ...gl.shaders import Programs
+from ..data.chunks import Chunk
 from .draw_request import DrawRequest
 
 __all__ = ["RasterPipeline", "RasterTarget", "SeenTexture"]

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import moderngl
 
-from ...moderngl_extras import GLExtras
-from ...passes import work_groups
-from ...work_limits import WorkLimits
+from ...gl.moderngl_extras import GLExtras
+from ...gl.passes import work_groups
+from ...gl.work_limits import WorkLimits
 from .compute import CLASSES
 from .constants import VISIBILITY_WORDS
 
@@ -40,7 +40,7 @@ class Limits:
     marked_by : str
         What holds them.
     fiblets : int
-        Of one buffer of records, and with that of one call (:mod:`pvfiblets.engine.work_limits`).
+        Of one buffer of records, and with that of one call (:mod:`pvfiblets.engine.gl.work_limits`).
     """
 
     buffer_bytes: int
