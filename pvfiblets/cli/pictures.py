@@ -39,7 +39,7 @@ def screenshot(paths: list[str], *, output: str, size: tuple[int, int], transpar
                 elif scene is None:
                     plotter.screenshot(made, return_img=False)
                 else:
-                    scene.screenshot(made)
+                    scene.cameras.screenshot(made)
                 file.write(Path(made).read_bytes())
             finally:
                 Path(made).unlink(missing_ok=True)

@@ -227,7 +227,7 @@ class Explorer(TrameApp):
             chosen = scene.layer(page.chosen) if page.chosen else None
             page.chosen_name = chosen.name if chosen is not None else ""
             page.chosen_kind = chosen.kind if chosen is not None else ""
-            page.groups = describe.groups(scene.properties(page.chosen)) if page.chosen else []
+            page.groups = describe.groups(scene.queries.properties(page.chosen)) if page.chosen else []
             page.range_chart = self._charts.of_range(page.chosen)
             page.undo_label = self.history.undo_label or ""
             page.redo_label = self.history.redo_label or ""
@@ -248,7 +248,7 @@ class Explorer(TrameApp):
         """Show the facts of the chosen layer, some of which are counted on the GPU: only while somebody looks."""
         page = self.page
         if page.tab == "info":
-            page.info = tables(self.scene.info(page.chosen)) if page.chosen else []
+            page.info = tables(self.scene.queries.info(page.chosen)) if page.chosen else []
 
     def choose(self, layer_id: str) -> None:
         """Make a layer the one that the panels are about."""
@@ -336,7 +336,7 @@ class Explorer(TrameApp):
         self.set_property(layer_id, name, value)
 
     def _property(self, layer_id: str, name: str) -> dict[str, Any]:
-        for described in self.scene.properties(layer_id):
+        for described in self.scene.queries.properties(layer_id):
             if described["name"] == name:
                 return dict(described)
         raise ValueError(f"there is no property {name!r}")

@@ -88,7 +88,7 @@ def test_one_label_asks_for_its_streamlines_and_two_for_what_connects_them(desk)
 def test_other_regions_stay_and_a_label_is_found_in_the_image(desk):
     lines = desk.scene.layers[0]
     sphere = {"kind": "sphere", "center": [4.0, 0.0, 0.0], "radius": 1.0, "name": "A"}
-    desk.scene.set_regions(lines.id, {"op": "and", "of": [{"how": "passes", "region": sphere}]})
+    desk.scene.filters.set_regions(lines.id, {"op": "and", "of": [{"how": "passes", "region": sphere}]})
     do(desk, ("ask", 3), ("go", 7))
     assert shown(desk) == [0]
     x, y, z = desk.scene.slicing.view.position

@@ -68,7 +68,7 @@ def test_a_cell_shows_its_streamlines_and_again_all(desk):
     desk.matrix.refresh()
     assert desk.page.matrix["cell"] == "back – =front"
     assert desk.page.matrix["pair"] == [0, 1]
-    desk.scene.set_filter(desk.page.chosen, "weight", 8, 50)
+    desk.scene.filters.set_filter(desk.page.chosen, "weight", 8, 50)
     assert shown(desk) == [line for line in wanted if line >= 8]
     assert desk.history.undo() == "range of weight of lines.fiblets"
     assert desk.history.undo() == "connection of lines.fiblets"

@@ -102,7 +102,7 @@ def test_what_a_process_keeps_is_restored_by_the_next_after_its_first_files(desk
     monkeypatch.setattr("pvfiblets.web.panels.session_actions.QUIET", 0.0)
     desk.notes = Notes(tmp_path)
     layer = scene.open("lines.trk")
-    scene.select(layer.id, [4, 5, 9])
+    scene.selection.select(layer.id, [4, 5, 9])
 
     async def dies():
         desk.files.keep_soon()
@@ -225,7 +225,7 @@ def test_meshes_and_labels_are_regions_and_cuts_read_beside_the_page(desk, scene
 
 def test_a_cut_goes_through_the_layers_that_are_chosen(desk, scene):
     lines, ball = scene.open("lines.fiblets"), scene.open("ball.ply")
-    clip = scene.add_clip("plane")
+    clip = scene.filters.add_clip("plane")
     desk.cuts.refresh()
     (shown,) = desk.page.clips
     assert shown["layers"] == ["*"]

@@ -57,10 +57,10 @@ def test_a_slider_that_rests_without_being_let_go_is_shown_as_it_is(desk, scene,
 
 def test_cuts_filters_and_regions_slide(desk, scene):
     (layer,) = scene.layers
-    clip = scene.add_clip("box")
+    clip = scene.filters.add_clip("box")
     drag(desk, ("clip", clip.id, "x", [1.0, 5.0]), ("clip", clip.id, "x", [1.0, 7.0]))
     assert scene.state.clip(clip.id).shape["bounds"][:2] == [1.0, 7.0]
-    scene.remove_clip(clip.id)
+    scene.filters.remove_clip(clip.id)
     desk.filtering.add("length")
 
     async def held():
@@ -174,8 +174,8 @@ def test_facts_are_tables_with_units(scene):
     from pvfiblets.web.panels.info_tables import tables
 
     lines = scene.open("lines.trk")
-    scene.screenshot()
-    found = {table["title"]: table for table in tables(scene.info(lines.id))}
+    scene.cameras.screenshot()
+    found = {table["title"]: table for table in tables(scene.queries.info(lines.id))}
     layer = dict(found["Layer"]["rows"])
     assert layer["Streamlines"] == "60 of 60 shown"
     assert layer["File"] == "lines.trk"
@@ -192,7 +192,7 @@ def test_facts_are_tables_with_units(scene):
         "Drawing",
     }
     assert all(isinstance(cell, str) for table in found.values() for row in table["rows"] for cell in row)
-    head = {table["title"]: table for table in tables(scene.info(scene.open("head.nii.gz").id))}
+    head = {table["title"]: table for table in tables(scene.queries.info(scene.open("head.nii.gz").id))}
     assert head["Voxels to mm"]["rows"][0] == ["4", "0", "0", "0"]
     assert tables({}) == []
 

@@ -118,7 +118,7 @@ class AtlasActions(Actions):
             for row in rows:
                 if _is_label(row, image.source.path):
                     row["how"] = how
-            self._app.scene.set_regions(lines.id, condition(join, rows))
+            self._app.scene.filters.set_regions(lines.id, condition(join, rows))
         self._show()
 
     def ask(self, label: Any) -> None:
@@ -136,16 +136,16 @@ class AtlasActions(Actions):
         gone = same or asked[: max(0, len(asked) + 1 - MOST_ASKED)]
         rows = [row for row in rows if row not in gone]
         if same:
-            self._app.scene.set_regions(lines.id, condition(join, rows))
+            self._app.scene.filters.set_regions(lines.id, condition(join, rows))
             return
         region = {"kind": "labels", "path": path, "labels": [label]}
         region["name"] = free_name(
-            f"{found['name']}"[:40].strip() or str(label), set(self._app.scene.region_names()), kept=34
+            f"{found['name']}"[:40].strip() or str(label), set(self._app.scene.regions.region_names()), kept=34
         )
         rows.append({"not": False, "how": self._how, "region": region})
         wanted = condition("and" if not asked else join, rows)
         self._app.later(
-            self._app.files.with_shape("labels", path, lambda: self._app.scene.set_regions(lines.id, wanted))
+            self._app.files.with_shape("labels", path, lambda: self._app.scene.filters.set_regions(lines.id, wanted))
         )
 
     def clear(self) -> None:
@@ -153,7 +153,7 @@ class AtlasActions(Actions):
         image, lines = self._layer(), self._lines()
         join, rows = flat(lines.filters.regions)
         rows = [row for row in rows if not _is_label(row, image.source.path)]
-        self._app.scene.set_regions(lines.id, condition(join, rows))
+        self._app.scene.filters.set_regions(lines.id, condition(join, rows))
 
     def ask_at(self, x: Any, y: Any) -> None:
         """Ask for the label in a place of a pane, in shares of the picture from its upper left."""
@@ -162,7 +162,7 @@ class AtlasActions(Actions):
         if pane is None:
             return
         position = pane.position_at(*app.slices.pixel(x, y))
-        app.scene.set_slices(position=[float(part) for part in position])
+        app.scene.images.set_slices(position=[float(part) for part in position])
         label = app.scene.actor(image.id).value_at(position)
         if not label:
             app.say("There is no label there.")
@@ -178,7 +178,7 @@ class AtlasActions(Actions):
             raise ValueError(f"{image.name} has no label {str(label)[:40]}")
         inner = at[np.argmin(((at - at.mean(axis=0)) ** 2).sum(axis=1))]
         position = data.affine[:3, :3] @ inner + data.affine[:3, 3]
-        app.scene.set_slices(position=[float(part) for part in position])
+        app.scene.images.set_slices(position=[float(part) for part in position])
         app.slices.changed()
 
     def _show(self) -> None:

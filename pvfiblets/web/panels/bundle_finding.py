@@ -77,7 +77,7 @@ class FindingActions(LineActions):
         )
         if found is None:
             return
-        app.scene.select(layer.id, found.ids)
+        app.scene.selection.select(layer.id, found.ids)
         selected = app.scene.layer(layer.id).selected
         self._asked = (layer.id, selected, like) if selected is not None else None
         of = f"{len(like):,}" if some is like else f"an even {COMPARED:,} of the {len(like):,}"
@@ -100,7 +100,7 @@ class FindingActions(LineActions):
         groups = {f"cluster {k + 1}": largest[k].ids for k in range(min(len(largest), LISTED))}
         if not groups:
             raise ValueError(f"{layer.name} has no streamlines with points to cluster")
-        app.scene.add_bundles(layer.id, groups, f"{len(groups)} clusters")
+        app.scene.bundles.add_bundles(layer.id, groups, f"{len(groups)} clusters")
         rest = f"; the {len(groups)} largest are bundles now" if len(found) > len(groups) else ", now bundles"
         app.say(f"{len(found):,} clusters{rest}.", "success")
 
@@ -127,7 +127,7 @@ class FindingActions(LineActions):
         groups = {name: ids for name, ids in found.items() if len(ids)}
         none = [name for name in found if name not in groups]
         if groups:
-            app.scene.add_bundles(layer.id, groups, f"{len(groups)} recognised bundles")
+            app.scene.bundles.add_bundles(layer.id, groups, f"{len(groups)} recognised bundles")
         missing = f"; nothing was recognised of {', '.join(none[:8])}{' and others' * (len(none) > 8)}" if none else ""
         app.say(f"{len(groups):,} bundles were recognised{missing}.", "success" if groups else "info")
 

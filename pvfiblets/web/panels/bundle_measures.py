@@ -65,7 +65,7 @@ class MeasureActions(LineActions):
         values = self._values(layer.id)
         titles = [value["value"] for value in values]
         self._value = self._value if self._value in titles else titles[0]
-        there = scene.bundles(layer.id)
+        there = scene.bundles.of_layer(layer.id)
         kept = {kind: one for kind, one in self._results.items()
                 if one.layer != layer.id or all(bundle in there for bundle in one.bundles)}  # fmt: skip
         self._results = kept
@@ -156,7 +156,7 @@ class MeasureActions(LineActions):
 
     def _of(self) -> tuple[Bundle, ...]:
         """Return the bundles to measure, those of no streamlines left out."""
-        there = self._app.scene.bundles(self._layer.id)
+        there = self._app.scene.bundles.of_layer(self._layer.id)
         chosen = self._app.bundles.chosen()
         found = tuple(one for one in there if (one.name in chosen if chosen else one.visible) and len(one.ids))
         if not found:

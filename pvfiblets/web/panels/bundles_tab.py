@@ -35,7 +35,7 @@ class BundleActions(LineActions):
         if not page.chosen or page.chosen_kind not in LINES:
             page.bundles, self._sought = {"layer": "", "rows": [], "count": 0}, ""
             return
-        bundles = scene.bundles(page.chosen)
+        bundles = scene.bundles.of_layer(page.chosen)
         known = {one.name for one in bundles}
         self._checked = [name for name in self._checked if name in known]
         layer = self._layer
@@ -59,7 +59,7 @@ class BundleActions(LineActions):
 
     def check(self, name: str, on: bool) -> None:
         """Choose a bundle for what is done with several, or choose it no more."""
-        known = [one.name for one in self._app.scene.bundles(self._layer.id)]
+        known = [one.name for one in self._app.scene.bundles.of_layer(self._layer.id)]
         self._checked = [one for one in self._checked if one != name]
         if on is True and name in known:
             self._checked.append(name)
@@ -76,7 +76,7 @@ class BundleActions(LineActions):
         """Make what is selected, or what is shown, a bundle."""
         if what not in ("selected", "shown"):
             raise ValueError(f"a bundle is made of what is selected or shown, not of {str(what)[:40]!r}")
-        self._app.scene.add_bundle(self._layer.id, what)
+        self._app.scene.bundles.add_bundle(self._layer.id, what)
 
     def chosen(self) -> list[str]:
         """Names of the bundles chosen by their boxes, in the order in which they were."""
@@ -84,7 +84,9 @@ class BundleActions(LineActions):
 
     def chosen_ids(self) -> Any:
         """Streamlines of the bundles chosen, each once."""
-        parts = [one.ids.array() for one in self._app.scene.bundles(self._layer.id) if one.name in self._checked]
+        parts = [
+            one.ids.array() for one in self._app.scene.bundles.of_layer(self._layer.id) if one.name in self._checked
+        ]
         return np.unique(np.concatenate(parts)) if parts else np.zeros(0, np.int64)
 
     def move(self, by: int) -> None:
@@ -92,17 +94,17 @@ class BundleActions(LineActions):
         layer, names = self._layer, self._checked
         if not names:
             raise ValueError("choose bundles by their boxes first")
-        listed = [one.name for one in self._app.scene.bundles(layer.id)]
+        listed = [one.name for one in self._app.scene.bundles.of_layer(layer.id)]
         places = [listed.index(name) for name in names]
         to = min(places) - 1 if by < 0 else max(places) - len(places) + 2
-        self._app.scene.move_bundles(layer.id, names, to)
+        self._app.scene.bundles.move_bundles(layer.id, names, to)
 
     def drop(self, name: str, on: str) -> None:
         """Put a bundle to where another is, as it was dragged."""
         layer = self._layer
-        listed = [one.name for one in self._app.scene.bundles(layer.id)]
+        listed = [one.name for one in self._app.scene.bundles.of_layer(layer.id)]
         if name in listed and on in listed and name != on:
-            self._app.scene.move_bundles(layer.id, [name], listed.index(on))
+            self._app.scene.bundles.move_bundles(layer.id, [name], listed.index(on))
 
     def set(self, name: str, what: str, value: Any) -> None:
         """Set name, colour or visibility of a bundle."""
@@ -113,7 +115,7 @@ class BundleActions(LineActions):
         if what == "name":  # it stays chosen
             self._checked = [value if one == name else one for one in self._checked]
         try:
-            self._app.scene.set_bundle(self._layer.id, name, **{what: value})
+            self._app.scene.bundles.set_bundle(self._layer.id, name, **{what: value})
         except Exception:
             self._checked = before
             self._app.refresh()
@@ -121,14 +123,16 @@ class BundleActions(LineActions):
 
     def show_all(self, on: bool) -> None:
         """Show all bundles, or none."""
-        self._app.scene.show_bundles(self._layer.id, None if on is True else [])
+        self._app.scene.bundles.show_bundles(self._layer.id, None if on is True else [])
 
     def colour(self, on: bool) -> None:
         """Colour streamlines by their bundles, or by orientation."""
         scene, layer = self._app.scene, self._layer
         if on is True and scene.state.bundles_of(layer.source) is None:
-            there = scene.bundles(layer.id)
-            scene.show_bundles(layer.id, [one.name for one in there if one.visible])  # in the colours of the list
+            there = scene.bundles.of_layer(layer.id)
+            scene.bundles.show_bundles(
+                layer.id, [one.name for one in there if one.visible]
+            )  # in the colours of the list
         scene.set(layer.id, "scalars", "group" if on is True else "orientation")
 
     def act(self, what: str) -> None:
@@ -137,9 +141,12 @@ class BundleActions(LineActions):
         if not names:
             raise ValueError("choose bundles by their boxes first")
         act = {
-            "merge": scene.merge_bundles, "subtract": scene.subtract_bundles, "remove": scene.remove_bundles,
-            "select": scene.select_bundles, "only": scene.show_bundles,
-        }.get(what if isinstance(what, str) else "")  # fmt: skip
+            "merge": scene.bundles.merge_bundles,
+            "subtract": scene.bundles.subtract_bundles,
+            "remove": scene.bundles.remove_bundles,
+            "select": scene.bundles.select_bundles,
+            "only": scene.bundles.show_bundles,
+        }.get(what if isinstance(what, str) else "")
         if act is None:
             raise ValueError(f"bundles cannot be {str(what)[:40]!r}")
         act(layer, names)

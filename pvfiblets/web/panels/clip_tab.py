@@ -42,21 +42,21 @@ class CutActions(Actions):
         """Add a cut in the middle of what is shown, or by the mesh in a file, which is read beside everything else."""
         scene, files = self._app.scene, self._app.files
         if path is None:
-            scene.add_clip(kind)
+            scene.filters.add_clip(kind)
         else:
-            self._app.later(files.with_shape("mesh", path, lambda: scene.add_clip(kind, path=path)))
+            self._app.later(files.with_shape("mesh", path, lambda: scene.filters.add_clip(kind, path=path)))
 
     def enable(self, clip_id: str, enabled: bool) -> None:
         """Switch a cut on or off."""
-        self._app.scene.set_clip(clip_id, enabled=enabled)
+        self._app.scene.filters.set_clip(clip_id, enabled=enabled)
 
     def turn(self, clip_id: str, inside: bool) -> None:
         """Show one side of a cut or the other."""
-        self._app.scene.set_clip(clip_id, inside=inside)
+        self._app.scene.filters.set_clip(clip_id, inside=inside)
 
     def remove(self, clip_id: str) -> None:
         """Take a cut away."""
-        self._app.scene.remove_clip(clip_id)
+        self._app.scene.filters.remove_clip(clip_id)
 
     def set_layers(self, clip_id: str, chosen: Any) -> None:
         """Choose what a cut goes through: ids of layers, or `EVERY` for all tractograms, later ones too."""
@@ -65,12 +65,12 @@ class CutActions(Actions):
         if not isinstance(chosen, list):
             raise ValueError("expected a list of layers")
         if EVERY in chosen and clip.layers is not None:
-            scene.set_clip(clip_id, layers=None)
+            scene.filters.set_clip(clip_id, layers=None)
             return
         ids = [layer.id for layer in scene.layers if layer.id in chosen or (EVERY in chosen and clip.cuts(layer))]
         if EVERY in chosen and len(chosen) == 1:
             return
-        scene.set_clip(clip_id, layers=ids)
+        scene.filters.set_clip(clip_id, layers=ids)
 
     def set_axis(self, clip_id: str, axis: str) -> None:
         """Turn a plane or a slab across an axis, or to face the camera."""
@@ -83,11 +83,11 @@ class CutActions(Actions):
         old = self._app.scene.state.clip(clip_id).shape.get("normal")
         if old is not None and axis == axis_of(old) and np.dot(old, normal) > 0:
             return
-        self._app.scene.set_clip(clip_id, normal=normal)
+        self._app.scene.filters.set_clip(clip_id, normal=normal)
 
     def set_value(self, clip_id: str, name: str, value: Any) -> None:
         """Move a cut's slider."""
-        self._app.scene.set_clip(clip_id, **moved(self._app.scene.state.clip(clip_id).shape, name, value))
+        self._app.scene.filters.set_clip(clip_id, **moved(self._app.scene.state.clip(clip_id).shape, name, value))
 
     def set_end(self, clip_id: str, name: str, end: int, text: str) -> None:
         """Set a number of a cut, or one end of a range, to mm that were typed."""

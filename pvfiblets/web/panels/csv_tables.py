@@ -19,7 +19,7 @@ _FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n")
 
 def selection_csv(scene: Scene) -> str:
     """Return the selected streamlines of all layers, a row each."""
-    total = scene.count()
+    total = scene.selection.count()
     if not total:
         raise ValueError("nothing is selected; pick streamlines first")
     if total > MOST_ROWS:
@@ -27,7 +27,7 @@ def selection_csv(scene: Scene) -> str:
             f"{total:,} streamlines are selected, and a table takes {MOST_ROWS:,}; export them as .trx, and "
             "`pvfiblets table` makes a table of all"
         )
-    rows = [row for first in range(0, total, PIECE) for row in scene.table(first=first, limit=PIECE)["rows"]]
+    rows = [row for first in range(0, total, PIECE) for row in scene.selection.table(first=first, limit=PIECE)["rows"]]
     return _written(
         ("layer", "streamline", "points", "length_mm", "value", "value_of", "groups"),
         ((row["name"], row["streamline"], row["points"], row["length"], row["value"], row["of"],

@@ -82,17 +82,17 @@ class Charts:
     def of(self, layer_id: str, name: str) -> tuple[str, list[float]]:
         """Return the chart of a layer's values, and between which they lie."""
         found = self._scene.layer(layer_id)
-        return self._chart((found.source, found.kind, name), lambda: self._scene.histogram(layer_id, name))
+        return self._chart((found.source, found.kind, name), lambda: self._scene.queries.histogram(layer_id, name))
 
     def of_range(self, layer_id: str) -> str:
         """Return the chart of what colours a layer; nothing where colours stand for no numbers."""
         if not layer_id:
             return ""
         found = self._scene.layer(layer_id)
-        names = [entry["name"] for entry in self._scene.arrays(layer_id)]
+        names = [entry["name"] for entry in self._scene.queries.arrays(layer_id)]
         name = found.settings.get("scalars")
         if (volume := volume_in(name)) is not None:
-            return self._chart((volume, "colours", ""), lambda: self._scene.histogram(layer_id))[0]
+            return self._chart((volume, "colours", ""), lambda: self._scene.queries.histogram(layer_id))[0]
         if found.kind in ("volume", "image") and names:
             name = names[0]
         return self.of(layer_id, name)[0] if name in names else ""

@@ -79,7 +79,7 @@ class ExportActions(Actions):
         if to not in PLACES:
             raise ValueError(f"{to[:40]!r} is none of {', '.join(PLACES)}")
         layer = self._owner(what)
-        fiblets, ids = app.scene.chosen(layer.id, what)
+        fiblets, ids = app.scene.selection.chosen(layer.id, what)
         self._begin(layer, fiblets, ids, self._stem(layer, what, suffix), suffix)
 
     def export_ids(self, layer_id: str, ids: Any, suffix: str, name: str) -> None:

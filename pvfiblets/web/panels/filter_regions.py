@@ -50,7 +50,7 @@ class RegionActions(LineActions):
                     "controls": controls(row["region"], bounds),
                     "file": row["region"].get("path", "").rpartition("/")[2],
                     "labels": ", ".join(map(str, row["region"].get("labels") or ())),
-                    "layers": scene.sharing(row["region"].get("name")) or [layer.id],
+                    "layers": scene.regions.sharing(row["region"].get("name")) or [layer.id],
                 }
                 for row in rows
             ],
@@ -90,7 +90,7 @@ class RegionActions(LineActions):
         _, rows = flat(layer.filters.regions)
         last = next((row["region"] for row in reversed(rows) if row["region"]["kind"] in PLACED), None)
         beside = None if last is None else self._sight().right
-        region = {**scene.usual_region(kind, last, beside), "name": scene.free_region_name()}
+        region = {**scene.regions.usual_region(kind, last, beside), "name": scene.regions.free_region_name()}
         self._edit(lambda rows: rows.append({"not": False, "how": "passes", "region": region}))
 
     def add_file(self, path: str) -> None:
@@ -100,7 +100,7 @@ class RegionActions(LineActions):
         region = {"kind": kind, "path": path} | ({"labels": None} if kind == "labels" else {})
 
         def add() -> None:
-            named = {**region, "name": self._app.scene.free_region_name()}
+            named = {**region, "name": self._app.scene.regions.free_region_name()}
             self._edit(lambda rows: rows.append({"not": False, "how": "passes", "region": named}), layer)
 
         self._app.later(self._app.files.with_shape(kind, path, add))
@@ -133,12 +133,12 @@ class RegionActions(LineActions):
         """Ask for all of the regions, or for any."""
         layer = self._layer
         _, rows = flat(layer.filters.regions)
-        self._app.scene.set_regions(layer.id, condition("or" if word == "or" else "and", rows))
+        self._app.scene.filters.set_regions(layer.id, condition("or" if word == "or" else "and", rows))
 
     def rename(self, row: int, name: str) -> None:
         """Give a region another name."""
         wanted = text(str(name).strip(), "the name of a region", 40)
-        taken = self._app.scene.region_names()
+        taken = self._app.scene.regions.region_names()
         region = self._region(row)
         if wanted != region.get("name") and wanted in taken:
             raise ValueError(f"there is a region {wanted!r} already; give another name")
@@ -150,7 +150,7 @@ class RegionActions(LineActions):
         if not isinstance(chosen, list) or not chosen:
             raise ValueError("a region is used by one layer at least; remove it instead")
         _, rows = flat(self._layer.filters.regions)
-        self._app.scene.share_region(region, rows[row]["how"], rows[row]["not"], chosen)
+        self._app.scene.regions.share_region(region, rows[row]["how"], rows[row]["not"], chosen)
 
     def set_value(self, row: int, name: str, value: Any) -> None:
         """Move a region's slider."""
@@ -180,7 +180,7 @@ class RegionActions(LineActions):
         """Move the region that is being placed to what a pixel of the picture shows: a line, a slice or a surface."""
         app = self._app
         with hidden_distances(app.plotter):
-            found = app.scene.place_at(x, y, tolerance=NEAR)
+            found = app.scene.cameras.place_at(x, y, tolerance=NEAR)
         if found is None:
             app.say("There is nothing there; click on a streamline, a slice or a surface.")
             return
@@ -204,7 +204,7 @@ class RegionActions(LineActions):
         region = self._region(row)
         new = {**region, **change(region)}
         if "name" in region:
-            self._app.scene.change_region(region["name"], new)
+            self._app.scene.regions.change_region(region["name"], new)
         else:
             self._edit(lambda rows: rows[row].update({"region": new}))
 
@@ -212,7 +212,7 @@ class RegionActions(LineActions):
         layer = self._layer if layer is None else self._app.scene.layer(layer.id)
         join, rows = flat(layer.filters.regions)
         change(rows)
-        self._app.scene.set_regions(layer.id, condition(join, rows))
+        self._app.scene.filters.set_regions(layer.id, condition(join, rows))
 
 
 def title(region: Mapping[str, Any]) -> str:

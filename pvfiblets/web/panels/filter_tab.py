@@ -37,7 +37,7 @@ class FilterActions(LineActions):
             page.filters = {"regions": [], "criteria": []}
             return
         layer = self._layer
-        arrays = scene.arrays(layer.id)
+        arrays = scene.queries.arrays(layer.id)
         titles = {entry["name"]: entry["title"] for entry in arrays}
         actor = scene.actor(layer.id)
         filters = layer.filters
@@ -82,22 +82,22 @@ class FilterActions(LineActions):
         """Add a criterion that leaves all in."""
         layer = self._layer
         low, high = self._charts.of(layer.id, name)[1]
-        self._app.scene.set_filter(layer.id, name, low, high)
+        self._app.scene.filters.set_filter(layer.id, name, low, high)
 
     def remove(self, name: str) -> None:
         """Take a criterion away."""
-        self._app.scene.remove_filter(self._layer.id, name)
+        self._app.scene.filters.remove_filter(self._layer.id, name)
 
     def clear(self) -> None:
         """Show all streamlines."""
-        self._app.scene.remove_filter(self._layer.id)
+        self._app.scene.filters.remove_filter(self._layer.id)
 
     def set_criterion(self, name: str, ends: Any) -> None:
         """Set the range of a criterion."""
         if not isinstance(ends, list) or len(ends) != 2:
             raise ValueError(f"{name}: expected two numbers")
         low, high = (typed(end, name, optional=False) for end in ends)
-        self._app.scene.set_filter(self._layer.id, name, low, high)
+        self._app.scene.filters.set_filter(self._layer.id, name, low, high)
 
     def set_end(self, name: str, end: int, text: str) -> None:
         """Set one end of a range to a number that was typed; nothing typed leaves it open."""
@@ -105,13 +105,13 @@ class FilterActions(LineActions):
         ends: list[float | None] = list(layer.filters.criteria[name])
         ends[1 if end else 0] = typed(text, name, optional=True)
         low, high = (None if value is None or math.isinf(value) else value for value in ends)
-        self._app.scene.set_filter(layer.id, name, low, high)
+        self._app.scene.filters.set_filter(layer.id, name, low, high)
 
     def set_groups(self, names: list[str]) -> None:
         """Show some groups only; none chosen shows all."""
-        self._app.scene.set_groups(self._layer.id, names or None)
+        self._app.scene.filters.set_groups(self._layer.id, names or None)
 
     def set_share(self, share: float) -> None:
         """Show a random share of the streamlines, in per cent."""
         value = typed(str(share), "share", optional=False)
-        self._app.scene.set_subset(self._layer.id, None if value is None or value >= 100 else value / 100.0)
+        self._app.scene.filters.set_subset(self._layer.id, None if value is None or value >= 100 else value / 100.0)

@@ -194,9 +194,9 @@ class MatrixActions(LineActions):
         wanted: dict[str, Any] = {name: chosen[name] or None for name in ("names", "weights", "statistic")}
         wanted |= {"layer": self._layer.id, "labels": chosen["labels"], "contrast": chosen["contrast"]}
         wanted["radius"] = typed(str(chosen["radius"]), "radius", optional=False)
-        matrix = self._app.scene.prepare_matrix(**wanted)
+        matrix = self._app.scene.matrix.prepare_matrix(**wanted)
         if self._connectome(matrix) is not None:
-            self._app.scene.show_matrix(matrix)
+            self._app.scene.matrix.show_matrix(matrix)
         else:
             self._begin(matrix)
 
@@ -209,7 +209,7 @@ class MatrixActions(LineActions):
         fiblets = scene.actor(matrix.layer).fiblets
         try:
             store, found = await app.files.beside(
-                Path(matrix.labels).name, lambda progress, cancel: scene.load_matrix(matrix, progress, cancel),
+                Path(matrix.labels).name, lambda progress, cancel: scene.matrix.load_matrix(matrix, progress, cancel),
                 "connecting parcels",
             )  # fmt: skip
         except BaseException as error:
@@ -223,7 +223,7 @@ class MatrixActions(LineActions):
         self._found = [*self._found[1 - KEPT :], (matrix, fiblets, found)]
         self._settings, self._failed = False, None
         scene.store.take(store)
-        scene.show_matrix(matrix)
+        scene.matrix.show_matrix(matrix)
         self._show()
 
     def connect(self, row: Any, column: Any) -> None:
@@ -240,17 +240,17 @@ class MatrixActions(LineActions):
         pair = sorted([int(found.labels[i]), int(found.labels[j])])
         before = scene.layer(matrix.layer).filters.connection
         same = before == {"labels": matrix.labels, "pair": pair, "radius": matrix.radius}
-        scene.set_connection(matrix.layer, None if same else pair, matrix.labels, matrix.radius)
+        scene.matrix.set_connection(matrix.layer, None if same else pair, matrix.labels, matrix.radius)
 
     def disconnect(self) -> None:
         """Show all streamlines, whatever they connect."""
         matrix = self._app.scene.state.matrix
-        self._app.scene.set_connection(self._layer.id if matrix is None else matrix.layer, None)
+        self._app.scene.matrix.set_connection(self._layer.id if matrix is None else matrix.layer, None)
 
     def close(self) -> None:
         """Take the matrix away."""
         self._open = False
-        self._app.scene.show_matrix(None)
+        self._app.scene.matrix.show_matrix(None)
         self._show()
 
     def fetch(self, suffix: str) -> str | bytes:

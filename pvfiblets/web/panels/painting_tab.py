@@ -62,7 +62,7 @@ class PaintActions(Actions):
             "active": self._active,
             "regions": [
                 {"name": one.name, "color": one.color, "visible": one.visible, "use": one.use,
-                 "voxels": f"{scene.voxels_of(one.name):,}", "passing": self._passing(one)}
+                 "voxels": f"{scene.painting.voxels_of(one.name):,}", "passing": self._passing(one)}
                 for one in painting.regions
             ],
             "counted": self._counted(),
@@ -98,7 +98,7 @@ class PaintActions(Actions):
         """Add a region, and take the brush in hand, unless another tool that paints is."""
         app = self._app
         chosen = app.page.chosen if app.page.chosen_kind == "image" else None
-        self._active = app.scene.add_painted(chosen).name
+        self._active = app.scene.painting.add_painted(chosen).name
         if app.page.tool not in TOOLS:
             app.page.tool = "brush"
         app.refresh()
@@ -118,7 +118,7 @@ class PaintActions(Actions):
     def rename(self, name: str, new: str) -> None:
         """Give a region another name."""
         was = self._active == name
-        found = self._app.scene.set_painted(name, name=str(new).strip())
+        found = self._app.scene.painting.set_painted(name, name=str(new).strip())
         if was:
             self._active = found.name
         self._app.refresh()
@@ -127,11 +127,11 @@ class PaintActions(Actions):
         """Set colour, use or visibility of a region."""
         if what not in ("color", "use", "visible"):
             raise ValueError(f"a painted region has no {str(what)[:40]!r}")
-        self._app.scene.set_painted(name, **{what: value})
+        self._app.scene.painting.set_painted(name, **{what: value})
 
     def remove(self, name: str) -> None:
         """Take a region away."""
-        self._app.scene.remove_painted(name)
+        self._app.scene.painting.remove_painted(name)
         if self._app.scene.state.painting is None and self._app.page.tool in TOOLS:
             self._app.page.tool = "rotate"
 
@@ -143,7 +143,7 @@ class PaintActions(Actions):
         name = check_name(stem + ".nii.gz")
         app.confined.writable(name, SUFFIXES)
         app.confined.writable(stem + ".tsv", (".tsv",))
-        app.scene.save_painting(name)
+        app.scene.painting.save_painting(name)
         app.say(f"saved as {name}, with the names of its labels in {stem}.tsv", "success")
 
     @property
@@ -189,7 +189,7 @@ class PaintActions(Actions):
         app.sliders.moving = True  # the page is brought in step when the stroke ends
         try:
             share = app.page.grow_share / 100.0
-            app.scene.paint(tool, self._active, path, app.page.brush, plane, self._gesture, share)
+            app.scene.painting.paint(tool, self._active, path, app.page.brush, plane, self._gesture, share)
         finally:
             app.sliders.moving = False
         self._show()
@@ -212,7 +212,7 @@ class PaintActions(Actions):
 
     def move(self, name: str, by: int) -> None:
         """Move a region up or down in the list."""
-        self._app.scene.move_painted(name, 1 if by == 1 else -1)
+        self._app.scene.painting.move_painted(name, 1 if by == 1 else -1)
 
     def open_labels(self, path: str) -> None:
         """Take the labels of a file as regions."""
@@ -222,7 +222,7 @@ class PaintActions(Actions):
         app = self._app
         work = lambda *_: app.scene.load(path, "image")  # noqa: E731
         loaded = await app.files.beside(Path(path).name, work, "reading", cancellable=False)
-        self._active = app.scene.add_labels(loaded)[0].name
+        self._active = app.scene.painting.add_labels(loaded)[0].name
         app.refresh()
 
     def set_share(self, text: Any) -> None:

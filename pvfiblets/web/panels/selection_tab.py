@@ -54,37 +54,37 @@ class SelectionActions(Actions):
             return
         far = max(abs(pixels[-1][0] - pixels[0][0]), abs(pixels[-1][1] - pixels[0][1]))
         if tool == "pick" or (tool == "box" and far < 3) or (tool == "lasso" and len(pixels) < 3):
-            found = scene.pick_at(*pixels[-1], mode=mode, tolerance=6.0)
+            found = scene.selection.pick_at(*pixels[-1], mode=mode, tolerance=6.0)
             if found is None and mode == "replace":
                 self._app.say("There is no streamline there.")
         elif tool == "box":
-            scene.select_box(*pixels[0], *pixels[-1], mode=mode)
+            scene.selection.select_box(*pixels[0], *pixels[-1], mode=mode)
         elif tool == "lasso":
-            scene.select_polygon([list(pixel) for pixel in pixels], mode=mode)
+            scene.selection.select_polygon([list(pixel) for pixel in pixels], mode=mode)
         else:
             raise ValueError(f"there is no tool {str(tool)[:40]!r}")
         with self._app.state:
-            if scene.count():
+            if scene.selection.count():
                 self._app.page.tab = "selection"
                 self._app.page.right_open = True
         self._app.refresh()
 
     def _measure(self, first: tuple[float, float], last: tuple[float, float]) -> None:
         app = self._app
-        found = app.scene.measure(*first, *last)
+        found = app.scene.measurements.measure(*first, *last)
         if found is None:
             app.say("Begin and end on something that is drawn.")
         else:
-            app.scene.add_measurement(found["from"], found["to"])
+            app.scene.measurements.add_measurement(found["from"], found["to"])
         app.stream.request()
 
     def remove_distance(self, row: int) -> None:
         """Take one measured distance away."""
-        self._app.scene.remove_measurement(row)
+        self._app.scene.measurements.remove_measurement(row)
 
     def clear_distances(self) -> None:
         """Take all measured distances away."""
-        self._app.scene.clear_measurements()
+        self._app.scene.measurements.clear_measurements()
 
     # The tab
 
@@ -92,7 +92,7 @@ class SelectionActions(Actions):
         """Show what is selected."""
         scene, page = self._app.scene, self._app.page
         page.measured = [one.text for one in scene.state.measurements]
-        count = scene.count()
+        count = scene.selection.count()
         if not count:
             page.selection, self._shown = {"count": 0}, None
             return
@@ -105,7 +105,7 @@ class SelectionActions(Actions):
         shown = (having, page.chosen, self._profile)
         if shown == self._shown:
             return
-        table = scene.table(limit=ROWS)
+        table = scene.selection.table(limit=ROWS)
         rows = table["rows"]
         layers = {row["layer"] for row in rows}
         of = next((row["of"] for row in rows if row["of"]), None)
@@ -144,7 +144,7 @@ class SelectionActions(Actions):
         volume = actor.active_scalars.volume if actor.active_scalars is not None else None
         names = ["curvature", *actor.fiblets.per_point, *([] if volume is None else [volume.name])]
         name = self._profile if self._profile in names else None
-        return names, scene.profile(layer.id, name)
+        return names, scene.selection.profile(layer.id, name)
 
     def profile_csv(self) -> str:
         """Return the profile that is shown as CSV."""
@@ -166,7 +166,7 @@ class SelectionActions(Actions):
 
     def clear(self) -> None:
         """Select nothing."""
-        self._app.scene.deselect()
+        self._app.scene.selection.deselect()
 
     def as_layer(self) -> None:
         """Add a layer of what is selected."""

@@ -71,7 +71,7 @@ class SliceActions(Actions):
     # What is done
 
     def _set(self, **changes: Any) -> None:
-        self._app.scene.set_slices(**changes)
+        self._app.scene.images.set_slices(**changes)
         self.changed()
 
     def changed(self) -> None:
@@ -90,7 +90,7 @@ class SliceActions(Actions):
             self._set(layout=layout, **made)
             app.stream.hasten()
             return
-        app.scene.set_slices(layout=layout)
+        app.scene.images.set_slices(layout=layout)
         volumes = [layer for layer in app.scene.layers if layer.kind == "volume"]
         if volumes:
             chosen = next((layer for layer in volumes if layer.id == app.page.chosen), volumes[-1])
@@ -108,7 +108,7 @@ class SliceActions(Actions):
             raise ValueError(f"{layer.name!r} is of kind {layer.kind}; slices are of volumes")
         source = layer.source
         scene = app.scene
-        work = lambda *_: scene.with_names(scene.files.load(source, "image"))  # noqa: E731
+        work = lambda *_: scene.images.with_names(scene.files.load(source, "image"))  # noqa: E731
         loaded = await app.files.beside(layer.name, work, "reading", cancellable=False)
         found = app.scene.add(loaded, name=layer.name)
         app.scene.show(layer.id, False)
@@ -130,9 +130,9 @@ class SliceActions(Actions):
         app = self._app
         chosen = app.page.chosen
         loaded = await app.files.beside(
-            Path(path).name, lambda *_: app.scene.load_labels(chosen, path), "reading", cancellable=False
+            Path(path).name, lambda *_: app.scene.images.load_labels(chosen, path), "reading", cancellable=False
         )
-        app.scene.name_labels(chosen, loaded)
+        app.scene.images.name_labels(chosen, loaded)
 
     def set_convention(self, convention: str) -> None:
         """Have the patient's right on the left, or on the right."""
@@ -306,8 +306,11 @@ def build(app: Any) -> None:
             html.Label("{{ row[0] }}", classes="text-truncate", title=("row[0]",))
             html.Div("{{ row[1] }}", classes="pv-value")
         with html.Div(v_for="s in slicing.series", key="s.id", classes="pv-row", data_series=("s.name",)):
-            html.Label("{{ slicing.series.length > 1 ? s.name : 'Volume' }}", classes="text-truncate", title=(
-                "s.name + ': which of its volumes is shown (comma, full stop)'",))
+            html.Label(
+                "{{ slicing.series.length > 1 ? s.name : 'Volume' }}",
+                classes="text-truncate",
+                title=("s.name + ': which of its volumes is shown (comma, full stop)'",),
+            )
             with html.Div(classes="pv-pair"):
                 v3.VSlider(
                     model_value=("s.index",), min=0, max=("s.last",), step=1, density="compact", hide_details=True,

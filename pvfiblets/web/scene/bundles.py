@@ -6,7 +6,7 @@ groups of the file, and a document says nothing of them.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -20,7 +20,7 @@ from pvfiblets.web.session.runs import unpack
 from pvfiblets.web.values import colour, mapping, shown, text, truth
 
 if TYPE_CHECKING:
-    from pvfiblets.web.scene.loading import Loaded
+    from pvfiblets.web.scene.scene import Scene
 
 __all__ = ["CONDITION", "BundleSync", "SceneBundles", "check_bundles"]
 
@@ -30,29 +30,21 @@ LONGEST = 120
 
 
 class SceneBundles:
-    """The part of :class:`~pvfiblets.web.scene.scene.Scene` that edits bundles."""
+    """Of a scene: edits bundles."""
 
-    if TYPE_CHECKING:
-
-        @property
-        def state(self) -> State: ...  # noqa: D102 - of the scene
-
-        become: Callable[..., None]
-        data: Callable[..., Loaded]
-        actor: Callable[[str], Any]
-        select: Callable[..., Any]
-        _lines: Callable[[str], Layer]
-        _bundled: BundleSync
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
+        self.sync = BundleSync()
 
     def own_groups(self, source: Source, data: Any) -> list[str]:
         """Return the names of the groups that a set has by its file."""
-        return self._bundled.own(source, data)
+        return self.sync.own(source, data)
 
-    def bundles(self, layer_id: str) -> tuple[Bundle, ...]:
+    def of_layer(self, layer_id: str) -> tuple[Bundle, ...]:
         """Return the bundles of a tractogram in their order."""
-        layer = self._lines(layer_id)
-        found = self.state.bundles_of(layer.source)
-        return _own(self.data(layer).data) if found is None else found
+        layer = self.scene.lines_layer(layer_id)
+        found = self.scene.state.bundles_of(layer.source)
+        return _own(self.scene.data(layer).data) if found is None else found
 
     def add_bundle(self, layer_id: str, what: str | Any, name: str | None = None) -> Bundle:
         """Add a bundle.
@@ -64,20 +56,20 @@ class SceneBundles:
             What is selected, what filters leave, or numbers of streamlines.
         name : str, optional
         """
-        layer = self._lines(layer_id)
+        layer = self.scene.lines_layer(layer_id)
         if isinstance(what, str) and what == "selected":
             if layer.selected is None:
                 raise ValueError(f"nothing of {layer.name!r} is selected; pick streamlines first")
             ids = layer.selected
         elif isinstance(what, str) and what == "shown":
-            ids = Ids.of(np.flatnonzero(self.actor(layer_id).shown))
+            ids = Ids.of(np.flatnonzero(self.scene.actor(layer_id).shown))
         else:
             ids = Ids.of(what)
         if not len(ids):
             raise ValueError("a bundle of no streamlines; show or select some first")
-        if ids.highest >= self.data(layer).data.n_streamlines:
-            raise ValueError(f"streamline {ids.highest} is asked for, of {self.data(layer).data.n_streamlines}")
-        there = self.bundles(layer_id)
+        if ids.highest >= self.scene.data(layer).data.n_streamlines:
+            raise ValueError(f"streamline {ids.highest} is asked for, of {self.scene.data(layer).data.n_streamlines}")
+        there = self.of_layer(layer_id)
         if name is None:
             given = free_name(f"bundle {len(there) + 1}", [one.name for one in there])
         else:
@@ -88,8 +80,8 @@ class SceneBundles:
 
     def add_bundles(self, layer_id: str, groups: Mapping[str, Any], what: str) -> list[Bundle]:
         """Add a bundle for each of some arrays of streamlines by name, in one step; taken names get a number."""
-        layer, there = self._lines(layer_id), list(self.bundles(layer_id))
-        colours, total = distinct_colours(len(there) + len(groups)), self.data(layer).data.n_streamlines
+        layer, there = self.scene.lines_layer(layer_id), list(self.of_layer(layer_id))
+        colours, total = distinct_colours(len(there) + len(groups)), self.scene.data(layer).data.n_streamlines
         made: list[Bundle] = []
         for name, given in groups.items():
             ids = Ids.of(given)
@@ -105,7 +97,7 @@ class SceneBundles:
 
     def move_bundles(self, layer_id: str, names: Sequence[str], to: int) -> None:
         """Put bundles together, in the order in which they are listed, to a place of the list from 0 on."""
-        layer, there = self._lines(layer_id), self.bundles(layer_id)
+        layer, there = self.scene.lines_layer(layer_id), self.of_layer(layer_id)
         moved = {id(named(there, name, "bundle")) for name in names}
         first = [one for one in there if id(one) not in moved]
         at = min(max(to, 0), len(first))
@@ -114,7 +106,7 @@ class SceneBundles:
 
     def set_bundle(self, layer_id: str, bundle: str, /, **changes: Any) -> Bundle:
         """Change a bundle's ``name``, ``color`` or ``visible``."""
-        layer, there = self._lines(layer_id), self.bundles(layer_id)
+        layer, there = self.scene.lines_layer(layer_id), self.of_layer(layer_id)
         old = named(there, bundle, "bundle")
         wanted: dict[str, Any] = {}
         for key, value in changes.items():
@@ -135,14 +127,14 @@ class SceneBundles:
 
     def show_bundles(self, layer_id: str, names: Sequence[str] | None) -> None:
         """Show some bundles only; None for all."""
-        layer, there = self._lines(layer_id), self.bundles(layer_id)
+        layer, there = self.scene.lines_layer(layer_id), self.of_layer(layer_id)
         wanted = {one.name for one in there} if names is None else {named(there, name, "bundle").name for name in names}
         found = tuple(replace(one, visible=one.name in wanted) for one in there)
         self._put(layer, found, "show bundles")
 
     def merge_bundles(self, layer_id: str, names: Sequence[str]) -> Bundle:
         """Join bundles into the first of some, which keeps its name, place and colour."""
-        layer, there = self._lines(layer_id), self.bundles(layer_id)
+        layer, there = self.scene.lines_layer(layer_id), self.of_layer(layer_id)
         parts = [named(there, name, "bundle") for name in dict.fromkeys(names)]
         if len(parts) < 2:
             raise ValueError("choose two bundles or more to merge")
@@ -155,7 +147,7 @@ class SceneBundles:
 
     def subtract_bundles(self, layer_id: str, names: Sequence[str]) -> Bundle:
         """Take the streamlines of other bundles out of the first of some."""
-        layer, there = self._lines(layer_id), self.bundles(layer_id)
+        layer, there = self.scene.lines_layer(layer_id), self.of_layer(layer_id)
         first, *others = (named(there, name, "bundle") for name in dict.fromkeys(names))
         if not others:
             raise ValueError("choose a bundle, and then those whose streamlines are taken out of it")
@@ -166,16 +158,16 @@ class SceneBundles:
 
     def remove_bundles(self, layer_id: str, names: Sequence[str]) -> None:
         """Take bundles off the list; their streamlines stay."""
-        layer, there = self._lines(layer_id), self.bundles(layer_id)
+        layer, there = self.scene.lines_layer(layer_id), self.of_layer(layer_id)
         gone = [named(there, name, "bundle") for name in names]
         left = tuple(one for one in there if one not in gone)
         self._put(layer, left, f"remove {len(gone)} bundle(s)", {one.name: None for one in gone})
 
     def select_bundles(self, layer_id: str, names: Sequence[str]) -> None:
         """Select the streamlines of bundles."""
-        there = self.bundles(layer_id)
+        there = self.of_layer(layer_id)
         parts = [named(there, name, "bundle").ids.array() for name in names]
-        self.select(layer_id, np.unique(np.concatenate(parts)) if parts else [])
+        self.scene.selection.select(layer_id, np.unique(np.concatenate(parts)) if parts else [])
 
     def _new(self, there: Sequence[Bundle], name: Any) -> str:
         given = text(name, "name of a bundle", LONGEST)
@@ -189,12 +181,12 @@ class SceneBundles:
         """Give a source other bundles; filters by group follow new names."""
         if len(bundles) > MOST:
             raise ValueError(f"there are {len(bundles)} bundles; {MOST} at most")
-        state = self.state
+        state = self.scene.state
         rest = tuple((source, listed) for source, listed in state.bundles if source != layer.source)
         layers = tuple(
             _refitted(one, renamed or {}, bool(bundles)) if one.source == layer.source else one for one in state.layers
         )
-        self.become(replace(state, bundles=(*rest, (layer.source, bundles)), layers=layers), what)
+        self.scene.become(replace(state, bundles=(*rest, (layer.source, bundles)), layers=layers), what)
 
 
 def _refitted(layer: Layer, renamed: Mapping[str, str | None], any_left: bool) -> Layer:

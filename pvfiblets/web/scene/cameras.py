@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pvfiblets.plotting.viewpoints import DIRECTIONS, point_camera
 from pvfiblets.web.values import mapping, number, numbers, shown, truth
+
+if TYPE_CHECKING:
+    from pvfiblets.web.scene.scene import Scene
 
 __all__ = ["LARGEST_PICTURE", "VIEWS", "Cameras", "check_camera"]
 
@@ -22,33 +25,33 @@ LARGEST_PICTURE = 64_000_000  # pixels
 
 
 class Cameras:
-    """The part of :class:`~pvfiblets.web.scene.scene.Scene` that looks; where from is no part of what can be undone."""
+    """Of a scene: looks; where from is no part of what can be undone."""
 
-    plotter: Any
-    files: Any
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
 
     def view(self, name: str) -> None:
         """Look at everything from one of the directions `VIEWS`; the coronal one is seen from the front."""
         if name not in VIEWS:
             raise ValueError(f"view is {shown(name)}; choose one of {', '.join(VIEWS)}")
-        point_camera(self.plotter, name)
+        point_camera(self.scene.plotter, name)
 
     def reset(self) -> None:
         """Move the camera until everything is in the picture, without turning it."""
-        self.plotter.renderer.reset_camera(render=False)  # the plotter's own renders
+        self.scene.plotter.renderer.reset_camera(render=False)  # the plotter's own renders
 
     @property
     def parallel(self) -> bool:
         """Whether lines of sight are parallel, so that sizes can be compared."""
-        return bool(self.plotter.camera.parallel_projection)
+        return bool(self.scene.plotter.camera.parallel_projection)
 
     @parallel.setter
     def parallel(self, parallel: bool) -> None:
-        self.plotter.camera.parallel_projection = truth(parallel, "parallel")
+        self.scene.plotter.camera.parallel_projection = truth(parallel, "parallel")
 
     def camera(self) -> dict[str, Any]:
         """Return where the camera is, in JSON's types."""
-        camera = self.plotter.camera
+        camera = self.scene.plotter.camera
         return {
             "position": [float(part) for part in camera.position],
             "focal_point": [float(part) for part in camera.focal_point],
@@ -61,12 +64,12 @@ class Cameras:
     def set_camera(self, camera: Mapping[str, Any]) -> None:
         """Put the camera where :meth:`camera` said it was; ValueError if that is no place."""
         wanted = check_camera(camera)
-        ours = self.plotter.camera
+        ours = self.scene.plotter.camera
         ours.position, ours.focal_point, ours.up = wanted["position"], wanted["focal_point"], wanted["up"]
         ours.view_angle = wanted["view_angle"]
         ours.parallel_projection, ours.parallel_scale = wanted["parallel"], wanted["parallel_scale"]
-        self.plotter.camera_set = True
-        self.plotter.renderer.reset_camera_clipping_range()
+        self.scene.plotter.camera_set = True
+        self.scene.plotter.renderer.reset_camera_clipping_range()
 
     def edges(self) -> dict[str, str]:
         """Return which way the picture's edges lie: R, L, A, P, S, I; of oblique views the one or two nearest.
@@ -76,7 +79,7 @@ class Cameras:
         dict
             ``left, right, top, bottom``; RAS+ coordinates.
         """
-        camera = self.plotter.camera
+        camera = self.scene.plotter.camera
         ahead = np.subtract(camera.focal_point, camera.position)
         right = np.cross(ahead, camera.up)
         up = np.cross(right, ahead)
@@ -99,14 +102,14 @@ class Cameras:
         list of float or None
             mm; ``None`` where there is nothing.
         """
-        width, height = self.plotter.window_size
+        width, height = self.scene.plotter.window_size
         column = round(number(x, "x", 0, width - 1))
         row = round(number(y, "y", 0, height - 1))
         reach = int(number(tolerance, "tolerance", 0.0, 64.0))
         left, right = max(column - reach, 0), min(column + reach, width - 1)
         below, above = max(row - reach, 0), min(row + reach, height - 1)
-        renderer = self.plotter.renderer
-        depths = _depths(self.plotter.render_window, left, below, right, above)
+        renderer = self.scene.plotter.renderer
+        depths = _depths(self.scene.plotter.render_window, left, below, right, above)
         rows, columns = np.nonzero(depths < 1.0)
         if not rows.size:
             return None
@@ -136,12 +139,12 @@ class Cameras:
             ``(height, width, 3 or 4)`` uint8.
         """
         times = int(number(scale, "scale", 1, 8))
-        width, height = self.plotter.window_size
+        width, height = self.scene.plotter.window_size
         if width * height * times * times > LARGEST_PICTURE:
             raise ValueError(f"a picture of {width * times} x {height * times} is too large; give a smaller scale")
-        target = None if path is None else self.files.resolve(path, new=True)
-        self.plotter.render()  # or it would be the last picture, whatever has changed since
-        picture = self.plotter.screenshot(
+        target = None if path is None else self.scene.files.resolve(path, new=True)
+        self.scene.plotter.render()  # or it would be the last picture, whatever has changed since
+        picture = self.scene.plotter.screenshot(
             target, return_img=True, scale=times, transparent_background=truth(transparent, "transparent")
         )
         return np.asarray(picture)

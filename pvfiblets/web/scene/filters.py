@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 from pvfiblets.plotting.viewpoints import visible_bounds
 from pvfiblets.web.scene.matrix import check_connection
-from pvfiblets.web.session.document import Clip, Filters, Layer, State
+from pvfiblets.web.session.document import Clip, Filters, Layer
 from pvfiblets.web.session.shapes import CUTTING, check_condition, check_shape, make_region
 from pvfiblets.web.values import mapping, number, shown, text, truth, whole
 
 if TYPE_CHECKING:
-    from pvfiblets.web.scene.loading import Loaded
+    from pvfiblets.web.scene.scene import Scene
 
 __all__ = ["SceneFilters", "check_filters"]
 
@@ -21,21 +21,10 @@ MOST_CLIPS = 16
 
 
 class SceneFilters:
-    """The part of :class:`~pvfiblets.web.scene.scene.Scene` that says what is left out."""
+    """Of a scene: says what is left out."""
 
-    if TYPE_CHECKING:
-        plotter: Any
-
-        @property
-        def state(self) -> State: ...  # noqa: D102 - of the scene
-
-        become: Callable[..., None]
-        layer: Callable[[str], Layer]
-        data: Callable[..., Loaded]
-        shape_data: Callable[[str, str], Any]
-        _change: Callable[..., None]
-        _lines: Callable[[str], Layer]
-        _fresh_id: Callable[[], str]
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
 
     # Cuts ---------------------------------------------------------------------------------------
 
@@ -67,16 +56,16 @@ class SceneFilters:
         -------
         Clip
         """
-        if len(self.state.clips) >= MOST_CLIPS:
+        if len(self.scene.state.clips) >= MOST_CLIPS:
             raise ValueError(f"there are {MOST_CLIPS} cuts, which is the most; remove one first")
         if kind not in CUTTING:
             raise ValueError(f"the kind of a cut is {shown(kind)}; choose one of {', '.join(CUTTING)}")
         checked = self._checked_shape({**self.usual_shape(kind), **shape})
-        label = f"{kind} {1 + sum(clip.shape['kind'] == kind for clip in self.state.clips)}"
+        label = f"{kind} {1 + sum(clip.shape['kind'] == kind for clip in self.scene.state.clips)}"
         name = label if name is None else text(name, "name")
-        clip = Clip(self._fresh_id().replace("layer", "clip"), name, checked, truth(inside, "inside"), True,
+        clip = Clip(self.scene.fresh_id().replace("layer", "clip"), name, checked, truth(inside, "inside"), True,
                     self._checked_layers(layers))  # fmt: skip
-        self.become(replace(self.state, clips=(*self.state.clips, clip)), f"cut by {name}")
+        self.scene.become(replace(self.scene.state, clips=(*self.scene.state.clips, clip)), f"cut by {name}")
         return clip
 
     def set_clip(self, clip_id: str, **changes: Any) -> Clip:
@@ -88,7 +77,7 @@ class SceneFilters:
         **changes
             ``inside``, ``enabled``, ``name``, ``layers``, or parts of the shape such as ``origin``.
         """
-        clip = self.state.clip(clip_id)
+        clip = self.scene.state.clip(clip_id)
         wanted: dict[str, Any] = {}
         for key in ("inside", "enabled"):
             if key in changes:
@@ -102,19 +91,19 @@ class SceneFilters:
             same = kind == clip.shape["kind"]
             wanted["shape"] = self._checked_shape({**(clip.shape if same else self.usual_shape(kind)), **changes})
         new = replace(clip, **wanted)
-        clips = tuple(new if other is clip else other for other in self.state.clips)
-        self.become(replace(self.state, clips=clips), f"cut {new.name}", ("clip", clip_id, *sorted(wanted)))
+        clips = tuple(new if other is clip else other for other in self.scene.state.clips)
+        self.scene.become(replace(self.scene.state, clips=clips), f"cut {new.name}", ("clip", clip_id, *sorted(wanted)))
         return new
 
     def remove_clip(self, clip_id: str) -> None:
         """Take a cut back; KeyError if there is none of that id."""
-        clip = self.state.clip(clip_id)
-        clips = tuple(other for other in self.state.clips if other is not clip)
-        self.become(replace(self.state, clips=clips), f"no cut by {clip.name}")
+        clip = self.scene.state.clip(clip_id)
+        clips = tuple(other for other in self.scene.state.clips if other is not clip)
+        self.scene.become(replace(self.scene.state, clips=clips), f"no cut by {clip.name}")
 
     def usual_shape(self, kind: str) -> dict[str, Any]:
         """Return a shape in the middle of what is shown, for a panel to begin with."""
-        b = list(visible_bounds(self.plotter))
+        b = list(visible_bounds(self.scene.plotter))
         for k in (0, 2, 4):
             if b[k] == b[k + 1]:  # flat
                 b[k], b[k + 1] = b[k] - 1.0, b[k] + 1.0
@@ -135,7 +124,7 @@ class SceneFilters:
     def _checked_shape(self, shape: Mapping[str, Any]) -> dict[str, Any]:
         """Return the shape of a cut, of which a region can be made, even if there is nothing to cut yet."""
         found = check_shape(shape, "cut", CUTTING)
-        make_region(found, self.shape_data)
+        make_region(found, self.scene.shape_data)
         return found
 
     def _checked_layers(self, ids: Any) -> tuple[str, ...] | None:
@@ -144,7 +133,7 @@ class SceneFilters:
         if not isinstance(ids, (list, tuple)):
             raise ValueError(f"layers is {shown(ids)}; give a list of ids, or none for all that are lines")
         for layer_id in ids:
-            layer = self.layer(text(layer_id, "layer"))
+            layer = self.scene.layer(text(layer_id, "layer"))
             if layer.kind == "image":
                 raise ValueError(f"{layer.name!r} is an image of slices, which are not cut; choose other layers")
         return tuple(ids)
@@ -162,54 +151,55 @@ class SceneFilters:
         low, high : float, optional
             Least and greatest value that is shown; ``None`` leaves that end open.
         """
-        layer = self._lines(layer_id)
+        layer = self.scene.lines_layer(layer_id)
         limits = check_range(low, high, criterion)
         self._check_values(layer, criterion)
         criteria = {**layer.filters.criteria, criterion: limits}
-        self._filter_by(layer, f"range of {criterion}", ("filter", layer_id, criterion), criteria=criteria)
+        self.filter_by(layer, f"range of {criterion}", ("filter", layer_id, criterion), criteria=criteria)
 
     def remove_filter(self, layer_id: str, criterion: str | None = None) -> None:
         """Take a criterion back, or with no name all filters."""
-        layer = self._lines(layer_id)
+        layer = self.scene.lines_layer(layer_id)
         if criterion is None:
-            self._change(replace(layer, filters=Filters()), f"show all of {layer.name}")
+            self.scene.change(replace(layer, filters=Filters()), f"show all of {layer.name}")
             return
         if criterion not in layer.filters.criteria:
             there = ", ".join(layer.filters.criteria) or "none"
             raise KeyError(f"there is no criterion {shown(criterion)}; there are: {there}")
         criteria = {name: limits for name, limits in layer.filters.criteria.items() if name != criterion}
-        self._filter_by(layer, f"no range of {criterion}", criteria=criteria)
+        self.filter_by(layer, f"no range of {criterion}", criteria=criteria)
 
     def set_groups(self, layer_id: str, names: Sequence[str] | None) -> None:
         """Show some groups only; ``None`` for all streamlines, in a group or not."""
-        layer = self._lines(layer_id)
-        self._filter_by(layer, "groups", groups=check_groups(names, self.data(layer).data.groups))
+        layer = self.scene.lines_layer(layer_id)
+        self.filter_by(layer, "groups", groups=check_groups(names, self.scene.data(layer).data.groups))
 
     def set_subset(
         self, layer_id: str, amount: float | None = None, *, every: int | None = None, seed: int = 0
     ) -> None:
         """Show some streamlines only: a share below 1 or a number of them, or every n-th; neither shows all."""
-        layer = self._lines(layer_id)
+        layer = self.scene.lines_layer(layer_id)
         value = {"every": every} if every is not None else {"amount": amount, "seed": seed}
         subset = None if amount is None and every is None else check_subset(value)
-        self._filter_by(layer, "subset", ("subset", layer_id), subset=subset)
+        self.filter_by(layer, "subset", ("subset", layer_id), subset=subset)
 
     def set_regions(self, layer_id: str, condition: Mapping[str, Any] | None) -> None:
         """Show only streamlines for which a condition of `pvfiblets.web.session.shapes` holds; ``None`` for all."""
-        layer = self._lines(layer_id)
+        layer = self.scene.lines_layer(layer_id)
         regions = None if condition is None else check_condition(condition)
         # Only what a slider does many times over is one step: other numbers of the same shapes.
         moved = _outline(regions) == _outline(layer.filters.regions)
-        self._filter_by(layer, "regions", ("regions", layer_id) if moved else None, regions=regions)
+        self.filter_by(layer, "regions", ("regions", layer_id) if moved else None, regions=regions)
 
-    def _filter_by(self, layer: Layer, what: str, key: tuple[str, ...] | None = None, **changes: Any) -> None:
+    def filter_by(self, layer: Layer, what: str, key: tuple[str, ...] | None = None, **changes: Any) -> None:
+        """Change some of a layer's filters."""
         filters = replace(layer.filters, **changes)
-        self._change(replace(layer, filters=filters), f"{what} of {layer.name}", key)
+        self.scene.change(replace(layer, filters=filters), f"{what} of {layer.name}", key)
 
     def _check_values(self, layer: Layer, criterion: Any) -> None:
         from pvfiblets.web.scene.layer_properties import value_names
 
-        known = value_names(self.data(layer).data)
+        known = value_names(self.scene.data(layer).data)
         if criterion not in known:
             raise ValueError(f"there are no values {shown(criterion)} in {layer.name!r}; there are {', '.join(known)}")
 

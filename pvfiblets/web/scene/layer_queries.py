@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pvfiblets.web.scene import layers
-from pvfiblets.web.session.document import LINES, Layer, State, volume_in
+from pvfiblets.web.session.document import LINES, Layer, volume_in
 from pvfiblets.web.values import plain, shown, whole
 
 if TYPE_CHECKING:
-    from pvfiblets.web.scene.loading import Loaded
-    from pvfiblets.web.session.store import Store
+    from pvfiblets.web.scene.scene import Scene
 
 __all__ = ["LayerQueries"]
 
@@ -24,34 +23,26 @@ _KEPT = 64  # histograms
 
 
 class LayerQueries:
-    """The part of :class:`~pvfiblets.web.scene.scene.Scene` that answers; nothing changes."""
+    """Of a scene: answers; nothing changes."""
 
-    if TYPE_CHECKING:
-
-        @property
-        def state(self) -> State: ...  # noqa: D102 - of the scene
-
-        layer: Callable[[str], Layer]
-        actor: Callable[[str], Any]
-        _histograms: dict[tuple[Any, ...], dict[str, Any]]
-        data: Callable[..., Loaded]
-        volume_choices: Callable[[Layer], list[tuple[Any, str]]]
-        store: Store
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
+        self.histograms: dict[tuple[Any, ...], dict[str, Any]] = {}
 
     def properties(self, layer_id: str) -> list[dict[str, Any]]:
         """Return all that can be set of a layer, and its present values; see :meth:`.Property.describe`."""
-        layer = self.layer(layer_id)
-        data = self.data(layer).data
-        volumes = self.volume_choices(layer)
-        return plain(layers.describe(layer.kind, self.actor(layer_id), data, layer.settings, volumes))
+        layer = self.scene.layer(layer_id)
+        data = self.scene.data(layer).data
+        volumes = self.scene.volume_choices(layer)
+        return plain(layers.describe(layer.kind, self.scene.actor(layer_id), data, layer.settings, volumes))
 
     def arrays(self, layer_id: str) -> list[dict[str, str]]:
         """Return the values that a layer can be filtered by and that have histograms: ``name``, ``title``."""
         from pvfiblets.plotting.fiblets.scalars import UNITS
         from pvfiblets.web.scene.layer_properties import value_names
 
-        layer = self.layer(layer_id)
-        data = self.data(layer).data
+        layer = self.scene.layer(layer_id)
+        data = self.scene.data(layer).data
         if layer.kind in LINES:
             names = value_names(data)
         elif layer.kind in ("volume", "image"):
@@ -79,29 +70,29 @@ class LayerQueries:
             ``name``; ``edges``: ``bins + 1`` numbers; ``counts``; ``missing``: how many have no value; ``share`` of the
             data that was looked at.
         """
-        layer = self.layer(layer_id)
+        layer = self.scene.layer(layer_id)
         count = whole(bins, "bins", 1, 4096)
         known = [entry["name"] for entry in self.arrays(layer_id)]
         colours = layer.settings.get("scalars")
         if array is None and (volume := volume_in(colours)) is not None:
-            return self._kept(("colours", volume, count), lambda: _counted(self.store.colours(volume), count))
+            return self._kept(("colours", volume, count), lambda: _counted(self.scene.store.colours(volume), count))
         if array is None:
             array = colours if colours in known else (known or [""])[0]
         if array not in known:
             raise ValueError(f"there are no values {shown(array)} in {layer.name!r}; there are {', '.join(known)}")
         name: str = array
-        data = self.data(layer).data
+        data = self.scene.data(layer).data
         return self._kept(
             (layer.kind, layer.source, name, count), lambda: _count(name, *_values(layer, data, name), count)
         )
 
     def _kept(self, key: tuple[Any, ...], make: Callable[[], dict[str, Any]]) -> dict[str, Any]:
         """Return a histogram that was made before, or make it."""
-        if key not in self._histograms:
-            if len(self._histograms) >= _KEPT:
-                self._histograms.pop(next(iter(self._histograms)))
-            self._histograms[key] = make()
-        return self._histograms[key]
+        if key not in self.histograms:
+            if len(self.histograms) >= _KEPT:
+                self.histograms.pop(next(iter(self.histograms)))
+            self.histograms[key] = make()
+        return self.histograms[key]
 
     def info(self, layer_id: str) -> dict[str, Any]:
         """Return the facts of a layer, in JSON's types.
@@ -113,8 +104,8 @@ class LayerQueries:
             and ``error_degrees`` where they were measured, ``streamlines`` and ``fiblets`` as ``{"shown" or "drawn",
             "total"}``; ``bounds``; ``milliseconds`` of the last redraw; ``gpu_bytes``; ``explain``.
         """
-        layer = self.layer(layer_id)
-        actor, loaded = self.actor(layer_id), self.data(layer)
+        layer = self.scene.layer(layer_id)
+        actor, loaded = self.scene.actor(layer_id), self.scene.data(layer)
         found: dict[str, Any] = {
             "name": layer.name,
             "kind": layer.kind,
@@ -154,10 +145,10 @@ class LayerQueries:
             where there is one, or ``directions`` where red, green and blue are right, front and up.
         """
         found = []
-        for layer in self.state.layers:
+        for layer in self.scene.state.layers:
             if not layer.visible or layer.kind == "image":
                 continue
-            s, actor = layer.settings, self.actor(layer.id)
+            s, actor = layer.settings, self.scene.actor(layer.id)
             entry: dict[str, Any] = {"layer": layer.id, "name": layer.name}
             title = s["scalars"] if layer.kind == "mesh" else actor.scalars_title
             if title is not None:

@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pvfiblets.query.connectome.matrix import STATISTICS
-from pvfiblets.web.session.document import Layer, Matrix, State
+from pvfiblets.web.session.document import Matrix
 from pvfiblets.web.values import mapping, number, shown, text, whole
 
 if TYPE_CHECKING:
     from pvfiblets.query.connectome.matrix import Connectome
-    from pvfiblets.web.scene.loading import Cancel, Files, Loaded, Progress
+    from pvfiblets.web.scene.loading import Cancel, Progress
+    from pvfiblets.web.scene.scene import Scene
     from pvfiblets.web.session.store import Store
 
 __all__ = ["SceneMatrix", "as_json", "check_connection", "check_matrix", "choices"]
@@ -26,27 +27,18 @@ WIDEST = 100.0
 
 
 class SceneMatrix:
-    """The part of :class:`~pvfiblets.web.scene.scene.Scene` that connects parcels."""
+    """Of a scene: connects parcels."""
 
-    if TYPE_CHECKING:
-        files: Files
-        store: Store
-
-        @property
-        def state(self) -> State: ...  # noqa: D102 - of the scene
-
-        become: Callable[..., None]
-        data: Callable[..., Loaded]
-        _lines: Callable[[str], Layer]
-        _filter_by: Callable[..., None]
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
 
     def prepare_matrix(self, **wanted: Any) -> Matrix:
         """Check what a matrix is to be of; arguments as of :class:`.Matrix`, paths of files under the root."""
-        layer = self._lines(wanted.get("layer", ""))
-        return check_matrix(wanted, lambda _: self.data(layer).data, self._place)
+        layer = self.scene.lines_layer(wanted.get("layer", ""))
+        return check_matrix(wanted, lambda _: self.scene.data(layer).data, self._place)
 
     def _place(self, path: str) -> str:
-        return self.files.name(self.files.resolve(path))
+        return self.scene.files.name(self.scene.files.resolve(path))
 
     def load_matrix(
         self, matrix: Matrix, progress: Progress | None = None, cancel: Cancel | None = None
@@ -62,14 +54,14 @@ class SceneMatrix:
         from pvfiblets.query.connectome.matrix import connectome
         from pvfiblets.slices.labels import as_label_table
 
-        store, fiblets = self.store.fork(), self.data(self._lines(matrix.layer)).data
+        store, fiblets = self.scene.store.fork(), self.scene.data(self.scene.lines_layer(matrix.layer)).data
         labels = store.parcels(matrix.labels)
         if (many := len(np.unique(labels[0]))) > PARCELS:
             raise ValueError(
                 f"{matrix.labels} holds {many:,} different numbers, and a matrix here {PARCELS:,} parcels; choose a "
                 "volume of labels, or use `pvfiblets connectome`"
             )
-        names = None if matrix.names is None else as_label_table(self.files.resolve(matrix.names)).names
+        names = None if matrix.names is None else as_label_table(self.scene.files.resolve(matrix.names)).names
         ends = store.end_labels(fiblets, matrix.labels, matrix.radius, progress, cancel)
         return store, connectome(
             fiblets, labels, weights=matrix.weights, contrast=matrix.contrast, radius=matrix.radius,
@@ -79,8 +71,8 @@ class SceneMatrix:
     def show_matrix(self, matrix: Matrix | None, store: Store | None = None) -> None:
         """Show a matrix beside the picture, with what :meth:`load_matrix` read; None for none."""
         if store is not None:
-            self.store.take(store)
-        self.become(replace(self.state, matrix=matrix), "the matrix" if matrix is not None else "no matrix")
+            self.scene.store.take(store)
+        self.scene.become(replace(self.scene.state, matrix=matrix), "the matrix" if matrix is not None else "no matrix")
 
     def set_connection(self, layer_id: str, pair: Any, labels: str = "", radius: float = 4.0) -> None:
         """Show only streamlines that connect two parcels.
@@ -95,11 +87,11 @@ class SceneMatrix:
         radius : float, default: 4.0
             mm about an end in which its parcel is looked for.
         """
-        layer = self._lines(layer_id)
+        layer = self.scene.lines_layer(layer_id)
         connection = None
         if pair is not None:
             connection = check_connection({"labels": labels, "pair": pair, "radius": radius}, self._place)
-        self._filter_by(layer, "connection", connection=connection)
+        self.scene.filters.filter_by(layer, "connection", connection=connection)
 
 
 def choices(data: Any) -> tuple[list[str], list[str]]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -10,8 +9,11 @@ import numpy as np
 
 from pvfiblets.web.scene.cameras import NEAR
 from pvfiblets.web.scene.distance_label import hidden_distances
-from pvfiblets.web.session.document import Measurement, State
+from pvfiblets.web.session.document import Measurement
 from pvfiblets.web.values import numbers, shown, whole
+
+if TYPE_CHECKING:
+    from pvfiblets.web.scene.scene import Scene
 
 __all__ = ["MOST_MEASUREMENTS", "SceneMeasurements", "check_measurements"]
 
@@ -20,16 +22,10 @@ _FARTHEST = 1e12  # mm from the origin
 
 
 class SceneMeasurements:
-    """The part of :class:`~pvfiblets.web.scene.scene.Scene` that measures; pixels count from the lower left corner."""
+    """Of a scene: measures; pixels count from the lower left corner."""
 
-    if TYPE_CHECKING:
-        plotter: Any
-
-        @property
-        def state(self) -> State: ...  # noqa: D102 - of the scene
-
-        become: Callable[..., None]
-        place_at: Callable[..., list[float] | None]
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
 
     def measure(self, x0: float, y0: float, x1: float, y1: float) -> dict[str, Any] | None:
         """Return the straight distance between what two pixels show; lines of measurements are looked through.
@@ -39,33 +35,36 @@ class SceneMeasurements:
         dict or None
             ``mm``, ``from`` and ``to`` (mm); ``None`` where one of them shows nothing.
         """
-        with hidden_distances(self.plotter):
-            begin, end = self.place_at(x0, y0, tolerance=NEAR), self.place_at(x1, y1, tolerance=NEAR)
+        with hidden_distances(self.scene.plotter):
+            begin, end = (
+                self.scene.cameras.place_at(x0, y0, tolerance=NEAR),
+                self.scene.cameras.place_at(x1, y1, tolerance=NEAR),
+            )
         if begin is None or end is None:
             return None
         return {"mm": float(np.linalg.norm(np.subtract(begin, end))), "from": begin, "to": end}
 
     def add_measurement(self, begin: Any, end: Any) -> Measurement:
         """Keep the distance between two places, mm, in the picture; it can be undone."""
-        before = self.state.measurements
+        before = self.scene.state.measurements
         (found,) = check_measurements([[begin, end]])
         if len(before) >= MOST_MEASUREMENTS:
             raise ValueError(f"there are {MOST_MEASUREMENTS} measurements, which is the most; remove one first")
-        self.become(replace(self.state, measurements=(*before, found)), f"measure {found.text}")
+        self.scene.become(replace(self.scene.state, measurements=(*before, found)), f"measure {found.text}")
         return found
 
     def remove_measurement(self, row: int) -> None:
         """Take one measurement away."""
-        before = self.state.measurements
+        before = self.scene.state.measurements
         if not before:
             raise ValueError("there are no measurements")
         at = whole(row, "row of a measurement", 0, len(before) - 1)
         kept = (*before[:at], *before[at + 1 :])
-        self.become(replace(self.state, measurements=kept), f"remove {before[at].text}")
+        self.scene.become(replace(self.scene.state, measurements=kept), f"remove {before[at].text}")
 
     def clear_measurements(self) -> None:
         """Take all measurements away."""
-        self.become(replace(self.state, measurements=()), "clear measurements")
+        self.scene.become(replace(self.scene.state, measurements=()), "clear measurements")
 
 
 def check_measurements(value: Any) -> tuple[Measurement, ...]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import tempfile
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,14 +13,14 @@ import numpy as np
 from pvfiblets.plotting.fiblets.filter_state import unique_name
 from pvfiblets.query.bundles.colours import distinct_colour, hex_colour
 from pvfiblets.query.painting.painter import Stroke
-from pvfiblets.web.session.document import Layer, State
+from pvfiblets.web.session.document import Layer
 from pvfiblets.web.session.painting import LONGEST, MOST_REGIONS, MOST_VOXELS, USES, Painted, Painting, Strokes
 from pvfiblets.web.values import colour, number, numbers, shown, text, truth
 
 if TYPE_CHECKING:
     from pvfiblets.query.painting.painter import RegionPainter
-    from pvfiblets.web.scene.canvas import Canvas
-    from pvfiblets.web.scene.loading import Files, Loaded
+    from pvfiblets.web.scene.loading import Loaded
+    from pvfiblets.web.scene.scene import Scene
 
 __all__ = ["TOOLS", "ScenePainting"]
 
@@ -31,18 +30,10 @@ MOST_PLACES = 600
 
 
 class ScenePainting:
-    """The part of :class:`~pvfiblets.web.scene.scene.Scene` that paints."""
+    """Of a scene: paints."""
 
-    if TYPE_CHECKING:
-        files: Files
-        canvas: Canvas
-
-        @property
-        def state(self) -> State: ...  # noqa: D102 - of the scene
-
-        actor: Callable[[str], Any]
-        become: Callable[..., None]
-        data: Callable[..., Loaded]
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
 
     # Regions
 
@@ -54,22 +45,22 @@ class ScenePainting:
         layer_id : str, optional
             An image, on whose voxels regions are painted if there are none yet; the lowest by default.
         """
-        painting = self.state.painting or self._begun(layer_id)
+        painting = self.scene.state.painting or self._begun(layer_id)
         if len(painting.regions) >= MOST_REGIONS:
             raise ValueError(f"there are {MOST_REGIONS} painted regions, which is the most; remove one first")
         label = max((one.label for one in painting.regions), default=0) + 1
         name = unique_name((one.name for one in painting.regions), "region")
         made = Painted(name, label, hex_colour(distinct_colour(label - 1)))
         wanted = replace(painting, regions=(*painting.regions, made))
-        self.become(replace(self.state, painting=wanted), f"add {name}")
+        self.scene.become(replace(self.scene.state, painting=wanted), f"add {name}")
         return made
 
     def _begun(self, layer_id: str | None) -> Painting:
-        images = [layer for layer in self.state.layers if layer.kind == "image"]
+        images = [layer for layer in self.scene.state.layers if layer.kind == "image"]
         chosen: Layer | None = next((one for one in images if one.id == layer_id), images[0] if images else None)
         if chosen is None:
             raise ValueError("regions are painted on slices; open an image as slices first")
-        return _on(self.data(chosen))
+        return _on(self.scene.data(chosen))
 
     def set_painted(self, region: str, /, **changes: Any) -> Painted:
         """Change a region's ``name``, ``color``, ``visible`` or ``use`` (of `painting.USES`)."""
@@ -91,7 +82,7 @@ class ScenePainting:
                 raise ValueError(f"{shown(key)} of a painted region cannot be {shown(value)}")
         new = replace(old, **wanted)
         what = f"{', '.join(wanted) or 'nothing'} of {new.name}"
-        self.become(replace(self.state, painting=painting.with_region(old, new)), what)
+        self.scene.become(replace(self.scene.state, painting=painting.with_region(old, new)), what)
         return new
 
     def remove_painted(self, name: str) -> None:
@@ -99,9 +90,10 @@ class ScenePainting:
         painting, painter = self._painting, self._painter
         old = painting.region(name)
         left = painting.with_region(old, None)
-        strokes = self.canvas.painted(painter.clear(old.name))
-        self.become(
-            replace(self.state, painting=replace(left, strokes=strokes) if left.regions else None), f"remove {old.name}"
+        strokes = self.scene.canvas.painted(painter.clear(old.name))
+        self.scene.become(
+            replace(self.scene.state, painting=replace(left, strokes=strokes) if left.regions else None),
+            f"remove {old.name}",
         )
 
     # Strokes
@@ -159,13 +151,15 @@ class ScenePainting:
         if len(stroke):
             what = {"erase": "erase", "fill": f"fill {target}", "grow": f"grow {target}"}.get(tool, f"paint {target}")
             key = None if gesture is None else ("paint", str(gesture))
-            wanted = replace(painting, strokes=self.canvas.painted(stroke))
-            self.become(replace(self.state, painting=wanted), what, key)
+            wanted = replace(painting, strokes=self.scene.canvas.painted(stroke))
+            self.scene.become(replace(self.scene.state, painting=wanted), what, key)
         return len(stroke)
 
     def _grown(self, painter: RegionPainter, name: str, seed: np.ndarray, share: float, plane: int | None) -> Stroke:
         painting = self._painting
-        images = [(layer, self.data(layer).data) for layer in reversed(self.state.layers) if layer.kind == "image"]
+        images = [
+            (layer, self.scene.data(layer).data) for layer in reversed(self.scene.state.layers) if layer.kind == "image"
+        ]
         fitting = [
             (layer, image) for layer, image in images
             if image.shape == painting.shape and np.allclose(image.affine, painting.matrix, atol=1e-4)
@@ -173,7 +167,7 @@ class ScenePainting:
         if not fitting:
             raise ValueError("no image lies on the voxels that are painted; open the one that painting began on")
         layer, image = next((one for one in fitting if one[0].visible), fitting[0])
-        shown_layer = self.actor(layer.id)
+        shown_layer = self.scene.actor(layer.id)
         values = image.values[..., layer.settings["index"] if image.n_volumes > 1 else 0]
         low, high = shown_layer.window
         at = image.voxel_at(seed)
@@ -190,7 +184,9 @@ class ScenePainting:
         rows = list(painting.regions)
         rows.insert(to, rows.pop(at))
         if to != at:
-            self.become(replace(self.state, painting=replace(painting, regions=tuple(rows))), f"order of {name}")
+            self.scene.become(
+                replace(self.scene.state, painting=replace(painting, regions=tuple(rows))), f"order of {name}"
+            )
 
     def add_labels(self, loaded: Loaded) -> list[Painted]:
         """Take the labels of an image as painted regions, by their names and colours.
@@ -202,7 +198,7 @@ class ScenePainting:
         """
         image = loaded.data
         found = self._labels_in(loaded)
-        painting = self.state.painting
+        painting = self.scene.state.painting
         if painting is None:
             painting = _on(loaded)
         elif image.shape != painting.shape or not np.allclose(image.affine, painting.matrix, atol=1e-4):
@@ -231,11 +227,11 @@ class ScenePainting:
         wanted = replace(painting, regions=(*painting.regions, *made))
         places = np.flatnonzero(labels.reshape(-1))
         before = np.zeros(len(places), np.uint16)
-        if (painter := self.canvas.painter) is not None:
+        if (painter := self.scene.canvas.painter) is not None:
             before = painter.labels.reshape(-1)[places].copy()
         stroke = Stroke(places, before, labels.reshape(-1)[places])
         wanted = replace(wanted, strokes=Strokes.after(painting.strokes, stroke))
-        self.become(replace(self.state, painting=wanted), f"regions of {loaded.name}")
+        self.scene.become(replace(self.scene.state, painting=wanted), f"regions of {loaded.name}")
         return made
 
     @staticmethod
@@ -256,7 +252,7 @@ class ScenePainting:
         """Write the regions as labels, NIfTI, with a table of their names beside it; return the volume's place."""
         if not path.lower().endswith((".nii", ".nii.gz")):
             raise ValueError(f"{shown(path)}: regions are saved as .nii or .nii.gz")
-        target = self.files.resolve(path, new=True)
+        target = self.scene.files.resolve(path, new=True)
         painter = self._painter
         with tempfile.TemporaryDirectory(dir=target.parent, prefix=".painted-") as folder:
             part = Path(folder) / target.name
@@ -267,15 +263,15 @@ class ScenePainting:
 
     @property
     def _painting(self) -> Painting:
-        if self.state.painting is None:
+        if self.scene.state.painting is None:
             raise ValueError("there are no painted regions; add one first")
-        return self.state.painting
+        return self.scene.state.painting
 
     @property
     def _painter(self) -> RegionPainter:
-        if self.canvas.painter is None:
+        if self.scene.canvas.painter is None:
             raise ValueError("there are no painted regions; add one first")
-        return self.canvas.painter
+        return self.scene.canvas.painter
 
 
 def _on(loaded: Loaded) -> Painting:

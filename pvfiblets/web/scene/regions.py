@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pvfiblets.plotting.viewpoints import visible_bounds
-from pvfiblets.web.session.document import LINES, Layer, State
+from pvfiblets.web.session.document import LINES, Layer
 from pvfiblets.web.session.shapes import check_condition, shapes_in
 from pvfiblets.web.values import shown, text
+
+if TYPE_CHECKING:
+    from pvfiblets.web.scene.scene import Scene
 
 __all__ = ["SceneRegions"]
 
@@ -20,16 +23,10 @@ APART = 3.0  # half widths between the middles of a region and of the next
 
 
 class SceneRegions:
-    """The part of `pvfiblets.web.scene.scene.Scene` that names regions and changes them for all layers at once."""
+    """Of a scene: names regions and changes them for all layers at once."""
 
-    if TYPE_CHECKING:
-        plotter: Any
-
-        @property
-        def state(self) -> State: ...  # noqa: D102 - of the scene
-
-        become: Callable[..., None]
-        _lines: Callable[[str], Layer]
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
 
     def usual_region(
         self, kind: str, last: Mapping[str, Any] | None = None, beside: Any = (1.0, 0.0, 0.0)
@@ -44,7 +41,7 @@ class SceneRegions:
         beside : sequence of 3 floats
             On which side of that.
         """
-        bounds = np.array(visible_bounds(self.plotter), np.float64)
+        bounds = np.array(visible_bounds(self.scene.plotter), np.float64)
         low, high = bounds[::2], bounds[1::2]
         half, middle = _rounded(SHARE * float((high - low).max())), 0.5 * (low + high)
         if last is not None:
@@ -60,7 +57,7 @@ class SceneRegions:
         """Return the names of all regions, in their order."""
         found = [
             region["name"]
-            for layer in self.state.layers
+            for layer in self.scene.state.layers
             if layer.filters.regions is not None
             for region in shapes_in(layer.filters.regions)
             if "name" in region
@@ -75,7 +72,7 @@ class SceneRegions:
 
     def sharing(self, name: str | None) -> list[str]:
         """Return the ids of the layers that have a region of a name."""
-        return [layer.id for layer in self.state.layers if name is not None and _has(layer, name)]
+        return [layer.id for layer in self.scene.state.layers if name is not None and _has(layer, name)]
 
     def change_region(self, name: str, shape: Mapping[str, Any]) -> None:
         """Change a region for all layers that have it.
@@ -101,17 +98,17 @@ class SceneRegions:
             replace(layer, filters=replace(layer.filters, regions=changed(layer.filters.regions)))
             if layer.filters.regions is not None and _has(layer, name)
             else layer
-            for layer in self.state.layers
+            for layer in self.scene.state.layers
         )
-        old = next(region for one in self.state.layers for region in _named(one, name))
+        old = next(region for one in self.scene.state.layers for region in _named(one, name))
         parts = sorted(key for key in new if new[key] != old.get(key))
-        self.become(replace(self.state, layers=layers), f"region {name}", ("region", name, *parts))
+        self.scene.become(replace(self.scene.state, layers=layers), f"region {name}", ("region", name, *parts))
 
     def share_region(self, shape: Mapping[str, Any], how: str, negated: bool, layer_ids: Sequence[str]) -> None:
         """Have some layers filtered by a region, and no others."""
         name = text(shape.get("name"), "the name of a region", 40)
         for layer_id in layer_ids:
-            self._lines(layer_id)
+            self.scene.lines_layer(layer_id)
         part: dict[str, Any] = {"how": how, "region": dict(shape)}
         part = {"op": "not", "of": [part]} if negated else part
 
@@ -132,9 +129,9 @@ class SceneRegions:
 
         layers = tuple(
             replace(layer, filters=replace(layer.filters, regions=regions(layer))) if layer.kind in LINES else layer
-            for layer in self.state.layers
+            for layer in self.scene.state.layers
         )
-        self.become(replace(self.state, layers=layers), f"layers of region {name}")
+        self.scene.become(replace(self.scene.state, layers=layers), f"layers of region {name}")
 
 
 def _has(layer: Layer, name: str) -> bool:

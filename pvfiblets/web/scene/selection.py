@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
@@ -11,11 +10,10 @@ import numpy as np
 from pvfiblets.web.panels.writing import EXPORTS, write
 from pvfiblets.web.scene.originals import original_of
 from pvfiblets.web.scene.sampling import sampled
-from pvfiblets.web.session.document import LINES, Ids, Layer, State
+from pvfiblets.web.session.document import LINES, Ids, Layer
 from pvfiblets.web.values import number, numbers, plain, shown, truth, whole
 
 if TYPE_CHECKING:
-    from pvfiblets.web.scene.loading import Files
     from pvfiblets.web.scene.scene import Scene
 
 __all__ = ["MODES", "SceneSelection"]
@@ -26,19 +24,10 @@ _LONGEST_TABLE = 5000
 
 
 class SceneSelection:
-    """The part of :class:`~pvfiblets.web.scene.scene.Scene` that selects; pixels count from the lower left corner."""
+    """Of a scene: selects; pixels count from the lower left corner."""
 
-    if TYPE_CHECKING:
-        plotter: Any
-        files: Files
-
-        @property
-        def state(self) -> State: ...  # noqa: D102 - of the scene
-
-        become: Callable[..., None]
-        layer: Callable[[str], Layer]
-        actor: Callable[[str], Any]
-        _lines: Callable[[str], Layer]
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
 
     # Picking ------------------------------------------------------------------------------------
 
@@ -67,7 +56,8 @@ class SceneSelection:
         found = [
             (picked, layer)
             for layer, actor in self._pickable()
-            if (picked := visible(actor, at, tolerance=reach, nearest=True, renderer=self.plotter.renderer)) is not None
+            if (picked := visible(actor, at, tolerance=reach, nearest=True, renderer=self.scene.plotter.renderer))
+            is not None
         ]
         if not found:
             self._take({}, mode, "pick nothing")
@@ -107,8 +97,8 @@ class SceneSelection:
 
     def select(self, layer_id: str, ids: Any, *, mode: str = "replace") -> int:
         """Select streamlines of one layer by their numbers; return how many are selected now."""
-        layer = self._lines(layer_id)
-        total = self.actor(layer_id).fiblets.n_streamlines
+        layer = self.scene.lines_layer(layer_id)
+        total = self.scene.actor(layer_id).fiblets.n_streamlines
         given = np.atleast_1d(np.asarray(ids))
         if given.size and given.dtype.kind not in "iu":
             raise ValueError(f"streamlines are {shown(ids)}; give whole numbers")
@@ -125,7 +115,7 @@ class SceneSelection:
 
     def count(self) -> int:
         """Return how many streamlines are selected, of all layers."""
-        return sum(len(layer.selected) for layer in self.state.layers if layer.selected is not None)
+        return sum(len(layer.selected) for layer in self.scene.state.layers if layer.selected is not None)
 
     # What is selected ---------------------------------------------------------------------------
 
@@ -147,7 +137,7 @@ class SceneSelection:
             the value is of), ``groups``.
         """
         first, limit = whole(first, "first"), whole(limit, "limit", 0, _LONGEST_TABLE)
-        chosen = [self._lines(layer_id)] if layer_id is not None else self.state.layers
+        chosen = [self.scene.lines_layer(layer_id)] if layer_id is not None else self.scene.state.layers
         rows: list[dict[str, Any]] = []
         before = 0
         for layer in chosen:
@@ -157,7 +147,7 @@ class SceneSelection:
             part = ids[max(first - before, 0) : max(first + limit - before, 0)]
             before += len(ids)
             if len(part):
-                rows += _rows(layer, self.actor(layer.id), part)
+                rows += _rows(layer, self.scene.actor(layer.id), part)
         return {"total": before, "rows": rows}
 
     def profile(self, layer_id: str, scalars: str | None = None, n: int = 100) -> dict[str, Any]:
@@ -177,10 +167,10 @@ class SceneSelection:
         dict
             ``position`` (0 to 1), ``mean``, ``std``: lists, ``None`` where there is no value; ``name``, ``count``.
         """
-        layer = self._lines(layer_id)
+        layer = self.scene.lines_layer(layer_id)
         if layer.selected is None:
             raise ValueError(f"nothing of {layer.name!r} is selected; pick streamlines first")
-        actor = self.actor(layer_id)
+        actor = self.scene.actor(layer_id)
         active = actor.active_scalars
         count = whole(n, "n", 2, 1000)
         if active is not None and active.volume is not None and scalars in (None, active.name):
@@ -217,21 +207,21 @@ class SceneSelection:
         dict
             ``path``, and what :func:`~pvfiblets.web.panels.writing.write` returns.
         """
-        layer = self._lines(layer_id)
+        layer = self.scene.lines_layer(layer_id)
         if not isinstance(path, str) or not path.lower().endswith(EXPORTS):
             raise ValueError(f"the file's name is {shown(path)}; let it end in one of {', '.join(EXPORTS)}")
-        target = self.files.resolve(path, new=True)
+        target = self.scene.files.resolve(path, new=True)
         if target.exists() and not truth(overwrite, "overwrite"):
             raise FileExistsError(f"{path} is there already; give another name")
         fiblets, ids = self.chosen(layer.id, what)
         original, _ = original_of(cast("Scene", self), layer, ids)
         found = write(fiblets, ids, target, original=original)
-        return {"path": self.files.name(target), **found}
+        return {"path": self.scene.files.name(target), **found}
 
     def chosen(self, layer_id: str, what: str) -> tuple[Any, np.ndarray]:
         """Return a layer's fiblets and the numbers of streamlines; `what` as of :meth:`export`."""
-        layer = self._lines(layer_id)
-        actor = self.actor(layer_id)
+        layer = self.scene.lines_layer(layer_id)
+        actor = self.scene.actor(layer_id)
         if what == "selected":
             if layer.selected is None:
                 raise ValueError(f"nothing of {layer.name!r} is selected; pick streamlines first")
@@ -245,7 +235,11 @@ class SceneSelection:
     # Inside -------------------------------------------------------------------------------------
 
     def _pickable(self) -> list[tuple[Layer, Any]]:
-        return [(layer, self.actor(layer.id)) for layer in self.state.layers if layer.kind in LINES and layer.visible]
+        return [
+            (layer, self.scene.actor(layer.id))
+            for layer in self.scene.state.layers
+            if layer.kind in LINES and layer.visible
+        ]
 
     def _area(self, corners: np.ndarray, mode: str, through: bool, what: str) -> int:
         from pvfiblets.plotting.fiblets.pick_result import everything, visible
@@ -253,7 +247,7 @@ class SceneSelection:
         find: Any = everything if truth(through, "through") else visible
         found = {}
         for layer, actor in self._pickable():
-            picked = find(actor, corners, renderer=self.plotter.renderer)
+            picked = find(actor, corners, renderer=self.scene.plotter.renderer)
             if picked is not None:
                 found[layer.id] = picked.ids
         self._take(found, mode, what)
@@ -278,9 +272,9 @@ class SceneSelection:
             joined = Ids.of(join(before, new.array()))
             return joined if len(joined) else None
 
-        taken = [(layer, chosen(layer)) for layer in self.state.layers]
+        taken = [(layer, chosen(layer)) for layer in self.scene.state.layers]
         layers = tuple(layer if ids == layer.selected else replace(layer, selected=ids) for layer, ids in taken)
-        self.become(replace(self.state, layers=layers), what)
+        self.scene.become(replace(self.scene.state, layers=layers), what)
 
 
 def _volume_profile(actor: Any, ids: np.ndarray, volume: Any, n: int) -> dict[str, Any]:

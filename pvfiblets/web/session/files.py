@@ -57,7 +57,7 @@ def to_dict(scene: Scene, folder: Path | None = None) -> dict[str, Any]:
         "program": "pvfiblets",
         "version": VERSION,
         "background": state.background,
-        "camera": scene.camera(),
+        "camera": scene.cameras.camera(),
         **_slices_to_dict(scene),
         "layers": [_layer_to_dict(layer, path_of, shape_of) for layer in state.layers],
         "clips": [
@@ -107,7 +107,7 @@ def apply(scene: Scene, prepared: Prepared) -> None:
     if prepared.slices is not None:
         scene.slicing.view = prepared.slices
     if prepared.camera is not None:
-        scene.set_camera(prepared.camera)
+        scene.cameras.set_camera(prepared.camera)
 
 
 @contextmanager
@@ -175,8 +175,7 @@ def _bundles_to_dict(state: State, path_of: Any) -> dict[str, Any]:
         if source.ids is not None:
             place["ids"] = source.ids.packed
         rows = [
-            {"name": one.name, "color": one.color, "visible": one.visible, "ids": one.ids.packed}
-            for one in bundles
+            {"name": one.name, "color": one.color, "visible": one.visible, "ids": one.ids.packed} for one in bundles
         ]
         found.append({"source": place, "bundles": rows})
     return {"bundles": found} if found else {}

@@ -14,8 +14,8 @@ from pvfiblets.web.scene.actors import split_cuts
 from pvfiblets.web.scene.bundles import check_bundles
 from pvfiblets.web.scene.cameras import check_camera
 from pvfiblets.web.scene.filters import MOST_CLIPS, check_filters
-from pvfiblets.web.scene.layer_list import LONGEST_NAME, MOST_LAYERS, MOST_VALUES
 from pvfiblets.web.scene.measurements import check_measurements
+from pvfiblets.web.scene.scene import LONGEST_NAME, MOST_LAYERS, MOST_VALUES
 from pvfiblets.web.scene.slicing import SliceView, check_view
 from pvfiblets.web.session.document import (
     KINDS,
@@ -75,7 +75,7 @@ def read_session(
     for name, most in (("layers", MOST_LAYERS), ("clips", MOST_CLIPS)):
         if not isinstance(data.get(name, []), list) or len(data.get(name, [])) > most:
             raise ValueError(f"{name} is {shown(data.get(name))}; give a list of {most} at most")
-    reading = _Reading(scene.store.fork(), _Paths(scene, folder), progress, cancel, {}, scene.own_groups)
+    reading = _Reading(scene.store.fork(), _Paths(scene, folder), progress, cancel, {}, scene.bundles.own_groups)
     reading.bundles.update(_listed(data.get("bundles", []), reading))
     found = [_layer_from_dict(item, reading) for item in data["layers"]]
     clips = [_clip_from_dict(item, reading.paths) for item in data.get("clips", [])]

@@ -139,7 +139,7 @@ class ViewWriter(ScriptWriter):
                 self._lines += ["bar.GetAnnotationTextProperty().SetVerticalJustificationToCentered()"]
 
     def _camera(self) -> None:
-        camera = self._scene.camera()
+        camera = self._scene.cameras.camera()
         self._lines += ["", "plotter.camera_position = ["]
         self._lines += [f"    {tuple(camera[part])}," for part in ("position", "focal_point", "up")]
         self._lines += ["]"]

@@ -88,8 +88,8 @@ class BrowserDrawing(Actions):
         if not self.on:
             return
         app = self._app
-        app.scene.set_camera(camera)
-        self._camera = app.scene.camera()
+        app.scene.cameras.set_camera(camera)
+        self._camera = app.scene.cameras.camera()
         self.rests = rests is True
         app.stream.leave()
         if self.rests:
@@ -129,7 +129,7 @@ class BrowserDrawing(Actions):
 
     def _tell(self, sent: SentScene) -> None:
         app = self._app
-        camera = app.scene.camera()
+        camera = app.scene.cameras.camera()
         with app.state:
             if not self.on or sent.content != self._sent[-1].content:
                 self._sent = [*self._sent[1 - KEPT :], sent]

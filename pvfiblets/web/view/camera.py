@@ -22,12 +22,12 @@ class CameraActions(Actions):
     def refresh(self) -> None:
         """Show how the camera stands."""
         page, scene = self._app.page, self._app.scene
-        page.parallel = scene.parallel
-        page.edges = scene.edges() if scene.layers else {}
+        page.parallel = scene.cameras.parallel
+        page.edges = scene.cameras.edges() if scene.layers else {}
 
     def view(self, name: str) -> None:
         """Look from a named side."""
-        self._app.scene.view(name)
+        self._app.scene.cameras.view(name)
         self._app.stream.request()
 
     def flip(self) -> None:
@@ -40,13 +40,13 @@ class CameraActions(Actions):
 
     def reset(self) -> None:
         """Show everything."""
-        self._app.scene.reset()
+        self._app.scene.cameras.reset()
         self._app.scene.slicing.show_all()
         self._app.stream.request()
 
     def toggle_parallel(self) -> None:
         """Change between parallel and perspective projection."""
-        self._app.scene.parallel = not self._app.scene.parallel
+        self._app.scene.cameras.parallel = not self._app.scene.cameras.parallel
         self._app.stream.request()
 
     def set_background(self, colour: str) -> None:
