@@ -383,24 +383,7 @@ def from_cells(
     field: Mapping[str, Array] | None = None,
     space_name: Space | None = None,
 ) -> Streamlines:
-    """Streamlines from cells that refer to points by index, as VTK stores lines.
-
-    Parameters
-    ----------
-    points : (n, 3) array
-    offsets : (n_lines + 1,) int64
-        Where each line begins in `connectivity`.
-    connectivity : (n_ids,) int64
-        Point indices, each in ``[0, n)``.
-    point_data, cell_data : mapping of str to array
-        One row per point, and per line.
-    other_cells : int
-        Cells that are not lines, reported in `dropped`.
-    field : mapping of str to array, optional
-        Field data in the naming of :meth:`Streamlines.field_data`; other names are ignored.
-    space_name : {'RAS', 'LPS'}, optional
-        Space of the points; RAS+ if the source names none.
-    """
+    """Streamlines from cells that refer to points by index, as VTK stores lines."""
     return Streamlines(
         **parts_of_cells(
             points, offsets, connectivity, point_data, cell_data,

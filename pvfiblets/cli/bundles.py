@@ -67,22 +67,7 @@ def table(source: str, target: str, *, by: str, group: list[str], image: list[st
 
 
 def bundle_rows(source: str, groups: Sequence[str], images: Sequence[str], weights: PointWeights) -> Table:
-    """Return a row for each group of a file, or one for all of it where it has none.
-
-    Parameters
-    ----------
-    source : str
-    groups : sequence of str
-        Only these, if any.
-    images : sequence of str
-        Paths, or ``NAME=PATH``.
-    weights : {"length", "points"}
-
-    Raises
-    ------
-    ValueError
-        If there is no such group, or two images have one name.
-    """
+    """Return a row for each group of a file, or one for all of it where it has none."""
     from pvfiblets.query.bundles.statistics import bundle_table
 
     known: dict[str, str] = {}

@@ -28,18 +28,7 @@ from pvfiblets.support.vtk_space import unnamed_as
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command.
-
-    Parameters
-    ----------
-    arguments : sequence of str, optional
-        Instead of the command line.
-
-    Returns
-    -------
-    int
-        The exit code.
-    """
+    """Run the command."""
     options = vars(make_parser().parse_args(arguments))
     debug = options.pop("debug")
     module, function = options.pop("run").split(":")

@@ -26,13 +26,7 @@ def add_memory_option(parser: argparse.ArgumentParser) -> None:
 
 
 def bytes_of_file(text: str) -> int:
-    """Parse the size of a file, such as ``2G``.
-
-    Raises
-    ------
-    argparse.ArgumentTypeError
-        If it is none.
-    """
+    """Parse the size of a file, such as ``2G``."""
     from pvfiblets.support import memory
 
     try:
@@ -49,13 +43,6 @@ def held_to(most: str | None) -> Iterator[None]:
 
     By default it may take half of the machine's beyond what it has: a command that runs within a larger program, whose
     memory nobody limited, is not refused for that.
-
-    Raises
-    ------
-    FibletsError
-        If more was needed, or hardly any is left to begin with.
-    ValueError
-        If it says no size.
     """
     from pvfiblets.support import memory
 

@@ -27,19 +27,7 @@ _IN, _OUT = "standard input", "standard output"
 def add_format_option(
     parser: argparse.ArgumentParser, *, reads: Sequence[str], writes: str | None = None, usual: str | None = None
 ) -> None:
-    """Let a command take ``-`` for files, and be told the space of files that name none.
-
-    Parameters
-    ----------
-    parser : ArgumentParser
-        Of the command.
-    reads : sequence of str
-        Names of the arguments that may be standard input.
-    writes : str, optional
-        Name of the argument that may be standard output.
-    usual : str, optional
-        Format to write if none is given; without it, one must be.
-    """
+    """Let a command take ``-`` for files, and be told the space of files that name none."""
     which = "what - stands for, such as tck: standard input (default: its first bytes tell)"
     if writes is not None:
         which += f" or output ({f'default: {usual}' if usual else 'needed'}); of both, that of output comes last"
@@ -141,13 +129,7 @@ def _asks(value: Any) -> int:
 
 
 def _spooled(folder: Path, suffix: str | None) -> Path:
-    """Put standard input into a file with the suffix of its format.
-
-    Raises
-    ------
-    ValueError
-        If there is nothing, or nobody can tell what it is.
-    """
+    """Put standard input into a file with the suffix of its format."""
     if sys.stdin is None or sys.stdin.isatty():
         raise ValueError("- is standard input, a terminal here; send a file or a program's output to it (< or |)")
     path = folder / "standard-input"

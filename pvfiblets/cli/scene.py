@@ -102,15 +102,7 @@ def shape_of(words: Sequence[str], option: str, others: Sequence[str] = ()) -> t
 
 
 def cut_and_filter(actors: Mapping[str, Sequence[Any]], wishes: Wishes) -> None:
-    """Do to a scene's actors what ``--clip``, ``--include``, ``--criterion`` and so on say.
-
-    Parameters
-    ----------
-    actors : mapping
-        Those of each of `KINDS`.
-    wishes : mapping
-        Of the command line.
-    """
+    """Do to a scene's actors what ``--clip``, ``--include``, ``--criterion`` and so on say."""
     lines, load = actors["lines"], cache(_loader)
     for option, inside in (("--clip", True), ("--clip-away", False)):
         for words in wishes[option.strip("-").replace("-", "_")]:

@@ -282,15 +282,7 @@ class Operation:
         return {name: p.default for name, p in found.items() if p.kind is p.KEYWORD_ONLY}
 
     def checked(self, options: dict[str, Any]) -> dict[str, Any]:
-        """Return all options, those that were not given with their default.
-
-        Raises
-        ------
-        TypeError
-            If there is no such option.
-        ValueError
-            If one that is needed is missing, or the suffix of what is to be made is none.
-        """
+        """Return all options, those that were not given with their default."""
         known = self.defaults()
         strange = sorted(set(options) - set(known))
         if strange:
@@ -308,12 +300,7 @@ class Operation:
         return made
 
     def check_source(self, source: Path) -> None:
-        """Refuse a source that the operation cannot take, by its name.
-
-        Raises
-        ------
-        ValueError
-        """
+        """Refuse a source that the operation cannot take, by its name."""
         suffix = registry.suffix_of(source)
         if self.takes and suffix not in self.takes:
             raise ValueError(f"{source}: {self.name} is for {', '.join(self.takes)} files")

@@ -240,14 +240,7 @@ def split_chunks(streamlines: Streamlines, max_points: int = CHUNK_POINTS) -> It
 
 
 def choose_per_point(streamlines: Streamlines, per_point: PerPoint, bits: int) -> tuple[str, ...]:
-    """Return the names of the per-point arrays to keep.
-
-    Raises
-    ------
-    ValueError
-        For a name that the streamlines do not have, another word than 'all', 'fit' and 'none', or other bits than 8 or
-        16.
-    """
+    """Return the names of the per-point arrays to keep."""
     if bits not in (8, 16):
         raise ValueError(f"per_point_bits is {bits}; 8 or 16 is needed")
     if isinstance(per_point, str):

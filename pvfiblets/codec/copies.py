@@ -250,21 +250,7 @@ class Copies:
         path: str | PathLike[str] | None = None,
         progress: bool = False,
     ) -> FibletSet:
-        """Make all copies, in memory or in a file.
-
-        Parameters
-        ----------
-        per_streamline, groups : dict, optional
-            As in :class:`~pvfiblets.Streamlines`, for the copies.
-        path : str or PathLike, optional
-            A ``.fiblets`` file to write, in bounded memory; it is mapped and returned.
-        progress : bool
-            Show a progress bar.
-
-        Returns
-        -------
-        FibletSet
-        """
+        """Make all copies, in memory or in a file."""
         pages, bounds = self._plan
         b = bounds.T.ravel().tolist()
         whole = replace(

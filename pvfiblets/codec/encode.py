@@ -160,16 +160,7 @@ def _code(
     end: npt.NDArray[np.uint8],
     left_out: npt.NDArray[np.bool_] | None = None,
 ) -> tuple[dict[str, npt.NDArray[Any]], npt.NDArray[np.uint8]]:
-    """Code slots; those `left_out` get a row and as many bytes as direction codes take, whatever these are.
-
-    Returns
-    -------
-    dict of str to numpy.ndarray
-        A row a fiblet: ``shape, step, cap, kind, end_words, counts, point_start, code_start, radii``; and ``pieces``, a
-        row a slot: fiblets of each.
-    numpy.ndarray
-        Bytes of codes.
-    """
+    """Code slots; those `left_out` get a row and as many bytes as direction codes take, whatever these are."""
     m = len(slots)
     ok, shape, step = np.zeros(m, np.uint8), np.zeros(m, np.uint32), np.zeros(m, np.uint16)
     cap, radius, codes = np.zeros(m, np.uint8), np.zeros(m), np.zeros(n_points, np.uint8)

@@ -36,19 +36,7 @@ def raw_bytes(streamlines: Streamlines) -> int:
 
 
 def plain_records(streamlines: Streamlines, parameters: Parameters) -> dict[str, Any]:
-    """Make what is drawn of points that are kept exactly.
-
-    Parameters
-    ----------
-    streamlines : Streamlines
-    parameters : Parameters
-        Of :meth:`.Parameters.of_exact`.
-
-    Returns
-    -------
-    dict
-        Fields of a :class:`.FibletSet`: its records, ``parameters``, and ``exact``, the points themselves.
-    """
+    """Make what is drawn of points that are kept exactly."""
     writer = PlainWriter(parameters)
     offsets = np.asarray(streamlines.offsets)
     chunks = []

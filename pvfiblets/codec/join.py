@@ -24,26 +24,7 @@ __all__ = ["concatenate"]
 
 
 def concatenate(sets: Iterable[FibletSet]) -> FibletSet:
-    """Put sets behind each other.
-
-    Parameters
-    ----------
-    sets : iterable of FibletSet
-        At least one.
-
-    Returns
-    -------
-    FibletSet
-        In memory. Groups of the same name are joined, the affine and space are the first set's, ``dropped`` is summed.
-        Sets of equal parameters, such as parts of one, keep every bit of their points. Others are coded again, with the
-        coarsest of their promises, and the promise of the result is twice that: what was lost may add up. Exact sets
-        stay exact.
-
-    Raises
-    ------
-    ValueError
-        If there is none, or one set has data that another lacks: keeping it would need invented values.
-    """
+    """Put sets behind each other."""
     all_sets = list(sets)
     if not all_sets:
         raise ValueError("there is no set to concatenate; give one or more")

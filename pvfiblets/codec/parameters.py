@@ -87,14 +87,7 @@ class Survey:
     values: dict[str, tuple[float, float]] = field(default_factory=dict)
 
     def add(self, streamlines: Streamlines, per_point: Iterable[str] = ()) -> None:
-        """Take in one chunk; ``per_point`` names the arrays whose ranges are wanted.
-
-        Raises
-        ------
-        ValueError
-            If a coordinate is not finite (such points have no place in bounds, and leaving them out would be silent) or
-            too large for the GPU's float32.
-        """
+        """Take in one chunk; ``per_point`` names the arrays whose ranges are wanted."""
         points = streamlines.points
         self.n_points += len(points)
         self.n_streamlines += len(streamlines)

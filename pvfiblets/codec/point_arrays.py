@@ -23,23 +23,7 @@ __all__ = [
 
 
 def with_point_values(fiblets: FibletSet, name: str, values: npt.ArrayLike, bits: int = 8) -> FibletSet:
-    """Return a set that shares the arrays of another one and has one with a number per point more.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-        Stays as it is.
-    name : str
-        Of the array; one of that name is replaced.
-    values : array_like
-        ``(n_points,)`` numbers in the order of the streamlines.
-    bits : {8, 16}
-        Bits for each of them.
-
-    Returns
-    -------
-    FibletSet
-    """
+    """Return a set that shares the arrays of another one and has one with a number per point more."""
     return with_coded_values(fiblets, name, fiblets.in_coded_order(values), bits)
 
 
@@ -59,20 +43,7 @@ def colour_columns(per_point: Mapping[str, Any], name: str) -> tuple[str, ...]:
 
 
 def unit_colours(name: str, colours: npt.ArrayLike) -> npt.NDArray[np.float32]:
-    """Return colours as floats from 0 to 1; what is no number is 0.
-
-    Parameters
-    ----------
-    name : str
-        For messages.
-    colours : array_like
-        ``(n, 3 or 4)``: integers from 0 to 255, or floats from 0 to 1.
-
-    Raises
-    ------
-    ValueError
-        If they have another shape or lie outside.
-    """
+    """Return colours as floats from 0 to 1; what is no number is 0."""
     given = np.asarray(colours)
     if given.ndim != 2 or given.shape[1] not in (3, 4):
         raise ValueError(f"colours {name!r} have the shape {given.shape}; expected 3 or 4 columns")
@@ -89,19 +60,6 @@ def with_point_colours(fiblets: FibletSet, name: str, colours: npt.ArrayLike) ->
     """Return a set that shares the arrays of another one and has a colour per point more.
 
     Each channel takes a byte a point, and is off by half of 1/255 at most.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-        Stays as it is.
-    name : str
-        Of the colours; numbers and colours of that name are replaced.
-    colours : array_like
-        ``(n_points, 3 or 4)`` in the order of the streamlines, as :func:`unit_colours` takes them.
-
-    Returns
-    -------
-    FibletSet
     """
     rows = fiblets.in_coded_order(unit_colours(name, colours))
     before = {name, *colour_columns(fiblets.per_point, name)}
@@ -111,16 +69,7 @@ def with_point_colours(fiblets: FibletSet, name: str, colours: npt.ArrayLike) ->
 
 
 def colours_of_points(fiblets: FibletSet, name: str, index: Any = slice(None)) -> npt.NDArray[np.uint8]:
-    """Return colours of points, RGBA, ``(n, 4)`` uint8.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-    name : str
-        Columns beyond 1 are taken as bytes.
-    index : slice or array_like, optional
-        Which points, in the order in which they are coded; all by default.
-    """
+    """Return colours of points, RGBA, ``(n, 4)`` uint8."""
     columns = [fiblets.per_point[column] for column in colour_columns(fiblets.per_point, name)]
     return packed_colours([column.values(index) for column in columns], max(column.hi for column in columns))
 

@@ -55,22 +55,7 @@ class QuantisedPoints:
 
 
 def quantise_values(values: npt.ArrayLike, lo: float, hi: float, bits: int = 8) -> QuantisedPoints:
-    """Quantise one value per point.
-
-    Parameters
-    ----------
-    values : array_like
-        ``(n_points,)``; values that are not finite become NaN.
-    lo, hi : float
-        Range of the finite values.
-    bits : {8, 16}
-        Bits per point.
-
-    Raises
-    ------
-    ValueError
-        If ``bits`` is neither 8 nor 16, or the values are not one number per point.
-    """
+    """Quantise one value per point."""
     if bits not in (8, 16):
         raise ValueError(f"per_point_bits is {bits}; 8 or 16 is needed")
     column = np.asarray(values, np.float64)

@@ -94,14 +94,7 @@ class Header(NamedTuple):
 
 
 def read_header(file: MappedFile, magic: str) -> Header:
-    """Parse the header of a tck or tsf file.
-
-    Raises
-    ------
-    FormatError
-        For a wrong first line, a missing END, an unknown datatype, a data offset outside the
-        file, or a count that is not a number.
-    """
+    """Parse the header of a tck or tsf file."""
     head = file.bytes(0, min(file.size, 64), "the header")
     if not head.startswith(magic.encode()):
         raise FormatError(file.path, 0, repr(head[:20]), f"the line {magic!r}")
@@ -179,17 +172,7 @@ class Window(NamedTuple):
 
 
 def parse_rows(rows: Array, dtype: np.dtype[Any], last: bool) -> Window:
-    """Split rows at their delimiters.
-
-    Parameters
-    ----------
-    rows : (n, k) array
-        As in the file.
-    dtype : dtype
-        Of the result.
-    last : bool
-        Whether the data end with these rows: then what follows the last delimiter is taken too.
-    """
+    """Split rows at their delimiters."""
     finite, special, values = finite_rows(rows, dtype)
     is_nan: Array = np.asarray(np.isnan(values[:, 0]))
     is_end: Array = np.asarray(np.isinf(values[:, 0]))
@@ -405,13 +388,7 @@ def info(path: str | PathLike[str]) -> dict[str, Any]:
 
 
 def write(path: str | PathLike[str], streamlines: Streamlines, *, double: bool = False) -> None:
-    """Write a tck file of float32, or of float64 if `double` (see :func:`pvfiblets.formats.write`).
-
-    Raises
-    ------
-    ValueError
-        If a coordinate is beyond float32.
-    """
+    """Write a tck file of float32, or of float64 if `double` (see :func:`pvfiblets.formats.write`)."""
     if not double:
         check_rounding(path, streamlines.points)
     fields, changes = _header_for(streamlines)

@@ -318,13 +318,7 @@ def info(path: str | PathLike[str]) -> dict[str, Any]:
 
 
 def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
-    """Write a trx file, stored without compression (see :func:`pvfiblets.formats.write`).
-
-    Raises
-    ------
-    ValueError
-        For a name that cannot be part of a file name in a zip, or values that are no numbers.
-    """
+    """Write a trx file, stored without compression (see :func:`pvfiblets.formats.write`)."""
     from zipfile import ZIP_STORED, ZipFile
 
     arrays: dict[str, Array] = {

@@ -16,23 +16,7 @@ if TYPE_CHECKING:
 
 
 def write_with(writer: Any, path: str | PathLike[str], data: pyvista.PolyData, *, compressed: bool = False) -> None:
-    """Let a VTK writer write poly data.
-
-    Parameters
-    ----------
-    writer : vtkAlgorithm
-    path : str or PathLike
-    data : pyvista.PolyData
-    compressed : bool
-        Whether the file takes fewer bytes than the arrays.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be written; it says why, and how many bytes it takes.
-    FibletsError
-        If VTK reports another failure.
-    """
+    """Let a VTK writer write poly data."""
     size = data.GetActualMemorySize() * 1024
     writer.SetInputData(data)
     said: list[str] = []

@@ -146,13 +146,7 @@ def info(path: str | PathLike[str], *, space: Space | None = None) -> dict[str, 
 
 
 def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
-    """Write a vtp file, appended raw and zlib-compressed (see :func:`pvfiblets.formats.write`).
-
-    Raises
-    ------
-    ValueError
-        If a name has a control character, which XML cannot hold.
-    """
+    """Write a vtp file, appended raw and zlib-compressed (see :func:`pvfiblets.formats.write`)."""
     from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
     writer = vtkXMLPolyDataWriter()

@@ -65,13 +65,7 @@ class EngineOptions(Options):
 
 
 def engine_renderer(ctx: Any, fiblets: Any, **options: Any) -> Any:
-    """Make the engine's renderer; the default ``renderer_factory``.
-
-    Raises
-    ------
-    EngineError
-        The window's OpenGL lacks the pipeline that is wanted; said before anything is copied to the GPU.
-    """
+    """Make the engine's renderer; the default ``renderer_factory``."""
     if options.get("cluster") is not None:
         from pvfiblets.engine.fiblets.parts.cluster_renderer import ClusterRenderer
 

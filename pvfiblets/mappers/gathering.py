@@ -27,16 +27,7 @@ _SHOULDER = np.array([-1.0, 1.0, 1.0]) / np.sqrt(3.0)
 
 
 def paint_of(draw: Draw, *, lit: bool, opacity: float | None = None) -> Paint:
-    """Return the colours that lines have in a draw.
-
-    Parameters
-    ----------
-    draw : Draw
-    lit : bool
-        Whether light dims them as it dims the nearest.
-    opacity : float, optional
-        Of the actor, where lines have opacities of their own.
-    """
+    """Return the colours that lines have in a draw."""
     colouring, textures = draw.colouring, draw.textures
     light = None
     if lit:
@@ -95,16 +86,7 @@ class Sums:
         self.paint: Paint | None = None
 
     def textures(self, draw: Draw, paint: Paint | None, *, sliced: bool = False) -> dict[str, Any]:
-        """Return textures by the names of their samplers.
-
-        Parameters
-        ----------
-        draw : Draw
-        paint : Paint, optional
-            Without, nothing is added up, and what there was is given back.
-        sliced : bool
-            As of ``FibletRenderer.gather``.
-        """
+        """Return textures by the names of their samplers."""
         self.paint = paint
         if paint is None:
             self._drop()

@@ -72,13 +72,7 @@ class _Painter:
 
 
 def attachment(context: WindowContext, point: int) -> Attachment:
-    """Return colour or depth of the framebuffer that VTK draws into.
-
-    Raises
-    ------
-    RuntimeError
-        It is no texture.
-    """
+    """Return colour or depth of the framebuffer that VTK draws into."""
     gl = GLExtras(context.ctx)
     values = []
     if gl.get_integer("GL_DRAW_FRAMEBUFFER_BINDING") != 0:

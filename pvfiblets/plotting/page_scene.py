@@ -51,23 +51,7 @@ def export_page(
 
 
 def page_of(plotter: Any, *, title: str | None = None) -> PageScene:
-    """Return what a plotter's active renderer shows.
-
-    Parameters
-    ----------
-    plotter : pyvista.BasePlotter
-    title : str, optional
-        Of the page; the plotter's by default.
-
-    Returns
-    -------
-    PageScene
-
-    Raises
-    ------
-    ValueError
-        If it shows nothing that a page can show.
-    """
+    """Return what a plotter's active renderer shows."""
     return page_and_actors(plotter, title=title)[0]
 
 
@@ -92,25 +76,7 @@ def page_and_actors(plotter: Any, *, title: str | None = None) -> tuple[PageScen
 def add_all(
     scene: PageScene, plotter: Any, *, controls: bool = True, besides: Collection[str] = ()
 ) -> tuple[list[str], list[str]]:
-    """Have a page show what a plotter's active renderer shows, but from where.
-
-    Parameters
-    ----------
-    scene : PageScene
-        Without layers.
-    plotter : pyvista.BasePlotter
-    controls : bool
-        Whether numbers go along that the page's reader may choose streamlines by.
-    besides : collection of str
-        Names of actors that somebody else shows.
-
-    Returns
-    -------
-    unable : list of str
-        What a page cannot show, and which actor has it.
-    names : list of str
-        Of the actors that the layers are.
-    """
+    """Have a page show what a plotter's active renderer shows, but from where."""
     renderer = plotter.renderer
     prepare(renderer)  # slices have their colours from then on
     scene.background = _background(renderer)

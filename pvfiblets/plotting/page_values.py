@@ -18,14 +18,7 @@ _BITS = 16
 
 
 def with_values(fiblets: FibletSet, source: Any) -> tuple[FibletSet, str]:
-    """Return a set that has some values for its points, in 16 bits where it has not, and their name.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-    source : str or VolumeSource
-        As `pvfiblets.mappers.colouring.Colouring` has it.
-    """
+    """Return a set that has some values for its points, in 16 bits where it has not, and their name."""
     if isinstance(source, str):
         if source in fiblets.per_point:
             return fiblets, source

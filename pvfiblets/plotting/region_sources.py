@@ -22,24 +22,7 @@ AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
 def as_region(what: Any) -> Region:
-    """Return the region that something stands for.
-
-    Parameters
-    ----------
-    what : Region, PolyData, ImageData, path, nibabel image, six bounds, or (normal, origin)
-        A closed mesh is what it encloses. Volumes are of labels: all that are not zero.
-
-    Returns
-    -------
-    Region
-
-    Raises
-    ------
-    TypeError
-        If it stands for none.
-    ValueError
-        If a mesh is open, empty or inside-out; if a number makes no sense.
-    """
+    """Return the region that something stands for."""
     from pvfiblets import regions
 
     if isinstance(what, regions.Region):

@@ -32,18 +32,7 @@ SOFTWARE = re.compile("llvmpipe|softpipe|swrast|swiftshader|software", re.IGNORE
 
 @contextlib.contextmanager
 def drawing_context(options: Options) -> Iterator[Any]:
-    """Make a bare OpenGL context for a study, and give it back.
-
-    Parameters
-    ----------
-    options : Options
-        ``driver`` is set to what draws.
-
-    Raises
-    ------
-    Unavailable
-        If no context can be made.
-    """
+    """Make a bare OpenGL context for a study, and give it back."""
     try:
         from pvfiblets.engine.errors import EngineError
         from pvfiblets.engine.gl.standalone import bare_context

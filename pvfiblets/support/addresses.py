@@ -17,13 +17,7 @@ def is_url(place: str | PathLike[str]) -> bool:
 
 
 def path_of(place: str | PathLike[str]) -> Path:
-    """Return a path, its ``~`` expanded.
-
-    Raises
-    ------
-    ValueError
-        If it is an address.
-    """
+    """Return a path, its ``~`` expanded."""
     if is_url(place):
         raise ValueError(
             f"{os.fspath(place)} is an address; of these only sets in shards (.fiblets, as "

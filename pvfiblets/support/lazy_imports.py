@@ -15,20 +15,7 @@ __all__ = ["names_from"]
 
 
 def names_from(package: str, home: Mapping[str, str]) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
-    """Return ``__getattr__`` and ``__dir__`` of a package.
-
-    Parameters
-    ----------
-    package : str
-        Its ``__name__``.
-    home : mapping of str to str
-        By name: the module below the package that it is an object of; with a dot before it, one beside the package.
-
-    Returns
-    -------
-    tuple of callables
-        For ``__getattr__, __dir__ = names_from(__name__, HOME)``.
-    """
+    """Return ``__getattr__`` and ``__dir__`` of a package."""
 
     def get(name: str) -> Any:
         if name not in home:

@@ -118,19 +118,7 @@ def free_host_memory() -> int | None:
 
 
 def parse(text: str, machine: int | None = None) -> int:
-    """Return the bytes that a text means: ``4G``, ``800M``, or ``25%`` of the machine's memory.
-
-    Parameters
-    ----------
-    text : str
-    machine : int, optional
-        Bytes of which per cent are; :func:`of_machine` by default.
-
-    Raises
-    ------
-    ValueError
-        If it means none.
-    """
+    """Return the bytes that a text means: ``4G``, ``800M``, or ``25%`` of the machine's memory."""
     match = re.fullmatch(r"\s*(\d{1,9}(?:\.\d{1,9})?)\s*(?:([KMGT])(?:i?B)?|(%))\s*", text, re.IGNORECASE | re.ASCII)
     if match is None or not float(match[1]) > 0.0:
         raise ValueError(f"{text!r} is no size of memory; give one such as 4G, 800M, or 25% of this machine's")
@@ -151,13 +139,7 @@ def shown(size: float) -> str:
 
 
 def limit(size: int) -> None:
-    """Let this process have no more than some bytes of memory from now on.
-
-    Raises
-    ------
-    OSError
-        If it has more already.
-    """
+    """Let this process have no more than some bytes of memory from now on."""
     assert resource is not None
     hardest = resource.getrlimit(resource.RLIMIT_DATA)[1]
     if hardest != resource.RLIM_INFINITY:
@@ -170,11 +152,6 @@ def limited(size: int | None) -> Iterator[None]:
     """Let this process have no more than some bytes of memory meanwhile, where the system can limit it.
 
     A limit that it has already stays, if it is lower.
-
-    Parameters
-    ----------
-    size : int or None
-        None changes nothing.
     """
     before = resource.getrlimit(resource.RLIMIT_DATA) if CAN_LIMIT and resource is not None else None
     if size is None or before is None or (before[0] != resource.RLIM_INFINITY and before[0] <= size):
@@ -216,18 +193,7 @@ def room() -> int | None:
 
 
 def check_room(needed: int) -> None:
-    """Refuse what says that it takes more memory than is left; what says less may be lying.
-
-    Parameters
-    ----------
-    needed : int
-        Bytes.
-
-    Raises
-    ------
-    TooLargeError
-        If there is not as much.
-    """
+    """Refuse what says that it takes more memory than is left; what says less may be lying."""
     # What is as small as this is taken: it is in nobody's way, and to ask costs more.
     if needed > RESERVE // 4 and (left := room()) is not None and needed + RESERVE > left:
         raise TooLargeError(needed, max(left - RESERVE, 0))
@@ -240,19 +206,7 @@ def fits(needed: int) -> bool:
 
 
 def within(work: Callable[[], Result], reserve: int = RESERVE) -> Result:
-    """Do what may take more memory than there is; where it does, nothing of it stays.
-
-    Parameters
-    ----------
-    work : callable
-    reserve : int
-        Bytes that must be left afterwards.
-
-    Raises
-    ------
-    TooLargeError
-        In place of any ``MemoryError``, and where less would be left.
-    """
+    """Do what may take more memory than there is; where it does, nothing of it stays."""
     needed = left = None
     try:
         result = work()

@@ -18,15 +18,7 @@ class _NoBar:
 
 
 def progress_bar(show: bool, **settings: Any) -> AbstractContextManager[Any]:
-    """Return a bar, to be entered with ``with`` and told of every step by ``update(n)``.
-
-    Parameters
-    ----------
-    show : bool
-        Whether it shows anything.
-    **settings
-        Of `tqdm.tqdm`: ``total``, ``desc``, ``unit``, ``unit_scale``.
-    """
+    """Return a bar, to be entered with ``with`` and told of every step by ``update(n)``."""
     if not show:
         return nullcontext(_NoBar())
     from tqdm import tqdm

@@ -9,16 +9,7 @@ from typing import Any
 
 
 def summary_html(title: str, data: Any, more: dict[str, str] | None = None) -> str:
-    """Return a table in HTML.
-
-    Parameters
-    ----------
-    title : str
-    data : Streamlines or FibletSet
-        Its counts, bounds and the names of what it holds.
-    more : dict of str to str, optional
-        Further rows.
-    """
+    """Return a table in HTML."""
     b = data.bounds
     sides = [f"{low:.4g} to {high:.4g}" for low, high in zip(b[::2], b[1::2], strict=True)]
     rows = {"Streamlines": f"{len(data):,}", "Points": f"{data.n_points:,}", **(more or {})}

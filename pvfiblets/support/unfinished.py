@@ -27,14 +27,7 @@ _ID = Path("/etc/machine-id")
 
 
 def unfinished(target: Path, kind: str = "part") -> Path:
-    """Return where this process makes a target.
-
-    Parameters
-    ----------
-    target : Path
-    kind : {'part', 'old', 'scratch'}
-        The target itself, what it replaces, or what it is made of.
-    """
+    """Return where this process makes a target."""
     return target.with_name(f".{target.name}.{_machine()}-{os.getpid()}.{kind}")
 
 
@@ -64,15 +57,6 @@ def scratch_beside(target: Path) -> Iterator[Path]:
 
 def remove_unfinished(folder: str | PathLike[str]) -> list[Path]:
     """Remove what killed writers left in a folder, and warn of what that was.
-
-    Parameters
-    ----------
-    folder : str or PathLike
-
-    Returns
-    -------
-    list of Path
-        What is gone.
 
     Notes
     -----

@@ -19,18 +19,7 @@ _NEAR = 16.0  # numbers at most so many spreads from 0 lose at most 2e-6 of the 
 
 
 def value_reference(values: npt.NDArray[Any]) -> float:
-    """Return the value to subtract from an array so that float32 holds the differences, or 0.0 if it needs none.
-
-    Parameters
-    ----------
-    values : numpy.ndarray
-        Numbers of any shape; those that are not finite do not count.
-
-    Returns
-    -------
-    float
-        A typical value of the array, so an integer of integers. One outlier does not change it.
-    """
+    """Return the value to subtract from an array so that float32 holds the differences, or 0.0 if it needs none."""
     if values.dtype.kind == "b" or values.dtype.itemsize <= 2:
         return 0.0
     flat = values.ravel(order="K")[:: max(values.size // _SAMPLE, 1)]

@@ -86,13 +86,7 @@ def unnamed_as(space: str | None) -> Iterator[None]:
 
 
 def checked(space: str) -> Space:
-    """Return a space that a caller gives in any case.
-
-    Raises
-    ------
-    ValueError
-        If it is unknown.
-    """
+    """Return a space that a caller gives in any case."""
     known = _NAMES.get(str(space).upper())
     if known is None:
         raise ValueError(f"unknown space {space!r}; choose 'RAS' or 'LPS'")

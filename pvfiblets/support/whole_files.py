@@ -24,17 +24,6 @@ def replacing(path: str | PathLike[str], needed: int | None = None) -> Iterator[
     """Open a temporary file beside `path` for writing; it takes the name when all went well.
 
     A reader therefore never meets half a file, and a failed write leaves an old file as it was.
-
-    Parameters
-    ----------
-    path : str or PathLike
-    needed : int, optional
-        Bytes that it takes, as far as they are known; an error about a full disk says how many.
-
-    Raises
-    ------
-    OSError
-        If it cannot be written, as :func:`naming_target` says it.
     """
     target = Path(path)
     temporary = unfinished(target)
@@ -51,21 +40,7 @@ def replacing(path: str | PathLike[str], needed: int | None = None) -> Iterator[
 
 @contextmanager
 def naming_target(path: str | PathLike[str], needed: int | Callable[[], int] | None = None) -> Iterator[None]:
-    """Let errors of writing, in whichever temporary file, name the file that was asked for and say what to do.
-
-    Parameters
-    ----------
-    path : str or PathLike
-    needed : int or callable, optional
-        Bytes that it takes, all temporary files included; or what says how many, at least, as far as that is known by
-        then.
-
-    Raises
-    ------
-    OSError
-        Of the same number, in place of one that names no file or one in the target's folder but the target's name.
-        Those that name a file elsewhere, such as the source that was read, stay as they are.
-    """
+    """Let errors of writing, in whichever temporary file, name the file that was asked for and say what to do."""
     target = Path(path)
     try:
         yield
@@ -76,13 +51,7 @@ def naming_target(path: str | PathLike[str], needed: int | Callable[[], int] | N
 
 
 def made_folder(path: str | PathLike[str]) -> Path:
-    """Return a folder, made with its parents unless it is there.
-
-    Raises
-    ------
-    OSError
-        If it is no folder, or cannot be made; it says why.
-    """
+    """Return a folder, made with its parents unless it is there."""
     folder = Path(path)
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -20,20 +20,7 @@ def capsules(
     following: Array,
     end_scale: float,
 ) -> tuple[Array, npt.NDArray[np.uint32]]:
-    """Radii (mm) and words of ``ends`` of fiblets.
-
-    Parameters
-    ----------
-    decoded : numpy.ndarray
-        ``(most, 3, k)`` points, mm, of which a fiblet has the first ``counts``.
-    counts : numpy.ndarray
-        ``(k,)`` int64.
-    leads : numpy.ndarray
-        ``(k,)`` bool: whether another fiblet of the streamline follows; its decoded anchor stands in ``following (3,
-        k)``. The word is 0 where one does.
-    end_scale : float
-        Unit of end vectors, mm.
-    """
+    """Radii (mm) and words of ``ends`` of fiblets."""
     most, _, k = decoded.shape
     first, last = decoded[0], decoded[counts - 1, :, np.arange(k)].T
     levels = np.clip(np.rint((last - first) / end_scale), -float(END_LEVELS), float(END_LEVELS)).astype(np.int64)

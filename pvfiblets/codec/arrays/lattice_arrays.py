@@ -123,15 +123,7 @@ def _sizes(found: Ints, counts: Ints) -> Ints:
 def plan_lattices(
     source: Source, slots: Ints, leads: npt.NDArray[np.bool_]
 ) -> tuple[Ints, Ints, npt.NDArray[np.uint8]]:
-    """Cheapest splits of slots ``(k, 2)`` by repeated halving; see :func:`.reference.plan_lattice`.
-
-    Returns
-    -------
-    pieces, size : numpy.ndarray
-        ``(k,)`` number of pieces and bytes of their codes.
-    cuts : numpy.ndarray
-        Numbers of points of all pieces, slot by slot.
-    """
+    """Cheapest splits of slots ``(k, 2)`` by repeated halving; see :func:`.reference.plan_lattice`."""
     plans = [_plan(source, slots[a : a + BATCH], leads[a : a + BATCH]) for a in range(0, len(slots), BATCH)]
     pieces, size, cuts = (np.concatenate(parts) for parts in zip(*plans, strict=True))
     return pieces, size, cuts

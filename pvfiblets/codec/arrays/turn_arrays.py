@@ -44,18 +44,7 @@ class Turning:
 
 
 def turning(points: npt.NDArray[np.floating], offsets: npt.NDArray[np.int64], bound: tuple[float, ...]) -> Turning:
-    """Turns of the segments of streamlines.
-
-    Parameters
-    ----------
-    points : numpy.ndarray
-        ``(n, 3)`` mm.
-    offsets : numpy.ndarray
-        ``(n_streamlines + 1,)`` int64.
-    bound : (float, float, float)
-        Only segments longer than the first (mm) count; sine of the largest angle, and its chord in the unit circle, all
-        infinite where any direction will do.
-    """
+    """Turns of the segments of streamlines."""
     n = len(points)
     if not math.isfinite(bound[1]):
         return Turning(np.zeros((3, n)), np.full(n, np.inf), np.full(n, np.inf), np.zeros(n))
@@ -110,15 +99,7 @@ def _size(vectors: Array) -> Array:
 def cut(
     offsets: npt.NDArray[np.int64], bends: Array, bound: tuple[float, ...]
 ) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
-    """Slots of at most 60 points; see :func:`.turn_reference.cut`.
-
-    Returns
-    -------
-    slots : numpy.ndarray
-        ``(m, 2)`` int64 first points and counts, in order.
-    per : numpy.ndarray
-        ``(n_streamlines,)`` int64 slots of each streamline.
-    """
+    """Slots of at most 60 points; see :func:`.turn_reference.cut`."""
     starts, stops = offsets[:-1].copy(), offsets[1:]
     per = np.zeros(len(starts), np.int64)
     lines = np.flatnonzero(stops > starts)
@@ -155,19 +136,7 @@ def excess(
     units: Array,
     allowed: Array,
 ) -> Array:
-    """Greatest ratio of a turn to what is allowed, of each of ``k`` fiblets; see `turn_kernels.excess`.
-
-    Parameters
-    ----------
-    decoded : numpy.ndarray
-        ``(most, 3, k)`` points, of which a fiblet has the first ``counts``.
-    counts : numpy.ndarray
-        ``(k,)`` int64.
-    following : numpy.ndarray
-        ``(3, k)`` the decoded point that the last segment leads to, where ``leads (k,)`` says so.
-    units, allowed : numpy.ndarray
-        ``(most, 3, k)`` and ``(most, k)`` of :class:`Turning`; ``allowed`` with the bound of a fiblet's first segment.
-    """
+    """Greatest ratio of a turn to what is allowed, of each of ``k`` fiblets; see `turn_kernels.excess`."""
     most, _, k = decoded.shape
     columns = np.arange(k)
     to: Array = np.empty_like(decoded)

@@ -73,11 +73,6 @@ def write_archive(
     """Write a container; the file appears under its name only when it is whole.
 
     Where it is `small`, nothing is spent on a header that people can read, or on places where members can be mapped.
-
-    Raises
-    ------
-    OSError
-        If it cannot be written; it names the path, and says what to do.
     """
     size = sum(math.prod(member.shape) * member.dtype.itemsize for member in members.values())
     with replacing(path, size) as file, zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
@@ -108,13 +103,7 @@ def _write(archive: zipfile.ZipFile, name: str, pieces: Iterable[bytes | memoryv
 
 
 def open_archive(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, npt.NDArray[Any]]]:
-    """Map a container: header, and arrays by member name, without reading them.
-
-    Raises
-    ------
-    FormatError
-        If it is no zip, is cut short, has no header, or a member is deflated or not an array.
-    """
+    """Map a container: header, and arrays by member name, without reading them."""
     try:
         with zipfile.ZipFile(path) as archive, Path(path).open("rb") as stream:
             if HEADER not in archive.namelist():
@@ -189,13 +178,7 @@ def _map(path: str | os.PathLike[str], stream: io.BufferedReader, info: zipfile.
 
 
 def check_members(path: str | os.PathLike[str]) -> list[str]:
-    """Compare every member with its checksum.
-
-    Returns
-    -------
-    list of str
-        Names of members whose bytes have changed since they were written.
-    """
+    """Compare every member with its checksum."""
     damaged = []
     with zipfile.ZipFile(path) as archive:
         for info in archive.infolist():

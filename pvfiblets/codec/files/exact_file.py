@@ -34,22 +34,7 @@ Array = npt.NDArray[Any]
 
 
 def pack_points(points: Array, counts: npt.NDArray[np.int64]) -> tuple[dict[str, Any], npt.NDArray[np.uint8]]:
-    """Make the bytes of a file.
-
-    Parameters
-    ----------
-    points : numpy.ndarray
-        ``(n, 3)`` float32 or float64.
-    counts : numpy.ndarray
-        ``(n_streamlines,)`` points of each streamline.
-
-    Returns
-    -------
-    facts : dict
-        What unpacking needs: ``form``, ``float`` (bytes of a coordinate) and ``count`` (bytes of a number of points).
-    numpy.ndarray
-        uint8.
-    """
+    """Make the bytes of a file."""
     sizes = [len(zlib.compress(_TO[form](points[:_TRIED]), _LEVEL)) for form in range(FORMS)]
     form = int(np.argmin(sizes))
     width = next(w for w in (1, 2, 4, 8) if int(counts.max(initial=0)) < 1 << (8 * w))
@@ -62,13 +47,7 @@ def pack_points(points: Array, counts: npt.NDArray[np.int64]) -> tuple[dict[str,
 def unpack_points(
     path: str | PathLike[str], facts: dict[str, Any], packed: npt.NDArray[np.uint8], n_streamlines: int, n_points: int
 ) -> tuple[Array, npt.NDArray[np.int64]]:
-    """Undo :func:`pack_points`.
-
-    Raises
-    ------
-    FormatError
-        If the bytes are damaged, or not those of so many streamlines and points.
-    """
+    """Undo :func:`pack_points`."""
     form, size, width = (facts[name] for name in ("form", "float", "count"))
     if form not in range(FORMS) or size not in (4, 8) or width not in (1, 2, 4, 8):
         raise FormatError(path, 0, f"exact points as {facts}", f"a form below {FORMS}, floats of 4 or 8 bytes")

@@ -55,22 +55,7 @@ _SHAPES: dict[str, tuple[str, int]] = {
 
 
 def save(fiblets: FibletSet, path: str | PathLike[str]) -> None:
-    """Write a set to disk.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-        The set.
-    path : str or PathLike
-        A name ending in ``.fiblets``; written aside and renamed, so that a half-written file never bears it.
-
-    Raises
-    ------
-    OSError
-        If the place cannot be written to.
-    ValueError
-        If the header holds something that JSON cannot.
-    """
+    """Write a set to disk."""
     if fiblets.exact is not None:
         _save_exact(fiblets, path)
         return
@@ -156,27 +141,7 @@ def is_sharded(path: str | PathLike[str]) -> bool:
 
 
 def open_fiblets(path: str | PathLike[str], kind: type[FibletSet]) -> FibletSet:
-    """Map a ``.fiblets`` file; shards of a folder or an address (:mod:`.shards`) are read when they are asked for.
-
-    Parameters
-    ----------
-    path : str or PathLike
-        The file. It must stay as it is while the set is in use.
-    kind : type
-        :class:`FibletSet`, or a class derived from it.
-
-    Returns
-    -------
-    FibletSet
-        Its arrays are read-only maps of the file.
-
-    Raises
-    ------
-    FormatError
-        If the file is damaged, is something else, or was written by a newer or an older version.
-    FileNotFoundError
-        If there is no such file.
-    """
+    """Map a ``.fiblets`` file; shards of a folder or an address (:mod:`.shards`) are read when they are asked for."""
     if is_sharded(path):
         from ... import UnreadSet  # by the package's own name for it: it is a set of this kind
 

@@ -107,13 +107,7 @@ def _info_of_shards(path: str | PathLike[str]) -> dict[str, Any]:
 
 
 def verify_file(path: str | PathLike[str]) -> None:
-    """Check a file's every byte against its checksums, and its records for sense.
-
-    Raises
-    ------
-    FormatError
-        Naming what is damaged.
-    """
+    """Check a file's every byte against its checksums, and its records for sense."""
     if is_sharded(path):
         from ..shards.sharded_set import ShardedSet
 

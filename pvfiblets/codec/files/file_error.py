@@ -22,15 +22,7 @@ __all__ = ["compare_file", "measure_file_error"]
 def measure_file_error(
     fiblets: str | PathLike[str], original: str | PathLike[str], *, progress: Progress = False
 ) -> CodingError:
-    """Compare a ``.fiblets`` file with the file it was made from, in bounded memory.
-
-    Raises
-    ------
-    FormatError
-        If one of the files breaks its format.
-    ValueError
-        If the two do not hold the same streamlines and points.
-    """
+    """Compare a ``.fiblets`` file with the file it was made from, in bounded memory."""
     total = FibletSet.open(fiblets).n_points
     return compare_file(formats.iter_chunks(original, CHUNK_POINTS), total, fiblets, progress)
 
@@ -44,32 +36,7 @@ def compare_file(
     every: int = 1,
     max_points: int = CHUNK_POINTS,
 ) -> CodingError:
-    """Decode a file alongside its original; both come in chunks, which need not be cut at the same places.
-
-    Parameters
-    ----------
-    originals : iterable of Streamlines
-        All of them, in order.
-    total : int
-        Points of these.
-    target : str or PathLike
-        The ``.fiblets`` file.
-    progress : bool or callable
-    every : int
-        Compare streamlines 0, `every`, 2 `every` ... alone.
-    max_points : int
-        Decode so many at a time.
-
-    Returns
-    -------
-    CodingError
-        Without figures by streamline.
-
-    Raises
-    ------
-    ValueError
-        If the two do not hold the same streamlines and points.
-    """
+    """Decode a file alongside its original; both come in chunks, which need not be cut at the same places."""
     coded = FibletSet.open(target)
     part = coded
     if every > 1:

@@ -16,17 +16,7 @@ __all__ = ["open_lines"]
 
 
 def open_lines(path: str | PathLike[str]) -> FibletSet | Streamlines:
-    """Map a ``.fiblets`` file, or read one of another format, with a warning of what reading left out.
-
-    Parameters
-    ----------
-    path : str or PathLike
-
-    Raises
-    ------
-    FormatError, OSError
-        As of :meth:`.FibletSet.open` and :func:`pvfiblets.formats.read`.
-    """
+    """Map a ``.fiblets`` file, or read one of another format, with a warning of what reading left out."""
     from ..fibletset import FibletSet
 
     if fspath(path).lower().endswith(".fiblets"):

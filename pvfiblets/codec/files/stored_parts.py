@@ -32,23 +32,7 @@ def stored_parts(fiblets: FibletSet) -> Iterator[tuple[FibletSet, Ints | None]]:
 def of_streamlines(
     fiblets: FibletSet, ask: Callable[[FibletSet], npt.NDArray[Any]], missing: Any, shape: Sequence[int] = ()
 ) -> Any:
-    """Ask for a value of each streamline, shard after shard.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-    ask : callable
-        Returns ``(n_streamlines, *shape)`` of a set.
-    missing : Any
-        Value of streamlines in no shard.
-    shape : sequence of int
-        Of each value.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(n_streamlines, *shape)``.
-    """
+    """Ask for a value of each streamline, shard after shard."""
     out = None
     for part, ids in stored_parts(fiblets):
         found = ask(part)

@@ -27,34 +27,7 @@ def verified(
     max_angle: float | None = DEFAULT_ANGLE,
     progress: Progress = False,
 ) -> dict[str, Any]:
-    """Check a file's every byte and, given what it was made from, measure all of its points and directions.
-
-    Parameters
-    ----------
-    path : str or PathLike
-        A ``.fiblets`` file.
-    original : str or PathLike, optional
-        The tractogram it was made from; without it, only checksums and records are checked.
-    max_angle : float or None
-        Degrees that directions are compared with.
-    progress : bool or callable
-        As for :func:`.compress_file`.
-
-    Returns
-    -------
-    dict
-        ``file, checksums, streamlines, points, exact, promise_mm``; with an original also ``original``, the errors of
-        :func:`.compress_file`, ``kept`` (whether the promise is) and ``directions_kept``.
-
-    Raises
-    ------
-    FormatError
-        If a file is damaged.
-    ValueError
-        If it is no ``.fiblets`` file.
-    VerificationError
-        If it was not made from this original.
-    """
+    """Check a file's every byte and, given what it was made from, measure all of its points and directions."""
     if Path(path).suffix.lower() != ".fiblets":
         raise ValueError(f"{path} is no .fiblets file; give the compressed file first, then its original")
     verify_file(path)
@@ -82,12 +55,7 @@ def verified(
 
 
 def refuse_broken_promise(result: dict[str, Any]) -> None:
-    """Raise where :func:`verified` found a point farther from its original than the file promises.
-
-    Raises
-    ------
-    VerificationError
-    """
+    """Raise where :func:`verified` found a point farther from its original than the file promises."""
     if not result.get("kept", True):
         raise VerificationError(
             f"{result['file']}: a point is {result['error_mm']['max']:.3g} mm from its original in "

@@ -147,27 +147,7 @@ def decode(
     tables: Any,
     out: Any,
 ) -> int:
-    """Decode fiblets into ``out``; returns how many were damaged and left out.
-
-    Parameters
-    ----------
-    fiblets : (m,) int64
-        Which ones.
-    destination : (m,) int64
-        Row of ``out`` for each one's first point.
-    arrays : tuple
-        ``anchors (n, 2) uint32``, ``decoding (n, 3) uint32``, ``codes uint8``, ``code base by page (n_pages,) int64``.
-    low : (n, 3) uint16
-        Lower halves of 32-bit anchors; read if ``fine``.
-    origin, scale : (3,) float64
-        Anchor grid, mm.
-    steps : (float, float, float)
-        Least step, greatest step, lattice edge, mm.
-    tables : (16, 256, 4) float64
-        Quaternions.
-    out : (n_points, 3) float32 or float64
-        Filled.
-    """
+    """Decode fiblets into ``out``; returns how many were damaged and left out."""
     n_blocks = (len(fiblets) + BLOCK - 1) // BLOCK
     missed = np.zeros(n_blocks, np.int64)
     for block in numba.prange(n_blocks):

@@ -284,30 +284,7 @@ def encode_directions(
     tables: Any,
     out: Any,
 ) -> None:
-    """Try to code every slot (at most 60 consecutive points) with direction bytes.
-
-    Parameters
-    ----------
-    points : (n, 3) float32 or float64
-    origin, scale : (3,) float64
-        The anchor grid; ``top`` its largest number.
-    slots : (m, 2) int64
-        First point and number of points of each slot.
-    steps : (float, float)
-        Least and greatest step.
-    promise : float
-        Largest error accepted, mm.
-    bound : (float, float, float)
-        What bounds turns, as in :func:`.turn_kernels.may_turn`.
-    end_scale : float
-        Unit of the end vectors, mm.
-    tables : tuple
-        Quaternions and directions as float64, ratios, candidate rows.
-    out : tuple
-        ``ok (m,) uint8``, ``shape (m,) uint32``, ``step (m,) uint16``, ``cap (m,) uint8``, ``radius (m,) float64``
-        (of the capsule, mm), ``end (m,) uint8`` (whether the slot ends its streamline; read), ``end_words (m,) uint32``
-        (end vectors of those), ``codes (n,) uint8`` (a slot's codes stand where its points stand).
-    """
+    """Try to code every slot (at most 60 consecutive points) with direction bytes."""
     ok, shape, step_index, cap_index, radius, end, end_words, codes = out
     lo, hi = steps
     give_up = promise * promise

@@ -15,17 +15,7 @@ __all__ = ["add_up", "distances"]
 
 @parallel_kernel
 def distances(true: Any, drawn: Any, single: bool, distance: Any) -> None:
-    """Distance of every decoded point from its original.
-
-    Parameters
-    ----------
-    true, drawn : (n, 3) float32 or float64
-        mm.
-    single : bool
-        Whether decoded points come as float32, and rounding to it is part of the error.
-    distance : (n,) float64
-        Filled, mm.
-    """
+    """Distance of every decoded point from its original."""
     for i in numba.prange(len(true)):
         square = 0.0
         for j in range(3):
@@ -37,21 +27,7 @@ def distances(true: Any, drawn: Any, single: bool, distance: Any) -> None:
 
 @kernel
 def add_up(values: Any, weights: Any, scale: float, up: bool, histogram: Any) -> Any:
-    """Sum, by weights, and largest of some values, which are counted into a histogram.
-
-    Parameters
-    ----------
-    values : (n,) float64
-        None is negative.
-    weights : (n,) uint8
-        How often each counts.
-    scale : float
-        Bins a unit of the values.
-    up : bool
-        Whether a bin ends with its edge, rather than begins there.
-    histogram : (n_bins,) int64
-        Added to; the last bin has all that is beyond.
-    """
+    """Sum, by weights, and largest of some values, which are counted into a histogram."""
     total = largest = 0.0
     last = len(histogram) - 1
     for i in range(len(values)):

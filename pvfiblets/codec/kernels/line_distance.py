@@ -23,23 +23,7 @@ def line_distances(
     other_offsets: npt.NDArray[np.int64],
     enough: float,
 ) -> npt.NDArray[np.float64]:
-    """Distance of each point from the other line of its streamline.
-
-    Parameters
-    ----------
-    points, offsets : numpy.ndarray
-        ``(n, 3)`` mm, and where each streamline begins among them.
-    others, other_offsets : numpy.ndarray
-        The same streamlines by other points.
-    enough : float
-        mm. What is found to be no farther than this by looking at the nearest segments by arc length is not looked for
-        among all segments; a distance of less may then be told as somewhat more, never as more than this.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(n,)`` float64, mm; infinite where the other line has no point.
-    """
+    """Distance of each point from the other line of its streamline."""
     found = np.full(len(points), math.inf)
     _distances(np.ascontiguousarray(points), offsets, np.ascontiguousarray(others), other_offsets, enough, found)
     return found

@@ -37,24 +37,7 @@ def unit(x: float, y: float, z: float) -> Any:
 
 @parallel_kernel
 def tangent_angles(true: Any, drawn: Any, offsets: Any, firsts: Any, shortest: float, degrees: Any, uses: Any) -> None:
-    """Angle between true and drawn tangent at every point.
-
-    Parameters
-    ----------
-    true, drawn : (n, 3) float32 or float64
-        Points, mm, of the same streamlines.
-    offsets : (n_streamlines + 1,) int64
-        Where each streamline begins.
-    firsts : (n,) bool
-        Whether a point is the first of a fiblet.
-    shortest : float
-        Only segments that are longer in truth count, mm.
-    degrees : (n,) float64
-        Filled with the angle, 0 where ``uses`` is 0. A drawn line that turns back on itself has the direction of the
-        segment before there, as in the shaders; one whose two segments have no length is 90 degrees off.
-    uses : (n,) uint8
-        Filled with the number of counted segments that end at the point: 0, 1 or 2.
-    """
+    """Angle between true and drawn tangent at every point."""
     for s in numba.prange(len(offsets) - 1):
         ax = ay = az = bx = by = bz = 0.0  # directions of the segment before, true and drawn
         longer = False

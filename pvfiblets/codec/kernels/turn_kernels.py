@@ -24,23 +24,7 @@ _MARGIN = 0.99  # for what rounding does to either side of a comparison
 
 @kernel
 def may_turn(points: Any, first: int, n: int, follows: Any, bound: Any, units: Any) -> None:
-    """Directions of a slot's segments, and how far each may be turned; see :func:`.turn_reference.may_turn`.
-
-    Parameters
-    ----------
-    points : (n_points, 3) float32 or float64
-        All points, mm.
-    first, n : int
-        First point and number of points of the slot.
-    follows : (bool, bool, bool)
-        Whether a segment leads to the slot's first point, one from its last, and one on from there.
-    bound : (float, float, float)
-        Only segments longer than the first (mm) count; sine of the angle, and its chord in the unit circle, both
-        infinite where any direction will do.
-    units : (>= n, 5) float64
-        Row ``i`` is filled with the unit vector of the segment from point ``i`` on, with the largest distance from it
-        of the unit vector that is drawn, and with the same where a fiblet begins at point ``i``: -1 if none should.
-    """
+    """Directions of a slot's segments, and how far each may be turned; see :func:`.turn_reference.may_turn`."""
     shortest, sine, chord = bound
     one_point = shortest * ONE_POINT
     last = n if follows[1] else n - 1

@@ -27,13 +27,7 @@ __getattr__, __dir__ = names_from(__name__, _HOME)
 def make_occlusion(
     culling: str | None, ctx: moderngl.Context, gl: GLExtras, programs: Programs, fiblets: FibletSet
 ) -> Occlusion | None:
-    """Return what a kind of culling tests against; None for none.
-
-    Raises
-    ------
-    EngineError
-        If there is no such kind.
-    """
+    """Return what a kind of culling tests against; None for none."""
     if culling in (None, "none"):
         return None
     if culling in ("two-phase", "auto"):

@@ -62,17 +62,7 @@ _EMPTY, _UNCOVERED = 3.0e38, -3.0e38
 
 
 def dilation_radius(fiblets: FibletSet) -> float:
-    """Choose by how much the coverage buffer is dilated.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-
-    Returns
-    -------
-    float
-        R (mm).
-    """
+    """Choose by how much the coverage buffer is dilated."""
     n, n_pages = int(fiblets.n_fiblets), len(fiblets.pages) - 1
     if n == 0:
         return 0.0

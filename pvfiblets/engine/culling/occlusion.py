@@ -30,14 +30,7 @@ class Occlusion(Protocol):
     """Whether the last picture predicts what will show: ``shaders/culling/visibility_prediction.glsl``."""
 
     def before(self, target: GBuffer, view: View, style: Style) -> None:
-        """Be told that a picture will be drawn; the target still holds what it held.
-
-        Parameters
-        ----------
-        target : GBuffer
-        view : View
-        style : Style
-        """
+        """Be told that a picture will be drawn; the target still holds what it held."""
         ...
 
     def forget(self) -> None:

@@ -92,14 +92,7 @@ class Listing:
         return {"culling": sum(buffer.size for buffer in self.buffers.values()), "occlusion": self._pyramid.nbytes}
 
     def before(self, target: HitTarget, shown: moderngl.Texture) -> None:
-        """Note what the last picture shows; nothing, if there is none of this size. Call it before that is cleared.
-
-        Parameters
-        ----------
-        target : HitTarget
-        shown : moderngl.Texture
-            Its texture with the number of the quad that each pixel shows, EMPTY where there is none.
-        """
+        """Note what the last picture shows; nothing, if there is none of this size. Call it before that is cleared."""
         seen = self.buffers["seen"]
         self._gl.clear_words(seen)
         if not target.buffer.generation:
@@ -119,18 +112,7 @@ class Listing:
         prepare: Callable[[moderngl.ComputeShader], None],
         render: Callable[[moderngl.Buffer], None],
     ) -> None:
-        """Draw what may show, in two rounds.
-
-        Parameters
-        ----------
-        target : HitTarget
-            Cleared.
-        passes : Passes
-        prepare : callable
-            Tells a program where its data are.
-        render : callable
-            Draws the listed items by the calls in a buffer.
-        """
+        """Draw what may show, in two rounds."""
         with passes.timed("seen before"):
             self._list(prepare, second=False)
             render(self.buffers["commands"])

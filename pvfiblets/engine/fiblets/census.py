@@ -57,18 +57,7 @@ class Census:
     def count(
         self, chunks: Sequence[Chunk], features: Sequence[str], marks: moderngl.Buffer | None, kept: Visibility
     ) -> tuple[int, int | None]:
-        """Count fiblets in the view volume, and those drawn; the uniform blocks are bound already.
-
-        Parameters
-        ----------
-        chunks : sequence of Chunk
-        features : sequence of str
-            What the fiblets need to be decoded, and ``CLIP_PLANES``.
-        marks : moderngl.Buffer, optional
-            Of the compute pipeline.
-        kept : Visibility
-            What of the set is there to be drawn.
-        """
+        """Count fiblets in the view volume, and those drawn; the uniform blocks are bound already."""
         if self._max_groups:
             return self._by_compute(chunks, features, marks, kept)
         return self._by_query(chunks, features, kept), None
@@ -141,22 +130,7 @@ def count_fiblets(
     kept: Visibility,
     culled: bool,
 ) -> dict[str, int | None]:
-    """Count fiblets of the last picture; uniform blocks and camera are those of it.
-
-    Parameters
-    ----------
-    census : Census
-    total : int
-        Fiblets on the GPU.
-    chunks : sequence of Chunk
-    features : sequence of str
-        What the fiblets need to be decoded, and ``CLIP_PLANES``.
-    pipeline : Pipeline
-    target : GBuffer
-    kept : Visibility
-    culled : bool
-        Whether fiblets behind others were left out.
-    """
+    """Count fiblets of the last picture; uniform blocks and camera are those of it."""
     marks = None
     if isinstance(pipeline, ComputePipeline) and pipeline.planned:
         marks = pipeline.buffers["visibility_bits"]

@@ -92,30 +92,7 @@ class RegionQuery:
         return all(buffer.size <= largest for chunk in self._chunks for buffer in chunk.buffers.values())
 
     def flags(self, features: Sequence[str], region: Region, sampling: Sampling = "lines") -> Bytes:
-        """Return the answers for every streamline, by the GPU where it can, else by the CPU.
-
-        Parameters
-        ----------
-        features : sequence of str
-            What the fiblets need to be decoded. The blocks ``Coding`` and ``Rotations`` are bound already; ``Frame`` is
-            bound anew.
-        region : Region
-            In data mm.
-        sampling : {'lines', 'points'}
-            As for :func:`pvfiblets.query.selection.passing.region_flags`.
-
-        Returns
-        -------
-        numpy.ndarray
-            ``(n_streamlines,)`` uint8 of :data:`ANY`, :data:`ALL`, :data:`FIRST`, :data:`LAST`.
-
-        Raises
-        ------
-        GPUMemoryError
-            If memory does not suffice for the answers.
-        ValueError
-            If the sampling is neither.
-        """
+        """Return the answers for every streamline, by the GPU where it can, else by the CPU."""
         from ...query.selection.passing import region_flags
 
         lines = check_sampling(sampling) == "lines"
@@ -200,21 +177,7 @@ class RegionQuery:
 
 
 def nearest_anchor(region: Region, origin: Array, scale: Array, top: int) -> npt.NDArray[np.int64]:
-    """Choose the anchor that rounding is made relative to: near the middle of a region, where answers turn.
-
-    Parameters
-    ----------
-    region : Region
-    origin, scale : numpy.ndarray
-        ``(3,)`` position of anchor 0 and mm per anchor integer.
-    top : int
-        The largest anchor integer.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(3,)`` int64 in ``0..top``.
-    """
+    """Choose the anchor that rounding is made relative to: near the middle of a region, where answers turn."""
     low, high = np.asarray(region.bounds, np.float64).reshape(3, 2).T
     first, last = origin, origin + scale * top
     # Where a region has no end, the set's end stands for it; of an empty region any anchor serves.

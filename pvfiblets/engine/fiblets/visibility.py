@@ -66,21 +66,7 @@ class Visibility:
     def update(
         self, view: View, origin: npt.NDArray[np.float64], scale: npt.NDArray[np.float64], top: int
     ) -> None:
-        """Bring what depends on the region and the camera up to date.
-
-        Parameters
-        ----------
-        view : View
-        origin, scale, top
-            Of the anchors, as in :func:`pvfiblets.engine.frame.reference_anchor`.
-
-        Raises
-        ------
-        ValueError
-            If such a region cannot cut.
-        EngineError
-            If memory does not suffice.
-        """
+        """Bring what depends on the region and the camera up to date."""
         if view.region is None:
             self._drop_region()
             return

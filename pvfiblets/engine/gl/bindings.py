@@ -94,13 +94,7 @@ class Scope(Mapping[str, int]):
 
 
 def together(*scopes: Scope) -> None:
-    """State that a program may use all of these scopes at once.
-
-    Raises
-    ------
-    BindingError
-        If two names among them share a number: name the scope and the number, and choose another one.
-    """
+    """State that a program may use all of these scopes at once."""
     taken: dict[int, str] = {}
     for scope in scopes:
         for bound, number in scope.items():

@@ -166,24 +166,13 @@ def _limits_of(ctx: moderngl.Context) -> list[str]:
 
 
 def atomics64(extensions: Iterable[str]) -> str | None:
-    """Return the extension that gives 64-bit atomic minima, None where there is none.
-
-    Parameters
-    ----------
-    extensions : iterable of str
-        The context's. Atomics alone do not do: shaders need 64-bit integers too.
-    """
+    """Return the extension that gives 64-bit atomic minima, None where there is none."""
     present = set(extensions)
     return next((names[0] for names in _ATOMICS_64 if present.issuperset(names)), None)
 
 
 def pipelines(ctx: moderngl.Context) -> PipelineTable:
-    """Return every pipeline, available or not, in the order in which ``'auto'`` tries them.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    """
+    """Return every pipeline, available or not, in the order in which ``'auto'`` tries them."""
     order = SOFTWARE_ORDER if is_software(ctx) else ORDER
     return PipelineTable(_inspect(ctx, name) for name in order)
 
@@ -201,21 +190,7 @@ def _inspect(ctx: moderngl.Context, name: str) -> PipelineInfo:
 
 
 def choose(ctx: moderngl.Context, name: str) -> str:
-    """Return the pipeline to draw with.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    name : str
-        ``'auto'`` for the fastest that is available, or the one that is wanted.
-
-    Raises
-    ------
-    EngineError
-        If the one that is wanted, or every one, is not available; the message says what is missing and what there is.
-    ValueError
-        If there is no pipeline of that name.
-    """
+    """Return the pipeline to draw with."""
     check_choices(pipeline=name)
     table = pipelines(ctx)
     place = f"OpenGL {_number(version_of(ctx))} ({ctx.info['GL_RENDERER']})"
@@ -238,13 +213,7 @@ def choose(ctx: moderngl.Context, name: str) -> str:
 
 
 def check_choices(*, pipeline: str = AUTO, culling: str | None = None, fit: str | None = None) -> None:
-    """Refuse values that no context could serve, before there is one.
-
-    Raises
-    ------
-    ValueError
-        Naming the value and those that there are.
-    """
+    """Refuse values that no context could serve, before there is one."""
     known: Mapping[str, tuple[object, ...]] = {"pipeline": PIPELINES, "culling": (None, *CULLINGS), "fit": FITS}
     for name, value in (("pipeline", pipeline), ("culling", culling), ("fit", fit)):
         if not (value is None or isinstance(value, str)) or value not in known[name]:

@@ -55,25 +55,7 @@ class DelayedRead:
         *,
         attachment: int = 0,
     ) -> bool:
-        """Have an area read, unless too many are on their way.
-
-        Parameters
-        ----------
-        framebuffer : moderngl.Framebuffer
-        area : tuple of int
-            x, y, width, height in pixels.
-        components : int
-            Numbers of a pixel.
-        tag : object
-            What :meth:`arrived` returns with them.
-        attachment : int
-            Which colours.
-
-        Returns
-        -------
-        bool
-            Whether they will come.
-        """
+        """Have an area read, unless too many are on their way."""
         if len(self._reads) >= AT_ONCE:
             return False
         _, _, width, height = area

@@ -22,13 +22,7 @@ def _library(name: str) -> Any:
 
 
 def loader() -> Callable[[str], int]:
-    """Return what looks up functions of the current context: EGL's or GLX's, WGL's, or macOS' framework.
-
-    Raises
-    ------
-    EngineError
-        If no context is current.
-    """
+    """Return what looks up functions of the current context: EGL's or GLX's, WGL's, or macOS' framework."""
     if sys.platform == "win32":
         library = ctypes.WinDLL("opengl32")
         library.wglGetProcAddress.restype = library.wglGetCurrentContext.restype = ctypes.c_void_p

@@ -43,13 +43,7 @@ _WORDS = {"f": ctypes.c_float, "i": ctypes.c_int, "ui": ctypes.c_uint}
 
 
 def nvidia_program(ctx: moderngl.Context, sources: Mapping[str, str]) -> moderngl.Program:
-    """Return a program of task and mesh stages by GL_NV_mesh_shader.
-
-    Raises
-    ------
-    moderngl.Error
-        If no form of its fragment stage compiles and links; with what the driver says of the first.
-    """
+    """Return a program of task and mesh stages by GL_NV_mesh_shader."""
     refused: list[moderngl.Error] = []
     for form in _NVIDIA_FORMS:
         fragment = sources["fragment_shader"]

@@ -106,13 +106,7 @@ class BufferTexture:
         return self._glo
 
     def bind(self, unit: int) -> None:
-        """Bind it to a texture unit, for a sampler whose value is that number.
-
-        Raises
-        ------
-        EngineError
-            After :meth:`release`.
-        """
+        """Bind it to a texture unit, for a sampler whose value is that number."""
         if not self._glo:
             raise EngineError("this buffer texture has been released; make a new one")
         self._gl.function("glActiveTexture")(_TEXTURE_0 + unit)
@@ -145,18 +139,7 @@ class GLExtras:
         return version_of(self._ctx) >= needs if isinstance(needs, int) else needs in self._ctx.extensions
 
     def function(self, name: str) -> Callable[..., Any]:
-        """Return an OpenGL function.
-
-        Parameters
-        ----------
-        name : str
-            One of :data:`.FUNCTIONS`.
-
-        Raises
-        ------
-        EngineError
-            If this OpenGL does not have it, or no context is current.
-        """
+        """Return an OpenGL function."""
         found = self._functions.get(name)
         if found is None:
             types, needs = FUNCTIONS[name]
@@ -180,18 +163,7 @@ class GLExtras:
             raise EngineError(f"{what} needs {needs}, which this OpenGL ({self._ctx.info['GL_RENDERER']}) lacks")
 
     def get_integer(self, name: str) -> int:
-        """Return a limit or a state that ``ctx.info`` lacks.
-
-        Parameters
-        ----------
-        name : str
-            One of :data:`INTEGERS`, such as ``'GL_MAX_TEXTURE_BUFFER_SIZE'``.
-
-        Raises
-        ------
-        EngineError
-            If the name is unknown here, or this OpenGL is too old for it.
-        """
+        """Return a limit or a state that ``ctx.info`` lacks."""
         if name not in INTEGERS:
             raise EngineError(f"{name} is not a known integer of OpenGL; known are {', '.join(sorted(INTEGERS))}")
         enum, needs = INTEGERS[name]
@@ -216,20 +188,7 @@ class GLExtras:
         self.function("glDeleteSync")(fence)
 
     def texture_buffer(self, buffer: moderngl.Buffer, internal_format: str) -> BufferTexture:
-        """Make a buffer readable through a texture, which OpenGL 3.3 can and storage blocks (4.3) need not be there.
-
-        Parameters
-        ----------
-        buffer : moderngl.Buffer
-            Not copied.
-        internal_format : str
-            One of :data:`TEXEL_FORMATS`. Bytes past the last whole texel cannot be read.
-
-        Raises
-        ------
-        EngineError
-            If the format is unknown, or the buffer has more texels than this OpenGL reads, or none.
-        """
+        """Make a buffer readable through a texture, which OpenGL 3.3 can and storage blocks (4.3) need not be there."""
         if internal_format not in TEXEL_FORMATS:
             raise EngineError(f"{internal_format!r} is no format of buffer textures; use one of {list(TEXEL_FORMATS)}")
         enum, size = TEXEL_FORMATS[internal_format]
@@ -250,14 +209,6 @@ class GLExtras:
         """Tell a program from which texture unit a sampler of its reads, once and for all draws.
 
         moderngl does not know samplers of buffer textures: setting their ``value`` does nothing.
-
-        Parameters
-        ----------
-        program : moderngl.Program, moderngl.ComputeShader or pvfiblets.engine.gl.mesh_program.MeshProgram
-            Stays in use; moderngl uses its own before every draw.
-        name : str
-            Passed over if the linked program has no such uniform.
-        unit : int
         """
         uniform = program.get(name, None)
         if isinstance(uniform, (moderngl.Uniform, Uniform)):
@@ -269,18 +220,6 @@ class GLExtras:
 
         moderngl makes them only by filtering, which integers do not allow. Contents are undefined. Allowed levels
         become 0 to ``levels - 1``.
-
-        Parameters
-        ----------
-        texture : moderngl.Texture
-            f4 of 1, 2 or 4 components, or u4 of 1 or 2.
-        levels : int
-            How many in all, the given one included.
-
-        Raises
-        ------
-        EngineError
-            If the texture's type is none of those.
         """
         kind = (texture.dtype, texture.components)
         if kind not in _LEVEL_FORMATS:
@@ -322,17 +261,7 @@ class GLExtras:
             self.function("glBindFramebuffer")(_READ_FRAMEBUFFER, read)
 
     def attach_outside(self, framebuffer: moderngl.Framebuffer, name: int, samples: int = 0) -> None:
-        """Make a framebuffer draw into somebody else's texture, or none; it stays bound.
-
-        Parameters
-        ----------
-        framebuffer : moderngl.Framebuffer
-            With one attachment, for colours.
-        name : int
-            OpenGL's of the texture; 0 for none: a texture lives as long as a framebuffer draws into it.
-        samples : int
-            Of the texture; 0 for a plain one.
-        """
+        """Make a framebuffer draw into somebody else's texture, or none; it stays bound."""
         self.function("glBindFramebuffer")(_DRAW_FRAMEBUFFER, framebuffer.glo)
         target = _TEXTURE_2D_MULTISAMPLE if samples else _TEXTURE_2D
         self.function("glFramebufferTexture2D")(_DRAW_FRAMEBUFFER, _COLOR_ATTACHMENT_0, target, name, 0)
@@ -343,15 +272,6 @@ class GLExtras:
         """Make a framebuffer draw into one level of a texture, and set its viewport to that level's size.
 
         One framebuffer per level, attached when the texture is made, spares the frame these calls.
-
-        Parameters
-        ----------
-        framebuffer : moderngl.Framebuffer
-            Not the window's. Its ``size`` stays that of level 0.
-        texture : moderngl.Texture
-        level : int
-        attachment : int or None
-            Which colour attachment; None for depth.
         """
         point = _DEPTH_ATTACHMENT if attachment is None else _COLOR_ATTACHMENT_0 + attachment
         with self.framebuffers_kept():
@@ -363,17 +283,7 @@ class GLExtras:
     def attach_layer(
         self, framebuffer: moderngl.Framebuffer, texture: moderngl.TextureArray, layer: int, attachment: int = 0
     ) -> None:
-        """Make a framebuffer draw into one layer of a texture, and set its viewport to the texture's size.
-
-        Parameters
-        ----------
-        framebuffer : moderngl.Framebuffer
-            Not the window's. Its ``size`` stays what it was.
-        texture : moderngl.TextureArray
-        layer : int
-        attachment : int
-            Which colour attachment; it must have one.
-        """
+        """Make a framebuffer draw into one layer of a texture, and set its viewport to the texture's size."""
         with self.framebuffers_kept():
             self.function("glBindFramebuffer")(_FRAMEBUFFER, framebuffer.glo)
             self.function("glFramebufferTextureLayer")(
@@ -382,17 +292,7 @@ class GLExtras:
         framebuffer.viewport = (0, 0, texture.width, texture.height)
 
     def clear_integers(self, framebuffer: moderngl.Framebuffer, values: Sequence[int], attachment: int = 0) -> None:
-        """Fill an unsigned integer attachment; moderngl's ``clear`` is for floats.
-
-        Parameters
-        ----------
-        framebuffer : moderngl.Framebuffer
-            Its colour mask and scissor apply, as for every clear; the viewport and the scissor stay in force.
-        values : sequence of int
-            1 to 4, of 32 bits.
-        attachment : int
-            Which colour attachment.
-        """
+        """Fill an unsigned integer attachment; moderngl's ``clear`` is for floats."""
         padded = (ctypes.c_uint * 4)(*values)
         with self.framebuffers_kept():
             framebuffer.use()  # with its draw buffers, colour mask and scissor, whatever was in force
@@ -402,13 +302,6 @@ class GLExtras:
         """Fill a buffer, or a part of it, with zeros on the GPU (OpenGL 4.3).
 
         moderngl's ``clear`` maps the buffer, and so waits until nobody draws with it any more.
-
-        Parameters
-        ----------
-        buffer : moderngl.Buffer
-            What shaders have written to it comes before, if there was a barrier for updates of buffers.
-        offset, size : int
-            Bytes, multiples of four; all that comes after `offset` by default.
         """
         size = buffer.size - offset if size is None else size
         internal, pixels, number = _LEVEL_FORMATS["u4", 1]
@@ -416,30 +309,13 @@ class GLExtras:
         self.function("glClearBufferSubData")(_COPY_WRITE_BUFFER, internal, offset, size, pixels, number, None)
 
     def fill(self, framebuffer: moderngl.Framebuffer, attachment: int, values: Sequence[float]) -> None:
-        """Fill one attachment of floats, inside the framebuffer's scissor, and leave it in use.
-
-        Parameters
-        ----------
-        framebuffer : moderngl.Framebuffer
-        attachment : int
-            Which colour attachment.
-        values : sequence of float
-            1 to 4.
-        """
+        """Fill one attachment of floats, inside the framebuffer's scissor, and leave it in use."""
         padded = (ctypes.c_float * 4)(*values)
         framebuffer.use()
         self.function("glClearBufferfv")(_COLOR, attachment, padded)
 
     def clear_depth(self, framebuffer: moderngl.Framebuffer, depth: float = 1.0) -> None:
-        """Fill the depth attachment and nothing else; moderngl's ``clear`` takes the colours along.
-
-        Parameters
-        ----------
-        framebuffer : moderngl.Framebuffer
-            Its depth mask and scissor apply; the viewport and the scissor stay in force.
-        depth : float
-            0 to 1.
-        """
+        """Fill the depth attachment and nothing else; moderngl's ``clear`` takes the colours along."""
         with self.framebuffers_kept():
             framebuffer.use()
             self.function("glClearBufferfv")(_DEPTH, 0, ctypes.byref(ctypes.c_float(depth)))

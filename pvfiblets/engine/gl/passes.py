@@ -114,11 +114,6 @@ def dispatch(program: moderngl.ComputeShader, groups: int, max_groups: int) -> N
     """Run work groups, in rows where there are more than one axis may have.
 
     The shader's ``group_index()`` undoes the folding; groups past the last find nothing to do.
-
-    Raises
-    ------
-    EngineError
-        If there are more groups than two axes hold.
     """
     if groups <= 0:
         return

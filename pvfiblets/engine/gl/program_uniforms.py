@@ -12,14 +12,7 @@ __all__ = ["set_uniforms"]
 
 
 def set_uniforms(program: Any, **uniforms: object) -> None:
-    """Set those uniforms that the compiler left in, as far as they are not what this function set last.
-
-    Parameters
-    ----------
-    program : moderngl.Program, moderngl.ComputeShader or pvfiblets.engine.gl.mesh_program.MeshProgram
-    **uniforms
-        Numbers and tuples of them. Whatever else sets the same ones of a program would not be noticed.
-    """
+    """Set those uniforms that the compiler left in, as far as they are not what this function set last."""
     told = program.extra
     if told is None:
         told = program.extra = {}

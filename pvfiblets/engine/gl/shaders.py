@@ -166,18 +166,7 @@ _SWITCHED_ON = re.compile(r"^#define FEATURE_(\w+) 1$", re.MULTILINE)
 
 @cache
 def read_shader(name: str) -> str:
-    """Read one source file.
-
-    Parameters
-    ----------
-    name : str
-        Path below the shader folder, with forward slashes; or one of the names that Python writes.
-
-    Raises
-    ------
-    EngineError
-        If there is no such file, or no such uniform block.
-    """
+    """Read one source file."""
     if name == "codec/layout.glsl":
         return layout.glsl_source()
     if block := _UNIFORMS.fullmatch(name):
@@ -199,35 +188,7 @@ def assemble(
     version: int = NEWEST,
     replaced: Mapping[str, str] | None = None,
 ) -> str:
-    """Compose a program's source.
-
-    Parameters
-    ----------
-    name : str
-        The stage's file, see :func:`read_shader`.
-    features : iterable of str
-        Keys of :data:`FEATURES` that are on.
-    constants : mapping, optional
-        Values of ``{{ name }}``, beside the numbers of :mod:`.bindings`.
-    source : str, optional
-        The stage's text, instead of a file; ``name`` then only serves messages.
-    version : int
-        Of GLSL: sources are written for 4.30 and the later ones that they name. Below 4.20 bindings are left out, for
-        the caller to make, and lines that end in a backslash are joined with the next; below 4.00
-        ``shaders/fiblets/data/glsl330.glsl`` supplies what is missing.
-    replaced : mapping, optional
-        Files to be pasted in the place of others, by the names of these.
-
-    Returns
-    -------
-    str
-        GLSL that starts with ``#version``.
-
-    Raises
-    ------
-    EngineError
-        If a file, a feature or a constant is not known.
-    """
+    """Compose a program's source."""
     active, constants = set(features), {**CONSTANTS, **(constants or {})}
     if unknown := active - set(FEATURES):
         raise EngineError(f"unknown features {sorted(unknown)}; there are {sorted(FEATURES)}")
@@ -340,11 +301,6 @@ class Programs:
         """Return the program of a stage with some features on.
 
         Programs are kept by composed source: a feature that a stage does not look at makes no second program.
-
-        Raises
-        ------
-        EngineError
-            If the source does not compile; the message holds all of it.
         """
         request = name, frozenset(features)
         if request in self._requests:
@@ -367,13 +323,7 @@ class Programs:
         return (name, frozenset(features)) in self._requests
 
     def screen(self, name: str, features: Iterable[str] = ()) -> tuple[moderngl.Program, moderngl.VertexArray]:
-        """Return the program of a fragment stage that runs on every pixel, and what to render three vertices of.
-
-        Raises
-        ------
-        EngineError
-            If a stage does not compile; the message holds its source.
-        """
+        """Return the program of a fragment stage that runs on every pixel, and what to render three vertices of."""
         key = name, frozenset(features)
         program = self.render({"vertex": "screen/triangle.vert", "fragment": name}, key[1])
         if key not in self._screens:
@@ -383,21 +333,7 @@ class Programs:
     def render(
         self, stages: Mapping[str, str], features: Iterable[str] = (), varyings: Sequence[str] = ()
     ) -> moderngl.Program:
-        """Return the program of several stages with some features on.
-
-        Parameters
-        ----------
-        stages : mapping
-            File of each stage, by moderngl's names: ``'vertex'``, ``'tess_control'``, ``'task'`` and so on.
-        features : iterable of str
-        varyings : sequence of str
-            What transform feedback takes back.
-
-        Raises
-        ------
-        EngineError
-            If a stage does not compile; the message holds all sources.
-        """
+        """Return the program of several stages with some features on."""
         request = tuple(sorted(stages.items())), frozenset(features)
         if request not in self._linked:
             version = EXTENDED if "mesh" in stages else min(version_of(self._ctx), NEWEST)

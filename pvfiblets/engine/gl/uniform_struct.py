@@ -210,24 +210,7 @@ class UniformStruct:
         return self.dtype.itemsize
 
     def pack(self, **values: npt.ArrayLike) -> bytes:
-        """Lay all fields out.
-
-        Parameters
-        ----------
-        **values
-            Of all fields. Matrices as they stand before a column, shape (rows, columns). Of an array as many elements
-            as there are; zeros follow.
-
-        Returns
-        -------
-        bytes
-            :attr:`nbytes` of them.
-
-        Raises
-        ------
-        UniformStructError
-            If a field is missing or not known, or a value is of another shape or type.
-        """
+        """Lay all fields out."""
         block: npt.NDArray[Any] = np.zeros((), self.dtype)
         if missing := [name for name in self.fields if name not in values]:
             raise UniformStructError(f"{self.name}: no value for {', '.join(missing)}")
@@ -236,32 +219,14 @@ class UniformStruct:
         return block.tobytes()
 
     def write(self, buffer: moderngl.Buffer, **values: npt.ArrayLike) -> None:
-        """Write some fields of a block that lies in a buffer; the others stay.
-
-        Parameters
-        ----------
-        buffer : moderngl.Buffer
-        **values
-            As of :meth:`pack`. Of an array that is given in part, zeros follow.
-
-        Raises
-        ------
-        UniformStructError
-            As of :meth:`pack`, but for missing fields.
-        """
+        """Write some fields of a block that lies in a buffer; the others stay."""
         block: npt.NDArray[Any] = np.zeros((), self.dtype)
         for name, value in values.items():
             self._fill(block, name, value)
             buffer.write(block[name].tobytes(), offset=self.offset(name))
 
     def offset(self, name: str) -> int:
-        """Return where a field begins, in bytes.
-
-        Raises
-        ------
-        UniformStructError
-            If there is no such field.
-        """
+        """Return where a field begins, in bytes."""
         self._check(name)
         fields = self.dtype.fields
         assert fields is not None
@@ -295,13 +260,7 @@ class UniformStruct:
 
 
 def find_struct(name: str) -> UniformStruct:
-    """Return a block by its name, from the module that packs it.
-
-    Raises
-    ------
-    EngineError
-        If :data:`MODULES` has no such block, or its module declares none.
-    """
+    """Return a block by its name, from the module that packs it."""
     if name not in MODULES:
         raise EngineError(
             f"no uniform block {name!r} is known; "

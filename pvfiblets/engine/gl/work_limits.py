@@ -54,29 +54,13 @@ class WorkLimits(NamedTuple):
         return DISCRETE if _DISCRETE.search(name) else INTEGRATED
 
     def bands(self, size: tuple[int, int], samples: float) -> list[tuple[int, int, int, int]]:
-        """Cut a picture into bands of rows for a call each: x, y, width, height in pixels.
-
-        Parameters
-        ----------
-        size : tuple of int
-        samples : float
-            Of a ray, at most.
-        """
+        """Cut a picture into bands of rows for a call each: x, y, width, height in pixels."""
         width, height = size
         rows = max(int(self.samples / max(width * samples, 1.0)), 1)
         return [(0, first, width, min(rows, height - first)) for first in range(0, height, rows)]
 
     def draw(self, framebuffer: moderngl.Framebuffer, samples: float, render: Callable[[], object]) -> None:
-        """Draw a picture of rays in so many calls; the framebuffer has no scissor afterwards.
-
-        Parameters
-        ----------
-        framebuffer : moderngl.Framebuffer
-        samples : float
-            Of a ray, at most.
-        render : callable
-            Makes a call.
-        """
+        """Draw a picture of rays in so many calls; the framebuffer has no scissor afterwards."""
         bands = self.bands(framebuffer.size, samples)
         try:
             for band in bands:

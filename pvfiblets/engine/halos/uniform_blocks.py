@@ -86,25 +86,7 @@ class HaloBlocks:
     def write(
         self, view: View, look: HaloStyle, n_items: int, drawn_width: float, reference: float
     ) -> tuple[bool, bool]:
-        """Bring all up to date and bind them.
-
-        Parameters
-        ----------
-        view : View
-        look : HaloStyle
-        n_items : int
-        drawn_width : float
-            Pixels that a line is drawn with at least, ``look.min_width`` or more.
-        reference : float
-            What the numbers that filter are less by.
-
-        Returns
-        -------
-        planes : bool
-            Whether a clip plane may touch anything.
-        beside : bool
-            Whether anything may lie before the near plane, beyond the far one or far beside the picture.
-        """
+        """Bring all up to date and bind them."""
         self._put("frame", FRAME_BLOCK, frame_block(view, Style(), *self._place)[0])
         self._put("halos", HALOS_BLOCK, self._block(view, look, n_items, drawn_width, reference))
         planes = clip_planes_block(view, 0.0, *self._place, 0.0)

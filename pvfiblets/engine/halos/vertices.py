@@ -152,18 +152,6 @@ class Vertices:
 def mask_places(offsets: npt.NDArray[np.int64], n_tapered: int, t_tapered: float) -> npt.NDArray[np.uint16]:
     """Return where along its line's mask every vertex is.
 
-    Parameters
-    ----------
-    offsets : numpy.ndarray
-        (n_lines + 1,) int64, of the lines' points.
-    n_tapered, t_tapered
-        As of :class:`pvfiblets.halos.HaloStyle`.
-
-    Returns
-    -------
-    numpy.ndarray
-        (n_points,) uint16: u times :data:`LAST`, which only a line's last vertex has; only its first may have 0.
-
     Notes
     -----
     Source: Everts et al. 2009, section 3.4: u goes from 0 to t over the first n vertices and from 1 - t to 1 over the

@@ -140,28 +140,7 @@ class RegionSignature:
 
 
 def rays_block(region: Region, window: Array, offset: Array, size: tuple[int, int]) -> npt.NDArray[Any]:
-    """Pack the ``Rays`` uniform block (std140), but for surfaces.
-
-    Parameters
-    ----------
-    region : Region
-    window : numpy.ndarray
-        ``(4, 4)`` local mm to homogeneous window coordinates, invertible.
-    offset : numpy.ndarray
-        ``(3,)`` data mm of local 0.
-    size : tuple of int
-        Pixels.
-
-    Returns
-    -------
-    numpy.ndarray
-        Scalar of ``RAYS_BLOCK.dtype``.
-
-    Raises
-    ------
-    numpy.linalg.LinAlgError
-        If the matrix is singular.
-    """
+    """Pack the ``Rays`` uniform block (std140), but for surfaces."""
     block: npt.NDArray[Any] = np.zeros((), RAYS_BLOCK.dtype)
     inverse = np.linalg.inv(window)
     if not np.isfinite(inverse).all():

@@ -86,26 +86,6 @@ class RegionIntervals:
         """Bring the boundaries up to date; nothing is done where region, size and camera are what they were.
 
         Changes the framebuffer's binding for a while, and leaves blending, culling and the depth test off.
-
-        Parameters
-        ----------
-        view : View
-            Its region in data mm. Where its matrix flattens space, no depth tells inside from outside, and every
-            pixel is kept.
-        origin, scale, top
-            Of the anchors, as in :func:`pvfiblets.engine.frame.reference_anchor`.
-
-        Returns
-        -------
-        bool
-            Whether there is a region to cut by.
-
-        Raises
-        ------
-        ValueError
-            If the region holds a label volume.
-        EngineError
-            If a pixel's boundaries are more than this OpenGL has layers for, or memory does not suffice.
         """
         region = view.region
         if region is None:

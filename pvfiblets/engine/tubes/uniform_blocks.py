@@ -63,19 +63,7 @@ class TubeBlocks:
         iterations: int,
         n_segments: int,
     ) -> bool:
-        """Bring all up to date and bind them; say whether a clip plane may touch anything.
-
-        Parameters
-        ----------
-        view : View
-        reach : float
-            Mm that a tube may lie outside the box of the nodes.
-        middle : float
-            Share of a derivative between control points.
-        min_width, drawn_width : float
-            Pixels that a tube has at least, and is drawn with at least: as many, or more.
-        iterations, n_segments : int
-        """
+        """Bring all up to date and bind them; say whether a clip plane may touch anything."""
         tubes = tubes_block(view, 1.0, *self._place)
         rays = np.frombuffer(tubes, TUBES_BLOCK.dtype)[0]
         pixel = max(np.linalg.norm(rays[axis].astype(np.float64)) for axis in ("tube_ray_x", "tube_ray_y"))

@@ -43,20 +43,7 @@ _known: dict[tuple[str, str, str], bool] = {}
 
 
 def interpolates_finely(ctx: moderngl.Context, gl: GLExtras, kind: str) -> bool:
-    """Try it, once for each driver.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    gl : GLExtras
-    kind : {'f1', 'nu2', 'f4'}
-        moderngl's type of the texels.
-
-    Returns
-    -------
-    bool
-        False if a mean of two texels is off by more than a thousandth of their difference.
-    """
+    """Try it, once for each driver."""
     key = (ctx.info["GL_RENDERER"], ctx.info["GL_VERSION"], kind)
     if key not in _known:
         texels, scale = TEXELS[kind]

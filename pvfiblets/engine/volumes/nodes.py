@@ -57,13 +57,7 @@ class NodeList:
         self.octree: dict[str, float] = {}
 
     def make(self, casting: RaycastOptions) -> None:
-        """Bring the list up to date.
-
-        Raises
-        ------
-        EngineError
-            If memory does not suffice.
-        """
+        """Bring the list up to date."""
         key = (
             casting.octree, casting.mode, casting.filter, casting.values, casting.transfer, casting.low, casting.high,
             casting.homogeneous, casting.recon,

@@ -41,15 +41,7 @@ class VolumeRegionIntervals:
         self._origin, self._scale = bounds[:, 0], np.ptp(bounds, axis=1) / TOP
 
     def update(self, view: View) -> list[str]:
-        """Bring the boundaries up to date and return the features of programs that look at them.
-
-        Raises
-        ------
-        ValueError
-            If the region holds a label volume.
-        EngineError
-            If a pixel's boundaries are more than this OpenGL has layers for, or memory does not suffice.
-        """
+        """Bring the boundaries up to date and return the features of programs that look at them."""
         if view.region is None:
             self.release()
             return []

@@ -125,13 +125,7 @@ class Choices:
 
 
 def in_groups(fiblets: FibletSet, names: Iterable[str]) -> np.ndarray:
-    """Which streamlines are in any of some groups, (n_streamlines,) bool.
-
-    Raises
-    ------
-    KeyError
-        If there is no such group; the message lists those that there are.
-    """
+    """Which streamlines are in any of some groups, (n_streamlines,) bool."""
     mask = np.zeros(fiblets.n_streamlines, bool)
     for name in names:
         if name not in fiblets.groups:
@@ -145,13 +139,7 @@ OPEN = (-math.inf, math.inf)
 
 
 def checked_range(limits: Any) -> tuple[float, float]:
-    """Return both ends of a range; an end that is None is open.
-
-    Raises
-    ------
-    ValueError
-        If these are not two numbers in rising order; infinite ones will do.
-    """
+    """Return both ends of a range; an end that is None is open."""
     try:
         low, high = (end if given is None else float(given) for given, end in zip(limits, OPEN, strict=True))
     except (TypeError, ValueError) as error:

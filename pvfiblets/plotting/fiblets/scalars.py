@@ -146,31 +146,7 @@ class Scalars:
 def find_scalars(
     fiblets: FibletSet, scalars: str | np.ndarray | VolumeSource | Distance | None, rgb: bool | None = None
 ) -> Scalars:
-    """Find what ``scalars`` means for ``fiblets``.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-        The data.
-    scalars : str, array, VolumeSource, Distance or None
-        A name, one value or colour per streamline, a volume to be sampled, or what distances are
-        to; ``None`` means orientation.
-    rgb : bool, optional
-        Whether 3 or 4 columns are colours, or vectors to be mapped by their magnitude; by default
-        colours where they are uint8, or floats from 0 to 1. Other integers are vectors.
-
-    Returns
-    -------
-    Scalars
-        The numbers or colours.
-
-    Raises
-    ------
-    KeyError
-        If no array has that name; the message lists those that exist.
-    ValueError
-        If an array has neither one value nor one colour per streamline.
-    """
+    """Find what ``scalars`` means for ``fiblets``."""
     if scalars is None:
         return Scalars(ORIENTATION, "orientation")
     if isinstance(scalars, VolumeSource):
@@ -306,11 +282,6 @@ def by_group(fiblets: FibletSet) -> Scalars:
     """Number the streamlines by the first of the groups that they are in; NaN for those in none.
 
     Groups that are hidden come last. Colours are those of the list of bundles: a group's own, or one by its place.
-
-    Raises
-    ------
-    KeyError
-        If there are no groups.
     """
     if not fiblets.groups:
         raise KeyError("there are no groups to colour by; formats that keep groups are .trx and .fiblets")
@@ -334,13 +305,7 @@ def without_outliers(scalars: Scalars) -> Scalars:
 
 
 def refuse_unknown(streamlines: Streamlines, name: str) -> None:
-    """Refuse a name that neither streamlines have, which are to be compressed, nor is built in.
-
-    Raises
-    ------
-    KeyError
-        The message lists what there is: all arrays of the source, as compression has not left any behind yet.
-    """
+    """Refuse a name that neither streamlines have, which are to be compressed, nor is built in."""
     known = (streamlines.per_point, streamlines.per_streamline, BUILT_IN, ("coding_error",))
     if not any(name in names for names in known) and not colour_columns(streamlines.per_point, name):
         raise KeyError(missing_message(streamlines, name))

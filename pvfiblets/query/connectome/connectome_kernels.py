@@ -20,29 +20,7 @@ def nearest_labels(
     points: Any, labels: Any, inverse: Any, linear: Any, offsets: Any, distances: Any, slack: float, radius: float,
     found: Any,
 ) -> None:  # fmt: skip
-    """Give each point the label of the nearest centre of a labelled voxel, at most a radius away.
-
-    Parameters
-    ----------
-    points : (n, 3) float64
-        mm; NaN where there is none.
-    labels : (i, j, k) int64
-        0 for none.
-    inverse : (4, 4) float64
-        mm to voxels, whose centres are at integers.
-    linear : (3, 3) float64
-        Voxels to mm, without the translation.
-    offsets : (m, 3) int64
-        Voxels about that in which a point lies, by distance; the first is (0, 0, 0).
-    distances : (m,) float64
-        mm of these, rising.
-    slack : float
-        mm that a point may be from the centre of its voxel.
-    radius : float
-        mm; 0: the voxel in which a point lies, whatever the distance to its centre.
-    found : (n,) int64
-        Filled.
-    """
+    """Give each point the label of the nearest centre of a labelled voxel, at most a radius away."""
     for block in numba.prange((len(points) + BLOCK - 1) // BLOCK):
         for p in range(block * BLOCK, min((block + 1) * BLOCK, len(points))):
             found[p] = 0

@@ -173,13 +173,7 @@ class Connectome:
 
 
 def check_target(path: str | os.PathLike[str]) -> str:
-    """Return the suffix of a file to be written.
-
-    Raises
-    ------
-    ValueError
-        If it is none of :data:`SUFFIXES`.
-    """
+    """Return the suffix of a file to be written."""
     suffix = Path(path).suffix.lower()
     if suffix not in SUFFIXES:
         raise ValueError(f"{path} has no suffix of a matrix; use one of {', '.join(SUFFIXES)}")
@@ -266,27 +260,7 @@ def connectome(
 
 
 def end_labels(data: FibletSet | Streamlines, labels: Any, radius: float = 4.0, *, progress: Progress = False) -> Ints:
-    """Return the parcel of each end of each streamline.
-
-    Parameters
-    ----------
-    data : FibletSet or Streamlines
-    labels, radius
-        As of :func:`connectome`.
-    progress : bool or callable
-        Show a progress bar; or call this with what is being done and which share of it is, from 0 to 1. What it raises
-        ends the work.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(n_streamlines, 2)`` int64 labels of the first and the last point, 0 for none.
-
-    Raises
-    ------
-    TypeError, ValueError
-        As of :func:`connectome`.
-    """
+    """Return the parcel of each end of each streamline."""
     from .connectome_kernels import nearest_labels
 
     volume, affine = read_atlas(labels)

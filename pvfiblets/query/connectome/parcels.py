@@ -63,13 +63,7 @@ def end_parcels(
 
 
 def read_atlas(given: Any) -> tuple[npt.NDArray[Any], npt.NDArray[np.float64]]:
-    """Return labels ``(i, j, k)`` and the ``(4, 4)`` matrix from their indices to mm.
-
-    Raises
-    ------
-    TypeError, ValueError
-        As of :func:`end_parcels`.
-    """
+    """Return labels ``(i, j, k)`` and the ``(4, 4)`` matrix from their indices to mm."""
     if isinstance(given, (str, os.PathLike)):
         import nibabel
 

@@ -79,24 +79,6 @@ def cut(
     """Cut the segments of items ``a`` to ``b`` at the faces of voxels.
 
     The loop is that of :func:`.voxel_walk_kernels.walk`, written out: through its arrays, maps take a quarter longer.
-
-    Parameters
-    ----------
-    u, line, lengths
-        ``(n, 3)``, ``(n,)``, ``(n,)``: positions, streamlines and segments' lengths of :func:`place`.
-    shape : (int, int, int)
-        Voxels along each axis.
-    starts : (n + 1,) int64
-        Running sum of what :func:`count_pieces` gives.
-    voxel, item, part, middle
-        Filled for each piece: its voxel (x runs fastest), or -1 of places left empty; its item; which share of the
-        segment it is; and where its middle lies between the segment's ends, 0 to 1. A point's voxel has a piece even
-        if no length of the segment lies in it.
-
-    Returns
-    -------
-    float
-        mm of the segments that lie within the grid.
     """
     nx, ny, nz = shape
     n_blocks = (b - a + BLOCK - 1) // BLOCK
@@ -176,26 +158,6 @@ def add_up(
     """Add pieces to sums over voxels, in their order whatever the number of threads.
 
     Each thread looks at all pieces, and adds those in voxels that are its own: reading costs far less than adding.
-
-    Parameters
-    ----------
-    what : {COUNT, AMOUNT, DIRECTION, VALUE}
-    by_length : bool
-        Whether a piece weighs as much as it is long, or as ``part`` says.
-    tiles : int
-        Power of two: threads.
-    n : int
-        How many pieces.
-    weights : (n_streamlines,) float64
-    values : (n_points,) or (n_streamlines,) float64
-        For VALUE, as ``per_point`` says. Pieces without a finite one are left out.
-    base : int
-        Streamlines before these; for COUNT.
-    visitor : (n_voxels,) integers
-        For COUNT: by which streamline, from 1 on, a voxel was visited last.
-    sums : (1, 2 or 4, n_voxels) float64
-        COUNT: weights of the streamlines that visit; AMOUNT: weights times lengths; DIRECTION: these times |x|, |y| and
-        |z| of the tangent, and alone; VALUE: times the value, and alone.
     """
     for own in numba.prange(tiles):
         for r in range(n):

@@ -82,21 +82,7 @@ class Source(Protocol):
 
 
 def as_source(source: Any, weights: Any, wanted: Wanted) -> Source:
-    """Return what goes through the streamlines of something, with weights and values.
-
-    Parameters
-    ----------
-    source : FibletSet, Streamlines, str or PathLike
-    weights : str, array_like or None
-        Of streamlines.
-    wanted : str, Distance, Values, array_like or None
-        Values.
-
-    Raises
-    ------
-    TypeError, KeyError, ValueError
-        If the source is something else, or weights or values do not fit it.
-    """
+    """Return what goes through the streamlines of something, with weights and values."""
     if isinstance(source, (str, os.PathLike)):
         path = os.fspath(source)
         if formats.registry.suffix_of(path) != ".fiblets":

@@ -80,18 +80,6 @@ def grid_about(low: npt.ArrayLike, high: npt.ArrayLike, voxel_size: float | npt.
     """Return the grid along the axes of space that holds a box.
 
     Faces lie at whole multiples of the voxel's size, so that grids of one size fit each other.
-
-    Parameters
-    ----------
-    low, high : array_like
-        ``(3,)`` mm.
-    voxel_size : float or array_like
-        mm, one or along each axis.
-
-    Raises
-    ------
-    ValueError
-        If the size is not finite and above 0, or the box takes too many of such voxels.
     """
     size = np.asarray(voxel_size, np.float64)
     if size.shape not in ((), (3,)) or not np.isfinite(size).all() or not (size > 0.0).all():
@@ -113,28 +101,7 @@ def grid_about(low: npt.ArrayLike, high: npt.ArrayLike, voxel_size: float | npt.
 
 
 def grid_like(image: Any) -> VoxelGrid:
-    """Return the grid of an image.
-
-    Parameters
-    ----------
-    image : object
-        - An image of nibabel, or its path; of four axes the first three.
-        - A :class:`pyvista.ImageData` or another ``vtkImageData``: voxels are its cells where its active scalars are of
-          cells, and lie about its points otherwise; origin, spacing, direction matrix and extent place them.
-        - ``(array, affine)`` or ``(shape, affine)``.
-        - Anything with ``values`` and ``affine``, or a grid.
-
-    Raises
-    ------
-    FileNotFoundError
-        If there is no such file.
-    FormatError
-        If nibabel cannot read it.
-    TypeError
-        If it is none of these.
-    ValueError
-        If it has fewer than three axes, or an affine that cannot be inverted.
-    """
+    """Return the grid of an image."""
     if isinstance(image, VoxelGrid):
         return image
     if isinstance(image, (str, os.PathLike)):

@@ -86,14 +86,6 @@ def walk(u: Any, i: int, shape: Any, strides: Any, on: Any, stops: Any) -> Any:
     """Voxels on the way from ``u[i]`` to ``u[i + 1]``, in order: how many, and the share where the first begins.
 
     A voxel counts if some length of the segment lies in it, or one of its ends.
-
-    Parameters
-    ----------
-    u : (n, 3) float64
-    shape, strides : (int, int, int)
-        Voxels along each axis, and what each adds to a voxel's number.
-    on, stops : (nx + ny + nz + 4,) int64, float64
-        Filled: voxels' numbers, and the share of the segment where each ends.
     """
     sx, sy, sz = strides
     one, other = within(u, i, shape), within(u, i + 1, shape)

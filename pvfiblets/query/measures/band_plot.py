@@ -16,25 +16,7 @@ def plot_band(
     position: Floats, mean: Floats, low: Floats, high: Floats, name: str, ax: Any = None, *, label: str = "",
     color: Any = None,
 ) -> Any:  # fmt: skip
-    """Draw a mean between the ends of its band.
-
-    Parameters
-    ----------
-    position, mean, low, high : numpy.ndarray
-        ``(n,)`` places from 0 to 1, and values there.
-    name : str
-        Of the value.
-    ax : matplotlib.axes.Axes, optional
-        Drawn into; a new figure's by default.
-    label : str
-        For the legend.
-    color : optional
-        Anything matplotlib takes.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-    """
+    """Draw a mean between the ends of its band."""
     if ax is None:
         import matplotlib.pyplot as plt
 

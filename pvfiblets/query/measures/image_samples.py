@@ -19,28 +19,7 @@ def three_axes(values: npt.ArrayLike) -> npt.NDArray[Any]:
 
 
 def sample_image(volume: npt.ArrayLike, affine: npt.ArrayLike, points: npt.ArrayLike) -> Floats:
-    """Return the values of an image at positions.
-
-    Parameters
-    ----------
-    volume : array_like
-        ``(i, j, k)`` numbers.
-    affine : array_like
-        ``(4, 4)`` from voxel indices, whole at centres, to mm.
-    points : array_like
-        ``(n, 3)`` mm.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(n,)`` float64: trilinear between the eight centres around; NaN outside of the voxels. Within half a voxel of
-        the image's faces the outermost centres count.
-
-    Raises
-    ------
-    ValueError
-        If the image has not three axes.
-    """
+    """Return the values of an image at positions."""
     values = three_axes(volume)
     if values.ndim != 3:
         raise ValueError(f"the image has shape {values.shape}; give one of three axes (i, j, k)")

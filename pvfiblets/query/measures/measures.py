@@ -141,14 +141,7 @@ class Distance:
 
 
 def measure_names(fiblets: FibletSet, kind: Kind | None = None) -> list[str]:
-    """Names that :func:`measure` takes: computed ones, then the stored arrays of single numbers.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-    kind : {'streamline', 'point'}, optional
-        Only those with a value per streamline, or per point.
-    """
+    """Names that :func:`measure` takes: computed ones, then the stored arrays of single numbers."""
     names: list[str] = []
     if kind != "point":
         names += [*COMPUTED["streamline"], *(k for k, v in fiblets.per_streamline.items() if _is_scalar(v))]
@@ -164,34 +157,7 @@ def _is_scalar(rows: npt.NDArray[Any]) -> bool:
 def measure(
     fiblets: FibletSet, what: str | Distance | Values | npt.ArrayLike, *, original: Streamlines | None = None
 ) -> Values:
-    """Measure every streamline or every point.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-        In memory or mapped; decoded chunk by chunk where a measure needs points.
-    what : str, Distance, Values or array_like
-        A name of the module's table or of a stored array; a distance; or values of one's own, ``(n_streamlines,)`` or
-        ``(n_points,)`` in the order of the streamlines. Where both are as many, they are the streamlines'.
-        Values that were measured before are given back.
-    original : Streamlines, optional
-        What was compressed; only for ``'coding_error'``.
-
-    Returns
-    -------
-    Values
-
-    Raises
-    ------
-    KeyError
-        If there is no such name; it lists those there are.
-    ValueError
-        If an array has another length, or the original other points, or it is missing.
-    NotImplementedError
-        If the region has no distances.
-    FormatError
-        If the file is damaged.
-    """
+    """Measure every streamline or every point."""
     if isinstance(what, Values):
         return what
     try:
@@ -252,15 +218,7 @@ def by_rank(fiblets: FibletSet) -> FibletSet:
 
 
 def decoded_by_rank(fiblets: FibletSet, most: int, dtype: npt.DTypeLike) -> Iterator[Streamlines]:
-    """Decode the streamlines that have points in the order in which they are coded, shard after shard.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-    most : int
-        Points of a chunk, as of :meth:`.FibletSet.iter_chunks`.
-    dtype : dtype
-    """
+    """Decode the streamlines that have points in the order in which they are coded, shard after shard."""
     from ...codec.decompress import iter_chunks
 
     for part, _ in stored_parts(fiblets):

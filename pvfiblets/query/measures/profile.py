@@ -31,31 +31,7 @@ CHUNK = 1 << 20  # points decoded, or places resampled, together
 def mean_profile(
     fiblets: FibletSet, ids: Any, values_per_point: str | Distance | Values | npt.ArrayLike, n: int = 100
 ) -> tuple[Floats, Floats]:
-    """Mean and spread of a value along some streamlines.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-    ids : array_like
-        A bundle's streamlines, as for :meth:`.FibletSet.decompress`; repeats count again, those without points do not.
-    values_per_point : str, Distance, Values or array_like
-        What :func:`.measures.measure` takes, with a value per point.
-    n : int
-        Places along each streamline, its ends included; at least 2.
-
-    Returns
-    -------
-    mean, std : numpy.ndarray
-        ``(n,)`` float64 each, over the streamlines that have a value there (population standard deviation); NaN where
-        none has.
-
-    Raises
-    ------
-    ValueError
-        If the values are per streamline, or ``n`` is below 2.
-    KeyError, IndexError
-        If there is no such measure, or an id is out of range.
-    """
+    """Mean and spread of a value along some streamlines."""
     if n < 2:
         raise ValueError(f"n is {n}; at least 2 places along a streamline are needed")
     values = measure(fiblets, values_per_point)

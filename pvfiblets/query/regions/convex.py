@@ -13,18 +13,6 @@ Array = npt.NDArray[np.float64]
 def box_distance(linear: Array, unit: Array) -> Array:
     """Distances of positions from the box ``max |u_i| <= 1``.
 
-    Parameters
-    ----------
-    linear : numpy.ndarray
-        ``(3, 3)``: unit coordinates per mm.
-    unit : numpy.ndarray
-        ``(n, 3)`` unit coordinates.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(n,)`` mm.
-
     Notes
     -----
     The nearest point lies in the box itself, within a face, an edge or a corner. For each of the 26 the nearest point
@@ -58,18 +46,6 @@ def box_distance(linear: Array, unit: Array) -> Array:
 
 def ellipsoid_distance(linear: Array, unit: Array) -> Array:
     """Distances of positions from the ellipsoid ``u . u <= 1``.
-
-    Parameters
-    ----------
-    linear : numpy.ndarray
-        ``(3, 3)``: unit coordinates per mm.
-    unit : numpy.ndarray
-        ``(n, 3)`` unit coordinates.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(n,)`` mm.
 
     Notes
     -----

@@ -92,20 +92,7 @@ def _along_z(squares: Any, size: float) -> None:
 
 
 def squared_distances(targets: Any, sizes: Any) -> Any:
-    """Squared distances of voxel centres from the nearest target's centre.
-
-    Parameters
-    ----------
-    targets : numpy.ndarray
-        ``(nz, ny, nx)`` bool.
-    sizes : numpy.ndarray
-        ``(3,)`` mm along x, y, z.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(nz, ny, nx)`` float32 mm^2, at least about 1e37 where there is no target at all.
-    """
+    """Squared distances of voxel centres from the nearest target's centre."""
     squares = np.empty(targets.shape, np.float32)
     _along_x(targets, squares, float(sizes[0]))
     _along_y(squares, float(sizes[1]))

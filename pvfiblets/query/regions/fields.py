@@ -85,15 +85,7 @@ def rounded_towards_zero(values: Array) -> npt.NDArray[np.float32]:
 
 
 def label_field(mask: npt.NDArray[np.bool_], affine: Array) -> Field:
-    """Return the field of a label volume.
-
-    Parameters
-    ----------
-    mask : numpy.ndarray
-        ``(i, j, k)`` bool: voxels that are in, at least one.
-    affine : numpy.ndarray
-        ``(3, 3)``: mm per voxel, its axes in columns.
-    """
+    """Return the field of a label volume."""
     chosen_ones = [np.nonzero(mask.any(axis=tuple({0, 1, 2} - {axis})))[0] for axis in range(3)]
     first = np.array([n[0] for n in chosen_ones])
     mask = mask[tuple(slice(n[0], n[-1] + 1) for n in chosen_ones)]  # all else is out, as beyond any grid

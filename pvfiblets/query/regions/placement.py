@@ -45,13 +45,7 @@ def positive(value: Any, name: str) -> float:
 
 
 def frame_about(normal: npt.ArrayLike, name: str) -> Array:
-    """Return ``(3, 3)``: a right-handed orthonormal frame in rows, the last along `normal`.
-
-    Raises
-    ------
-    ValueError
-        If the normal is not three finite numbers, or 0.
-    """
+    """Return ``(3, 3)``: a right-handed orthonormal frame in rows, the last along `normal`."""
     given = finite_vector(normal, name)
     largest = np.abs(given).max()
     if largest == 0.0:

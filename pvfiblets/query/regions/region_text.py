@@ -15,21 +15,7 @@ FORMS = "sphere:X,Y,Z,RADIUS, box:XMIN,XMAX,YMIN,YMAX,ZMIN,ZMAX (mm), or IMAGE, 
 
 
 def parse_region(text: str) -> Region:
-    """Return the region that a text means.
-
-    Parameters
-    ----------
-    text : str
-        ``sphere:x,y,z,radius`` or ``box:xmin,xmax,ymin,ymax,zmin,zmax``, mm; or the path of an image: its voxels that
-        are not 0, or after a colon only those with some labels, ``aparc.nii.gz:1024,2024``.
-
-    Raises
-    ------
-    ValueError
-        If it means none.
-    OSError
-        If there is no such image.
-    """
+    """Return the region that a text means."""
     from .shapes import Box, Sphere
 
     kind, colon, rest = text.partition(":")

@@ -97,23 +97,7 @@ def _holds(ops: Any, held: int) -> bool:
 def combine(
     ops: Any, rows: Any, places: Any, first: Any, spans: Any, a: Any, b: Any, together: float, out: Any
 ) -> None:  # fmt: skip
-    """Say of segments whether some of them lies in a region (1), and whether some does not (2): ``out`` (m,) uint8.
-
-    Parameters
-    ----------
-    ops, rows
-        Of :func:`.classify.pack_rows`.
-    places : (n_leaves,) int64
-        Row of ``first`` for surfaces and labels, -1 for the others, which are looked at here.
-    first : (k, m + 1) int64
-        Where the spans of each segment begin.
-    spans : (n, 2) float64
-        Shares of the segment, rising.
-    a, b : (m, 3) float64
-        The segments' ends, which are not looked at themselves.
-    together : float
-        Boundaries whose shares differ by no more are crossed at once.
-    """
+    """Say of segments whether some of them lies in a region (1), and whether some does not (2): ``out`` (m,) uint8."""
     n_leaves = len(rows)
     for block in numba.prange((len(out) + _BLOCK - 1) // _BLOCK):
         lows, highs, at = np.empty(n_leaves), np.empty(n_leaves), np.empty(n_leaves, np.int64)

@@ -65,23 +65,6 @@ def as_criterion(given: Criterion | tuple[Any, ...]) -> Criterion:
 def point_words(fiblets: FibletSet, criteria: Iterable[Criterion | tuple[Any, ...]]) -> Words:
     """One bit for each point, set where every criterion holds.
 
-    Parameters
-    ----------
-    fiblets : FibletSet
-    criteria : iterable
-        :class:`Criterion`, or tuples ``(values, lo, hi)`` or ``(values, lo, hi, keep_nan)``, of values per point in the
-        order in which points are coded, as `measures.measure` gives them. None at all keeps every point.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``((n_points + 31) // 32 + 1,)`` uint32; the bits behind the last point are 0.
-
-    Raises
-    ------
-    ValueError
-        If values are not one for each point, or a range is empty.
-
     Notes
     -----
     Values are float32 and compared as float64. Those that are stored as codes are compared as the float32 that
@@ -128,24 +111,7 @@ def _kept(values: npt.NDArray[Any], criterion: Criterion) -> Mask:
 
 
 def streamline_mask(fiblets: FibletSet, criteria: Iterable[Criterion | tuple[Any, ...]]) -> Mask:
-    """Streamlines for which every criterion holds.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-    criteria : iterable
-        As for :func:`point_words`, of values per streamline.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(n_streamlines,)`` bool.
-
-    Raises
-    ------
-    ValueError
-        If values are not one for each streamline, or a range is empty.
-    """
+    """Streamlines for which every criterion holds."""
     mask = np.ones(fiblets.n_streamlines, bool)
     for criterion in map(as_criterion, criteria):
         values = criterion.values
@@ -167,14 +133,7 @@ def streamline_mask(fiblets: FibletSet, criteria: Iterable[Criterion | tuple[Any
 
 
 def stretch(words: Words, first: int, last: int) -> Words:
-    """Return bits first..last of a row as a row of their own; zeros stand for what is behind its end.
-
-    Parameters
-    ----------
-    words : numpy.ndarray
-        uint32, 32 bits each, the first in the lowest.
-    first, last : int
-    """
+    """Return bits first..last of a row as a row of their own; zeros stand for what is behind its end."""
     begin, shift = divmod(first, 32)
     piece = np.asarray(words[begin : -(-last // 32) + 1], np.uint32)
     if not shift:
@@ -185,24 +144,7 @@ def stretch(words: Words, first: int, last: int) -> Words:
 
 
 def rank_words(fiblets: FibletSet, mask: npt.ArrayLike) -> Words:
-    """One bit for each streamline that has points, in the order in which they are coded.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-    mask : array_like
-        ``(n_streamlines,)`` bool.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``((n_ranks + 31) // 32,)`` uint32; the bits behind the last rank are 0.
-
-    Raises
-    ------
-    ValueError
-        If the mask is not one bool for each streamline.
-    """
+    """One bit for each streamline that has points, in the order in which they are coded."""
     chosen = np.asarray(mask)
     if chosen.dtype != bool or chosen.shape != (fiblets.n_streamlines,):
         raise ValueError(

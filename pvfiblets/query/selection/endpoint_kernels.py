@@ -19,22 +19,7 @@ BLOCK = 256  # streamlines a thread looks at in one go
 def find_similar(
     ends: Any, pairs: Any, keys: Any, starts: Any, low: Any, edge: float, distance: float, found: Any
 ) -> None:
-    """Say which streamlines have their two ends near those of some pair.
-
-    Parameters
-    ----------
-    ends : (n, 2, 3) float64
-        NaN where a streamline has no points.
-    pairs : (m, 2, 3) float64
-        Sorted by the cell of the first end.
-    keys : (k,) int64
-        Cells that hold a first end, rising: ``x + 2^21 y + 2^42 z``, counted from ``low`` in steps of ``edge``, which
-        is ``distance`` at least.
-    starts : (k + 1,) int64
-        Where each cell's pairs begin.
-    found : (n,) bool
-        Filled.
-    """
+    """Say which streamlines have their two ends near those of some pair."""
     squares = distance * distance
     for block in numba.prange((len(found) + BLOCK - 1) // BLOCK):
         for s in range(block * BLOCK, min((block + 1) * BLOCK, len(found))):

@@ -23,19 +23,7 @@ Floats = npt.NDArray[np.float64]
 
 
 def anchor_points(fiblets: FibletSet, which: Ints) -> Floats:
-    """First points of some fiblets, from their anchors.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-    which : numpy.ndarray
-        ``(m,)`` int64 fiblets.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(m, 3)`` float64 mm, as they are decoded.
-    """
+    """First points of some fiblets, from their anchors."""
     words = np.asarray(fiblets.anchors[which])
     grid = np.stack([unpack(f"anchor_{axis}", words) for axis in "xyz"], axis=1).astype(np.float64)
     if fiblets.anchors_low is not None:
@@ -45,24 +33,7 @@ def anchor_points(fiblets: FibletSet, which: Ints) -> Floats:
 
 
 def end_points(fiblets: FibletSet) -> Floats:
-    """First and last point of every streamline, without decoding what lies between.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-        In memory or mapped; of each streamline only the last fiblet is decoded.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(n_streamlines, 2, 3)`` float64 mm, as ``decompress(dtype=float64)`` gives them; NaN for a streamline without
-        points.
-
-    Raises
-    ------
-    FormatError
-        If the file is damaged.
-    """
+    """First and last point of every streamline, without decoding what lies between."""
     if in_parts(fiblets):
         ends: Floats = of_streamlines(fiblets, end_points, np.nan, (2, 3))
         return ends
@@ -98,28 +69,7 @@ def _last_points(fiblets: FibletSet, which: Ints) -> Floats:
 
 
 def similar_ends(fiblets: FibletSet, ids: Any, distance: float) -> Mask:
-    """Streamlines that begin and end near where some others do, in either direction.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-    ids : array_like
-        The others, as for :meth:`.FibletSet.decompress`.
-    distance : float
-        mm: both ends of a streamline lie within it of the two ends of *one* of the others.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(n_streamlines,)`` bool; the others themselves are among them, unless they have no points.
-
-    Raises
-    ------
-    ValueError
-        If the distance is not a length above 0.
-    IndexError
-        If an id is out of range.
-    """
+    """Streamlines that begin and end near where some others do, in either direction."""
     reach = float(distance)
     if not (np.isfinite(reach) and reach > 0.0):
         raise ValueError(f"distance is {reach}; a length in mm above 0 is needed")

@@ -72,36 +72,7 @@ class FibletBalls:
 def region_flags(
     fiblets: FibletSet, region: Region, sampling: Sampling = "lines", ids: Any = None, *, bits: int = 15
 ) -> npt.NDArray[np.uint8]:
-    """Say how each streamline lies to a region.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-        In memory or mapped.
-    region : Region
-        Positions in mm of the set.
-    sampling : {'lines', 'points'}
-        Whether a streamline is all of the line through its points, tested exactly, or the points alone.
-    ids : array_like, optional
-        Streamlines to ask about, as for :meth:`.FibletSet.decompress`; the others' flags are 0. All by default.
-    bits : int
-        Flags that are wanted; the others are undefined. The fewer, the less needs decoding.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(n_streamlines,)`` uint8: the sum of ``ANY = 1`` (some of it lies in the region), ``ALL = 2`` (all of it
-        does), ``FIRST = 4`` and ``LAST = 8`` (the first, the last point does). 0 for a streamline without points.
-
-    Raises
-    ------
-    ValueError
-        If the sampling is neither.
-    IndexError
-        If an id is out of range.
-    FormatError
-        If the file is damaged.
-    """
+    """Say how each streamline lies to a region."""
     lines = check_sampling(sampling) == "lines"
     if in_parts(fiblets):
         return _flags_of_parts(fiblets, region, sampling, ids, bits)
@@ -214,18 +185,7 @@ def _wanted(fiblets: FibletSet, ids: Any) -> Mask:
 
 
 def iter_balls(fiblets: FibletSet, wanted: Mask | None = None) -> Iterator[FibletBalls]:
-    """Go through a set's fiblets, a few pages at a time.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-    wanted : numpy.ndarray, optional
-        ``(n_ranks,)`` bool: pages without any of these streamlines are passed over.
-
-    Yields
-    ------
-    FibletBalls
-    """
+    """Go through a set's fiblets, a few pages at a time."""
     table, n_pages = fiblets.pages, len(fiblets.pages) - 1
     p = fiblets.parameters
     top = np.abs(fiblets.origin) + fiblets.anchor_scale * 2.0**p.anchor_bits

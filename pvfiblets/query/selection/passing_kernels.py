@@ -23,24 +23,7 @@ RUN = 8  # consecutive segments that are settled together
 def balls(
     anchors: Any, low: Any, fine: Any, ends: Any, reach: Any, origin: Any, scale: Any, units: Any, out: Any, radii: Any
 ) -> None:
-    """Balls about the capsules of consecutive fiblets, and what joins each to the next (:mod:`..capsules`).
-
-    Parameters
-    ----------
-    anchors : (n or n + 1, 2) uint32
-        Of the fiblets, and of the one after them if the last does not end its streamline.
-    low : (n or n + 1, 3) uint16
-        Lower halves of 32-bit anchors; read if ``fine``.
-    ends : (n,) uint32
-        End vector of each fiblet's streamline; read where the fiblet ends it.
-    reach : (n,) uint16
-    origin, scale : (3,) float64
-        Anchor grid, mm.
-    units : (float, float, float)
-        ``reach_scale``, ``end_scale``, and what is added to radii for rounding, mm.
-    out, radii : (n, 3), (n,) float64
-        Filled: centres and radii, mm.
-    """
+    """Balls about the capsules of consecutive fiblets, and what joins each to the next (:mod:`..capsules`)."""
     reach_scale, end_scale, slack = units
     for f in numba.prange(len(reach)):
         last = anchors[f, 1] >> 31
@@ -79,24 +62,7 @@ def _told(state: int, begin: int, end: int, flags: int) -> int:
 
 @parallel_kernel
 def settle(states: Any, anchors: Any, ranks: Any, wanted: Any, bits: int, flags: Any, open_: Any) -> None:
-    """Take in the fiblets that lie surely in or out, and mark the others where they can still tell something.
-
-    Parameters
-    ----------
-    states : (n,) int8
-        1 in, -1 out, 0 undecided.
-    anchors : (n, 2) uint32
-    ranks : (n,) int64
-        Streamline of each fiblet, counted from the first of ``flags``; consecutive.
-    wanted : (n_ranks,) bool
-        Streamlines that are asked about; others are left as they are.
-    bits : int
-        Flags that are asked for.
-    flags : (n_ranks,) uint8
-        Changed in place.
-    open_ : (n,) bool
-        Filled.
-    """
+    """Take in the fiblets that lie surely in or out, and mark the others where they can still tell something."""
     n = len(states)
     parts = 64
     for part in numba.prange(parts):

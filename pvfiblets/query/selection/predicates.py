@@ -198,29 +198,7 @@ def ends_in(region: Region, which: Ends = "any") -> Predicate:
 
 
 def select(fiblets: FibletSet, predicate: Predicate, *, flags: FlagsOf | None = None) -> Mask:
-    """Choose the streamlines for which a condition holds.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-        In memory or mapped; it is decoded where its fiblets' bounds leave the answer open.
-    predicate : Predicate
-        Made of :func:`passes`, :func:`ends_in`, :func:`stays_in`. Each distinct region is gone through once.
-    flags : callable, optional
-        ``(region, sampling) -> uint8 (n_streamlines,)``, instead of :func:`.passing.region_flags`: the GPU's.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(n_streamlines,)`` bool.
-
-    Raises
-    ------
-    TypeError
-        If the predicate is none.
-    ValueError, FormatError
-        As :func:`.passing.region_flags`.
-    """
+    """Choose the streamlines for which a condition holds."""
     if not isinstance(predicate, Predicate):
         hint = "; ask passes(region), ends_in(region) or stays_in(region)" if isinstance(predicate, Region) else ""
         raise TypeError(f"a {type(predicate).__name__} is no condition on streamlines{hint}")

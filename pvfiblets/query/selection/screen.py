@@ -56,13 +56,7 @@ class Under:
 
 
 def checked_polygon(polygon: npt.ArrayLike) -> Array:
-    """Return corners as ``(k, 2)`` float64.
-
-    Raises
-    ------
-    ValueError
-        If there is no corner, or corners are not two finite numbers each.
-    """
+    """Return corners as ``(k, 2)`` float64."""
     corners = np.array(polygon, np.float64)
     if corners.ndim != 2 or corners.shape[1] != 2 or not len(corners) or not np.isfinite(corners).all():
         raise ValueError(f"a polygon is (k, 2) finite pixels, k >= 1; got {np.asarray(polygon)!r:.200}")
@@ -70,20 +64,7 @@ def checked_polygon(polygon: npt.ArrayLike) -> Array:
 
 
 def area_distances(polygon: npt.ArrayLike, pixels: npt.ArrayLike) -> Array:
-    """Distances of places on the screen from the area of a polygon.
-
-    Parameters
-    ----------
-    polygon : array_like
-        ``(k, 2)`` corners; inside is by the even-odd rule. One corner is a point, two are a line.
-    pixels : array_like
-        ``(n, 2)``.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(n,)`` float64, 0 inside.
-    """
+    """Distances of places on the screen from the area of a polygon."""
     places = np.ascontiguousarray(np.asarray(pixels, np.float64).reshape(-1, 2))
     found: Array = screen_kernels.distances(checked_polygon(polygon), places)
     return found
@@ -101,42 +82,7 @@ def under_polygon(
     planes: npt.ArrayLike | None = None,
     region: Region | None = None,
 ) -> Under:
-    """Find the streamlines of which some part lies under an area of the screen, hidden ones too.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-    matrix : array_like
-        ``(4, 4)`` data mm (column vectors) to OpenGL clip coordinates.
-    size : tuple of float
-        Width and height of the picture in pixels.
-    polygon : array_like
-        ``(k, 2)`` corners in pixels from the lower left corner of the picture; the middle of the first pixel is at
-        (0.5, 0.5). Inside is by the even-odd rule. One corner is a point, two are a line.
-    tolerance : float
-        How far from the area, in pixels, a line may be.
-    streamlines : numpy.ndarray, optional
-        ``(n_streamlines,)`` bool: which are there at all.
-    points : numpy.ndarray, optional
-        uint32 words, a bit per point in coded order: a segment is there if both its points are.
-    planes : array_like, optional
-        ``(k, 4)`` planes in data coordinates; only what lies where ``ax + by + cz + d >= 0`` is there.
-    region : Region, optional
-        Only what lies in it (data coordinates) is there. Where its surface comes near, the part of a segment that
-        lies under the area is asked at 17 places; what lies between two of them can be missed.
-
-    Returns
-    -------
-    Under
-        Sorted by depth.
-
-    Raises
-    ------
-    ValueError
-        If the polygon, the matrix, the tolerance or a mask's length makes no sense.
-    FormatError
-        If the set is damaged.
-    """
+    """Find the streamlines of which some part lies under an area of the screen, hidden ones too."""
     corners, transform = checked_polygon(polygon), np.array(matrix, np.float64)
     width, height = (float(n) for n in size)
     if transform.shape != (4, 4) or not np.isfinite(transform).all():

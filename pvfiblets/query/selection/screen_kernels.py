@@ -154,25 +154,7 @@ def _set(words: Any, i: int) -> bool:
 
 @parallel_kernel
 def candidates(first: int, count: int, arrays: Any, grid: Any, spaces: Any, ranks: Any, found: Any, balls: Any) -> int:
-    """Capsules of consecutive fiblets that reach into all half spaces; returns how many.
-
-    Parameters
-    ----------
-    first, count : int
-        Which fiblets.
-    arrays : tuple
-        ``anchors``, ``anchors_low`` or ``(1, 3)`` zeros, ``reach``, ``ends``, ``(n_pages,)`` int64 first rank by page.
-    grid : tuple
-        ``origin (3,)``, ``scale (3,)``, whether anchors have lower halves, ``reach_scale``, ``end_scale``, and a
-        slack in mm for rounding.
-    spaces : (m, 4) float64
-        ``a, b, c, d`` with ``(a, b, c)`` of length 1: ``ax + by + cz + d >= 0`` in data mm.
-    ranks : (n_ranks,) bool
-        Which streamlines are there at all; empty for all.
-    found, balls : numpy.ndarray
-        Filled: ``(count,)`` bool, and ``(count, 4)`` float64 centre and radius of a ball that holds the capsule, of
-        those found. (Not in a tuple: numba takes what a parallel loop writes to a tuple's arrays for dead.)
-    """
+    """Capsules of consecutive fiblets that reach into all half spaces; returns how many."""
     anchors, low, reach, ends, rank_base = arrays
     origin, scale, fine, reach_scale, end_scale, slack = grid
     total = 0
@@ -244,25 +226,7 @@ def _nearest(points: Any, start: int, count: int, first_point: int, screen: Any,
 def hits(
     points: Any, starts: Any, counts: Any, first_point: Any, screen: Any, words: Any, depths: Any, places: Any
 ) -> None:
-    """Nearest place of each fiblet that lies under the area.
-
-    Parameters
-    ----------
-    points : (n, 3) float64
-        Decoded points of the fiblets, mm, each fiblet's followed by the next one's first if the streamline goes on.
-    starts, counts : (m,) int64
-        Where each fiblet's begin, and how many it has.
-    first_point : (m,) int64
-        Index of the first of them among all points of the set.
-    screen : tuple
-        ``matrix (4, 4)`` data to clip coordinates, ``planes (k, 4)`` with near and far, ``size (2,)`` pixels,
-        ``polygon (k, 2)`` pixels, tolerance in pixels.
-    words : uint32
-        Bit per point of the set: 1 if it is there; empty for all.
-    depths, places : numpy.ndarray
-        Filled: ``(m,)`` float64 depths (-1 to 1; inf where nothing is hit), and ``(m,)`` float64 places, counted in
-        points from the fiblet's first.
-    """
+    """Nearest place of each fiblet that lies under the area."""
     for m in numba.prange(len(starts)):
         depths[m], places[m] = _nearest(points, starts[m], counts[m], first_point[m], screen, words)
 

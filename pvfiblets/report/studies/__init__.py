@@ -34,13 +34,7 @@ MODULES = {
 
 
 def chosen_names(only: Sequence[str] | None = None) -> list[str]:
-    """Return the names of the studies asked for, all if none are named.
-
-    Raises
-    ------
-    ValueError
-        For a name that is no study's; the error lists those there are.
-    """
+    """Return the names of the studies asked for, all if none are named."""
     names = list(dict.fromkeys(only or MODULES))
     for name in names:
         if name not in MODULES:

@@ -17,11 +17,6 @@ def histogram_chart(counts: ArrayLike) -> str:
     """Return bars of the square roots of counts, so that rare values are seen beside frequent ones.
 
     A few bars that stand far above the others, such as that of the air around a head, are cut off.
-
-    Parameters
-    ----------
-    counts : array_like, shape (n,)
-        From low to high values.
     """
     heights = np.sqrt(np.maximum(np.nan_to_num(np.asarray(counts, np.float64)), 0.0))
     if not heights.size or heights.max() <= 0.0:
@@ -57,17 +52,7 @@ class Band:
 
 
 def profile_chart(positions: ArrayLike, mean: ArrayLike, low: ArrayLike, high: ArrayLike, title: str = "value") -> str:
-    """Return a mean with its band along streamlines.
-
-    Parameters
-    ----------
-    positions : array_like, shape (n,)
-        Along the streamlines, 0 to 1.
-    mean, low, high : array_like, shape (n,)
-        Values there; those that are not finite leave a gap.
-    title : str
-        What the values are, with their unit: the title of their axis.
-    """
+    """Return a mean with its band along streamlines."""
     y, below, above = (np.asarray(values, np.float64) for values in (mean, low, high))
     return profiles_chart(positions, [Band(title, COLOURS[0], y, below, above)], title)
 

@@ -15,15 +15,7 @@ NAMES = ("left–right", "back–front", "down–up")
 
 
 def controls(shape: Mapping[str, Any], bounds: Sequence[float]) -> list[dict[str, Any]]:
-    """Return the sliders of a shape.
-
-    Parameters
-    ----------
-    shape : mapping
-        Of :mod:`pvfiblets.web.session.shapes`.
-    bounds : sequence of 6 floats
-        Of what is shown, mm: how far the sliders go.
-    """
+    """Return the sliders of a shape."""
     sides = [(float(bounds[2 * k]), float(bounds[2 * k + 1])) for k in range(3)]
     reach = float(np.linalg.norm([high - low for low, high in sides])) or 1.0
     kind = shape["kind"]

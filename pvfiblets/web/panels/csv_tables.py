@@ -36,14 +36,7 @@ def selection_csv(scene: Scene) -> str:
 
 
 def profile_csv(profile: Mapping[str, Any], title: str) -> str:
-    """Return a profile of :meth:`.Scene.profile`.
-
-    Parameters
-    ----------
-    profile : mapping
-    title : str
-        What it is of, with its unit.
-    """
+    """Return a profile of :meth:`.Scene.profile`."""
     columns = (profile["position"], profile["mean"], profile["std"])
     return _written(
         ("share_of_length", f"mean of {title}", f"standard deviation of {title}"), zip(*columns, strict=True)

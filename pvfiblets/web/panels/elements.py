@@ -63,16 +63,7 @@ v3 = Elements(_vuetify)
 
 
 def fold(title: str, is_open: str, **attributes: Any) -> None:
-    """Build the line that opens and folds a section of a panel.
-
-    Parameters
-    ----------
-    title : str
-    is_open : str
-        Expression of the page: whether it is open. If nothing else is said, a variable that the line changes itself.
-    **attributes
-        Of the button.
-    """
+    """Build the line that opens and folds a section of a panel."""
     v3.VBtn(
         title, variant="text", block=True, classes="text-none pv-fold", aria_expanded=(is_open,),
         append_icon=(f"{is_open} ? 'mdi-chevron-up' : 'mdi-chevron-down'",),
@@ -81,17 +72,7 @@ def fold(title: str, is_open: str, **attributes: Any) -> None:
 
 
 def eye(shown: str, hide: str = "Hide", show: str = "Show", **attributes: Any) -> None:
-    """Build the button that shows or hides something of a list.
-
-    Parameters
-    ----------
-    shown : str
-        Expression of the page: whether it is shown.
-    hide, show : str
-        What the button does, for who hears the page read.
-    **attributes
-        Of the button, such as ``click``.
-    """
+    """Build the button that shows or hides something of a list."""
     with v3.VBtn(icon=True, size="x-small", variant="text", aria_label=(f"{shown} ? '{hide}' : '{show}'",),
                  **attributes):  # fmt: skip
         v3.VIcon(icon=(f"{shown} ? 'mdi-eye' : 'mdi-eye-off'",), size=18)

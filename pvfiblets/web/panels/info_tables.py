@@ -29,19 +29,7 @@ _FOUR = 4
 
 
 def tables(facts: Mapping[str, Any]) -> list[Table]:
-    """Return the tables of a layer.
-
-    Parameters
-    ----------
-    facts : mapping
-        Of :meth:`.Scene.info`; empty for no layer.
-
-    Returns
-    -------
-    list of dict
-        ``title``; ``columns``, empty where rows are a name and a value; ``rows``, lists of texts; ``folded``, whether
-        it is for experts.
-    """
+    """Return the tables of a layer."""
     if not facts:
         return []
     of_file = dict(facts.get("facts") or {})

@@ -288,14 +288,7 @@ def _range(matrix: np.ndarray, logarithmic: bool) -> tuple[float, float]:
 
 
 def matrix_image(matrix: np.ndarray, logarithmic: bool) -> str:
-    """Return a matrix as the address of a PNG: a pixel a cell, grey where there is no number, or none above 0.
-
-    Parameters
-    ----------
-    matrix : numpy.ndarray, shape (n, n)
-    logarithmic : bool
-        Whether colours follow logarithms; numbers that have none are grey, too.
-    """
+    """Return a matrix as the address of a PNG: a pixel a cell, grey where there is no number, or none above 0."""
     import matplotlib as mpl
     from PIL import Image
 

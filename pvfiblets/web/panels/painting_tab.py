@@ -156,17 +156,7 @@ class PaintActions(Actions):
     # Strokes
 
     def paint(self, tool: str, places: Any, begins: bool) -> None:
-        """Take where the pointer went over the picture, of a stroke that goes on.
-
-        Parameters
-        ----------
-        tool : str
-            Of `TOOLS`; outlines and balls come whole, when they are done.
-        places : list of [x, y]
-            Shares of the picture from its upper left.
-        begins : bool
-            Whether it is a new stroke; the pane that it begins in is the one it is about.
-        """
+        """Take where the pointer went over the picture, of a stroke that goes on."""
         app = self._app
         if not isinstance(places, list) or not 1 <= len(places) <= 501:
             raise ValueError("a stroke needs places in the picture")

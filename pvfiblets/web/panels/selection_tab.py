@@ -24,17 +24,7 @@ class SelectionActions(Actions):
     # Tools
 
     def point(self, tool: str, places: Any, add: bool) -> None:
-        """Take what a tool did over the picture.
-
-        Parameters
-        ----------
-        tool : {'pick', 'box', 'lasso', 'measure', 'place'}
-            Which one.
-        places : list of [x, y]
-            Where the pointer went, as shares of the picture from its upper left.
-        add : bool
-            Whether what is hit is added to the selection.
-        """
+        """Take what a tool did over the picture."""
         if not isinstance(places, list) or not 1 <= len(places) <= 501:
             raise ValueError("a tool needs places in the picture")
         width, height = self._app.stream.settle()

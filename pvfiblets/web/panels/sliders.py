@@ -37,19 +37,7 @@ class SlideActions(Actions):
         }
 
     def slide(self, kind: str, owner: Any, name: str, value: Any) -> None:
-        """Take a value that a slider passes.
-
-        Parameters
-        ----------
-        kind : {'property', 'clip', 'region', 'handle', 'criterion', 'oblique', 'share'}
-            What the slider is of; handles of regions in the picture are taken like sliders.
-        owner : str or int
-            The layer, cut or row that it belongs to.
-        name : str
-            Of the slider.
-        value : float or list of 2 floats
-            Where its thumbs are; of a handle, its place in the picture.
-        """
+        """Take a value that a slider passes."""
         move = self._moves.get(kind) if isinstance(kind, str) else None
         if move is None:
             raise ValueError(f"there are no sliders of {str(kind)[:40]!r}; there are {', '.join(self._moves)}")

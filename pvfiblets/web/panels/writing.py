@@ -32,23 +32,6 @@ def write(
 
     A ``.fiblets`` file gets the records as they are. Other formats get the points of the file that the set was made
     from, where that is given.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-    ids : ndarray of int
-    target : Path
-        Its suffix says the format.
-    progress, cancel : callable, optional
-        See :meth:`.Files.load`. It is asked between pieces, and last when the file is written.
-    original : Original, optional
-        Where the streamlines came from.
-
-    Returns
-    -------
-    dict
-        ``streamlines``, ``bytes``, ``lost``: what the format cannot hold, and ``error_mm``: how far points may be from
-        the source's, 0 where they are the source's.
     """
     watch = Watch(progress, cancel)
     watch("choosing", 0.0)

@@ -128,18 +128,7 @@ def _selection_style(settings: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def filter_as(actor: Any, old: Filters, new: Filters, load: Load, ends: Ends) -> None:
-    """Bring what is shown of a tractogram in step with filters that were checked.
-
-    Parameters
-    ----------
-    actor : FibletsActor
-    old, new : Filters
-        Those that are in force, and those wanted.
-    load : callable
-        Gives meshes and labels that regions are made of.
-    ends : callable
-        From fiblets, a label volume's path and a radius to the parcels in which streamlines end, ``(n, 2)``.
-    """
+    """Bring what is shown of a tractogram in step with filters that were checked."""
     for name in old.criteria:
         if name not in new.criteria:
             actor.remove_criterion(name)
@@ -183,15 +172,7 @@ Planes = list[tuple[list[float], list[float]]]
 
 
 def split_cuts(layer: Layer, clips: Sequence[Clip]) -> tuple[Planes, list[Clip]]:
-    """Say how tubes or a mesh are cut by clips that are all for it.
-
-    Returns
-    -------
-    planes : list of (list of 3 floats, list of 3 floats)
-        Normals and origins of planes, which VTK cuts by.
-    others : list of Clip
-        Of meshes: those whose shapes the triangles are cut by.
-    """
+    """Say how tubes or a mesh are cut by clips that are all for it."""
     planes: Planes = []
     others: list[Clip] = []
     for clip in clips:
@@ -211,19 +192,7 @@ def split_cuts(layer: Layer, clips: Sequence[Clip]) -> tuple[Planes, list[Clip]]
 
 
 def cut(actor: Any, layer: Layer, clips: Sequence[Clip], load: Load, whole: Any = None) -> None:
-    """Cut an actor by those of the clips that are for its layer, and by nothing else.
-
-    Parameters
-    ----------
-    actor : pyvista.Actor
-    layer : Layer
-    clips : sequence of Clip
-        All of the scene.
-    load : callable
-        Gives meshes and labels that regions are made of.
-    whole : pyvista.PolyData, optional
-        Of a mesh, what the actor draws where nothing is cut.
-    """
+    """Cut an actor by those of the clips that are for its layer, and by nothing else."""
     mine = [clip for clip in clips if clip.cuts(layer)]
     if layer.kind not in (*LINES, "volume"):
         from vtkmodules.vtkCommonDataModel import vtkPlane

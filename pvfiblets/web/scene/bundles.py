@@ -47,15 +47,7 @@ class SceneBundles:
         return _own(self.scene.data(layer).data) if found is None else found
 
     def add_bundle(self, layer_id: str, what: str | Any, name: str | None = None) -> Bundle:
-        """Add a bundle.
-
-        Parameters
-        ----------
-        layer_id : str
-        what : {"selected", "shown"} or array of int
-            What is selected, what filters leave, or numbers of streamlines.
-        name : str, optional
-        """
+        """Add a bundle."""
         layer = self.scene.lines_layer(layer_id)
         if isinstance(what, str) and what == "selected":
             if layer.selected is None:

@@ -72,13 +72,7 @@ class Cameras:
         self.scene.plotter.renderer.reset_camera_clipping_range()
 
     def edges(self) -> dict[str, str]:
-        """Return which way the picture's edges lie: R, L, A, P, S, I; of oblique views the one or two nearest.
-
-        Returns
-        -------
-        dict
-            ``left, right, top, bottom``; RAS+ coordinates.
-        """
+        """Return which way the picture's edges lie: R, L, A, P, S, I; of oblique views the one or two nearest."""
         camera = self.scene.plotter.camera
         ahead = np.subtract(camera.focal_point, camera.position)
         right = np.cross(ahead, camera.up)
@@ -88,20 +82,7 @@ class Cameras:
         }  # fmt: skip
 
     def place_at(self, x: float, y: float, *, tolerance: float = 0.0) -> list[float] | None:
-        """Return where the surface or line is that a pixel of the last picture shows.
-
-        Parameters
-        ----------
-        x, y : float
-            Pixel, from the lower left corner.
-        tolerance : float, default: 0.0
-            Pixels that it may be away; the nearest counts.
-
-        Returns
-        -------
-        list of float or None
-            mm; ``None`` where there is nothing.
-        """
+        """Return where the surface or line is that a pixel of the last picture shows."""
         width, height = self.scene.plotter.window_size
         column = round(number(x, "x", 0, width - 1))
         row = round(number(y, "y", 0, height - 1))
@@ -122,22 +103,7 @@ class Cameras:
         return [float(part / w) for part in place]
 
     def screenshot(self, path: str | Path | None = None, *, scale: int = 1, transparent: bool = False) -> np.ndarray:
-        """Return a picture.
-
-        Parameters
-        ----------
-        path : str or Path, optional
-            Also written there, under the scene's root.
-        scale : int, default: 1
-            Times as many pixels along each side as the view has, up to 8.
-        transparent : bool, default: False
-            Leave the background out.
-
-        Returns
-        -------
-        numpy.ndarray
-            ``(height, width, 3 or 4)`` uint8.
-        """
+        """Return a picture."""
         times = int(number(scale, "scale", 1, 8))
         width, height = self.scene.plotter.window_size
         if width * height * times * times > LARGEST_PICTURE:

@@ -53,14 +53,7 @@ class Canvas:
         return self._strokes
 
     def become(self, painting: Painting | None, lines: Iterable[tuple[Layer, Any]]) -> None:
-        """Bring voxels, slices and streamlines in step with a document.
-
-        Parameters
-        ----------
-        painting : Painting or None
-        lines : iterable of (Layer, FibletActor)
-            All that are drawn.
-        """
+        """Bring voxels, slices and streamlines in step with a document."""
         before = self._painting
         if painting is None or before is None or (painting.shape, painting.affine) != (before.shape, before.affine):
             self._forget()

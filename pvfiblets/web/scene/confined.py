@@ -50,23 +50,7 @@ class Confined:
             raise NotADirectoryError(20, "Not a directory", str(root))
 
     def resolve(self, text: object) -> Path:
-        """Return the absolute path that a relative one means.
-
-        Parameters
-        ----------
-        text : str
-            What a browser sent: relative to the root, with slashes.
-
-        Returns
-        -------
-        Path
-            Free of links; it need not exist.
-
-        Raises
-        ------
-        ConfinedError
-            If it is no text, absolute, climbs by ``..``, or leads out of the root by a link.
-        """
+        """Return the absolute path that a relative one means."""
         if not isinstance(text, str) or len(text) > LONGEST_PATH or "\0" in text or "\\" in text:
             raise ConfinedError(f"not a path: {str(text)[:80]!r}")
         relative = PurePosixPath(text)
@@ -143,13 +127,7 @@ class Confined:
 
 
 def check_name(name: str) -> str:
-    """Return the name of a file without a folder, if it is one that every system and page can show.
-
-    Raises
-    ------
-    ConfinedError
-        If it is too long, hidden, reserved, or has characters in it that some systems or pages take for others.
-    """
+    """Return the name of a file without a folder, if it is one that every system and page can show."""
     if len(name.encode("utf-8", "surrogatepass")) > LONGEST_NAME:
         raise ConfinedError(f"the file's name is longer than {LONGEST_NAME} bytes; choose a shorter one")
     if (

@@ -22,13 +22,7 @@ LABELS: dict[str, Any] = {
 
 
 def show_distances(plotter: Any, measurements: Sequence[Measurement]) -> None:
-    """Show some distances in place of those before.
-
-    Parameters
-    ----------
-    plotter : pyvista.Plotter
-    measurements : sequence of Measurement
-    """
+    """Show some distances in place of those before."""
     import numpy as np
     import pyvista as pv
 

@@ -37,25 +37,7 @@ class SceneFilters:
         layers: Sequence[str] | None = None,
         **shape: Any,
     ) -> Clip:
-        """Cut layers.
-
-        Parameters
-        ----------
-        kind : {"plane", "slab", "box", "sphere", "mesh"}
-        inside : bool, default: True
-            Which side stays: of a plane, that which the normal points to.
-        name : str, optional
-        layers : sequence of str, optional
-            Ids of those that are cut. By default all that are lines, be they added later. Tubes are cut by planes, and
-            by the inside of slabs and boxes.
-        **shape
-            Of :mod:`pvfiblets.web.session.shapes`, such as ``normal`` and ``origin``. What is not given is the middle
-            of what is shown.
-
-        Returns
-        -------
-        Clip
-        """
+        """Cut layers."""
         if len(self.scene.state.clips) >= MOST_CLIPS:
             raise ValueError(f"there are {MOST_CLIPS} cuts, which is the most; remove one first")
         if kind not in CUTTING:
@@ -69,14 +51,7 @@ class SceneFilters:
         return clip
 
     def set_clip(self, clip_id: str, **changes: Any) -> Clip:
-        """Change a cut.
-
-        Parameters
-        ----------
-        clip_id : str
-        **changes
-            ``inside``, ``enabled``, ``name``, ``layers``, or parts of the shape such as ``origin``.
-        """
+        """Change a cut."""
         clip = self.scene.state.clip(clip_id)
         wanted: dict[str, Any] = {}
         for key in ("inside", "enabled"):
@@ -141,16 +116,7 @@ class SceneFilters:
     # Filters ------------------------------------------------------------------------------------
 
     def set_filter(self, layer_id: str, criterion: str, low: float | None = None, high: float | None = None) -> None:
-        """Show only what has values in a range.
-
-        Parameters
-        ----------
-        layer_id : str
-        criterion : str
-            Name of the values: ``"length"``, or any other number per streamline or per point.
-        low, high : float, optional
-            Least and greatest value that is shown; ``None`` leaves that end open.
-        """
+        """Show only what has values in a range."""
         layer = self.scene.lines_layer(layer_id)
         limits = check_range(low, high, criterion)
         self._check_values(layer, criterion)

@@ -80,16 +80,7 @@ class GlyphLayers:
         self._made: dict[int, tuple[dict[str, Any], Any]] = {}  # by the layer of the stack
 
     def become(self, stack: Any, image: Any, data: Any, settings: Mapping[str, Any], visible: bool) -> None:
-        """Show an image's glyphs as settings say.
-
-        Parameters
-        ----------
-        stack : SliceStack
-        image : SliceLayer
-        data : SliceImage
-        settings : mapping
-        visible : bool
-        """
+        """Show an image's glyphs as settings say."""
         wanted = arguments(settings) if settings[GLYPHS] is not None else None
         before, glyphs = self._made.get(id(image), (None, None))
         if glyphs is not None and (wanted is None or {**wanted, "size": 0} != {**(before or {}), "size": 0}):

@@ -55,21 +55,7 @@ class LayerQueries:
         return [{"name": name, "title": UNITS.get(name, name)} for name in names]
 
     def histogram(self, layer_id: str, array: str | None = None, bins: int = 64) -> dict[str, Any]:
-        """Return how often which values are there.
-
-        Parameters
-        ----------
-        layer_id : str
-        array : str, optional
-            Of :meth:`arrays`; what colours the layer by default, be it a volume, or else the first.
-        bins : int, default: 64
-
-        Returns
-        -------
-        dict
-            ``name``; ``edges``: ``bins + 1`` numbers; ``counts``; ``missing``: how many have no value; ``share`` of the
-            data that was looked at.
-        """
+        """Return how often which values are there."""
         layer = self.scene.layer(layer_id)
         count = whole(bins, "bins", 1, 4096)
         known = [entry["name"] for entry in self.arrays(layer_id)]
@@ -95,15 +81,7 @@ class LayerQueries:
         return self.histograms[key]
 
     def info(self, layer_id: str) -> dict[str, Any]:
-        """Return the facts of a layer, in JSON's types.
-
-        Returns
-        -------
-        dict
-            ``name, kind, path``; ``facts`` of the file or data; of lines ``promise_mm``, ``error_mm``, ``error_steps``
-            and ``error_degrees`` where they were measured, ``streamlines`` and ``fiblets`` as ``{"shown" or "drawn",
-            "total"}``; ``bounds``; ``milliseconds`` of the last redraw; ``gpu_bytes``; ``explain``.
-        """
+        """Return the facts of a layer, in JSON's types."""
         layer = self.scene.layer(layer_id)
         actor, loaded = self.scene.actor(layer_id), self.scene.data(layer)
         found: dict[str, Any] = {
@@ -136,14 +114,7 @@ class LayerQueries:
 
     @property
     def legend(self) -> list[dict[str, Any]]:
-        """What the colours of each visible layer mean.
-
-        Returns
-        -------
-        list of dict
-            ``layer, name``; and ``title, cmap`` (None: the usual), ``clim, log_scale`` where a map is used, ``color``
-            where there is one, or ``directions`` where red, green and blue are right, front and up.
-        """
+        """What the colours of each visible layer mean."""
         found = []
         for layer in self.scene.state.layers:
             if not layer.visible or layer.kind == "image":

@@ -132,21 +132,7 @@ def _window(volume: Any) -> tuple[float, float] | None:
 
 
 def check(kind: str, name: Any, value: Any, data: Any, volumes: Choices = ()) -> Any:
-    """Return a value for a setting in its plain form.
-
-    Parameters
-    ----------
-    kind : str
-        Of the layer.
-    name : str
-        Of the setting.
-    value : object
-        What somebody sent.
-    data : object
-        What the layer draws: choices and limits may depend on it.
-    volumes : sequence of (value, label)
-        Volumes that lines may be coloured by.
-    """
+    """Return a value for a setting in its plain form."""
     prop = _BY_NAME[kind].get(name) if isinstance(name, str) else None
     if prop is None:
         known = ", ".join(prop.name for prop in TABLES[kind] if not prop.read_only)

@@ -106,15 +106,7 @@ class Files:
         self._coded: dict[Path, tuple[Stamp, Any]] = {}
 
     def resolve(self, path: Any, *, new: bool = False) -> Path:
-        """Return the place of a file.
-
-        Parameters
-        ----------
-        path : str or Path
-            Relative to the root, or absolute.
-        new : bool
-            Whether it is to be written, and only its folder must be there.
-        """
+        """Return the place of a file."""
         text = str(path) if isinstance(path, (str, Path)) else ""
         if not text or not text.isprintable() or len(text) > 4096:
             raise ValueError(f"path is {shown(path)}; give the name of a file")
@@ -173,19 +165,7 @@ class Files:
     def load(
         self, source: Source, kind: str | None = None, progress: Progress | None = None, cancel: Cancel | None = None
     ) -> Loaded:
-        """Read, and where it must be, compress a source; it may take minutes.
-
-        Parameters
-        ----------
-        source : Source
-            Without ``ids``.
-        kind : str, optional
-            Of the layer; that which the file is for by default: of volumes of several numbers per voxel, an image.
-        progress : callable, optional
-            Called with what is being done and the share of it that is, 0 to 1.
-        cancel : callable, optional
-            Asked from time to time whether to stop.
-        """
+        """Read, and where it must be, compress a source; it may take minutes."""
         watch = Watch(progress, cancel)
         watch("reading", 0.0)
         if source.demo is not None:

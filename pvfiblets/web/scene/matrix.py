@@ -43,14 +43,7 @@ class SceneMatrix:
     def load_matrix(
         self, matrix: Matrix, progress: Progress | None = None, cancel: Cancel | None = None
     ) -> tuple[Store, Connectome]:
-        """Put a matrix together, for :meth:`show_matrix`; may run in a thread of its own.
-
-        Returns
-        -------
-        store : Store
-            With all that was read for it.
-        Connectome
-        """
+        """Put a matrix together, for :meth:`show_matrix`; may run in a thread of its own."""
         from pvfiblets.query.connectome.matrix import connectome
         from pvfiblets.slices.labels import as_label_table
 
@@ -75,18 +68,7 @@ class SceneMatrix:
         self.scene.become(replace(self.scene.state, matrix=matrix), "the matrix" if matrix is not None else "no matrix")
 
     def set_connection(self, layer_id: str, pair: Any, labels: str = "", radius: float = 4.0) -> None:
-        """Show only streamlines that connect two parcels.
-
-        Parameters
-        ----------
-        layer_id : str
-        pair : list of two int, or None
-            Labels; None for all streamlines.
-        labels : str
-            The volume's file.
-        radius : float, default: 4.0
-            mm about an end in which its parcel is looked for.
-        """
+        """Show only streamlines that connect two parcels."""
         layer = self.scene.lines_layer(layer_id)
         connection = None
         if pair is not None:
@@ -105,17 +87,7 @@ def choices(data: Any) -> tuple[list[str], list[str]]:
 
 
 def check_matrix(value: Any, data_of: Callable[[str], Any], place: Callable[[str], str]) -> Matrix:
-    """Return a matrix of a session or a page that was checked.
-
-    Parameters
-    ----------
-    value : mapping
-        The fields of :class:`.Matrix`.
-    data_of : callable
-        From a layer's id to its fiblets; it raises an error if there is none.
-    place : callable
-        From a path to how documents hold it; it raises an error if there is no such file.
-    """
+    """Return a matrix of a session or a page that was checked."""
     optional = ("names", "weights", "contrast", "statistic", "radius")
     mapping(value, "matrix", ("layer", "labels"), optional)
     layer = text(value["layer"], "layer of the matrix")

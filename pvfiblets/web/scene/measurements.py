@@ -28,13 +28,7 @@ class SceneMeasurements:
         self.scene = scene
 
     def measure(self, x0: float, y0: float, x1: float, y1: float) -> dict[str, Any] | None:
-        """Return the straight distance between what two pixels show; lines of measurements are looked through.
-
-        Returns
-        -------
-        dict or None
-            ``mm``, ``from`` and ``to`` (mm); ``None`` where one of them shows nothing.
-        """
+        """Return the straight distance between what two pixels show; lines of measurements are looked through."""
         with hidden_distances(self.scene.plotter):
             begin, end = (
                 self.scene.cameras.place_at(x0, y0, tolerance=NEAR),

@@ -64,22 +64,7 @@ class Original:
 
 
 def original_of(scene: Scene, layer: Layer, ids: np.ndarray) -> tuple[Original | None, str]:
-    """Return where streamlines of a layer came from, or else why their points are not to be had.
-
-    Parameters
-    ----------
-    scene : Scene
-    layer : Layer
-        Of streamlines.
-    ids : ndarray of int
-        Numbers in the layer, rising.
-
-    Returns
-    -------
-    original : Original or None
-    why : str
-        Why there is none, for people; empty where its file never had the points.
-    """
+    """Return where streamlines of a layer came from, or else why their points are not to be had."""
     source = layer.source
     if source.path is None or suffix_of(source.path) == ".fiblets":
         return None, ""

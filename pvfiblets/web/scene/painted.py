@@ -38,13 +38,7 @@ class ScenePainting:
     # Regions
 
     def add_painted(self, layer_id: str | None = None) -> Painted:
-        """Add a region without voxels.
-
-        Parameters
-        ----------
-        layer_id : str, optional
-            An image, on whose voxels regions are painted if there are none yet; the lowest by default.
-        """
+        """Add a region without voxels."""
         painting = self.scene.state.painting or self._begun(layer_id)
         if len(painting.regions) >= MOST_REGIONS:
             raise ValueError(f"there are {MOST_REGIONS} painted regions, which is the most; remove one first")
@@ -102,31 +96,7 @@ class ScenePainting:
         self, tool: str, name: str, path: Any, radius: float, plane: int | None = None, gesture: Any = None,
         share: float = 0.1,
     ) -> int:  # fmt: skip
-        """Paint, erase, fill, outline or grow.
-
-        Parameters
-        ----------
-        tool : {"brush", "erase", "fill", "outline", "sphere", "grow"}
-        name : str
-            Of the region; erasing takes voxels out of all.
-        path : list of [x, y, z]
-            mm: along which the brush is drawn; of a fill, and of growing, the first is where it begins. An outline is
-            filled by all within it. A sphere reaches from the first to the last, or as far as the brush.
-        radius : float
-            Of the brush, mm.
-        plane : {0, 1, 2}, optional
-            Only within the slice across this axis of voxels.
-        gesture : str, optional
-            Strokes of one gesture are one step to undo.
-        share : float, default: 0.1
-            Of growing: how far values may be from the first one's, as a share of the image's window. The image is the
-            highest that is visible and lies on the voxels that are painted.
-
-        Returns
-        -------
-        int
-            Voxels that have changed.
-        """
+        """Paint, erase, fill, outline or grow."""
         painting, painter = self._painting, self._painter
         if tool not in TOOLS:
             raise ValueError(f"there is no tool {shown(tool)}; choose one of {', '.join(TOOLS)}")
@@ -189,13 +159,7 @@ class ScenePainting:
             )
 
     def add_labels(self, loaded: Loaded) -> list[Painted]:
-        """Take the labels of an image as painted regions, by their names and colours.
-
-        Parameters
-        ----------
-        loaded : Loaded
-            Of the kind ``"image"``.
-        """
+        """Take the labels of an image as painted regions, by their names and colours."""
         image = loaded.data
         found = self._labels_in(loaded)
         painting = self.scene.state.painting

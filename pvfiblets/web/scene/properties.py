@@ -100,15 +100,7 @@ class Property(Row):
         return number(value, self.name, low, high)
 
     def describe(self, actor: Any, data: Any, settings: Mapping[str, Any], volumes: Choices = ()) -> dict[str, Any]:
-        """Return all that a panel needs, in JSON's types.
-
-        Returns
-        -------
-        dict
-            ``name, type, label, help, group, optional, read_only, whole, default``; ``value`` as set; ``effective``:
-            what is in force, also where the value is ``None``; ``choices``: list of ``{"value", "title"}``;
-            ``limits``: two numbers or ``None``; ``matters``: whether it changes anything now.
-        """
+        """Return all that a panel needs, in JSON's types."""
         value = settings.get(self.name, self.default)
         effective = value
         if self.read is not None and (value is None or self.read_only):

@@ -31,16 +31,7 @@ class SceneRegions:
     def usual_region(
         self, kind: str, last: Mapping[str, Any] | None = None, beside: Any = (1.0, 0.0, 0.0)
     ) -> dict[str, Any]:
-        """Return a sphere or a box of about a centimetre in a brain, for a panel to begin with.
-
-        Parameters
-        ----------
-        kind : {"sphere", "box"}
-        last : mapping, optional
-            The sphere or box that it lies beside and is as large as; by default it lies in the middle of what is shown.
-        beside : sequence of 3 floats
-            On which side of that.
-        """
+        """Return a sphere or a box of about a centimetre in a brain, for a panel to begin with."""
         bounds = np.array(visible_bounds(self.scene.plotter), np.float64)
         low, high = bounds[::2], bounds[1::2]
         half, middle = _rounded(SHARE * float((high - low).max())), 0.5 * (low + high)
@@ -75,15 +66,7 @@ class SceneRegions:
         return [layer.id for layer in self.scene.state.layers if name is not None and _has(layer, name)]
 
     def change_region(self, name: str, shape: Mapping[str, Any]) -> None:
-        """Change a region for all layers that have it.
-
-        Parameters
-        ----------
-        name : str
-            What it is called now.
-        shape : mapping
-            Of :mod:`pvfiblets.web.session.shapes`, with the name that it has then.
-        """
+        """Change a region for all layers that have it."""
         if not self.sharing(name):
             there = ", ".join(self.region_names()) or "none"
             raise ValueError(f"there is no region {shown(name)}; there are: {there}")

@@ -15,19 +15,7 @@ __all__ = ["sampled"]
 
 
 def sampled(volume: Any, points: Any) -> np.ndarray:
-    """Return a volume's values at points.
-
-    Parameters
-    ----------
-    volume : VolumeSource
-    points : array_like
-        ``(n, 3)`` mm.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(n,)`` float64.
-    """
+    """Return a volume's values at points."""
     places = np.asarray(points, np.float64) @ volume.voxels[:3, :3].T + volume.voxels[:3, 3]
     sides = np.array(volume.values.shape)
     found = np.full(len(places), np.nan)

@@ -84,19 +84,7 @@ class Place:
 
 
 def arrange(wanted: Sequence[Wanted], size: tuple[int, int], scale: float, measure: Measure) -> list[Place | None]:
-    """Return a place for each bar, the first at the right; ``None`` for those that there is no room for.
-
-    Parameters
-    ----------
-    wanted : sequence of Wanted
-        Those that come first are kept where not all can be.
-    size : tuple of 2 ints
-        Of the picture, in pixels.
-    scale : float
-        Pixels of the picture for one at 72 to an inch.
-    measure : callable
-        Tells how wide a text is.
-    """
+    """Return a place for each bar, the first at the right; ``None`` for those that there is no room for."""
     kept = list(range(len(wanted)))
     while kept:
         for font in FONTS:

@@ -169,22 +169,7 @@ class Scene:
         return lambda: self._listeners.remove(listener) if listener in self._listeners else None
 
     def become(self, state: State, what: str = "", key: tuple[str, ...] | None = None, *, whole: bool = False) -> None:
-        """Bring everything in step with another document.
-
-        Parameters
-        ----------
-        state : State
-            That was checked.
-        what : str
-            What is done, for listeners; they are told nothing if it is empty.
-        key, whole
-            Of the :class:`Change`.
-
-        Raises
-        ------
-        Exception
-            What an actor or file refused; the scene is as it was.
-        """
+        """Bring everything in step with another document."""
         if state == self._state:
             return
         try:
@@ -277,17 +262,7 @@ class Scene:
     def load(
         self, path: str | Path, kind: str | None = None, progress: Progress | None = None, cancel: Cancel | None = None
     ) -> Loaded:
-        """Read a file, and compress it if need be, for :meth:`add`; may run in a thread of its own.
-
-        Parameters
-        ----------
-        path : str or Path
-            Relative to the root, or absolute.
-        kind : str, optional
-            Of the layer; that which the file is for by default.
-        progress, cancel : callable, optional
-            See :meth:`.Files.load`.
-        """
+        """Read a file, and compress it if need be, for :meth:`add`; may run in a thread of its own."""
         if kind == "selection" or (kind is not None and kind not in layers.KINDS):
             raise ValueError(
                 f"kind is {kind!r}; choose one of {', '.join(k for k in layers.KINDS if k != 'selection')}"
@@ -402,16 +377,7 @@ class Scene:
         self.change(replace(layer, visible=bool(visible)), f"{'show' if visible else 'hide'} {layer.name}")
 
     def set(self, layer_id: str, name: str, value: Any) -> None:
-        """Set a property of a layer.
-
-        Parameters
-        ----------
-        layer_id : str
-        name : str
-            Of :data:`pvfiblets.web.scene.layers.TABLES`.
-        value : JSON value
-            As a browser sent it.
-        """
+        """Set a property of a layer."""
         layer = self.layer(layer_id)
         checked = layers.check(layer.kind, name, value, self.data(layer).data, self.volume_choices(layer))
         settings = layers.changed(layer.kind, layer.settings, name, checked, self.data(layer).data)

@@ -32,23 +32,7 @@ class SceneSelection:
     # Picking ------------------------------------------------------------------------------------
 
     def pick_at(self, x: float, y: float, *, mode: str = "replace", tolerance: float = 4.0) -> dict[str, Any] | None:
-        """Select the streamline at a pixel of the last picture.
-
-        Parameters
-        ----------
-        x, y : float
-            Pixel, from the lower left corner.
-        mode : {"replace", "add", "remove", "toggle"}
-            What becomes of the present selection.
-        tolerance : float, default: 4.0
-            Pixels that it may be away.
-
-        Returns
-        -------
-        dict or None
-            ``layer``, ``streamline``, ``point`` (the place along it), ``position`` (mm), ``value``; ``None`` where
-            there is none, and then ``"replace"`` selects nothing.
-        """
+        """Select the streamline at a pixel of the last picture."""
         from pvfiblets.plotting.fiblets.pick_result import visible
 
         at = np.array([[number(x, "x"), number(y, "y")]])
@@ -75,13 +59,7 @@ class SceneSelection:
     def select_box(
         self, x0: float, y0: float, x1: float, y1: float, *, mode: str = "replace", through: bool = False
     ) -> int:
-        """Select what lies in a rectangle of the last picture; ``through``: hidden streamlines too.
-
-        Returns
-        -------
-        int
-            How many are selected now.
-        """
+        """Select what lies in a rectangle of the last picture; ``through``: hidden streamlines too."""
         from pvfiblets.plotting.fiblets.pick_result import checked_box
 
         box = numbers([x0, y0, x1, y1], "box", 4)
@@ -120,22 +98,7 @@ class SceneSelection:
     # What is selected ---------------------------------------------------------------------------
 
     def table(self, layer_id: str | None = None, *, first: int = 0, limit: int = 200) -> dict[str, Any]:
-        """Return the selected streamlines, for a table.
-
-        Parameters
-        ----------
-        layer_id : str, optional
-            Of one layer only.
-        first, limit : int
-            Rows ``first`` to ``first + limit``.
-
-        Returns
-        -------
-        dict
-            ``total``: rows that there are; ``rows``: each ``layer, name, streamline, points, length`` (mm), ``value``
-            (what colours the streamline; the mean of its points; ``None`` where colours are no numbers), ``of`` (what
-            the value is of), ``groups``.
-        """
+        """Return the selected streamlines, for a table."""
         first, limit = whole(first, "first"), whole(limit, "limit", 0, _LONGEST_TABLE)
         chosen = [self.scene.lines_layer(layer_id)] if layer_id is not None else self.scene.state.layers
         rows: list[dict[str, Any]] = []
@@ -151,22 +114,7 @@ class SceneSelection:
         return {"total": before, "rows": rows}
 
     def profile(self, layer_id: str, scalars: str | None = None, n: int = 100) -> dict[str, Any]:
-        """Return the mean of a value along the selected streamlines, from end to end.
-
-        Parameters
-        ----------
-        layer_id : str
-        scalars : str, optional
-            Values per point, or the name of the volume that colours the layer; what colours it by default, or else
-            its curvature.
-        n : int, default: 100
-            Places along each streamline.
-
-        Returns
-        -------
-        dict
-            ``position`` (0 to 1), ``mean``, ``std``: lists, ``None`` where there is no value; ``name``, ``count``.
-        """
+        """Return the mean of a value along the selected streamlines, from end to end."""
         layer = self.scene.lines_layer(layer_id)
         if layer.selected is None:
             raise ValueError(f"nothing of {layer.name!r} is selected; pick streamlines first")
@@ -190,23 +138,7 @@ class SceneSelection:
         }
 
     def export(self, layer_id: str, path: str, *, what: str = "selected", overwrite: bool = False) -> dict[str, Any]:
-        """Write streamlines of a layer to a file under the scene's root.
-
-        Parameters
-        ----------
-        layer_id : str
-        path : str
-            Its suffix, one of `EXPORTS`, says in which format.
-        what : {"selected", "shown", "all"}
-            Which of them: shown are those that filters leave.
-        overwrite : bool, default: False
-            Whether a file of that name may be replaced.
-
-        Returns
-        -------
-        dict
-            ``path``, and what :func:`~pvfiblets.web.panels.writing.write` returns.
-        """
+        """Write streamlines of a layer to a file under the scene's root."""
         layer = self.scene.lines_layer(layer_id)
         if not isinstance(path, str) or not path.lower().endswith(EXPORTS):
             raise ValueError(f"the file's name is {shown(path)}; let it end in one of {', '.join(EXPORTS)}")

@@ -122,13 +122,7 @@ def image_looks(layer: Layer) -> dict[str, Any]:
 
 
 def normal_of(oblique: tuple[float, float]) -> tuple[float, float, float]:
-    """Return the normal of a slice that is tilted backwards out of the axial plane, and then turned to the left.
-
-    Parameters
-    ----------
-    oblique : tuple of 2 floats
-        Both angles in degrees.
-    """
+    """Return the normal of a slice that is tilted backwards out of the axial plane, and then turned to the left."""
     tilt, turn = (math.radians(angle) for angle in oblique)
     return -math.sin(tilt) * math.sin(turn), math.sin(tilt) * math.cos(turn), math.cos(tilt)
 

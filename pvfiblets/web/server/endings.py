@@ -20,19 +20,7 @@ _SIGNS = (
 
 
 def reason(code: int | None, lines: Iterable[str], doing: str, most: int | None) -> str:
-    """Return why a process has ended, in one sentence for its user.
-
-    Parameters
-    ----------
-    code : int or None
-        Its exit code; below zero, the signal that ended it.
-    lines : iterable of str
-        What it wrote to standard error last.
-    doing : str
-        What it opened meanwhile; empty if nothing.
-    most : int or None
-        Bytes of memory that it could have.
-    """
+    """Return why a process has ended, in one sentence for its user."""
     during = f" while it opened {doing}" if doing else ""
     what = "a smaller file" if doing else "less at once"
     less = f"open {what}, or have the server started with a larger --max-memory"

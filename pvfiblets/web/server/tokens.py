@@ -17,17 +17,7 @@ LONGEST = 4096  # bytes of a file that has nothing but a token
 
 
 def chosen_token(choice: str, file: str | None = None, environment: Mapping[str, str] | None = None) -> str | None:
-    """Return the token to ask for, or ``None`` for none.
-
-    Parameters
-    ----------
-    choice : str
-        ``"auto"`` or ``"none"``.
-    file : str, optional
-        A file with the token; it is made, with a new token, where there is none.
-    environment : mapping, optional
-        Of this process: ``PVFIBLETS_TOKEN`` is the token where no file is named.
-    """
+    """Return the token to ask for, or ``None`` for none."""
     if choice not in ("auto", "none"):
         raise ValueError(
             "--token takes auto or none: other users of this machine can read command lines, so a token of your own "

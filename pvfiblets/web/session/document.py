@@ -371,17 +371,7 @@ def free_name(name: str, taken: Collection[str], kept: int | None = None) -> str
 
 
 def named(things: Iterable[Any], wanted: Any, what: str, *, by: str = "name") -> Any:
-    """Return the one of some things that has a name.
-
-    Parameters
-    ----------
-    things : iterable
-    wanted : str
-    what : str
-        What they are, for people.
-    by : str
-        The attribute that is asked for.
-    """
+    """Return the one of some things that has a name."""
     things = list(things)
     found = next((thing for thing in things if getattr(thing, by) == wanted), None)
     if found is None:

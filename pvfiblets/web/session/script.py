@@ -48,20 +48,7 @@ def unpacked(text):
 
 
 def as_script(scene: Scene, picture: str | None = None) -> str:
-    """Return a script that makes the picture of a scene.
-
-    Parameters
-    ----------
-    scene : Scene
-        As it is, with its camera and the size of its picture.
-    picture : str, optional
-        A file that the script writes; by default it opens a window.
-
-    Returns
-    -------
-    str
-        Python. Where the scene has a root, the script takes paths from a ``FOLDER`` that stands at its top.
-    """
+    """Return a script that makes the picture of a scene."""
     shown = scene.state.layers
     draft = _Writer(scene, {layer.id: f"_{k}" for k, layer in enumerate(shown)}).write(picture)
     taken = {*dir(builtins), *keyword.kwlist, *keyword.softkwlist, *names_in(draft)}

@@ -50,16 +50,7 @@ def slicing_lines(scene: Scene) -> list[str]:
 
 
 def painting_lines(scene: Scene, names: Mapping[str, str], ids: Callable[[Any], str]) -> list[str]:
-    """Return lines that make the painted regions, show them and choose streamlines by them.
-
-    Parameters
-    ----------
-    scene : Scene
-    names : mapping of str to str
-        Python's names of layers, by id.
-    ids : callable
-        From runs of whole numbers to the Python of these.
-    """
+    """Return lines that make the painted regions, show them and choose streamlines by them."""
     painting, painter = scene.state.painting, scene.canvas.painter
     if painting is None or painter is None:
         return []

@@ -54,17 +54,7 @@ class BrowserDrawing(Actions):
     # What browsers say
 
     def report(self, webgl: Any, card: Any, trouble: Any = "") -> None:
-        """Take note of what a browser can draw with.
-
-        Parameters
-        ----------
-        webgl : bool
-            Whether it has WebGL 2.
-        card : str
-            What it draws on, as it says.
-        trouble : str
-            Why it draws no more.
-        """
+        """Take note of what a browser can draw with."""
         name = str(card)[:200]
         self._able = webgl is True and (self._asked == "there" or not SOFTWARE.search(name))
         self._trouble = " ".join(str(trouble).split())[:300]
@@ -74,17 +64,7 @@ class BrowserDrawing(Actions):
         self._app.stream.request()
 
     def moved(self, camera: Any, origin: Any, rests: Any) -> None:
-        """Put the camera where a browser has moved it.
-
-        Parameters
-        ----------
-        camera : dict
-            As `Cameras.camera` has it.
-        origin : str
-            The page that moved it.
-        rests : bool
-            Whether it rests there: other pages of the session are told.
-        """
+        """Put the camera where a browser has moved it."""
         if not self.on:
             return
         app = self._app

@@ -65,17 +65,7 @@ class CameraActions(Actions):
         self._app.page.dialog = "picture"
 
     def save_picture(self, width: Any, height: Any, dpi: Any, transparent: Any) -> str:
-        """Draw the picture at another size, and return where it can be fetched.
-
-        Parameters
-        ----------
-        width, height : str
-            Pixels, as somebody typed them.
-        dpi : str
-            Pixels per inch that the file is to say; empty for none.
-        transparent : bool
-            Leave the background out.
-        """
+        """Draw the picture at another size, and return where it can be fetched."""
         from PIL import Image
 
         app = self._app

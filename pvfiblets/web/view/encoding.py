@@ -12,17 +12,7 @@ __all__ = ["encode"]
 
 
 def encode(pixels: NDArray[np.uint8], codec: str, quality: int) -> bytes:
-    """Return a picture's bytes.
-
-    Parameters
-    ----------
-    pixels : ndarray of uint8, shape (height, width, 3)
-        The first row is the top.
-    codec : {'jpeg', 'png', 'webp'}
-        The format.
-    quality : int
-        From 1 to 100; PNG is lossless whatever it says.
-    """
+    """Return a picture's bytes."""
     from PIL import Image
 
     file = BytesIO()

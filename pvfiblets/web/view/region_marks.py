@@ -64,20 +64,7 @@ class Sight:
 
 
 def mark(shape: Mapping[str, Any], sight: Sight) -> dict[str, Any] | None:
-    """Return how a region is drawn over the picture.
-
-    Parameters
-    ----------
-    shape : mapping
-        Of :mod:`pvfiblets.web.session.shapes`.
-    sight : Sight
-
-    Returns
-    -------
-    dict or None
-        ``lines``: points of SVG polylines, in thousandths; ``handles``: each ``name, x, y``. ``None`` for other shapes
-        than spheres and boxes, and for those that are not before the camera.
-    """
+    """Return how a region is drawn over the picture."""
     if shape["kind"] == "sphere":
         curves, places = _sphere(shape, sight)
     elif shape["kind"] == "box":

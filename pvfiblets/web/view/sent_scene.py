@@ -75,13 +75,7 @@ class SentScenes:
         self._names: dict[int, tuple[bytes, str]] = {}
 
     def make(self, most: int = MOST) -> SentScene | str:
-        """Return the scene as it is now, or what of it a browser cannot draw: '' where there is nothing to draw.
-
-        Parameters
-        ----------
-        most : int
-            Bytes of streamlines; of more nothing is made.
-        """
+        """Return the scene as it is now, or what of it a browser cannot draw: '' where there is nothing to draw."""
         scene = self._scene
         if (found := _views(scene) or _too_large(scene, most)) is not None:
             return found

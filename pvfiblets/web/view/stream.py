@@ -249,18 +249,6 @@ class PictureStream:
 
         Lines and letters are as large beside the picture's height as on the page. What is larger than that is drawn in
         pieces: enlarged windows have wider lines, more dots to an inch have not.
-
-        Parameters
-        ----------
-        width, height : int
-            Pixels.
-        transparent : bool
-            Leave the background out.
-
-        Returns
-        -------
-        ndarray of uint8, shape (height, width, 3 or 4)
-            The first row is the top.
         """
         pieces = max(-(-height // self._size[1]), -(-max(width, height) // LARGEST_WINDOW))
         size = -(-width // pieces), -(-height // pieces)

@@ -46,13 +46,7 @@ class Fingers:
         self._last: _Pair | None = None
 
     def take(self, event: Mapping[str, Any]) -> bool:
-        """Follow an event of the pointer, in the picture's pixels; ``False`` if it is none of two fingers.
-
-        Parameters
-        ----------
-        event : mapping
-            ``type``: a gesture's name after ``Start``, ``End`` or nothing; ``positions``: ``x`` and ``y`` by finger.
-        """
+        """Follow an event of the pointer, in the picture's pixels; ``False`` if it is none of two fingers."""
         kind = str(event["type"])
         gesture = kind.removeprefix("Start").removeprefix("End")
         if gesture not in GESTURES:

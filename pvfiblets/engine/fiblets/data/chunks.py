@@ -129,26 +129,7 @@ class Chunk:
 
 
 def plan_chunks(fiblets: FibletSet, max_buffer_bytes: int, max_fiblets: int | None = None) -> list[ChunkPlan]:
-    """Group pages so that no buffer of a group is larger than a limit.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-    max_buffer_bytes : int
-        The driver's limit for one storage block.
-    max_fiblets : int, optional
-        Of a group of several pages.
-
-    Returns
-    -------
-    list of ChunkPlan
-        Covering all pages in order.
-
-    Raises
-    ------
-    EngineError
-        If one page alone is too large.
-    """
+    """Group pages so that no buffer of a group is larger than a limit."""
     n_pages = len(fiblets.pages) - 1
     plans = []
     begin = 0
@@ -210,13 +191,7 @@ def padded(size: int) -> int:
 
 
 def reserve_buffer(ctx: moderngl.Context, size: int, what: str) -> moderngl.Buffer:
-    """Make a buffer of undefined content.
-
-    Raises
-    ------
-    GPUMemoryError
-        If memory does not suffice.
-    """
+    """Make a buffer of undefined content."""
     try:
         buffer = ctx.buffer(reserve=size)
     except (moderngl.Error, MemoryError) as error:
@@ -228,13 +203,7 @@ def reserve_buffer(ctx: moderngl.Context, size: int, what: str) -> moderngl.Buff
 
 
 def storage_buffer(ctx: moderngl.Context, data: npt.NDArray[Any] | bytes, what: str) -> moderngl.Buffer:
-    """Make a buffer of some data, padded with zeros to whole words and one more.
-
-    Raises
-    ------
-    GPUMemoryError
-        If memory does not suffice.
-    """
+    """Make a buffer of some data, padded with zeros to whole words and one more."""
     raw = data if isinstance(data, bytes) else np.ascontiguousarray(data).reshape(-1).view(np.uint8)
     buffer = reserve_buffer(ctx, padded(len(raw)), what)
     if len(raw):

@@ -50,13 +50,7 @@ class DataTextures:
         self._binding: Callable[[], None] = _nothing
 
     def bind(self) -> None:
-        """Bind all to their units.
-
-        Raises
-        ------
-        EngineError
-            If a buffer has more texels than this OpenGL reads.
-        """
+        """Bind all to their units."""
         if self._bound != self._chunk.buffers:
             self._look()
         self._binding()

@@ -114,15 +114,7 @@ class FilterTextures:
 
     @property
     def filtering(self) -> Filter | None:
-        """What is drawn; None for everything.
-
-        Raises
-        ------
-        ValueError
-            On setting one that is for another set.
-        EngineError
-            On setting one for which memory does not suffice.
-        """
+        """What is drawn; None for everything."""
         return self._filter
 
     @filtering.setter
@@ -220,16 +212,7 @@ def _packed(mask: npt.NDArray[np.bool_]) -> Words:
 
 
 def points_of_part(words: Words, whole: FibletSet, ids: npt.NDArray[np.int64]) -> Words:
-    """Return the bits of the points of some streamlines, one after another in that order.
-
-    Parameters
-    ----------
-    words : numpy.ndarray
-        Of all points, as :class:`Filter` has them.
-    whole : FibletSet
-    ids : numpy.ndarray
-        ``(n,)`` streamlines that have points.
-    """
+    """Return the bits of the points of some streamlines, one after another in that order."""
     bits = np.unpackbits(words.view(np.uint8), bitorder="little")
     places = StreamlineRanges.of(whole).at(ids)
     ends = np.cumsum(places.points)

@@ -31,19 +31,7 @@ class Measurer(Protocol):
     """Measures the fiblets of a chunk."""
 
     def measure(self, chunk: Chunk, features: Sequence[str]) -> npt.NDArray[np.float32]:
-        """Return ``(n_fiblets, 12)``: first, joint, turns of each fiblet; the blocks 0, 1 and 4 are bound already.
-
-        Parameters
-        ----------
-        chunk : Chunk
-        features : sequence of str
-            What the fiblets need to be decoded.
-
-        Raises
-        ------
-        EngineError
-            If memory does not suffice.
-        """
+        """Return ``(n_fiblets, 12)``: first, joint, turns of each fiblet; the blocks 0, 1 and 4 are bound already."""
         ...
 
 

@@ -100,37 +100,11 @@ class MemoryBudget:
 
     @classmethod
     def of(cls, ctx: moderngl.Context, gl: GLExtras, limits: Limits, largest: int | None) -> MemoryBudget:
-        """Ask the driver and the machine.
-
-        Parameters
-        ----------
-        ctx : moderngl.Context
-        gl : GLExtras
-        limits : Limits
-        largest : int, optional
-            Bytes that all buffers together may have.
-        """
+        """Ask the driver and the machine."""
         return cls(limits, free_memory(ctx, gl), free_host_memory(), is_software(ctx), largest)
 
     def fitted(self, fiblets: FibletSet, fit: str | None, most: float = 1.0) -> Fitted:
-        """Plan a set, or what fits of it.
-
-        Parameters
-        ----------
-        fiblets : FibletSet
-        fit : {None, 'sample'}
-            None refuses what does not fit; 'sample' takes an even share of the streamlines
-            (:func:`pvfiblets.codec.restrict.even_share`), :data:`RESERVE` less than would fit, in memory.
-        most : float
-            Take no larger share than that.
-
-        Raises
-        ------
-        GPUMemoryError
-            If it does not fit, or no streamline does; the message has the numbers.
-        EngineError
-            If one page is too large, or there are more fiblets than the pipeline can mark.
-        """
+        """Plan a set, or what fits of it."""
         plans = plan_chunks(fiblets, self.limits.buffer_bytes, self.limits.fiblets)
         if most >= 1.0 and (refusal := self._refusal(fiblets, plans)) is None:
             return Fitted(fiblets, plans, 1.0)
@@ -182,13 +156,7 @@ class MemoryBudget:
         return self._buffers(fiblets, plan_chunks(fiblets, self.limits.buffer_bytes, self.limits.fiblets))
 
     def fits(self, fiblets: FibletSet) -> bool:
-        """Say whether a set fits as a whole, as far as can be known beforehand.
-
-        Raises
-        ------
-        EngineError
-            If one page is too large.
-        """
+        """Say whether a set fits as a whole, as far as can be known beforehand."""
         return self._refusal(fiblets, plan_chunks(fiblets, self.limits.buffer_bytes, self.limits.fiblets)) is None
 
     @property
@@ -232,13 +200,7 @@ def _fraction_of(part: Restriction, whole: FibletSet) -> float:
 
 
 def free_memory(ctx: moderngl.Context, gl: GLExtras) -> int | None:
-    """Bytes that buffers can still take, where it can be known beforehand.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    gl : GLExtras
-    """
+    """Bytes that buffers can still take, where it can be known beforehand."""
     if is_software(ctx):
         return free_host_memory()
     for name in ("GL_GPU_MEMORY_INFO_CURRENT_AVAILABLE_VIDMEM_NVX", "GL_VBO_FREE_MEMORY_ATI"):

@@ -93,25 +93,7 @@ class ValueSources:
         self._ranges: dict[str, tuple[float, float]] = {}
 
     def activate(self, name: str | VolumeSource | None, features: Sequence[str]) -> tuple[str, ...]:
-        """Make the buffers of a value, and drop those of the last one.
-
-        Parameters
-        ----------
-        name : str or VolumeSource, optional
-            ``FibletStyle.values``.
-        features : sequence of str
-            What the fiblets need to be decoded.
-
-        Returns
-        -------
-        tuple of str
-            The features that read them.
-
-        Raises
-        ------
-        EngineError
-            If there is no such array, or memory does not suffice.
-        """
+        """Make the buffers of a value, and drop those of the last one."""
         if isinstance(name, str):
             self._check(name)
         if name != self._active:
@@ -134,13 +116,7 @@ class ValueSources:
         return ("VALUES_STORED",) if name in self._fiblets.per_point else ("VALUES_STORED", "VALUES_COLOUR")
 
     def locate(self, to_data: Floats) -> None:
-        """Bind the volume, if one is active, for a picture whose local coordinates lie here.
-
-        Parameters
-        ----------
-        to_data : numpy.ndarray
-            (4, 4) local mm to data mm (:func:`pvfiblets.engine.frame.local_frame`).
-        """
+        """Bind the volume, if one is active, for a picture whose local coordinates lie here."""
         if self._volume is not None:
             self._volume.bind(to_data)
 

@@ -198,13 +198,7 @@ class VolumeTexture:
         self._block = ctx.buffer(reserve=SAMPLING_BLOCK.nbytes)
 
     def bind(self, to_data: Array) -> None:
-        """Say where the picture's local coordinates lie in the volume, and bind both.
-
-        Parameters
-        ----------
-        to_data : numpy.ndarray
-            (4, 4) float64, local mm to the fiblets' mm (:func:`pvfiblets.engine.frame.local_frame`).
-        """
+        """Say where the picture's local coordinates lie in the volume, and bind both."""
         self._block.write(
             SAMPLING_BLOCK.pack(
                 voxel_from_local=self.source.voxels @ to_data,

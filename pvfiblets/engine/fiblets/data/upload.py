@@ -29,15 +29,7 @@ Array = npt.NDArray[Any]
 
 
 def rows_of(array: Array, first: int, last: int) -> Iterator[Array]:
-    """Yield rows of an array in slices of :data:`SLICE_BYTES`; of a mapped one, forget each once the next is asked for.
-
-    Parameters
-    ----------
-    array : numpy.ndarray
-        In memory or mapped.
-    first, last : int
-        First row and one past the last.
-    """
+    """Yield rows of an array in slices of `SLICE_BYTES`; of a mapped one, forget each once the next is asked for."""
     rows = max(SLICE_BYTES // max(array[:1].nbytes, 1), 1)
     for at in range(first, last, rows):
         end = min(at + rows, last)
@@ -48,24 +40,7 @@ def rows_of(array: Array, first: int, last: int) -> Iterator[Array]:
 def fill_buffer(
     ctx: moderngl.Context, size: int, pieces: Iterable[Array], what: str, show: Show | None = None
 ) -> moderngl.Buffer:
-    """Make a buffer of arrays that follow on each other.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    size : int
-        Bytes of the buffer, no less than those of the arrays; what these leave over is undefined.
-    pieces : iterable of numpy.ndarray
-    what : str
-        What errors call it.
-    show : callable, optional
-        Told how many bytes were copied, piece by piece.
-
-    Raises
-    ------
-    GPUMemoryError
-        If memory does not suffice.
-    """
+    """Make a buffer of arrays that follow on each other."""
     buffer = reserve_buffer(ctx, size, what)
     at = 0
     try:
@@ -86,26 +61,7 @@ def fill_buffer(
 def upload_chunk(
     ctx: moderngl.Context, fiblets: FibletSet, plan: ChunkPlan, number: int, show: Show | None = None
 ) -> Chunk:
-    """Copy one chunk to the GPU.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    fiblets : FibletSet
-        In memory or mapped.
-    plan : ChunkPlan
-    number : int
-        Chunks before it.
-    show : callable, optional
-        Told how many bytes were copied, slice by slice.
-
-    Raises
-    ------
-    GPUMemoryError
-        If memory does not suffice; nothing of the chunk stays behind.
-    EngineError
-        If a streamline has more points than shaders can count.
-    """
+    """Copy one chunk to the GPU."""
     first, last = plan.fiblets
     n = last - first
     # Its last streamline may go on in the next chunk: one rank more than begins here.
@@ -156,29 +112,7 @@ def upload_fitting(
     progress: bool,
     most: float = 1.0,
 ) -> Fitted:
-    """Copy what fits, and say what that is.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    fiblets : FibletSet
-    room : MemoryBudget
-    fit : {None, 'sample'}
-        What to do where memory does not suffice.
-    chunks : list of Chunk
-        Gains what was copied, as it is copied.
-    progress : bool
-        Show a progress bar.
-    most : float
-        Copy no larger share of the streamlines, where a sample is asked for.
-
-    Raises
-    ------
-    GPUMemoryError
-        If memory does not suffice, and no sample is asked for.
-    EngineError
-        As :func:`upload_chunk`.
-    """
+    """Copy what fits, and say what that is."""
     fitted = room.fitted(fiblets, fit, most)
     while True:
         needed = sum(plan.nbytes for plan in fitted.plans)

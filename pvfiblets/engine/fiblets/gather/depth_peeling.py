@@ -219,26 +219,7 @@ class Layers:
     def of(
         self, nearest: GBuffer, count: int, view: View, style: FibletStyle, make_job: Callable[[], DrawRequest]
     ) -> LayeredBuffer:
-        """Return the layers of a picture, drawn unless they are there.
-
-        Parameters
-        ----------
-        nearest : GBuffer
-            The picture.
-        count : int
-            Layers, itself included.
-        view, style
-            Of the picture.
-        make_job : callable
-            Returns the request that it was drawn by, with everything bound.
-
-        Raises
-        ------
-        ValueError
-            If the number of layers is not from 2 to :data:`MOST_LAYERS`.
-        EngineError
-            If memory does not suffice.
-        """
+        """Return the layers of a picture, drawn unless they are there."""
         if not 2 <= count <= MOST_LAYERS:
             raise ValueError(f"{count} layers are asked for; give 2 to {MOST_LAYERS}")
         if self._held is not None and self._drawn == (nearest.generation, count):

@@ -61,28 +61,7 @@ class Gatherer:
         outside: Callable[[], moderngl.Texture | None] | None = None,
         state: Any = None,
     ) -> Gathered:
-        """Return the sums of a picture, made unless they are there.
-
-        Parameters
-        ----------
-        nearest : GBuffer
-            The picture.
-        paint : Paint
-        slices : int
-            1 or :data:`SLICES`.
-        distances : SliceDistances
-        make_job : callable
-            Returns the request that the picture was drawn by, with everything bound.
-        outside : callable, optional
-            Returns the depth keys of what hides lines, r32ui of the picture's size, or None.
-        state : object
-            Another one where that depth may be another.
-
-        Raises
-        ------
-        EngineError
-            If memory does not suffice, or a program does not compile.
-        """
+        """Return the sums of a picture, made unless they are there."""
         key = nearest.generation, nearest.size, paint, slices, distances, state
         if self._held is not None and self._made == key:
             return self._held
@@ -104,19 +83,7 @@ class Gatherer:
         add: Callable[[Gathered], None],
         state: Any = None,
     ) -> Gathered:
-        """Return the sums of a picture of several parts, each of which adds its own.
-
-        Parameters
-        ----------
-        nearest, paint, slices, distances
-            As of :meth:`of`; the picture is that of all parts.
-        words : callable
-            Returns what :meth:`gathers_words` of the parts says; asked only where there is something to be done.
-        add : callable
-            Has the gatherers of all parts add to what it is given, by :meth:`add_to`.
-        state : object
-            None for sums that are made anew each time.
-        """
+        """Return the sums of a picture of several parts, each of which adds its own."""
         key = None if state is None else (nearest.generation, nearest.size, paint, slices, distances, state)
         if self._held is not None and key is not None and self._made == key:
             return self._held
@@ -136,19 +103,7 @@ class Gatherer:
         request: DrawRequest,
         hides: moderngl.Texture | None,
     ) -> None:
-        """Add what the lines of a part show to the sums of all.
-
-        Parameters
-        ----------
-        held : Gathered
-        paint : Paint
-        nearest, own : GBuffer
-            The picture of all parts, and the part's own one.
-        request : DrawRequest
-            Of the part.
-        hides : moderngl.Texture, optional
-            Depth keys of what hides lines.
-        """
+        """Add what the lines of a part show to the sums of all."""
         self._add(request, Gather(held, paint, nearest, hides, own))
 
     def gathers_words(self, request: DrawRequest) -> bool:
@@ -181,14 +136,7 @@ class Gatherer:
         return held
 
     def greatest(self, *, wait: bool = True) -> float:
-        """Return the greatest weight of a pixel in the first slice of what was made last.
-
-        Parameters
-        ----------
-        wait : bool
-            Whether to wait for the GPU; if not, what is returned may be that of some pictures earlier, of which it is
-            known.
-        """
+        """Return the greatest weight of a pixel in the first slice of what was made last."""
         if (came := self._later.arrived()) is not None:
             self._greatest = came[0], float(came[1].max())
         known = self._greatest

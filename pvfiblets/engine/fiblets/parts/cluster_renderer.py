@@ -275,15 +275,7 @@ def _client_at(address: str) -> Any:
 
 
 def client_of(cluster: Any) -> Any:
-    """Return the client of a cluster: what is given, or one for an address, the same for the same.
-
-    Raises
-    ------
-    EngineError
-        If nothing answers at the address, or dask is not installed.
-    TypeError
-        If it is something else.
-    """
+    """Return the client of a cluster: what is given, or one for an address, the same for the same."""
     if isinstance(cluster, str):
         try:
             return _client_at(cluster)

@@ -53,13 +53,7 @@ class NearestOnly(Drawable[FibletStyle]):
     def render(
         self, view: View, style: FibletStyle | None = None, *, outside: moderngl.Texture | None = None
     ) -> GBuffer:
-        """Draw, unless the last picture was of the same view and style and complete; see :meth:`.Drawable.render`.
-
-        Raises
-        ------
-        EngineError
-            As there, and if a part cannot be had.
-        """
+        """Draw, unless the last picture was of the same view and style and complete; see :meth:`.Drawable.render`."""
         found = super().render(view, style, outside=outside)
         if self.share < 1.0:
             self._made = None  # the next call goes on

@@ -56,13 +56,7 @@ class PartPictures:
         self._kept: list[PictureTarget] = []
 
     def begin(self, size: tuple[int, int], relief: str | None, edges: bool) -> None:
-        """Begin with nothing, in a picture of that size and kind.
-
-        Raises
-        ------
-        EngineError
-            If memory does not suffice.
-        """
+        """Begin with nothing, in a picture of that size and kind."""
         if self._key != (size, relief, edges):
             self.release()
             for _ in range(2):
@@ -77,17 +71,7 @@ class PartPictures:
         return self._kept[0].picture
 
     def add(self, drawn: GBuffer, order: int, *, by_streamline: bool = False) -> None:
-        """Add the picture of one part more.
-
-        Parameters
-        ----------
-        drawn : GBuffer
-            Of the same size and kind.
-        order : int
-            The part's; the lower is in front where two are at one depth.
-        by_streamline : bool
-            Whether streamlines decide that, not parts.
-        """
+        """Add the picture of one part more."""
         assert self._key is not None
         _, relief, edges = self._key
         features = [*([] if relief is None else ["CROSS_LINE"]), *(["TUBES"] if relief == "normal" else [])]

@@ -69,13 +69,7 @@ class ShardParts:
         return self._set.shards.ids(self._places[number][0])
 
     def is_here(self, number: int) -> bool:
-        """Whether a part can be had at once; if not, it is being fetched from now on, if not too many others are.
-
-        Raises
-        ------
-        OSError, FormatError
-            If it could not be fetched.
-        """
+        """Whether a part can be had at once; if not, it is being fetched from now on, if not too many others are."""
         shard = self._places[number][0]
         fetching = self._fetching.get(shard)
         if fetching is not None and fetching.done():
@@ -129,27 +123,12 @@ def gpu_bytes_of_shards(fiblets: UnreadSet) -> int:
 
 
 def in_memory(fiblets: FibletSet) -> FibletSet:
-    """Return a set whose records are here: shards put together, any other set as it is.
-
-    Raises
-    ------
-    MemoryError
-        If there is too little memory for it.
-    """
+    """Return a set whose records are here: shards put together, any other set as it is."""
     return fiblets.gathered if isinstance(fiblets, UnreadSet) else fiblets
 
 
 def parts_of(fiblets: FibletSet, gpu_bytes: int, part_bytes: int) -> Parts:
-    """Return the parts that a set is drawn in.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-    gpu_bytes : int
-        GPU memory that all of it would take; not asked for of sets in shards.
-    part_bytes : int
-        What a part may take, about.
-    """
+    """Return the parts that a set is drawn in."""
     return (
         ShardParts(fiblets, part_bytes) if isinstance(fiblets, UnreadSet) else Stretches(fiblets, gpu_bytes, part_bytes)
     )

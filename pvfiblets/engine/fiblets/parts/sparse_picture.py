@@ -75,15 +75,7 @@ class SparsePicture:
 
 
 def read_picture(drawn: GBuffer, order: int) -> SparsePicture:
-    """Read the pixels of a part's picture that show something.
-
-    Parameters
-    ----------
-    drawn : GBuffer
-        Of fiblets.
-    order : int
-        The part's.
-    """
+    """Read the pixels of a part's picture that show something."""
     depth = _read(drawn.depth, "<u4", 1)
     pixels = np.flatnonzero(depth != EMPTY).astype(np.uint32)
     textures = {"depth": depth[pixels], "owner": np.full(len(pixels), order, np.uint32)}
@@ -97,18 +89,7 @@ def read_picture(drawn: GBuffer, order: int) -> SparsePicture:
 
 
 def nearer(one: SparsePicture, other: SparsePicture) -> SparsePicture:
-    """Put two pictures together: of each pixel the nearer, of two at one depth that of the lower order.
-
-    Parameters
-    ----------
-    one, other : SparsePicture
-        Of the same size and kind.
-
-    Returns
-    -------
-    SparsePicture
-        The same whichever comes first, but for the order in which it has the pixels.
-    """
+    """Put two pictures together: of each pixel the nearer, of two at one depth that of the lower order."""
     # Where the first picture has each pixel: sorting and searching would take ten times as long.
     place = np.full(one.size[0] * one.size[1], -1, np.int32)
     place[one.pixels] = np.arange(len(one.pixels), dtype=np.int32)
@@ -134,13 +115,7 @@ def _keys(picture: SparsePicture) -> npt.NDArray[np.uint64]:
 
 
 def write_picture(found: SparsePicture, target: GBuffer) -> None:
-    """Fill a G-buffer of the same size and kind; what is not in the picture is empty.
-
-    Parameters
-    ----------
-    found : SparsePicture
-    target : GBuffer
-    """
+    """Fill a G-buffer of the same size and kind; what is not in the picture is empty."""
     count = found.size[0] * found.size[1]
     for name, array in found.textures.items():
         texture = getattr(target, name)

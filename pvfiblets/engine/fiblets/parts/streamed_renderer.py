@@ -341,22 +341,7 @@ def streamed_renderer(
     alike: int | None = None,
     **options: Any,
 ) -> FibletRenderer | StreamedRenderer:
-    """Return a renderer of all of a set if it fits, else one that draws it part by part.
-
-    Parameters
-    ----------
-    ctx, fiblets, pipeline, max_total_bytes, alike
-        As of :class:`.FibletRenderer`.
-    **options
-        Of a renderer of all.
-
-    Raises
-    ------
-    GPUMemoryError
-        If there is no memory for any part.
-    EngineError
-        As :class:`.FibletRenderer`, of what has nothing to do with memory.
-    """
+    """Return a renderer of all of a set if it fits, else one that draws it part by part."""
     gl, pipeline = GLExtras(ctx), choose(ctx, pipeline)
     limits = Limits.of(ctx, gl, pipeline, options.get("max_buffer_bytes"), options.get("max_groups"))
     budget = MemoryBudget.of(ctx, gl, limits, max_total_bytes)

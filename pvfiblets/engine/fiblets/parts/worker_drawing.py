@@ -139,24 +139,7 @@ def draw_part(
     filtering: Filter | None = None,
     volume: Any = None,
 ) -> SparsePicture:
-    """Draw a part of a set; runs on a worker.
-
-    Parameters
-    ----------
-    part : PartOfSet
-    request : Request
-    fiblets : FibletSet, optional
-        The part, where it is not read from a file; of a set in shards, which of them.
-    filtering : Filter, optional
-        For the part.
-    volume : VolumeSource, optional
-        Values of the style.
-
-    Raises
-    ------
-    EngineError
-        If the worker has no OpenGL, or its file is another one.
-    """
+    """Draw a part of a set; runs on a worker."""
     here = _here()
     return here.run(lambda: here.draw(part, request, fiblets, filtering, volume))
 

@@ -105,13 +105,7 @@ class DrawRequest:
         return (*self.planes, *self.kept.cutting)
 
     def classes(self, *, one: bool = False) -> list[tuple[int, tuple[str, ...]]]:
-        """Classes of fiblets (``fiblets/compute/cull.comp``) that there can be, with the features of their programs.
-
-        Parameters
-        ----------
-        one : bool
-            Whether there is but one, whose program draws any fiblet.
-        """
+        """Classes of fiblets (``fiblets/compute/cull.comp``) that there can be, with the features of their programs."""
         common = (*self.decoding, *self.values, *self.wide, *self.extra, *self.peeling, *self.gathering)
         whole = (*common, *self.detail, *self.cutting, "CLIPPING", "CLIPPING_DEPTH")
         if one:

@@ -238,13 +238,7 @@ class RasterPipeline(abc.ABC):
         """Draw one chunk with a program; its uniform block is bound."""
 
     def draw(self, request: DrawRequest) -> None:
-        """Draw all chunks; the uniform blocks are bound already.
-
-        Raises
-        ------
-        EngineError
-            If a program does not compile, or memory does not suffice.
-        """
+        """Draw all chunks; the uniform blocks are bound already."""
         passes, culling = request.passes, request.occlusion
         two_rounds = culling is not None and culling.halfway
         target = self._attach(request.target, two_rounds)
@@ -272,13 +266,7 @@ class RasterPipeline(abc.ABC):
         return False
 
     def gather(self, request: DrawRequest) -> None:
-        """Add up what all lines show; the uniform blocks are bound already.
-
-        Raises
-        ------
-        EngineError
-            If a program does not compile.
-        """
+        """Add up what all lines show; the uniform blocks are bound already."""
         assert request.gather is not None
         with request.passes.timed("gather"), self._gl.framebuffers_kept(), self._drawing():
             if request.gather.own is None:

@@ -57,16 +57,7 @@ class Limits:
     def of(
         cls, ctx: moderngl.Context, gl: GLExtras, pipeline: str, buffer_bytes: int | None, groups: int | None
     ) -> Limits:
-        """Ask the driver, and take what is less.
-
-        Parameters
-        ----------
-        ctx : moderngl.Context
-        gl : GLExtras
-        pipeline : str
-        buffer_bytes, groups : int, optional
-            Of the user's.
-        """
+        """Ask the driver, and take what is less."""
         work = WorkLimits.of(ctx).fiblets
         side = gl.get_integer("GL_MAX_TEXTURE_SIZE")
         if pipeline in TEXTURED:

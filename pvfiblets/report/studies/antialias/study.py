@@ -190,18 +190,7 @@ class AntialiasStudy:
 
 
 def differences(picture: Pixels, reference: Pixels) -> dict[str, float]:
-    """Return errors of a picture: of all channels of pixels in which either shows something.
-
-    Parameters
-    ----------
-    picture, reference : numpy.ndarray
-        (rows, columns, 3), 0 to 255, black where nothing is.
-
-    Returns
-    -------
-    dict
-        ``rms``, ``mean``, ``p99`` (99th percentile) and ``max`` of the differences.
-    """
+    """Return errors of a picture: of all channels of pixels in which either shows something."""
     there = (picture > 0.0).any(axis=2) | (reference > 0.0).any(axis=2)
     apart = np.abs(picture - reference)[there]
     if not apart.size:

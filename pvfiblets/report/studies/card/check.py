@@ -58,27 +58,7 @@ def run_check(
     patience: float = PATIENCE,
     command: Sequence[str] = (sys.executable, "-m", MODULE),
 ) -> CardCheck:
-    """Try everything that this machine has.
-
-    Parameters
-    ----------
-    folder : Path
-        An empty one, for synthetic brains and pictures.
-    segments : sequence of float
-        Sizes of the brains that speed is measured on; none to leave speed out.
-    log : callable
-        Told in a few words what goes on.
-    only : sequence of str
-        Parts whose names begin with one of these; all by default.
-    patience : float
-        Seconds without a word after which a part counts as hanging.
-    command : sequence of str
-        What is called with the names of a part, the folder, and the feature to go on after.
-
-    Returns
-    -------
-    CardCheck
-    """
+    """Try everything that this machine has."""
     from .part import SPEED, parts_of
     from .speed import make_brains
 

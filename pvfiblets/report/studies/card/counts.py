@@ -21,21 +21,7 @@ Array = npt.NDArray[np.float64]
 
 
 def counted(lines: Sequence[Array], matrix: Array, size: tuple[int, int]) -> Array:
-    """Return how many segments' pixels each pixel is: ``(height, width)`` float64, row 0 at the bottom.
-
-    Parameters
-    ----------
-    lines : sequence of numpy.ndarray
-        ``(n, 3)`` each, mm, at least two points; all in the view volume.
-    matrix : numpy.ndarray
-        ``(4, 4)``, mm to clip coordinates.
-    size : tuple of int
-
-    Raises
-    ------
-    ValueError
-        If a point lies outside the view volume.
-    """
+    """Return how many segments' pixels each pixel is: ``(height, width)`` float64, row 0 at the bottom."""
     clip = np.concatenate([line.astype(np.float64) for line in lines])
     clip = np.c_[clip, np.ones(len(clip))] @ np.asarray(matrix, np.float64).T
     if not (np.abs(clip[:, :3]) < clip[:, 3:]).all():

@@ -93,20 +93,7 @@ class LineSamples:
         size: tuple[int, int],
         keep: Callable[[Array], Mask] | None = None,
     ) -> LineSamples:
-        """Sample polylines of at least two points.
-
-        Parameters
-        ----------
-        lines : sequence of numpy.ndarray
-            ``(n, 3)`` each, mm.
-        values : sequence of numpy.ndarray
-            ``(n,)`` each.
-        matrix : numpy.ndarray
-            ``(4, 4)``, mm to clip coordinates.
-        size : tuple of int
-        keep : callable, optional
-            Says of ``(n, 3)`` places, mm, which are there.
-        """
+        """Sample polylines of at least two points."""
         a, b = (np.concatenate([line[part] for line in lines]).astype(np.float64) for part in (_FIRST, _LAST))
         va, vb = (np.concatenate([value[part] for value in values]).astype(np.float64) for part in (_FIRST, _LAST))
         number = np.repeat(np.arange(len(lines)), [len(line) - 1 for line in lines])
@@ -155,23 +142,7 @@ class LineSamples:
         return int(self.streamline.max(initial=0)) + 1
 
     def wrong(self, picture: Shown, width: float = 1.0, *, values: bool = False) -> dict[str, Mask]:
-        """Say which pixels are wrong.
-
-        Parameters
-        ----------
-        picture : Shown
-        width : float
-            Of the lines, pixels.
-        values : bool
-            Whether values count.
-
-        Returns
-        -------
-        dict
-            ``(height, width)`` masks. ``line``: pixels that show a streamline or a depth that is not there;
-            ``lost``: pixels of which samples have nothing beside them that is as near; ``direction`` and ``value``:
-            pixels of the right streamline that have another.
-        """
+        """Say which pixels are wrong."""
         shape = picture.there.shape
         reach = math.ceil(OFF_AXIS + max(width, 1.0) / 2.0 - 0.5)
         around = [(dy, dx) for dy in range(-reach, reach + 1) for dx in range(-reach, reach + 1)]

@@ -75,16 +75,7 @@ def _scenes(ctx: Any, part: str, folder: Path) -> Iterator[tuple[str, Callable[[
 
 
 def main(part: str, folder: Path, after: str = "") -> None:
-    """Try all features of a part, or those after one, and tell of each.
-
-    Parameters
-    ----------
-    part : str
-    folder : Path
-        Where pictures go, and where brains are that speed is measured on.
-    after : str, optional
-        A feature: it and those before it are left out.
-    """
+    """Try all features of a part, or those after one, and tell of each."""
     from pvfiblets.engine.gl.standalone import bare_context
 
     ctx = bare_context()

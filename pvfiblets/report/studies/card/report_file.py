@@ -38,13 +38,7 @@ def summary(check: CardCheck) -> str:
 
 
 def write(check: CardCheck, path: str | PathLike[str]) -> None:
-    """Write a ZIP archive of ``check.txt``, ``check.json`` and, of what differs, pictures as PNG.
-
-    Raises
-    ------
-    OSError
-        If it cannot be written.
-    """
+    """Write a ZIP archive of ``check.txt``, ``check.json`` and, of what differs, pictures as PNG."""
     facts: dict[str, Any] = about(0, False, str(check.opengl.get("driver", "")))
     told = {"machine": facts, "opengl": check.opengl, "findings": [one.as_dict() for one in check.findings]}
     now = time.localtime()[:6]
@@ -57,13 +51,7 @@ def write(check: CardCheck, path: str | PathLike[str]) -> None:
 
 
 def png(picture: npt.NDArray[Any]) -> bytes:
-    """Return a picture as a PNG file, without a library: a bare machine has none.
-
-    Parameters
-    ----------
-    picture : numpy.ndarray
-        ``(height, width, 3)`` uint8, or ``(height, width)`` bool, row 0 at the bottom.
-    """
+    """Return a picture as a PNG file, without a library: a bare machine has none."""
     if picture.ndim == 2:
         picture = np.repeat(picture[..., None], 3, axis=2) * np.uint8(255)
     height, width, _ = picture.shape

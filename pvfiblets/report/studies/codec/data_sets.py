@@ -76,18 +76,7 @@ def synthetic_tracking(step: float, noisy: bool, points: int, seed: int) -> Stre
 
 
 def files_of(given: Sequence[Path]) -> tuple[list[Path], str]:
-    """Return the files to take, the largest first, and why there are none.
-
-    Parameters
-    ----------
-    given : sequence of Path
-        Files, and folders whose tractograms are taken; if empty, the folder that ``PVFIBLETS_DATA`` names.
-
-    Raises
-    ------
-    FileNotFoundError
-        If one of them is not there.
-    """
+    """Return the files to take, the largest first, and why there are none."""
     if not given:
         folder = os.environ.get("PVFIBLETS_DATA")
         if not folder:
@@ -109,15 +98,7 @@ def files_of(given: Sequence[Path]) -> tuple[list[Path], str]:
 
 
 def thinned(chunks: Iterable[Streamlines], limit: int) -> tuple[Streamlines, str]:
-    """Keep an even share of streamlines, of no more than ``limit`` points, in bounded memory.
-
-    Returns
-    -------
-    streamlines : Streamlines
-        Points and offsets only.
-    note : str
-        How they were cut; empty if they are whole.
-    """
+    """Keep an even share of streamlines, of no more than ``limit`` points, in bounded memory."""
     kept: list[Streamlines] = []
     stride, seen, total = 1, 0, 0
     for chunk in chunks:

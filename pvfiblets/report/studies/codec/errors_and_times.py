@@ -22,19 +22,7 @@ Ints = npt.NDArray[np.int64]
 
 
 def distances(original: Floats, decoded: Floats) -> npt.NDArray[np.float64]:
-    """Distance of each decoded point from its original, ``(n,)`` float64, in their unit.
-
-    Parameters
-    ----------
-    original, decoded : numpy.ndarray
-        ``(n, 3)``.
-
-    Raises
-    ------
-    ValueError
-        If there are not as many decoded points as originals, or one is not finite: a method that loses points has no
-        error that could be averaged.
-    """
+    """Distance of each decoded point from its original, ``(n,)`` float64, in their unit."""
     if original.shape != decoded.shape:
         raise ValueError(f"{len(original)} points were coded and {len(decoded)} came back")
     apart = np.linalg.norm(np.asarray(decoded, np.float64) - np.asarray(original, np.float64), axis=1)
@@ -77,20 +65,6 @@ def direction_angles(
     the only one. A pixel is a 2000th of the bounds' diagonal. A segment shows where the original one is longer than
     that; of one that is shorter than a thousandth of it the ends are one point twice, and it has no direction. Points
     at which the original line turns back on itself have no tangent and are left out.
-
-    Parameters
-    ----------
-    original, decoded : numpy.ndarray
-        ``(n, 3)``, mm.
-    offsets : numpy.ndarray
-        ``(n_streamlines + 1,)``.
-    firsts : numpy.ndarray, optional
-        First points of fiblets. The drawn tangent at such a point is that of the segment after it.
-
-    Returns
-    -------
-    numpy.ndarray
-        Degrees, float64; the first ends of the segments, then their last ends.
     """
     points = np.asarray(original, np.float64)
     if len(points) < 2:

@@ -56,19 +56,7 @@ class Visible:
 
 
 def views(bounds: Sequence[float], kind: str, degrees: float, frames: int, size: tuple[int, int]) -> list[View]:
-    """Return views from around a set's middle, so many degrees apart.
-
-    Parameters
-    ----------
-    bounds : sequence of float
-        ``(xmin, xmax, ymin, ymax, zmin, zmax)``, mm.
-    kind : str
-        One of :data:`DISTANCES`; all look at the middle.
-    degrees : float
-        From one view to the next, about the vertical axis.
-    frames : int
-    size : tuple of int
-    """
+    """Return views from around a set's middle, so many degrees apart."""
     box = np.array(bounds, np.float64).reshape(3, 2)
     centre, radius = box.mean(axis=1), 0.5 * float(np.linalg.norm(box[:, 1] - box[:, 0])) or 1.0
     narrow = min(1.0, size[0] / size[1]) * math.tan(math.radians(VERTICAL_ANGLE / 2))
@@ -129,14 +117,7 @@ def difference(pictures: Sequence[Singles], truth: Sequence[Singles]) -> Figure:
 
 
 def errors(pictures: Sequence[Visible], truth: Sequence[Visible]) -> dict[str, Figure]:
-    """Say how far pictures are from the right ones, as shares of the pixels in which those show a streamline.
-
-    Returns
-    -------
-    dict of str to Figure
-        In percent: ``wrong`` pixels show another streamline, or one where there is none or none where there is one;
-        ``coverage`` counts only the latter two.
-    """
+    """Say how far pictures are from the right ones, as shares of the pixels in which those show a streamline."""
     wrong = coverage = covered = 0
     for one, other in zip(pictures, truth, strict=True):
         a, b = one.streamline, other.streamline

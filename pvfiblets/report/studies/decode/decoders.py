@@ -38,14 +38,7 @@ GOLDEN_TURN = (3.0 - math.sqrt(5.0)) / 2.0  # the golden angle in turns
 
 
 def inputs(dtype: npt.DTypeLike) -> tuple[Any, ...]:
-    """Return what all variants read, in one kind of number.
-
-    Returns
-    -------
-    tuple of numpy.ndarray
-        Quaternions ``(16, 256, 4)``, matrices ``(16, 256, 9)`` by rows, ratios ``(16,)``, units of the packed integers
-        ``(16,)``, the numbers 0 to 255, and constants ``(0, 1, 2, 7/8, 256, golden angle in turns, 2 pi)``.
-    """
+    """Return what all variants read, in one kind of number."""
     q = quaternions().astype(np.float64)
     w, x, y, z = np.moveaxis(q, -1, 0)
     rows = [
@@ -232,29 +225,7 @@ def _prefix_matrices(m: Any, t: Any, anchor: Any, step: Any, c: Any, out: Any) -
 def decode(
     anchors: Any, firsts: Any, codes: Any, cap: int, step: Any, how: Any, tables: Any, scratch: Any, out: Any
 ) -> None:
-    """Decode fiblets of equal length.
-
-    Parameters
-    ----------
-    anchors : (n, 3) float32 or float64
-        First points, mm.
-    firsts : (n, 4) same
-        First frames, as quaternions.
-    codes : (n, k) uint8
-        Of the third point on.
-    cap : int
-        Cap angle's index.
-    step : (1,) same
-        mm.
-    how : (int, int, int)
-        ``SEQUENTIAL`` or ``PREFIX``; ``QUATERNION`` or ``MATRIX``; ``TABLE``, ``CLOSED`` or ``ROUNDED``.
-    tables : tuple
-        See :func:`inputs`.
-    scratch : tuple
-        ``(64, 4)``, ``(64, 9)`` and ``(64, 3)`` same.
-    out : (n, k + 2, 3) same
-        Filled.
-    """
+    """Decode fiblets of equal length."""
     order, algebra, source = how
     q, m, t = scratch
     c = tables[5]

@@ -39,14 +39,7 @@ def kinds(gbuffer: Any) -> tuple[npt.NDArray[np.int64], Floats]:
 
 
 def pixel_errors(gbuffer: Any, darkness: Singles, truth: Picture, camera: Camera) -> dict[str, Figure]:
-    """Compare a picture of one sample a pixel with the reference's.
-
-    Returns
-    -------
-    dict of str to Figure
-        ``mean`` difference of darkness, percent; ``kind``: pixels that show line, halo or nothing where it is another
-        of these, percent of all; ``depth``: the 99th percentile over pixels of the same kind, mm along the view axis.
-    """
+    """Compare a picture of one sample a pixel with the reference's."""
     kind, depth = kinds(gbuffer)
     same = (kind == truth.kind) & (kind != NOTHING)
 
@@ -108,11 +101,6 @@ def gaps(darkness: Singles, made: Crossings) -> dict[str, Figure]:
     """Measure gaps on either side of lines in front, and compare them with appendix A.
 
     What is white along a line behind, from half way to the next crossing, is the gap on both sides.
-
-    Returns
-    -------
-    dict of str to Figure
-        ``gap`` mean, ``gap max`` greatest difference, pixels.
     """
     half = int(APART / PIXEL / 2)
     off = []

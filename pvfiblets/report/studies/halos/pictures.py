@@ -77,26 +77,7 @@ def orbit(
     size: tuple[int, int],
     degrees: float = DEGREES_PER_FRAME,
 ) -> list[list[Camera]]:
-    """Return cameras that have the data fill the window, all from one distance.
-
-    Parameters
-    ----------
-    drawn : HaloLines or HaloPoints
-        What is looked at.
-    places : int
-        All around it, about the vertical axis.
-    frames : int
-        At each place, a small turn apart, as in an animation; one before these is there to warm up.
-    size : tuple of int
-        Of the window, pixels.
-    degrees : float
-        From frame to frame.
-
-    Returns
-    -------
-    list of list of Camera
-        ``frames + 1`` cameras for each place.
-    """
+    """Return cameras that have the data fill the window, all from one distance."""
     centre = np.array(drawn.bounds).reshape(3, 2).mean(axis=1)
     points = drawn.points[:: max(1, drawn.n_points // 50_000)]
     extreme = np.concatenate([drawn.points.argmin(axis=0), drawn.points.argmax(axis=0)])
@@ -140,30 +121,7 @@ def darkness_of(gbuffer: Any) -> Singles:
 
 
 def picture(renderer: Any, camera: Viewpoint, look: HaloStyle, times: int, most: int = MOST_PIXELS) -> Singles:
-    """Return a picture of so many samples along a pixel's side, averaged.
-
-    Parameters
-    ----------
-    renderer : HaloRenderer
-    camera : Camera
-        Of the picture's size.
-    look : HaloStyle
-        Its least width is in pixels of the picture, however many samples these have.
-    times : int
-        Samples along a pixel's side.
-    most : int
-        Samples that are drawn at once; a picture of more is drawn in tiles.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(height, width)`` float32, 0 white to 1 black, the bottom row first.
-
-    Raises
-    ------
-    ValueError
-        If the picture cannot be cut into tiles that are small enough.
-    """
+    """Return a picture of so many samples along a pixel's side, averaged."""
     width, height = camera.size
     # Tiles are all as large as each other and of whole pixels.
     possible = [n for n in range(1, min(width, height) + 1) if width % n == height % n == 0]

@@ -88,22 +88,7 @@ class Truth:
         return np.isfinite(self.along)
 
     def errors(self, shown: Array, there: Mask) -> dict[str, float]:
-        """Return how far a picture is off, of which this holds all pixels.
-
-        Parameters
-        ----------
-        shown : numpy.ndarray
-            ``(n,)`` mm in front of the eye.
-        there : numpy.ndarray
-            ``(n,)`` bool: pixels that show a tube.
-
-        Returns
-        -------
-        dict
-            ``silhouette``: mean distance of the picture's outline from the true one, pixels: the pixels whose middle
-            lies between the two, over the true one's length. ``depth p50`` and ``depth p99``: quantiles of the error
-            along the ray over the radius, of pixels that show a tube and should.
-        """
+        """Return how far a picture is off, of which this holds all pixels."""
         width, height = self.lens.size
         length = outline(self.there.reshape(height, width))
         off = self.depth_errors(shown, there)

@@ -47,26 +47,7 @@ def seen_from(volume: RaycastVolume, size: tuple[int, int], away: tuple[float, f
 def exact_openness(
     volume: RaycastVolume, value: float, through: Any, gradients: Array, t: Array, radius: float, n: int = DIRECTIONS
 ) -> Array:
-    """Return equation 10 at hits of rays, by a rule of n x n stratified directions, in float64.
-
-    Parameters
-    ----------
-    volume : RaycastVolume
-    value : float
-        Of the surface.
-    through : reference.Rays
-        ``(k,)`` of the pixels.
-    gradients, t : numpy.ndarray
-        ``(k, 3)`` and ``(k,)``: at the hits, and mm along the rays to them.
-    radius : float
-        mm.
-    n : int
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(k,)``: share of the directions that meet nothing.
-    """
+    """Return equation 10 at hits of rays, by a rule of n x n stratified directions, in float64."""
     from pvfiblets.engine.volumes.ray_occlusion import LIFT
 
     # The open side is the viewer's by the field next to the hit, not by differences over two voxels.

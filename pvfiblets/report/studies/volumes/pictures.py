@@ -94,16 +94,7 @@ def along_of(keys: Words, rays: Any) -> Array:
 
 
 def places(of: GroundTruth, depths: list[Words], spacing: float) -> dict[str, Any]:
-    """Return how far surfaces are off along their rays, in voxels.
-
-    Returns
-    -------
-    dict
-        ``position``: mean, what is missed, too many, or off by more than a voxel counted as one voxel, over the pixels
-        that show or ought to show a surface; ``median`` and ``p99`` of those that are no more off; ``missed`` and
-        ``false``: shares of surfaces that are not there, too far by more than a voxel included, or should not be, or
-        not as near.
-    """
+    """Return how far surfaces are off along their rays, in voxels."""
     assert of.along is not None
     keys = [depth[at[:, 0], at[:, 1]] for depth, at in zip(depths, of.colours.pixels, strict=True)]
     shown = np.concatenate([along_of(key, rays) for key, rays in zip(keys, of.rays, strict=True)])

@@ -37,16 +37,7 @@ DIFFERS = 4  # levels of 255: pixels farther from the default's are counted
 
 
 def settings(mode: str, quick: bool, spread: float) -> Iterator[tuple[str, str, dict[str, Any]]]:
-    """Yield what is varied, how, and the fields of `RaycastOptions` that are not its defaults, the default first.
-
-    Parameters
-    ----------
-    mode : str
-    quick : bool
-        Fewer of each.
-    spread : float
-        Of the volume's values.
-    """
+    """Yield what is varied, how, and the fields of `RaycastOptions` that are not its defaults, the default first."""
     yield "default", "", {}
     steps = QUICK_PICTURE_STEPS if quick else PICTURE_STEPS
     yield from (("step", f"{step:g} voxels", {"step": step}) for step in steps if step != RaycastOptions.step)

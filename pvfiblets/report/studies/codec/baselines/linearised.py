@@ -32,13 +32,7 @@ class LinesPacked:
         return sum(12 * len(line) + COUNT_BYTES for line in self.kept)
 
     def distances(self, points: npt.NDArray[np.floating], offsets: npt.NDArray[np.int64]) -> npt.NDArray[np.float64]:
-        """Distance of each original point from the kept line beside it, ``(n,)`` mm.
-
-        Raises
-        ------
-        ValueError
-            If a point was kept that is none of the streamline's: what is beside what could not be told.
-        """
+        """Distance of each original point from the kept line beside it, ``(n,)`` mm."""
         apart = np.zeros(len(points))
         for s, line in enumerate(self.kept):
             a, b = int(offsets[s]), int(offsets[s + 1])
@@ -68,13 +62,7 @@ def _from_line(points: npt.NDArray[np.float64], line: npt.NDArray[np.float64]) -
 
 
 def linearised(tolerance: float) -> Callable[[npt.NDArray[np.floating], npt.NDArray[np.int64]], LinesPacked]:
-    """Leave points out that are no farther than ``tolerance`` (mm) from what remains; segments of 10 mm at most.
-
-    Raises
-    ------
-    ImportError
-        If dipy is not installed.
-    """
+    """Leave points out that are no farther than ``tolerance`` (mm) from what remains; segments of 10 mm at most."""
     compress: Any = import_module("dipy.tracking.streamlinespeed").compress_streamlines
 
     def pack(points: npt.NDArray[np.floating], offsets: npt.NDArray[np.int64]) -> LinesPacked:

@@ -32,13 +32,7 @@ class NumbersPacked:
 
 
 def float16(points: npt.NDArray[np.floating], offsets: npt.NDArray[np.int64]) -> NumbersPacked:
-    """Half-precision coordinates, as TRX files may hold.
-
-    Raises
-    ------
-    ValueError
-        If a coordinate is beyond the largest of them, 65504 mm.
-    """
+    """Half-precision coordinates, as TRX files may hold."""
     with np.errstate(over="ignore"):
         halves = points.astype(np.float16)
     if not np.isfinite(halves).all():
@@ -61,13 +55,7 @@ def squeezed_by_zlib(level: int) -> Callable[[npt.NDArray[np.floating], npt.NDAr
 
 
 def squeezed_by_zstd(level: int) -> Callable[[npt.NDArray[np.floating], npt.NDArray[np.int64]], NumbersPacked]:
-    """Float32 coordinates squeezed by Zstandard.
-
-    Raises
-    ------
-    ImportError
-        If the package ``zstandard`` is not installed.
-    """
+    """Float32 coordinates squeezed by Zstandard."""
     zstandard = import_module("zstandard")
     compress, decompress = zstandard.ZstdCompressor(level=level), zstandard.ZstdDecompressor()
     return _squeezed(compress.compress, decompress.decompress)

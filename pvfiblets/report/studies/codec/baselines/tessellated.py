@@ -87,15 +87,7 @@ class TessellatedTubes:
         self._primitives = ctx.query(primitives=True)
 
     def render(self, model_view_projection: Any, *, count: bool = False) -> None:
-        """Draw one picture.
-
-        Parameters
-        ----------
-        model_view_projection : array_like
-            ``(4, 4)`` float64, data coordinates (mm) to clip coordinates; a perspective one.
-        count : bool, default: False
-            Count :attr:`triangles`; that may cost time.
-        """
+        """Draw one picture."""
         import moderngl
 
         shift = np.eye(4)
@@ -164,18 +156,6 @@ def carried_normals(tangents: Array, segments: npt.NDArray[np.int64]) -> Array:
     """Return a unit vector across each node's tangent that turns as little as can be from node to node.
 
     Each tube starts with any, which is projected from node to node onto the plane across the next tangent.
-
-    Parameters
-    ----------
-    tangents : numpy.ndarray
-        ``(n_nodes, 3)``, of any length.
-    segments : numpy.ndarray
-        ``(n_segments, 2)`` node indices; those of a tube follow each other.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(n_nodes, 3)`` float64. Where a tangent is zero it is that of the node before.
     """
     lengths = np.linalg.norm(tangents, axis=1, keepdims=True)
     unit = np.divide(tangents, lengths, out=np.zeros(tangents.shape), where=lengths > 0.0)
