@@ -69,7 +69,7 @@ def _convert(parser: argparse.ArgumentParser, positive: Any, angle: Any, count: 
     add("--max-angle", type=angle, default=DEFAULT_ANGLE, metavar="DEG", help="greatest angle of directions, or none")
     add("--effort", choices=("fast", "high"), default="fast", help="high: slower, less mean error")
     add("--per-point", action="append", default=[], metavar="all|none|NAME", help="per-point arrays to keep")
-    add("--per-point-bits", type=int, choices=(8, 16), default=8, help="for each value kept (default: 8)")
+    add("--per-point-bits", type=int, choices=(8, 16), default=8, help="for each value kept, or more (default: 8)")
     add("--exact", action=argparse.BooleanOptionalAction, default=None, help="keep every bit of the points, or none")
 
 

@@ -61,8 +61,14 @@ def add_convert(commands: Any) -> None:
         "still fits into 16 bytes a point); those that stay behind are printed, and listed by info",
     )
     convert.add_argument(
-        "--per-point-bits", type=int, choices=(8, 16), default=8, help="for each value kept (default: 8)"
-    )
+        "--per-point-bits", type=int, choices=(8, 16), default=8,
+        help="for each value kept, or more where the bound needs them (default: 8)",
+    )  # fmt: skip
+    convert.add_argument(
+        "--max-value-error", type=float, metavar="NUMBER",
+        help="largest difference of a value kept to the original, in its unit (default: 1/255 of what lies between its "
+        "1st and 99th percentile)",
+    )  # fmt: skip
     convert.add_argument(
         "--exact",
         action=argparse.BooleanOptionalAction,

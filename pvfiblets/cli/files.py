@@ -34,6 +34,7 @@ def convert(
     effort: Literal["fast", "high"],
     per_point: list[str],
     per_point_bits: int,
+    max_value_error: float | None,
     exact: bool | None,
     shards: int | None,
     index: bool,
@@ -74,6 +75,7 @@ def convert(
             effort=effort,
             per_point=which_per_point(per_point),
             per_point_bits=per_point_bits,
+            max_value_error=max_value_error,
             exact=exact,
             verify=verify,
             progress=show_progress(quiet, json),
@@ -83,11 +85,11 @@ def convert(
             result["index_bytes"] = 0 if made is None else made.nbytes
             result["index_seconds"] = 0.0 if made is None else made.seconds
     else:
-        own = (step, max_error, exact, shards) != (None,) * 4 or max_angle != DEFAULT_ANGLE or per_point
-        if own or verify != "all":
+        own = (step, max_error, max_value_error, exact, shards) != (None,) * 5 or max_angle != DEFAULT_ANGLE
+        if own or per_point or verify != "all":
             raise ValueError(
-                "--step, --max-error, --max-angle, --exact, --per-point, --verify and --shards are for "
-                f"{COMPRESSED} files; {target} is of another format"
+                "--step, --max-error, --max-angle, --max-value-error, --exact, --per-point, --verify and --shards are "
+                f"for {COMPRESSED} files; {target} is of another format"
             )
         result = rewrite(source, target, double=double)
     if json:
@@ -166,7 +168,7 @@ def summary(source: str, target: str, result: dict[str, Any]) -> str:
         f"{100.0 * after / max(before, 1):.1f} % of {Path(source).name}",
     ]
     if result.get("exact"):
-        lines.append("error    none: exact, every bit of the points is kept")
+        lines.append("error    none: exact, every bit of the points and their values is kept")
     elif result.get("error_mm"):
         if (every := result["compared_every"]) > 1:
             ending = "th" if every % 100 in (11, 12, 13) else {1: "st", 2: "nd", 3: "rd"}.get(every % 10, "th")
@@ -186,8 +188,11 @@ def summary(source: str, target: str, result: dict[str, Any]) -> str:
         lines.append(f"index    {result['index_bytes']:,} bytes, made in {result['index_seconds']:.1f} s")
     elif "index_bytes" in result:
         lines.append("index    none: an exact file's fiblets are made when it is opened, and their index with them")
-    if result.get("per_point"):
-        lines.append(f"values   {', '.join(result['per_point'])}")
+    for name, error in result.get("error_values", dict.fromkeys(result.get("per_point", ()))).items():
+        told = "" if error is None else ": exact"
+        if error is not None and error["max"]:
+            told = f": off by max {error['max']:.2g}, mean {error['mean']:.2g}"
+        lines.append(f"values   {name}{told}")
     lines += [f"dropped  {number:,}: {reason}" for reason, number in result["dropped"].items()]
     return "\n".join(lines)
 

@@ -20,7 +20,7 @@ from .streamline_ranges import StreamlineRanges, ranges_of
 
 if TYPE_CHECKING:
     from .fibletset import FibletSet
-    from .quantised import QuantisedPoints
+    from .point_values import PointValues
 
 __all__ = [
     "decode_fiblets", "decoding_arrays", "decompress", "fixed", "held_in_bounds", "iter_chunks", "select_streamlines",
@@ -261,11 +261,11 @@ def _points(
     return points
 
 
-def _values(values: QuantisedPoints, rows: slice, long: bool) -> npt.NDArray[np.float32]:
+def _values(values: PointValues, rows: slice, long: bool) -> npt.NDArray[Any]:
     if not long:
         return values.values(rows)
     n = rows.stop - rows.start
-    found = scratch_array((n,), np.float32)
+    found = scratch_array((n,), values.dtype)
     for a, b in spans(n):
         found[a:b] = values.values(slice(rows.start + a, rows.start + b))
         forget(found, 0, b)

@@ -15,7 +15,7 @@ from ..streamlines import Streamlines
 from ..support.addresses import is_url
 from .layout import PAGE, PAGE_BITS, unpack
 from .parameters import LEAST, Parameters
-from .quantised import QuantisedPoints
+from .point_values import PointValues
 from .set_queries import SetQueries
 
 __all__ = ["FibletSet"]
@@ -57,7 +57,7 @@ class FibletSet(SetQueries):
     exact : numpy.ndarray or None
         ``(n_points, 3)`` float32 or float64, mm, in the order of ranks: the points themselves, of a set that keeps
         every bit of them (:mod:`pvfiblets.codec.exact`). Its records are what is drawn, and stand in no file.
-    per_point : dict of str to QuantisedPoints
+    per_point : dict of str to PointValues
         Values kept for every point, in the order of ranks (:meth:`in_coded_order`).
     per_streamline, groups, per_group : dict
         As in :class:`~pvfiblets.Streamlines`, whole.
@@ -81,7 +81,7 @@ class FibletSet(SetQueries):
     anchors_low: npt.NDArray[np.uint16] | None = None
     rank_to_id: npt.NDArray[np.int64] | None = None
     exact: npt.NDArray[Any] | None = None
-    per_point: dict[str, QuantisedPoints] = field(default_factory=dict)
+    per_point: dict[str, PointValues] = field(default_factory=dict)
     per_streamline: dict[str, npt.NDArray[Any]] = field(default_factory=dict)
     groups: dict[str, npt.NDArray[Any]] = field(default_factory=dict)
     per_group: dict[str, dict[str, Any]] = field(default_factory=dict)
@@ -198,7 +198,7 @@ class FibletSet(SetQueries):
         }
         if self.exact is not None:
             arrays = {"points": self.exact, "counts": np.empty(self.n_streamlines, np.uint32)}
-        arrays |= {f"per_point/{k}": v.codes for k, v in self.per_point.items()}
+        arrays |= {f"per_point/{k}": v for k, v in self.per_point.items()}
         arrays |= {f"per_streamline/{k}": v for k, v in self.per_streamline.items()}
         arrays |= {f"groups/{k}": v for k, v in self.groups.items()}
         return {name: int(a.nbytes) for name, a in arrays.items() if a is not None}
@@ -247,6 +247,11 @@ class FibletSet(SetQueries):
         from .streamline_ranges import coded_rows
 
         return np.asarray(values)[coded_rows(self)]
+
+    def value_reference(self, name: Any) -> float:
+        """Return what graphics cards subtract from the values of an array (`pvfiblets.support.value_reference`)."""
+        stored = self.per_point.get(name) if isinstance(name, str) else None
+        return 0.0 if stored is None else stored.reference
 
     def fiblet_points(self) -> npt.NDArray[np.int64]:
         """``(n_fiblets,)`` index of each fiblet's first point among all points."""

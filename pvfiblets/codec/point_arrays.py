@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .fibletset import FibletSet
-from .quantised import quantise_values
+from .point_values import code_values
 
 __all__ = [
     "colour_columns", "colours_of_points", "packed_colours", "unit_colours", "with_coded_values", "with_point_colours",
@@ -29,10 +29,8 @@ def with_point_values(fiblets: FibletSet, name: str, values: npt.ArrayLike, bits
 
 def with_coded_values(fiblets: FibletSet, name: str, values: npt.ArrayLike, bits: int = 8) -> FibletSet:
     """Do the same with numbers in the order in which points are coded."""
-    numbers = np.asarray(values, np.float64)
-    finite = numbers[np.isfinite(numbers)]
-    low, high = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 1.0)
-    return replace(fiblets, per_point={**fiblets.per_point, name: quantise_values(numbers, low, high, bits)})
+    coded = code_values(values, bits, exact=fiblets.exact is not None)
+    return replace(fiblets, per_point={**fiblets.per_point, name: coded})
 
 
 def colour_columns(per_point: Mapping[str, Any], name: str) -> tuple[str, ...]:
@@ -64,7 +62,7 @@ def with_point_colours(fiblets: FibletSet, name: str, colours: npt.ArrayLike) ->
     rows = fiblets.in_coded_order(unit_colours(name, colours))
     before = {name, *colour_columns(fiblets.per_point, name)}
     kept = {key: values for key, values in fiblets.per_point.items() if key not in before}
-    columns = {f"{name}[{k}]": quantise_values(rows[:, k], 0.0, 1.0) for k in range(rows.shape[1])}
+    columns = {f"{name}[{k}]": code_values(rows[:, k]) for k in range(rows.shape[1])}
     return replace(fiblets, per_point={**kept, **columns})
 
 

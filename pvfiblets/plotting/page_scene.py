@@ -250,7 +250,7 @@ def _colours(scene: PageScene, fiblets: Any, colouring: Colouring) -> tuple[Any,
     mode = colouring.mode
     if mode != "point_scalar" and colouring.opacity_source is not None:
         _, said, _ = _colours(scene, fiblets, replace(colouring, opacity_source=None))
-        fiblets, values, keep = _values(scene, fiblets, colouring.opacity_source)
+        fiblets, values, keep = _values(scene, fiblets, colouring.opacity_source, False)
         return fiblets, said | values, keep
     if mode == "orientation":
         return fiblets, {"mode": "direction"}, ()
@@ -261,7 +261,7 @@ def _colours(scene: PageScene, fiblets: Any, colouring: Colouring) -> tuple[Any,
         entries = table[_entries(np.asarray(colouring.values, float), colouring, len(table) - 3)]
         return fiblets, {"mode": "streamline", "data": scene.add_blob(entries)}, ()
     if mode == "point_scalar":
-        fiblets, said, keep = _values(scene, fiblets, colouring.source)
+        fiblets, said, keep = _values(scene, fiblets, colouring.source, colouring.log_scale)
         said |= {"mode": "value", "table": encoded(colouring.table()), "clim": colouring.clim}
         return fiblets, said | {"log": colouring.log_scale}, keep
     if mode == "point_packed":
@@ -273,18 +273,24 @@ def _colours(scene: PageScene, fiblets: Any, colouring: Colouring) -> tuple[Any,
     return fiblets, {"mode": "solid", "colour": colouring.color}, ()
 
 
-def _values(scene: PageScene, bare: Any, source: Any) -> tuple[Any, dict[str, Any], tuple[str, ...]]:
+def _values(
+    scene: PageScene, bare: Any, source: Any, log_scale: bool
+) -> tuple[Any, dict[str, Any], tuple[str, ...]]:
     """Return the set with some values of points, where ``Colours`` of the page find them, and the arrays of it."""
     from pvfiblets.plotting.page_values import with_values
 
-    fiblets, name = scene.once(("values", bare, source), lambda: with_values(bare, source))
+    fiblets, name = scene.once(("values", bare, source, log_scale), lambda: with_values(bare, source, log_scale))
     said: dict[str, Any] = {"values": name}
     if not scene.values_apart:
         return fiblets, said, (name,)
     values = fiblets.per_point[name]
     codes = scene.once(("codes", fiblets, name), lambda: np.asarray(values.codes).tobytes())
-    bits = 8 * values.codes.dtype.itemsize
-    said["codes"] = {"data": scene.add_blob(codes), "bits": bits, "lo": values.lo, "hi": values.hi}
+    said["codes"] = {
+        "data": scene.add_blob(codes),
+        "table": scene.add_blob(np.asarray(values.table).tobytes()),
+        "bits": 8 * values.codes.dtype.itemsize,
+        **{key: getattr(values, key) for key in ("lo", "hi", "reference")},
+    }
     return bare, said, ()
 
 

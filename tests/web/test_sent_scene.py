@@ -49,11 +49,13 @@ def test_colours_by_values_of_points_send_those_alone(scene):
     scenes = SentScenes(scene)
     sent = [scenes.make()]
     points = scene.actor(layer.id).fiblets.n_points
-    for name, size in (("fa", 1), ("curvature", 2), ("fa", 1)):
+    for name in ("fa", "curvature", "fa"):
         scene.set(layer.id, "scalars", name)
         sent.append(scenes.make())
-        (values,) = sent[-1].blobs.keys() - sent[0].blobs.keys()
-        assert len(sent[-1].blobs[values]) == size * points
+        codes, blobs = sent[-1].content["layers"][0]["colours"]["codes"], list(sent[-1].blobs.values())
+        assert len(blobs[codes["data"]]) == points * codes["bits"] // 8
+        assert len(blobs[codes["table"]]) == 4 << codes["bits"]
+        assert len(sent[-1].blobs.keys() - sent[0].blobs.keys()) == 2
         assert sent[0].blobs.keys() < sent[-1].blobs.keys()
     assert sent[3].content == sent[1].content
 

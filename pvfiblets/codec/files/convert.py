@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import closing
 from dataclasses import replace
 from os import PathLike
@@ -24,21 +24,22 @@ from .. import parameters as limits
 from ..compress import (
     CHUNK_POINTS,
     PerPoint,
+    ValueBounds,
     check_exact,
     choose_per_point,
     compress,
     grows,
     is_plain,
     not_kept,
-    quantise_chosen,
+    value_coders,
 )
 from ..exact import raw_bytes
 from ..fibletset import FibletSet
 from ..layout import WORDS
 from ..ordering import Order, check_order
 from ..parameters import CUT_SHARE, DEFAULT_ANGLE, Parameters, Survey, bounds_of, tell_far
+from ..point_values import PointValues, ValueCoder, value_columns, value_errors
 from ..progress import Progress, shown
-from ..quantised import QuantisedPoints
 from .archive import Member, write_archive
 from .fiblets_file import CORE, OPTIONAL, index_members, make_header
 from .file_error import compare_file
@@ -63,6 +64,7 @@ def compress_file(
     order: Order = "input",
     per_point: PerPoint = "fit",
     per_point_bits: int = 8,
+    max_value_error: float | Mapping[str, float] | None = None,
     exact: bool | None = None,
     verify: Literal["all", "sample"] = "all",
     prepare: Callable[[FibletSet], object] | None = None,
@@ -79,7 +81,7 @@ def compress_file(
         Any format that :func:`pvfiblets.iter_chunks` reads.
     target : str or PathLike
         A name ending in ``.fiblets``; it appears when it is whole.
-    step, max_error, max_angle, effort, per_point_bits, exact
+    step, max_error, max_angle, effort, per_point_bits, max_value_error, exact
         As in :func:`pvfiblets.compress`.
     per_point : sequence of str, or {'all', 'fit', 'none'}
         As in :func:`pvfiblets.compress`, but for the default: per-point arrays are kept in their order, each that still
@@ -100,9 +102,9 @@ def compress_file(
     -------
     dict
         ``streamlines, points, fiblets, bytes`` (of the file), ``bytes_per_point, error_mm{max, mean, p999},
-        error_steps{...}, error_degrees{max, mean, p99}, compared_every`` (1 for all streamlines), ``promise_mm,
-        seconds`` (to read and code), ``points_per_second, seconds_to_measure, dropped, per_point`` (names of the arrays
-        kept), and ``exact`` (whether every bit of the points is).
+        error_steps{...}, error_degrees{max, mean, p99}, error_values{name: {max, mean}}, compared_every`` (1 for all
+        streamlines), ``promise_mm, seconds`` (to read and code), ``points_per_second, seconds_to_measure, dropped,
+        per_point`` (names of the arrays kept), and ``exact`` (whether every bit of the points is).
 
     Raises
     ------
@@ -122,6 +124,7 @@ def compress_file(
     if verify not in ("all", "sample"):
         raise ValueError(f"verify is {verify!r}; 'all' or 'sample' is needed")
     check_exact(exact, step, order, max_error)
+    how = ValueBounds(per_point_bits, max_value_error)
     remove_unfinished(Path(target).resolve().parent)
     promise = None
     if step != "auto":
@@ -151,7 +154,7 @@ def compress_file(
             small.clear()
     plain = is_plain(step, max_error, max_angle, effort, order)
     if exact or (exact is None and plain and raw < limits.EXACT_BELOW):
-        return _keep_exactly(small, target, names, per_point_bits, started)
+        return _keep_exactly(small, target, names, started)
     small.clear()
     from ..encode import Encoder  # which needs a compiler
 
@@ -160,6 +163,7 @@ def compress_file(
     else:
         parameters = Parameters.of_resampled(found, promise, step)
     encoder = Encoder(parameters, effort, max_angle)
+    coders = value_coders(found, found.values or names, how)
     spooled = [0]
     with (
         naming_target(target, lambda: 2 * spooled[0]),  # once in parts, once put together
@@ -172,17 +176,18 @@ def compress_file(
                 for name in ("anchors", "decoding", "reach", "codes", "ends", "anchors_low"):
                     if getattr(records, name) is not None:
                         spool.add(f"{name}.npy", getattr(records, name))
-            for name, values in quantise_chosen(chunk, found, names, per_point_bits).items():
+            for name, column in value_columns(chunk, names):
+                values = coders[name].code(column)
                 spool.add(name, values.codes)
                 whole.add_values(name, values)
             whole.add(chunk)
         spool.close()
         # To keep them as they are, all are in memory at once, and their records.
         if exact is None and step == "auto" and grows(encoder, raw) and fits(6 * raw):
-            return _keep_exactly(chunks(), target, names, per_point_bits, started)
+            return _keep_exactly(chunks(), target, names, started)
         tell_far(found)
         if not encoder.n_fiblets:
-            spool.add_empty(names, per_point_bits, whole)
+            spool.add_empty(coders, whole)
         pages, ids = encoder.page_table(), encoder.rank_to_id()
         spool.add("pages.npy", pages)
         if ids is not None:
@@ -237,11 +242,11 @@ def compress_file(
 
 
 def _keep_exactly(
-    chunks: Iterable[Streamlines], target: str | PathLike[str], names: tuple[str, ...], bits: int, started: float
+    chunks: Iterable[Streamlines], target: str | PathLike[str], names: tuple[str, ...], started: float
 ) -> dict[str, Any]:
     """Write a file that keeps every bit of the points, and say what :func:`compress_file` says."""
     whole = Streamlines.concatenate(chunks)
-    fiblets = compress(whole, exact=True, per_point=names, per_point_bits=bits)
+    fiblets = compress(whole, exact=True, per_point=names)
     with naming_target(target):
         fiblets.save(target)
     seconds = time.perf_counter() - started
@@ -259,6 +264,7 @@ def _keep_exactly(
         "error_mm": {**none, "p999": 0.0},
         "error_steps": {**none, "p999": 0.0},
         "error_degrees": {**none, "p99": 0.0},
+        "error_values": value_errors(fiblets.per_point),
         "compared_every": 1,
         "promise_mm": 0.0,
         "seconds": seconds,
@@ -275,7 +281,8 @@ class _Whole:
 
     def __init__(self, dropped: dict[str, int]) -> None:
         self.n = 0
-        self.per_point: dict[str, QuantisedPoints] = {}
+        self.per_point: dict[str, PointValues] = {}
+        self._values_of: dict[str, int] = {}
         self.per_streamline: dict[str, list[npt.NDArray[Any]]] = {}
         self.groups: dict[str, list[npt.NDArray[Any]]] = {}
         self.per_group: dict[str, dict[str, Any]] = {}
@@ -296,11 +303,14 @@ class _Whole:
             self.dropped[reason] = self.dropped.get(reason, 0) + int(count)
         self.n += len(chunk)
 
-    def add_values(self, name: str, values: QuantisedPoints) -> None:
-        """Remember a per-point array's range and largest error, not its codes."""
-        before = self.per_point.get(name)
-        error = values.max_error if before is None else max(before.max_error, values.max_error)
-        self.per_point[name] = QuantisedPoints(np.empty(0, values.codes.dtype), values.lo, values.hi, error)
+    def add_values(self, name: str, values: PointValues) -> None:
+        """Remember a per-point array's table and errors, not its codes."""
+        n, before = len(values.codes), self.per_point.get(name, values)
+        had = self._values_of.get(name, 0)
+        mean = (before.mean_error * had + values.mean_error * n) / max(had + n, 1)
+        worst = max(before.max_error, values.max_error)
+        self._values_of[name] = had + n
+        self.per_point[name] = replace(values, codes=values.codes[:0], max_error=worst, mean_error=mean)
 
 
 class _Spool:
@@ -322,7 +332,7 @@ class _Spool:
         self._total[0] += rows.nbytes
         self._streams[name].write(np.ascontiguousarray(rows).tobytes())
 
-    def add_empty(self, per_point: Sequence[str], bits: int, whole: _Whole) -> None:
+    def add_empty(self, coders: dict[str, ValueCoder], whole: _Whole) -> None:
         """Empty arrays, for a source without points."""
         for name, dtype, shape in (
             ("anchors.npy", np.uint32, (0, WORDS["anchors"])),
@@ -333,9 +343,9 @@ class _Spool:
         ):
             if name not in self._shapes:
                 self.add(name, np.empty(shape, dtype))
-        for name in per_point:
+        for name, coder in coders.items():
             if name not in self._shapes:
-                empty = QuantisedPoints(np.empty(0, np.uint8 if bits == 8 else np.uint16), 0.0, 0.0, 0.0)
+                empty = coder.code(np.empty(0, coder.kind))
                 self.add(name, empty.codes)
                 whole.add_values(name, empty)
 

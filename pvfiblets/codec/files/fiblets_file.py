@@ -25,7 +25,7 @@ from ...support.addresses import is_url
 from ..exact import plain_records
 from ..layout import PAGE, WORDS
 from ..parameters import Parameters, bounds_of, survey
-from ..quantised import QuantisedPoints
+from ..point_values import PointValues, linear_table, opened_table, stored_table
 from .archive import Member, array_member, open_archive, write_archive
 from .exact_file import pack_points, unpack_points
 
@@ -46,6 +46,7 @@ INDEX_MEMBERS = ("spatial_index/order.npy", "spatial_index/leaves.npy", "spatial
 
 CORE = ("anchors", "decoding", "reach", "codes", "ends", "pages")
 OPTIONAL = ("anchors_low", "rank_to_id")
+VALUE_FACTS = ("lo", "hi", "max_error", "mean_error", "reference")
 _SHAPES: dict[str, tuple[str, int]] = {
     "anchors": ("<u4", WORDS["anchors"]),
     "decoding": ("<u4", WORDS["decoding"]),
@@ -120,7 +121,12 @@ def make_header(fiblets: FibletSet, per_point: dict[str, Member]) -> tuple[dict[
         "n_points": fiblets.n_points,
         "n_fiblets": fiblets.n_fiblets,
         "per_point": {
-            k: {"member": name("per_point", per_point[k]), "lo": v.lo, "hi": v.hi, "max_error": v.max_error}
+            k: {
+                "member": name("per_point", per_point[k]),
+                **({} if v.table is None else {"table": name("table", plain(stored_table(v.table)))}),
+                **{key: getattr(v, key) for key in VALUE_FACTS},
+                "mean_error": float(f"{v.mean_error:.9g}"),  # whose last digits depend on what was added up together
+            }
             for k, v in fiblets.per_point.items()
         },
         "per_streamline": {k: name("per_streamline", plain(v)) for k, v in fiblets.per_streamline.items()},
@@ -193,7 +199,7 @@ def _data(header: dict[str, Any], arrays: dict[str, npt.NDArray[Any]]) -> dict[s
     found = {name: header.get(name, {}) for name in ("per_point", "per_streamline", "groups", "per_group")}
     return {
         "per_point": {
-            k: QuantisedPoints(arrays[v["member"]], float(v["lo"]), float(v["hi"]), float(v["max_error"]))
+            k: _point_values(v, arrays)
             for k, v in found["per_point"].items()
         },
         "per_streamline": {k: arrays[v] for k, v in found["per_streamline"].items()},
@@ -203,6 +209,15 @@ def _data(header: dict[str, Any], arrays: dict[str, npt.NDArray[Any]]) -> dict[s
         "space": dict(header.get("space", {})),
         "dropped": {k: int(v) for k, v in header.get("dropped", {}).items()},
     }
+
+
+def _point_values(said: dict[str, Any], arrays: dict[str, npt.NDArray[Any]]) -> PointValues:
+    """Values of points; older files have no table, and mean even steps."""
+    codes, (lo, hi, worst, mean, reference) = arrays[said["member"]], (float(said.get(k, 0.0)) for k in VALUE_FACTS)
+    table = opened_table(arrays[said["table"]], 8 * codes.dtype.itemsize) if "table" in said else None
+    if "reference" not in said:
+        table = linear_table(lo, hi, 8 * codes.dtype.itemsize)
+    return PointValues(codes, lo, hi, worst, mean, table, reference)
 
 
 def _assemble(kind: type[FibletSet], header: dict[str, Any], arrays: dict[str, npt.NDArray[Any]]) -> FibletSet:
@@ -267,7 +282,13 @@ def _check_shapes(path: str | PathLike[str], f: FibletSet, n: int, n_points: int
         (f.anchors_low is not None) == (f.parameters.anchor_bits == 32), "anchors_low", "it with 32-bit anchors only"
     )
     for name, points in f.per_point.items():
-        fits = points.codes.shape == (f.n_points,) and points.codes.dtype in (np.dtype(np.uint8), np.dtype("<u2"))
+        kind, meant = points.codes.dtype, points.table
+        if meant is None:
+            fits = kind.kind in "fiub"
+        else:
+            fits = kind in (np.dtype(np.uint8), np.dtype("<u2")) and meant.dtype.kind in "fiub"
+            fits = fits and meant.shape == (1 << (8 * kind.itemsize),)
+        fits = fits and points.codes.shape == (f.n_points,)
         expect(fits, f"per-point {name} {points.codes.dtype}{points.codes.shape}", f"({f.n_points},)")
     for name, rows in f.per_streamline.items():
         expect(

@@ -14,6 +14,7 @@ from ..check import check_file
 from ..compress import compress
 from ..decompress import held_in_bounds
 from ..fibletset import FibletSet
+from ..point_values import PointValues
 from ..tangents import PIXELS
 from .fiblets_file import index_bytes, is_sharded
 
@@ -69,12 +70,16 @@ def info(path: str | PathLike[str]) -> dict[str, Any]:
         "promise_mm": f.points_promise,
         "promise_pixels": _pixels(f.points_promise, f.bounds),
         "bounds_mm": list(f.bounds),
-        "per_point": {k: {"min": v.lo, "max": v.hi, "max_error": v.max_error} for k, v in f.per_point.items()},
+        "per_point": {k: {"min": v.lo, "max": v.hi, **_kept(v)} for k, v in f.per_point.items()},
         "per_streamline": sorted(f.per_streamline),
         "groups": {k: len(v) for k, v in f.groups.items()},
         "affine": f.affine.tolist(),
         "dropped": f.dropped,
     }
+
+
+def _kept(values: PointValues) -> dict[str, Any]:
+    return {"max_error": values.max_error, "mean_error": values.mean_error, "type": values.dtype.name}
 
 
 def _pixels(promise: float, bounds: Sequence[float]) -> dict[str, float]:

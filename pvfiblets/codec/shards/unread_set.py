@@ -24,7 +24,7 @@ from ..fibletset import FibletSet
 from ..files.stored_parts import of_streamlines
 from ..join import concatenate
 from ..parameters import Parameters
-from ..quantised import QuantisedPoints
+from ..point_values import PointValues
 from .sharded_set import ShardedSet, renumbered
 
 __all__ = ["CodesOfShards", "UnreadSet"]
@@ -165,7 +165,7 @@ class UnreadSet(FibletSet):
         return found
 
     @cached_property
-    def per_point(self) -> dict[str, QuantisedPoints]:  # type: ignore[override]
+    def per_point(self) -> dict[str, PointValues]:  # type: ignore[override]
         """Values of points, whose codes are read when somebody reads them."""
         return {
             # No array, but one for whoever calls NumPy with it.

@@ -23,7 +23,7 @@ from pvfiblets.query.selection.endpoints import anchor_points, end_points
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
-    from pvfiblets.codec.quantised import QuantisedPoints
+    from pvfiblets.codec.point_values import PointValues
     from pvfiblets.streamlines import Streamlines
 
 ORIENTATION = "orientation"
@@ -139,8 +139,7 @@ class Scalars:
                 f"{self.name!r} has no categories; give categories=False, or the number of colours "
                 "as n_colors"
             )
-        stored = fiblets.per_point[self.name]
-        return max(int(np.count_nonzero(np.bincount(stored.codes)[: stored.levels])), 1)
+        return max(fiblets.per_point[self.name].distinct(), 1)
 
 
 def find_scalars(
@@ -163,8 +162,7 @@ def find_scalars(
     if scalars in fiblets.per_point:
         stored = fiblets.per_point[scalars]
         low, high = stored.lo, stored.hi
-        smallest = max(low, (high - low) / stored.levels, 1e-30)
-        return Scalars(scalars, "point_scalar", None, (low, high), positive=smallest)
+        return Scalars(scalars, "point_scalar", None, (low, high), positive=stored.least_positive())
     if columns := colour_columns(fiblets.per_point, scalars):
         return _of_colours(scalars, [fiblets.per_point[name] for name in columns])
     if scalars in fiblets.per_streamline:
@@ -219,7 +217,7 @@ def refuse_numbers(title: str | None, rgb: bool | None) -> None:
         )
 
 
-def _of_colours(name: str, columns: list[QuantisedPoints]) -> Scalars:
+def _of_colours(name: str, columns: list[PointValues]) -> Scalars:
     """Colours of points, of which the fiblets hold each channel."""
     low, high = min(column.lo for column in columns), max(column.hi for column in columns)
     if low < 0.0 or high > 255.0:

@@ -16,8 +16,8 @@ from ... import formats
 from ...codec.decompress import decode_fiblets, held_in_bounds
 from ...codec.fibletset import FibletSet
 from ...codec.files.stored_parts import stored_parts
+from ...codec.point_values import PointValues
 from ...codec.progress import Progress, shown
-from ...codec.quantised import QuantisedPoints
 from ...invalid_points import CUT, NONFINITE, valid_points
 from ...streamlines import Streamlines
 from ...support.summary import warn_of_losses
@@ -160,7 +160,7 @@ class _Compressed:
         if not self.per_point:
             assert isinstance(kept, np.ndarray)
             return self._of_streamlines(kept, ranks, ids, np.empty(0))
-        rows = kept.values(points) if isinstance(kept, QuantisedPoints) else kept[points]
+        rows = kept.values(points) if isinstance(kept, PointValues) else kept[points]
         return rows.astype(np.float64)
 
     @staticmethod

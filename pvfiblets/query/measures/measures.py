@@ -22,7 +22,7 @@ both chords; of fewer than three points it is 0. A warning tells where coded lin
 or the promise is coarser than a tenth of a step, and the `max_error` that is needed. Colours by curvature turn from
 segment to segment (``shaders/fiblets/attributes/turn.glsl``).
 
-Values per point stand in the order in which points are coded, as float32. Stored arrays come before the names above, as
+Values per point stand in the order in which points are coded. Stored arrays come before the names above, as
 they do for colours.
 """
 
@@ -38,7 +38,7 @@ import numpy.typing as npt
 
 from ...codec.files.stored_parts import stored_parts
 from ...codec.parameters import DEFAULT_PROMISE_STEPS, median_step
-from ...codec.quantised import QuantisedPoints
+from ...codec.point_values import PointValues
 from ...streamlines import Streamlines
 from ..regions.region import Region
 
@@ -78,24 +78,24 @@ class Values:
     ----------
     kind : {'streamline', 'point'}
         What has a value.
-    values : numpy.ndarray or QuantisedPoints
+    values : numpy.ndarray or PointValues
         ``(n_streamlines,)`` float64; or ``(n_points,)`` float32 in coded order, codes where the set stores them.
     name, unit : str
         ``unit`` is empty where there is none or it is not known.
     """
 
     kind: Kind
-    values: npt.NDArray[Any] | QuantisedPoints
+    values: npt.NDArray[Any] | PointValues
     name: str
     unit: str = ""
 
     def array(self) -> npt.NDArray[Any]:
         """The values as numbers: ``(n_streamlines,)`` float64 or ``(n_points,)`` float32."""
-        return self.values.values() if isinstance(self.values, QuantisedPoints) else self.values
+        return self.values.values() if isinstance(self.values, PointValues) else self.values
 
     def range(self) -> tuple[float, float]:
         """Least and greatest finite value; ``(0.0, 0.0)`` where there is none."""
-        if isinstance(self.values, QuantisedPoints):
+        if isinstance(self.values, PointValues):
             return float(self.values.lo), float(self.values.hi)
         finite = self.values[np.isfinite(self.values)]
         return (float(finite.min()), float(finite.max())) if finite.size else (0.0, 0.0)
@@ -194,7 +194,8 @@ def _own(fiblets: FibletSet, given: npt.ArrayLike) -> Values:
     if rows.shape == (fiblets.n_streamlines,) and rows.dtype.kind in "biuf":
         return Values("streamline", rows.astype(np.float64), "values")
     if rows.shape == (fiblets.n_points,) and rows.dtype.kind in "biuf":
-        return Values("point", fiblets.in_coded_order(rows).astype(np.float32), "values")
+        kept = np.float32 if rows.dtype in (np.float32, np.float16) else np.float64  # of times, float32 keeps minutes
+        return Values("point", fiblets.in_coded_order(rows).astype(kept), "values")
     raise ValueError(
         f"values of {rows.dtype}{rows.shape}; one number for each of the {fiblets.n_streamlines} streamlines or "
         f"{fiblets.n_points} points is needed"

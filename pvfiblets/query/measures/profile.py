@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from ...codec.decompress import select_streamlines
 from ...codec.layout import PAGE, unpack
-from ...codec.quantised import QuantisedPoints
+from ...codec.point_values import PointValues
 from ...codec.streamline_ranges import StreamlineRanges, ranges_of
 from ...support.ragged import blocks
 from .measures import Distance, Values, by_rank, measure
@@ -69,7 +69,7 @@ def _values_at(values: Values, places: StreamlineRanges) -> Floats:
     starts = np.cumsum(places.points) - places.points
     rows = np.arange(int(places.points.sum())) + np.repeat(places.point - starts, places.points)
     kept = values.values
-    return (kept.values(rows) if isinstance(kept, QuantisedPoints) else kept[rows]).astype(np.float64)
+    return (kept.values(rows) if isinstance(kept, PointValues) else kept[rows]).astype(np.float64)
 
 
 def _resampled(points: npt.NDArray[Any], offsets: Any, values: Floats, n: int) -> tuple[Floats, Floats]:

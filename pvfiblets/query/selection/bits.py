@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from ...codec.quantised import QuantisedPoints
+from ...codec.point_values import PointValues
 from ..measures.measures import Values
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ class Criterion:
 
     Attributes
     ----------
-    values : Values, QuantisedPoints or array_like
+    values : Values, PointValues or array_like
         Per point in coded order, or per streamline.
     lo, hi : float
         Infinite ends are no ends.
@@ -45,7 +45,7 @@ class Criterion:
         If an end is NaN, or ``lo`` is above ``hi``.
     """
 
-    values: Values | QuantisedPoints | npt.ArrayLike
+    values: Values | PointValues | npt.ArrayLike
     lo: float
     hi: float
     keep_nan: bool = False
@@ -67,8 +67,7 @@ def point_words(fiblets: FibletSet, criteria: Iterable[Criterion | tuple[Any, ..
 
     Notes
     -----
-    Values are float32 and compared as float64. Those that are stored as codes are compared as the float32 that
-    :meth:`.QuantisedPoints.values` gives for the code, without being decoded.
+    Values are compared as float64; those that are stored as codes without being decoded, by what each code means.
     """
     from .bit_kernels import keep_codes, keep_values
 
@@ -83,24 +82,19 @@ def point_words(fiblets: FibletSet, criteria: Iterable[Criterion | tuple[Any, ..
             if values.kind != "point":
                 raise ValueError(f"{values.name!r} has a value per {values.kind}; values per point are needed here")
             values = values.values
-        codes = values.codes if isinstance(values, QuantisedPoints) else np.asarray(values)
+        table = values.table if isinstance(values, PointValues) else None
+        codes = values.codes if isinstance(values, PointValues) else np.asarray(values)
         if codes.shape != (n,):
             raise ValueError(f"values of shape {codes.shape} for {n} points; one number for each point is needed")
         for a in range(0, n, SLICE):
             # Whole words: SLICE is a multiple of 32. A copy, so that mapped arrays need no kernel of their own.
             part, piece = words[a // 32 : (min(a + SLICE, n) + 31) // 32], codes[a : a + SLICE]
-            if isinstance(values, QuantisedPoints):
-                keep_codes(np.array(piece), _kept_codes(values, criterion), part)
+            if table is not None:
+                keep_codes(np.array(piece), _kept(table, criterion), part)
             else:
-                number = np.array(piece, np.float32)
+                number = np.array(piece, np.float64)
                 keep_values(number, float(criterion.lo), float(criterion.hi), criterion.keep_nan, part)
     return words
-
-
-def _kept_codes(values: QuantisedPoints, criterion: Criterion) -> Mask:
-    """``(levels + 1,)`` bool: codes that are kept."""
-    every = np.arange(values.levels + 1).astype(values.codes.dtype)
-    return _kept(QuantisedPoints(every, values.lo, values.hi, 0.0).values(), criterion)
 
 
 def _kept(values: npt.NDArray[Any], criterion: Criterion) -> Mask:
@@ -121,7 +115,7 @@ def streamline_mask(fiblets: FibletSet, criteria: Iterable[Criterion | tuple[Any
                     f"{values.name!r} has a value per {values.kind}; values per streamline are needed here"
                 )
             values = values.values
-        if isinstance(values, QuantisedPoints):
+        if isinstance(values, PointValues):
             raise ValueError("a stored per-point array has values per point; values per streamline are needed here")
         number = np.asarray(values)
         if number.shape != mask.shape:

@@ -44,9 +44,8 @@ CHUNK_BLOCK = UniformStruct(
     Field("chunk_first_rank", "uint", "rank of the first streamline here"),
     Field("chunk_pages", "uint", "pages here"),
     Field("chunk_end_words", "uint", "word of `bounds` where end vectors begin"),
-    Field("value_bits", "uint", "of a stored per-point value"),
-    Field("value_of_code_0", "float", "in the array's own unit"),
-    Field("value_per_code", "float", "likewise"),
+    Field("value_bits", "uint", "of a stored per-point value; 32 of one that is no code"),
+    Field("value_table", "uint", "words before the codes: what each code means"),
 )
 
 
@@ -168,7 +167,8 @@ def _plan(fiblets: FibletSet, begin: int, end: int) -> ChunkPlan:
     }
     if fiblets.anchors_low is not None:
         sizes["anchors_low"] = 6 * (n + 1)
-    widest = max((values.codes.dtype.itemsize for values in fiblets.per_point.values()), default=0)
+    widest = max((values.drawn_bytes for values in fiblets.per_point.values()), default=0)
+    tables = max((values.table_bytes for values in fiblets.per_point.values()), default=0)
     if any(name.endswith("[2]") and colour_columns(fiblets.per_point, name[:-3]) for name in fiblets.per_point):
         widest = 4
     return ChunkPlan(
@@ -177,7 +177,7 @@ def _plan(fiblets: FibletSet, begin: int, end: int) -> ChunkPlan:
         (code, last_code),
         (point, last_point),
         {name: padded(size) for name, size in sizes.items()},
-        padded(max(widest * (last_point - point + 1), 4 * (n + 1))),
+        padded(max(widest * (last_point - point + 1) + tables, 4 * (n + 1))),
     )
 
 

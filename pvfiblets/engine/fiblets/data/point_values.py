@@ -3,7 +3,7 @@
 ============================  ==========================================  ==============================
 value                         what the GPU holds for it                   unit
 ============================  ==========================================  ==============================
-a name in ``per_point``       its codes, one or two bytes per point       the array's own
+a name in ``per_point``       its codes and what they mean, or a float32   the array's own
 a name of three or four       a word per point: red, green, blue, alpha   a colour, packed into a number
 ``'arc_length'``              a float32 per fiblet: the anchor's          mm from the first point
 ``'curvature'``               a float32 per fiblet: the anchor's          1/mm
@@ -19,6 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import moderngl
@@ -27,6 +28,7 @@ import numpy.typing as npt
 
 from ....codec import layout
 from ....codec.point_arrays import colour_columns, colours_of_points
+from ....support.value_reference import relative
 from ...errors import EngineError
 from .chunks import CHUNK_BLOCK, Chunk, padded, storage_buffer
 from .measures import Measurer
@@ -164,17 +166,17 @@ class ValueSources:
 
     def _copy_stored(self, name: str) -> None:
         stored = self._fiblets.per_point[name]
-        bits = stored.codes.dtype.itemsize * 8
-        scale = (stored.hi - stored.lo) / (2**bits - 2)
+        n = len(stored.codes)
+        table = np.zeros(0, "<f4") if stored.table is None else relative(stored.table, stored.reference).astype("<f4")
         for chunk in self._chunks:
             first, last = chunk.plan.points
             # One more point: the chunk's last fiblet may be joined to the next chunk's first.
-            last = min(last + 1, len(stored.codes))
-            size = padded((last - first) * stored.codes.dtype.itemsize)
-            chunk.buffers["values"] = fill_buffer(self._ctx, size, rows_of(stored.codes, first, last), name)
-            CHUNK_BLOCK.write(
-                chunk.buffers["chunk"], value_bits=bits, value_of_code_0=stored.lo, value_per_code=scale
-            )
+            rows = rows_of(stored.codes, first, min(last + 1, n))
+            if stored.table is None:
+                rows = (relative(piece, stored.reference).astype("<f4") for piece in rows)
+            size = padded(table.nbytes + stored.drawn_bytes * (min(last + 1, n) - first))
+            chunk.buffers["values"] = fill_buffer(self._ctx, size, chain([table], rows), name)
+            CHUNK_BLOCK.write(chunk.buffers["chunk"], value_bits=8 * stored.drawn_bytes, value_table=len(table))
 
     def _copy_colours(self, name: str) -> None:
         fiblets = self._fiblets

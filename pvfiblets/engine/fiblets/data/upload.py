@@ -88,8 +88,7 @@ def upload_chunk(
         chunk_pages=plan.pages[1] - plan.pages[0],
         chunk_end_words=-(-n // 2),
         value_bits=0,
-        value_of_code_0=0.0,
-        value_per_code=0.0,
+        value_table=0,
     )
     chunk = Chunk(plan, frozenset())
     try:
