@@ -295,7 +295,9 @@ export class FibletSet {
     const texture = emptyRows(this.gl, format, this.points, "values of points");
     this.values.push({ texture, format, data });
     fillRows(this.gl, texture, format, data, 0, this.countBefore(this.done, 2));
-    const meant = new Uint32Array(table.slice().buffer);
+    const full = new Float32Array(wide ? 65536 : 256).fill(NaN);  // of which a file has what is used
+    full.set(table.subarray(0, full.length));
+    const meant = new Uint32Array(full.buffer);
     return { name, texture, table: rows(this.gl, "r32ui", meant, "values of codes"), range: [lo, hi], reference };
   }
 

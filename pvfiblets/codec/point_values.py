@@ -372,12 +372,12 @@ def code_values(
     return survey.coder(bits, max_error, exact=exact).code(values)
 
 
-def as_codes(values: npt.ArrayLike, bits: int) -> tuple[PointValues, Array]:
-    """Code one value per point in at most 16 bits, whatever that costs; with the table."""
+def as_codes(values: npt.ArrayLike, most_bits: int = 16) -> tuple[PointValues, Array]:
+    """Code one value per point in at most so many bits, whatever that costs; with the table."""
     numbers = np.asarray(values, np.float64)
-    found = code_values(numbers, bits)
-    if found.table is not None:
+    found = code_values(numbers)
+    if found.table is not None and 8 * found.codes.dtype.itemsize <= most_bits:
         return found, found.table
-    table = _full(np.linspace(found.lo, found.hi, (1 << 16) - 1), 16)
-    coder = ValueCoder(table, (1 << 16) - 1, numbers.dtype, found.lo, found.hi, found.reference)
-    return coder.code(numbers), table
+    n = (1 << most_bits) - 1
+    table = _full(np.linspace(found.lo, found.hi, n), most_bits)
+    return ValueCoder(table, n, numbers.dtype, found.lo, found.hi, found.reference).code(numbers), table

@@ -17,9 +17,6 @@ if TYPE_CHECKING:
 
 __all__ = ["colours", "with_values"]
 
-_BITS = 16
-
-
 def with_values(fiblets: FibletSet, source: Any, log_scale: bool) -> tuple[FibletSet, str]:
     """Return a set that has some values for its points as codes of what float32 holds, and their name."""
     name, values = (source, None) if isinstance(source, str) else (source.name, _sampled(fiblets, source))
@@ -30,7 +27,7 @@ def with_values(fiblets: FibletSet, source: Any, log_scale: bool) -> tuple[Fible
             from pvfiblets.query.measures.measures import measure
 
             values = measure(fiblets, name).array() if stored is None else stored.values()
-        stored, table = as_codes(values, _BITS)
+        stored, table = as_codes(values)
     reference = 0.0 if log_scale else stored.reference
     table = relative(table, reference).astype("<f4")
     return replace(fiblets, per_point={name: replace(stored, table=table, reference=reference)}), name

@@ -11,7 +11,7 @@ import pytest
 import pvfiblets
 
 CODE = """
-from pvfiblets.codec import direction_kernels as kernels
+from pvfiblets.codec.kernels import direction_kernels as kernels
 print(kernels.quantise(3.0, 1.0, 100.0), len(kernels.quantise.stats.cache_hits))
 """
 

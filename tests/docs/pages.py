@@ -22,7 +22,7 @@ pvfiblets.write("brain.trx", brain_streamlines(400, seed=1, fa=True))
 # An image, a surface of GIFTI, labels, and a session that was saved on the page of serve.
 SCENE = """
 import nibabel, numpy as np
-from pvfiblets.web import session
+from pvfiblets.web.session import files as session
 from pvfiblets.web.scene.scene import Scene
 affine = np.diag([12.0, 14.0, 12.0, 1.0])
 affine[:3, 3] = -80, -100, -60

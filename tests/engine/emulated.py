@@ -84,7 +84,7 @@ void put_varyings(uint primitive, Varyings varyings, ClippedSegment piece, vec3 
     for (uint a = 0u; a < 3u; ++a) meshes[at + 14u + a] = floatBitsToUint(varying_from[a]);
     for (uint a = 0u; a < 3u; ++a) meshes[at + 17u + a] = floatBitsToUint(varying_to[a]);
 #endif
-#if FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_CURVATURE || FEATURE_VALUES_VOLUME
+#if FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_VOLUME
     for (uint a = 0u; a < 2u; ++a) meshes[at + 20u + a] = floatBitsToUint(varying_values[a]);
 #endif
 }
@@ -142,7 +142,7 @@ void main() {
     varying_from = vec3(value(at + 14u), value(at + 15u), value(at + 16u));
     varying_to = vec3(value(at + 17u), value(at + 18u), value(at + 19u));
 #endif
-#if FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_CURVATURE || FEATURE_VALUES_VOLUME
+#if FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_VOLUME
     varying_values = vec2(value(at + 20u), value(at + 21u));
 #endif
 }

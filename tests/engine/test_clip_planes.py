@@ -221,7 +221,7 @@ def test_wide_lines_at_a_cut(gl, fabricate, camera):
 @pytest.mark.few(1)
 @pytest.mark.parametrize(
     "style",
-    [FibletStyle(), FibletStyle(6.0), FibletStyle(values="arc_length"), FibletStyle(2.0, values="curvature")],
+    [FibletStyle(), FibletStyle(6.0), FibletStyle(values="arc_length"), FibletStyle(2.0, values="arc_length")],
 )
 def test_fiblets_apart_from_the_planes_are_drawn_as_ever(gl, fabricate, random_lines, camera, style):
     """Planes far away change no bit; a plane that keeps a part changes nothing in that part's own streamlines."""

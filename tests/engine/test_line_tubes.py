@@ -320,7 +320,7 @@ def test_tubes_hand_over_no_more_than_wide_lines():
         return sum(sizes[line.split()[1]] for line in lines if line.startswith("VARYING "))
 
     for more in ([], ["CLIPPING"], ["CLIPPING", "CLIP_PLANES"]):
-        for values in ([], ["VALUES_CURVATURE"]):
+        for values in ([], ["VALUES_ARC_LENGTH"]):
             assert components([*TUBES, *more, *values]) <= components(["WIDE_LINES", *more, *values])
 
 
@@ -341,7 +341,7 @@ def test_what_software_opengl_draws_otherwise(gl, fabricate, random_lines, camer
     fiblets = fabricate(random_lines(60, seed=5), kind=2, per_fiblet=20)
     renderer = FibletRenderer(gl, fiblets, pipeline="compute", culling="two-phase")
     view = View(SIZE, camera(SIZE))
-    styles = FibletStyle(radius=2.0, values="curvature"), FibletStyle(radius=1.0, values="arc_length")
+    styles = FibletStyle(radius=2.0, values="arc_length"), FibletStyle(radius=1.0, values="arc_length")
     for style in (FibletStyle(), *styles, FibletStyle(3.0)):
         picture = read(renderer.render(view, style))
         pipeline = "compute" if style.radius is None else "geometry"

@@ -18,7 +18,7 @@ def scenes():
     near = {"eye": (0, -60, 10), "near": 25.0, "far": 90.0}
     return [
         ({}, (), FibletStyle()), ({}, (), FibletStyle(5.0)), ({"height": 150.0}, (), FibletStyle(values="arc_length")),
-        ({}, BOX, FibletStyle(values="curvature")), (near, BOX, FibletStyle(5.0, values="curvature")),
+        ({}, BOX, FibletStyle(values="arc_length")), (near, BOX, FibletStyle(5.0, values="arc_length")),
         (near, (), FibletStyle(tolerance=0.0)),
     ]  # fmt: skip
 

@@ -14,19 +14,6 @@ def arc_length(line):
     return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
 
 
-def curvature(line):
-    """Angle between neighbouring segments over half their joint length; ends copy; fewer than three points: 0."""
-    values = np.zeros(len(line))
-    for i in range(1, len(line) - 1):
-        a, b = line[i] - line[i - 1], line[i + 1] - line[i]
-        la, lb = np.linalg.norm(a), np.linalg.norm(b)
-        if la > 0 and lb > 0:
-            values[i] = np.arccos(np.clip(a @ b / la / lb, -1, 1)) / ((la + lb) / 2)
-    if len(line) > 2:
-        values[0], values[-1] = values[1], values[-2]
-    return values
-
-
 def draw_values(gl, fiblets, matrix, name, *, tolerance=0.0, **limits):
     """Streamline, place and value of every drawn pixel, and the renderer's range."""
     renderer = FibletRenderer(gl, fiblets, **limits)
@@ -47,11 +34,10 @@ def interpolated(values, place):
 @pytest.mark.few(2)
 @pytest.mark.every("value")
 @pytest.mark.parametrize("per_fiblet", [1, 2, 7, 60])
-@pytest.mark.parametrize(("name", "truth"), [("arc_length", arc_length), ("curvature", curvature)])
-def test_built_in_values(gl, fabricate, random_lines, camera, name, truth, per_fiblet):
+def test_arc_lengths(gl, fabricate, random_lines, camera, per_fiblet):
     fiblets = fabricate(random_lines(60, seed=21), kind=2, per_fiblet=per_fiblet)
-    streamline, place, value, found_range = draw_values(gl, fiblets, camera(SIZE), name)
-    expected = [truth(line) for line in fiblets.lines]
+    streamline, place, value, found_range = draw_values(gl, fiblets, camera(SIZE), "arc_length")
+    expected = [arc_length(line) for line in fiblets.lines]
     for s in np.unique(streamline):
         here = streamline == s
         assert np.abs(value[here] - interpolated(expected[s], place[here])).max() < 2e-3 * max(1.0, np.max(expected[s]))
@@ -59,16 +45,13 @@ def test_built_in_values(gl, fabricate, random_lines, camera, name, truth, per_f
     assert np.allclose(found_range, (every.min(), every.max()), rtol=1e-3, atol=1e-3)
 
 
-@pytest.mark.few(1)
-@pytest.mark.every("value")
-@pytest.mark.parametrize("name", ["arc_length", "curvature"])
 @pytest.mark.parametrize("tolerance", [0.0, 0.5])
-def test_built_in_values_across_chunks(gl, fabricate, camera, name, tolerance):
+def test_arc_lengths_across_chunks(gl, fabricate, camera, tolerance):
     t = np.linspace(0, 60, 40000)
     line = np.stack([50 * np.cos(t), 50 * np.sin(t * 1.1), t - 30], axis=1)
     fiblets = fabricate([line], kind=2, per_fiblet=2)
-    whole = draw_values(gl, fiblets, camera(SIZE), name, tolerance=tolerance)
-    pieces = draw_values(gl, fiblets, camera(SIZE), name, tolerance=tolerance, max_buffer_bytes=12 * 16385)
+    whole = draw_values(gl, fiblets, camera(SIZE), "arc_length", tolerance=tolerance)
+    pieces = draw_values(gl, fiblets, camera(SIZE), "arc_length", tolerance=tolerance, max_buffer_bytes=12 * 16385)
     for a, b in zip(whole, pieces, strict=True):
         assert np.allclose(a, b, rtol=1e-5, atol=1e-4)
 

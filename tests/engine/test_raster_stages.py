@@ -40,7 +40,7 @@ STAGES = {
 @pytest.mark.parametrize("name", STAGES)
 @pytest.mark.parametrize("clipping", [(), ("CLIPPING", "CLIPPING_DEPTH", "CLIP_PLANES")])
 @pytest.mark.parametrize("culling", [("CULL_PYRAMID", "SECOND_ROUND"), ("CULL_COVERAGE",)])
-@pytest.mark.parametrize("values", ["STORED", "ARC_LENGTH", "CURVATURE"])
+@pytest.mark.parametrize("values", ["STORED", "ARC_LENGTH"])
 def test_stages_link_in_the_oldest_glsl(gl, name, values, culling, clipping):
     """With every kind of record, in the version of GLSL that the pipeline's OpenGL has."""
     version = 410 if "tessellation" in name else 330
@@ -56,7 +56,7 @@ def test_stages_link_in_the_oldest_glsl(gl, name, values, culling, clipping):
 
 @pytest.mark.parametrize("wide", [False, True])
 @pytest.mark.parametrize("clipping", [(), ("CLIPPING",), ("CLIPPING", "CLIP_PLANES")])
-@pytest.mark.parametrize("values", [(), ("VALUES_STORED",), ("VALUES_CURVATURE",), ("VALUES_VOLUME",)])
+@pytest.mark.parametrize("values", [(), ("VALUES_STORED",), ("VALUES_ARC_LENGTH",), ("VALUES_VOLUME",)])
 @pytest.mark.parametrize("edges", [(), ("EDGES",)])
 def test_a_geometry_stage_emits_no_more_than_opengl_promises(edges, values, clipping, wide):
     features = {*edges, *values, *clipping, *(("WIDE_LINES",) if wide else ())}

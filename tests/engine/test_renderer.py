@@ -80,10 +80,10 @@ def test_explain_lists_only_what_is_used(gl, fabricate, random_lines, camera, mo
     names = {b["name"] for b in plain["buffers"]}
     assert not names & {"values", "starts", "anchors_low", "rank_to_id"}
     assert {"anchors", "bounds", "decoding", "codes", "pages", "rotations", "visibility_bits", "occlusion"} <= names
-    renderer.render(View(SIZE, camera(SIZE)), FibletStyle(2.0, values="curvature", tolerance=0.0))
+    renderer.render(View(SIZE, camera(SIZE)), FibletStyle(2.0, values="arc_length", tolerance=0.0))
     rich = renderer.explain()
     assert set(rich["features"]) == {
-        "LATTICE", "WIDE_LINES", "CLIPPING", "CLIPPING_DEPTH", "VALUES_CURVATURE", "CULL_PYRAMID",
+        "LATTICE", "WIDE_LINES", "CLIPPING", "CLIPPING_DEPTH", "VALUES_ARC_LENGTH", "CULL_PYRAMID",
     }  # fmt: skip
     assert "starts" in {b["name"] for b in rich["buffers"]}
     renderer.render(View(SIZE, camera(SIZE)))

@@ -97,7 +97,7 @@ def test_a_pipeline_that_opengl_is_too_old_for_is_refused_plainly():
 
 @pytest.mark.every("value")
 @pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize("value", ["VALUES_STORED", "VALUES_ARC_LENGTH", "VALUES_CURVATURE", "VALUES_VOLUME"])
+@pytest.mark.parametrize("value", ["VALUES_STORED", "VALUES_ARC_LENGTH", "VALUES_VOLUME"])
 def test_storage_buffers_are_no_more_than_opengl_promises(gl, name, value):
     """Eight bindings, 0 to 7: asked of the driver for a program with everything on."""
     features = (EVERYTHING - {f for f in FEATURES if f.startswith("VALUES_")}) | {value}

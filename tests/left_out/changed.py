@@ -5,7 +5,7 @@ from dataclasses import replace
 from .what import What
 
 # Of how far apart lines lie: some of them are decoded.
-MEASURING = "codec.decode_arrays, codec.decompress, codec.frame_arrays, codec.small_sets, halos.spacing"
+MEASURING = "codec.arrays.decode_arrays, codec.decompress, codec.arrays.frame_arrays, codec.small_sets, halos.spacing"
 
 # The hardware's rasteriser in place of compute shaders.
 HARDWARE = """
@@ -33,18 +33,23 @@ CHANGED = {
         features="VALUES_STORED",
         resolve="-colour_orientation, -line_light, legend_colours, colour_point_scalar",
         buffers="fibletTable, values",
+        packages="numba",
     ),
     "colours: arc length": What(
         features="VALUES_ARC_LENGTH",
         resolve="-colour_orientation, -line_light, legend_colours, colour_point_scalar",
         buffers="fibletTable, starts",
-        modules="codec.decode_arrays, codec.decompress, codec.frame_arrays, codec.small_sets",
+        modules="codec.arrays.decode_arrays, codec.decompress, codec.arrays.frame_arrays, codec.small_sets",
     ),
     "colours: curvature": What(
-        features="VALUES_CURVATURE",
+        features="VALUES_STORED",
         resolve="-colour_orientation, -line_light, legend_colours, colour_point_scalar",
-        buffers="fibletTable, starts",
-        modules="codec.decode_arrays, codec.decompress, codec.frame_arrays, codec.small_sets",
+        buffers="fibletTable, values",
+        packages="numba",
+        modules="""
+            codec.arrays.decode_arrays, codec.decompress, codec.arrays.frame_arrays, codec.jit, codec.small_sets,
+            query.measures.measure_kernels
+        """,
     ),
     "colours: volume": What(
         features="VALUES_VOLUME",
@@ -69,8 +74,8 @@ CHANGED = {
         passes="gather",
         buffers="fibletSumFloats (none), gathered",
         modules="""
-            engine.fiblets.gatherer, engine.fiblets.gathering, engine.fiblets.paint, mappers.gathering,
-            mappers.scene_state, mappers.slices
+            engine.fiblets.gather.gatherer, engine.fiblets.gather.gathering, engine.fiblets.gather.paint,
+            mappers.gathering, mappers.scene_state, mappers.slices
         """,
     ),
     "opacity, the nearest": What(),
@@ -81,8 +86,8 @@ CHANGED = {
         passes="gather",
         buffers="fibletSumFloats (none), gathered",
         modules="""
-            engine.fiblets.gatherer, engine.fiblets.gathering, engine.fiblets.paint, mappers.density,
-            mappers.gathering, mappers.scene_state
+            engine.fiblets.gather.gatherer, engine.fiblets.gather.gathering, engine.fiblets.gather.paint,
+            mappers.density, mappers.gathering, mappers.scene_state
         """,
     ),
     "density, by a map": What(
@@ -92,8 +97,8 @@ CHANGED = {
         passes="gather",
         buffers="fibletSumFloats (none), fibletTable, gathered",
         modules="""
-            engine.fiblets.gatherer, engine.fiblets.gathering, engine.fiblets.paint, mappers.density,
-            mappers.gathering, mappers.scene_state
+            engine.fiblets.gather.gatherer, engine.fiblets.gather.gathering, engine.fiblets.gather.paint,
+            mappers.density, mappers.gathering, mappers.scene_state
         """,
     ),
     "layers": What(
@@ -146,24 +151,24 @@ CHANGED = {
         buffers="region, region shapes",
         packages="numba",
         modules="""
-            engine.regions.ray_intervals, engine.regions.uniform_block, query.fields, query.surface_kernels,
-            query.surfaces, regions
+            engine.regions.ray_intervals, engine.regions.uniform_block, query.regions.fields,
+            query.regions.surface_kernels, query.regions.surfaces, regions
         """,
     ),
     "criterion: per streamline": What(
         features="STREAMLINE_MASK",
         buffers="filter",
         packages="numba",
-        modules="codec.decode_arrays, query.measure_kernels",
+        modules="codec.arrays.decode_arrays, query.measures.measure_kernels",
     ),
     "criterion: per point": What(
-        features="POINT_MASK", buffers="filter", packages="numba", modules="query.bit_kernels"
+        features="POINT_MASK", buffers="filter", packages="numba", modules="query.selection.bit_kernels"
     ),
     "include": What(
         features="STREAMLINE_MASK",
         buffers="filter, query",
         packages="numba",
-        modules="engine.fiblets.region_query, query.passing, regions",
+        modules="engine.fiblets.region_query, query.selection.passing, regions",
     ),
     "selection": What(resolve="highlight", buffers="fibletChosenMap"),
     "selection as tubes": What(
@@ -172,7 +177,7 @@ CHANGED = {
         resolve="highlight",
         buffers="fibletChosenMap",
         modules="""
-            codec.decode_arrays, engine.tubes.renderer, mappers.tubes, plotting.fiblets.selection_overlay,
+            codec.arrays.decode_arrays, engine.tubes.renderer, mappers.tubes, plotting.fiblets.selection_overlay,
             tubes.build
         """,
     ),

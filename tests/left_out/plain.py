@@ -13,7 +13,7 @@ PLAIN = {
         resolve="colour_orientation, gbuffer, line_light, normal",
         passes="clear, cull, depth, resolve_owner, resolve_ties, visible",
         buffers="anchors, bounds, chunk, codes, coding, decoding, frame, gbuffer, visibility_bits, pages, rotations",
-        modules="codec.fiblets_file, engine.fiblets.renderer, plotting.fiblets.actor",
+        modules="codec.files.fiblets_file, engine.fiblets.renderer, plotting.fiblets.actor",
     ),
     "spline tubes": What(
         ran="screen/near.vert, tubes/attributes.frag, tubes/rectangles.vert, tubes/tube.frag",

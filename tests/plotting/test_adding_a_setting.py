@@ -100,7 +100,7 @@ data.{save}
 plotter = pv.Plotter(off_screen=True, window_size=(80, 80))
 scene = Scene(plotter, root)
 layer = scene.open("{file}", kind="{kind}")
-(shown,) = (item for item in scene.properties(layer.id) if item["name"] == "emission")
+(shown,) = (item for item in scene.queries.properties(layer.id) if item["name"] == "emission")
 assert (shown["value"], shown["limits"]) == (0.0, [0.0, 1.0])
 assert "emission" not in as_script(scene)
 with pytest.raises(ValueError, match="emission is 2"):

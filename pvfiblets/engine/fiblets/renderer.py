@@ -152,7 +152,8 @@ class FibletRenderer(LinesBehind):
             self._whole, self._max_groups = whole, limits.groups
             self._census = Census(ctx, self._gl, self._programs, limits.groups)
             measurer = make_measurer(pipeline, ctx, self._gl, self._programs, limits)
-            self._values = ValueSources(ctx, measurer, fiblets, self._chunks, self._shared.forget_camera)
+            forget = self._shared.forget_camera
+            self._values = ValueSources(ctx, measurer, fiblets, self._chunks, forget, limits.buffer_bytes)
             self._keep(self._values)
 
     def _draw(self, view: View, style: FibletStyle, outside: moderngl.Texture | None) -> GBuffer:

@@ -89,7 +89,6 @@ FEATURES: dict[str, str] = {
     "VALUES_STORED": "a stored per-point array",
     "VALUES_COLOUR": "which holds colours",
     "VALUES_ARC_LENGTH": "arc length along the streamline",
-    "VALUES_CURVATURE": "curvature of the streamline",
     "VALUES_VOLUME": "a volume sampled along the streamline",
     "TUBE_ILLINOIS": "roots by regula falsi with halved weights",
     "TUBE_ITP": "roots by interpolating, truncating and projecting",

@@ -18,7 +18,7 @@ from pvfiblets.engine.fiblets.data.sampled_volume import VolumeSource
 from pvfiblets.mappers.colouring import Mode
 from pvfiblets.query.bundles.bundle_list import group_colours, hidden_groups
 from pvfiblets.query.bundles.colours import distinct_colours
-from pvfiblets.query.measures.measures import COMPUTED, Distance, measure
+from pvfiblets.query.measures.measures import COMPUTED, Distance, curvature_values, measure
 from pvfiblets.query.selection.endpoints import anchor_points, end_points
 
 if TYPE_CHECKING:
@@ -175,8 +175,8 @@ def find_scalars(
         longest = _longest(fiblets)
         return Scalars("arc_length", "point_scalar", None, (0.0, longest or 1.0), positive=fiblets.step)
     if scalars == "curvature":
-        least, most = _curvature_range(fiblets)
-        found = Scalars("curvature", "point_scalar", None, (least, most), most / 1e3, percentile=MOST)
+        most = float(np.percentile(curvature_values(fiblets), MOST)) if fiblets.n_points else 0.0
+        found = Scalars("curvature", "point_scalar", None, (0.0, most or 1.0), (most or 1.0) / 1e3, percentile=MOST)
         return _measured(found, fiblets)
     if scalars in COMPUTED["streamline"]:
         found = _measured(per_streamline(scalars, measure(fiblets, scalars).array(), fiblets.n_streamlines), fiblets)
@@ -428,19 +428,3 @@ def _even_sample(fiblets: FibletSet) -> Streamlines:
     """Return streamlines at even distances in the set, `_SAMPLE` at most."""
     count = min(_SAMPLE, fiblets.n_streamlines)
     return fiblets.decompress(np.unique(np.linspace(0, fiblets.n_streamlines - 1, count).astype(np.int64)))
-
-
-def _curvature_range(fiblets: FibletSet) -> tuple[float, float]:
-    """Return 0 and the 98th percentile of curvature (1/mm) on an even sample of streamlines."""
-    sample = _even_sample(fiblets)
-    moves = np.diff(sample.points.astype(np.float64), axis=0)
-    inside = np.ones(len(moves), bool)
-    inside[sample.offsets[1:-1][sample.offsets[1:-1] <= len(moves)] - 1] = False
-    sizes = np.linalg.norm(moves, axis=1)
-    both = inside[1:] & inside[:-1] & (sizes[1:] > 0.0) & (sizes[:-1] > 0.0)
-    if not both.any():
-        return 0.0, 1.0
-    cross = np.linalg.norm(np.cross(moves[:-1], moves[1:]), axis=1)
-    turn = np.arctan2(cross, np.einsum("ij,ij->i", moves[:-1], moves[1:]))[both]
-    curvature = turn / (0.5 * (sizes[1:] + sizes[:-1]))[both]
-    return 0.0, float(np.percentile(curvature, MOST)) or 1.0

@@ -19,8 +19,7 @@ segment by a tenth of a radian; so chords of a streamline lead over as many poin
 set's promise where that is coarser) to change its mean curvature by no more than 2 %, of coded sets and of exact ones
 alike: over ``2 sqrt(error / curvature)`` mm at least. The points at its ends take the value of the nearest one that has
 both chords; of fewer than three points it is 0. A warning tells where coded lines are too short or too bent for that,
-or the promise is coarser than a tenth of a step, and the `max_error` that is needed. Colours by curvature turn from
-segment to segment (``shaders/fiblets/attributes/turn.glsl``).
+or the promise is coarser than a tenth of a step, and the `max_error` that is needed.
 
 Values per point stand in the order in which points are coded. Stored arrays come before the names above, as
 they do for colours.
@@ -59,6 +58,8 @@ __all__ = [
 
 Kind = Literal["streamline", "point"]
 Floats = npt.NDArray[np.float64]
+CURVATURE = "_curvature"
+"""Attribute of a set, no field of it: a set that is made of another has other points."""
 CHUNK = 1 << 21  # points decoded together: 50 MB
 SLACK = 0.99  # of a promise: it is a tenth of a step but for rounding
 UNCERTAIN = 0.05  # of the streamlines may be too short for their curvature: every set has some
@@ -336,11 +337,20 @@ def _computed(fiblets: FibletSet, name: str, original: Streamlines | None) -> np
         apart: Floats = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
         return apart
     if name == "curvature":
-        with Curvatures(fiblets) as found:
-            return _per_point(fiblets, lambda _, chunk: found.points(chunk.points, chunk.offsets))
+        return curvature_values(fiblets)
     if name == "arc_length":
         return _per_point(fiblets, arc_lengths)
     return _coding_error(fiblets, original)
+
+
+def curvature_values(fiblets: FibletSet) -> npt.NDArray[np.float32]:
+    """Curvature at every point, in coded order, measured once a set: tables, criteria and colours have the same."""
+    found: npt.NDArray[np.float32] | None = fiblets.__dict__.get(CURVATURE)
+    if found is None:
+        with Curvatures(fiblets) as curvatures:
+            found = _per_point(fiblets, lambda _, chunk: curvatures.points(chunk.points, chunk.offsets))
+        fiblets.__dict__[CURVATURE] = found
+    return found
 
 
 def _distance(fiblets: FibletSet, what: Distance) -> Values:

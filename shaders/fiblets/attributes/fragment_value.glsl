@@ -1,6 +1,6 @@
 // The per-point value that a fragment shows, if the style asks for one: looked up, or interpolated between the segment's ends.
 
-#if FEATURE_VALUES_STORED || FEATURE_VALUES_CURVATURE || FEATURE_VALUES_VOLUME
+#if FEATURE_VALUES_STORED || FEATURE_VALUES_VOLUME
 #include "fiblets/decode/sequential.glsl"
 #include "fiblets/attributes/streamline_index.glsl"
 #include "fiblets/attributes/values.glsl"
@@ -12,12 +12,6 @@ float value_at(uint segment, float t, float steps) {
 #if FEATURE_VALUES_STORED
     begin_values(varying_ids.z - chunk_first);
     return value_along(segment, t, uint(whole), at - whole);
-#elif FEATURE_VALUES_CURVATURE
-    if (steps > 1.0) {
-        begin_values(varying_ids.z - chunk_first);
-        return value_along(segment, t, uint(whole), at - whole);
-    }
-    return mix(varying_values.x, varying_values.y, at);  // a single point has one value, though its pixel is an end
 #elif FEATURE_VALUES_VOLUME
     if (steps > 1.0) return value_along_capsule(varying_ids.z - chunk_first, steps, uint(whole), at - whole);
     return value_between(varying_values.x, varying_values.y, at);

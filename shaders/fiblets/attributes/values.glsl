@@ -3,8 +3,6 @@
 //   stored       one or two bytes per point, code c means the c-th word of the buffer, before the codes; or a float32
 //   colours      stored as a word per point, RGBA; the value is a colour as a number (fiblets/attributes/packed_colour.glsl)
 //   arc length   mm from the streamline's first point; `starts` holds it for every fiblet's anchor
-//   curvature    turn() at every point; the ends of a streamline take their neighbour's. `starts` holds it for every
-//                anchor, because the segment before an anchor is another fiblet's
 //   volume       fiblets/data/volume.glsl at every point, looked up for the pixels that are written
 //
 // `step` and `rest` are t in steps from point to point, where a segment stands for a whole fiblet (far views).
@@ -88,39 +86,6 @@ float value_along(uint segment, float t, uint step, float rest) { return mix(arc
 float value_of_point(uint i) { return arc_to; }
 
 vec2 values_at_ends(uint segment) { return vec2(arc_from, arc_to); }
-
-#elif FEATURE_VALUES_CURVATURE
-#include "fiblets/attributes/turn.glsl"
-
-float curvatures[FIBLET_MAX_POINTS + 1u];
-
-// Curvature at a point needs the segment after it: the fiblet is decoded once before it is drawn.
-void begin_values(uint f) {
-    bool end = ends(f);
-    walk_begin(f);
-    curvatures[0] = start_value(f);
-    curvatures[walk.last + 1u] = end ? 0.0 : start_value(f + 1u);
-    vec3 before = vec3(0.0);
-    for (uint i = 1u; i <= walk.last; ++i) {
-        walk_next(i);
-        if (i > 1u) curvatures[i - 1u] = turn(before, walk_delta);
-        before = walk_delta;
-    }
-    if (walk.last > 0u) {
-        if (!end) curvatures[walk.last] = turn(before, anchor_local(f + 1u) - walk_point);
-        else curvatures[walk.last] = curvatures[walk.last - 1u];
-    }
-}
-
-void start_values(uint segment, vec3 to, vec3 delta, float steps) {}
-
-float value_along(uint segment, float t, uint step, float rest) {
-    return mix(curvatures[segment + step], curvatures[segment + step + 1u], rest);
-}
-
-float value_of_point(uint i) { return curvatures[i]; }
-
-vec2 values_at_ends(uint segment) { return vec2(curvatures[segment], curvatures[segment + 1u]); }
 
 #elif FEATURE_VALUES_VOLUME
 #include "fiblets/data/volume.glsl"

@@ -38,7 +38,7 @@ void plot(Fragment fragment, Segment segment) {
     if (before > owner && before != NO_FIBLET) tied = true;
     float t = along(fragment, segment);
     imageStore(ids_image, pixel, uvec4(pixel_ids(t), 0u, 0u));
-#if !FEATURE_SUBSAMPLES || FEATURE_VALUES_STORED || FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_CURVATURE || FEATURE_VALUES_VOLUME
+#if !FEATURE_SUBSAMPLES || FEATURE_VALUES_STORED || FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_VOLUME
     imageStore(position_image, pixel, vec4(pixel_place(segment.index, t), 0.0, 0.0));
 #endif
     store_relief(pixel, fragment.relief);

@@ -9,7 +9,7 @@ uint value_word(uint index) { return texelFetch(value_texels, int(index)).x; }
 layout(std430, binding = {{ storage_values }}) readonly buffer Values { uint values[]; };
 uint value_word(uint index) { return values[index]; }
 #endif
-#elif FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_CURVATURE
+#elif FEATURE_VALUES_ARC_LENGTH
 #if FEATURE_TEXTURE_DATA
 uniform samplerBuffer start_texels;   // r32f
 float start_value(uint f) { return texelFetch(start_texels, int(f)).x; }

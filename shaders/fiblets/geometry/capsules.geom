@@ -9,7 +9,7 @@ layout(points) in;
 layout(triangle_strip, max_vertices = {{ cut_capsule_vertices }}) out;
 const uint SHARE = {{ cut_capsule_share }}u;
 #else
-#if FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_CURVATURE || FEATURE_VALUES_VOLUME
+#if FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_VOLUME
 layout(triangle_strip, max_vertices = {{ valued_capsule_vertices }}) out;
 const uint SHARE = {{ valued_capsule_share }}u;
 #else

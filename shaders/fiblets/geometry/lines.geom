@@ -8,7 +8,7 @@
 
 layout(points) in;
 
-#if FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_CURVATURE || FEATURE_VALUES_VOLUME
+#if FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_VOLUME
 #if FEATURE_CLIPPING
 layout(line_strip, max_vertices = {{ cut_valued_line_vertices }}) out;
 const uint SHARE = {{ cut_valued_line_share }}u;

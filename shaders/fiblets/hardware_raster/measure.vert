@@ -7,13 +7,6 @@
 
 uniform uint batch_first;
 
-out vec4 first;
-out vec4 joint;
-out vec4 turns;
+out float fiblet_length;
 
-void main() {
-    Measure m = measure_of(batch_first + uint(gl_VertexID));
-    first = m.first;
-    joint = m.joint;
-    turns = m.turns;
-}
+void main() { fiblet_length = length_of(batch_first + uint(gl_VertexID)); }

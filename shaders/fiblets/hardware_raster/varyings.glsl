@@ -56,6 +56,6 @@ VARYING vec3 varying_from EACH;      // the part's ends, local mm
 VARYING vec3 varying_to EACH;
 #endif
 #endif
-#if FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_CURVATURE || FEATURE_VALUES_VOLUME
+#if FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_VOLUME
 VARYING vec2 varying_values EACH;    // at the segment's ends
 #endif

@@ -65,7 +65,7 @@ void write_varyings(Varyings varyings, ClippedSegment piece, vec3 from, vec3 to)
     TO(varying_to) = mix(from, to, piece.t1);
 #endif
 #endif
-#if FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_CURVATURE || FEATURE_VALUES_VOLUME
+#if FEATURE_VALUES_ARC_LENGTH || FEATURE_VALUES_VOLUME
     TO(varying_values) = varyings.values;
 #endif
 }

@@ -14,9 +14,6 @@
 #include "fiblets/attributes/neighbours.glsl"
 #include "fiblets/attributes/tangent.glsl"
 #include "fiblets/data/values.glsl"
-#if FEATURE_VALUES_CURVATURE
-#include "fiblets/attributes/turn.glsl"
-#endif
 #if FEATURE_VALUES_VOLUME
 #include "fiblets/data/volume.glsl"
 #endif
@@ -96,15 +93,6 @@ void add_lengths() {
 }
 #endif
 
-#if FEATURE_VALUES_CURVATURE
-// At a point; the last one of a streamline takes that of the one before it.
-float curvature_of(uint i) {
-    if (i > group.last) return group.end ? 0.0 : start_value(group.f + 1u);
-    if (i == group.last && i > 0u && group.end) --i;
-    return i == 0u ? start_value(group.f) : turn(delta_of(i - 1u), delta_of(i));
-}
-#endif
-
 // The per-point value at both ends of a segment, where it is not looked up by the fragments.
 vec2 values_of(uint segment) {
 #if FEATURE_VALUES_ARC_LENGTH
@@ -118,9 +106,6 @@ vec2 values_of(uint segment) {
         return vec2(start, start + max(length, walked));
     }
     return start + vec2(prefix_length[segment], prefix_length[segment + 1u]);
-#elif FEATURE_VALUES_CURVATURE
-    if (group.whole && group.spans > 1.0) return vec2(0.0);
-    return vec2(curvature_of(segment), curvature_of(segment + 1u));
 #elif FEATURE_VALUES_VOLUME
     if (group.whole && group.spans > 1.0) return vec2(0.0);
     return vec2(volume_at(point_of(segment)), volume_at(point_of(segment + 1u)));

@@ -1,7 +1,7 @@
-"""Fiblets measured on the GPU, by compute or, before OpenGL 4.3, by transform feedback.
+"""Lengths of fiblets measured on the GPU, by compute or, before OpenGL 4.3, by transform feedback.
 
-Both run ``shaders/fiblets/attributes/measure.glsl``, and decode with the shaders that draw: arc length and curvature
-are those of the points that are seen.
+Both run ``shaders/fiblets/attributes/measure.glsl``, and decode with the shaders that draw: arc length is that of the
+points that are seen.
 """
 
 from __future__ import annotations
@@ -23,22 +23,21 @@ from .data_textures import DataTextures, set_data_samplers
 
 __all__ = ["ComputeMeasurer", "FeedbackMeasurer", "Measurer"]
 
-BATCH = 1 << 16  # fiblets measured at a time: 3 MB
-ROW = 12
+BATCH = 1 << 16  # fiblets measured at a time
 
 
 class Measurer(Protocol):
     """Measures the fiblets of a chunk."""
 
     def measure(self, chunk: Chunk, features: Sequence[str]) -> npt.NDArray[np.float32]:
-        """Return ``(n_fiblets, 12)``: first, joint, turns of each fiblet; the blocks 0, 1 and 4 are bound already."""
+        """Return the length of each, ``(n_fiblets,)`` mm; the blocks 0, 1 and 4 are bound already."""
         ...
 
 
 @contextmanager
 def _batches(ctx: moderngl.Context, n: int) -> Iterator[tuple[moderngl.Buffer, range]]:
     """Scratch for a batch, and where batches start."""
-    scratch = storage_buffer(ctx, bytes(min(BATCH, n) * ROW * 4), "measures")
+    scratch = storage_buffer(ctx, bytes(min(BATCH, n) * 4), "measures")
     try:
         yield scratch, range(0, n, BATCH)
     finally:
@@ -46,7 +45,7 @@ def _batches(ctx: moderngl.Context, n: int) -> Iterator[tuple[moderngl.Buffer, r
 
 
 def _rows(scratch: moderngl.Buffer, size: int) -> npt.NDArray[np.float32]:
-    return np.frombuffer(scratch.read(size * ROW * 4), "<f4").reshape(-1, ROW)
+    return np.frombuffer(scratch.read(size * 4), "<f4")
 
 
 class ComputeMeasurer:
@@ -69,7 +68,7 @@ class ComputeMeasurer:
         """See :meth:`Measurer.measure`."""
         program = self._programs.compute("fiblets/compute/measure.comp", features)
         chunk.bind_storage()
-        rows = np.empty((chunk.n_fiblets, ROW), "<f4")
+        rows = np.empty(chunk.n_fiblets, "<f4")
         with _batches(self._ctx, chunk.n_fiblets) as (scratch, starts):
             scratch.bind_to_storage_buffer(MEASURE_STORAGE["measures"])
             for first in starts:
@@ -99,11 +98,11 @@ class FeedbackMeasurer:
     def measure(self, chunk: Chunk, features: Sequence[str]) -> npt.NDArray[np.float32]:
         """See :meth:`Measurer.measure`."""
         stages = {"vertex": "fiblets/hardware_raster/measure.vert"}
-        program = self._programs.render(stages, [*features, "TEXTURE_DATA"], varyings=("first", "joint", "turns"))
+        program = self._programs.render(stages, [*features, "TEXTURE_DATA"], varyings=("fiblet_length",))
         set_data_samplers(self._gl, program)
         data = DataTextures(self._gl, chunk)
         array = self._ctx.vertex_array(program, [])
-        rows = np.empty((chunk.n_fiblets, ROW), "<f4")
+        rows = np.empty(chunk.n_fiblets, "<f4")
         try:
             with nowhere(self._ctx, self._gl), _batches(self._ctx, chunk.n_fiblets) as (scratch, starts):
                 chunk.buffers["chunk"].bind_to_uniform_block(BLOCKS["Chunk"])

@@ -6,21 +6,18 @@ value                         what the GPU holds for it                   unit
 a name in ``per_point``       its codes and what they mean, or a float32   the array's own
 a name of three or four       a word per point: red, green, blue, alpha   a colour, packed into a number
 ``'arc_length'``              a float32 per fiblet: the anchor's          mm from the first point
-``'curvature'``               a float32 per fiblet: the anchor's          1/mm
+``'curvature'``               as of a name in ``per_point``               1/mm
 a :class:`VolumeSource`       the volume                                  the volume's own
 ============================  ==========================================  ==============================
 
-Curvature at a point is the angle between the segments before and after it over half their joint length; the ends of a
-streamline take their neighbour's. It is that of the decoded points, so that it carries the codec's error: a tenth of a
-step is a tenth of a radian per step.
+Curvature is that of `pvfiblets.query.measures`, in tables, criteria and colours alike.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from itertools import chain
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import moderngl
 import numpy as np
@@ -28,6 +25,8 @@ import numpy.typing as npt
 
 from ....codec import layout
 from ....codec.point_arrays import colour_columns, colours_of_points
+from ....codec.point_values import PointValues, as_codes, code_values
+from ....query.measures.measures import curvature_values
 from ....support.value_reference import relative
 from ...errors import EngineError
 from .chunks import CHUNK_BLOCK, Chunk, padded, storage_buffer
@@ -47,22 +46,6 @@ Floats = npt.NDArray[np.float64]
 _ROWS = 1 << 20  # colours made at a time
 
 
-@dataclass
-class _Measures:
-    """What ``fiblets/attributes/measure.glsl`` says of some consecutive fiblets, in float64."""
-
-    begin: npt.NDArray[np.bool_]
-    end: npt.NDArray[np.bool_]
-    single: npt.NDArray[np.bool_]  # fiblets of one point
-    first: Floats
-    joint: Floats
-    length: Floats
-    last_turn: Floats
-    least: Floats
-    greatest: Floats
-    first_turn: Floats
-
-
 class ValueSources:
     """Keeps the buffers of the one active per-point value.
 
@@ -75,6 +58,8 @@ class ValueSources:
         Gain and lose the buffers ``values`` and ``starts``.
     prepare : callable
         Called before fiblets are measured; binds nothing.
+    largest : int
+        Bytes of one buffer.
     """
 
     def __init__(
@@ -84,15 +69,17 @@ class ValueSources:
         fiblets: FibletSet,
         chunks: Sequence[Chunk],
         prepare: Callable[[], None],
+        largest: int,
     ) -> None:
         self._ctx = ctx
-        self._prepare = prepare
+        self._prepare, self._largest = prepare, largest
         self._measurer = measurer
         self._fiblets = fiblets
         self._chunks = chunks
         self._active: str | VolumeSource | None = None
         self._volume: VolumeTexture | None = None
-        self._ranges: dict[str, tuple[float, float]] = {}
+        self._longest: float | None = None
+        self._curvature: PointValues | None = None
 
     def activate(self, name: str | VolumeSource | None, features: Sequence[str]) -> tuple[str, ...]:
         """Make the buffers of a value, and drop those of the last one."""
@@ -102,10 +89,10 @@ class ValueSources:
             self._drop()
             if isinstance(name, VolumeSource):
                 self._volume = VolumeTexture(self._ctx, name)
-            elif name in (ARC_LENGTH, CURVATURE):
-                self._make_starts(name, features)
-            elif name is not None and name in self._fiblets.per_point:
-                self._copy_stored(name)
+            elif name == ARC_LENGTH:
+                self._make_starts(features)
+            elif name is not None and (stored := self._stored(name)) is not None:
+                self._copy_stored(name, stored)
             elif name is not None:
                 self._copy_colours(name)
             self._active = name
@@ -113,9 +100,9 @@ class ValueSources:
             return ()
         if isinstance(name, VolumeSource):
             return ("VALUES_VOLUME",)
-        if name in (ARC_LENGTH, CURVATURE):
-            return ("VALUES_ARC_LENGTH" if name == ARC_LENGTH else "VALUES_CURVATURE",)
-        return ("VALUES_STORED",) if name in self._fiblets.per_point else ("VALUES_STORED", "VALUES_COLOUR")
+        if name == ARC_LENGTH:
+            return ("VALUES_ARC_LENGTH",)
+        return ("VALUES_STORED", "VALUES_COLOUR") if self._stored(name) is None else ("VALUES_STORED",)
 
     def locate(self, to_data: Floats) -> None:
         """Bind the volume, if one is active, for a picture whose local coordinates lie here."""
@@ -139,15 +126,28 @@ class ValueSources:
         if isinstance(name, VolumeSource):
             return name.range
         self._check(name)
-        if name not in (ARC_LENGTH, CURVATURE):
-            if name not in self._fiblets.per_point:
-                raise EngineError(f"{name!r} are colours, which have no range")
-            stored = self._fiblets.per_point[name]
-            return float(stored.lo), float(stored.hi)
-        if name not in self._ranges:
-            for _ in self._starts(name, features):
-                pass
-        return self._ranges[name]
+        if name == ARC_LENGTH:
+            if self._longest is None:
+                for _ in self._starts(features):
+                    pass
+            return 0.0, self._longest or 0.0
+        stored = self._stored(name)
+        if stored is None:
+            raise EngineError(f"{name!r} are colours, which have no range")
+        return float(stored.lo), float(stored.hi)
+
+    def _stored(self, name: str) -> PointValues | None:
+        """Values of points that the set holds, or that are computed once; None of colours."""
+        if name != CURVATURE or name in self._fiblets.per_point:
+            return self._fiblets.per_point.get(name)
+        if self._curvature is None:
+            values = curvature_values(self._fiblets)
+            most = max((c.plan.points[1] - c.plan.points[0] + 1 for c in self._chunks), default=0)
+            if 4 * most <= self._largest:
+                self._curvature = code_values(values, exact=True)
+            else:
+                self._curvature = as_codes(values, 16 if 2 * most + (4 << 16) <= self._largest else 8)[0]
+        return self._curvature
 
     def _check(self, name: str) -> None:
         known = name in (ARC_LENGTH, CURVATURE) or name in self._fiblets.per_point
@@ -164,8 +164,7 @@ class ValueSources:
                     chunk.buffers.pop(key).release()
         self.release()
 
-    def _copy_stored(self, name: str) -> None:
-        stored = self._fiblets.per_point[name]
+    def _copy_stored(self, name: str, stored: PointValues) -> None:
         n = len(stored.codes)
         table = np.zeros(0, "<f4") if stored.table is None else relative(stored.table, stored.reference).astype("<f4")
         for chunk in self._chunks:
@@ -190,82 +189,24 @@ class ValueSources:
             chunk.buffers["values"] = fill_buffer(self._ctx, padded(4 * (last - first)), pieces, name)
             CHUNK_BLOCK.write(chunk.buffers["chunk"], value_bits=32 if clear else 24)
 
-    def _make_starts(self, name: str, features: Sequence[str]) -> None:
-        starts = dict(enumerate(self._starts(name, features)))
+    def _make_starts(self, features: Sequence[str]) -> None:
+        starts = dict(enumerate(self._starts(features)))
         for index, chunk in enumerate(self._chunks):
             following = starts[index + 1][:1] if index + 1 in starts else np.zeros(1)
             values = np.concatenate([starts[index], following]).astype("<f4")
-            chunk.buffers["starts"] = storage_buffer(self._ctx, values, name)
+            chunk.buffers["starts"] = storage_buffer(self._ctx, values, ARC_LENGTH)
 
-    def _starts(self, name: str, features: Sequence[str]) -> Iterator[Floats]:
-        """Yield the value at every anchor, chunk by chunk, and note its range."""
-        make = _arc_lengths if name == ARC_LENGTH else _curvatures
-        carry: Any = None
-        low, high = np.inf, -np.inf
+    def _starts(self, features: Sequence[str]) -> Iterator[Floats]:
+        """Yield the arc length at every anchor, chunk by chunk, and note the longest."""
+        run, longest = 0.0, 0.0
         self._prepare()
         for chunk in self._chunks:
-            values, carry, extremes = make(self._measure(chunk, features), carry)
-            low, high = min(low, extremes[0]), max(high, extremes[1])
-            yield values
-        self._ranges[name] = (float(low), float(high)) if low <= high else (0.0, 0.0)
-
-    def _measure(self, chunk: Chunk, features: Sequence[str]) -> _Measures:
-        rows = self._measurer.measure(chunk, features)
-        begin, end = chunk.plan.fiblets
-        fiblets, m = self._fiblets, rows.astype(np.float64)
-        anchors, decoding = rows_of(fiblets.anchors, begin, end), rows_of(fiblets.decoding, begin, end)
-        words = np.concatenate([layout.unpack("begin", a) | layout.unpack("end", a) << 1 for a in anchors])
-        return _Measures(
-            begin=words & 1 == 1,
-            end=words & 2 == 2,
-            single=np.concatenate([layout.unpack("last", d) == 0 for d in decoding]),
-            first=m[:, 0:3],
-            length=m[:, 3],
-            joint=m[:, 4:7],
-            last_turn=m[:, 7],
-            least=m[:, 8],
-            greatest=m[:, 9],
-            first_turn=m[:, 10],
-        )
-
-
-def _arc_lengths(m: _Measures, carry: float | None) -> tuple[Floats, float, tuple[float, float]]:
-    """Arc length at every anchor; ``carry`` is that at the chunk's first, if a streamline runs into it."""
-    before = np.cumsum(m.length) - m.length
-    streamline = np.maximum.accumulate(np.where(m.begin, np.arange(len(m.begin)), -1))
-    starts = before - np.where(streamline >= 0, before[streamline], -(carry or 0.0))
-    ends = starts + m.length
-    return starts, float(ends[-1]), (0.0, float(ends.max()))
-
-
-def _curvatures(m: _Measures, carry: Any) -> tuple[Floats, Any, tuple[float, float]]:
-    """Curvature at every anchor; ``carry`` is the joint, last turn, curvature and singleness of the fiblet before."""
-    n = len(m.begin)
-    joint0, turn0, start0, single0 = carry or (np.zeros(3), 0.0, 0.0, False)
-    joint = np.concatenate([[joint0], m.joint[:-1]])
-    starts = _turns(joint, m.first)
-    # A streamline's first point takes the turn at its second.
-    starts[m.begin] = m.first_turn[m.begin]
-    alone = np.flatnonzero(m.begin & m.single & ~m.end)  # its second point is the next fiblet's anchor
-    alone = alone[alone + 1 < n]
-    starts[alone] = np.where(m.end[alone + 1] & m.single[alone + 1], 0.0, starts[np.minimum(alone + 1, n - 1)])
-    # A last point that is an anchor takes the turn at the point before it.
-    tail = np.flatnonzero(m.end & m.single & ~m.begin)
-    turns = np.concatenate([[turn0], m.last_turn[:-1]])
-    singles = np.concatenate([[single0], m.single[:-1]])
-    anchors_before = np.concatenate([[start0], starts[:-1]])
-    starts[tail] = np.where(singles[tail], anchors_before[tail], turns[tail])
-    turned = m.greatest >= m.least
-    low = min(float(starts.min()), float(m.least[turned].min(initial=np.inf)))
-    high = max(float(starts.max()), float(m.greatest[turned].max(initial=-np.inf)))
-    return starts, (m.joint[-1], m.last_turn[-1], starts[-1], bool(m.single[-1])), (low, high)
-
-
-def _turns(a: Floats, b: Floats) -> Floats:
-    """``turn()`` of ``shaders/fiblets/attributes/turn.glsl`` on rows."""
-    la, lb = np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)
-    good = (la > 0.0) & (lb > 0.0)
-    a = a / np.where(good, la, 1.0)[:, None]
-    b = b / np.where(good, lb, 1.0)[:, None]
-    angle = 2.0 * np.arctan2(np.linalg.norm(a - b, axis=1), np.linalg.norm(a + b, axis=1))
-    return np.where(good, 2.0 * angle / np.where(good, la + lb, 1.0), 0.0)
+            length = self._measurer.measure(chunk, features).astype(np.float64)
+            words = rows_of(self._fiblets.anchors, *chunk.plan.fiblets)
+            begin = np.concatenate([layout.unpack("begin", a) for a in words]).astype(bool)
+            before = np.cumsum(length) - length
+            streamline = np.maximum.accumulate(np.where(begin, np.arange(len(begin)), -1))
+            starts = before - np.where(streamline >= 0, before[streamline], -run)
+            run, longest = float(starts[-1] + length[-1]), max(longest, float((starts + length).max()))
+            yield starts
+        self._longest = longest

@@ -35,7 +35,7 @@ from .textured import TexturedPipeline
 __all__ = ["GeometryPipeline"]
 
 
-_HANDED_OVER = {"VALUES_ARC_LENGTH", "VALUES_CURVATURE", "VALUES_VOLUME"}
+_HANDED_OVER = {"VALUES_ARC_LENGTH", "VALUES_VOLUME"}
 """Values that vertices carry; of a stored one fragments look up the codes."""
 
 
