@@ -31,9 +31,9 @@ from card_cells import draw_cell
 from card_process import Drawer
 from common import add_places, card_of, machine, make_brain, on_machine, slug, to_table
 
-from pvfiblets.report.card_check import run_check
-from pvfiblets.report.card_file import png, summary
-from pvfiblets.whole_files import replacing
+from pvfiblets.report.studies.card.check import run_check
+from pvfiblets.report.studies.card.report_file import png, summary
+from pvfiblets.support.whole_files import replacing
 
 SEGMENTS = (1e6, 6e6, 60e6, 434e6, 1e9, 5.4e9)
 TABLE_3 = (8e6, 81e6, 202e6, 434e6)

@@ -12,7 +12,7 @@ from common import DEGREES_PER_FRAME, data_bytes, make_brain, percentiles, segme
 
 from pvfiblets.engine.view import View
 from pvfiblets.report.cameras import orbit
-from pvfiblets.report.culling_pictures import colours, views, visible
+from pvfiblets.report.studies.culling.pictures import colours, views, visible
 
 __all__ = ["CELLS", "draw_cell"]
 
@@ -112,8 +112,8 @@ def raw_lines(ctx: Any, cell: Row, folder: Path) -> tuple[Row, Any]:
 
 def feature(ctx: Any, cell: Row, folder: Path) -> tuple[Row, Any]:
     """One feature of fiblets alone: the paper's section 5 and figures 1, 11 and 12."""
-    from pvfiblets.report.features_scenes import Drawn
-    from pvfiblets.report.features_subjects import brain_subject
+    from pvfiblets.report.studies.features.scenes import Drawn
+    from pvfiblets.report.studies.features.subjects import brain_subject
 
     brain = make_brain(cell["segments"], cell["step"], folder)
     subject = brain_subject(brain)
@@ -146,8 +146,8 @@ def tubes(ctx: Any, cell: Row, _folder: Path) -> tuple[Row, Any]:
 def halos(ctx: Any, cell: Row, _folder: Path) -> tuple[Row, Any]:
     """Lines and points with halos: the sets of Everts et al. 2009, table 1."""
     from pvfiblets.engine.halos import HaloRenderer
-    from pvfiblets.report.halos_pictures import darkness_of, finer, look_of
-    from pvfiblets.report.halos_pictures import orbit as around
+    from pvfiblets.report.studies.halos.pictures import darkness_of, finer, look_of
+    from pvfiblets.report.studies.halos.pictures import orbit as around
     from pvfiblets.synthetic.halos import halo_set
 
     drawn = halo_set(cell["set"])
@@ -167,8 +167,8 @@ def volume(ctx: Any, cell: Row, _folder: Path) -> tuple[Row, Any]:
     from volumes_data import make_data
 
     from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle
-    from pvfiblets.report.volumes_pictures import colours_of
-    from pvfiblets.report.volumes_scene import circle, look_of
+    from pvfiblets.report.studies.volumes.pictures import colours_of
+    from pvfiblets.report.studies.volumes.scene import circle, look_of
 
     data = make_data(cell["set"])
     look = look_of(data, cell["mode"])
@@ -190,7 +190,7 @@ CELLS: dict[str, Callable[[Any, Row, Path], tuple[Row, Any]]] = {
 def draw_cell(cell: Row, folder: Path) -> Row:
     """Draw one cell on a context of its own; its picture, if there is one, goes into ``cell["picture"]``."""
     from pvfiblets.engine import EngineError
-    from pvfiblets.engine.standalone import bare_context
+    from pvfiblets.engine.gl.standalone import bare_context
 
     ctx = bare_context()
     try:

@@ -31,9 +31,9 @@ import numpy as np
 import pvfiblets
 from pvfiblets.cluster.connection import connected
 from pvfiblets.engine import FibletStyle, View
-from pvfiblets.engine.fiblets.cluster_renderer import ClusterRenderer
-from pvfiblets.engine.standalone import bare_context
-from pvfiblets.report.stability.render_checks import camera
+from pvfiblets.engine.fiblets.parts.cluster_renderer import ClusterRenderer
+from pvfiblets.engine.gl.standalone import bare_context
+from pvfiblets.report.studies.stability.render_checks import camera
 from pvfiblets.synthetic import brain_streamlines
 
 PIXEL_BYTES = 24  # of a pixel that shows something: place, depth, part, streamline, tangent, position, value

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from pvfiblets.engine.standalone import bare_context
+from pvfiblets.engine.gl.standalone import bare_context
 from pvfiblets.report.cameras import Camera
 from pvfiblets.report.machine import about, slug
 

@@ -6,7 +6,7 @@ chunk holds changes no call. Two cases: the engine alone, and with PyVista the t
 VTK's own share of it (setting uniforms) counts too.
 
 The goal is 2 ms at 8 GB of fiblets, as full as they can be: 97 million of them, in 12 chunks on a card of its own and
-in 93 on an integrated one (``pvfiblets/engine/work_limits.py``)::
+in 93 on an integrated one (``pvfiblets/engine/gl/work_limits.py``)::
 
     python benchmarks/frame_cost.py --output docs/benchmarks
 """
@@ -31,12 +31,12 @@ from common import add_places, machine, on_machine, percentiles, pyplot, to_tabl
 from pvfiblets import Streamlines, compress
 from pvfiblets.codec import layout
 from pvfiblets.engine import FibletRenderer
-from pvfiblets.engine.capabilities import pipelines
 from pvfiblets.engine.fiblets.pipelines import compute, limits, textured
 from pvfiblets.engine.fiblets.pipelines.constants import VISIBILITY_WORDS
-from pvfiblets.engine.standalone import bare_context
-from pvfiblets.engine.work_limits import DISCRETE, INTEGRATED, WorkLimits
-from pvfiblets.report.culling_pictures import views
+from pvfiblets.engine.gl.capabilities import pipelines
+from pvfiblets.engine.gl.standalone import bare_context
+from pvfiblets.engine.gl.work_limits import DISCRETE, INTEGRATED, WorkLimits
+from pvfiblets.report.studies.culling.pictures import views
 from tests.gl_calls import Calls, possible, recording
 
 CHUNKS = (1, 2, 4, 12, 24, 48, 93, 100)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import ctypes
 
-from pvfiblets.engine.gl_loader import loader
+from pvfiblets.engine.gl.gl_loader import loader
 
 MOST_NAMES = 8192
 MOST_LEVELS = 16

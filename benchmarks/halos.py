@@ -20,7 +20,7 @@ from common import add_places, card_of, machine, on_machine, passed_on, pyplot, 
 from halos_methods import ABOUT, ROWS, STEREO, AbsentError, make_set, row_of, run
 
 from pvfiblets.halos import HaloLines
-from pvfiblets.report.halos_pictures import look_of
+from pvfiblets.report.studies.halos.pictures import look_of
 
 TIME, BYTES, MANY = 1.5, 20.0, 1_000_000
 """The goals: as many times as long as VTK's plain lines at so many vertices, bytes a vertex."""

@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 from common import Window, data_bytes, percentiles
 
-from pvfiblets.engine.standalone import bare_context
+from pvfiblets.engine.gl.standalone import bare_context
 from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
 from pvfiblets.report.cameras import Camera
-from pvfiblets.report.halos_pictures import darkness_of, helices, orbit
+from pvfiblets.report.studies.halos.pictures import darkness_of, helices, orbit
 
 ABOUT = {
     "vtk": "VTK's plain lines, one pixel wide, or its plain points, as large as ours are in the middle of the "

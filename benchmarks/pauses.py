@@ -88,8 +88,8 @@ def measure(data: Any, pauses: list[float], repeats: int, *, pieces: bool) -> di
     """Return what moves after pauses took with one set."""
     import pyvista as pv
 
-    from pvfiblets.web import stream as module
-    from pvfiblets.web.stream import PictureStream
+    from pvfiblets.web.view import stream as module
+    from pvfiblets.web.view.stream import PictureStream
 
     module.draw_ahead = draw_ahead if pieces else (lambda *_, **__: iter(()))
     plotter = pv.Plotter(off_screen=True, window_size=SIZE)

@@ -30,8 +30,8 @@ from common import (
     write,
 )
 
-from pvfiblets.engine.standalone import bare_context
-from pvfiblets.report.culling_pictures import views
+from pvfiblets.engine.gl.standalone import bare_context
+from pvfiblets.report.studies.culling.pictures import views
 
 CULLINGS = ("none", "coverage", "two-phase")
 
@@ -64,7 +64,7 @@ def main() -> None:
 
 def measure_all(ctx, options, folder: Path) -> list[dict]:
     """Measure every cell of the table."""
-    from pvfiblets.engine import capabilities
+    from pvfiblets.engine.gl import capabilities
 
     results = []
     known = capabilities.pipelines(ctx)

@@ -28,7 +28,7 @@ import numpy as np
 import pyvista as pv
 from soak_acts import WEIGHTS, Data
 
-from pvfiblets.engine.gl_loader import loader
+from pvfiblets.engine.gl.gl_loader import loader
 from pvfiblets.mappers import windows
 from pvfiblets.report.machine import about
 

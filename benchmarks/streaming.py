@@ -35,8 +35,9 @@ SEED = 0
 CONVERSIONS = """
 import json, sys, time
 import numba
-from pvfiblets.cli_files import rewrite
-from pvfiblets.codec import convert, parameters
+from pvfiblets.cli.files import rewrite
+from pvfiblets.codec.files import convert
+from pvfiblets.codec import parameters
 from pvfiblets.codec.small_sets import STATES
 
 for state in STATES.values():

@@ -16,10 +16,10 @@ import numpy as np
 from common import Window, data_bytes, percentiles
 from tubes_reference import covered, fine_coverage
 
-from pvfiblets.engine.standalone import bare_context
-from pvfiblets.report.baselines.tessellated import TessellatedTubes
+from pvfiblets.engine.gl.standalone import bare_context
 from pvfiblets.report.cameras import Camera, orbit
-from pvfiblets.report.tubes_pictures import helices
+from pvfiblets.report.studies.codec.baselines.tessellated import TessellatedTubes
+from pvfiblets.report.studies.tubes.pictures import helices
 
 ABOUT = {
     "lines-as-tubes": "VTK's lines with tube shading, as wide as the mean radius is in the middle of the picture",

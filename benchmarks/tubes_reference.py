@@ -14,9 +14,9 @@ from typing import Any
 
 import numpy as np
 
-from pvfiblets.report.baselines.tessellated import across
 from pvfiblets.report.cameras import VERTICAL_ANGLE, Camera
-from pvfiblets.report.tubes_pictures import outline
+from pvfiblets.report.studies.codec.baselines.tessellated import across
+from pvfiblets.report.studies.tubes.pictures import outline
 
 SIDES = (16, 32, 64, 128)
 STEPS = (2, 4, 8, 16)

@@ -28,7 +28,7 @@ from volumes_methods import EQUAL, METHODS
 from volumes_tables import plot, table
 from volumes_timing import run
 
-from pvfiblets.report.volumes_scene import circle, look_of, truth
+from pvfiblets.report.studies.volumes.scene import circle, look_of, truth
 from pvfiblets.volumes import RaycastVolume
 
 DATA = ("vessels-64", "vessels-128", "vessels-256", "vessels-512", "brain")

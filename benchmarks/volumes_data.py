@@ -1,4 +1,4 @@
-"""Data of the benchmarks of ray-cast volumes, by name; what is shown of them is `pvfiblets.report.volumes_scene`."""
+"""Data of the benchmarks of ray-cast volumes, by name; `pvfiblets.report.studies.volumes.scene` is what is shown."""
 
 from __future__ import annotations
 

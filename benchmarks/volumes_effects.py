@@ -16,7 +16,7 @@ from volumes_data import make_data
 from volumes_methods import Plotter
 from volumes_timing import FrameTimes, nudged
 
-from pvfiblets.report.volumes_scene import circle, look_of
+from pvfiblets.report.studies.volumes.scene import circle, look_of
 
 PAPER = {
     "dof": {"static": (15.70, 16.15), "circle": (14.25, 14.63)},

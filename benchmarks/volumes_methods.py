@@ -1,7 +1,7 @@
 """The methods of casting rays through volumes that the benchmark compares.
 
-Every method shows the same (`pvfiblets.report.volumes_scene`) at the same step, on black, without anti-aliasing and
-without jitter. What differs is said with each method in :data:`ABOUT`.
+Every method shows the same (`pvfiblets.report.studies.volumes.scene`) at the same step, on black, without
+anti-aliasing and without jitter. What differs is said with each method in :data:`ABOUT`.
 """
 
 from __future__ import annotations
@@ -12,10 +12,10 @@ import numpy as np
 from common import Window
 from gpu_memory import allocated
 
-from pvfiblets.engine.standalone import bare_context
+from pvfiblets.engine.gl.standalone import bare_context
 from pvfiblets.report.cameras import Camera
-from pvfiblets.report.volumes_pictures import colours_of
-from pvfiblets.report.volumes_scene import Look, Truth
+from pvfiblets.report.studies.volumes.pictures import colours_of
+from pvfiblets.report.studies.volumes.scene import Look, Truth
 from pvfiblets.volumes import RaycastVolume
 
 ABOUT = {

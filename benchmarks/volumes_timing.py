@@ -12,7 +12,7 @@ from volumes_data import make_data
 from volumes_methods import EQUAL, METHODS, Method
 
 from pvfiblets.report.cameras import Camera
-from pvfiblets.report.volumes_scene import Look, Truth, circle, look_of
+from pvfiblets.report.studies.volumes.scene import Look, Truth, circle, look_of
 
 STATIC_TOO = ("engine", "plotter", "vtk-gpu", EQUAL)
 """Methods that are also timed in the static view: the other one is the mapper of these once more."""

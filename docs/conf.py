@@ -11,7 +11,7 @@ from pathlib import Path
 import pyvista
 
 import pvfiblets
-from pvfiblets.cli import make_parser
+from pvfiblets.cli.command import make_parser
 
 # The gallery's examples run here, one after the other, and draw off screen.
 os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")

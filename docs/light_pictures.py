@@ -18,8 +18,8 @@ import numpy.typing as npt
 
 import pvfiblets
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
-from pvfiblets.engine.standalone import bare_context
-from pvfiblets.report.culling_pictures import averaged, directions, visible
+from pvfiblets.engine.gl.standalone import bare_context
+from pvfiblets.report.studies.culling.pictures import averaged, directions, visible
 from pvfiblets.synthetic import brain_streamlines
 
 HERE = Path(__file__).resolve().parent

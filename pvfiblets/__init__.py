@@ -13,7 +13,7 @@ __version__ = "0.1.0"
 _HOME = {
     "Bundles": "query.bundles.bundle_list",
     "CodingError": "codec.error",
-    "DensityMap": "query.density_map",
+    "DensityMap": "query.density.density_map",
     "FibletSet": "codec.fibletset",
     "FormatError": "errors",
     "ShardedSet": "codec.shards.sharded_set",
@@ -22,24 +22,24 @@ _HOME = {
     "UnreadSet": "codec.shards.unread_set",
     "clusters": "query.bundles.clusters",
     "compress": "codec.compress",
-    "compress_file": "codec.convert",
-    "connectome": "query.connectome",
-    "density": "query.density",
+    "compress_file": "codec.files.convert",
+    "connectome": "query.connectome.matrix",
+    "density": "query.density.volume",
     "iter_chunks": "formats",
-    "end_parcels": "query.parcels",
+    "end_parcels": "query.connectome.parcels",
     "measure_error": "codec.error",
     "plot": "plotting.plot",
     "read": "formats",
     "read_volume": "plotting.read_volume",
     "recognise": "query.bundles.recognise",
     "similar": "query.bundles.similar",
-    "table": "query.table",
+    "table": "query.measures.table",
     "write": "formats",
 }
 
 _ROOMS = ("synthetic",)
 
-FORMATS = {".fiblets": "pvfiblets.codec.fiblets_format"}
+FORMATS = {".fiblets": "pvfiblets.codec.files.fiblets_format"}
 """Formats of rooms that `pvfiblets.formats` knows nothing of: suffix to module, imported with the first such file."""
 
 __all__ = ["__version__", *_HOME, *_ROOMS]
@@ -47,9 +47,9 @@ __all__ = ["__version__", *_HOME, *_ROOMS]
 if TYPE_CHECKING:
     from . import synthetic
     from .codec.compress import compress as compress
-    from .codec.convert import compress_file as compress_file
     from .codec.error import CodingError, measure_error
     from .codec.fibletset import FibletSet as FibletSet
+    from .codec.files.convert import compress_file as compress_file
     from .codec.shards.sharded_set import ShardedSet as ShardedSet
     from .codec.shards.unread_set import UnreadSet as UnreadSet
     from .errors import FormatError
@@ -60,11 +60,11 @@ if TYPE_CHECKING:
     from .query.bundles.clusters import clusters as clusters
     from .query.bundles.recognise import recognise as recognise
     from .query.bundles.similar import similar as similar
-    from .query.connectome import connectome as connectome
-    from .query.density import density as density
-    from .query.density_map import DensityMap
-    from .query.parcels import end_parcels as end_parcels
-    from .query.table import table as table
+    from .query.connectome.matrix import connectome as connectome
+    from .query.connectome.parcels import end_parcels as end_parcels
+    from .query.density.density_map import DensityMap
+    from .query.density.volume import density as density
+    from .query.measures.table import table as table
     from .streamlines import Streamlines
     from .tubes.spline_tubes import SplineTubes
 

@@ -23,25 +23,13 @@ VARIABLE = "PVFIBLETS_ANTIALIAS"
 
 
 def default_antialias() -> str | int:
-    """Return the default: ``"refined"``, or what the environment variable `VARIABLE` says.
-
-    Raises
-    ------
-    ValueError
-        If that says nothing of the kind; the message names it.
-    """
+    """Return the default: ``"refined"``, or what the environment variable `VARIABLE` says."""
     text = os.environ.get(VARIABLE, "refined")
     return check_antialias(VARIABLE, int(text) if text.isdecimal() else text)
 
 
 def check_antialias(name: str, value: Any) -> str | int:
-    """Return a value of the setting.
-
-    Raises
-    ------
-    ValueError
-        If it is none; the message names it and what was expected.
-    """
+    """Return a value of the setting."""
     if isinstance(value, str) and value in MODES:
         return value
     if isinstance(value, Integral) and not isinstance(value, bool) and 2 <= int(value) <= MOST:

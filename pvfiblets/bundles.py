@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .lazy_imports import names_from
+from .support.lazy_imports import names_from
 
 if TYPE_CHECKING:
     from .query.bundles.bundle_list import Bundle, Bundles

@@ -13,8 +13,8 @@ from typing import Literal, get_args
 import numpy as np
 import numpy.typing as npt
 
-from .ragged import Array, Ints, cut_offsets
 from .streamlines import Streamlines
+from .support.ragged import Array, Ints, cut_offsets
 
 __all__ = ["CUT", "LARGEST", "NONFINITE", "Invalid", "refuse_beyond", "valid_points", "warn_of_far", "without_points"]
 
@@ -30,18 +30,7 @@ MOST_LOOKED_AT = 2_000  # points, or some more
 
 
 def refuse_beyond(reach: float) -> None:
-    """Refuse coordinates that float32 does not hold.
-
-    Parameters
-    ----------
-    reach : float
-        The largest magnitude of all finite coordinates, mm.
-
-    Raises
-    ------
-    ValueError
-        If it is beyond `LARGEST`.
-    """
+    """Refuse coordinates that float32 does not hold."""
     if reach > LARGEST:
         raise ValueError(
             f"a coordinate of {reach:g} mm is beyond {LARGEST:g} mm, where float32 ends: check the units"
@@ -49,17 +38,7 @@ def refuse_beyond(reach: float) -> None:
 
 
 def warn_of_far(points: Array, low: npt.NDArray[np.float64], high: npt.NDArray[np.float64], share: float) -> None:
-    """Warn if a few points are so far away that all others are drawn visibly off: by half a pixel of a view of those.
-
-    Parameters
-    ----------
-    points : numpy.ndarray
-        ``(n, 3)`` mm, finite: all, or some evenly taken.
-    low, high : numpy.ndarray
-        ``(3,)`` bounds of all, mm.
-    share : float
-        Of the bounds' diagonal, that points are drawn off by.
-    """
+    """Warn if a few points are so far away that all others are drawn off by half a pixel of a view of those."""
     some = np.asarray(points[:: max(1, len(points) // MOST_LOOKED_AT)], np.float64)
     if not len(some):
         return
@@ -76,28 +55,7 @@ def warn_of_far(points: Array, low: npt.NDArray[np.float64], high: npt.NDArray[n
 
 
 def valid_points(streamlines: Streamlines, nan: Invalid) -> Streamlines:
-    """Return streamlines of finite points.
-
-    Parameters
-    ----------
-    streamlines : Streamlines
-        Stay as they are.
-    nan : {'error', 'drop', 'split'}
-        ``'split'`` ends lines at such points: each piece is a streamline, with the data and the groups of the whole.
-        ``'drop'`` joins the point before to the point after. ``'error'`` returns the streamlines as they are;
-        :func:`pvfiblets.compress` refuses them then.
-
-    Returns
-    -------
-    Streamlines
-        ``dropped`` counts the points and the added streamlines. A streamline that loses all of its points stays, as one
-        without points.
-
-    Raises
-    ------
-    ValueError
-        If `nan` is another word.
-    """
+    """Return streamlines of finite points."""
     if nan not in get_args(Invalid):
         raise ValueError(f"nan is {nan!r}; choose one of {get_args(Invalid)}")
     if nan == "error":

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pvfiblets.ragged import Array, Ints
-from pvfiblets.vtk_space import FIELD, OURS, Space, space_of_dataset, to_ras
+from pvfiblets.support.ragged import Array, Ints
+from pvfiblets.support.vtk_space import FIELD, OURS, Space, space_of_dataset, to_ras
 
 if TYPE_CHECKING:
     import pyvista

@@ -12,10 +12,10 @@ import numpy.typing as npt
 
 from pvfiblets.invalid_points import CUT, NONFINITE, refuse_beyond
 from pvfiblets.other_libraries import lines_of_grid, streamlines_of
-from pvfiblets.ragged import cut_offsets, offsets_from_counts
 from pvfiblets.streamlines import Streamlines
-from pvfiblets.summary import warn_of_losses
-from pvfiblets.vtk_space import space_of_dataset, to_ras
+from pvfiblets.support.ragged import cut_offsets, offsets_from_counts
+from pvfiblets.support.summary import warn_of_losses
+from pvfiblets.support.vtk_space import space_of_dataset, to_ras
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
@@ -117,29 +117,7 @@ class Lines:
 
 
 def gather(source: Any, noun: str = "tubes", *, keep_single: bool = False) -> Lines:
-    """Take the lines out of a source, cut where a point is NaN or infinite, which is warned of.
-
-    Parameters
-    ----------
-    source : PolyData, Streamlines, FibletSet, array_like or tuple
-        As :func:`pvfiblets.tubes.build.as_spline_tubes` takes it.
-    noun : str, default: 'tubes'
-        What is made of the lines, for messages.
-    keep_single : bool, default: False
-        Whether points of float32 stay so; else all become float64.
-
-    Returns
-    -------
-    Lines
-
-    Raises
-    ------
-    TypeError
-        If there are no lines in such a source.
-    ValueError
-        If there are no lines in a PolyData, an array has the wrong shape, or segments refer to points that are not
-        there.
-    """
+    """Take the lines out of a source, cut where a point is NaN or infinite, which is warned of."""
     lines, dropped = _cut(_gather(source, noun, keep_single))
     warn_of_losses(type(source).__name__, dropped, stacklevel=2)
     return lines
@@ -337,20 +315,7 @@ def _chains(before: Ints) -> tuple[Ints, Ints]:
 
 
 def with_values(source: Any, path: str | PathLike[str]) -> tuple[Streamlines, str]:
-    """Return the lines of a source with the values of a file, and what these are called.
-
-    Parameters
-    ----------
-    source : Any
-        As :func:`gather` takes it; it stays as it is.
-    path : str or PathLike
-        ``.tsf``, ``.npy``, ``.txt`` or ``.csv``; see :mod:`pvfiblets.formats.attachments`.
-
-    Raises
-    ------
-    FormatError
-        If the file is damaged, or its counts fit neither points nor lines.
-    """
+    """Return the lines of a source with the values of a file, and what these are called."""
     from pvfiblets.formats import attachments
 
     if isinstance(source, Streamlines):
@@ -392,13 +357,7 @@ def _all_words(array: npt.NDArray[Any]) -> bool:
 
 
 def refuse_words(array: npt.NDArray[Any], what: str, per_line: bool) -> None:
-    """Refuse texts that are not of whole lines.
-
-    Raises
-    ------
-    ValueError
-        For them.
-    """
+    """Refuse texts that are not of whole lines."""
     if not per_line and are_words(array):
         raise ValueError(f"{what} are words per point; words are taken per line, and numbers per point")
 
@@ -413,17 +372,7 @@ def flat(array: npt.NDArray[Any], what: str, *, words: bool = False) -> npt.NDAr
 
 
 def numbers_or_colours(array: npt.NDArray[Any], name: str, rgb: bool | None) -> npt.NDArray[Any]:
-    """Return numbers and colours as they are, and of vectors their magnitudes, by the rules of PyVista's `add_mesh`.
-
-    Parameters
-    ----------
-    array : ndarray
-        ``(n,)`` or ``(n, k)``.
-    name : str
-        What ends in ``"_rgb"`` or ``"_rgba"`` are colours.
-    rgb : bool, optional
-        Whether rows are colours; by default those of three or four bytes are (which `add_mesh` maps, too).
-    """
+    """Return numbers and colours as they are, and of vectors their magnitudes, by the rules of PyVista's `add_mesh`."""
     if array.ndim != 2 or rgb:
         return array
     if rgb is None and array.shape[1] in (3, 4) and (array.dtype == np.uint8 or name.endswith(("_rgb", "_rgba"))):

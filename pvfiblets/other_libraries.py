@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.ragged import offsets_from_counts
 from pvfiblets.streamlines import Streamlines
-from pvfiblets.vtk_space import Space, space_of_dataset, to_ras
+from pvfiblets.support.ragged import offsets_from_counts
+from pvfiblets.support.vtk_space import Space, space_of_dataset, to_ras
 
 __all__ = ["EXPECTED", "lines_of_grid", "streamlines_of"]
 
@@ -28,26 +28,7 @@ _LINES = (3, 4)  # VTK_LINE, VTK_POLY_LINE
 
 
 def streamlines_of(source: Any) -> Streamlines | None:
-    """Return the streamlines that an object of another library holds, with its data; None if it is of no known kind.
-
-    Parameters
-    ----------
-    source : object
-        nibabel's ``Tractogram``, ``LazyTractogram``, ``TrkFile``, ``TckFile`` or ``ArraySequence`` (dipy's
-        ``Streamlines``), dipy's ``StatefulTractogram``, trx-python's ``TrxFile``, or a PolyData, UnstructuredGrid or
-        MultiBlock with line cells, or a partitioned dataset of such. The names of a MultiBlock's blocks become groups.
-
-    Returns
-    -------
-    Streamlines or None
-
-    Raises
-    ------
-    TypeError
-        If a dataset of VTK cannot hold lines, or a block of a MultiBlock is such a one.
-    ValueError
-        If a tractogram does not say where its voxels are, and has an affine to be told it.
-    """
+    """Return the streamlines that an object of another library holds, with its data; None if it is of no known kind."""
     if isinstance(source, Streamlines):
         return source
     if hasattr(source, "IsA"):

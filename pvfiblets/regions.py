@@ -16,25 +16,25 @@ points come.
 ``RegionPainter`` paints regions on the voxels of an image, with undo, and ``LiveRegions`` tells which streamlines
 pass them after each stroke.
 
-Positions are mm. See :mod:`pvfiblets.query.shapes` for how a region is kept.
+Positions are mm. See :mod:`pvfiblets.query.regions.shapes` for how a region is kept.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .lazy_imports import names_from
+from .support.lazy_imports import names_from
 
 if TYPE_CHECKING:
-    from .query.classify import classify
-    from .query.labels import Labels
-    from .query.measures import Distance
+    from .query.measures.measures import Distance
     from .query.painting.fiblet_index import FibletIndex, index_of
     from .query.painting.live import LiveRegion, LiveRegions
     from .query.painting.painter import PaintedRegion, RegionPainter, Stroke
-    from .query.predicates import Predicate, ends_in, passes, stays_in
-    from .query.shapes import Box, Plane, Region, Shape, Slab, Sphere
-    from .query.surfaces import Surface
+    from .query.regions.classify import classify
+    from .query.regions.labels import Labels
+    from .query.regions.shapes import Box, Plane, Region, Shape, Slab, Sphere
+    from .query.regions.surfaces import Surface
+    from .query.selection.predicates import Predicate, ends_in, passes, stays_in
 
 __all__ = [
     "Box",
@@ -61,27 +61,27 @@ __all__ = [
 ]
 
 _HOME = {
-    "Box": ".query.shapes",
-    "Distance": ".query.measures",
+    "Box": ".query.regions.shapes",
+    "Distance": ".query.measures.measures",
     "FibletIndex": ".query.painting.fiblet_index",
-    "Labels": ".query.labels",
+    "Labels": ".query.regions.labels",
     "LiveRegion": ".query.painting.live",
     "LiveRegions": ".query.painting.live",
     "PaintedRegion": ".query.painting.painter",
-    "Plane": ".query.shapes",
-    "Predicate": ".query.predicates",
-    "Region": ".query.shapes",
+    "Plane": ".query.regions.shapes",
+    "Predicate": ".query.selection.predicates",
+    "Region": ".query.regions.shapes",
     "RegionPainter": ".query.painting.painter",
-    "Shape": ".query.shapes",
-    "Slab": ".query.shapes",
-    "Sphere": ".query.shapes",
+    "Shape": ".query.regions.shapes",
+    "Slab": ".query.regions.shapes",
+    "Sphere": ".query.regions.shapes",
     "Stroke": ".query.painting.painter",
-    "Surface": ".query.surfaces",
-    "classify": ".query.classify",
-    "ends_in": ".query.predicates",
+    "Surface": ".query.regions.surfaces",
+    "classify": ".query.regions.classify",
+    "ends_in": ".query.selection.predicates",
     "index_of": ".query.painting.fiblet_index",
-    "passes": ".query.predicates",
-    "stays_in": ".query.predicates",
+    "passes": ".query.selection.predicates",
+    "stays_in": ".query.selection.predicates",
 }
 
 __getattr__, __dir__ = names_from(__name__, _HOME)

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pvfiblets.line_cells import field_of, parts_of_cells, parts_of_polydata, polydata_of
-from pvfiblets.ragged import (
+from pvfiblets.support.ragged import (
     Array,
     Floats,
     Ints,
@@ -38,8 +38,8 @@ if TYPE_CHECKING:
 
     from pvfiblets.query.bundles.clusters import Clusters
     from pvfiblets.query.bundles.similar import Similar
-    from pvfiblets.query.table import Table
-    from pvfiblets.vtk_space import Space
+    from pvfiblets.query.measures.table import Table
+    from pvfiblets.support.vtk_space import Space
 
 __all__ = ["Streamlines", "blocks", "from_cells", "offsets_from_counts"]
 
@@ -125,7 +125,7 @@ class Streamlines:
         return f"<Streamlines: {'; '.join(facts)}>"
 
     def _repr_html_(self) -> str:
-        from pvfiblets.summary import summary_html
+        from pvfiblets.support.summary import summary_html
 
         return summary_html("Streamlines", self)
 
@@ -383,24 +383,7 @@ def from_cells(
     field: Mapping[str, Array] | None = None,
     space_name: Space | None = None,
 ) -> Streamlines:
-    """Streamlines from cells that refer to points by index, as VTK stores lines.
-
-    Parameters
-    ----------
-    points : (n, 3) array
-    offsets : (n_lines + 1,) int64
-        Where each line begins in `connectivity`.
-    connectivity : (n_ids,) int64
-        Point indices, each in ``[0, n)``.
-    point_data, cell_data : mapping of str to array
-        One row per point, and per line.
-    other_cells : int
-        Cells that are not lines, reported in `dropped`.
-    field : mapping of str to array, optional
-        Field data in the naming of :meth:`Streamlines.field_data`; other names are ignored.
-    space_name : {'RAS', 'LPS'}, optional
-        Space of the points; RAS+ if the source names none.
-    """
+    """Streamlines from cells that refer to points by index, as VTK stores lines."""
     return Streamlines(
         **parts_of_cells(
             points, offsets, connectivity, point_data, cell_data,

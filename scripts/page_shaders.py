@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from pvfiblets.codec import direction_codebook, layout
-from pvfiblets.engine.shaders import FEATURES, assemble
-from pvfiblets.engine.uniform_struct import find_struct
+from pvfiblets.engine.gl.shaders import FEATURES, assemble
+from pvfiblets.engine.gl.uniform_struct import find_struct
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 

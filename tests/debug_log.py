@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 
-from pvfiblets.engine.gl_loader import loader
+from pvfiblets.engine.gl.gl_loader import loader
 
 API = 0x8246  # shader compilers say much of what tests ask of them
 KINDS = {0x824C: "error", 0x824D: "deprecated", 0x824E: "undefined behaviour", 0x824F: "not portable"}

@@ -21,7 +21,7 @@ from unittest.mock import patch
 import _moderngl
 import moderngl
 
-from pvfiblets.engine import gl_loader, moderngl_extras, passes
+from pvfiblets.engine.gl import gl_loader, moderngl_extras, passes
 
 __all__ = ["Calls", "possible", "recording"]
 

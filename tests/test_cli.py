@@ -17,13 +17,14 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from pvfiblets import formats, memory, regions
-from pvfiblets.cli import main, make_parser
+from pvfiblets import formats, regions
+from pvfiblets.cli.command import main, make_parser
 from pvfiblets.codec.fibletset import FibletSet
-from pvfiblets.engine.capabilities import PIPELINES
+from pvfiblets.engine.gl.capabilities import PIPELINES
 from pvfiblets.formats.recognise import suffix_by_content
-from pvfiblets.report.errors_and_times import direction_angles
+from pvfiblets.report.studies.codec.errors_and_times import direction_angles
 from pvfiblets.streamlines import Streamlines
+from pvfiblets.support import memory
 from pvfiblets.synthetic import brain_streamlines
 
 CONVERT_KEYS = {
@@ -328,7 +329,7 @@ def test_the_demo_writes_and_prints_what_it_promises(tmp_path, capsys):
 
 
 def test_the_installed_command_runs_and_survives_a_closed_pipe(tractogram):
-    command = [sys.executable, "-m", "pvfiblets.cli", "info", str(tractogram[0])]
+    command = [sys.executable, "-m", "pvfiblets", "info", str(tractogram[0])]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0
     assert done.stderr == ""
@@ -389,7 +390,7 @@ def test_sets_without_extent_are_told_in_sensible_numbers(points, tmp_path, caps
 
 
 def test_convert_keeps_a_spatial_index_and_says_what_it_takes(tractogram, tmp_path, capsys, monkeypatch):
-    from pvfiblets.codec import convert
+    from pvfiblets.codec.files import convert
 
     source, target = tractogram[0], tmp_path / "a.fiblets"
     plain, written, write = tmp_path / "plain.fiblets", [], convert.write_archive
@@ -437,7 +438,7 @@ def test_gl_lists_the_driver_its_limits_and_every_pipeline_also_as_json(gl, caps
 def test_without_opengl_there_is_one_sentence_and_exit_code_1():
     nothing = {"GLCONTEXT_LINUX_LIBEGL": "libnothing.so", "GLCONTEXT_LINUX_LIBGL": "libnothing.so"}
     result = subprocess.run(
-        [sys.executable, "-m", "pvfiblets.cli", "gl"],
+        [sys.executable, "-m", "pvfiblets", "gl"],
         capture_output=True, text=True, check=False, env=os.environ | nothing,
     )  # fmt: skip
     assert (result.returncode, result.stdout, result.stderr.count("\n")) == (1, "", 1)

@@ -9,7 +9,7 @@ import pytest
 
 import pvfiblets
 from pvfiblets import Streamlines
-from pvfiblets.cli import main
+from pvfiblets.cli.command import main
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,7 @@ import pytest
 
 import pvfiblets as pf
 from pvfiblets import formats
-from pvfiblets.cli import main
+from pvfiblets.cli.command import main
 from pvfiblets.synthetic import brain_streamlines
 
 

@@ -10,8 +10,8 @@ import pyvista as pv
 from PIL import Image
 
 from pvfiblets import Streamlines, formats, regions
-from pvfiblets.cli import main
-from pvfiblets.cli_scene import value_of
+from pvfiblets.cli.command import main
+from pvfiblets.cli.scene import value_of
 from pvfiblets.plotting.cut_surfaces import cut_surface
 from pvfiblets.plotting.viewpoints import point_camera
 from pvfiblets.synthetic import brain_streamlines
@@ -239,8 +239,8 @@ def test_groups(shot, files, tmp_path):
 
 
 def test_a_session_is_the_picture_of_the_page(files, tmp_path):
-    from pvfiblets.web import session
-    from pvfiblets.web.scene import Scene
+    from pvfiblets.web.scene.scene import Scene
+    from pvfiblets.web.session import files as session
 
     plotter = pv.Plotter(off_screen=True, window_size=SIZE)
     scene = Scene(plotter, files)
@@ -248,10 +248,10 @@ def test_a_session_is_the_picture_of_the_page(files, tmp_path):
     image = scene.open("image.nii.gz")
     scene.set(image.id, "mode", "isosurface")
     scene.set(image.id, "values", [0.5])
-    scene.add_clip("plane", normal=[0, 0, -1], layers=[tracts.id])
+    scene.filters.add_clip("plane", normal=[0, 0, -1], layers=[tracts.id])
     scene.set_background("#203040")
-    scene.view("sagittal")
-    right = scene.screenshot()[..., :3].astype(int)
+    scene.cameras.view("sagittal")
+    right = scene.cameras.screenshot()[..., :3].astype(int)
     session.save(scene, "view.json")
     scene.close()
     plotter.close()
@@ -295,7 +295,7 @@ def test_what_makes_no_sense_is_one_sentence(files, capsys, tmp_path, words, sai
 @pytest.mark.more
 def test_plain_pictures_load_no_more_than_before(files, tmp_path):
     code = (
-        "import sys; from pvfiblets.cli import main; "
+        "import sys; from pvfiblets.cli.command import main; "
         f"main(['screenshot', {str(files / 'lines.tck')!r}, '-o', {str(tmp_path / 'a.png')!r}]); "
         "unused = ('trame', 'nibabel', 'pvfiblets.web.s', 'pvfiblets.engine.volumes'); "
         "print([m for m in sys.modules if m.startswith(unused)])"

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from pvfiblets import memory
+from pvfiblets.support import memory
 
 needs_limit = pytest.mark.skipif(not memory.CAN_LIMIT, reason="only Linux limits the data of a process")
 
@@ -33,7 +33,7 @@ def test_the_machine_has_what_the_system_says_or_less():
 
 def limited(code):
     """Run a program with 200 MB to spare, and return what it printed."""
-    head = "import numpy as np\nfrom pvfiblets import memory\nmemory.limit(memory.taken() + (200 << 20))\n"
+    head = "import numpy as np\nfrom pvfiblets.support import memory\nmemory.limit(memory.taken() + (200 << 20))\n"
     done = subprocess.run([sys.executable, "-c", head + code], capture_output=True, text=True, timeout=60)
     assert done.returncode == 0, done.stderr
     return done.stdout.strip()

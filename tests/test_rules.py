@@ -146,11 +146,11 @@ def test_each_room_needs_nothing_heavier():
 def test_one_machine_pays_nothing_for_clusters(tmp_path):
     """Neither the commands nor a file that is written and read load anything of them."""
     loaded = modules_after(
-        "import pvfiblets, pvfiblets.cli, pvfiblets.cluster, numpy\n"
-        "pvfiblets.cli.make_parser()\n"
+        "import pvfiblets, pvfiblets.cli.command, pvfiblets.cluster, numpy\n"
+        "pvfiblets.cli.command.make_parser()\n"
         f"path = {str(tmp_path / 'a.fiblets')!r}\n"
         "pvfiblets.write(path, pvfiblets.Streamlines.from_list([numpy.eye(3)]))\n"
-        "pvfiblets.cli.main(['info', path])\n"
+        "pvfiblets.cli.command.main(['info', path])\n"
         "pvfiblets.read(path)"
     )
     assert not loaded & {"dask", "distributed", "pyarrow", "fsspec", "pandas", "pvfiblets.cluster.cohort"}

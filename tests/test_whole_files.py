@@ -16,11 +16,11 @@ import numpy as np
 import pytest
 
 import pvfiblets
-from pvfiblets.cli import main
+from pvfiblets.cli.command import main
 from pvfiblets.formats import tck
 from pvfiblets.streamlines import Streamlines
-from pvfiblets.unfinished import locked, remove_unfinished, unfinished
-from pvfiblets.whole_files import naming_target, replacing
+from pvfiblets.support.unfinished import locked, remove_unfinished, unfinished
+from pvfiblets.support.whole_files import naming_target, replacing
 
 SUFFIXES = (".tck", ".trk", ".trx", ".vtk", ".vtp", ".fiblets")
 OURS = (".tck", ".trk", ".trx", ".fiblets")  # the others are VTK's to write
@@ -114,7 +114,7 @@ def test_a_file_that_may_not_be_as_large_says_what_it_takes(name, tmp_path):
     """In a process of its own, whose files may have 64 kB."""
     code = """
 import resource, signal, sys
-from pvfiblets.cli import main
+from pvfiblets.cli.command import main
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 16, 1 << 16))
 sys.exit(main(["convert", sys.argv[1], sys.argv[2], "--quiet"]))
@@ -201,8 +201,8 @@ def test_a_killed_conversion_leaves_source_and_old_file_whole(lines, tmp_path, s
     code = """
 import os, signal, sys
 from pathlib import Path
-from pvfiblets import whole_files
-from pvfiblets.cli import main
+from pvfiblets.support import whole_files
+from pvfiblets.cli.command import main
 before = Path.replace
 Path.replace = lambda self, to: os.kill(os.getpid(), signal.SIGKILL)  # all is written, and has not its name yet
 sys.exit(main(["convert", sys.argv[1], sys.argv[2], "--quiet"]))

@@ -150,7 +150,7 @@ export async function openParts(parts: Parts, values: string[]): Promise<Archive
     } else {
       const array = readNpy(bytes.subarray(data, data + size), name);
       if (array) arrays.set(name, array);
-      if (array && (array.data.buffer !== bytes.buffer || name === "pages.npy")) {
+      if (array && (array.data.buffer !== bytes.buffer || name === "pages.npy" || name.startsWith("table/"))) {
         await parts.need(data, data + size);
         arrays.set(name, readNpy(bytes.subarray(data, data + size), name)!);
       }

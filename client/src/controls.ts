@@ -193,7 +193,7 @@ export class Controls {
     for (const lines of renderer.lines) {
       const { values, layer } = lines;
       if (values) {
-        const low = values.code[0], high = low + values.code[1] * (values.code[2] - 1), now: [number, number] = [low, high];
+        const [low, high] = values.range, now: [number, number] = [low, high];
         const apply = (): void => {
           renderer.lines[lines.index].shownValues = now[0] > low || now[1] < high ? [now[0], now[1]] : [1, 0];
           renderer.change(true);

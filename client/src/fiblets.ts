@@ -51,10 +51,19 @@ export interface Block {
   likelies: number;             // how many are
 }
 
+/** Least and greatest value, and what the table's entries are less than the values. */
+export interface ValueFacts {
+  lo: number;
+  hi: number;
+  reference: number;
+}
+
 export interface PointValues {
   name: string;
   texture: WebGLTexture;
-  code: Vec;          // value of code 0, per code, the code of NaN
+  table: WebGLTexture;         // what codes mean, less the reference
+  range: [number, number];     // of the values
+  reference: number;           // which shaders never see added
 }
 
 function words(array: NpyArray | undefined, name: string, columns: number, n: number): Uint32Array {
@@ -274,22 +283,26 @@ export class FibletSet {
   pointValues(name: string): PointValues {
     const said = this.archive.header.per_point?.[name], array = said && this.archive.arrays.get(said.member);
     if (!array || array.data.length !== this.points) throw new FileError(`The file has no values ${name} for its points.`);
-    return this.codedValues(name, array.data as Uint8Array | Uint16Array, said);
+    const table = this.archive.arrays.get(said.table);
+    if (!(table?.data instanceof Float32Array)) throw new FileError(`The file does not say what the codes of ${name} mean. Make the page again.`);
+    return this.codedValues(name, array.data as Uint8Array | Uint16Array, table.data, said);
   }
 
-  /** Values for each point of the set, by their codes and what the least and the greatest one is. */
-  codedValues(name: string, data: Uint8Array | Uint16Array, { lo, hi }: { lo: number; hi: number }): PointValues {
+  /** Values for each point of the set, by their codes, what these mean, and what the least and the greatest one is. */
+  codedValues(name: string, data: Uint8Array | Uint16Array, table: Float32Array, { lo, hi, reference }: ValueFacts): PointValues {
     if (data.length !== this.points) throw new FileError(`The values ${name} are not those of the file's points.`);
-    const wide = data instanceof Uint16Array, top = wide ? 65535 : 255, format = wide ? "r16ui" : "r8ui";
+    const wide = data instanceof Uint16Array, format = wide ? "r16ui" : "r8ui";
     const texture = emptyRows(this.gl, format, this.points, "values of points");
     this.values.push({ texture, format, data });
     fillRows(this.gl, texture, format, data, 0, this.countBefore(this.done, 2));
-    return { name, texture, code: [lo, (hi - lo) / (top - 1), top] };
+    const meant = new Uint32Array(table.slice().buffer);
+    return { name, texture, table: rows(this.gl, "r32ui", meant, "values of codes"), range: [lo, hi], reference };
   }
 
-  forget({ texture }: PointValues): void {
+  forget({ texture, table }: PointValues): void {
     this.values = this.values.filter((one) => one.texture !== texture);
     this.gl.deleteTexture(texture);
+    this.gl.deleteTexture(table);
   }
 
   private decoder(): Program {

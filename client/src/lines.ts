@@ -26,10 +26,16 @@ export class Lines {
     this.set.advance(archive.ready);
     this.model = new Float64Array(layer.matrix ?? identity());
     const { colours } = layer;
-    if (colours.codes) this.values = this.set.codedValues(colours.values!, asCodes(data[colours.codes.data], colours.codes.bits), colours.codes);
+    if (colours.codes) {
+      const { codes } = colours;
+      this.values = this.set.codedValues(colours.values!, asCodes(data[codes.data], codes.bits), new Float32Array(data[codes.table].slice().buffer), codes);
+    }
     else if (colours.values !== undefined) this.values = this.set.pointValues(colours.values);
     if (colours.data !== undefined) this.colours = rows(gl, "rgba8", data[colours.data], "colours");
-    if (colours.table !== undefined) [this.table, this.tableRange] = lookUpTable(gl, fromBase64(colours.table), colours.clim!, !!colours.log);
+    if (colours.table !== undefined) {
+      const clim = colours.clim!.map((end) => end - (this.values?.reference ?? 0));
+      [this.table, this.tableRange] = lookUpTable(gl, fromBase64(colours.table), clim, !!colours.log);
+    }
     if (layer.kept !== undefined) this.keep(data[layer.kept]);
     if (layer.chosen) this.chosen = rows(gl, "r8ui", data[layer.chosen.data], "streamlines");
     if (layer.through?.opacities !== undefined) this.opacities = rows(gl, "r8ui", data[layer.through.opacities], "streamlines");

@@ -516,7 +516,7 @@ export class Renderer {
         if (lines.keptPoints) features.push("POINT_MASK");
         if (wide && translucent && lines.layer.through!.all) features.push("GATHER_SLICES");
         program = this.program("page/segment.vert", behind ? "page/sum.frag" : "page/segment.frag", features).use();
-        if (lines.values) program.set({ value_code: lines.values.code, shown_values: lines.shownValues });
+        if (lines.values) program.set({ shown_values: lines.shownValues.map((end) => end - lines.values!.reference) });
         program.uints({ layer: lines.index * 2 ** 28 });
       }
       const chosen = what === "others" && far ? lines.set.look(block, window, brush, this.width, this.height, far) : lines.set.likely(block);
@@ -530,7 +530,7 @@ export class Renderer {
         this.colour(program!.use(), lines);
         translucent!.paint(program!, lines, frame.matrices);
       }
-      program!.use().textures({ far_tiles: this.textures.far, items: lines.set.items, kept: lines.kept, kept_points: lines.keptPoints, value_texels: lines.values && lines.values.texture, point_colours: lines.byPoint ? lines.colours : null });
+      program!.use().textures({ far_tiles: this.textures.far, items: lines.set.items, kept: lines.kept, kept_points: lines.keptPoints, value_texels: lines.values && lines.values.texture, value_table: lines.values && lines.values.table, point_colours: lines.byPoint ? lines.colours : null });
       if (what === "all" || behind) this.sliceSize += lines.set.draw(block, program!, frame.share * block.items, sprites);
       else this.sliceSize += block.items + lines.set.drawSome(block, program!, chosen, sprites, Math.ceil(frame.share * (what === "likely" ? block.likelies : block.items)));
     }

@@ -15,7 +15,7 @@ export interface Colours {
   colour?: Vec;         // of "solid"
   data?: number;        // of "streamline" and "point": RGBA for each
   values?: string;      // of "value": a stored array of points, or with `codes` the name of one
-  codes?: { data: number; bits: 8 | 16; lo: number; hi: number };  // of "value": codes of values that are not stored with the set
+  codes?: { data: number; table: number; bits: 8 | 16; lo: number; hi: number; reference: number };  // of "value": codes of values that are not stored with the set
   table?: string;       // base64, RGBA: entries, then below, above, NaN
   clim?: [number, number];
   log?: boolean;

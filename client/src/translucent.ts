@@ -1,5 +1,5 @@
 /**
- * What one looks through: lines as the engine's slices show them (pvfiblets/engine/fiblets/gathering.py), surfaces and slices of
+ * What one looks through: lines as the engine's slices show them (pvfiblets/engine/fiblets/gather/gathering.py), surfaces and slices of
  * images, all mixed as VTK mixes them without depth peeling. Nothing of it is made while everything shown is opaque.
  */
 

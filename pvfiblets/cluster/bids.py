@@ -34,18 +34,7 @@ def stem_of(path: PurePath) -> str:
 
 
 def entities(path: PurePath) -> dict[str, str]:
-    """Return what a path says of its file.
-
-    Parameters
-    ----------
-    path : PurePath
-
-    Returns
-    -------
-    dict of str to str
-        ``subject``, ``session`` and so on as far as it says them, texts as they stand there; ``suffix``, the last part
-        of the name, if a pair comes before it.
-    """
+    """Return what a path says of its file."""
     found: dict[str, str] = {}
     for folder in path.parts[:-1]:
         if (match := _FOLDER.fullmatch(folder)) is not None:
@@ -68,13 +57,7 @@ def study_root(path: PurePath) -> PurePath | None:
 
 
 def fields_of(template: str) -> set[str]:
-    """Return the names between braces in a text.
-
-    Raises
-    ------
-    ValueError
-        If a brace is left open.
-    """
+    """Return the names between braces in a text."""
     try:
         return {name for _, name, _, _ in Formatter().parse(template) if name is not None}
     except ValueError as error:
@@ -82,13 +65,7 @@ def fields_of(template: str) -> set[str]:
 
 
 def filled(template: str, values: dict[str, str], source: str) -> str:
-    """Return a text with the values of a source put in the place of their names.
-
-    Raises
-    ------
-    ValueError
-        If it names what the source's name does not say.
-    """
+    """Return a text with the values of a source put in the place of their names."""
     lacking = sorted(fields_of(template) - set(values))
     if lacking:
         raise ValueError(

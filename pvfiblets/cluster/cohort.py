@@ -17,10 +17,10 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pvfiblets import memory as limits
 from pvfiblets.errors import sentence
-from pvfiblets.progress_bar import progress_bar
-from pvfiblets.whole_files import made_folder
+from pvfiblets.support import memory as limits
+from pvfiblets.support.progress_bar import progress_bar
+from pvfiblets.support.whole_files import made_folder
 
 from .bids import filled
 from .connection import SHARE, connected, default_workers

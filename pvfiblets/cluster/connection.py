@@ -9,8 +9,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from pvfiblets import memory
 from pvfiblets.errors import FibletsError
+from pvfiblets.support import memory
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -37,25 +37,7 @@ def default_workers(n_files: int) -> int:
 
 @contextmanager
 def connected(cluster: Any, workers: int, size: int | None, *, dashboard: bool = True) -> Iterator[Client]:
-    """Have workers meanwhile.
-
-    Parameters
-    ----------
-    cluster : None, str or distributed.Client
-        ``None`` starts processes on this machine; an address (``tcp://host:8786``) or the path of a scheduler's file
-        connects to workers that others started; a client is taken as it is, and stays open.
-    workers : int
-        How many processes are started.
-    size : int or None
-        Bytes that each of these may have; one that takes more is ended and started again.
-    dashboard : bool
-        Whether those that are started have a page that shows their work.
-
-    Raises
-    ------
-    ClusterError
-        If dask is not installed, or nothing answers at the address.
-    """
+    """Have workers meanwhile."""
     try:
         import dask
         import distributed

@@ -21,7 +21,7 @@ from pvfiblets.formats import registry
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
-    from pvfiblets.query.point_flags import Sampling
+    from pvfiblets.query.selection.point_flags import Sampling
     from pvfiblets.streamlines import Streamlines
 
     from .tables import Columns
@@ -47,7 +47,7 @@ def convert(
 ) -> Columns:
     """Compress, or write in another format; options as of :func:`pvfiblets.compress_file`."""
     if to == COMPRESSED:
-        from pvfiblets.codec.convert import compress_file
+        from pvfiblets.codec.files.convert import compress_file
 
         result = compress_file(
             source, target, step="auto" if step is None else step, max_error=max_error, max_angle=max_angle,
@@ -65,9 +65,9 @@ def convert(
 def verify(
     source: Path, target: None = None, *, original: str | None = None, max_angle: float | None = DEFAULT_ANGLE
 ) -> Columns:
-    """Check against checksums, and against the original; as :func:`pvfiblets.codec.verify.verified`."""
+    """Check against checksums, and against the original; as :func:`pvfiblets.codec.files.verify.verified`."""
     del target
-    from pvfiblets.codec.verify import refuse_broken_promise, verified
+    from pvfiblets.codec.files.verify import refuse_broken_promise, verified
 
     result = verified(source, original, max_angle=max_angle)
     refuse_broken_promise(result)
@@ -89,8 +89,8 @@ def density(
     """Add streamlines up in the voxels of a grid; options as of :func:`pvfiblets.density`."""
     del to
     from pvfiblets.formats.attachments import numbers_or_name
-    from pvfiblets.query.density import CONTRASTS
-    from pvfiblets.query.density import density as add_up
+    from pvfiblets.query.density.volume import CONTRASTS
+    from pvfiblets.query.density.volume import density as add_up
 
     found = add_up(
         source, voxel, like=like, weights=numbers_or_name(weights),
@@ -119,8 +119,8 @@ def select(
     sampling: Sampling = "lines",
 ) -> Columns:
     """Write the streamlines for which all conditions hold; regions as :func:`.query.region_text.parse_region`."""
-    from pvfiblets.query import predicates
-    from pvfiblets.query.region_text import parse_region
+    from pvfiblets.query.regions.region_text import parse_region
+    from pvfiblets.query.selection import predicates
 
     conditions = [
         *(predicates.passes(parse_region(text), sampling=sampling) for text in passes),
@@ -166,8 +166,8 @@ def profile(source: Path, target: None = None, *, values: str, positions: int = 
     `values` names an array or a computed measure, or is an image, which is sampled at the points.
     """
     del target
-    from pvfiblets.query.profile import mean_profile
-    from pvfiblets.query.voxel_grid import SUFFIXES
+    from pvfiblets.query.density.voxel_grid import SUFFIXES
+    from pvfiblets.query.measures.profile import mean_profile
 
     image = values.lower().endswith(SUFFIXES)
     fiblets = _compressed(source, () if image else (values,))
@@ -199,7 +199,7 @@ def connectome(
     """A row for each pair of parcels; options as of :func:`pvfiblets.connectome`."""
     del target
     from pvfiblets.formats.attachments import numbers_or_name
-    from pvfiblets.query.connectome import connectome as put_together
+    from pvfiblets.query.connectome.matrix import connectome as put_together
 
     found = put_together(
         source, labels, weights=numbers_or_name(weights),
@@ -233,8 +233,8 @@ def _sampled(fiblets: FibletSet, image: str) -> Any:
     """Values of an image at all points, in the order in which these are coded."""
     import nibabel
 
-    from pvfiblets.query.image_samples import sample_image
-    from pvfiblets.query.measures import decoded_by_rank
+    from pvfiblets.query.measures.image_samples import sample_image
+    from pvfiblets.query.measures.measures import decoded_by_rank
 
     loaded = nibabel.load(image)
     volume, affine = np.asanyarray(loaded.dataobj), loaded.affine
@@ -282,15 +282,7 @@ class Operation:
         return {name: p.default for name, p in found.items() if p.kind is p.KEYWORD_ONLY}
 
     def checked(self, options: dict[str, Any]) -> dict[str, Any]:
-        """Return all options, those that were not given with their default.
-
-        Raises
-        ------
-        TypeError
-            If there is no such option.
-        ValueError
-            If one that is needed is missing, or the suffix of what is to be made is none.
-        """
+        """Return all options, those that were not given with their default."""
         known = self.defaults()
         strange = sorted(set(options) - set(known))
         if strange:
@@ -300,7 +292,7 @@ class Operation:
                 raise ValueError(f"{self.name} needs {' or '.join(names)}; give {names[0]}=")
         made = {name: options.get(name, value) for name, value in known.items()}
         if self.makes_file and self.name == "density":
-            from pvfiblets.query.density_map import check_target
+            from pvfiblets.query.density.density_map import check_target
 
             check_target(f"map{made['to']}")
         elif self.makes_file:
@@ -308,12 +300,7 @@ class Operation:
         return made
 
     def check_source(self, source: Path) -> None:
-        """Refuse a source that the operation cannot take, by its name.
-
-        Raises
-        ------
-        ValueError
-        """
+        """Refuse a source that the operation cannot take, by its name."""
         suffix = registry.suffix_of(source)
         if self.takes and suffix not in self.takes:
             raise ValueError(f"{source}: {self.name} is for {', '.join(self.takes)} files")

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from pvfiblets.whole_files import replacing
+from pvfiblets.support.whole_files import replacing
 
 __all__ = ["Entry", "Output", "Record", "checksum", "fingerprint"]
 

@@ -53,18 +53,7 @@ class SourceFile:
 
 
 def find_sources(patterns: str | os.PathLike[str] | Sequence[str | os.PathLike[str]]) -> list[SourceFile]:
-    """Return the files that patterns match, each once, in the order of their names.
-
-    Parameters
-    ----------
-    patterns : str, PathLike or sequence of these
-        Paths, in which ``*``, ``?`` and ``[...]`` stand for parts of a name, ``**`` for folders of any depth.
-
-    Raises
-    ------
-    NoSourceError
-        If a pattern matches nothing.
-    """
+    """Return the files that patterns match, each once, in the order of their names."""
     given = [patterns] if isinstance(patterns, (str, os.PathLike)) else list(patterns)
     found: dict[Path, Path | None] = {}
     for pattern in given:

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from pvfiblets.whole_files import replacing
+from pvfiblets.support.whole_files import replacing
 
 __all__ = ["Columns", "join_parts", "write_part"]
 
@@ -20,16 +20,7 @@ Columns = Mapping[str, Any]
 
 
 def write_part(path: Path, said: Mapping[str, str], columns: Columns) -> None:
-    """Write the rows of one file.
-
-    Parameters
-    ----------
-    path : Path
-    said : mapping of str to str
-        What the file's name says, the same in each row. What `columns` name is theirs.
-    columns : mapping
-        Of sequences of equal length, or of single values: then there is one row.
-    """
+    """Write the rows of one file."""
     import pyarrow as pa
     from pyarrow import parquet
 
@@ -48,18 +39,6 @@ def join_parts(parts: Iterable[Path], target: Path) -> int:
     """Write the rows of all parts to one file, which appears when it is whole.
 
     A column that a part lacks is null in its rows.
-
-    Returns
-    -------
-    int
-        How many rows there are.
-
-    Raises
-    ------
-    OSError
-        If a part cannot be read, or the table not written.
-    ValueError
-        If a column holds numbers in one part and texts in another.
     """
     import pyarrow as pa
     from pyarrow import parquet

@@ -21,8 +21,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from pvfiblets import memory
 from pvfiblets.errors import EXPECTED, sentence
+from pvfiblets.support import memory
 
 from .operations import OPERATIONS
 from .record import Entry, Output, checksum, fingerprint

@@ -9,11 +9,6 @@ __all__ = ["dask_setup"]
 
 
 def dask_setup(worker: Any) -> None:
-    """Leave interrupts to the batch: a terminal sends Ctrl-C to all processes, and one of them says what became of it.
-
-    Parameters
-    ----------
-    worker : distributed.Worker
-    """
+    """Leave interrupts to the batch: a terminal sends Ctrl-C to all processes, and one of them says what came of it."""
     del worker
     signal.signal(signal.SIGINT, signal.SIG_IGN)

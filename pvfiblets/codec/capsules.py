@@ -15,7 +15,7 @@ error: ``r`` is measured from the rounded ``B``.
 The GPU decodes in float32, to within a thousandth of a step. ``r`` is enlarged by ``MARGIN`` times the length of the
 line drawn, about as much for a full fiblet, so that what a GPU decodes stays within its capsule too.
 
-This is the literal reference; :mod:`.capsule_kernels` compute the same.
+This is the literal reference; `capsule_kernels` compute the same.
 """
 
 from __future__ import annotations
@@ -30,20 +30,7 @@ MARGIN = 2.0**-16
 
 
 def distances(points: Array, a: Array, b: Array) -> Array:
-    """Distances of points from a segment.
-
-    Parameters
-    ----------
-    points : numpy.ndarray
-        ``(n, 3)``, mm.
-    a, b : numpy.ndarray
-        ``(3,)`` ends of the segment, mm; they may be the same.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(n,)`` mm.
-    """
+    """Distances of points from a segment."""
     chord = b - a
     squares = float(chord @ chord)
     t = np.clip((points - a) @ chord / squares, 0.0, 1.0) if squares > 0.0 else np.zeros(len(points))
@@ -52,44 +39,14 @@ def distances(points: Array, a: Array, b: Array) -> Array:
 
 
 def capsule_radius(points: Array, b: Array) -> float:
-    """Radius that the encoder states for a fiblet, before it is rounded up to a whole number of ``reach_scale``.
-
-    Parameters
-    ----------
-    points : numpy.ndarray
-        ``(n, 3)`` decoded points, the anchor first, mm.
-    b : numpy.ndarray
-        ``(3,)`` other end of the chord, mm.
-
-    Returns
-    -------
-    float
-        Largest distance from the chord plus the margin for float32, mm.
-    """
+    """Radius that the encoder states for a fiblet, before it is rounded up to a whole number of ``reach_scale``."""
     drawn = np.concatenate([points, b[None]])
     arc = float(np.linalg.norm(np.diff(drawn, axis=0), axis=1).sum())
     return float(distances(points, points[0], b).max()) + MARGIN * arc
 
 
 def capsule_ends(anchors: Array, end: npt.NDArray[np.bool_], vectors: Array, following: Array | None) -> Array:
-    """Where the chords of consecutive fiblets end.
-
-    Parameters
-    ----------
-    anchors : numpy.ndarray
-        ``(n, 3)`` decoded anchors, mm.
-    end : numpy.ndarray
-        ``(n,)`` bool: fiblets that end their streamline.
-    vectors : numpy.ndarray
-        ``(end.sum(), 3)``: end vectors of those, in order, mm.
-    following : numpy.ndarray or None
-        ``(3,)`` anchor of the fiblet after the last; None where there is none.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(n, 3)`` mm.
-    """
+    """Where the chords of consecutive fiblets end."""
     last = anchors[-1:] if following is None else following[None]
     ends = np.concatenate([anchors[1:], last])
     ends[end] = anchors[end] + vectors

@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import FormatError
-from .archive import check_members
 from .capsules import capsule_ends
+from .files.archive import check_members
 from .layout import (
     DIRECTION,
     END_BITS,
@@ -42,13 +42,7 @@ def code_bytes(decoding: npt.NDArray[np.uint32]) -> npt.NDArray[np.int64]:
 
 
 def check_file(fiblets: FibletSet, path: str | PathLike[str]) -> None:
-    """Check every byte of the file that a set is mapped from against its checksums, and the records for sense.
-
-    Raises
-    ------
-    FormatError
-        Naming what is damaged.
-    """
+    """Check every byte of the file that a set is mapped from against its checksums, and the records for sense."""
     damaged = check_members(path)
     if damaged:
         raise FormatError(
@@ -58,20 +52,7 @@ def check_file(fiblets: FibletSet, path: str | PathLike[str]) -> None:
 
 
 def check_records(fiblets: FibletSet, path: str | PathLike[str] = "fiblets in memory") -> None:
-    """Check that records and pages agree with each other, and that every fiblet lies within its capsule.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-        The set.
-    path : str or PathLike
-        What errors call it.
-
-    Raises
-    ------
-    FormatError
-        Naming the first fiblet that is damaged and how.
-    """
+    """Check that records and pages agree with each other, and that every fiblet lies within its capsule."""
     table = fiblets.pages
     point, rank = 0, -1
     for page in range(len(table) - 1):
@@ -131,8 +112,8 @@ def _check_capsules(
     ends: npt.NDArray[np.bool_],
 ) -> None:
     """Decode the fiblets of one page, and see that culling is told the truth about each."""
-    from .capsule_kernels import leaving
     from .decompress import decode_fiblets
+    from .kernels.capsule_kernels import leaving
 
     more = rows.stop < fiblets.n_fiblets  # the last chord ends at the next page's first anchor
     which = np.arange(rows.start, rows.stop + more)

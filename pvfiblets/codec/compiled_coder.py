@@ -9,9 +9,10 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
-from . import beam_kernels, direction_kernels, lattice_kernels, nearest, turn_kernels
+from . import nearest
 from .direction_codebook import cap_ratios, directions, quaternions
 from .jit import parallel_kernel
+from .kernels import beam_kernels, direction_kernels, lattice_kernels, turn_kernels
 from .layout import CAPS
 
 if TYPE_CHECKING:
@@ -100,7 +101,7 @@ class CompiledCoder:
     def code_lattices(
         self, slots: Ints, end: npt.NDArray[np.uint8], wanted: Ints, at: Ints, out: tuple[npt.NDArray[Any], ...]
     ) -> None:
-        """Code slots ``wanted`` as planned; ``at`` and ``out`` as in :func:`.lattice_kernels.encode_lattices`."""
+        """Code slots ``wanted`` as planned; ``at`` and ``out`` as in `lattice_kernels.encode_lattices`."""
         p = self._parameters
         lattice_kernels.encode_lattices(
             self._points, self._origin, slots, wanted, *self._grid, p.lattice, self._bound, p.end_scale,

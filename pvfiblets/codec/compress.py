@@ -3,25 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
-from ..formats.mapped import forget
-from ..formats.scratch import is_long, spans
 from ..invalid_points import Invalid, valid_points
-from ..progress_bar import progress_bar
 from ..streamlines import Streamlines
+from ..support.progress_bar import progress_bar
 from . import parameters as limits
 from .exact import plain_records, raw_bytes
 from .fibletset import FibletSet
 from .layout import WORDS
 from .ordering import Order, check_order, hilbert_order
 from .parameters import CUT_SHARE, DEFAULT_ANGLE, Parameters, Survey, bounds_of, survey, tell_far
-from .quantised import QuantisedPoints, quantise_values
+from .point_values import PointValues, ValueCoder, ValueSurvey, value_columns
 from .record_writer import FibletChunk, RecordWriter, join
 
 if TYPE_CHECKING:
@@ -31,14 +28,16 @@ __all__ = [
     "CHUNK_POINTS",
     "LARGEST_FIT",
     "PerPoint",
+    "ValueBounds",
     "check_exact",
     "choose_per_point",
+    "code_chosen",
     "compress",
     "grows",
     "is_plain",
     "not_kept",
-    "quantise_chosen",
     "split_chunks",
+    "value_coders",
 ]
 
 CHUNK_POINTS = 2_000_000
@@ -47,6 +46,27 @@ LARGEST_FIT = 16
 
 PerPoint: TypeAlias = Sequence[str] | Literal["all", "fit", "none"]
 """Which per-point arrays to keep: their names, all, as many as fit into LARGEST_FIT bytes a point, or none."""
+
+
+@dataclass(frozen=True)
+class ValueBounds:
+    """In how many bits values of points are kept at least, and how far off they may be."""
+
+    bits: int = 8
+    most: float | Mapping[str, float] | None = None
+
+    def __post_init__(self) -> None:
+        named = self.most.items() if isinstance(self.most, Mapping) else [("max_value_error", self.most)]
+        for name, most in named:
+            if most is not None and not (isinstance(most, (int, float)) and 0.0 < most < math.inf):
+                what = f"max_value_error of {name!r}" if isinstance(self.most, Mapping) else name
+                raise ValueError(f"{what} is {most!r}; a positive number in the array's unit is needed")
+
+    def of(self, name: str) -> float | None:
+        """Return the bound of an array, or of the one that a column is of."""
+        if not isinstance(self.most, Mapping):
+            return self.most
+        return self.most.get(name, self.most.get(name.partition("[")[0]))
 
 
 def compress(
@@ -59,6 +79,7 @@ def compress(
     order: Order = "input",
     per_point: PerPoint = (),
     per_point_bits: int = 8,
+    max_value_error: float | Mapping[str, float] | None = None,
     exact: bool | None = None,
     nan: Invalid = "split",
     progress: bool = False,
@@ -99,10 +120,15 @@ def compress(
         in space, which culling of very large sets gains from. Whatever is decoded comes in the order of the input; 8
         bytes a streamline remember it.
     per_point : sequence of str, or {'all', 'fit', 'none'}
-        Names of per-point arrays to keep, quantised over their range; 'fit' keeps them in their order, each that still
+        Names of per-point arrays to keep; 'fit' keeps them in their order, each that still
         fits into 16 bytes a point. None by default: what is not asked for costs nothing. ``dropped`` names the others.
     per_point_bits : {8, 16}
-        Bits for each of those values.
+        Bits for each of those values, or more where the bound needs them.
+    max_value_error : float or dict of str to float, optional
+        Largest difference of a kept value to its original, in the array's unit, for all arrays or by name. By default
+        1/255 of what lies between the array's 1st and 99th percentile, so that colours over that range move by a level
+        at most; of positive values over more than two decades, as much of their logarithms. Integers, categories,
+        arrays of up to 255 different numbers and all values of exact sets are exact.
     exact : bool, optional
         Keep every bit of the points. By default so where they take less than a megabyte and nothing is said of `step`,
         `max_error`, `max_angle`, `effort` or `order`; and where coding would take more bytes than the points do, up to
@@ -138,11 +164,12 @@ def compress(
         )
     streamlines = valid_points(streamlines, nan)
     per_point = choose_per_point(streamlines, per_point, per_point_bits)
+    how = ValueBounds(per_point_bits, max_value_error)
     check_order(order)
     plain = is_plain(step, max_error, max_angle, effort, order)
     check_exact(exact, step, order, max_error)
     if exact or (exact is None and plain and raw_bytes(streamlines) < limits.EXACT_BELOW):
-        return _kept_exactly(streamlines, survey([streamlines], per_point), per_point, per_point_bits)
+        return _kept_exactly(streamlines, survey([streamlines], per_point), per_point, how)
     promise = None
     if step != "auto":
         from .resample import resample  # compiled code: most sets need none
@@ -168,14 +195,14 @@ def compress(
             chunks += encoder.parts(chunk)
             bar.update(chunk.n_points)
     if exact is None and step == "auto" and grows(encoder, raw_bytes(streamlines)):
-        return _kept_exactly(streamlines, found, per_point, per_point_bits)
+        return _kept_exactly(streamlines, found, per_point, how)
     tell_far(found)
     return FibletSet(
         parameters=encoder.parameters if promise is None else replace(encoder.parameters, promise=promise),
         pages=encoder.page_table(),
         rank_to_id=encoder.rank_to_id() if ids is None else ids,
         bounds=bounds_of(found),
-        per_point=quantise_chosen(coded, found, per_point, per_point_bits),
+        per_point=code_chosen(coded, found, per_point, how),
         **_rest(streamlines, per_point),
         **join(chunks),
     )
@@ -204,11 +231,11 @@ def check_exact(exact: bool | None, step: float | str, order: str, max_error: fl
         raise ValueError(f"exact=True keeps the points as they are, and {what} would change them or their order")
 
 
-def _kept_exactly(streamlines: Streamlines, found: Survey, per_point: Sequence[str], bits: int) -> FibletSet:
+def _kept_exactly(streamlines: Streamlines, found: Survey, per_point: Sequence[str], how: ValueBounds) -> FibletSet:
     tell_far(found)
     return FibletSet(
         bounds=bounds_of(found),
-        per_point=quantise_chosen(streamlines, found, per_point, bits),
+        per_point=code_chosen(streamlines, found, per_point, how, exact=True),
         **_rest(streamlines, per_point),
         **plain_records(streamlines, Parameters.of_exact(found)),
     )
@@ -240,14 +267,7 @@ def split_chunks(streamlines: Streamlines, max_points: int = CHUNK_POINTS) -> It
 
 
 def choose_per_point(streamlines: Streamlines, per_point: PerPoint, bits: int) -> tuple[str, ...]:
-    """Return the names of the per-point arrays to keep.
-
-    Raises
-    ------
-    ValueError
-        For a name that the streamlines do not have, another word than 'all', 'fit' and 'none', or other bits than 8 or
-        16.
-    """
+    """Return the names of the per-point arrays to keep."""
     if bits not in (8, 16):
         raise ValueError(f"per_point_bits is {bits}; 8 or 16 is needed")
     if isinstance(per_point, str):
@@ -276,31 +296,17 @@ def not_kept(streamlines: Streamlines, per_point: Sequence[str]) -> dict[str, in
     return {f"per-point arrays not kept ({', '.join(names)})": len(names)} if names else {}
 
 
-def quantise_chosen(
-    streamlines: Streamlines, found: Survey, per_point: Iterable[str], bits: int
-) -> dict[str, QuantisedPoints]:
-    """Quantise the named per-point arrays; one with several columns becomes ``name[0]``, ``name[1]``, ..."""
-    kept = {}
-    for name in per_point:
-        column = np.asarray(streamlines.per_point[name])
-        lo, hi = found.values.get(name, (0.0, 0.0))
-        if column.ndim == 1 or column.shape[1] == 1:
-            kept[name] = _quantise(column.reshape(len(column)), lo, hi, bits)
-        else:
-            for k in range(column.shape[1]):
-                kept[f"{name}[{k}]"] = _quantise(column[:, k], lo, hi, bits)
-    return kept
+def code_chosen(
+    streamlines: Streamlines, found: Survey, per_point: Iterable[str], how: ValueBounds, *, exact: bool = False
+) -> dict[str, PointValues]:
+    """Code the named per-point arrays."""
+    columns = dict(value_columns(streamlines, per_point))
+    coders = value_coders(found, columns, how, exact=exact)
+    return {name: coders[name].code(column) for name, column in columns.items()}
 
 
-def _quantise(column: npt.NDArray[Any], lo: float, hi: float, bits: int) -> QuantisedPoints:
-    """:func:`.quantise_values`, part by part, of what may be mapped."""
-    if not is_long(len(column)):
-        return quantise_values(column, lo, hi, bits)
-    codes = np.empty(len(column), np.uint8 if bits == 8 else np.uint16)
-    error = 0.0
-    for a, b in spans(len(column)):
-        part = quantise_values(column[a:b], lo, hi, bits)
-        codes[a:b] = part.codes
-        error = max(error, part.max_error)
-        forget(column, 0, b)
-    return QuantisedPoints(codes, float(lo), float(hi), error)
+def value_coders(
+    found: Survey, names: Iterable[str], how: ValueBounds, *, exact: bool = False
+) -> dict[str, ValueCoder]:
+    """Return how the columns of per-point arrays are coded, by what a survey has found of them."""
+    return {name: found.values.get(name, ValueSurvey()).coder(how.bits, how.of(name), exact=exact) for name in names}

@@ -22,11 +22,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..progress_bar import progress_bar
-from . import copy_kernels
-from .archive import Member, array_member, write_archive
-from .fiblets_file import make_header
+from ..support.progress_bar import progress_bar
 from .fibletset import FibletSet
+from .files.archive import Member, array_member, write_archive
+from .files.fiblets_file import make_header
+from .kernels import copy_kernels
 from .layout import PAGE, WORDS, unpack
 
 __all__ = ["CHUNK", "Copies"]
@@ -250,21 +250,7 @@ class Copies:
         path: str | PathLike[str] | None = None,
         progress: bool = False,
     ) -> FibletSet:
-        """Make all copies, in memory or in a file.
-
-        Parameters
-        ----------
-        per_streamline, groups : dict, optional
-            As in :class:`~pvfiblets.Streamlines`, for the copies.
-        path : str or PathLike, optional
-            A ``.fiblets`` file to write, in bounded memory; it is mapped and returned.
-        progress : bool
-            Show a progress bar.
-
-        Returns
-        -------
-        FibletSet
-        """
+        """Make all copies, in memory or in a file."""
         pages, bounds = self._plan
         b = bounds.T.ravel().tolist()
         whole = replace(

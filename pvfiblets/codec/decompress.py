@@ -10,17 +10,17 @@ import numpy.typing as npt
 
 from ..errors import FormatError
 from ..formats.scratch import SPAN, is_long, scratch_array, spans
-from ..ragged import blocks
 from ..streamlines import Streamlines
-from .archive import forget
+from ..support.ragged import blocks
 from .direction_codebook import quaternions
+from .files.archive import forget
 from .layout import MAX_POINTS, PAGE_BITS, unpack
 from .small_sets import without_kernels
 from .streamline_ranges import StreamlineRanges, ranges_of
 
 if TYPE_CHECKING:
     from .fibletset import FibletSet
-    from .quantised import QuantisedPoints
+    from .point_values import PointValues
 
 __all__ = [
     "decode_fiblets", "decoding_arrays", "decompress", "fixed", "held_in_bounds", "iter_chunks", "select_streamlines",
@@ -28,13 +28,7 @@ __all__ = [
 
 
 def select_streamlines(n: int, ids: Any) -> npt.NDArray[np.int64]:
-    """Normalise a selection of ``n`` streamlines to indices.
-
-    Raises
-    ------
-    IndexError
-        If an index is out of range or a mask has the wrong length.
-    """
+    """Normalise a selection of ``n`` streamlines to indices."""
     if isinstance(ids, slice):
         return np.arange(n)[ids]
     chosen = np.atleast_1d(np.asarray(ids))
@@ -56,24 +50,7 @@ def select_streamlines(n: int, ids: Any) -> npt.NDArray[np.int64]:
 def decode_fiblets(
     fiblets: FibletSet, which: npt.NDArray[np.int64], destination: npt.NDArray[np.int64], points: npt.NDArray[Any]
 ) -> None:
-    """Decode chosen fiblets.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-        The set.
-    which : numpy.ndarray
-        ``(m,)`` int64 fiblets.
-    destination : numpy.ndarray
-        ``(m,)`` int64: row of ``points`` that each one's first point goes to.
-    points : numpy.ndarray
-        ``(n, 3)`` float32 or float64, filled in place, mm RAS+.
-
-    Raises
-    ------
-    FormatError
-        If records point beyond the arrays, as they may in a damaged file.
-    """
+    """Decode chosen fiblets."""
     with without_kernels("decoding", len(points)) as small:
         damaged = _decoder(small)(which, destination, *decoding_arrays(fiblets), points)
     if damaged:
@@ -83,7 +60,7 @@ def decode_fiblets(
 
 
 def decoding_arrays(fiblets: FibletSet) -> tuple[Any, ...]:
-    """What :func:`.decode_kernels.decode_one` takes of a set, from ``arrays`` to ``tables``."""
+    """What `decode_kernels.decode_one` takes of a set, from ``arrays`` to ``tables``."""
     p, low = fiblets.parameters, fiblets.anchors_low
     return (
         (fixed(fiblets.anchors), fixed(fiblets.decoding), fixed(fiblets.codes), fixed(fiblets.pages[:, 1])),
@@ -102,10 +79,10 @@ def fixed(array: npt.NDArray[Any]) -> npt.NDArray[Any]:
 
 def _decoder(small: bool) -> Any:
     if small:
-        from .decode_arrays import decode
+        from .arrays.decode_arrays import decode
 
         return decode
-    from . import decode_kernels  # numba loads only for what is worth it
+    from .kernels import decode_kernels  # numba loads only for what is worth it
 
     return decode_kernels.decode
 
@@ -186,22 +163,7 @@ def _take(
 def iter_chunks(
     fiblets: FibletSet, max_points: int = 2_000_000, dtype: npt.DTypeLike | None = None
 ) -> Iterator[Streamlines]:
-    """Decode consecutive streamlines in bounded memory.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-        The set, which may be larger than memory if it is mapped from a file.
-    max_points : int
-        Points per chunk; a streamline that alone has more makes a chunk of its own.
-    dtype : {float32, float64}, optional
-        As in :meth:`.FibletSet.decompress`.
-
-    Yields
-    ------
-    Streamlines
-        With the values of its streamlines; put together they are what :meth:`.FibletSet.decompress` returns.
-    """
+    """Decode consecutive streamlines in bounded memory."""
     kind = np.dtype(fiblets.point_dtype() if dtype is None else dtype)
     try:
         iterate = _iterate if fiblets.in_order else _iterate_out_of_order
@@ -216,17 +178,6 @@ def held_in_bounds(fiblets: FibletSet, chunks: Iterable[Streamlines]) -> Iterato
 
     That brings them nearer to their originals, if anything. Programs such as dipy refuse a file whose points leave its
     image, and originals do lie on its very edge.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-        Whose points they are.
-    chunks : iterable of Streamlines
-
-    Yields
-    ------
-    Streamlines
-        The same objects.
     """
     edges, promise = np.reshape(fiblets.bounds, (3, 2)), fiblets.promise
     for chunk in chunks:
@@ -310,11 +261,11 @@ def _points(
     return points
 
 
-def _values(values: QuantisedPoints, rows: slice, long: bool) -> npt.NDArray[np.float32]:
+def _values(values: PointValues, rows: slice, long: bool) -> npt.NDArray[Any]:
     if not long:
         return values.values(rows)
     n = rows.stop - rows.start
-    found = scratch_array((n,), np.float32)
+    found = scratch_array((n,), values.dtype)
     for a, b in spans(n):
         found[a:b] = values.values(slice(rows.start + a, rows.start + b))
         forget(found, 0, b)

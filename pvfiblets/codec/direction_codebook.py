@@ -46,26 +46,14 @@ _GOLDEN = complex(-0.7373688780783197, 0.6754902942615238)
 
 @cache
 def cap_ratios() -> npt.NDArray[np.float64]:
-    """``Ratio = 1 - cos alpha`` of each cap angle.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(16,)`` float64, increasing.
-    """
+    """``Ratio = 1 - cos alpha`` of each cap angle."""
     half = np.sin(np.radians(np.array(CAP_DEGREES)) / 2).astype(np.float32).astype(np.float64)
     return _frozen(2.0 * half * half)
 
 
 @cache
 def disc() -> npt.NDArray[np.float64]:
-    """Where the codes lie on the unit disc.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(256, 2)`` float64; row 0 is the centre.
-    """
+    """Where the codes lie on the unit disc."""
     points = np.empty((CODES, 2))
     turn = complex(1.0, 0.0)
     for code in range(CODES):
@@ -91,26 +79,13 @@ def _lateral() -> npt.NDArray[np.float64]:
 
 @cache
 def packed_scales() -> npt.NDArray[np.float32]:
-    """What one unit of a packed rotation's integers stands for.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(16,)`` float32 by cap index: the largest ``|y|`` or ``|z|`` of the cap, divided by 32767.
-    """
+    """What one unit of a packed rotation's integers stands for."""
     return _frozen((np.abs(_lateral()).max(axis=(1, 2)) / PACKED_LEVELS).astype(np.float32))
 
 
 @cache
 def packed() -> npt.NDArray[np.uint32]:
-    """The rotations as a GPU keeps them.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(16, 256)`` uint32 by cap index and code: y in the low 16 bits, z in the high 16, two's complement integers in
-        units of :func:`packed_scales`; ``x = 0`` and ``w = sqrt(1 - y^2 - z^2)``.
-    """
+    """The rotations as a GPU keeps them."""
     levels = np.rint(_lateral() / packed_scales().astype(np.float64)[:, None, None]).astype(np.int64)
     levels = np.clip(levels, -PACKED_LEVELS, PACKED_LEVELS)
     return _frozen(((levels[..., 0] & 0xFFFF) | (levels[..., 1] & 0xFFFF) << 16).astype(np.uint32))
@@ -119,12 +94,6 @@ def packed() -> npt.NDArray[np.uint32]:
 @cache
 def quaternions() -> npt.NDArray[np.float32]:
     """The rotation that each code stands for, unpacked from :func:`packed`.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(16, 256, 4)`` float32 unit quaternions ``(w, x, y, z)`` by cap index and code; each turns X = (1, 0, 0) by
-        the smallest rotation to the code's direction. Code 0 is ``(1, 0, 0, 0)``: straight on.
 
     Notes
     -----
@@ -140,13 +109,7 @@ def quaternions() -> npt.NDArray[np.float32]:
 
 @cache
 def directions() -> npt.NDArray[np.float64]:
-    """The direction that each code turns X to, as decoded from :func:`quaternions`.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(16, 256, 3)`` float64, unit length within float32 rounding.
-    """
+    """The direction that each code turns X to, as decoded from :func:`quaternions`."""
     w, x, y, z = np.moveaxis(quaternions().astype(np.float64), -1, 0)
     return _frozen(np.stack([1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)], axis=-1))
 

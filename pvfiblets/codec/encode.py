@@ -18,8 +18,8 @@ import numpy.typing as npt
 
 from ..formats.mapped import forget
 from ..formats.scratch import is_long
-from ..ragged import blocks
 from ..streamlines import Streamlines
+from ..support.ragged import blocks
 from .layout import MAX_POINTS
 from .parameters import DEFAULT_ANGLE
 from .record_writer import FibletChunk, RecordWriter
@@ -27,7 +27,7 @@ from .small_sets import without_kernels
 from .tangents import PIXELS
 
 if TYPE_CHECKING:
-    from .array_coder import ArrayCoder
+    from .arrays.array_coder import ArrayCoder
     from .compiled_coder import CompiledCoder
 
 __all__ = ["Encoder"]
@@ -74,7 +74,7 @@ class Encoder(RecordWriter):
             from .compiled_coder import CompiledCoder  # numba loads only for what is worth it
 
             return CompiledCoder(points, offsets, self.parameters, self._bound(), self.effort)
-        from .array_coder import ArrayCoder
+        from .arrays.array_coder import ArrayCoder
 
         return ArrayCoder(points, offsets, self.parameters, self._bound())
 
@@ -160,16 +160,7 @@ def _code(
     end: npt.NDArray[np.uint8],
     left_out: npt.NDArray[np.bool_] | None = None,
 ) -> tuple[dict[str, npt.NDArray[Any]], npt.NDArray[np.uint8]]:
-    """Code slots; those `left_out` get a row and as many bytes as direction codes take, whatever these are.
-
-    Returns
-    -------
-    dict of str to numpy.ndarray
-        A row a fiblet: ``shape, step, cap, kind, end_words, counts, point_start, code_start, radii``; and ``pieces``, a
-        row a slot: fiblets of each.
-    numpy.ndarray
-        Bytes of codes.
-    """
+    """Code slots; those `left_out` get a row and as many bytes as direction codes take, whatever these are."""
     m = len(slots)
     ok, shape, step = np.zeros(m, np.uint8), np.zeros(m, np.uint32), np.zeros(m, np.uint16)
     cap, radius, codes = np.zeros(m, np.uint8), np.zeros(m), np.zeros(n_points, np.uint8)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -15,6 +15,7 @@ from .decompress import iter_chunks
 from .fibletset import FibletSet
 from .layout import unpack
 from .parameters import LEAST
+from .point_values import value_errors
 from .streamline_ranges import coded_rows
 from .tangents import pixel
 
@@ -39,6 +40,9 @@ class CodingError:
     max_degrees, mean_degrees, p99_degrees : float
         Angle between true and drawn tangents (:mod:`.tangents`): largest, mean and 99th percentile over both ends of
         all segments longer than a 2000th of the bounds' diagonal. NaN where there is none.
+    values : dict of str to dict
+        ``max`` and ``mean`` difference of the kept per-point arrays to what they were, in their units, as measured
+        when they were coded.
     """
 
     max_mm: float
@@ -52,13 +56,15 @@ class CodingError:
     max_degrees: float
     mean_degrees: float
     p99_degrees: float
+    values: dict[str, dict[str, float]] = field(default_factory=dict)
 
-    def summary(self) -> dict[str, dict[str, float]]:
-        """``{'error_mm': {max, mean, p999}, 'error_steps': {...}, 'error_degrees': {max, mean, p99}}``."""
+    def summary(self) -> dict[str, dict[str, Any]]:
+        """``error_mm`` and ``error_steps`` (max, mean, p999), ``error_degrees`` (max, mean, p99), ``error_values``."""
         return {
             "error_mm": {"max": self.max_mm, "mean": self.mean_mm, "p999": self.p999_mm},
             "error_steps": {"max": self.max_steps, "mean": self.mean_steps, "p999": self.p999_steps},
             "error_degrees": {"max": self.max_degrees, "mean": self.mean_degrees, "p99": self.p99_degrees},
+            "error_values": self.values,
         }
 
 
@@ -71,6 +77,7 @@ class ErrorTally:
 
     def __init__(self, fiblets: FibletSet, *, by_streamline: bool = True) -> None:
         self.resampled = fiblets.parameters.resampled > 0.0
+        self._values = value_errors(fiblets.per_point)
         self._step = fiblets.step
         self._promise = fiblets.promise
         self._dtype = fiblets.point_dtype()
@@ -96,7 +103,7 @@ class ErrorTally:
                 self._add_parts(original.points, decoded.points, int(offsets[first]), int(offsets[last]), offsets)
             return
         if self.resampled:
-            from .line_distance import line_distances
+            from .kernels.line_distance import line_distances
 
             # Points come in the set's own type by default, and its rounding is part of their error.
             drawn = decoded.points.astype(self._dtype).astype(np.float64)
@@ -131,7 +138,7 @@ class ErrorTally:
 
     def _distances(self, true: npt.NDArray[Any], drawn: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         """Distances of points in the set's own type, whose rounding is part of their error."""
-        from .error_kernels import distances  # numba loads only for those who measure
+        from .kernels.error_kernels import distances  # numba loads only for those who measure
 
         distance = np.empty(len(true))
         distances(true, drawn, self._dtype == np.float32, distance)
@@ -139,7 +146,7 @@ class ErrorTally:
 
     def _add_distances(self, distance: npt.NDArray[np.float64], offsets: npt.NDArray[np.int64]) -> None:
         """Take in distances, of streamlines whose own begin at these offsets."""
-        from .error_kernels import add_up
+        from .kernels.error_kernels import add_up
 
         total, largest = add_up(distance, np.ones(len(distance), np.uint8), _BINS / self._edge, False, self._histogram)
         self._sum += total
@@ -165,8 +172,8 @@ class ErrorTally:
         firsts: npt.NDArray[np.bool_],
         which: slice = slice(None),
     ) -> None:
-        from .error_kernels import add_up
-        from .tangent_kernels import tangent_angles
+        from .kernels.error_kernels import add_up
+        from .kernels.tangent_kernels import tangent_angles
 
         degrees, uses = np.empty(len(true)), np.empty(len(true), np.uint8)
         tangent_angles(true, drawn, offsets, firsts, self._pixel, degrees, uses)
@@ -179,13 +186,17 @@ class ErrorTally:
         maxima = np.concatenate(self._maxima) if self._maxima else np.empty(0)
         means = np.concatenate(self._means) if self._means else np.empty(0)
         if self._n == 0:
-            return CodingError(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, maxima, means, *[float("nan")] * 3)
+            none = float("nan")
+            return CodingError(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, maxima, means, none, none, none, self._values)
         largest, mean = self._largest, self._sum / self._n
         place = int(np.searchsorted(np.cumsum(self._histogram), 0.999 * self._n))
         p999 = largest if place >= _BINS else min(largest, (place + 1) * self._edge / _BINS)
         scale = 1.0 / self._step if self._step > 0.0 else float("nan")
         steps = (largest * scale, mean * scale, p999 * scale)
-        return CodingError(largest, mean, p999, *steps, maxima, means, *self._angle_figures())
+        degrees, mean_degrees, p99_degrees = self._angle_figures()
+        return CodingError(
+            largest, mean, p999, *steps, maxima, means, degrees, mean_degrees, p99_degrees, self._values
+        )
 
     def _angle_figures(self) -> tuple[float, float, float]:
         """Largest, mean and 99th percentile, degrees."""

@@ -3,7 +3,7 @@
 Coding pays by many points to a fiblet. Of small sets nobody counts the bytes, and lines of one or two points take more
 bytes as fiblets than as numbers. Such sets hold their points as they came (:attr:`.FibletSet.exact`). What is drawn and
 culled by is made of the points when the set is made or opened, by NumPy alone: fiblets on a lattice so fine that a view
-cannot tell, 12 bytes a point (:data:`.layout.PLAIN_BYTES`). A file has the points only (:mod:`.exact_file`).
+cannot tell, 12 bytes a point (:data:`.layout.PLAIN_BYTES`). A file has the points only (`exact_file`).
 
 A kind of fiblet for single lines within a coded set would save nothing: the record of a fiblet alone takes 22 bytes, as
 much as the coordinates of two points, so that no line is smaller as 12 bytes a point with a record than on a lattice.
@@ -36,19 +36,7 @@ def raw_bytes(streamlines: Streamlines) -> int:
 
 
 def plain_records(streamlines: Streamlines, parameters: Parameters) -> dict[str, Any]:
-    """Make what is drawn of points that are kept exactly.
-
-    Parameters
-    ----------
-    streamlines : Streamlines
-    parameters : Parameters
-        Of :meth:`.Parameters.of_exact`.
-
-    Returns
-    -------
-    dict
-        Fields of a :class:`.FibletSet`: its records, ``parameters``, and ``exact``, the points themselves.
-    """
+    """Make what is drawn of points that are kept exactly."""
     writer = PlainWriter(parameters)
     offsets = np.asarray(streamlines.offsets)
     chunks = []

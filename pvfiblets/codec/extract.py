@@ -28,32 +28,7 @@ Bounds = tuple[float, float, float, float, float, float]
 
 
 def extract(fiblets: FibletSet, ids: Any) -> FibletSet:
-    """Take some streamlines as a set of their own.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-        In memory or mapped; of a mapped one only those pages are read that hold any of the streamlines.
-    ids : array_like
-        As for :meth:`.FibletSet.decompress`: numbers (negative ones count from the end), a boolean mask
-        ``(n_streamlines,)``, or a slice. They become streamlines 0, 1, ... in the order given; one that is named
-        again is taken once, where it stands first.
-
-    Returns
-    -------
-    FibletSet
-        In memory. Streamlines without points stay, without points; groups hold those of their members that were chosen,
-        and may be empty; parameters, affine, space and what the source dropped are those of the whole. None at all is a
-        set too, and can be saved. Its bounds are those of the decoded points that lie in the whole's; an original may
-        lie outside of them by the promise.
-
-    Raises
-    ------
-    IndexError
-        If a number is out of range or a mask has the wrong length.
-    FormatError
-        If the file is damaged.
-    """
+    """Take some streamlines as a set of their own."""
     chosen = once(select_streamlines(fiblets.n_streamlines, ids))
     part = restrict(fiblets, chosen)
     number = np.full(fiblets.n_streamlines, -1, np.int64)
@@ -88,18 +63,7 @@ def once(ids: Ints) -> Ints:
 
 
 def exact_bounds(fiblets: FibletSet) -> Bounds:
-    """Bounds of the decoded points, chunk by chunk.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-
-    Returns
-    -------
-    tuple of float
-        ``(xmin, xmax, ymin, ymax, zmin, zmax)``, mm, of the float64 points, brought into the bounds of the originals;
-        zeros where there is no point.
-    """
+    """Bounds of the decoded points, chunk by chunk."""
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     bare = replace(fiblets, per_point={}, per_streamline={}, groups={}, per_group={})
     for chunk in held_in_bounds(bare, iter_chunks(bare, dtype=np.float64)):
@@ -112,21 +76,10 @@ def exact_bounds(fiblets: FibletSet) -> Bounds:
 
 
 def save_as(fiblets: FibletSet, path: str | PathLike[str]) -> list[str]:
-    """Write a set to a file of any format that can be written, in bounded memory; see :meth:`.FibletSet.save`.
-
-    Returns
-    -------
-    list of str
-        As :func:`pvfiblets.write`: what the format cannot hold and was left out.
-
-    Raises
-    ------
-    UnknownFormatError
-        If the format can only be read.
-    """
+    """Write a set to a file of any format that can be written, in bounded memory; see :meth:`.FibletSet.save`."""
     from ..formats import registry, write
     from ..formats.spool import gathered
-    from ..whole_files import naming_target
+    from ..support.whole_files import naming_target
 
     registry.module_for(path, "write")  # before the decoding, not after
     chunks = fiblets.iter_chunks() if len(fiblets) else iter([fiblets.decompress()])

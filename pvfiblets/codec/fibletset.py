@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..addresses import is_url
 from ..streamlines import Streamlines
+from ..support.addresses import is_url
 from .layout import PAGE, PAGE_BITS, unpack
 from .parameters import LEAST, Parameters
-from .quantised import QuantisedPoints
+from .point_values import PointValues
 from .set_queries import SetQueries
 
 __all__ = ["FibletSet"]
@@ -57,7 +57,7 @@ class FibletSet(SetQueries):
     exact : numpy.ndarray or None
         ``(n_points, 3)`` float32 or float64, mm, in the order of ranks: the points themselves, of a set that keeps
         every bit of them (:mod:`pvfiblets.codec.exact`). Its records are what is drawn, and stand in no file.
-    per_point : dict of str to QuantisedPoints
+    per_point : dict of str to PointValues
         Values kept for every point, in the order of ranks (:meth:`in_coded_order`).
     per_streamline, groups, per_group : dict
         As in :class:`~pvfiblets.Streamlines`, whole.
@@ -81,7 +81,7 @@ class FibletSet(SetQueries):
     anchors_low: npt.NDArray[np.uint16] | None = None
     rank_to_id: npt.NDArray[np.int64] | None = None
     exact: npt.NDArray[Any] | None = None
-    per_point: dict[str, QuantisedPoints] = field(default_factory=dict)
+    per_point: dict[str, PointValues] = field(default_factory=dict)
     per_streamline: dict[str, npt.NDArray[Any]] = field(default_factory=dict)
     groups: dict[str, npt.NDArray[Any]] = field(default_factory=dict)
     per_group: dict[str, dict[str, Any]] = field(default_factory=dict)
@@ -102,7 +102,7 @@ class FibletSet(SetQueries):
         )
 
     def _repr_html_(self) -> str:
-        from ..summary import summary_html
+        from ..support.summary import summary_html
 
         error = "none: exact" if self.exact is not None else f"{self.promise:.3g} mm"
         more = {"Bytes": f"{self.nbytes:,}", "Greatest error": error}
@@ -198,7 +198,7 @@ class FibletSet(SetQueries):
         }
         if self.exact is not None:
             arrays = {"points": self.exact, "counts": np.empty(self.n_streamlines, np.uint32)}
-        arrays |= {f"per_point/{k}": v.codes for k, v in self.per_point.items()}
+        arrays |= {f"per_point/{k}": v for k, v in self.per_point.items()}
         arrays |= {f"per_streamline/{k}": v for k, v in self.per_streamline.items()}
         arrays |= {f"groups/{k}": v for k, v in self.groups.items()}
         return {name: int(a.nbytes) for name, a in arrays.items() if a is not None}
@@ -247,6 +247,11 @@ class FibletSet(SetQueries):
         from .streamline_ranges import coded_rows
 
         return np.asarray(values)[coded_rows(self)]
+
+    def value_reference(self, name: Any) -> float:
+        """Return what graphics cards subtract from the values of an array (`pvfiblets.support.value_reference`)."""
+        stored = self.per_point.get(name) if isinstance(name, str) else None
+        return 0.0 if stored is None else stored.reference
 
     def fiblet_points(self) -> npt.NDArray[np.int64]:
         """``(n_fiblets,)`` index of each fiblet's first point among all points."""
@@ -398,7 +403,7 @@ class FibletSet(SetQueries):
             If shards are asked for of another format.
         """
         from ..formats import registry
-        from .fiblets_file import save
+        from .files.fiblets_file import save
 
         path = Path(path).expanduser()
         if shards is not None:
@@ -428,14 +433,14 @@ class FibletSet(SetQueries):
         FormatError
             If the file at `path` is damaged, or of another version.
         """
-        from .fiblets_file import open_fiblets
+        from .files.fiblets_file import open_fiblets
 
         return open_fiblets(path if is_url(path) else Path(path).expanduser(), cls)
 
     def verify(self) -> None:
         """Check that all records agree with each other.
 
-        The bytes of a file are checked by :func:`pvfiblets.codec.fiblets_format.verify_file`.
+        The bytes of a file are checked by :func:`pvfiblets.codec.files.fiblets_format.verify_file`.
 
         Raises
         ------

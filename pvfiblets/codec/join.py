@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..streamlines import Streamlines
-from .quantised import QuantisedPoints, quantise_values
+from .point_values import PointValues, code_values
 from .restrict import Records, parts_of
 
 if TYPE_CHECKING:
@@ -24,26 +24,7 @@ __all__ = ["concatenate"]
 
 
 def concatenate(sets: Iterable[FibletSet]) -> FibletSet:
-    """Put sets behind each other.
-
-    Parameters
-    ----------
-    sets : iterable of FibletSet
-        At least one.
-
-    Returns
-    -------
-    FibletSet
-        In memory. Groups of the same name are joined, the affine and space are the first set's, ``dropped`` is summed.
-        Sets of equal parameters, such as parts of one, keep every bit of their points. Others are coded again, with the
-        coarsest of their promises, and the promise of the result is twice that: what was lost may add up. Exact sets
-        stay exact.
-
-    Raises
-    ------
-    ValueError
-        If there is none, or one set has data that another lacks: keeping it would need invented values.
-    """
+    """Put sets behind each other."""
     all_sets = list(sets)
     if not all_sets:
         raise ValueError("there is no set to concatenate; give one or more")
@@ -114,19 +95,33 @@ def _ids(fiblets: FibletSet) -> npt.NDArray[np.int64]:
     return np.arange(fiblets.n_ranks) if fiblets.rank_to_id is None else np.asarray(fiblets.rank_to_id, np.int64)
 
 
-def _values(sets: list[FibletSet]) -> dict[str, QuantisedPoints]:
+def _values(sets: list[FibletSet]) -> dict[str, PointValues]:
     """Values of all points; their codes are those of before where the ranges are the same."""
     _refuse_gaps([set(one.per_point) for one in sets])
     kept = {}
     for name, first in sets[0].per_point.items():
         parts = [one.per_point[name] for one in sets]
-        if all((one.lo, one.hi, one.codes.dtype) == (first.lo, first.hi, first.codes.dtype) for one in parts):
-            kept[name] = replace(first, codes=np.concatenate([one.codes for one in parts]))
+        if all(_same_table(first.table, one.table) for one in parts) and len({one.codes.dtype for one in parts}) == 1:
+            n = np.array([len(one.codes) for one in parts])
+            kept[name] = replace(
+                first,
+                codes=np.concatenate([one.codes for one in parts]),
+                lo=min(one.lo for one in parts),
+                hi=max(one.hi for one in parts),
+                max_error=max(one.max_error for one in parts),
+                mean_error=float(n @ [one.mean_error for one in parts] / max(n.sum(), 1)),
+            )
         else:
-            low, high = min(one.lo for one in parts), max(one.hi for one in parts)
-            bits = 8 * max(one.codes.dtype.itemsize for one in parts)
-            kept[name] = quantise_values(np.concatenate([one.values() for one in parts]), low, high, bits)
+            bits = 8 * max(one.codes.dtype.itemsize for one in parts if one.table is not None or one is first)
+            whole = np.concatenate([one.values() for one in parts])
+            kept[name] = code_values(whole, 8 if bits == 8 else 16, exact=all(not one.max_error for one in parts))
     return kept
+
+
+def _same_table(one: npt.NDArray[Any] | None, other: npt.NDArray[Any] | None) -> bool:
+    if one is None or other is None:
+        return one is other
+    return one is other or np.array_equal(one, other, equal_nan=one.dtype.kind == "f")
 
 
 def _refuse_gaps(names: list[set[str]]) -> None:
@@ -140,7 +135,7 @@ def _refuse_gaps(names: list[set[str]]) -> None:
 def _whole(sets: list[FibletSet], dtype: npt.DTypeLike | None = None) -> tuple[Streamlines, Any]:
     """All streamlines, decoded, and the bits of their values."""
     whole = Streamlines.concatenate(one.decompress(dtype=dtype) for one in sets)
-    return whole, 8 * max((v.codes.dtype.itemsize for one in sets for v in one.per_point.values()), default=1)
+    return whole, 16 if any(v.codes.dtype != np.uint8 for one in sets for v in one.per_point.values()) else 8
 
 
 def _exactly(sets: list[FibletSet]) -> FibletSet:

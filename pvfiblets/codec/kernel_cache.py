@@ -9,7 +9,7 @@ import time
 from functools import cache
 from pathlib import Path
 
-from ..cache_folder import cache_folder
+from ..support.cache_folder import cache_folder
 
 __all__ = ["HOME", "is_filled", "kept_folder", "mark_filled", "sources_digest"]
 
@@ -19,13 +19,21 @@ HOME = Path(__file__).resolve().parent
 
 @cache
 def sources_digest(folder: Path = HOME) -> str:
-    """Digest of every source file of the codec, and of those in a folder of it."""
+    """Digest of the codec's sources and its kernels', and for a folder of another room of all that room's."""
     digest = hashlib.sha256()
-    for home in sorted({HOME, folder}):
-        for path in sorted(home.glob("*.py")):
-            digest.update(path.name.encode())
-            digest.update(path.read_bytes())
+    for path in _sources(folder):
+        digest.update(path.name.encode())
+        digest.update(path.read_bytes())
     return digest.hexdigest()
+
+
+def _sources(folder: Path) -> list[Path]:
+    own = [*sorted(HOME.glob("*.py")), *sorted((HOME / "kernels").glob("*.py"))]
+    if folder == HOME or HOME in folder.parents:
+        return own
+    package = HOME.parent
+    room = package / folder.relative_to(package).parts[0] if package in folder.parents else folder
+    return own + sorted(room.rglob("*.py"))
 
 
 @cache

@@ -131,44 +131,13 @@ WORDS = {name: 1 + max(f.word for f in FIELDS.values() if f.array == name) for n
 
 
 def unpack(name: str, words: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
-    """Take one field out of its array.
-
-    Parameters
-    ----------
-    name : str
-        A key of :data:`FIELDS`.
-    words : numpy.ndarray
-        ``(n, 2)`` or ``(n, 3)`` uint32: the array that the field stands in.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(n,)`` uint32.
-    """
+    """Take one field out of its array."""
     field = FIELDS[name]
     return (words[..., field.word] >> np.uint32(field.shift)) & np.uint32(field.mask)
 
 
 def pack(array: str, **values: Any) -> np.ndarray[Any, Any]:
-    """Build ``anchors`` or ``decoding`` words from field values.
-
-    Parameters
-    ----------
-    array : {'anchors', 'decoding'}
-        Which array to build.
-    **values : array_like
-        One ``(n,)`` integer array, or a number, for each field of that array.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(n, 2)`` or ``(n, 3)`` uint32.
-
-    Raises
-    ------
-    ValueError
-        If a field is missing, unknown, or a value does not fit its width.
-    """
+    """Build ``anchors`` or ``decoding`` words from field values."""
     fields = [f for f in FIELDS.values() if f.array == array]
     if set(values) != {f.name for f in fields}:
         raise ValueError(f"pack({array!r}) needs exactly the fields {[f.name for f in fields]}, got {sorted(values)}")
@@ -184,23 +153,7 @@ def pack(array: str, **values: Any) -> np.ndarray[Any, Any]:
 
 
 def pack_ends(vectors: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
-    """Build the words of ``ends``.
-
-    Parameters
-    ----------
-    vectors : numpy.ndarray
-        ``(n, 3)`` whole numbers in units of ``end_scale``, each of -511 to 511.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(n,)`` uint32: x in bits 0-9, y in bits 10-19, z in bits 20-29, two's complement; bits 30 and 31 are 0.
-
-    Raises
-    ------
-    ValueError
-        If a component does not fit.
-    """
+    """Build the words of ``ends``."""
     levels = np.asarray(vectors, np.int64).reshape(-1, 3)
     if levels.size and np.abs(levels).max() > END_LEVELS:
         raise ValueError(f"an end vector holds -{END_LEVELS}..{END_LEVELS}, got {levels.min()}..{levels.max()}")
@@ -209,32 +162,13 @@ def pack_ends(vectors: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
 
 
 def unpack_ends(words: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
-    """Undo :func:`pack_ends`.
-
-    Parameters
-    ----------
-    words : numpy.ndarray
-        ``(n,)`` uint32.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(n, 3)`` int64 in units of ``end_scale``.
-    """
+    """Undo :func:`pack_ends`."""
     levels = (np.asarray(words, np.int64)[:, None] >> (END_BITS * np.arange(3))) & ((1 << END_BITS) - 1)
     return np.where(levels > END_LEVELS, levels - (1 << END_BITS), levels)
 
 
 def glsl_source() -> str:
-    """Write the record as GLSL: constants, and one function a field.
-
-    Returns
-    -------
-    str
-        ``const`` declarations and ``uint fiblet_<field>(uvecN words)`` functions, to be included by shaders
-        (``uvec2`` for the fields of ``anchors``, ``uvec3`` for those of ``decoding``), and ``ivec3
-        fiblet_end_vector(uint word)`` for the words of ``ends``.
-    """
+    """Write the record as GLSL: constants, and one function a field."""
     lines = [
         f"const uint FIBLET_MAX_POINTS = {MAX_POINTS}u;",
         f"const uint FIBLET_PAGE_BITS = {PAGE_BITS}u;",

@@ -110,18 +110,7 @@ def _list_candidates(table: Any, ratio: float, start: Any, codes: Any) -> int:
 
 @cache
 def candidates(cap: int) -> Candidates:
-    """Candidates of one cap angle.
-
-    Parameters
-    ----------
-    cap : int
-        Index into :data:`~pvfiblets.codec.direction_codebook.CAP_DEGREES`.
-
-    Returns
-    -------
-    Candidates
-        Row ``j * CELLS + i`` lists the codes of the cell whose lower corner is ``(i, j) * 2 EXTENT / CELLS - EXTENT``.
-    """
+    """Candidates of one cap angle."""
     if not 0 <= cap < len(CAP_DEGREES):
         raise IndexError(f"cap index {cap} is not in 0..{len(CAP_DEGREES) - 1}")
     start = np.empty(CELLS * CELLS + 1, np.int32)

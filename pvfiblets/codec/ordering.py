@@ -32,18 +32,7 @@ def check_order(order: str) -> None:
 
 
 def hilbert_order(streamlines: Streamlines) -> Ints:
-    """Streamlines that have points, in the order of the curve.
-
-    Parameters
-    ----------
-    streamlines : Streamlines
-        Finite points, mm.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(n,)`` int64 indices of streamlines; those without points are left out.
-    """
+    """Streamlines that have points, in the order of the curve."""
     offsets = np.asarray(streamlines.offsets)
     filled = np.flatnonzero(np.diff(offsets) > 0)
     order: Ints = filled[ends_order(streamlines.points[offsets[filled]], streamlines.points[offsets[filled + 1] - 1])]
@@ -65,18 +54,6 @@ def ends_order(first: npt.ArrayLike, last: npt.ArrayLike) -> Ints:
 
 def hilbert_keys(cells: Ints, bits: int) -> npt.NDArray[np.uint64]:
     """Distances along a Hilbert curve.
-
-    Parameters
-    ----------
-    cells : numpy.ndarray
-        ``(n, d)`` whole numbers of 0 to ``2 ** bits - 1``.
-    bits : int
-        ``d * bits`` is at most 64.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(n,)`` uint64; consecutive keys belong to cells that differ by one in one coordinate.
 
     Notes
     -----

@@ -12,9 +12,10 @@ import numpy.typing as npt
 from ..formats.mapped import forget
 from ..formats.scratch import is_long, spans
 from ..invalid_points import MOST_LOOKED_AT, refuse_beyond, warn_of_far
-from ..ragged import blocks
 from ..streamlines import Streamlines
+from ..support.ragged import blocks
 from .layout import END_LEVELS, MAX_POINTS
+from .point_values import ValueSurvey, value_columns
 from .small_sets import without_kernels
 
 __all__ = [
@@ -84,29 +85,15 @@ class Survey:
     stride: int = 1
     n_points: int = 0
     n_streamlines: int = 0
-    values: dict[str, tuple[float, float]] = field(default_factory=dict)
+    values: dict[str, ValueSurvey] = field(default_factory=dict)
 
     def add(self, streamlines: Streamlines, per_point: Iterable[str] = ()) -> None:
-        """Take in one chunk; ``per_point`` names the arrays whose ranges are wanted.
-
-        Raises
-        ------
-        ValueError
-            If a coordinate is not finite (such points have no place in bounds, and leaving them out would be silent) or
-            too large for the GPU's float32.
-        """
+        """Take in one chunk; ``per_point`` names the arrays whose values are wanted."""
         points = streamlines.points
         self.n_points += len(points)
         self.n_streamlines += len(streamlines)
-        for name in per_point:
-            whole = np.asarray(streamlines.per_point[name])
-            for a, b in spans(len(whole)):
-                column = whole[a:b]
-                finite = column[np.isfinite(column)]
-                if finite.size:
-                    lo, hi = self.values.get(name, (np.inf, -np.inf))
-                    self.values[name] = (min(lo, float(finite.min())), max(hi, float(finite.max())))
-                forget(whole, 0, b)
+        for name, column in value_columns(streamlines, per_point):
+            self.values.setdefault(name, ValueSurvey()).add(column)
         if not len(points):
             return
         with without_kernels("coding", len(points)) as small:
@@ -140,7 +127,7 @@ def _scan(
 ) -> tuple[Vector, Vector, float, float]:
     """Bounds, longest segment and widest end (mm) of streamlines that have points; bounds are infinite if one is."""
     if not small:
-        from .direction_kernels import scan  # numba loads only for what is worth it
+        from .kernels.direction_kernels import scan  # numba loads only for what is worth it
 
         parts = []
         for own, goes_on in _scanned(offsets):

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .fibletset import FibletSet
-from .quantised import quantise_values
+from .point_values import code_values
 
 __all__ = [
     "colour_columns", "colours_of_points", "packed_colours", "unit_colours", "with_coded_values", "with_point_colours",
@@ -23,32 +23,14 @@ __all__ = [
 
 
 def with_point_values(fiblets: FibletSet, name: str, values: npt.ArrayLike, bits: int = 8) -> FibletSet:
-    """Return a set that shares the arrays of another one and has one with a number per point more.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-        Stays as it is.
-    name : str
-        Of the array; one of that name is replaced.
-    values : array_like
-        ``(n_points,)`` numbers in the order of the streamlines.
-    bits : {8, 16}
-        Bits for each of them.
-
-    Returns
-    -------
-    FibletSet
-    """
+    """Return a set that shares the arrays of another one and has one with a number per point more."""
     return with_coded_values(fiblets, name, fiblets.in_coded_order(values), bits)
 
 
 def with_coded_values(fiblets: FibletSet, name: str, values: npt.ArrayLike, bits: int = 8) -> FibletSet:
     """Do the same with numbers in the order in which points are coded."""
-    numbers = np.asarray(values, np.float64)
-    finite = numbers[np.isfinite(numbers)]
-    low, high = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 1.0)
-    return replace(fiblets, per_point={**fiblets.per_point, name: quantise_values(numbers, low, high, bits)})
+    coded = code_values(values, bits, exact=fiblets.exact is not None)
+    return replace(fiblets, per_point={**fiblets.per_point, name: coded})
 
 
 def colour_columns(per_point: Mapping[str, Any], name: str) -> tuple[str, ...]:
@@ -59,20 +41,7 @@ def colour_columns(per_point: Mapping[str, Any], name: str) -> tuple[str, ...]:
 
 
 def unit_colours(name: str, colours: npt.ArrayLike) -> npt.NDArray[np.float32]:
-    """Return colours as floats from 0 to 1; what is no number is 0.
-
-    Parameters
-    ----------
-    name : str
-        For messages.
-    colours : array_like
-        ``(n, 3 or 4)``: integers from 0 to 255, or floats from 0 to 1.
-
-    Raises
-    ------
-    ValueError
-        If they have another shape or lie outside.
-    """
+    """Return colours as floats from 0 to 1; what is no number is 0."""
     given = np.asarray(colours)
     if given.ndim != 2 or given.shape[1] not in (3, 4):
         raise ValueError(f"colours {name!r} have the shape {given.shape}; expected 3 or 4 columns")
@@ -89,38 +58,16 @@ def with_point_colours(fiblets: FibletSet, name: str, colours: npt.ArrayLike) ->
     """Return a set that shares the arrays of another one and has a colour per point more.
 
     Each channel takes a byte a point, and is off by half of 1/255 at most.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-        Stays as it is.
-    name : str
-        Of the colours; numbers and colours of that name are replaced.
-    colours : array_like
-        ``(n_points, 3 or 4)`` in the order of the streamlines, as :func:`unit_colours` takes them.
-
-    Returns
-    -------
-    FibletSet
     """
     rows = fiblets.in_coded_order(unit_colours(name, colours))
     before = {name, *colour_columns(fiblets.per_point, name)}
     kept = {key: values for key, values in fiblets.per_point.items() if key not in before}
-    columns = {f"{name}[{k}]": quantise_values(rows[:, k], 0.0, 1.0) for k in range(rows.shape[1])}
+    columns = {f"{name}[{k}]": code_values(rows[:, k]) for k in range(rows.shape[1])}
     return replace(fiblets, per_point={**kept, **columns})
 
 
 def colours_of_points(fiblets: FibletSet, name: str, index: Any = slice(None)) -> npt.NDArray[np.uint8]:
-    """Return colours of points, RGBA, ``(n, 4)`` uint8.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-    name : str
-        Columns beyond 1 are taken as bytes.
-    index : slice or array_like, optional
-        Which points, in the order in which they are coded; all by default.
-    """
+    """Return colours of points, RGBA, ``(n, 4)`` uint8."""
     columns = [fiblets.per_point[column] for column in colour_columns(fiblets.per_point, name)]
     return packed_colours([column.values(index) for column in columns], max(column.hi for column in columns))
 

@@ -28,7 +28,7 @@ def _lines() -> Streamlines:
 
 def _coders() -> tuple[Any, Any, Any]:
     """A coder of either kind for the same lines, and the chunk's encoder."""
-    from .array_coder import ArrayCoder
+    from .arrays.array_coder import ArrayCoder
     from .compiled_coder import CompiledCoder
     from .parameters import Parameters, survey
 
@@ -39,7 +39,7 @@ def _coders() -> tuple[Any, Any, Any]:
 
 
 def _directions() -> None:
-    from .direction_kernels import scan
+    from .kernels.direction_kernels import scan
 
     _, coder, lines = _coders()
     scan(np.asarray(lines.points, np.float64), np.asarray(lines.offsets), np.empty((1, 8)))

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from typing import TypeAlias
 
-from ..progress_bar import progress_bar
 from ..streamlines import Streamlines
+from ..support.progress_bar import progress_bar
 
 __all__ = ["Progress", "shown"]
 
@@ -15,17 +15,7 @@ Progress: TypeAlias = bool | Callable[[str, float], None]
 
 
 def shown(chunks: Iterable[Streamlines], total: int | None, what: str, progress: Progress) -> Iterator[Streamlines]:
-    """Yield chunks, and show how far they have come.
-
-    Parameters
-    ----------
-    chunks : iterable of Streamlines
-    total : int or None
-        Points of all of them; None if nobody knows, and then the share stays 0.
-    what : str
-        What is being done.
-    progress : bool or callable
-    """
+    """Yield chunks, and show how far they have come."""
     if callable(progress):
         done = 0
         for chunk in chunks:

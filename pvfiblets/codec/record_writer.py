@@ -72,24 +72,7 @@ class RecordWriter:
         continues: bool = False,
         following: npt.NDArray[np.floating] | None = None,
     ) -> FibletChunk:
-        """Write the records of a chunk, with indices relative to their pages.
-
-        Parameters
-        ----------
-        points, offsets : numpy.ndarray
-            ``(n_points, 3)`` mm, and where each streamline begins among them; some may have no points.
-        rows : dict of str to numpy.ndarray
-            Of each fiblet ``shape``, ``step``, ``cap``, ``kind``, and ``end_words``, of those that end a streamline.
-        counts, point_start, code_start, radii, ranks : numpy.ndarray
-            Of each fiblet: its points, its first point and code byte in the chunk, the radius of its capsule (mm), and
-            its streamline, counted from the chunk's first that has points.
-        codes : numpy.ndarray
-            Of all of them.
-        continues : bool
-            Whether the first streamline goes on from the chunk before.
-        following : numpy.ndarray, optional
-            ``(3,)`` mm: the point after the last, where the last streamline goes on in the next chunk.
-        """
+        """Write the records of a chunk, with indices relative to their pages."""
         p = self.parameters
         empty = np.flatnonzero(np.diff(offsets) == 0)
         if empty.size:

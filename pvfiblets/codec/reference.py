@@ -52,18 +52,7 @@ TREE_DEPTH = 6  # halving 60 points six times leaves single points
 
 
 def pack_direction(d: Array) -> int:
-    """Quantise a unit vector to two snorm16 on the octahedron about +x.
-
-    Parameters
-    ----------
-    d : numpy.ndarray
-        ``(3,)`` direction, any length but 0.
-
-    Returns
-    -------
-    int
-        ``u`` in the low 16 bits, ``v`` in the high 16.
-    """
+    """Quantise a unit vector to two snorm16 on the octahedron about +x."""
     x, y, z = d
     norm = abs(x) + abs(y) + abs(z)
     u, v = y / norm, z / norm
@@ -74,15 +63,7 @@ def pack_direction(d: Array) -> int:
 
 
 def unpack_direction(word: int) -> tuple[Array, bool]:
-    """Undo :func:`pack_direction`.
-
-    Returns
-    -------
-    direction : numpy.ndarray
-        ``(3,)`` unit vector.
-    forward : bool
-        Whether it is on the side of +x, decided on the integers: rounding cannot change the branch of the frame.
-    """
+    """Undo :func:`pack_direction`."""
     iu, iv = _int16(word & 0xFFFF), _int16(word >> 16)
     u, v = iu / DIRECTION_SCALE, iv / DIRECTION_SCALE
     forward = abs(iu) + abs(iv) <= int(DIRECTION_SCALE)
@@ -93,16 +74,7 @@ def unpack_direction(word: int) -> tuple[Array, bool]:
 
 
 def first_frame(word: int) -> tuple[Array, Array]:
-    """First direction and frame of a fiblet (the paper's ``M_0``, section 3.3.2).
-
-    Returns
-    -------
-    direction : numpy.ndarray
-        ``(3,)`` unit vector ``d_1``.
-    frame : numpy.ndarray
-        ``(4,)`` unit quaternion that turns X to ``d_1``: the smallest rotation, after half a turn about Z where ``d_1``
-        points backwards (the smallest rotation from X to -X would be undefined).
-    """
+    """First direction and frame of a fiblet (the paper's ``M_0``, section 3.3.2)."""
     d, forward = unpack_direction(word)
     dx, dy, dz = d
     q = np.array([1.0 + dx, 0.0, -dz, dy]) if forward else np.array([1.0 - dx, 0.0, dz, -dy])
@@ -172,24 +144,7 @@ def choose_cap(points: Array) -> int:
 
 
 def encode_direction(points: Array, anchor: Array, step: int, length: float, cap: int) -> DirectionPiece:
-    """Code points with one direction byte each, greedily and in closed loop.
-
-    Parameters
-    ----------
-    points : numpy.ndarray
-        ``(n, 3)`` true points, ``2 <= n <= 60``.
-    anchor : numpy.ndarray
-        ``(3,)`` decoded first point.
-    step, length : int, float
-        The step's index and its length in mm.
-    cap : int
-        Cap angle's index.
-
-    Returns
-    -------
-    DirectionPiece
-        Codes ``(n - 2,)``, decoded points ``(n, 3)``, and the largest distance between both.
-    """
+    """Code points with one direction byte each, greedily and in closed loop."""
     table, reach = quaternions()[cap].astype(np.float64), directions()[cap]
     aim = points[1] - anchor
     shape = pack_direction(aim if np.any(aim != 0.0) else np.array([1.0, 0.0, 0.0]))
@@ -304,22 +259,6 @@ def plan_lattice(points: Array, anchors: Array, h: float, turns: Turns | None = 
     """Split points into lattice fiblets so that their bytes are fewest among all splits by repeated halving.
 
     Fewer fiblets that turn a segment too far come before fewer bytes.
-
-    Parameters
-    ----------
-    points : numpy.ndarray
-        ``(n, 3)``, ``n <= 60``.
-    anchors : numpy.ndarray
-        ``(n, 3)``: each point as an anchor would hold it; ``(n + 1, 3)`` where another point of the streamline follows.
-    h : float
-        Edge of the lattice, mm.
-    turns : Turns, optional
-        How far each segment that leads on from the points may be turned; as far as they like by default.
-
-    Returns
-    -------
-    list of int
-        Number of points of each fiblet.
     """
 
     def best(a: int, b: int, depth: int) -> tuple[int, list[int]]:
@@ -348,11 +287,6 @@ def encode_lattice(
     """Code points as lattice steps; the edge is halved until no segment turns too far, and on while that costs no byte.
 
     ``following`` is the anchor of the point that follows in the streamline.
-
-    Raises
-    ------
-    ValueError
-        If no kind holds the steps (:func:`plan_lattice` splits such points).
     """
     if len(points) == 1:
         return LatticePiece(Kind.DIRECTION, 0, 0, 0, np.empty(0, np.uint8), anchor[None])

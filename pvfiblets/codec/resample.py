@@ -15,31 +15,7 @@ __all__ = ["resample"]
 
 
 def resample(streamlines: Streamlines, step: float, within: float = math.inf) -> Streamlines:
-    """Resample streamlines at equal arc length, and where that would cut corners keep points of these.
-
-    Parameters
-    ----------
-    streamlines : Streamlines
-        Any steps.
-    step : float
-        Distance between new points along each streamline, mm. Both ends stay where they are, so the last step is
-        shorter unless the length is a whole number of steps.
-    within : float, optional
-        Largest distance of the given line from the new one, and of the new one from the given, mm: between two new
-        points those given points stay that it takes (the farthest from the chord, then the same of its two parts: Ramer
-        1972, Douglas and Peucker 1973). Any by default.
-
-    Returns
-    -------
-    Streamlines
-        Same number of streamlines; per-point values interpolated linearly (a NaN at either end gives NaN), the rest
-        kept.
-
-    Raises
-    ------
-    ValueError
-        If ``step`` is not a positive number.
-    """
+    """Resample streamlines at equal arc length, and where that would cut corners keep points of these."""
     if not (isinstance(step, (int, float)) and math.isfinite(step) and step > 0.0):
         raise ValueError(f"step is {step!r}; 'auto' or a positive length in mm is needed")
     points, offsets = np.ascontiguousarray(streamlines.points), np.asarray(streamlines.offsets, np.int64)

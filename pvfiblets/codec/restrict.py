@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from .archive import forget
 from .check import code_bytes
 from .decompress import select_streamlines
+from .files.archive import forget
 from .layout import FIELDS, PAGE, PAGE_BITS, WORDS, unpack
 
 if TYPE_CHECKING:
@@ -35,23 +35,6 @@ BEHIND = 64  # pages read of a mapped file before their memory is given back
 
 def even_share(fiblets: FibletSet, share: float) -> Ints:
     """Choose an even share of the streamlines, always the same one.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-    share : float
-        0 to 1, of the streamlines that have points.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(n,)`` int64: numbers of streamlines, in the order in which they are coded. A smaller share is a part of a
-        larger one.
-
-    Raises
-    ------
-    ValueError
-        If the share is not between 0 and 1.
 
     Notes
     -----
@@ -71,28 +54,7 @@ def even_share(fiblets: FibletSet, share: float) -> Ints:
 
 
 def restrict(fiblets: FibletSet, ids: Any) -> FibletSet:
-    """Take only these streamlines.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-        In memory or mapped; of a mapped one only those pages are read that hold any of the streamlines.
-    ids : array_like
-        As for :meth:`.FibletSet.decompress`; each streamline is taken once.
-
-    Returns
-    -------
-    FibletSet
-        In memory, with the same number of streamlines, of which all others have no points; they are coded in the same
-        order. Parameters, bounds, per-streamline values, groups and header are those of the whole.
-
-    Raises
-    ------
-    IndexError
-        If a number is out of range or a mask has the wrong length.
-    FormatError
-        If the file is damaged.
-    """
+    """Take only these streamlines."""
     return Restriction(fiblets, ids).make()
 
 

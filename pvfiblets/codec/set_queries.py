@@ -12,16 +12,16 @@ if TYPE_CHECKING:
     from ..query.bundles.bundle_list import Bundles
     from ..query.bundles.clusters import Clusters
     from ..query.bundles.similar import Similar
-    from ..query.connectome import Connectome
-    from ..query.density_map import DensityMap
-    from ..query.table import Table
+    from ..query.connectome.matrix import Connectome
+    from ..query.density.density_map import DensityMap
+    from ..query.measures.table import Table
     from .fibletset import FibletSet
 
 __all__ = ["Condition", "SetQueries"]
 
 
 class Condition(Protocol):
-    """A condition on streamlines, such as :mod:`pvfiblets.query.predicates` makes; this room knows none itself."""
+    """A condition on streamlines, such as `pvfiblets.query.selection.predicates` makes; this room knows none itself."""
 
     def choose(self, fiblets: FibletSet, *, flags: Any = None) -> npt.NDArray[np.bool_]:
         """Return the streamlines for which it holds, ``(n_streamlines,)`` bool."""
@@ -31,7 +31,7 @@ class SetQueries:
     """The part of a `FibletSet` that chooses, counts and shows its streamlines."""
 
     def select(self: Any, predicate: Condition, *, flags: Any = None) -> npt.NDArray[np.bool_]:
-        """Choose streamlines by where they lie; see :func:`pvfiblets.query.predicates.select`.
+        """Choose streamlines by where they lie; see :func:`pvfiblets.query.selection.predicates.select`.
 
         Parameters
         ----------

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from .files.stored_parts import in_parts, stored_parts
 from .layout import PAGE, PAGE_BITS, unpack
-from .stored_parts import in_parts, stored_parts
 
 if TYPE_CHECKING:
     from .fibletset import FibletSet

@@ -31,16 +31,5 @@ LEAST_SUM = 1e-3
 
 
 def pixel(bounds: Sequence[float]) -> float:
-    """Side of a pixel where a picture shows the whole set.
-
-    Parameters
-    ----------
-    bounds : sequence of float
-        ``(xmin, xmax, ymin, ymax, zmin, zmax)``, mm.
-
-    Returns
-    -------
-    float
-        mm: the bounds' diagonal over :data:`PIXELS`.
-    """
+    """Side of a pixel where a picture shows the whole set."""
     return math.hypot(bounds[1] - bounds[0], bounds[3] - bounds[2], bounds[5] - bounds[4]) / PIXELS

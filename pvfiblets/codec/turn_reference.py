@@ -1,4 +1,4 @@
-"""How far the encoder may turn segments, in plain NumPy and float64; :mod:`.turn_kernels` compute the same.
+"""How far the encoder may turn segments, in plain NumPy and float64; `turn_kernels` compute the same.
 
 Symbols: ``u`` and ``v`` are the unit vectors of the segments before and after a point, ``u'`` and ``v'`` what they
 decode to, and ``A`` is the largest angle that is promised between the tangents, which are the directions of
@@ -62,15 +62,7 @@ class Turns:
         return Turns(self.units[part], self.allowed[part], self.bends[part], self.first[part])
 
     def excess(self, decoded: Array, following: Array | None = None) -> float:
-        """Greatest ratio of a turn to what is allowed in a fiblet.
-
-        Parameters
-        ----------
-        decoded : numpy.ndarray
-            ``(n, 3)`` decoded points that the segments lead on from.
-        following : numpy.ndarray, optional
-            ``(3,)`` decoded point that the last segment leads to; without it there is none.
-        """
+        """Greatest ratio of a turn to what is allowed in a fiblet."""
         points = decoded if following is None else np.concatenate([decoded, following[None]])
         worst = 0.0
         for i in range(len(points) - 1):
@@ -84,22 +76,7 @@ class Turns:
 
 
 def may_turn(line: Array, shortest: float, angle: float) -> Turns:
-    """How far the segments of a streamline may be turned.
-
-    Parameters
-    ----------
-    line : numpy.ndarray
-        ``(n, 3)`` its points, mm.
-    shortest : float
-        Only segments longer than this count, mm.
-    angle : float
-        Largest angle between true and drawn tangents, degrees.
-
-    Returns
-    -------
-    Turns
-        Of its ``n - 1`` segments.
-    """
+    """How far the segments of a streamline may be turned."""
     found = [_unit(line[i + 1] - line[i]) for i in range(len(line) - 1)]
     units = [unit if length > shortest * ONE_POINT else np.zeros(3) for unit, length in found]
     longer = [length > shortest for _, length in found]
@@ -125,18 +102,6 @@ def cut(turns: Turns, angle: float) -> list[int]:
 
     A slot ends before its 60th point where the line bends there by more than the first point of a fiblet may: at the
     next point before at which it does not, or at that of the least bend among 20.
-
-    Parameters
-    ----------
-    turns : Turns
-        Of the streamline.
-    angle : float
-        Largest angle, degrees.
-
-    Returns
-    -------
-    list of int
-        Points.
     """
     n = len(turns.units) + 1
     enough = FIRST_SHARE * 2.0 * np.sin(0.5 * np.radians(angle))

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from .frame import Array, local_frame
-from .uniform_struct import Field, UniformStruct
+from .gl.uniform_struct import Field, UniformStruct
 from .view import MAX_CLIP_PLANES, View
 
 __all__ = ["CLIP_PLANES_BLOCK", "clip_planes_block"]
@@ -30,23 +30,7 @@ _HUGE = 1e30  # in float32, and so is its double
 def clip_planes_block(
     view: View, half_width: float, origin: Array, scale: Array, top: int, reach: float
 ) -> bytes | None:
-    """Pack the ``ClipPlanes`` uniform block (std140) with the planes that matter.
-
-    Parameters
-    ----------
-    view : View
-    half_width : float
-        Pixels that a line's brush reaches; 0 for thin lines.
-    origin, scale, top
-        Of the anchors, as in :func:`pvfiblets.engine.frame.reference_anchor`.
-    reach : float
-        Largest radius of a fiblet's sphere (mm).
-
-    Returns
-    -------
-    bytes or None
-        None if all that can be drawn lies clear of all planes: then there is nothing to do.
-    """
+    """Pack the ``ClipPlanes`` uniform block (std140) with the planes that matter."""
     planes = np.asarray(view.clip_planes, np.float64)
     if not len(planes):
         return None

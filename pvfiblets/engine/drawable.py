@@ -20,9 +20,9 @@ import moderngl
 
 from .errors import EngineError
 from .gbuffer import GBuffer
-from .moderngl_extras import GLExtras
-from .passes import Passes
-from .shaders import Programs
+from .gl.moderngl_extras import GLExtras
+from .gl.passes import Passes
+from .gl.shaders import Programs
 from .view import Style, View
 
 __all__ = ["Drawable", "Target", "sizes_of"]

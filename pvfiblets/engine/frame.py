@@ -14,7 +14,7 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from .uniform_struct import Field, UniformStruct
+from .gl.uniform_struct import Field, UniformStruct
 from .view import Style, View
 
 __all__ = ["FRAME_BLOCK", "frame_block", "local_frame", "reference_anchor", "segment_pixels"]
@@ -48,20 +48,6 @@ def reference_anchor(matrix: Array, origin: Array, scale: Array, top: int) -> np
     """Choose the anchor position that rounding is made relative to.
 
     The nearest point in front of the camera, along its middle ray, inside the box of all anchors.
-
-    Parameters
-    ----------
-    matrix : numpy.ndarray
-        ``(4, 4)`` data mm to clip.
-    origin, scale : numpy.ndarray
-        ``(3,)`` position of anchor 0 and mm per anchor integer.
-    top : int
-        The largest anchor integer.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(3,)`` int64 in ``0..top``.
     """
     middle = np.full(3, top // 2, np.int64)
     try:
@@ -88,26 +74,7 @@ LocalFrame: TypeAlias = tuple[npt.NDArray[np.int64], Array, Array]
 
 
 def local_frame(view: View, origin: Array, scale: Array, top: int) -> LocalFrame:
-    """Choose local coordinates and compose what leads into and out of them.
-
-    Parameters
-    ----------
-    view : View
-    origin, scale, top
-        As in :func:`reference_anchor`.
-
-    Returns
-    -------
-    reference : numpy.ndarray
-        (3,) int64, see :func:`reference_anchor`.
-    to_data : numpy.ndarray
-        (4, 4) local mm to data mm.
-    to_clip : numpy.ndarray
-        (4, 4) local mm to clip coordinates, whose scale is chosen to keep float32 clear of its ends; that moves
-        nothing on the screen.
-
-    All are for reading only: whatever asks for those of a picture gets the same.
-    """
+    """Choose local coordinates and compose what leads into and out of them."""
     return _local_frame(view.model_view_projection.tobytes(), origin.tobytes(), scale.tobytes(), top)
 
 
@@ -138,24 +105,7 @@ def segment_pixels(view: View, origin: Array, scale: Array, top: int, length: fl
 
 
 def frame_block(view: View, style: Style, origin: Array, scale: Array, top: int) -> tuple[bytes, float]:
-    """Pack the ``Frame`` uniform block (std140).
-
-    Parameters
-    ----------
-    view : View
-    style : Style
-        Its widths and its detail.
-    origin, scale, top
-        As in :func:`reference_anchor`.
-
-    Returns
-    -------
-    block : bytes
-        As many as :data:`FRAME_BLOCK` has.
-    margin : float
-        How far inside the view volume all anchors lie (mm); negative if some do not. A set whose spheres all have a
-        smaller radius needs no clipping.
-    """
+    """Pack the ``Frame`` uniform block (std140)."""
     reference, _, local = local_frame(view, origin, scale, top)
     width, height = view.size
     half = style.half_width

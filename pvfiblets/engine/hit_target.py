@@ -10,14 +10,14 @@ from typing import Any, ClassVar
 
 import moderngl
 
-from .bindings import HIT_KEYS
 from .culling.two_phase_items import LEAST_SEGMENTS, Listing, supports_listing
-from .depth_texture import depth_texture
 from .drawable import AnyStyle, Drawable
 from .errors import EngineError
 from .gbuffer import EMPTY, GBuffer
-from .moderngl_extras import GLExtras
-from .shaders import Programs
+from .gl.bindings import HIT_KEYS
+from .gl.depth_texture import depth_texture
+from .gl.moderngl_extras import GLExtras
+from .gl.shaders import Programs
 
 __all__ = ["HitDrawable", "HitTarget"]
 
@@ -168,23 +168,7 @@ class HitDrawable(Drawable[AnyStyle]):
         listing: Listing | None,
         cleared: Sequence[int] = (),
     ) -> None:
-        """Draw what the depth buffer keeps.
-
-        Parameters
-        ----------
-        target : HitTarget
-        render : callable
-            Draws all items, or those that are listed, by the calls in a buffer.
-        name : str
-            Of the pass.
-        n_items : int
-        shown : moderngl.Texture
-            Says of the last picture which item each pixel shows, as `Listing.before` wants it.
-        listing : Listing, optional
-            Lists what may show.
-        cleared : sequence of int, optional
-            What hits are where nothing is, if anybody looks there.
-        """
+        """Draw what the depth buffer keeps."""
         self._listed = listing is not None
         if listing is not None:
             with self._passes.timed("last picture"):
@@ -208,21 +192,7 @@ class HitDrawable(Drawable[AnyStyle]):
         textures: Sequence[tuple[str, moderngl.Texture, int]],
         **uniforms: Any,
     ) -> None:
-        """Find all else of the pixels that show something.
-
-        Parameters
-        ----------
-        target : HitTarget
-        fragment : str
-            The stage that finds it.
-        features : sequence of str
-        whole : callable
-            Returns what draws a program over the whole picture.
-        textures : sequence
-            Name of the sampler, texture and unit of what the first pass left.
-        **uniforms
-            Set where the program looks at them.
-        """
+        """Find all else of the pixels that show something."""
         with self._passes.timed("attributes"):
             program = self._programs.render({"vertex": "screen/near.vert", "fragment": fragment}, features)
             self._prepare(program)

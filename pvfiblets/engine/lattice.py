@@ -27,20 +27,7 @@ _BLOCK = 1 << 20  # points at a time: float64 of all would take more memory than
 def lattice(
     points: npt.NDArray[np.floating[Any]], what: str
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-    """Return the place 0 and mm per integer of a lattice that holds all points.
-
-    Parameters
-    ----------
-    points : numpy.ndarray
-        (n, 3) mm, finite.
-    what : str
-        What an error calls them.
-
-    Raises
-    ------
-    EngineError
-        If they extend farther than float32 holds.
-    """
+    """Return the place 0 and mm per integer of a lattice that holds all points."""
     if not len(points):
         return np.zeros(3), np.ones(3)
     low, high = points.min(axis=0).astype(np.float64), points.max(axis=0).astype(np.float64)

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, TypeVar
 
 if TYPE_CHECKING:
-    from .passes import Passes
+    from .gl.passes import Passes
 
 __all__ = ["PIECE", "Pieces", "finish"]
 

@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 if TYPE_CHECKING:
-    from ..query.shapes import Region
-    from .fiblets.sampled_volume import VolumeSource
+    from ..query.regions.shapes import Region
+    from .fiblets.data.sampled_volume import VolumeSource
 
 __all__ = ["MAX_CLIP_PLANES", "Style", "View", "check_at_least"]
 
@@ -131,12 +131,6 @@ class Style:
 
 
 def check_at_least(name: str, value: float, least: float, unit: str) -> None:
-    """Raise where a number of a style is not finite or too small.
-
-    Raises
-    ------
-    ValueError
-        Naming the value and what is expected.
-    """
+    """Raise where a number of a style is not finite or too small."""
     if not (math.isfinite(value) and value >= least):
         raise ValueError(f"{name} is {value}; give a finite number of {unit}, {least:g} or more")

@@ -29,12 +29,12 @@ from os import PathLike, fspath
 from pathlib import Path
 from typing import Any
 
-from pvfiblets.addresses import is_url, path_of
 from pvfiblets.errors import FormatError
 from pvfiblets.formats import registry
 from pvfiblets.formats.registry import UnknownFormatError, module_for, suffix_of
 from pvfiblets.streamlines import Streamlines
-from pvfiblets.vtk_space import Space, checked
+from pvfiblets.support.addresses import is_url, path_of
+from pvfiblets.support.vtk_space import Space, checked
 
 __all__ = [
     "FormatError",
@@ -118,22 +118,7 @@ def iter_chunks(
 
 
 def info(path: str | PathLike[str], *, space: str | None = None) -> dict[str, Any]:
-    """Facts of a file, from its header where the format has them there.
-
-    Parameters
-    ----------
-    path : str or PathLike
-    space : {"RAS", "LPS"}, optional
-        As for :func:`read`.
-
-    Returns
-    -------
-    dict
-        ``format`` (suffix), ``streamlines`` and ``points`` (int, or None where only reading the
-        data would tell), and per format ``dtype``, ``per_point``, ``per_streamline``,
-        ``groups`` (lists of names), ``affine``, ``dimensions``, ``voxel_sizes``,
-        ``voxel_order``, ``header``, ``space`` and ``space_from`` (how it is known).
-    """
+    """Facts of a file, from its header where the format has them there."""
     place = _place(path)
     return {"format": suffix_of(place), **module_for(place, "info").info(place, **_space(place, space))}
 

@@ -61,29 +61,7 @@ def name_of(path: str | PathLike[str]) -> str:
 def values_for(
     path: str | PathLike[str], counts: NDArray[np.int64], space: Mapping[str, Any] | None = None
 ) -> tuple[str, Array]:
-    """Read the values of a file for streamlines of so many points.
-
-    Parameters
-    ----------
-    path : str or PathLike
-    counts : (n_streamlines,) int64
-        Points of each streamline.
-    space : mapping of str, optional
-        The streamlines' own: a ``.tsf`` file of another timestamp than their ``.tck`` file is a warning.
-
-    Returns
-    -------
-    where : str
-        ``"per_point"`` or ``"per_streamline"``.
-    values : (n_points[, k]) or (n_streamlines[, k]) array
-
-    Raises
-    ------
-    FormatError
-        If the file is damaged, or its counts fit neither points nor streamlines.
-    UnknownFormatError
-        If it has another suffix.
-    """
+    """Read the values of a file for streamlines of so many points."""
     text = fspath(Path(path).expanduser())
     suffix = Path(text).suffix.lower()
     if suffix == ".tsf":
@@ -92,20 +70,7 @@ def values_for(
 
 
 def read_values(path: str | PathLike[str]) -> Array:
-    """Read one number per row of a ``.tsf``, ``.npy``, ``.txt`` or ``.csv`` file, whatever they belong to.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(n,)``; a single row of numbers counts as a column.
-
-    Raises
-    ------
-    FormatError
-        If the file is damaged, or has several numbers per row.
-    UnknownFormatError
-        If it has another suffix.
-    """
+    """Read one number per row of a ``.tsf``, ``.npy``, ``.txt`` or ``.csv`` file, whatever they belong to."""
     text = fspath(path)
     suffix = Path(text).suffix.lower()
     values = read_scalars(text)[0] if suffix == ".tsf" else _read_rows(text, suffix)
@@ -150,14 +115,7 @@ def _place(counts: NDArray[np.int64], path: str, values: Array) -> tuple[str, Ar
 
 
 def read_scalars(path: str | PathLike[str]) -> tuple[Array, NDArray[np.int64]]:
-    """Read a tsf file.
-
-    Returns
-    -------
-    (n_points,) array of float32 or float64
-    (n_streamlines,) array of int64
-        How many values each streamline has.
-    """
+    """Read a tsf file."""
     data = Data(path, MAGIC_SCALARS, 1)
     values, counts = [], []
     for window, dropped in data.windows(max(1, data.n_rows)):
@@ -169,14 +127,7 @@ def read_scalars(path: str | PathLike[str]) -> tuple[Array, NDArray[np.int64]]:
 
 
 def write_scalars(path: str | PathLike[str], streamlines: Streamlines, name: str) -> None:
-    """Write the per-point array `name`, of one column, as a tsf file.
-
-    Raises
-    ------
-    ValueError
-        If the array has several columns, or values that are not finite, which the format
-        cannot hold.
-    """
+    """Write the per-point array `name`, of one column, as a tsf file."""
     values = streamlines.per_point[name]
     if values.ndim != 1 or not np.isfinite(values).all():
         raise ValueError(

@@ -2,7 +2,7 @@
 
 VTK's readers trust sizes of a damaged file and may end the process; the formats of tractograms from elsewhere have
 parsers of our own. Names of blocks become groups. Coordinates are RAS+ mm, or LPS+ if the field data say so
-(:mod:`pvfiblets.vtk_space`).
+(:mod:`pvfiblets.support.vtk_space`).
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from pvfiblets.formats.read_whole import facts, only_finite, pieces
 from pvfiblets.formats.vtk_sizes import check_memory
 from pvfiblets.formats.vtk_xml import XmlFile
 from pvfiblets.streamlines import Streamlines
-from pvfiblets.vtk_space import FIELD, OURS, Space, space_of_dataset, space_taken
+from pvfiblets.support.vtk_space import FIELD, OURS, Space, space_of_dataset, space_taken
 
 __all__ = ["info", "iter_chunks", "read"]
 

@@ -23,13 +23,7 @@ _MAGIC = b"\x89HDF\r\n\x1a\n"
 
 
 def read(path: str | PathLike[str], *, progress: bool = False) -> Streamlines:  # noqa: ARG001
-    """Read a dpy file (see :func:`pvfiblets.formats.read`).
-
-    Raises
-    ------
-    ImportError
-        If h5py is not installed.
-    """
+    """Read a dpy file (see :func:`pvfiblets.formats.read`)."""
     file = MappedFile(path)
     magic = file.bytes(0, min(len(_MAGIC), file.size), "the magic")
     if magic != _MAGIC:

@@ -11,7 +11,7 @@ from pathlib import Path
 from zipfile import BadZipFile, ZipFile
 
 from pvfiblets.errors import FibletsError, FormatError
-from pvfiblets.memory import check_room, shown
+from pvfiblets.support.memory import check_room, shown
 
 DENSEST = 1032
 """How many bytes of deflate's come out of one, at most."""
@@ -57,13 +57,7 @@ def inflated_size(path: str | PathLike[str]) -> int:
 
 
 def check_ratio(path: str | PathLike[str]) -> None:
-    """Refuse a tractogram that inflates as none does, for those who would have to wait for it.
-
-    Raises
-    ------
-    FibletsError
-        If it inflates by :data:`ODD` times or more.
-    """
+    """Refuse a tractogram that inflates as none does, for those who would have to wait for it."""
     size, stated = Path(path).stat().st_size, inflated_size(path)
     if stated > max(ODD * size, SMALL):
         raise FibletsError(
@@ -73,19 +67,7 @@ def check_ratio(path: str | PathLike[str]) -> None:
 
 
 def check_swelling(path: str | PathLike[str], *, whole: bool = False) -> None:
-    """Refuse a file that says that it inflates to more than there is memory.
-
-    Parameters
-    ----------
-    path : str or PathLike
-    whole : bool
-        Whether it is inflated whole. Otherwise only what inflates absurdly is refused: all else is read in pieces.
-
-    Raises
-    ------
-    TooLargeError
-        If it does.
-    """
+    """Refuse a file that says that it inflates to more than there is memory."""
     stated = stated_size(path)
     if whole or stated > ODD * Path(path).stat().st_size:
         check_room(stated)

@@ -41,13 +41,7 @@ class MappedFile:
             self.buffer: mmap.mmap | bytes = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) if self.size else b""
 
     def array(self, dtype: DTypeLike, position: int, count: int, what: str) -> NDArray[Any]:
-        """`count` values of `dtype` from byte `position`, without copying.
-
-        Raises
-        ------
-        FormatError
-            If the file ends before, or `count` is negative.
-        """
+        """`count` values of `dtype` from byte `position`, without copying."""
         kind = np.dtype(dtype)
         self.check(position, count * kind.itemsize, what)
         if count == 0:

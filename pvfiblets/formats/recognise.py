@@ -21,13 +21,7 @@ _ZIP, _GZIP = b"PK", b"\x1f\x8b"
 
 
 def suffix_by_content(path: str | PathLike[str]) -> str | None:
-    """Return the suffix of the tractogram format that a file's first bytes are of, or None.
-
-    Parameters
-    ----------
-    path : str or PathLike
-        A file under any name. Of a zip, the names of the members tell.
-    """
+    """Return the suffix of the tractogram format that a file's first bytes are of, or None."""
     with Path(path).open("rb") as file:
         begin = file.read(32)
     if begin.startswith(_ZIP):

@@ -40,16 +40,7 @@ class UnknownFormatError(FibletsError, ValueError):
 
 
 def register(suffix: str, module_name: str) -> None:
-    """Let `module_name` serve files whose name ends in `suffix`.
-
-    Parameters
-    ----------
-    suffix : str
-        With its leading dot, such as ``".fiblets"``; case does not matter. A later
-        registration replaces an earlier one.
-    module_name : str
-        Full name of a module with the functions that this module's docstring lists.
-    """
+    """Let `module_name` serve files whose name ends in `suffix`."""
     if not suffix.startswith("."):
         raise ValueError(f"the suffix {suffix!r} must begin with a dot, as in '.trk'")
     _MODULES[suffix.lower()] = module_name
@@ -61,13 +52,7 @@ def suffixes() -> tuple[str, ...]:
 
 
 def suffix_of(path: str | PathLike[str]) -> str:
-    """Return the registered suffix that the name of `path` ends with, the longest that fits.
-
-    Raises
-    ------
-    UnknownFormatError
-        If no registered suffix fits.
-    """
+    """Return the registered suffix that the name of `path` ends with, the longest that fits."""
     name = fspath(path).lower()
     for suffix in (*suffixes(), *_READ_BY_LIBRARIES):
         if name.endswith(suffix):
@@ -89,20 +74,7 @@ def is_trx_folder(path: str | PathLike[str]) -> bool:
 
 
 def module_for(path: str | PathLike[str], *needs: str) -> ModuleType:
-    """Import the module that serves `path`.
-
-    Parameters
-    ----------
-    path : str or PathLike
-        Only its name counts.
-    *needs : str
-        Functions that the module must have.
-
-    Raises
-    ------
-    UnknownFormatError
-        If no module serves the suffix, or it lacks a function of `needs`.
-    """
+    """Import the module that serves `path`."""
     suffix = suffix_of(path)
     module = import_module(_MODULES.get(suffix) or _READ_BY_LIBRARIES[suffix])
     for need in needs:

@@ -10,8 +10,8 @@ from typing import Any
 from pvfiblets import formats
 from pvfiblets.formats.spool import gathered
 from pvfiblets.streamlines import Streamlines
-from pvfiblets.unfinished import remove_unfinished
-from pvfiblets.whole_files import naming_target
+from pvfiblets.support.unfinished import remove_unfinished
+from pvfiblets.support.whole_files import naming_target
 
 __all__ = ["rewrite"]
 

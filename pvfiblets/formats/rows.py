@@ -66,24 +66,7 @@ def check_rounding(path: str | PathLike[str], points: Array) -> None:
 
 
 def finite_rows(rows: Array, dtype: DTypeLike) -> tuple[Array, Ints, Array]:
-    """Copy the rows that are finite throughout, in one pass over the memory.
-
-    Parameters
-    ----------
-    rows : (n, k) array of float
-        Any byte order and alignment; each row contiguous.
-    dtype : dtype
-        Of the copy: float of the same size as the rows', native.
-
-    Returns
-    -------
-    (m, k) array
-        The finite rows.
-    (n - m,) int64
-        Numbers of the others, ascending.
-    (n - m, k) array
-        The others.
-    """
+    """Copy the rows that are finite throughout, in one pass over the memory."""
     n, k = rows.shape
     kind = np.dtype(dtype)
     out = np.empty((n, k), kind)
@@ -126,23 +109,7 @@ def finite_rows(rows: Array, dtype: DTypeLike) -> tuple[Array, Ints, Array]:
 
 
 def without_rows(rows: Array, leave_out: Ints, dtype: DTypeLike, *, long: bool = False) -> Array:
-    """Copy of `rows` as native `dtype`, less the rows `leave_out`.
-
-    Parameters
-    ----------
-    rows : (n, k) array
-        Any byte order and alignment; each row contiguous.
-    leave_out : (m,) int64
-        Ascending row numbers, each once.
-    dtype : dtype
-        Of the result.
-    long : bool
-        Make it on disk (:mod:`.scratch`).
-
-    Returns
-    -------
-    (n - m, k) array
-    """
+    """Copy of `rows` as native `dtype`, less the rows `leave_out`."""
     n, k = rows.shape
     kind = np.dtype(dtype)
     out = (scratch_array if long else np.empty)((n - len(leave_out), k), kind)

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from pvfiblets.whole_files import naming_target
+from pvfiblets.support.whole_files import naming_target
 
 __all__ = ["LONG", "is_long", "scratch_array", "scratch_bytes", "spans"]
 
@@ -33,18 +33,7 @@ def is_long(n: int) -> bool:
 
 
 def scratch_array(shape: tuple[int, ...], dtype: DTypeLike) -> NDArray[Any]:
-    """Make an array of zeros on disk.
-
-    Parameters
-    ----------
-    shape : tuple of int
-    dtype : dtype
-
-    Raises
-    ------
-    OSError
-        If there is no room for it; it says how much it takes.
-    """
+    """Make an array of zeros on disk."""
     kind = np.dtype(dtype)
     size = int(np.prod(shape)) * kind.itemsize
     if size == 0:
@@ -55,13 +44,7 @@ def scratch_array(shape: tuple[int, ...], dtype: DTypeLike) -> NDArray[Any]:
 
 
 def scratch_bytes(pieces: Iterable[bytes]) -> NDArray[np.uint8]:
-    """Put bytes on disk, of which nobody knows how many there will be, and map them.
-
-    Raises
-    ------
-    OSError
-        If there is no room for them.
-    """
+    """Put bytes on disk, of which nobody knows how many there will be, and map them."""
     size = 0
     with tempfile.TemporaryFile() as file:
         for piece in pieces:

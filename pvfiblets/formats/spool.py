@@ -12,32 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pvfiblets.streamlines import Streamlines
-from pvfiblets.unfinished import scratch_beside
+from pvfiblets.support.unfinished import scratch_beside
 
 Array = NDArray[Any]
 
 
 @contextmanager
 def gathered(chunks: Iterable[Streamlines], folder: str | PathLike[str]) -> Iterator[Streamlines]:
-    """Join consecutive pieces into one object whose points and columns are maps of temporary files.
-
-    Parameters
-    ----------
-    chunks : iterable of Streamlines
-        As :func:`pvfiblets.formats.iter_chunks` gives them; at least one, all with the same columns.
-    folder : str or PathLike
-        Where the temporary files go: beside the file to be written, whose disk has the room for it.
-
-    Yields
-    ------
-    Streamlines
-        Equal to the concatenation; valid inside the ``with`` block only. In memory are the offsets and the groups.
-
-    Raises
-    ------
-    ValueError
-        If a later piece has other columns than the first.
-    """
+    """Join consecutive pieces into one object whose points and columns are maps of temporary files."""
     with scratch_beside(Path(folder) / "lines") as scratch, ExitStack() as files_open:
         points = _Column(Path(scratch) / "points", files_open)
         columns: dict[str, dict[str, _Column]] = {}

@@ -42,9 +42,9 @@ from pvfiblets.formats.mapped import MappedFile, forget
 from pvfiblets.formats.rows import check_rounding, finite_rows, without_rows
 from pvfiblets.formats.scratch import is_long, spans
 from pvfiblets.invalid_points import CUT, NONFINITE
-from pvfiblets.ragged import cut_offsets
 from pvfiblets.streamlines import Streamlines, offsets_from_counts
-from pvfiblets.whole_files import replacing
+from pvfiblets.support.ragged import cut_offsets
+from pvfiblets.support.whole_files import replacing
 
 Array = NDArray[Any]
 Ints = NDArray[np.int64]
@@ -94,14 +94,7 @@ class Header(NamedTuple):
 
 
 def read_header(file: MappedFile, magic: str) -> Header:
-    """Parse the header of a tck or tsf file.
-
-    Raises
-    ------
-    FormatError
-        For a wrong first line, a missing END, an unknown datatype, a data offset outside the
-        file, or a count that is not a number.
-    """
+    """Parse the header of a tck or tsf file."""
     head = file.bytes(0, min(file.size, 64), "the header")
     if not head.startswith(magic.encode()):
         raise FormatError(file.path, 0, repr(head[:20]), f"the line {magic!r}")
@@ -179,17 +172,7 @@ class Window(NamedTuple):
 
 
 def parse_rows(rows: Array, dtype: np.dtype[Any], last: bool) -> Window:
-    """Split rows at their delimiters.
-
-    Parameters
-    ----------
-    rows : (n, k) array
-        As in the file.
-    dtype : dtype
-        Of the result.
-    last : bool
-        Whether the data end with these rows: then what follows the last delimiter is taken too.
-    """
+    """Split rows at their delimiters."""
     finite, special, values = finite_rows(rows, dtype)
     is_nan: Array = np.asarray(np.isnan(values[:, 0]))
     is_end: Array = np.asarray(np.isinf(values[:, 0]))
@@ -341,7 +324,7 @@ def _kept_header(data: Data) -> dict[str, str]:
     if not lines or not data.n_rows:
         return {}
     n = data.n_rows - int(np.isinf(data.rows[-1, 0]))
-    return {HEADER: "\n".join(lines), ROWS: _fingerprint(n, data.rows[_fingerprint_rows(n)])}
+    return {HEADER: "\n".join(lines), ROWS: _fingerprint(n, _picked(data.rows, _fingerprint_rows(n)))}
 
 
 def timestamp_in(space: Mapping[str, Any]) -> str | None:
@@ -369,8 +352,17 @@ def _rows_of(streamlines: Streamlines) -> str:
     line = np.searchsorted(closing, at)
     is_point = closing[line] != at
     rows = np.full((len(at), 3), np.nan)
-    rows[is_point] = streamlines.points[(at - line)[is_point]]
+    rows[is_point] = _picked(streamlines.points, (at - line)[is_point])
     return _fingerprint(n, rows)
+
+
+def _picked(array: Array, rows: Ints) -> Array:
+    """Return some rows of what may be mapped; with each, a system may bring a megabyte into memory."""
+    picked = np.empty((len(rows), array.shape[1]), array.dtype)
+    for to, row in enumerate(rows.tolist()):
+        picked[to] = array[row]
+        forget(array, 0, row + 1)
+    return picked
 
 
 def _fingerprint_rows(n: int) -> Ints:
@@ -396,13 +388,7 @@ def info(path: str | PathLike[str]) -> dict[str, Any]:
 
 
 def write(path: str | PathLike[str], streamlines: Streamlines, *, double: bool = False) -> None:
-    """Write a tck file of float32, or of float64 if `double` (see :func:`pvfiblets.formats.write`).
-
-    Raises
-    ------
-    ValueError
-        If a coordinate is beyond float32.
-    """
+    """Write a tck file of float32, or of float64 if `double` (see :func:`pvfiblets.formats.write`)."""
     if not double:
         check_rounding(path, streamlines.points)
     fields, changes = _header_for(streamlines)

@@ -45,8 +45,8 @@ from pvfiblets.formats.rows import finite, transformed, without_rows
 from pvfiblets.formats.scratch import is_long, scratch_array, scratch_bytes, spans
 from pvfiblets.formats.trk_header import HEADER_SIZE, Header, parse_header
 from pvfiblets.formats.trk_writer import write
-from pvfiblets.memory import check_room
 from pvfiblets.streamlines import Streamlines
+from pvfiblets.support.memory import check_room
 
 __all__ = ["HOLDS", "info", "iter_chunks", "read", "write"]
 

@@ -39,13 +39,7 @@ class Header(NamedTuple):
 
 
 def parse_header(path: str, raw: bytes) -> Header:
-    """Parse and check the first 1000 bytes of a trk file.
-
-    Raises
-    ------
-    FormatError
-        For anything that would make the data unreadable or put points in a wrong place.
-    """
+    """Parse and check the first 1000 bytes of a trk file."""
     from nibabel.streamlines.trk import header_2_dtype
 
     if raw[:5] != b"TRACK":
@@ -169,17 +163,6 @@ def trackvis_to_ras(
     axes permuted and flipped from the header's voxel order to the affine's; then the affine. This
     is what nibabel computes, without its rounding of the result to float32, which for images far
     from the origin is coarser than the coordinates.
-
-    Parameters
-    ----------
-    sizes : (3,) array
-        Voxel sizes, mm.
-    dimensions : (3,) array of int
-        Voxels along each axis of the header's order; matters where an axis is flipped.
-    voxel_order : str
-        Such as ``"LPS"``.
-    affine : (4, 4) array
-        Voxel to RAS+ mm.
     """
     from nibabel import orientations as orient
 
@@ -191,16 +174,7 @@ def trackvis_to_ras(
 
 
 def along_affine(dimensions: Any, voxel_order: str, affine: NDArray[np.float64]) -> tuple[int, ...]:
-    """Voxels along each axis of the affine's matrix, of those along the axes of a header's voxel order.
-
-    Parameters
-    ----------
-    dimensions : (3,) int
-    voxel_order : str
-        Such as ``"LPS"``.
-    affine : (4, 4) array
-        Voxel to RAS+ mm.
-    """
+    """Voxels along each axis of the affine's matrix, of those along the axes of a header's voxel order."""
     from nibabel import orientations as orient
 
     axes = orient.aff2axcodes(affine)

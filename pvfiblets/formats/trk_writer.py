@@ -15,7 +15,7 @@ from pvfiblets.formats.rounding import largest_change, warn_of_changes
 from pvfiblets.formats.rows import transformed
 from pvfiblets.formats.trk_header import trackvis_to_ras, unrecorded_affine
 from pvfiblets.streamlines import Streamlines
-from pvfiblets.whole_files import replacing
+from pvfiblets.support.whole_files import replacing
 
 Array = NDArray[Any]
 
@@ -28,12 +28,6 @@ def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
     The format holds float32 only. ``affine`` and ``space`` give the geometry; what `space` lacks
     follows from the affine. An affine that was not recorded where the streamlines come from is not
     recorded here either.
-
-    Raises
-    ------
-    ValueError
-        For more than ten arrays of a kind, names longer than the format's 20 bytes, values that
-        are not numbers, or integers that float32 cannot hold.
     """
     header, from_ras = _header(streamlines)
     points = _columns(streamlines.per_point, "per_point")

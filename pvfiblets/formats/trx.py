@@ -42,7 +42,7 @@ from pvfiblets.formats.scratch import is_long
 from pvfiblets.formats.trk_header import along_affine
 from pvfiblets.formats.ziparrays import ArrayEntry, FolderArrays, ZipArrays
 from pvfiblets.streamlines import Streamlines, blocks
-from pvfiblets.whole_files import replacing
+from pvfiblets.support.whole_files import replacing
 
 Array = NDArray[Any]
 
@@ -318,13 +318,7 @@ def info(path: str | PathLike[str]) -> dict[str, Any]:
 
 
 def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
-    """Write a trx file, stored without compression (see :func:`pvfiblets.formats.write`).
-
-    Raises
-    ------
-    ValueError
-        For a name that cannot be part of a file name in a zip, or values that are no numbers.
-    """
+    """Write a trx file, stored without compression (see :func:`pvfiblets.formats.write`)."""
     from zipfile import ZIP_STORED, ZipFile
 
     arrays: dict[str, Array] = {

@@ -3,7 +3,7 @@
 Format: https://docs.vtk.org/en/latest/vtk_file_formats/vtk_legacy_file_format.html. Read by
 :class:`LegacyParser`, which checks every size against the file, since VTK's own reader trusts a
 damaged header and may end the process; written by VTK. Coordinates are RAS+ mm, or LPS+ if the
-title line or the field data say so (:mod:`pvfiblets.vtk_space`): then x and y change sign.
+title line or the field data say so (:mod:`pvfiblets.support.vtk_space`): then x and y change sign.
 
 The file must be read whole: the data of a streamline lie in several places of it.
 
@@ -28,7 +28,7 @@ from pvfiblets.formats.rows import check_rounding
 from pvfiblets.formats.vtk_parser import LegacyParser
 from pvfiblets.formats.vtk_writer import write_with
 from pvfiblets.streamlines import Streamlines, from_cells
-from pvfiblets.vtk_space import OURS, Space, space_in_header, space_named, space_taken
+from pvfiblets.support.vtk_space import OURS, Space, space_in_header, space_named, space_taken
 
 __all__ = ["HOLDS", "info", "iter_chunks", "read", "write"]
 

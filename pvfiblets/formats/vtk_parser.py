@@ -16,7 +16,7 @@ from pvfiblets.errors import FormatError
 from pvfiblets.formats.mapped import MappedFile
 from pvfiblets.formats.read_whole import TEXT_ARRAYS
 from pvfiblets.streamlines import offsets_from_counts
-from pvfiblets.vtk_space import FIELD
+from pvfiblets.support.vtk_space import FIELD
 
 Array = NDArray[Any]
 Ints = NDArray[np.int64]

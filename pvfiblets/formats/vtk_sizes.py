@@ -8,7 +8,7 @@ from pathlib import Path
 
 from pvfiblets.errors import FormatError
 from pvfiblets.formats.vtk_xml import XmlFile
-from pvfiblets.memory import check_room, limited_to
+from pvfiblets.support.memory import check_room, limited_to
 
 _XML = (".vtp", ".vtu", ".vti")
 _HEAD = 1 << 16  # bytes in which a header is looked for
@@ -21,20 +21,7 @@ _ROW = 12  # bytes of three coordinates, or of a triangle
 
 
 def check_memory(path: str | PathLike[str]) -> None:
-    """Refuse a file that says that it takes more memory than is left, where memory is limited.
-
-    Parameters
-    ----------
-    path : str or PathLike
-        Of any kind; what others than VTK's own and PLY files say is not looked at.
-
-    Raises
-    ------
-    TooLargeError
-        If it says so.
-    FormatError
-        If it says what cannot be true.
-    """
+    """Refuse a file that says that it takes more memory than is left, where memory is limited."""
     place = Path(path)
     name = place.name.lower()
     if name.endswith(_XML) and limited_to() is not None:

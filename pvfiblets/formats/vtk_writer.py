@@ -9,30 +9,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 from pvfiblets.errors import FibletsError
-from pvfiblets.whole_files import replacing
+from pvfiblets.support.whole_files import replacing
 
 if TYPE_CHECKING:
     import pyvista
 
 
 def write_with(writer: Any, path: str | PathLike[str], data: pyvista.PolyData, *, compressed: bool = False) -> None:
-    """Let a VTK writer write poly data.
-
-    Parameters
-    ----------
-    writer : vtkAlgorithm
-    path : str or PathLike
-    data : pyvista.PolyData
-    compressed : bool
-        Whether the file takes fewer bytes than the arrays.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be written; it says why, and how many bytes it takes.
-    FibletsError
-        If VTK reports another failure.
-    """
+    """Let a VTK writer write poly data."""
     size = data.GetActualMemorySize() * 1024
     writer.SetInputData(data)
     said: list[str] = []

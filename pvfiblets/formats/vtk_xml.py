@@ -155,25 +155,7 @@ class XmlFile:
         return root[0]
 
     def values(self, element: Element, rows: int, columns: int | None = None) -> Array:
-        """Return the values of a DataArray in native order.
-
-        Parameters
-        ----------
-        element : Element
-        rows : int
-            How many rows the file promises elsewhere.
-        columns : int, optional
-            Expected number of components; any if not given.
-
-        Returns
-        -------
-        (rows,) or (rows, columns) array
-
-        Raises
-        ------
-        FormatError
-            If the array holds fewer or more values, or is damaged.
-        """
+        """Return the values of a DataArray in native order."""
         kind = element.attributes.get("type", "")
         if kind not in _TYPES:
             raise self.error(element, f"type {kind!r}", f"one of {list(_TYPES)}")
@@ -207,19 +189,7 @@ class XmlFile:
         return raw.decode("utf-8", "replace").split("\0")[:-1]
 
     def check_sizes(self, element: Element, rows: int) -> None:
-        """Compare the size that a DataArray says with what the file promises elsewhere, before VTK spends memory on it.
-
-        Parameters
-        ----------
-        element : Element
-        rows : int
-            How many rows the file promises elsewhere.
-
-        Raises
-        ------
-        FormatError
-            If they differ, or the file is too small for as much.
-        """
+        """Compare the size that a DataArray says with what the file promises elsewhere, before VTK takes memory."""
         values = rows * max(1, element.count("NumberOfComponents"))
         form, kind = element.attributes.get("format", "ascii"), element.attributes.get("type", "")
         if form == "ascii" or kind not in _TYPES:  # such as of strings

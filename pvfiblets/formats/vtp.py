@@ -3,7 +3,7 @@
 Format: https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html. Read by a parser
 of our own for the reason given in :mod:`pvfiblets.formats.vtk_legacy`, written by VTK. The file
 must be read whole: the data of a streamline lie in several places of it. Several pieces are
-joined. Coordinates are RAS+ mm, or LPS+ if the field data say so (:mod:`pvfiblets.vtk_space`).
+joined. Coordinates are RAS+ mm, or LPS+ if the field data say so (:mod:`pvfiblets.support.vtk_space`).
 Damage is a FormatError at the array; cells that are not lines, points of no line, points
 with NaN or infinity and arrays of text are left out and counted; lines are cut at the points with
 NaN or infinity.
@@ -25,7 +25,7 @@ from pvfiblets.formats.read_whole import TEXT_ARRAYS, facts, only_finite, pieces
 from pvfiblets.formats.vtk_writer import write_with
 from pvfiblets.formats.vtk_xml import Element, XmlFile
 from pvfiblets.streamlines import Streamlines, from_cells
-from pvfiblets.vtk_space import FIELD, Space, space_named, space_taken
+from pvfiblets.support.vtk_space import FIELD, Space, space_named, space_taken
 
 Array = NDArray[Any]
 
@@ -146,13 +146,7 @@ def info(path: str | PathLike[str], *, space: Space | None = None) -> dict[str, 
 
 
 def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
-    """Write a vtp file, appended raw and zlib-compressed (see :func:`pvfiblets.formats.write`).
-
-    Raises
-    ------
-    ValueError
-        If a name has a control character, which XML cannot hold.
-    """
+    """Write a vtp file, appended raw and zlib-compressed (see :func:`pvfiblets.formats.write`)."""
     from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
     writer = vtkXMLPolyDataWriter()

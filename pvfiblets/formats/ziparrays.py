@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from pvfiblets.errors import FormatError
 from pvfiblets.formats.mapped import MappedFile, forget
 from pvfiblets.formats.scratch import scratch_array, scratch_bytes, spans
-from pvfiblets.memory import check_room
+from pvfiblets.support.memory import check_room
 
 Array = NDArray[Any]
 

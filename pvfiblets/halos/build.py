@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from pvfiblets.lines import Lines, are_words, flat, gather, joined, numbers_or_colours, refuse_words
 from pvfiblets.streamlines import Streamlines
-from pvfiblets.vtk_space import space_of_dataset, to_ras
+from pvfiblets.support.vtk_space import space_of_dataset, to_ras
 
 from .geometry import HaloLines, HaloPoints
 
@@ -50,39 +50,6 @@ def as_halo_lines(
 ) -> LinesAndValues:
     """Make lines with halos of line data.
 
-    Parameters
-    ----------
-    source : PolyData, Streamlines, FibletSet, array_like, tuple or HaloLines
-        A PolyData (VTK or PyVista) with lines, of which other cells are left out; a tractogram; one ``(n, 3)`` array in
-        mm for one line, or a list of such arrays; ``(points, segments)`` with ``(n_points, 3)`` positions in mm and
-        ``(n_segments, 2)`` point indices. Segments, and line cells when all have two points, become one line where one
-        follows the other and no third meets them; in whichever order they are listed. HaloLines keep the values that
-        they have.
-    scalars : str or array_like, optional
-        What to keep for colours: the name of point or line data of the source; or an array, or one for each line, of
-        numbers, or of three or four columns of colour (uint8, or floats in 0..1 with `rgb`), with a row for each point
-        or for each line.
-    rgb : bool, optional
-        Whether `scalars` of three or four columns are colours, or vectors to be mapped by their magnitude. By default
-        those of uint8 are, and those whose name ends in ``"_rgb"`` or ``"_rgba"``.
-    filter_by : str or array_like, optional
-        What to filter by: a name, or numbers for each point or line.
-
-    Returns
-    -------
-    LinesAndValues
-        ``(lines, line_values)``: lines with at most these two values at their points, each under its name, or as
-        ``"scalars"`` and ``"filter"``. Scalars of whole lines are in ``line_values`` instead, once for each line.
-        Numbers to filter by are always at points. Points of float32 stay float32, all others become float64.
-
-    Raises
-    ------
-    TypeError
-        If there are no lines in such a source.
-    ValueError
-        If there are no lines in a PolyData, an array has the wrong shape, a name is unknown, or a colour is not in
-        0..1. The message names array, row and value. Numbers may be NaN.
-
     Notes
     -----
     A point with NaN or infinity ends its line: each piece is a line with the data of the whole, and a warning counts
@@ -114,35 +81,6 @@ def as_halo_points(
     filter_by: str | npt.ArrayLike | None = None,
 ) -> HaloPoints:
     """Make points with halos of a point cloud.
-
-    Parameters
-    ----------
-    source : DataSet, Streamlines, FibletSet, array_like or HaloPoints
-        Anything of VTK's or PyVista's that has points, all of which are taken, whatever the cells; a tractogram; an
-        ``(n, 3)`` array in mm. HaloPoints keep the values that they have.
-    scalars : str or array_like, optional
-        What to keep for colours: the name of point data of the source, or of a tractogram's data per streamline; or
-        an array of numbers, or of three or four columns of colour (uint8, or floats in 0..1 with `rgb`), with a row
-        for each point.
-    rgb : bool, optional
-        Whether `scalars` of three or four columns are colours, or vectors to be mapped by their magnitude. By default
-        those of uint8 are, and those whose name ends in ``"_rgb"`` or ``"_rgba"``.
-    filter_by : str or array_like, optional
-        What to filter by: a name, or a number for each point.
-
-    Returns
-    -------
-    HaloPoints
-        With at most these two values, each under its name, or as ``"scalars"`` and ``"filter"``. Points of float32
-        stay float32, all others become float64.
-
-    Raises
-    ------
-    TypeError
-        If such a source has no points.
-    ValueError
-        If an array has the wrong shape, a name is unknown, a coordinate is not finite, or a colour is not in 0..1. The
-        message names array, row and value. Numbers may be NaN.
 
     Examples
     --------

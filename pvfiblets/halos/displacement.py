@@ -22,25 +22,6 @@ _ROUNDING = 1e-9
 def as_displacement(given: Displacement) -> str | tuple[float, ...]:
     """Bring a displacement function into the form that :class:`.HaloStyle` takes.
 
-    Parameters
-    ----------
-    given : str, sequence of float or callable
-        One of ``"linear"``, ``"square"`` and ``"square root"``; a table of 2 to 64 numbers in 0..1, the function at
-        equally spaced places from 0 to 1; or a function that takes a float64 array of places in 0..1 and returns as
-        many numbers in 0..1 (one number stands for a constant). It is evaluated once, at 64 places.
-
-    Returns
-    -------
-    str or tuple of float
-        The name, or the table.
-
-    Raises
-    ------
-    ValueError
-        If the name is unknown, or the table too long or too short, or a number is not finite or not in 0..1.
-    TypeError
-        If it is none of these.
-
     Notes
     -----
     Source: Everts et al. 2009, section 3.3, equation 3 and figure 17. Between its places a table is linear, so that a
@@ -71,18 +52,6 @@ def as_displacement(given: Displacement) -> str | tuple[float, ...]:
 
 def displaced(x: npt.ArrayLike, displacement: Displacement) -> npt.NDArray[np.float64]:
     """Evaluate a displacement function.
-
-    Parameters
-    ----------
-    x : array_like
-        Places, 0 in the middle of a strip and 1 at its edge; what lies outside counts as the nearer of both.
-    displacement : str, sequence of float or callable
-        As of :func:`as_displacement`.
-
-    Returns
-    -------
-    ndarray
-        float64 in 0..1, in the shape of `x`: the share of ``max_displacement``.
 
     Examples
     --------

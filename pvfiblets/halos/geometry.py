@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.ragged import as_offsets
-from pvfiblets.value_reference import value_reference
+from pvfiblets.support.ragged import as_offsets
+from pvfiblets.support.value_reference import value_reference
 
 __all__ = ["HaloLines", "HaloPoints"]
 
@@ -76,7 +76,7 @@ class HaloLines:
         return {name: value_reference(held) for name, held in self.values.items() if held.ndim == 1}
 
     def value_reference(self, name: Any) -> float:
-        """Return the number to subtract from values on the graphics card; see :mod:`pvfiblets.value_reference`."""
+        """Return the number to subtract from values on the graphics card; see `pvfiblets.support.value_reference`."""
         return self._references.get(name, 0.0)
 
     @property
@@ -132,7 +132,7 @@ class HaloPoints:
         return {name: value_reference(held) for name, held in self.values.items() if held.ndim == 1}
 
     def value_reference(self, name: Any) -> float:
-        """Return the number to subtract from values on the graphics card; see :mod:`pvfiblets.value_reference`."""
+        """Return the number to subtract from values on the graphics card; see `pvfiblets.support.value_reference`."""
         return self._references.get(name, 0.0)
 
     @property

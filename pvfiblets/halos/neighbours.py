@@ -15,7 +15,7 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.ragged import offsets_from_counts
+from pvfiblets.support.ragged import offsets_from_counts
 
 from .geometry import HaloLines
 from .grid import Grid
@@ -210,23 +210,7 @@ def _volume(places: Doubles) -> float:
 
 
 def distances(things: _Things, places: Doubles, own: Ints) -> Doubles:
-    """Distances from places to the nearest of other things than their own.
-
-    Parameters
-    ----------
-    things : Paths or Cloud
-        What there is.
-    places : ndarray
-        ``(n, 3)`` float64 in the frame of the things, shuffled: where there is too much near them, the first are asked.
-    own : ndarray
-        ``(n,)`` int64: the thing that each place is on.
-
-    Returns
-    -------
-    ndarray
-        ``(m,)`` float64, m <= n, in the frame: at least the nearer half of the distances, at most 1 % too far;
-        infinity for the rest; NaN where nothing can be told.
-    """
+    """Distances from places to the nearest of other things than their own."""
     least = 4.0 * things.frame.same
     radius = max(things.usual_spacing(), least)
     found = np.full(len(places), np.inf)

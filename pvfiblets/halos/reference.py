@@ -78,29 +78,7 @@ def picture(
     *,
     clip_planes: npt.ArrayLike = (),
 ) -> Picture:
-    """Work out a picture, one segment or point after the other.
-
-    Parameters
-    ----------
-    drawn : HaloLines or HaloPoints
-    look : HaloStyle
-    matrix : array_like
-        ``(4, 4)``: data coordinates in mm to OpenGL's clip coordinates. What of an axis is not between its near and
-        far planes is not there; halos that reach behind the far plane stay on it.
-    size : tuple of int
-        Width and height in pixels.
-    clip_planes : array_like, optional
-        ``(k, 4)`` planes (a, b, c, d), mm: of axes, only what lies where ax + by + cz + d >= 0 for all is there.
-
-    Returns
-    -------
-    Picture
-
-    Raises
-    ------
-    KeyError
-        If ``look.filter_by`` names no values.
-    """
+    """Work out a picture, one segment or point after the other."""
     camera = Camera(np.asarray(matrix, np.float64), size, drawn.bounds, look)
     points = np.asarray(drawn.points, np.float64)
     planes = np.asarray(clip_planes, np.float64).reshape(-1, 4)

@@ -19,27 +19,6 @@ _ALONE = 1.0 / 60.0
 def line_spacing(lines: HaloLines, samples: int = 2000, seed: int = 0) -> float:
     """How far apart lines lie.
 
-    Parameters
-    ----------
-    lines : HaloLines
-        Lines without length count as points that others are near to, and lines of one point not at all.
-    samples : int, default: 2000
-        Places to measure at, spread evenly over the length of all lines.
-    seed : int, default: 0
-        Of where exactly.
-
-    Returns
-    -------
-    float
-        mm: the median distance from a place on a line to the nearest place on another, to 1 %. Lines that pass through
-        the place itself, as duplicates do, are left out where there are others. A sixtieth of the diagonal of the
-        bounds if there are none, or if lines are too tangled to tell; 1 if all points are at one place.
-
-    Raises
-    ------
-    ValueError
-        If there is not at least one sample.
-
     Examples
     --------
     >>> import numpy as np
@@ -62,28 +41,7 @@ def line_spacing(lines: HaloLines, samples: int = 2000, seed: int = 0) -> float:
 
 
 def point_spacing(points: HaloPoints, samples: int = 2000, seed: int = 0) -> float:
-    """How far apart points lie.
-
-    Parameters
-    ----------
-    points : HaloPoints
-        The points.
-    samples : int, default: 2000
-        Points to measure at.
-    seed : int, default: 0
-        Of which.
-
-    Returns
-    -------
-    float
-        mm: the median distance from a point to the nearest other one, those at the same place left out where there are
-        others. A sixtieth of the diagonal of the bounds if too many are at the same places; 1 if all are at one.
-
-    Raises
-    ------
-    ValueError
-        If there is not at least one sample.
-    """
+    """How far apart points lie."""
     _check_samples(samples)
     frame = Frame.around(points.points)
     found = np.zeros(0)
@@ -101,18 +59,6 @@ def default_widths(
     max_displacement: float | None = None,
 ) -> tuple[float, float, float]:
     """Widths and the displacement that suit the data.
-
-    Parameters
-    ----------
-    drawn : HaloLines or HaloPoints
-        The data.
-    line_width, strip_width, max_displacement : float, optional
-        mm; what is given stays as it is.
-
-    Returns
-    -------
-    tuple of float
-        Line width, strip width and largest displacement, mm, as :class:`.HaloStyle` takes them.
 
     Notes
     -----

@@ -56,17 +56,7 @@ def mask(x: Array) -> Array:
 
 
 def places_along(count: int, n_tapered: int, t_tapered: float) -> Array:
-    """Places ``u`` along the mask of the vertices of a line (section 3.4), rounded to 16 bits.
-
-    Parameters
-    ----------
-    count : int
-        Vertices of the line.
-    n_tapered : int
-        Over as many the ends narrow, at least 1.
-    t_tapered : float
-        Where vertex ``n_tapered`` is; the last vertices mirror the first ones.
-    """
+    """Places ``u`` along the mask of the vertices of a line (section 3.4), rounded to 16 bits."""
     i = np.arange(count, dtype=np.float64)
     i = np.minimum(i, count - 1 - i)
     # The middle of a line that is longer than both its ends runs on from t to 1 - t; before, it is at i of n.
@@ -98,18 +88,7 @@ def rates(points: Array, offsets: Ints, numbers: Array) -> Array:
 def strips(
     camera: Camera, look: HaloStyle, lines: HaloLines, clip: Array, heights: Array, numbers: Array | None
 ) -> Iterator[Fragments]:
-    """Yield the fragments of all segments.
-
-    Parameters
-    ----------
-    camera, look, lines
-    clip : numpy.ndarray
-        ``(n_points, 4)`` clip coordinates.
-    heights : numpy.ndarray
-        ``(n_points, k)`` above all that cuts the axis; kept where none is negative.
-    numbers : numpy.ndarray, optional
-        ``(n_points,)`` that filter.
-    """
+    """Yield the fragments of all segments."""
     points = np.asarray(lines.points, np.float64)
     cue, u, steep = camera.cue(points), np.full(len(clip), 0.5), np.zeros(len(clip))
     if look.n_tapered:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from pvfiblets.lazy_imports import names_from
+from pvfiblets.support.lazy_imports import names_from
 
 if TYPE_CHECKING:
     from pvfiblets.mappers.colouring import Colouring

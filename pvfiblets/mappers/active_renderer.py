@@ -24,18 +24,7 @@ class ActiveRenderer:
         self._started = vtkWeakReference()
 
     def find(self, actor: vtkActor) -> vtkRenderer:
-        """Return the renderer that draws an actor now.
-
-        Parameters
-        ----------
-        actor : vtkActor
-            Actor of the mapper.
-
-        Raises
-        ------
-        RuntimeError
-            The actor is in no renderer of the current window.
-        """
+        """Return the renderer that draws an actor now."""
         candidates = [
             renderer
             for renderer in renderers_of(actor)

@@ -23,13 +23,6 @@ def draw_ahead(window: Any, *, refining: bool = False) -> Iterator[None]:
 
     Nothing is drawn of what cannot be drawn in pieces, such as by a GPU, and of what is not an ordinary frame: an
     enlarged one, or one with a render pass.
-
-    Parameters
-    ----------
-    window : vtkRenderWindow
-        That has drawn a frame before.
-    refining : bool
-        Whether the frame will be drawn by `antialias_windows.refine`: the next sample of pictures that want one.
     """
     if tuple(window.GetTileScale()) != (1, 1) or window.GetStereoRender():
         return

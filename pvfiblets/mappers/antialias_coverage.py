@@ -45,13 +45,7 @@ class EdgeSmoothing:
         smoothers[self._address] = self
 
     def begin(self, *, sample: bool = False) -> None:
-        """Forget what was drawn: another picture begins.
-
-        Parameters
-        ----------
-        sample : bool
-            See `sample`.
-        """
+        """Forget what was drawn: another picture begins."""
         self._noted.clear()
         self.sample, self.widened = sample, False
 

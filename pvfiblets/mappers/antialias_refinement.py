@@ -133,16 +133,7 @@ class Refinement:
     # Steps of a frame
 
     def start(self, renderer: Any, state: Hashable, *, layered: bool = False) -> None:
-        """Decide what the frame is that a renderer is about to draw, and shift its camera for a sample.
-
-        Parameters
-        ----------
-        renderer : vtkRenderer
-        state : hashable
-            What the picture is made of; None if it changes from frame to frame.
-        layered : bool
-            Whether all samples can be drawn in one frame: see `layer_frames`.
-        """
+        """Decide what the frame is that a renderer is about to draw, and shift its camera for a sample."""
         due, self.due = self.due, False
         self._name, self._painted, self._begun = _WHOLE, False, time.perf_counter()
         self._changed = state is None or state != self._state
@@ -233,19 +224,7 @@ class Refinement:
     def paint(
         self, ctx: Any, slot: Slot, colour: Attachment, viewport: tuple[int, int, int, int], *, alike: bool
     ) -> None:
-        """Take the picture that has been drawn, and draw what is to be seen instead.
-
-        Parameters
-        ----------
-        ctx : moderngl.Context
-        slot : Slot
-            Keeps the sums.
-        colour : Attachment
-            What the picture was drawn into.
-        viewport : tuple of 4 ints
-        alike : bool
-            Whether all samples of a pixel of that are the same.
-        """
+        """Take the picture that has been drawn, and draw what is to be seen instead."""
         if self._name == _WHOLE and _TILE in slot.effects:
             slot.drop_effect(_TILE)
         if self._name not in slot.effects:
@@ -266,16 +245,7 @@ class Refinement:
             sums.forget_kept()
 
     def end(self, renderer: Any, state: Hashable, *, widened: bool) -> None:
-        """Note what has been drawn.
-
-        Parameters
-        ----------
-        renderer : vtkRenderer
-        state : hashable
-            What the picture is made of, now that drawing may have changed it.
-        widened : bool
-            Whether pictures of one sample show wider lines than a sample does.
-        """
+        """Note what has been drawn."""
         self.put_back()
         note_sample(renderer, begun=False)
         self._exact = True

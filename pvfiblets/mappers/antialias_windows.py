@@ -11,7 +11,7 @@ import weakref
 from contextlib import ExitStack
 from typing import Any, Self
 
-from pvfiblets.progress_bar import progress_bar
+from pvfiblets.support.progress_bar import progress_bar
 
 __all__ = ["Finishing", "finish", "picture_of", "refine", "shown_pictures"]
 
@@ -23,17 +23,7 @@ shown_pictures: weakref.WeakSet[Any] = weakref.WeakSet()
 
 
 def refine(window: Any) -> bool:
-    """Draw one more frame of the pictures of a window that want more samples or parts; nothing if none does.
-
-    Parameters
-    ----------
-    window : vtkRenderWindow
-
-    Returns
-    -------
-    bool
-        Whether one of them wants another.
-    """
+    """Draw one more frame of the pictures of a window that want more samples or parts; nothing if none does."""
     wanting = _unfinished(window)
     for picture in wanting:
         picture.refinement.due = True  # also where parts are wanted: views that stay as they were are not drawn

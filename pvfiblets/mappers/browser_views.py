@@ -16,13 +16,7 @@ _MAPPER_OF_VTK_JS = "vtkMapper"
 
 
 def class_name(readable_mapper: Callable[[Any], AbstractContextManager[None]]) -> str:
-    """Return the name under which a serializer of this package's mappers is known, now at the latest.
-
-    Parameters
-    ----------
-    readable_mapper : callable
-        Returns what lets a mapper's data be read.
-    """
+    """Return the name under which a serializer of this package's mappers is known, now at the latest."""
     from trame_vtk.modules.vtk.serializers.registry import SERIALIZERS, register_instance_serializer
 
     if _NAME not in SERIALIZERS:

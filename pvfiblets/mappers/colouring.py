@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 if TYPE_CHECKING:
-    from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
+    from pvfiblets.engine.fiblets.data.sampled_volume import VolumeSource
 
 Mode = Literal[
     "orientation", "solid", "streamline_rgba", "streamline_scalar", "point_scalar", "point_rgba",

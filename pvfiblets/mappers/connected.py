@@ -145,13 +145,7 @@ class Connected:
         return (1.0, 1.0, 1.0) if self.actor is None else self.actor.GetProperty().GetDiffuseColor()
 
     def _made_of(self, data: Any) -> tuple[Any, Colouring]:
-        """Return what to draw of the data that were connected, and its colours.
-
-        Raises
-        ------
-        TypeError, ValueError
-            Nothing can be made of them.
-        """
+        """Return what to draw of the data that were connected, and its colours."""
         raise NotImplementedError
 
     def _tell(self, error: BaseException) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pvfiblets.engine.fiblets.paint import Paint
+from pvfiblets.engine.fiblets.gather.paint import Paint
 from pvfiblets.mappers.gathering import Sums, paint_of
 from pvfiblets.mappers.scene import in_motion
 from pvfiblets.mappers.shader_effects import ShaderEffect

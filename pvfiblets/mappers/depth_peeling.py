@@ -1,8 +1,8 @@
 """An effect that lets lines be looked through: several layers of the picture, blended in order.
 
 The mapper's geometry then has two triangles for each layer, the farthest first (`pvfiblets.mappers.proxy`), and the
-engine keeps as many layers (`pvfiblets.engine.fiblets.depth_peeling`). While the actor is opaque neither is drawn,
-and no layer behind the nearest is made.
+engine keeps as many layers (`pvfiblets.engine.fiblets.gather.depth_peeling`). While the actor is opaque neither is
+drawn, and no layer behind the nearest is made.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from pvfiblets.engine.fiblets.depth_peeling import MOST_LAYERS
+from pvfiblets.engine.fiblets.gather.depth_peeling import MOST_LAYERS
 from pvfiblets.mappers.blank_arrays import BlankArrays
 from pvfiblets.mappers.shader_effects import ShaderEffect
 

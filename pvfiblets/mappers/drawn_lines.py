@@ -12,22 +12,14 @@ from pvfiblets.mappers.line_data import COLOURS, RADIUS, STEPS, LineData, segmen
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
-    from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
+    from pvfiblets.engine.fiblets.data.sampled_volume import VolumeSource
     from pvfiblets.mappers.colouring import Colouring
     from pvfiblets.streamlines import Streamlines
 
 __all__ = ["fiblet_lines", "halo_lines", "near_ray", "shown_points", "shown_streamlines", "thinned", "tube_lines"]
 
 def thinned(counts: npt.NDArray[Any], budget: int) -> npt.NDArray[np.int64]:
-    """Return which lines to keep so that they have a number of points together at most: evenly every second, third ...
-
-    Parameters
-    ----------
-    counts : numpy.ndarray
-        ``(k,)`` points of each line.
-    budget : int
-        Points.
-    """
+    """Return which lines to keep so that they have a number of points at most: evenly every second, third ..."""
     total, step = int(counts.sum()), 1
     kept = np.arange(len(counts))
     while total > budget and step <= len(counts):
@@ -54,18 +46,8 @@ def shown_points(fiblets: FibletSet, filtering: Any) -> int:
 
 
 def near_ray(fiblets: FibletSet, filtering: Any, ray: Any, budget: int) -> npt.NDArray[np.int64]:
-    """Return shown streamlines that may come near to a ray, the nearest ones where their points are too many.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-    filtering : Filter or None
-    ray : tuple of numpy.ndarray and float
-        Two ends, ``(2, 3)`` mm of the data, and the distance that is near.
-    budget : int
-        Points.
-    """
-    from pvfiblets.query.endpoints import anchor_points
+    """Return shown streamlines that may come near to a ray, the nearest ones where their points are too many."""
+    from pvfiblets.query.selection.endpoints import anchor_points
 
     (start, stop), reach = ray
     owners = fiblets.fiblet_streamlines()
@@ -90,18 +72,7 @@ def near_ray(fiblets: FibletSet, filtering: Any, ray: Any, budget: int) -> npt.N
 def fiblet_lines(
     fiblets: FibletSet, colouring: Colouring | None, filtering: Any, ids: npt.NDArray[np.int64]
 ) -> LineData:
-    """Return decoded streamlines.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-    colouring : Colouring, optional
-        None for lines without colours.
-    filtering : Filter, optional
-        Which points there are.
-    ids : numpy.ndarray
-        Streamlines.
-    """
+    """Return decoded streamlines."""
     decoded = fiblets.decompress(ids)
     lines = LineData(decoded.points, decoded.offsets, np.asarray(ids, np.int64))
     lines = lines.with_columns(**{name: rows for name, rows in decoded.per_point.items() if rows.ndim == 1})
@@ -134,7 +105,7 @@ def _fiblet_colours(lines: LineData, decoded: Streamlines, colouring: Colouring)
 
 def _measured(name: str, lines: LineData) -> npt.NDArray[Any]:
     """Arc length or curvature at points."""
-    from pvfiblets.query import measure_kernels as kernels
+    from pvfiblets.query.measures import measure_kernels as kernels
 
     found = np.empty(len(lines.points), np.float32)
     measured = kernels.arc_lengths if name == "arc_length" else kernels.curvatures
@@ -179,16 +150,7 @@ def sampled(volume: VolumeSource, points: npt.NDArray[np.float64]) -> npt.NDArra
 
 
 def tube_lines(tubes: Any, colouring: Colouring | None, budget: int) -> LineData:
-    """Return the middle lines of spline tubes, `STEPS` pieces a segment, with their radius.
-
-    Parameters
-    ----------
-    tubes : SplineTubes
-    colouring : Colouring, optional
-        None for lines without colours.
-    budget : int
-        Points at most; beyond, whole lines are left out.
-    """
+    """Return the middle lines of spline tubes, `STEPS` pieces a segment, with their radius."""
     from pvfiblets.tubes.curves import controls, evaluate
 
     begins, owners = segment_ids(tubes)
@@ -238,17 +200,7 @@ def _tube_values(tubes: Any, name: str, segments: npt.NDArray[np.int64]) -> npt.
 
 
 def halo_lines(drawn: Any, look: Any, colouring: Colouring | None, ids: npt.NDArray[np.int64]) -> LineData:
-    """Return lines, or points as lines of one point, that have halos; without what is filtered.
-
-    Parameters
-    ----------
-    drawn : HaloLines or HaloPoints
-    look : HaloStyle
-    colouring : Colouring, optional
-        None for lines without colours.
-    ids : numpy.ndarray
-        Lines, or points.
-    """
+    """Return lines, or points as lines of one point, that have halos; without what is filtered."""
     points = np.asarray(drawn.points)
     offsets = getattr(drawn, "offsets", np.arange(len(points) + 1))
     counts = np.diff(offsets)[ids]

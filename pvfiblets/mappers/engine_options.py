@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import Any, ClassVar
 
-from pvfiblets.codec.stored_parts import in_parts
-from pvfiblets.engine.capabilities import AUTO, check_choices
+from pvfiblets.codec.files.stored_parts import in_parts
+from pvfiblets.engine.gl.capabilities import AUTO, check_choices
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class EngineOptions(Options):
     ----------
     pipeline : str, default 'auto'
         How fiblets become pixels: ``'auto'`` takes the fastest that the window's OpenGL has; see
-        `pvfiblets.engine.capabilities.pipelines`.
+        `pvfiblets.engine.gl.capabilities.pipelines`.
     culling : {'auto', 'two-phase', 'coverage', 'none', None}, default 'auto'
         How fiblets behind others are found out; ``'auto'`` is two-phase where that is measured to be faster.
     fit : {None, 'sample', 'stream'}
@@ -65,22 +65,16 @@ class EngineOptions(Options):
 
 
 def engine_renderer(ctx: Any, fiblets: Any, **options: Any) -> Any:
-    """Make the engine's renderer; the default ``renderer_factory``.
-
-    Raises
-    ------
-    EngineError
-        The window's OpenGL lacks the pipeline that is wanted; said before anything is copied to the GPU.
-    """
+    """Make the engine's renderer; the default ``renderer_factory``."""
     if options.get("cluster") is not None:
-        from pvfiblets.engine.fiblets.cluster_renderer import ClusterRenderer
+        from pvfiblets.engine.fiblets.parts.cluster_renderer import ClusterRenderer
 
         return ClusterRenderer(ctx, fiblets, options["cluster"], pipeline=options.get("pipeline", AUTO))
     if options.get("fit") is None and in_parts(fiblets):
         options["fit"] = "stream"  # where all of it does not fit, or is not here yet
     options.setdefault("culling", EngineOptions.culling)  # the engine's own is the same in every picture
     if options.get("fit") == "stream":
-        from pvfiblets.engine.fiblets.streamed_renderer import streamed_renderer
+        from pvfiblets.engine.fiblets.parts.streamed_renderer import streamed_renderer
 
         return streamed_renderer(ctx, fiblets, **{name: given for name, given in options.items() if name != "fit"})
     from pvfiblets.engine import FibletRenderer

@@ -19,7 +19,7 @@ from pvfiblets.mappers.picking import nearest_pixel
 from pvfiblets.mappers.scene import Frame, frame_of, slack, smoothers, wanted_share
 from pvfiblets.mappers.shader_effects import ShaderEffect
 from pvfiblets.mappers.windows import Slot, WindowContext, contexts_with
-from pvfiblets.query.point_flags import Sampling
+from pvfiblets.query.selection.point_flags import Sampling
 
 _OVER = object()
 
@@ -145,7 +145,7 @@ class FibletMapper(CutMapper[EngineOptions]):
 
     @property
     def filtering(self) -> Any:
-        """`pvfiblets.engine.fiblets.filter_textures.Filter` of what is there to be drawn; None for everything."""
+        """`pvfiblets.engine.fiblets.data.filter_textures.Filter` of what is there to be drawn; None for everything."""
         return self._filtering
 
     @filtering.setter
@@ -313,7 +313,7 @@ class FibletMapper(CutMapper[EngineOptions]):
         Parameters
         ----------
         region, sampling
-            Data coordinates; as in `pvfiblets.query.passing.region_flags`, which gives the same answer.
+            Data coordinates; as in `pvfiblets.query.selection.passing.region_flags`, which gives the same answer.
 
         Returns
         -------
@@ -327,6 +327,6 @@ class FibletMapper(CutMapper[EngineOptions]):
                 context.window.MakeCurrent()
                 with context.foreign():
                     return slot.renderer.query(region, sampling)
-        from pvfiblets.query.passing import region_flags
+        from pvfiblets.query.selection.passing import region_flags
 
         return region_flags(self._drawn, region, sampling)

@@ -1,7 +1,7 @@
 """What effects share that show all lines of a pixel: the sums that the engine makes of them, as textures and uniforms.
 
-The engine adds up what lines add (`pvfiblets.engine.fiblets.gathering`); which colours they have is the mapper's to
-say.
+The engine adds up what lines add (`pvfiblets.engine.fiblets.gather.gathering`); which colours they have is the
+mapper's to say.
 """
 
 from __future__ import annotations
@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pvfiblets.engine.fiblets.gathering import Gathered
-from pvfiblets.engine.fiblets.paint import Paint
+from pvfiblets.engine.fiblets.gather.gathering import Gathered
+from pvfiblets.engine.fiblets.gather.paint import Paint
 from pvfiblets.mappers.blank_arrays import BlankArrays
 from pvfiblets.mappers.scene import others_opaque
 from pvfiblets.mappers.scene_depth import OutsideDepth
@@ -27,16 +27,7 @@ _SHOULDER = np.array([-1.0, 1.0, 1.0]) / np.sqrt(3.0)
 
 
 def paint_of(draw: Draw, *, lit: bool, opacity: float | None = None) -> Paint:
-    """Return the colours that lines have in a draw.
-
-    Parameters
-    ----------
-    draw : Draw
-    lit : bool
-        Whether light dims them as it dims the nearest.
-    opacity : float, optional
-        Of the actor, where lines have opacities of their own.
-    """
+    """Return the colours that lines have in a draw."""
     colouring, textures = draw.colouring, draw.textures
     light = None
     if lit:
@@ -95,16 +86,7 @@ class Sums:
         self.paint: Paint | None = None
 
     def textures(self, draw: Draw, paint: Paint | None, *, sliced: bool = False) -> dict[str, Any]:
-        """Return textures by the names of their samplers.
-
-        Parameters
-        ----------
-        draw : Draw
-        paint : Paint, optional
-            Without, nothing is added up, and what there was is given back.
-        sliced : bool
-            As of ``FibletRenderer.gather``.
-        """
+        """Return textures by the names of their samplers."""
         self.paint = paint
         if paint is None:
             self._drop()

@@ -60,13 +60,7 @@ class HaloOptions(Options):
 
 
 def halo_renderer(ctx: Any, drawn: Any, **options: Any) -> Any:
-    """Make the engine's renderer of lines and points with halos; the default ``renderer_factory``.
-
-    Raises
-    ------
-    EngineError
-        Memory does not suffice; nothing stays behind on the GPU.
-    """
+    """Make the engine's renderer of lines and points with halos; the default ``renderer_factory``."""
     from pvfiblets.engine.halos import HaloRenderer
 
     return HaloRenderer(ctx, drawn, **options)

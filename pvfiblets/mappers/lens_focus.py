@@ -110,20 +110,7 @@ class Focusing:
     def focus(
         self, wanted: DepthOfField, renderer: Any, effects: PictureEffects, lens: Projection, *, held: bool = False
     ) -> Focus:
-        """Return what the lens is set to for a picture that has just been copied.
-
-        Parameters
-        ----------
-        wanted : DepthOfField
-        renderer : vtkRenderer
-            That draws the picture.
-        effects : PictureEffects
-            Have the copy, with depths.
-        lens : Projection
-            Of the picture.
-        held : bool
-            Whether a focus that follows stays where it was in the last picture.
-        """
+        """Return what the lens is set to for a picture that has just been copied."""
         viewport = (0, 0, *lens.size)
         samples = samples_per_pixel(renderer, viewport)
         place = wanted.focal_distance

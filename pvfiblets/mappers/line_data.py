@@ -137,15 +137,7 @@ class LineData:
         return replace(self, columns={**self.columns, **columns})
 
     def to_polydata(self, *, segments: bool = False, vertices: bool = False) -> vtkPolyData:
-        """Return PolyData with a cell for each line and cell data ``'streamline'``.
-
-        Parameters
-        ----------
-        segments : bool
-            A cell for each segment instead.
-        vertices : bool
-            A cell for each point instead; the ``'streamline'`` is then the point's number.
-        """
+        """Return PolyData with a cell for each line and cell data ``'streamline'``."""
         made = vtkPolyData()
         points = vtkPoints()
         points.SetData(numpy_to_vtk(np.ascontiguousarray(self.points).reshape(-1, 3), deep=True))

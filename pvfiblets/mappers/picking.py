@@ -131,19 +131,7 @@ class Shown:
 
 
 def shown_by(mapper: Any, renderer: Any = None) -> Shown | None:
-    """Return a mapper's last picture.
-
-    Parameters
-    ----------
-    mapper : FibletMapper
-    renderer : vtkRenderer, optional
-        The one that was drawn last by default.
-
-    Returns
-    -------
-    Shown or None
-        None where nothing was drawn, or can be drawn any more.
-    """
+    """Return a mapper's last picture."""
     for context in contexts_with(mapper):
         slot = context.slots[mapper.GetAddressAsString("")]
         latest = next(reversed(slot.drawn), "")
@@ -184,18 +172,6 @@ def nearest_pixel(
     """Return the pixel nearest to a place that shows something.
 
     Of several as near the one in front is taken. The G-buffer is drawn again if it shows another view by now.
-
-    Parameters
-    ----------
-    mapper : EngineMapper
-    place : tuple of 2 floats
-        Pixel of the window.
-    read : sequence of str
-        Textures of the G-buffer. With ``'owner'``, pixels that belong to nobody show nothing.
-    renderer : vtkRenderer, optional
-        Whose picture; by default the one that was drawn last.
-    tolerance : int
-        How many pixels of the window away it may be.
     """
     shown = shown_by(mapper, renderer)
     if shown is None or tolerance < 0:
@@ -227,29 +203,13 @@ def pick_area(
 ) -> Hits | None:
     """Return what is seen in an area of the window, pixel by pixel.
 
-    Parameters
-    ----------
-    layers : sequence of Layer
-        Mappers that are looked into together: where several drew a pixel the nearest counts, of equals the last.
-    polygon : array_like
-        ``(k, 2)`` corners in window pixels; inside is by the even-odd rule. One corner is a point, two are a line.
-    renderer : vtkRenderer, optional
-        Whose picture; by default the one that was drawn last.
-    tolerance : float
-        Window pixels that a pixel's middle may be away from the area.
-
-    Returns
-    -------
-    Hits or None
-        None where nothing has been drawn yet.
-
     Notes
     -----
     Pixels in which something else is nearer, by VTK's depth of the last frame, are left out: opaque actors do hide
     streamlines. What is translucent leaves no depth and hides nothing. Under supersampling a pixel of the window
     counts as a whole.
     """
-    from pvfiblets.query.screen import area_distances
+    from pvfiblets.query.selection.screen import area_distances
 
     pictures = [(shown_by(layer.mapper, renderer), layer) for layer in layers]
     seen = [(shown, layer) for shown, layer in pictures if shown is not None]

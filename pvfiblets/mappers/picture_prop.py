@@ -12,7 +12,7 @@ from vtkmodules.vtkRenderingContext2D import vtkContextActor
 from vtkmodules.vtkRenderingContextOpenGL2 import vtkOpenGLContextActor  # noqa: F401  what VTK makes of the former
 
 from pvfiblets.engine.effects.picture_passes import Attachment
-from pvfiblets.engine.moderngl_extras import GLExtras
+from pvfiblets.engine.gl.moderngl_extras import GLExtras
 from pvfiblets.mappers.windows import WindowContext
 
 __all__ = ["COLOUR", "DEPTH", "Painted", "PictureProp", "attachment"]
@@ -72,13 +72,7 @@ class _Painter:
 
 
 def attachment(context: WindowContext, point: int) -> Attachment:
-    """Return colour or depth of the framebuffer that VTK draws into.
-
-    Raises
-    ------
-    RuntimeError
-        It is no texture.
-    """
+    """Return colour or depth of the framebuffer that VTK draws into."""
     gl = GLExtras(context.ctx)
     values = []
     if gl.get_integer("GL_DRAW_FRAMEBUFFER_BINDING") != 0:

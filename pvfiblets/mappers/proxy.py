@@ -17,18 +17,6 @@ def proxy_polydata(bounds: Sequence[float] | None, layers: int = 1) -> vtkPolyDa
     vertices in the least corner of the bounds, the other in the greatest, so that no picker that
     intersects geometry finds a surface or an edge in mid-air. Its vertices are told apart by a billionth of the
     size, inwards: VTK before 9.7 leaves out triangles whose vertices coincide.
-
-    Parameters
-    ----------
-    bounds : sequence of float or None
-        xmin, xmax, ymin, ymax, zmin, zmax in mm; None (nothing to draw) gives empty polydata.
-    layers : int, default 1
-        How many there are (`pvfiblets.mappers.depth_peeling`); vertex and triangle numbers tell them apart.
-
-    Returns
-    -------
-    vtkPolyData
-        Six points and two triangles for each layer, or empty.
     """
     polydata = vtkPolyData()
     points = vtkPoints()

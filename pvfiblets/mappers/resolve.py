@@ -20,7 +20,7 @@ from functools import cache
 from typing import Any
 
 from pvfiblets.engine.errors import EngineError
-from pvfiblets.engine.shaders import read_shader
+from pvfiblets.engine.gl.shaders import read_shader
 
 FEATURES = (
     "gbuffer",
@@ -145,23 +145,7 @@ def _has_piece(feature: str) -> bool:
 
 @cache
 def assemble(features: frozenset[str]) -> tuple[Replacement, ...]:
-    """Return the shader replacements of a set of features.
-
-    Parameters
-    ----------
-    features : frozenset of str
-        Names from `FEATURES`; or of other files of ``shaders/resolve``, which come after these.
-
-    Returns
-    -------
-    tuple of Replacement
-        For `install`.
-
-    Raises
-    ------
-    ValueError
-        A name is unknown, or a piece's tag is left without the piece that has it.
-    """
+    """Return the shader replacements of a set of features."""
     more = sorted(features - set(FEATURES))
     unknown = [feature for feature in more if not _has_piece(feature)]
     if unknown:

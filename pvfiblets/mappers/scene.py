@@ -97,23 +97,7 @@ class Frame:
         return float(axes.min()) / farthest if farthest > 0.0 else 0.0
 
     def rectangle(self, bounds: Sequence[float], slack: float, margin: float) -> tuple[float, float, float, float]:
-        """Return the part of the viewport in which anything within bounds can be seen.
-
-        Parameters
-        ----------
-        bounds : sequence of float
-            xmin, xmax, ymin, ymax, zmin, zmax in data mm.
-        slack : float
-            How far, in mm, things may lie outside the bounds.
-        margin : float
-            Pixels to add on each side.
-
-        Returns
-        -------
-        tuple of float
-            Left, lower, right, upper, within [-1, 1]; all of the viewport where a corner of the bounds is beside or
-            behind the camera.
-        """
+        """Return the part of the viewport in which anything within bounds can be seen."""
         ends = [(bounds[i] - slack, bounds[i + 1] + slack) for i in (0, 2, 4)]
         corners = np.array([[x, y, z, 1.0] for x in ends[0] for y in ends[1] for z in ends[2]])
         clip = corners @ self.model_view_projection.T
@@ -172,12 +156,6 @@ def pixel_scale(renderer: vtkRenderer, viewport: tuple[int, int, int, int]) -> f
     A width is what the viewer sees in the finished picture. Users count pixels of the window, so a line takes the same
     share of the picture whether it is drawn as it is, in an enlarged picture (``screenshot(scale=3)``), from many
     samples, or with fewer dots per inch than usual, as its letters are. More dots per inch alone widen no line.
-
-    Parameters
-    ----------
-    renderer : vtkRenderer
-    viewport : tuple of 4 ints
-        x, y, width, height in pixels of the bound framebuffer: in a tile, of the tile.
     """
     window = renderer.GetRenderWindow()
     fewer_dots = min(1.0, window.GetDPI() / USUAL_DPI)
@@ -197,16 +175,7 @@ _hasty: dict[str, tuple[float, float]] = {}
 
 
 def hurry(window: Any, pixels: float, share: float = 1.0) -> None:
-    """Let a window be coarse for as long as it must be fast.
-
-    Parameters
-    ----------
-    window : vtkRenderWindow
-    pixels : float
-        Pixels of those that are drawn by which lines may be off. 0, with all streamlines, ends it.
-    share : float
-        Of the streamlines of large sets that are drawn.
-    """
+    """Let a window be coarse for as long as it must be fast."""
     address = window.GetAddressAsString("")
     _hasty.pop(address, None)
     if pixels > 0.0 or share < 1.0:
@@ -291,13 +260,7 @@ def others_opaque(renderer: vtkRenderer, actor: vtkProp) -> bool:
 
 
 def world_planes(mapper: Any) -> Matrix:
-    """Return the clipping planes of a mapper.
-
-    Returns
-    -------
-    numpy.ndarray
-        (k, 4) float64 (a, b, c, d) in world mm; a point is kept where ax + by + cz + d >= 0.
-    """
+    """Return the clipping planes of a mapper."""
     planes = []
     for index in range(mapper.GetNumberOfClippingPlanes()):
         plane = mapper.GetClippingPlanes().GetItem(index)

@@ -13,8 +13,8 @@ from typing import Any
 import moderngl
 from vtkmodules.vtkRenderingCore import vtkMapper, vtkRenderer
 
-from pvfiblets.engine.moderngl_extras import GLExtras
-from pvfiblets.engine.shaders import read_shader
+from pvfiblets.engine.gl.moderngl_extras import GLExtras
+from pvfiblets.engine.gl.shaders import read_shader
 
 _DRAW_FRAMEBUFFER, _DEPTH_ATTACHMENT = 0x8CA9, 0x8D00
 _OBJECT_TYPE, _OBJECT_NAME, _TEXTURE_LEVEL = 0x8CD0, 0x8CD1, 0x8CD2
@@ -42,22 +42,7 @@ class OutsideDepth:
         self._texture: moderngl.Texture | None = None
 
     def copy(self, viewport: tuple[int, int, int, int], *, moved: bool = False) -> moderngl.Texture | None:
-        """Copy the depth of the framebuffer that is bound for drawing.
-
-        Parameters
-        ----------
-        viewport : tuple of 4 ints
-            x, y, width, height in pixels of that framebuffer.
-        moved : bool, default False
-            Copy it also where VTK moves depths afterwards.
-
-        Returns
-        -------
-        moderngl.Texture or None
-            r32ui of the viewport's size, keys as in the G-buffer's ``depth``: what is behind them in a pixel will not
-            be seen there. Valid until the next copy. None where the depth cannot be had (depth peeling has none), or
-            where VTK moves the fiblets' depth afterwards (coincident topology).
-        """
+        """Copy the depth of the framebuffer that is bound for drawing."""
         if (vtkMapper.GetResolveCoincidentTopology() and not moved) or not self._is_texture():
             return None
         return self._copy(self._attachment(_OBJECT_NAME), self._gl.get_integer("GL_SAMPLES"), viewport)
@@ -66,17 +51,6 @@ class OutsideDepth:
         """Copy the depth of a renderer's part of its window's own framebuffer, whichever is bound.
 
         Depth peeling draws what is translucent elsewhere, when all that is opaque is in that framebuffer.
-
-        Parameters
-        ----------
-        renderer : vtkRenderer
-        size : tuple of 2 ints
-            Of the viewport.
-
-        Returns
-        -------
-        moderngl.Texture or None
-            As of :meth:`copy`. None where the renderer draws into another framebuffer: its render pass has one.
         """
         framebuffer = renderer.GetRenderWindow().GetRenderFramebuffer()
         depth = None if framebuffer is None else framebuffer.GetDepthAttachmentAsTextureObject()

@@ -24,13 +24,7 @@ _OVER = ("vtkActor2D", "vtkContextActor")
 
 
 def scene_state(renderer: Any) -> Hashable:
-    """Return what a renderer would draw now; equal values mean equal pictures.
-
-    Parameters
-    ----------
-    renderer : vtkRenderer
-        In a window, with a camera that is not shifted (`pvfiblets.mappers.shifted_cameras`).
-    """
+    """Return what a renderer would draw now; equal values mean equal pictures."""
     window = renderer.GetRenderWindow()
     return (
         tuple(window.GetSize()),

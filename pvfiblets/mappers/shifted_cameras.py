@@ -29,21 +29,7 @@ _samples: set[str] = set()
 
 
 def shift(camera: Any, size: tuple[int, int], by: tuple[float, float]) -> Callable[[], None]:
-    """Have a camera show what lies some pixels beside its window.
-
-    Parameters
-    ----------
-    camera : vtkCamera
-    size : tuple of 2 ints
-        Of the picture, or of the renderer's part of it, in those pixels.
-    by : tuple of 2 floats
-        To the right and up.
-
-    Returns
-    -------
-    callable
-        Puts the camera back; twice is harmless.
-    """
+    """Have a camera show what lies some pixels beside its window."""
     kept, address = camera.GetWindowCenter(), camera.GetAddressAsString("")
     first = address not in _cameras
     _set_centre(camera, size, by)

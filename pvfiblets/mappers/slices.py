@@ -11,8 +11,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from pvfiblets.engine.fiblets.gathering import SLICES
-from pvfiblets.engine.fiblets.paint import Paint
+from pvfiblets.engine.fiblets.gather.gathering import SLICES
+from pvfiblets.engine.fiblets.gather.paint import Paint
 from pvfiblets.mappers.gathering import Sums, paint_of
 from pvfiblets.mappers.shader_effects import ShaderEffect
 
@@ -24,7 +24,7 @@ __all__ = ["Slices"]
 
 @dataclass(frozen=True)
 class Slices(ShaderEffect):
-    """All lines behind the nearest show, blended in slices by distance (`pvfiblets.engine.fiblets.gathering`).
+    """All lines behind the nearest show, blended in slices by distance (`pvfiblets.engine.fiblets.gather.gathering`).
 
     The nearest line of each pixel is exact, and so is what all lines let through where they have the same opacity.
     Lines of one slice are blended as if they were mixed evenly.

@@ -18,16 +18,6 @@ _found: dict[int, tuple[weakref.ref[Any], float | None]] = {}
 def line_spacing_of(drawn: Any) -> float | None:
     """Return the distance from a streamline to the next one, in the middle of all places; None where it is not known.
 
-    Parameters
-    ----------
-    drawn : object
-        A `FibletSet`; of other things it is not known.
-
-    Returns
-    -------
-    float or None
-        mm of the data, above 0.
-
     Notes
     -----
     The median of `pvfiblets.halos.spacing.line_spacing` on an even sample of 1,000 streamlines, times the square root

@@ -1,6 +1,7 @@
 """How long engines that fetch parts of their sets may take for a frame, and which of them want another one.
 
-An engine of a set larger than GPU memory (`pvfiblets.engine.fiblets.streamed_renderer`) draws a complete picture as
+An engine of a set larger than GPU memory (`pvfiblets.engine.fiblets.parts.streamed_renderer`) draws a complete
+picture as
 long as nobody waits for the next one. In a window that asks for more frames while it rests (`Picture.paced`) each frame
 takes `PATIENCE` at most, and the next goes on; while the camera moves, nothing is fetched.
 """
@@ -20,13 +21,7 @@ PATIENCE = 0.25
 
 
 def pace(engine: Any, renderer: Any) -> None:
-    """Tell an engine of parts that is about to draw how long it may take.
-
-    Parameters
-    ----------
-    engine : StreamedRenderer
-    renderer : vtkRenderer
-    """
+    """Tell an engine of parts that is about to draw how long it may take."""
     picture = picture_of(renderer)
     engine.hurried = in_motion(renderer)
     paced = picture is not None and picture.refinement is not None and picture.paced()

@@ -22,27 +22,7 @@ LEAST_FIBLETS = 20_000
 def thinned_engine(
     context: Any, slot: Any, fiblets: Any, filtering: Any, make: Callable[..., Any], least: int | None = None
 ) -> Any:
-    """Return the engine that draws as many streamlines as the window asks for.
-
-    Parameters
-    ----------
-    context : WindowContext
-    slot : Slot
-        Its renderer draws all; it keeps what is made here.
-    fiblets : FibletSet
-    filtering : Filter or None
-        What is there to be drawn.
-    make : callable
-        Takes a moderngl context and options of a renderer.
-    least : int, optional
-        As `LEAST_FIBLETS`.
-
-    Returns
-    -------
-    FibletRenderer
-        That of all streamlines where the set is small, is drawn in parts, which have an even share of their own, or
-        where memory does not suffice for two.
-    """
+    """Return the engine that draws as many streamlines as the window asks for."""
     least = LEAST_FIBLETS if least is None else least
     if fiblets.n_fiblets < least or hasattr(slot.renderer, "patience"):
         return slot.renderer

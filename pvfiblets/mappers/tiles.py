@@ -48,20 +48,7 @@ class Margin:
 
 
 def margin_of(renderer: Any, reach: int) -> Margin | None:
-    """Return the surroundings of what a renderer is about to draw.
-
-    Parameters
-    ----------
-    renderer : vtkRenderer
-    reach : int
-        Pixels of the tile that effects look around.
-
-    Returns
-    -------
-    Margin or None
-        None where there are none: the picture is whole; and where they cannot be drawn without leaving traces,
-        because the renderer draws over another's colours or through a render pass.
-    """
+    """Return the surroundings of what a renderer is about to draw."""
     window = renderer.GetRenderWindow()
     if tuple(window.GetTileScale()) == (1, 1) or renderer.GetPass() is not None:
         return None

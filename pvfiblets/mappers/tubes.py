@@ -65,13 +65,7 @@ class TubeOptions(Options):
 
 
 def tube_renderer(ctx: Any, tubes: Any, **options: Any) -> Any:
-    """Make the engine's renderer of spline tubes; the default ``renderer_factory``.
-
-    Raises
-    ------
-    EngineError
-        The window's OpenGL lacks what is wanted; said before anything is copied to the GPU.
-    """
+    """Make the engine's renderer of spline tubes; the default ``renderer_factory``."""
     from pvfiblets.engine.tubes import TubeRenderer
 
     return TubeRenderer(ctx, tubes, **options)

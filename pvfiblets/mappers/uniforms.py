@@ -53,7 +53,7 @@ def set_uniforms(program: Any, frame: Frame, style: Any, fiblets: Any, colouring
         program.SetUniform3f("fibletColour", colouring.color)
     if "colour_point_scalar" in colouring.features and colouring.lut is not None:
         program.SetUniformi("fibletTableSize", len(colouring.lut))
-        reference = fiblets.value_reference(colouring.source) if hasattr(fiblets, "value_reference") else 0.0
+        reference = fiblets.value_reference(colouring.source)
         program.SetUniform3f("fibletTableRange", colouring.scaled_range(reference=reference))
         if colouring.log_scale:
             program.SetUniformf("fibletTableReference", reference)

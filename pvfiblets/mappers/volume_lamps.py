@@ -22,14 +22,7 @@ class OwnLight(ShaderEffect):
 
 
 def shading_of(renderer: Any, actor: Any) -> Shading:
-    """Return the lights of a renderer that are on, as an actor's property reflects them.
-
-    Parameters
-    ----------
-    renderer : vtkRenderer
-        In the middle of a frame: lights that follow the camera are where it is.
-    actor : vtkActor
-    """
+    """Return the lights of a renderer that are on, as an actor's property reflects them."""
     from pvfiblets.engine.volumes.shading import Shading
 
     lights = renderer.GetLights()

@@ -38,13 +38,7 @@ _LIGHT = "light"  # what the engine has in the place of a number at every point
 
 
 def volume_renderer(ctx: Any, volume: Any, **options: Any) -> Any:
-    """Make the engine's renderer of a volume; the default ``renderer_factory``.
-
-    Raises
-    ------
-    EngineError
-        Memory does not suffice, or the volume is larger than eight of this OpenGL's textures.
-    """
+    """Make the engine's renderer of a volume; the default ``renderer_factory``."""
     from pvfiblets.engine.volumes import VolumeRenderer
 
     return VolumeRenderer(ctx, volume, **options)

@@ -34,15 +34,7 @@ def geometry_of(data: Any) -> tuple[Any, ...]:
 
 
 def fiblets_of(data: Any, compression: Mapping[str, Any]) -> FibletSet:
-    """Compress the lines of a PolyData, each cell as a streamline.
-
-    Raises
-    ------
-    TypeError
-        If it is no PolyData.
-    ValueError
-        If it has no lines, or as :func:`pvfiblets.compress` says.
-    """
+    """Compress the lines of a PolyData, each cell as a streamline."""
     from pvfiblets.codec.compress import compress
     from pvfiblets.streamlines import Streamlines
 

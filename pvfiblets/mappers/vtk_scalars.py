@@ -85,13 +85,7 @@ def state_of(mapper: Any, data: Any) -> tuple[Any, ...]:
 
 
 def paint_of(mapper: Any, data: Any) -> Paint | None:
-    """Return what colours some data; None for the property's colour.
-
-    Raises
-    ------
-    ValueError
-        If it is an array of words or of field data, or a map of labels has none of them.
-    """
+    """Return what colours some data; None for the property's colour."""
     found = scalars_of(mapper, data)
     if found is None:
         return None

@@ -124,19 +124,7 @@ class Slot:
         self.drawn.clear()
 
     def list_texture(self, name: str, source: Any, pixels: Any, ctx: Any) -> Any:
-        """Return an RGBA texture that holds a list of colours row by row.
-
-        Parameters
-        ----------
-        name : str
-            Name of the texture in this slot.
-        source : Any
-            The texture is made anew only when this is another object than last time.
-        pixels : callable
-            Returns (n, 4) uint8; called when the texture is made.
-        ctx : moderngl.Context
-            The window's context.
-        """
+        """Return an RGBA texture that holds a list of colours row by row."""
         if name in self.textures and self.versions.get(name) is source:
             return self.textures[name]
         colours = pixels()
@@ -241,11 +229,6 @@ class WindowContext:
         """Return units that VTK does not use at this moment, the highest first.
 
         VTK hands out the lowest free ones. moderngl makes textures on the very last.
-
-        Raises
-        ------
-        RuntimeError
-            Fewer than `count` are free.
         """
         manager = self.window.GetState().GetTextureUnitManager()
         last = min(manager.GetNumberOfTextureUnits(), self.ctx.max_texture_units) - 1
@@ -354,13 +337,7 @@ def contexts_with(mapper: Any) -> list[WindowContext]:
 
 @contextmanager
 def borrowed_context(window: Any) -> Iterator[Any]:
-    """Yield the moderngl context of a window that need not show any fiblets, current and free to be used.
-
-    Parameters
-    ----------
-    window : vtkOpenGLRenderWindow
-        Its OpenGL is started if that has not been done yet.
-    """
+    """Yield the moderngl context of a window that need not show any fiblets, current and free to be used."""
     window.Initialize()
     window.MakeCurrent()
     context = context_of(window)

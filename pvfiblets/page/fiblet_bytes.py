@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pvfiblets.codec.archive import array_member, write_archive
-from pvfiblets.codec.fiblets_file import make_header
+from pvfiblets.codec.files.archive import array_member, write_archive
+from pvfiblets.codec.files.fiblets_file import make_header
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
@@ -25,20 +25,7 @@ The page reads none of the last two, by which pvfiblets opens the file.
 
 
 def fiblet_bytes(fiblets: FibletSet, keep: tuple[str, ...] = ()) -> bytes:
-    """Return a set as a file of records, without other data of streamlines.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-        Of an exact set the records that it is drawn by.
-    keep : tuple of str
-        Arrays of values per point that go along.
-
-    Raises
-    ------
-    KeyError
-        If there is no such array.
-    """
+    """Return a set as a file of records, without other data of streamlines."""
     if missing := [name for name in keep if name not in fiblets.per_point]:
         raise KeyError(f"there are no values per point {missing}; there are {sorted(fiblets.per_point)}")
     bare = replace(

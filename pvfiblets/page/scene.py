@@ -123,13 +123,7 @@ class PageScene:
         self.bounds = (*x, *y, *z)
 
     def plain(self) -> dict[str, Any]:
-        """Return all but the blobs as JSON has it.
-
-        Raises
-        ------
-        ValueError
-            If it shows nothing.
-        """
+        """Return all but the blobs as JSON has it."""
         if not self.layers or not np.isfinite(self.bounds).all():
             raise ValueError("there is nothing that a page could show; add streamlines or surfaces first")
         return {
@@ -159,38 +153,7 @@ def fiblet_layer(
     matrix: npt.NDArray[np.float64] | None = None,
     **more: Any,
 ) -> dict[str, Any]:
-    """Show a set of fiblets.
-
-    Parameters
-    ----------
-    scene : PageScene
-        To which the layer and its bytes are added.
-    fiblets : FibletSet
-        What to show; of exact sets the page draws the points to a few billionths of their extent, as the engine does.
-    name : str
-        For people.
-    colours : dict, optional
-        ``Colours`` of ``client/src/scene.ts``; by default directions.
-    keep : tuple of str
-        Arrays of values per point that the page has; the one that colours is among them.
-    line_width : float
-        Pixels.
-    light : {'line', 'illuminated', 'none'}
-        Which light falls on lines.
-    reflects : tuple of 4 floats
-        Ambient, diffuse, specular, and the specular power.
-    sheen : tuple of 3 floats
-        Colour of highlights.
-    matrix : numpy.ndarray, optional
-        (4, 4), data to world mm.
-    **more
-        Other keys of ``FibletLayer``.
-
-    Returns
-    -------
-    dict
-        The layer.
-    """
+    """Show a set of fiblets."""
     from .fiblet_bytes import fiblet_bytes
 
     layer: dict[str, Any] = {

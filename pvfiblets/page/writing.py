@@ -17,7 +17,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from pvfiblets.whole_files import made_folder, replacing
+from pvfiblets.support.whole_files import made_folder, replacing
 
 from .scene import PageScene
 
@@ -33,32 +33,7 @@ def _resource(name: str) -> str:
 
 
 def write_page(scene: PageScene, path: str | PathLike[str], *, largest_file: int = LARGEST_FILE) -> list[Path]:
-    """Write a page.
-
-    Parameters
-    ----------
-    scene : PageScene
-        What it shows.
-    path : str or PathLike
-        A name ending in ``.html``, or in nothing for a folder with ``index.html``. With more data than `largest_file`
-        the page of a name ending in ``.html`` has a folder of its data beside it: ``figure.html`` and ``figure_data``.
-    largest_file : int
-        Bytes of data that a single file holds at most. A page with a folder needs a server (any that serves files will
-        do): browsers do not read other files for a page that they opened from a disk. In the folder are ``.fiblets``
-        files, which the page reads piece by piece where the server has ranges of bytes, and else as they come.
-
-    Returns
-    -------
-    list of pathlib.Path
-        What was written, the page first.
-
-    Raises
-    ------
-    ValueError
-        If the scene shows nothing, or the name has another ending.
-    OSError
-        If it cannot be written.
-    """
+    """Write a page."""
     path = check_name(path)
     content = scene.plain()
     apart = path.suffix == "" or sum(map(len, scene.blobs)) > largest_file
@@ -90,13 +65,7 @@ def write_page(scene: PageScene, path: str | PathLike[str], *, largest_file: int
 
 
 def check_name(path: str | PathLike[str]) -> Path:
-    """Return a name that a page can have.
-
-    Raises
-    ------
-    ValueError
-        If its ending is that of something else.
-    """
+    """Return a name that a page can have."""
     path = Path(path).expanduser()
     if path.suffix.lower() not in ("", ".html", ".htm"):
         raise ValueError(f"{path}: a page is written as .html, or into a folder whose name has no ending; name it so")

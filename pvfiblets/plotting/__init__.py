@@ -18,7 +18,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from pvfiblets.lazy_imports import names_from
 from pvfiblets.plotting.fiblets.component import AddFiblets, FibletsComponent
 from pvfiblets.plotting.halos.component import (
     AddHaloLines,
@@ -29,6 +28,7 @@ from pvfiblets.plotting.halos.component import (
 from pvfiblets.plotting.slices.component import AddSlices, SlicesComponent
 from pvfiblets.plotting.tubes.component import AddSplineTubes, SplineTubesComponent
 from pvfiblets.plotting.volumes.component import AddRaycastVolume, RaycastVolumesComponent
+from pvfiblets.support.lazy_imports import names_from
 
 if TYPE_CHECKING:
     from pvfiblets.plotting.fiblets.actor import FibletActor

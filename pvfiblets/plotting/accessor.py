@@ -13,7 +13,7 @@ from pvfiblets.streamlines import Streamlines
 if TYPE_CHECKING:
     from pvfiblets.codec.compress import PerPoint
     from pvfiblets.codec.fibletset import FibletSet
-    from pvfiblets.query.density_map import DensityMap
+    from pvfiblets.query.density.density_map import DensityMap
 
 
 @pv.register_dataset_accessor("fiblets", pv.PolyData)
@@ -92,6 +92,6 @@ class FibletsAccessor:
         DensityMap
             ``to_image()`` makes it a :class:`pyvista.ImageData`.
         """
-        from pvfiblets.query.density import density
+        from pvfiblets.query.density.volume import density
 
         return density(self.to_streamlines(), voxel_size, **options)

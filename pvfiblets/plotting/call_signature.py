@@ -73,16 +73,6 @@ def replace_method(
     """Put a function in the place of a method of plotters, as PyVista provides for.
 
     ``pyvista.unregister_plotter_component(name)`` undoes it.
-
-    Parameters
-    ----------
-    name : str
-    call : callable
-        Takes a plotter, the method that it replaces, and its arguments as a tuple and a dict.
-    module : str
-        Where the function is defined.
-    more : str
-        What follows the method's own documentation.
     """
     owner = next(kind for kind in pv.Plotter.__mro__ if name in vars(kind))
     original = vars(owner)[name]
@@ -99,17 +89,7 @@ def replace_method(
 def _method_of_plotters(
     name: str, call: Callable[[Any, tuple[Any, ...], dict[str, Any]], Any], doc: str, signature: inspect.Signature
 ) -> Any:
-    """Return a component that is a method: ``help(plotter.NAME)`` and ``plotter.NAME?`` say what it does.
-
-    Parameters
-    ----------
-    name : str
-    call : callable
-        Takes a plotter, and its arguments as a tuple and a dict.
-    doc : str
-    signature : inspect.Signature
-        With ``self``.
-    """
+    """Return a component that is a method: ``help(plotter.NAME)`` and ``plotter.NAME?`` say what it does."""
     bound = signature.replace(parameters=list(signature.parameters.values())[1:])
 
     class Method:

@@ -93,13 +93,7 @@ class Clipping:
 
 
 def without(known: Mapping[str, Any], name: str | None, kind: str) -> dict[str, Any]:
-    """Return a mapping without one of its entries, or, of None, an empty one.
-
-    Raises
-    ------
-    KeyError
-        If there is no such entry; the message lists those that there are.
-    """
+    """Return a mapping without one of its entries, or, of None, an empty one."""
     if name is None:
         return {}
     if name not in known:

@@ -374,20 +374,7 @@ COUNTS = ("total", "in_frustum", "drawn", "visible")
 
 
 def added_up(report: dict[str, Any]) -> dict[str, Any]:
-    """Return one report of all windows.
-
-    Parameters
-    ----------
-    report : dict
-        Of :meth:`pvfiblets.mappers.FibletMapper.explain`.
-
-    Returns
-    -------
-    dict
-        ``passes``, ``features``, ``buffers``, ``gpu_bytes``, ``fiblets``, ``parts`` and
-        ``cluster``, as
-        :meth:`FibletActor.explain` has them.
-    """
+    """Return one report of all windows."""
     windows = report["windows"]
     buffers = [buffer for window in windows for buffer in window["buffers"]]
     buffers += report["textures"]

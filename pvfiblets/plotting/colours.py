@@ -76,19 +76,7 @@ class ColourSettings:
 
 
 def active_scalars(source: Any, color: Any, rgb: bool | None, *, points: bool = False) -> str | None:
-    """Return what colours a data set of VTK's that came without ``scalars``, by the rules of PyVista's `add_mesh`.
-
-    Parameters
-    ----------
-    source : Any
-        Anything but a data set of VTK's has no such name.
-    color : color-like, optional
-        One colour that is given goes before the data, unless they are colours (``rgb``).
-    rgb : bool, optional
-        Whether the data are colours.
-    points : bool, default: False
-        Whether data of points only will do.
-    """
+    """Return what colours a data set of VTK's that came without ``scalars``, by the rules of PyVista's `add_mesh`."""
     if (color is not None and not rgb) or not (hasattr(source, "IsA") and source.IsA("vtkDataSet")):
         return None
     mesh = pv.wrap(source)
@@ -97,13 +85,7 @@ def active_scalars(source: Any, color: Any, rgb: bool | None, *, points: bool = 
 
 
 def as_limits(clim: Any) -> tuple[float, float]:
-    """Return the two numbers that ``clim`` stands for.
-
-    Raises
-    ------
-    ValueError
-        If it is not one or two finite numbers, the low one first.
-    """
+    """Return the two numbers that ``clim`` stands for."""
     if isinstance(clim, (int, float, np.number)):
         return as_limits((-clim, clim))
     pair = isinstance(clim, (Sequence, np.ndarray)) and not isinstance(clim, str) and len(clim) == 2
@@ -116,26 +98,14 @@ def as_limits(clim: Any) -> tuple[float, float]:
 
 
 def as_count(count: Any) -> int:
-    """Return the number of colours that ``n_colors`` stands for.
-
-    Raises
-    ------
-    ValueError
-        If it is no whole number, or no table has so many.
-    """
+    """Return the number of colours that ``n_colors`` stands for."""
     if not isinstance(count, (int, float, np.number)) or not 1 <= count <= MOST_COLOURS or int(count) != count:
         raise ValueError(f"n_colors is {count!r}; give a whole number above zero, up to {MOST_COLOURS}")
     return int(count)
 
 
 def limits(settings: ColourSettings, scalars: Scalars) -> tuple[float, float]:
-    """Return the values of the first and the last colour.
-
-    Raises
-    ------
-    ValueError
-        If ``clim`` is not one or two finite increasing numbers, or not positive on a log scale.
-    """
+    """Return the values of the first and the last colour."""
     if settings.clim is None:
         # A table of the user's own has a range, which `add_mesh` takes, too.
         own = isinstance(settings.cmap, pv.LookupTable)
@@ -169,11 +139,6 @@ def update_table(
     """Bring ``table`` in step with the settings; the object stays, so scalar bars follow.
 
     ``fiblets`` are needed where there are categories, to count them.
-
-    Raises
-    ------
-    ValueError
-        If the colour map, a colour or ``n_colors`` is none.
     """
     count = as_count(settings.n_colors)
     low, high = limits(settings, scalars)
@@ -223,19 +188,7 @@ def _first(*found: Any) -> Any:
 def make_colouring(
     settings: ColourSettings, scalars: Scalars | None, table: pv.LookupTable, theme: Any
 ) -> Colouring:
-    """Return what the mapper needs to colour the same way as ``table`` does.
-
-    Parameters
-    ----------
-    settings : ColourSettings
-        The user's choice.
-    scalars : Scalars or None
-        ``None`` stands for one solid colour.
-    table : pyvista.LookupTable
-        Already brought in step by :func:`update_table`.
-    theme : pyvista theme
-        Gives the default colour.
-    """
+    """Return what the mapper needs to colour the same way as ``table`` does."""
     if scalars is None:
         return Colouring(
             mode="solid", color=pv.Color(settings.color, default_color=theme.color).float_rgb

@@ -28,27 +28,7 @@ Faces = npt.NDArray[np.int64]
 
 
 def cut_surface(surface: Any, region: Any) -> pv.PolyData:
-    """Return the part of a surface that lies in a region.
-
-    Parameters
-    ----------
-    surface : pyvista.PolyData
-        Of faces; what else it holds is left out. Stays as it is.
-    region : region-like
-        As for :func:`.as_region`.
-
-    Returns
-    -------
-    pyvista.PolyData
-        Triangles, with the surface's point data (between points interpolated) and cell data; empty if none is left.
-
-    Raises
-    ------
-    ValueError
-        If the surface has no faces, or the region is none.
-    TypeError
-        If that is no region.
-    """
+    """Return the part of a surface that lies in a region."""
     from pvfiblets.plotting.region_sources import as_region
 
     region = as_region(region)

@@ -14,43 +14,14 @@ from pvfiblets.streamlines import Streamlines
 
 
 def read_dataset(path: str, **_options: Any) -> pv.PolyData:
-    """Read any tractogram format into PolyData of lines with its point and cell data.
-
-    Parameters
-    ----------
-    path : str
-        A ``.tck``, ``.trk``, ``.trk.gz``, ``.trx``, ``.tt.gz`` or ``.fiblets`` file.
-
-    Returns
-    -------
-    pyvista.PolyData
-        One poly-line cell per streamline, RAS+ mm.
-    """
+    """Read any tractogram format into PolyData of lines with its point and cell data."""
     if "://" in str(path):
         raise LocalFileRequiredError
     return pv.wrap(formats.read(path).to_polydata())
 
 
 def write_dataset(dataset: pv.DataSet, path: str, **_options: Any) -> None:
-    """Write PolyData of lines as a tractogram; the suffix says which format.
-
-    Parameters
-    ----------
-    dataset : pyvista.PolyData
-        Lines, in RAS+ mm.
-    path : str
-        Ends in ``.tck``, ``.trk``, ``.trx`` or ``.fiblets``.
-
-    Raises
-    ------
-    TypeError
-        If the dataset is not PolyData.
-
-    Warns
-    -----
-    UserWarning
-        If the format cannot hold some of the data, which it names.
-    """
+    """Write PolyData of lines as a tractogram; the suffix says which format."""
     if not isinstance(dataset, pv.PolyData):
         raise TypeError(
             f"a {type(dataset).__name__} cannot be written as {Path(path).suffix}; expected "

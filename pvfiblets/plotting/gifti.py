@@ -20,26 +20,7 @@ POINTS, TRIANGLES, LABELS = 1008, 1009, 1002
 
 
 def read_surface(path: str | PathLike[str]) -> pv.PolyData:
-    """Read a surface from a file of GIFTI, such as ``lh.pial.surf.gii``.
-
-    Parameters
-    ----------
-    path : str or PathLike
-        Ends in ``.gii`` or ``.gii.gz``.
-
-    Returns
-    -------
-    pyvista.PolyData
-        Points as the file has them, mm, and triangles. Numbers of vertices in the same file are point data, as of
-        :func:`with_vertex_values`.
-
-    Raises
-    ------
-    FileNotFoundError
-        If there is no such file.
-    FormatError
-        If it is damaged, or has other than one set of points and one of triangles.
-    """
+    """Read a surface from a file of GIFTI, such as ``lh.pial.surf.gii``."""
     place = Path(path).expanduser()
     image = read_gifti(place)
     points = [one.data for one in image.darrays if one.intent == POINTS]
@@ -64,27 +45,7 @@ def read_surface(path: str | PathLike[str]) -> pv.PolyData:
 
 
 def with_vertex_values(mesh: pv.PolyData, path: str | PathLike[str]) -> pv.PolyData:
-    """Return a surface with the numbers of a file of GIFTI as point data.
-
-    Parameters
-    ----------
-    mesh : pyvista.PolyData
-    path : str or PathLike
-        Such as ``lh.thickness.shape.gii``, ``.func.gii`` or ``lh.aparc.label.gii``, of as many vertices.
-
-    Returns
-    -------
-    pyvista.PolyData
-        With an array of the file's name, without suffix; further ones are numbered. Labels have a second array, whose
-        name ends in ``_rgb``: the colours of the file's table, by which ``add_mesh`` shows them.
-
-    Raises
-    ------
-    FileNotFoundError
-        If there is no such file.
-    FormatError
-        If it is damaged, or has no numbers for so many vertices.
-    """
+    """Return a surface with the numbers of a file of GIFTI as point data."""
     place = Path(path).expanduser()
     found = mesh.copy(deep=False)
     if not _add(found, place, read_gifti(place)):

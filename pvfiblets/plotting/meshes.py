@@ -8,8 +8,8 @@ from typing import Any
 
 import pyvista as pv
 
+from pvfiblets.support.vtk_space import FIELD, OURS, Space, space_in_header, space_of_dataset
 from pvfiblets.volumes.gifti_files import SUFFIXES as GIFTI
-from pvfiblets.vtk_space import FIELD, OURS, Space, space_in_header, space_of_dataset
 
 __all__ = ["read_mesh", "space_of_file"]
 

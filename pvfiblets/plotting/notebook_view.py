@@ -182,24 +182,7 @@ def page_view(plotter: Any, *, title: str | None = None, height: int = 480, pict
 def show(
     plotter: Any, *, screenshot: Any = None, title: str | None = None, height: int | None = None
 ) -> PageView | Any:
-    """Show a plotter in a notebook as a page: PyVista calls this for ``plotter.show(jupyter_backend="fiblets")``.
-
-    Parameters
-    ----------
-    plotter : pyvista.Plotter
-    screenshot : str, PathLike, BytesIO or bool, optional
-        Where a picture is saved, too.
-    title : str, optional
-        Of the page.
-    height : int, optional
-        Pixels, 50 to 10,000; the plotter's own by default.
-
-    Returns
-    -------
-    PageView
-        With a picture for readers that run no page. A plotter without fiblets is shown by the picture alone, as by
-        PyVista where it has no other backend: it takes this one, too, where nobody has named one.
-    """
+    """Show a plotter in a notebook as a page: PyVista calls this for ``plotter.show(jupyter_backend="fiblets")``."""
     from PIL import Image
     from pyvista.jupyter.notebook import show_static_image
 

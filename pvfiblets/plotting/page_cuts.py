@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from pvfiblets.engine.regions.clip_planes import placed_sides, planes_of
 from pvfiblets.engine.view import MAX_CLIP_PLANES
-from pvfiblets.query.shapes import SPHERE, SURFACE
+from pvfiblets.query.regions.shapes import SPHERE, SURFACE
 
 __all__ = ["cuts_of"]
 
@@ -18,23 +18,7 @@ OF_THE_READER = 2
 
 
 def cuts_of(planes: npt.NDArray[np.float64], region: Any) -> tuple[dict[str, Any], bool]:
-    """Return what cuts streamlines.
-
-    Parameters
-    ----------
-    planes : numpy.ndarray
-        ``(n, 4)`` rows (a, b, c, d), world mm: kept where ax + by + cz + d >= 0.
-    region : pvfiblets.regions.Region or None
-        World mm; outside of it nothing is kept.
-
-    Returns
-    -------
-    keys : dict
-        ``planes`` and ``cut`` of ``FibletLayer`` (client/src/scene.ts), as far as there are any.
-    whole : bool
-        Whether that is all. Closed surfaces are left out, with what of the region is no plane: along a pixel's ray
-        they begin and end any number of times, of which a page keeps no list.
-    """
+    """Return what cuts streamlines."""
     flat, rest = planes_of(region, max(MAX_CLIP_PLANES - OF_THE_READER - len(planes), 0))
     planes = np.concatenate([planes, flat])
     found: dict[str, Any] = {"planes": planes.tolist()} if len(planes) else {}

@@ -51,23 +51,7 @@ def export_page(
 
 
 def page_of(plotter: Any, *, title: str | None = None) -> PageScene:
-    """Return what a plotter's active renderer shows.
-
-    Parameters
-    ----------
-    plotter : pyvista.BasePlotter
-    title : str, optional
-        Of the page; the plotter's by default.
-
-    Returns
-    -------
-    PageScene
-
-    Raises
-    ------
-    ValueError
-        If it shows nothing that a page can show.
-    """
+    """Return what a plotter's active renderer shows."""
     return page_and_actors(plotter, title=title)[0]
 
 
@@ -92,25 +76,7 @@ def page_and_actors(plotter: Any, *, title: str | None = None) -> tuple[PageScen
 def add_all(
     scene: PageScene, plotter: Any, *, controls: bool = True, besides: Collection[str] = ()
 ) -> tuple[list[str], list[str]]:
-    """Have a page show what a plotter's active renderer shows, but from where.
-
-    Parameters
-    ----------
-    scene : PageScene
-        Without layers.
-    plotter : pyvista.BasePlotter
-    controls : bool
-        Whether numbers go along that the page's reader may choose streamlines by.
-    besides : collection of str
-        Names of actors that somebody else shows.
-
-    Returns
-    -------
-    unable : list of str
-        What a page cannot show, and which actor has it.
-    names : list of str
-        Of the actors that the layers are.
-    """
+    """Have a page show what a plotter's active renderer shows, but from where."""
     renderer = plotter.renderer
     prepare(renderer)  # slices have their colours from then on
     scene.background = _background(renderer)
@@ -284,7 +250,7 @@ def _colours(scene: PageScene, fiblets: Any, colouring: Colouring) -> tuple[Any,
     mode = colouring.mode
     if mode != "point_scalar" and colouring.opacity_source is not None:
         _, said, _ = _colours(scene, fiblets, replace(colouring, opacity_source=None))
-        fiblets, values, keep = _values(scene, fiblets, colouring.opacity_source)
+        fiblets, values, keep = _values(scene, fiblets, colouring.opacity_source, False)
         return fiblets, said | values, keep
     if mode == "orientation":
         return fiblets, {"mode": "direction"}, ()
@@ -295,7 +261,7 @@ def _colours(scene: PageScene, fiblets: Any, colouring: Colouring) -> tuple[Any,
         entries = table[_entries(np.asarray(colouring.values, float), colouring, len(table) - 3)]
         return fiblets, {"mode": "streamline", "data": scene.add_blob(entries)}, ()
     if mode == "point_scalar":
-        fiblets, said, keep = _values(scene, fiblets, colouring.source)
+        fiblets, said, keep = _values(scene, fiblets, colouring.source, colouring.log_scale)
         said |= {"mode": "value", "table": encoded(colouring.table()), "clim": colouring.clim}
         return fiblets, said | {"log": colouring.log_scale}, keep
     if mode == "point_packed":
@@ -307,18 +273,24 @@ def _colours(scene: PageScene, fiblets: Any, colouring: Colouring) -> tuple[Any,
     return fiblets, {"mode": "solid", "colour": colouring.color}, ()
 
 
-def _values(scene: PageScene, bare: Any, source: Any) -> tuple[Any, dict[str, Any], tuple[str, ...]]:
+def _values(
+    scene: PageScene, bare: Any, source: Any, log_scale: bool
+) -> tuple[Any, dict[str, Any], tuple[str, ...]]:
     """Return the set with some values of points, where ``Colours`` of the page find them, and the arrays of it."""
     from pvfiblets.plotting.page_values import with_values
 
-    fiblets, name = scene.once(("values", bare, source), lambda: with_values(bare, source))
+    fiblets, name = scene.once(("values", bare, source, log_scale), lambda: with_values(bare, source, log_scale))
     said: dict[str, Any] = {"values": name}
     if not scene.values_apart:
         return fiblets, said, (name,)
     values = fiblets.per_point[name]
     codes = scene.once(("codes", fiblets, name), lambda: np.asarray(values.codes).tobytes())
-    bits = 8 * values.codes.dtype.itemsize
-    said["codes"] = {"data": scene.add_blob(codes), "bits": bits, "lo": values.lo, "hi": values.hi}
+    said["codes"] = {
+        "data": scene.add_blob(codes),
+        "table": scene.add_blob(np.asarray(values.table).tobytes()),
+        "bits": 8 * values.codes.dtype.itemsize,
+        **{key: getattr(values, key) for key in ("lo", "hi", "reference")},
+    }
     return bare, said, ()
 
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.codec.point_arrays import colours_of_points, with_coded_values
+from pvfiblets.codec.point_arrays import colours_of_points
+from pvfiblets.codec.point_values import as_codes
+from pvfiblets.support.value_reference import relative
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
@@ -17,29 +20,31 @@ __all__ = ["colours", "with_values"]
 _BITS = 16
 
 
-def with_values(fiblets: FibletSet, source: Any) -> tuple[FibletSet, str]:
-    """Return a set that has some values for its points, in 16 bits where it has not, and their name.
+def with_values(fiblets: FibletSet, source: Any, log_scale: bool) -> tuple[FibletSet, str]:
+    """Return a set that has some values for its points as codes of what float32 holds, and their name."""
+    name, values = (source, None) if isinstance(source, str) else (source.name, _sampled(fiblets, source))
+    stored = fiblets.per_point.get(name) if values is None else None
+    table = None if stored is None else stored.table
+    if stored is None or table is None:
+        if values is None:
+            from pvfiblets.query.measures.measures import measure
 
-    Parameters
-    ----------
-    fiblets : FibletSet
-    source : str or VolumeSource
-        As `pvfiblets.mappers.colouring.Colouring` has it.
-    """
-    if isinstance(source, str):
-        if source in fiblets.per_point:
-            return fiblets, source
-        from pvfiblets.query.measures import measure
+            values = measure(fiblets, name).array() if stored is None else stored.values()
+        stored, table = as_codes(values, _BITS)
+    reference = 0.0 if log_scale else stored.reference
+    table = relative(table, reference).astype("<f4")
+    return replace(fiblets, per_point={name: replace(stored, table=table, reference=reference)}), name
 
-        return with_coded_values(fiblets, source, measure(fiblets, source).array(), _BITS), source
-    from pvfiblets.query.image_samples import sample_image
+
+def _sampled(fiblets: FibletSet, source: Any) -> npt.NDArray[Any]:
+    """Values of a volume at points in coded order."""
+    from pvfiblets.query.measures.image_samples import sample_image
 
     points = fiblets.decompress().points
     if source.nearest:  # centres of voxels have the voxels' own values
         voxels = np.rint(points @ source.voxels[:3, :3].T + source.voxels[:3, 3])
         points = voxels @ source.affine[:3, :3].T + source.affine[:3, 3]
-    values = sample_image(source.values, source.affine, points)
-    return with_coded_values(fiblets, source.name, fiblets.in_coded_order(values), _BITS), source.name
+    return fiblets.in_coded_order(sample_image(source.values, source.affine, points))
 
 
 def colours(fiblets: FibletSet, name: str) -> npt.NDArray[np.uint8]:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyvista as pv
 
-from pvfiblets.query.image_samples import three_axes
-from pvfiblets.vtk_space import space_of_dataset, to_ras
+from pvfiblets.query.measures.image_samples import three_axes
+from pvfiblets.support.vtk_space import space_of_dataset, to_ras
 
 if TYPE_CHECKING:
     from pvfiblets.regions import Region
@@ -22,24 +22,7 @@ AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
 def as_region(what: Any) -> Region:
-    """Return the region that something stands for.
-
-    Parameters
-    ----------
-    what : Region, PolyData, ImageData, path, nibabel image, six bounds, or (normal, origin)
-        A closed mesh is what it encloses. Volumes are of labels: all that are not zero.
-
-    Returns
-    -------
-    Region
-
-    Raises
-    ------
-    TypeError
-        If it stands for none.
-    ValueError
-        If a mesh is open, empty or inside-out; if a number makes no sense.
-    """
+    """Return the region that something stands for."""
     from pvfiblets import regions
 
     if isinstance(what, regions.Region):

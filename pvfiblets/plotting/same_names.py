@@ -20,11 +20,6 @@ def with_preference(source: Any, preference: Preference) -> Any:
 
     The other array of such a name is called ``"NAME (line)"`` or ``"NAME (point)"``, and can be used by that. Sources
     without such names are returned as they are, others are not changed.
-
-    Raises
-    ------
-    ValueError
-        If the preference is neither.
     """
     if preference not in _OTHER:
         raise ValueError(f"preference is {preference!r}; choose 'point' or 'cell'")

@@ -4,7 +4,7 @@ A drawable's settings are the body of one class, a :class:`Settings`, from which
 :class:`Setting` in it is the live property of the actor, with its check and doc; the keyword argument of ``add_...``
 (`pvfiblets.plotting.actor_registry`), with the same check; the argument in the type stub ``plotter.pyi``; and, where it
 has a :class:`Row`, the row on the web page, the entry in saved sessions and the line of scripts
-(`pvfiblets.web.layer_properties`). A place (`pvfiblets.plotting.setting_places`) says what a setting changes.
+(`pvfiblets.web.scene.layer_properties`). A place (`pvfiblets.plotting.setting_places`) says what a setting changes.
 
 The module, and the modules of settings, import nothing that draws: arguments can be read before anything is loaded.
 """
@@ -148,13 +148,7 @@ class Argument:
         return f"{kind}, optional" if self.default is None else f"{kind}, default: {default}"
 
     def check(self, value: Any) -> Any:
-        """Return a value as it is kept.
-
-        Raises
-        ------
-        ValueError
-            If it is none; the message names it and what was expected.
-        """
+        """Return a value as it is kept."""
         return value if self._check is None else self._check(self.name, value)
 
     def given(self, value: Any) -> Any:
@@ -347,13 +341,7 @@ class Given(dict[str, Any]):
 
 
 def number(name: str, value: Any, low: float | None, high: float | None, unit: str = "") -> float:
-    """Return a number that lies between two others, both included.
-
-    Raises
-    ------
-    ValueError
-        If it does not; the message names it, and between what it may be.
-    """
+    """Return a number that lies between two others, both included."""
     # A numpy array of no dimension is a number, too.
     plain = value.item() if getattr(value, "ndim", None) == 0 else value
     found = float(plain) if isinstance(plain, Real) else math.nan
@@ -370,13 +358,7 @@ def number(name: str, value: Any, low: float | None, high: float | None, unit: s
 
 
 def truth(name: str, value: Any) -> bool:
-    """Return whether something is true.
-
-    Raises
-    ------
-    ValueError
-        If it is a word: that for "no" would be true as well.
-    """
+    """Return whether something is true."""
     if isinstance(value, str):
         raise ValueError(f"{name} is {value!r}; give True or False")
     return bool(value)

@@ -28,21 +28,7 @@ _METHOD: Any = next(vars(kind)["screenshot"] for kind in pv.Plotter.__mro__ if "
 
 
 def screenshot(plotter: Any, filename: Any = None, *, return_img: bool = True, **options: Any) -> Any:
-    """Take a picture without the background, as PNG has it: colours are not multiplied by the opacity.
-
-    Parameters
-    ----------
-    plotter : pyvista.BasePlotter
-    filename : str, path, file object or None
-    return_img : bool
-    **options
-        ``window_size`` and ``scale`` of :meth:`pyvista.Plotter.screenshot`.
-
-    Returns
-    -------
-    pyvista_ndarray or None
-        ``(height, width, 4)`` uint8.
-    """
+    """Take a picture without the background, as PNG has it: colours are not multiplied by the opacity."""
     pictures = []
     for ground in range(2):
         with _on_ground(plotter, ground):

@@ -82,19 +82,7 @@ _SPECIAL = {
 
 
 def why_not(add: str, name: str) -> str | None:
-    """Return what to say of an argument that a method of plotters does not take; None for one that nobody has.
-
-    Parameters
-    ----------
-    add : str
-        The method, such as ``"add_fiblets"``.
-    name : str
-        The argument.
-
-    Returns
-    -------
-    str or None
-    """
+    """Return what to say of an argument that a method of plotters does not take; None for one that nobody has."""
     why = _SPECIAL.get(add, {}).get(name) or _WORDS.get(name)
     if name in _OURS:
         why = f"give {_OURS[name]}"

@@ -6,5 +6,5 @@ A report is the file ``report.json`` (:mod:`.report_file`); the Markdown page (:
 (:mod:`.plots`) read that file alone, so that they can be made again, or changed, without new measurements.
 
 :mod:`.studies` lists the studies and explains how to add one. They use the engine alone, without VTK, except
-:mod:`.features_window`; matplotlib is imported when plots are made.
+`window`; matplotlib is imported when plots are made.
 """

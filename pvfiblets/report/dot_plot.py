@@ -14,22 +14,7 @@ __all__ = ["in_rows"]
 
 
 def in_rows(study: StudyResult, records: Sequence[Record], pair: Axes, colours: Mapping[str, str]) -> Any:
-    """Draw a picture of two panels: a row for each record, for each of its two figures a dot.
-
-    Parameters
-    ----------
-    study : StudyResult
-    records : sequence of Record
-        In the order of rows.
-    pair : Axes
-    colours : mapping of str to str
-        Of each method.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        The line from the default's figure to a dot is as long as the one is a multiple of the other.
-    """
+    """Draw a picture of two panels: a row for each record, for each of its two figures a dot."""
     sets = list(dict.fromkeys(record.data for record in records))
     titled = [(name, [record for record in records if record.data == name]) for name in sets]
     rows = sum(len(members) for _, members in titled)

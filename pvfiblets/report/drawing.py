@@ -15,8 +15,8 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from .errors_and_times import Turns
 from .record import LeftOut, Record, Timing
+from .studies.codec.errors_and_times import Turns
 from .study import Options, Unavailable
 
 __all__ = ["LATE", "Part", "clock_of", "drawing_context", "run_parts", "timing", "turns_of"]
@@ -32,21 +32,10 @@ SOFTWARE = re.compile("llvmpipe|softpipe|swrast|swiftshader|software", re.IGNORE
 
 @contextlib.contextmanager
 def drawing_context(options: Options) -> Iterator[Any]:
-    """Make a bare OpenGL context for a study, and give it back.
-
-    Parameters
-    ----------
-    options : Options
-        ``driver`` is set to what draws.
-
-    Raises
-    ------
-    Unavailable
-        If no context can be made.
-    """
+    """Make a bare OpenGL context for a study, and give it back."""
     try:
         from pvfiblets.engine.errors import EngineError
-        from pvfiblets.engine.standalone import bare_context
+        from pvfiblets.engine.gl.standalone import bare_context
 
         ctx = bare_context()
     except ImportError as error:

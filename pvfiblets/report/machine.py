@@ -16,24 +16,7 @@ PACKAGES = ("pvfiblets", "numpy", "numba", "moderngl", "vtk", "pyvista", "dipy",
 
 
 def about(seed: int, quick: bool, driver: str = "") -> dict[str, Any]:
-    """Describe this machine.
-
-    Parameters
-    ----------
-    seed : int
-        Of all synthetic data.
-    quick : bool
-        Whether only a little of each was measured.
-    driver : str
-        OpenGL renderer and version, where a study draws.
-
-    Returns
-    -------
-    dict
-        ``name`` (what records refer to), ``processor``, ``cores``, ``system``, ``driver``, ``versions``, ``seed``,
-        ``quick``, ``date``, and ``load``: programs that wanted to run besides when the report was begun, where the
-        system tells.
-    """
+    """Describe this machine."""
     found: dict[str, Any] = {
         "name": slug(processor()),
         "processor": processor(),

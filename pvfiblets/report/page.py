@@ -24,18 +24,7 @@ Pictures = Mapping[str, Sequence[tuple[str, str]]]
 
 
 def page(report: Report, pictures: Pictures) -> str:
-    """Write a report as Markdown.
-
-    Parameters
-    ----------
-    report : Report
-    pictures : mapping of str to sequence of (str, str)
-        By study: file names beside the page, and what they show.
-
-    Returns
-    -------
-    str
-    """
+    """Write a report as Markdown."""
     lines = ["# Error against run time", "", _WHAT, "", *_about(report.about), "", *_overview(report.studies)]
     for study in report.studies:
         if not study.unavailable:

@@ -11,19 +11,7 @@ __all__ = ["mark_fronts", "pareto"]
 
 
 def pareto(points: Sequence[tuple[float, float]]) -> list[bool]:
-    """Say of each point whether it lies on the Pareto front, less being better.
-
-    Parameters
-    ----------
-    points : sequence of (float, float)
-        Such as cost and error.
-
-    Returns
-    -------
-    list of bool
-        True where no other point is at least as good in both and better in one. Equal points share a place; points
-        that are not finite have none.
-    """
+    """Say of each point whether it lies on the Pareto front, less being better."""
     on = [False] * len(points)
     finite = [i for i, point in enumerate(points) if all(map(math.isfinite, point))]
     least, before = math.inf, math.inf  # the least y so far, and where it was first reached

@@ -29,19 +29,7 @@ ZERO_BELOW = 10.0  # errors of 0 are drawn so far under the least other one
 
 
 def draw(report: Report, folder: Path) -> dict[str, list[tuple[str, str]]]:
-    """Draw all pictures.
-
-    Parameters
-    ----------
-    report : Report
-    folder : Path
-        Where PNG files go, ``STUDY-AXES-GROUP.png``.
-
-    Returns
-    -------
-    dict of str to list of (str, str)
-        By study: file name and what it shows.
-    """
+    """Draw all pictures."""
     made: dict[str, list[tuple[str, str]]] = {}
     for study in report.studies:
         shown = [record for record in study.records if record.group]

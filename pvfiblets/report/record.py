@@ -108,18 +108,7 @@ class Record:
         return self.value(path) * (self.times[name].scale if kind == "times" and name in self.times else 1.0)
 
     def value(self, path: str) -> float:
-        """Return one number.
-
-        Parameters
-        ----------
-        path : str
-            ``"errors/NAME"``, ``"costs/NAME"``, or ``"times/NAME"`` for the seconds that one item takes.
-
-        Returns
-        -------
-        float
-            NaN where this record has no such figure.
-        """
+        """Return one number."""
         kind, _, name = path.partition("/")
         if kind == "times":
             return self.times[name].each if name in self.times else math.nan

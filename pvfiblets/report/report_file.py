@@ -51,13 +51,7 @@ class Report:
 
     @classmethod
     def from_json(cls, data: Mapping[str, Any], path: str | PathLike[str] = "report") -> Report:
-        """Undo :meth:`to_json`.
-
-        Raises
-        ------
-        FormatError
-            If this is no report, or one of another version; the error names ``path``.
-        """
+        """Undo :meth:`to_json`."""
         if not isinstance(data, Mapping) or data.get("format") != FORMAT:
             found = data.get("format") if isinstance(data, Mapping) else type(data).__name__
             raise FormatError(path, None, f"the format {found!r}", f"{FORMAT!r}, as `pvfiblets report` writes it")
@@ -77,13 +71,7 @@ class Report:
 
     @classmethod
     def load(cls, path: str | PathLike[str]) -> Report:
-        """Read a ``report.json``, or the one in a folder.
-
-        Raises
-        ------
-        FormatError
-            If it is not one.
-        """
+        """Read a ``report.json``, or the one in a folder."""
         file = Path(path)
         if file.is_dir():
             file = file / NAME

@@ -8,10 +8,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from . import machine, studies
-from .data_sets import files_of
 from .pareto import mark_fronts
 from .record import CaseResult, StudyResult
 from .report_file import Report
+from .studies.codec.data_sets import files_of
 from .study import Budget, Options, Unavailable
 
 __all__ = ["QUICK_SECONDS", "make_report", "one_study", "write_pages"]
@@ -39,34 +39,7 @@ def make_report(
     log: Log = to_stderr,
     clock: Callable[[], float] = time.monotonic,
 ) -> Report:
-    """Run studies and keep what they find.
-
-    Parameters
-    ----------
-    folder : Path
-        ``report.json`` is written into it after every study, so that an interruption costs one study.
-    only : sequence of str, optional
-        Names of studies; all by default.
-    data : sequence of Path
-        Real files, and folders of such.
-    quick : bool
-        A little of each, in two minutes at most on two cores, plots included. What does not fit is named in the report.
-    minutes : float, optional
-        For measuring, shared among the studies. By default as long as it takes, or those of a quick report.
-    seed : int
-        Of synthetic data.
-    log : callable
-        Takes lines of progress.
-    clock : callable
-        Seconds, for the budget.
-
-    Raises
-    ------
-    ValueError
-        For a name that is no study's, minutes that are not above 0, or a negative seed.
-    FileNotFoundError
-        If a file of ``data`` is not there.
-    """
+    """Run studies and keep what they find."""
     names = studies.chosen_names(only)
     if minutes is not None and not minutes > 0.0:
         raise ValueError(f"minutes is {minutes}; give a number above 0")

@@ -31,19 +31,7 @@ def shown(values: npt.NDArray[Any], below: float | None, above: float | None) ->
 
 
 def mapped(values: npt.NDArray[Any], table: npt.NDArray[np.uint8], clim: tuple[float, float], log: bool) -> Floats:
-    """Return the colours of numbers.
-
-    Parameters
-    ----------
-    values : numpy.ndarray
-        ``(height, width)``; NaN has the first colour.
-    table : numpy.ndarray
-        ``(n, 4)`` uint8.
-    clim : tuple of float
-        Values of the first and the last colour.
-    log : bool
-        Whether colours spread over the logarithm.
-    """
+    """Return the colours of numbers."""
     low, high = clim
     with np.errstate(all="ignore"):
         if log:
@@ -55,17 +43,7 @@ def mapped(values: npt.NDArray[Any], table: npt.NDArray[np.uint8], clim: tuple[f
 
 
 def direction_colours(vectors: npt.NDArray[Any], weights: npt.NDArray[Any] | None, clim: tuple[float, float]) -> Floats:
-    """Return red, green and blue by the size of a vector's parts, brighter where a weight is greater.
-
-    Parameters
-    ----------
-    vectors : numpy.ndarray
-        ``(height, width, 3)``: sizes of the parts along R, A and S.
-    weights : numpy.ndarray, optional
-        ``(height, width)``, such as FA; 1 everywhere if left out.
-    clim : tuple of float
-        Weights of black and of full colour.
-    """
+    """Return red, green and blue by the size of a vector's parts, brighter where a weight is greater."""
     length = np.linalg.norm(vectors, axis=-1, keepdims=True)
     with np.errstate(all="ignore"):
         unit = np.where(length > 0.0, vectors / length, 0.0)
@@ -94,24 +72,7 @@ def outlines(codes: npt.NDArray[Any], width: int = 1) -> Mask:
 
 
 def blend(under: Floats | None, colours: Floats, visible: Mask, opacity: float, how: str) -> Floats:
-    """Lay a layer over, or add it to, what is there.
-
-    Parameters
-    ----------
-    under : numpy.ndarray, optional
-        Multiplied by its opacity; changed in place.
-    colours : numpy.ndarray
-        Not multiplied.
-    visible : numpy.ndarray
-        ``(height, width)`` bool.
-    opacity : float
-    how : {'over', 'add'}
-
-    Returns
-    -------
-    numpy.ndarray
-        Multiplied by its opacity.
-    """
+    """Lay a layer over, or add it to, what is there."""
     share = np.where(visible, colours[..., 3] * np.float32(opacity), np.float32(0.0))[..., None]
     top = np.concatenate([colours[..., :3] * share, share], axis=-1)
     if under is None:

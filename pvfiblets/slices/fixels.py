@@ -68,13 +68,7 @@ class Fixels:
         return list(found)
 
     def numbers(self, given: Any) -> npt.NDArray[np.float32]:
-        """Return ``(n,)`` numbers of fixels: those of a name, read from the folder if need be, or an array.
-
-        Raises
-        ------
-        ValueError
-            If there are none of the name, or not one of each fixel.
-        """
+        """Return ``(n,)`` numbers of fixels: those of a name, read from the folder if need be, or an array."""
         if not isinstance(given, str):
             found = np.asarray(given, np.float32)
             if found.shape != (len(self),):
@@ -133,29 +127,7 @@ def files_beside(path: Path) -> list[Path]:
 
 
 def read_fixels(path: Path) -> tuple[Fixels, Array, str] | None:
-    """Read a folder of fixels, or one of its files.
-
-    Parameters
-    ----------
-    path : Path
-        The folder, its index or directions, or a file of numbers.
-
-    Returns
-    -------
-    fixels : Fixels
-        Of a file of numbers with these, and the name of them as ``shown``.
-    affine : numpy.ndarray
-        ``(4, 4)`` voxel indices to mm.
-    name : str
-        The folder's or file's.
-    None
-        If the file is no part of such a folder, as images of voxels that lie in it are not.
-
-    Raises
-    ------
-    FormatError
-        If a folder has no index or directions, or they do not fit each other.
-    """
+    """Read a folder of fixels, or one of its files."""
     beside = files_beside(path)
     if not beside:
         if path.is_dir():

@@ -76,18 +76,7 @@ def plane_axes(frame: Array, orientation: str) -> tuple[Array, Array]:
 
 
 def nearest_frame(affine: Array) -> Array:
-    """Return the right-handed directions R, A and S that come nearest to an image's axes, sheared ones, too.
-
-    Parameters
-    ----------
-    affine : numpy.ndarray
-        ``(4, 4)``.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(3, 3)``, columns of length 1 at right angles.
-    """
+    """Return the right-handed directions R, A and S that come nearest to an image's axes, sheared ones, too."""
     u, _, vh = np.linalg.svd(affine[:3, :3] / np.linalg.norm(affine[:3, :3], axis=0))
     axes = u @ vh
     left = {0, 1, 2}
@@ -104,20 +93,7 @@ def nearest_frame(affine: Array) -> Array:
 
 
 def covered(corners: Iterable[Array], position: Array, along: Array, up: Array) -> Array | None:
-    """Return what of a plane lies in any of some parallelepipeds.
-
-    Parameters
-    ----------
-    corners : iterable of (8, 3) arrays
-        Numbered by three bits, as `SliceImage.corners` are.
-    position, along, up : numpy.ndarray
-        ``(3,)`` a point of the plane and two unit directions at right angles in it.
-
-    Returns
-    -------
-    numpy.ndarray or None
-        ``[least along, most along, least up, most up]`` mm from the position; None if the plane misses them.
-    """
+    """Return what of a plane lies in any of some parallelepipeds."""
     normal = np.cross(along, up)
     found: list[Array] = []
     for one in corners:

@@ -102,19 +102,7 @@ def _normalised(radii: Array, each: bool) -> Array:
 
 
 def lines_of_peaks(image: SliceImage, voxels: Ints, size: float, longest: float | None) -> Glyphs:
-    """Return two ends of each peak; those that are zero, or no numbers, are left out.
-
-    Parameters
-    ----------
-    image : SliceImage
-        Three numbers of each peak, mm along R, A and S.
-    voxels : numpy.ndarray
-        ``(n, 3)``.
-    size : float
-        Length of the longest line per the smallest side of a voxel.
-    longest : float, optional
-        Length of a peak that is drawn as long as that; None draws all so.
-    """
+    """Return two ends of each peak; those that are zero, or no numbers, are left out."""
     vectors = image.values[tuple(voxels.T)].astype(np.float64).reshape(len(voxels), -1, 3)
     length = np.linalg.norm(vectors, axis=-1)
     which, peak = np.nonzero(length > 0.0)
@@ -128,21 +116,7 @@ def lines_of_peaks(image: SliceImage, voxels: Ints, size: float, longest: float 
 def lines_of_fixels(
     image: SliceImage, voxels: Ints, size: float, lengths: npt.NDArray[np.float32] | None, longest: float
 ) -> tuple[Glyphs, Ints]:
-    """Return two ends of each fixel of some voxels, coloured by direction, and the numbers ``(k,)`` of the fixels.
-
-    Parameters
-    ----------
-    image : SliceImage
-        With fixels.
-    voxels : numpy.ndarray
-        ``(n, 3)``.
-    size : float
-        Length of a line per the smallest side of a voxel.
-    lengths : numpy.ndarray, optional
-        ``(n_fixels,)``; lines are as long as these per the longest, and those of none are left out. All alike without.
-    longest : float
-        The length of a line of that size.
-    """
+    """Return two ends of each fixel of some voxels, coloured by direction, and the numbers ``(k,)`` of the fixels."""
     assert image.fixels is not None
     fixels, which = image.fixels.of_voxels(voxels)
     share = np.ones(len(fixels)) if lengths is None else lengths[fixels].astype(np.float64) / longest

@@ -122,29 +122,7 @@ class SliceImage:
 
 
 def as_slice_image(source: Any, name: str | None = None) -> SliceImage:
-    """Take an image from any source.
-
-    Parameters
-    ----------
-    source : object
-        - The path of a NIfTI (1 and 2), MGH, MIF, NRRD, MetaImage or VTI file, or a fixel directory of MRtrix or one of
-          its files: its voxels have as many numbers as fixels, or the greatest of the file's.
-        - An image of nibabel.
-        - ``(nx, ny, nz)`` or ``(nx, ny, nz, n)`` numbers, whose voxels are 1 mm wide, or ``(array, affine)``.
-        - :class:`pyvista.ImageData`: its active scalars; point data are centres of voxels, cell data voxels.
-        - Anything with ``values`` and ``affine``, such as a density map, or a `SliceImage`.
-    name : str, optional
-        The file's, or ``"image"``, by default.
-
-    Raises
-    ------
-    FileNotFoundError
-        If there is no such file.
-    TypeError
-        If the source is of another kind.
-    ValueError
-        If a file is damaged, the array has other than three or four axes, or the affine cannot be inverted.
-    """
+    """Take an image from any source."""
     if isinstance(source, SliceImage):
         return source
     labels = colours = False

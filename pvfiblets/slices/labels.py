@@ -68,27 +68,7 @@ def distinct_colours(labels: npt.NDArray[np.int64]) -> npt.NDArray[np.uint8]:
 
 
 def as_label_table(given: Any) -> LabelTable:
-    """Take a table of labels from a file, a mapping, or as it is.
-
-    Parameters
-    ----------
-    given : path, LabelTable or mapping
-        - A colour table of FreeSurfer (``FreeSurferColorLUT.txt``, ``.ctab``), or of MRtrix (``fs_default.txt``), which
-          has an abbreviation before the name and an opacity. Colours are 0 to 255, or fractions up to 1.
-        - A description of labels of ITK-SNAP (``.label``, ``.txt``).
-        - A table of BIDS (``.tsv``), with the columns ``index``, ``name`` and maybe ``color`` (``#rrggbb``).
-        - A file of GIFTI with a table of labels (``.label.gii``).
-        - By number: a name, a colour, or both as ``(name, colour)``; colours as matplotlib names them.
-
-    Raises
-    ------
-    FileNotFoundError
-        If there is no such file.
-    FormatError
-        If a file holds no such table.
-    TypeError, ValueError
-        If it is something else.
-    """
+    """Take a table of labels from a file, a mapping, or as it is."""
     if isinstance(given, LabelTable):
         return given
     if isinstance(given, Mapping):

@@ -20,20 +20,7 @@ Array = npt.NDArray[np.float64]
 
 
 def degrees(n: int, full: bool) -> int:
-    """Return the highest degree of so many coefficients.
-
-    Parameters
-    ----------
-    n : int
-        Coefficients per voxel.
-    full : bool
-        Whether odd degrees are there, too.
-
-    Raises
-    ------
-    ValueError
-        If no degree has so many.
-    """
+    """Return the highest degree of so many coefficients."""
     for degree in range(0, 33, 1 if full else 2):
         if n == ((degree + 1) ** 2 if full else (degree + 1) * (degree + 2) // 2):
             return degree
@@ -42,24 +29,7 @@ def degrees(n: int, full: bool) -> int:
 
 
 def sh_matrix(directions: npt.ArrayLike, degree: int, basis: str = "mrtrix", full: bool = False) -> Array:
-    """Return values of all harmonics on directions.
-
-    Parameters
-    ----------
-    directions : array_like
-        ``(n, 3)`` of length 1.
-    degree : int
-        The highest.
-    basis : str
-        One of `BASES`.
-    full : bool, default: False
-        Whether odd degrees are there, too.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(n, m)``, by degree and then by order from ``-l`` to ``l``.
-    """
+    """Return values of all harmonics on directions."""
     if basis not in BASES:
         raise ValueError(f"basis is {basis!r}; choose one of {BASES}")
     x, y, z = np.asarray(directions, np.float64).T

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.progress_bar import progress_bar
 from pvfiblets.streamlines import Streamlines
+from pvfiblets.support.progress_bar import progress_bar
 
 from .tracking import BUNDLES, iter_brain_streamlines
 

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pvfiblets.halos import HaloLines, HaloPoints
-from pvfiblets.ragged import offsets_from_counts
+from pvfiblets.support.ragged import offsets_from_counts
 
 from .tracking import brain_streamlines
 

@@ -41,28 +41,7 @@ Ints = npt.NDArray[np.int64]
 
 
 def tracked_streamlines(algorithm: str, n_streamlines: int, step: float, seed: int = 0) -> Streamlines:
-    """Make a whole-brain-like tractogram that turns as one of an algorithm does.
-
-    Parameters
-    ----------
-    algorithm : str
-        Of `ALGORITHMS`.
-    n_streamlines : int
-    step : float
-        Distance between consecutive points along the streamline, mm.
-    seed : int, default: 0
-        The same seed gives the same numbers.
-
-    Returns
-    -------
-    Streamlines
-        float32 points.
-
-    Raises
-    ------
-    ValueError
-        If the algorithm is none of `ALGORITHMS`, or as :func:`.brain_streamlines` does.
-    """
+    """Make a whole-brain-like tractogram that turns as one of an algorithm does."""
     if algorithm not in ALGORITHMS:
         raise ValueError(f"algorithm is {algorithm!r}; choose one of {', '.join(ALGORITHMS)}")
     noise = NOISE * (step / NOISE_STEP) ** 0.5 if algorithm.startswith("iFOD") else 0.0

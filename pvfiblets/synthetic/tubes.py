@@ -10,8 +10,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.ragged import offsets_from_counts
 from pvfiblets.streamlines import Streamlines
+from pvfiblets.support.ragged import offsets_from_counts
 from pvfiblets.tubes.build import as_spline_tubes
 from pvfiblets.tubes.spline_tubes import SplineTubes
 

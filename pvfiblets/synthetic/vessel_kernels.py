@@ -51,23 +51,7 @@ def draw_vessels(
     segments: Any, which: Any, offsets: Any, half: float, spacing: float, edge: float, noise: float, seed: int,
     begin: int, out: Any,
 ) -> None:  # fmt: skip
-    """Draw cones with round ends; where several overlap, the brightest shows.
-
-    Parameters
-    ----------
-    segments : ndarray
-        ``(n, 8)`` x, y, z, radius of both ends, mm.
-    which, offsets : ndarray
-        Segments of slice ``k``: ``which[offsets[k]:offsets[k + 1]]``.
-    half, spacing, edge : float
-        Half the cube's side, between voxels, and over which edges blur, mm.
-    noise, seed
-        As of the volume.
-    begin : int
-        The first of the slices.
-    out : ndarray
-        ``(m, n, n)`` float32, brightness from 0 to 1: z, y, x.
-    """
+    """Draw cones with round ends; where several overlap, the brightest shows."""
     n = out.shape[1]
     for each in numba.prange(len(out)):
         k = begin + each
@@ -103,15 +87,7 @@ def draw_vessels(
 def draw_head(
     waves: Any, half: float, spacing: float, edge: float, noise: float, seed: int, begin: int, out: Any
 ) -> None:
-    """Draw shells around the middle, the outer ones first.
-
-    Parameters
-    ----------
-    waves : ndarray
-        ``(n, 4)``: folds lie where the sum of cos(w . direction + phase) is 0.
-    half, spacing, edge, noise, seed, begin, out
-        As of :func:`draw_vessels`.
-    """
+    """Draw shells around the middle, the outer ones first."""
     n = out.shape[1]
     rx, ry, rz = 74.0, 92.0, 72.0  # mm, of the scalp
     scale = math.sqrt(2.0 / len(waves))

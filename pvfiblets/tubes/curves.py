@@ -43,26 +43,6 @@ def controls(tubes: SplineTubes, segments: npt.ArrayLike | None = None, middle: 
 
     Negative control radii are raised to 0 before the halves are joined, so that they still meet with one derivative.
 
-    Parameters
-    ----------
-    tubes : SplineTubes
-    segments : array_like of int, optional
-        ``(k,)`` indices of segments; all of them if left out.
-    middle : float, optional
-        ``c``, 0..1: the share of the end derivatives that the middle control points lie ahead.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(k, 2, 3, 4)`` float64: of each segment, half and control point ``x, y, z, r`` in mm.
-
-    Raises
-    ------
-    ValueError
-        If `middle` is no number of 0..1.
-    IndexError
-        If there is no such segment.
-
     Notes
     -----
     Russig et al. 2020, section 3.2, "Segment subdivision".
@@ -83,20 +63,7 @@ def controls(tubes: SplineTubes, segments: npt.ArrayLike | None = None, middle: 
 
 
 def evaluate(controls: npt.ArrayLike, t: npt.ArrayLike) -> Array:
-    """Points of quadratic Bezier curves.
-
-    Parameters
-    ----------
-    controls : array_like
-        ``(..., 3, d)`` control points.
-    t : array_like
-        Parameters, 0 to 1; they broadcast with the axes of `controls` before the last two.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(..., d)`` float64.
-    """
+    """Points of quadratic Bezier curves."""
     first, second, third = _points(controls)
     t = np.asarray(t, np.float64)[..., None]
     found: Array = (1.0 - t) ** 2 * first + 2.0 * t * (1.0 - t) * second + t**2 * third
@@ -104,20 +71,7 @@ def evaluate(controls: npt.ArrayLike, t: npt.ArrayLike) -> Array:
 
 
 def derivative(controls: npt.ArrayLike, t: npt.ArrayLike) -> Array:
-    """Derivatives of quadratic Bezier curves by their own parameter.
-
-    Parameters
-    ----------
-    controls : array_like
-        ``(..., 3, d)`` control points.
-    t : array_like
-        Parameters, 0 to 1; they broadcast with the axes of `controls` before the last two.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(..., d)`` float64. A half is run through in half the segment's parameter: twice as much is the segment's.
-    """
+    """Derivatives of quadratic Bezier curves by their own parameter."""
     first, second, third = _points(controls)
     t = np.asarray(t, np.float64)[..., None]
     found: Array = 2.0 * ((1.0 - t) * (second - first) + t * (third - second))
@@ -154,25 +108,7 @@ def cubic(tubes: SplineTubes, segments: npt.ArrayLike, t: npt.ArrayLike) -> Arra
 
 
 def sample_spheres(controls: npt.ArrayLike, count: int = 33) -> Array:
-    """Spheres along curves, at even steps of the parameter, both ends included.
-
-    Parameters
-    ----------
-    controls : array_like
-        ``(..., 3, 4)`` control points.
-    count : int, optional
-        Spheres of each curve, at least 2.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(..., count, 4)`` float64 ``x, y, z, r``.
-
-    Raises
-    ------
-    ValueError
-        If `count` is below 2.
-    """
+    """Spheres along curves, at even steps of the parameter, both ends included."""
     if count < 2:
         raise ValueError(f"count is {count}, expected at least 2: the ends of each curve")
     return evaluate(np.asarray(controls, np.float64)[..., None, :, :], np.linspace(0.0, 1.0, count))
@@ -225,16 +161,6 @@ def boxes(controls: npt.ArrayLike) -> Boxes:
 
     The first axis runs from start to end, the second to the side that the curve bends to. Where the curve ends at its
     start, the first axis is that of its bend; where it does not bend, the second is any one across.
-
-    Parameters
-    ----------
-    controls : array_like
-        ``(k, 3, 4)`` control points of halves, ``x, y, z, r``.
-
-    Returns
-    -------
-    Boxes
-        Rounding apart, each holds its tube, with the spheres at the ends, and all six of its sides touch the tube.
 
     Notes
     -----
@@ -297,29 +223,7 @@ def _least(values: Array) -> Array:
 def deviations(
     tubes: SplineTubes, segments: npt.ArrayLike | None = None, middle: float = MIDDLE, samples: int = 64
 ) -> Array:
-    """How far the halves leave the cubics, segment by segment, measured at equal parameters.
-
-    Parameters
-    ----------
-    tubes : SplineTubes
-    segments : array_like of int, optional
-        ``(k,)`` indices of segments; all of them if left out.
-    middle : float, optional
-        As in :func:`controls`.
-    samples : int, optional
-        Steps along each segment, at least 2; a multiple of 2 asks where the halves meet, too.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(k, 2)`` float64 mm: the largest distance of positions, and the largest difference of radii (of the cubic's
-        raised to 0 where it is negative).
-
-    Raises
-    ------
-    ValueError
-        If `samples` is below 2, or `middle` no number of 0..1.
-    """
+    """How far the halves leave the cubics, segment by segment, measured at equal parameters."""
     if samples < 2:
         raise ValueError(f"samples is {samples}, expected at least 2")
     chosen = _chosen(tubes, segments)

@@ -92,26 +92,6 @@ def hits(
     Of every interval of the curve that the ray runs inside of: its entry, if that is not before `start`; else, if the
     ray is inside still at `start`, its exit, or with `capped` the cut at `start` itself. The nearest of these counts.
 
-    Parameters
-    ----------
-    controls : array_like
-        ``(n, 3, 4)`` control points ``x, y, z, r``, mm, or ``(3, 4)`` for all rays.
-    origins, directions : array_like
-        ``(n, 3)`` or ``(3,)``; directions of any length but 0.
-    start, end : array_like, optional
-        ``(n,)`` or one number, mm along the ray: the near plane or the eye, and beyond what nothing is met.
-    capped : bool, optional
-        Whether what `start` cuts open is closed.
-
-    Returns
-    -------
-    Hits
-
-    Raises
-    ------
-    ValueError
-        If shapes do not fit, a number is not finite, a radius is negative, a direction is 0, or `start` or `end` NaN.
-
     Notes
     -----
     Russig et al. 2020, section 3.2, "Intersection". Where a ray only touches, rounding decides.
@@ -150,27 +130,7 @@ def nearest_hits(
     end: npt.ArrayLike = np.inf,
     capped: bool = False,
 ) -> Nearest:
-    """Meet each ray with every half, and keep what is nearest.
-
-    Parameters
-    ----------
-    controls : array_like
-        ``(m, 3, 4)`` control points of all halves, mm.
-    origins, directions : array_like
-        ``(n, 3)`` or ``(3,)``.
-    start, end, capped
-        As for :func:`hits`.
-
-    Returns
-    -------
-    Nearest
-        Of halves met at the same place, the first.
-
-    Raises
-    ------
-    ValueError
-        As :func:`hits` does.
-    """
+    """Meet each ray with every half, and keep what is nearest."""
     halves, origins, unit = _halves(controls), _vectors(origins, "origins"), _directions(directions)
     low, high = _limits(start, "start"), _limits(end, "end")
     n = np.broadcast_shapes(origins.shape[:1], unit.shape[:1], low.shape, high.shape)[0]
@@ -196,26 +156,7 @@ def nearest_hits(
 
 
 def surface_distance(controls: npt.ArrayLike, points: npt.ArrayLike) -> Array:
-    """How far points are from the surface of one half each: the least ``|p - p(t)| - r(t)``.
-
-    Parameters
-    ----------
-    controls : array_like
-        ``(n, 3, 4)`` control points, mm, or ``(3, 4)`` for all points.
-    points : array_like
-        ``(n, 3)`` mm.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(n,)`` float64 mm: outside the true distance; inside negative, and how deep a point lies in the sphere that
-        holds it deepest.
-
-    Raises
-    ------
-    ValueError
-        If shapes do not fit, a number is not finite or a radius is negative.
-    """
+    """How far points are from the surface of one half each: the least ``|p - p(t)| - r(t)``."""
     halves, places = _halves(controls), _vectors(points, "points")
     n = np.broadcast_shapes(halves.shape[:1], places.shape[:1])[0]
     halves, places = np.broadcast_to(halves, (n, 3, 4)), np.broadcast_to(places, (n, 3))

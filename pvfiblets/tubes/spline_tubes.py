@@ -17,7 +17,7 @@ from typing import Any, TypeAlias, cast
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.value_reference import value_reference
+from pvfiblets.support.value_reference import value_reference
 
 __all__ = ["NodeValues", "SplineTubes"]
 

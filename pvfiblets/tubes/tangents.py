@@ -54,15 +54,7 @@ class Steps:
 
     @classmethod
     def between(cls, points: Doubles, offsets: Ints) -> Steps:
-        """Find the steps of lines.
-
-        Parameters
-        ----------
-        points : ndarray
-            ``(n_nodes, 3)`` float64, mm, finite.
-        offsets : ndarray
-            ``(n_lines + 1,)`` int64: line ``i`` is ``points[offsets[i]:offsets[i + 1]]``.
-        """
+        """Find the steps of lines."""
         n = len(points)
         full = np.diff(offsets) > 0
         first, last = offsets[:-1][full], offsets[1:][full] - 1
@@ -84,29 +76,6 @@ class Steps:
 
 def derivatives(values: npt.ArrayLike, steps: Steps, method: str = "finite") -> Doubles:
     """Derivatives of positions or values at all nodes.
-
-    Parameters
-    ----------
-    values : array_like
-        ``(n_nodes,)`` or ``(n_nodes, k)`` numbers.
-    steps : Steps
-        Their lines. With :meth:`Steps.uniform` derivatives are by a segment's parameter, which runs from 0 to 1, else
-        by length (per mm).
-    method : {'finite', 'catmull-rom', 'natural'}
-        ``'finite'``: that of the parabola through the node and its two neighbours (central differences for steps of
-        any length), of the chord at ends. ``'catmull-rom'``: the same by the segment's parameter, half of the way from
-        the node before to the node after. ``'natural'``: of the cubic spline with two continuous derivatives and no
-        curvature at the ends.
-
-    Returns
-    -------
-    ndarray
-        Float64 of the values' shape, finite; 0 where a node has no neighbour.
-
-    Raises
-    ------
-    ValueError
-        If there is no such method.
 
     Notes
     -----

@@ -30,24 +30,7 @@ def _open(path: Path) -> IO[bytes]:
 
 
 def read_gifti(path: Path) -> Any:
-    """Read a file.
-
-    Parameters
-    ----------
-    path : Path
-        Ends in one of `SUFFIXES`.
-
-    Returns
-    -------
-    nibabel.gifti.GiftiImage
-
-    Raises
-    ------
-    FileNotFoundError
-        If there is no such file.
-    FormatError
-        If it is damaged, or no file of GIFTI.
-    """
+    """Read a file."""
     from nibabel.gifti.parse_gifti_fast import GiftiImageParser
 
     parser = GiftiImageParser(buffer_size=_BUFFER)
@@ -63,13 +46,7 @@ def read_gifti(path: Path) -> Any:
 
 
 def named_files(path: Path) -> list[str]:
-    """Return the files that it says its numbers lie in, as it names them.
-
-    Raises
-    ------
-    FormatError
-        If it is no XML.
-    """
+    """Return the files that it says its numbers lie in, as it names them."""
     found: list[str] = []
 
     def begin(_: str, attributes: dict[str, str]) -> None:

@@ -21,31 +21,7 @@ Array = npt.NDArray[np.float64]
 
 
 def read_image(path: Path) -> tuple[npt.NDArray[Any], Array, str, bool]:
-    """Read an image.
-
-    Parameters
-    ----------
-    path : Path
-        Ends in one of `SUFFIXES`.
-
-    Returns
-    -------
-    values : numpy.ndarray
-        ``(nx, ny, nz, ...)``; of files of NIfTI whose voxels hold colours, with fields.
-    affine : numpy.ndarray
-        ``(4, 4)`` voxel indices to mm, RAS+.
-    name : str
-        The file's, without its suffix.
-    is_labels : bool
-        Whether the file says that its numbers are labels.
-
-    Raises
-    ------
-    FileNotFoundError
-        If there is no such file.
-    ValueError
-        If it has another suffix, or is damaged.
-    """
+    """Read an image."""
     lower = path.name.lower()
     suffix = max((one for one in SUFFIXES if lower.endswith(one)), key=len, default=None)
     if suffix is None:

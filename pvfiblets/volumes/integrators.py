@@ -66,34 +66,7 @@ LATEST = 1 / 16
 
 
 def integrate(method: str, kappa: npt.ArrayLike, colour: npt.ArrayLike, ds: npt.ArrayLike) -> tuple[Floats, Floats]:
-    """Colour and opacity of rays from samples, n steps of each.
-
-    Parameters
-    ----------
-    method : str
-        ``'riemann'``, ``'exponential'``, ``'simpson'``, ``'romberg'`` or ``'rk4'``; for pre-integration, which needs
-        values and not what they map to, see :func:`preintegrated`.
-    kappa : array_like
-        ``(..., n)`` extinction in the middles of the steps, 1/mm, for ``'riemann'`` and ``'exponential'``; for the
-        others ``(..., n + 1)`` at their ends, n a multiple of :data:`PANELS`. From the eye on. Of float32, everything
-        is calculated in float32; else in float64.
-    colour : array_like
-        ``(..., n, 3)`` or ``(..., n + 1, 3)`` colours c at the same places; emission is ``kappa c``.
-    ds : array_like
-        Length of a step, mm: one number, or ``(...)``.
-
-    Returns
-    -------
-    rgb : numpy.ndarray
-        ``(..., 3)``, multiplied by the opacity.
-    alpha : numpy.ndarray
-        ``(...)``. Both are not finite, without a warning, where an unstable method has left all bounds.
-
-    Raises
-    ------
-    ValueError
-        If the method is unknown, shapes do not fit, or the number of steps is not a multiple.
-    """
+    """Colour and opacity of rays from samples, n steps of each."""
     if method not in PANELS:
         hint = ": call preintegrated() with values" if method == "preintegrated" else ""
         raise ValueError(f"integrator is {method!r}; choose one of {', '.join(map(repr, PANELS))}{hint}")
@@ -118,15 +91,7 @@ def integrate(method: str, kappa: npt.ArrayLike, colour: npt.ArrayLike, ds: npt.
 
 
 def composed(light: Floats, transparency: Floats) -> tuple[Floats, Floats]:
-    """Put stretches of rays together, front to back: colour and opacity of the whole.
-
-    Parameters
-    ----------
-    light : numpy.ndarray
-        ``(..., n, 3)`` that stretches give off themselves, b.
-    transparency : numpy.ndarray
-        ``(..., n)`` that they let through, a.
-    """
+    """Put stretches of rays together, front to back: colour and opacity of the whole."""
     through = np.cumprod(transparency, axis=-1)
     before = np.concatenate([np.ones_like(through[..., :1]), through[..., :-1]], axis=-1)
     rgb: Floats = (before[..., None] * light).sum(axis=-2, dtype=light.dtype)
@@ -134,22 +99,7 @@ def composed(light: Floats, transparency: Floats) -> tuple[Floats, Floats]:
 
 
 def preintegrated(values: npt.ArrayLike, transfer: Transfer, ds: float) -> tuple[Floats, Floats]:
-    """Colour and opacity of rays from values at the ends of steps, between which the value counts as linear.
-
-    Parameters
-    ----------
-    values : array_like
-        ``(..., n + 1)`` values, from the eye on.
-    transfer : Transfer
-        Its pre-integrated table is looked up as a texture is: linear between entries.
-    ds : float
-        Length of a step, mm.
-
-    Returns
-    -------
-    rgb, alpha : numpy.ndarray
-        As of :func:`integrate`, float32.
-    """
+    """Colour and opacity of rays from values at the ends of steps, between which the value counts as linear."""
     table = transfer.preintegrated(float(ds))
     low, high = transfer.clim
     where = np.clip((np.asarray(values, np.float64) - low) / (high - low), 0.0, 1.0) * (len(table) - 1)
@@ -279,25 +229,7 @@ def study(
     methods: Sequence[str] = INTEGRATORS,
     dtypes: Sequence[str] = ("float32",),
 ) -> list[Row]:
-    """Errors of integrators against closed forms, by step.
-
-    Parameters
-    ----------
-    profiles : iterable of Profile
-        Such as :func:`pvfiblets.volumes.reference_profiles.profiles` makes.
-    steps : sequence of int
-        Numbers of steps that rays are divided into; multiples of 4, so that all integrators can be compared.
-    methods : sequence of str, optional
-        Of :data:`INTEGRATORS`.
-    dtypes : sequence of str, optional
-        ``'float32'``, as shaders calculate, and ``'float64'``. Of pre-integration, whose table is float32, only the
-        former.
-
-    Returns
-    -------
-    list of Row
-        By profile, number of steps, method and type.
-    """
+    """Errors of integrators against closed forms, by step."""
     rows = []
     for profile in profiles:
         part = (1.0 - LATEST) * profile.length

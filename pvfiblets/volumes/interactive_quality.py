@@ -39,18 +39,7 @@ class InteractiveQuality:
 
     @classmethod
     def of_quality(cls, quality: Any) -> InteractiveQuality | None:
-        """Return what a quality means, and None for 1.
-
-        Parameters
-        ----------
-        quality : float or mapping
-            From 0 to 1, or ``step`` and ``sparse``.
-
-        Raises
-        ------
-        ValueError
-            If it is something else; the message says what was expected.
-        """
+        """Return what a quality means, and None for 1."""
         if isinstance(quality, Mapping):
             if unknown := set(quality) - {"step", "sparse"}:
                 raise ValueError(f"interactive_quality has {sorted(map(str, unknown))}; give 'step' and 'sparse'")

@@ -33,29 +33,7 @@ Array = npt.NDArray[np.float64]
 
 
 def read_metaimage(path: str | os.PathLike[str], *, components: bool = False) -> tuple[npt.NDArray[Any], Array]:
-    """Read a volume.
-
-    Parameters
-    ----------
-    path : str or PathLike
-        The file, or of data kept apart its header.
-    components : bool, default: False
-        Whether there may be a fourth axis, or several numbers per voxel.
-
-    Returns
-    -------
-    values : ndarray
-        ``(nx, ny, nz)``, of the file's type; a fourth axis and components follow these.
-    affine : ndarray
-        ``(4, 4)`` voxel indices to mm, RAS+.
-
-    Raises
-    ------
-    FileNotFoundError
-        If the file, or the one of its data, is not there.
-    FormatError
-        If it is not such a file, is damaged, or has other than three axes or more than one number per voxel.
-    """
+    """Read a volume."""
     path = Path(path)
     fields, size = _fields(path)
     dims = _numbers(path, fields, ("dimsize",), None)

@@ -32,26 +32,7 @@ Array = npt.NDArray[np.float64]
 
 
 def read_mif(path: str | os.PathLike[str]) -> tuple[npt.NDArray[Any], Array]:
-    """Read an image.
-
-    Parameters
-    ----------
-    path : str or PathLike
-
-    Returns
-    -------
-    values : ndarray
-        ``(nx, ny, nz, ...)``, of the file's type, or float32 where the file scales its numbers; bits become bytes.
-    affine : ndarray
-        ``(4, 4)`` voxel indices to mm, RAS+.
-
-    Raises
-    ------
-    FileNotFoundError
-        If the file, or the one of its data, is not there.
-    FormatError
-        If it is not such a file or is damaged, or holds complex numbers.
-    """
+    """Read an image."""
     path = Path(path)
     fields, files, transform = _header(path)
     shape = _whole_numbers(path, fields, "dim")
@@ -65,13 +46,7 @@ def read_mif(path: str | os.PathLike[str]) -> tuple[npt.NDArray[Any], Array]:
 
 
 def named_files(path: Path) -> list[str]:
-    """Return the files that a header says its numbers lie in, as :func:`read_mif` takes it; none if it is this one.
-
-    Raises
-    ------
-    FormatError
-        If it cannot be read.
-    """
+    """Return the files that a header says its numbers lie in, as :func:`read_mif` takes it; none if it is this one."""
     _, files, _ = _header(path)
     return [named for named in (_split(line)[0] for line in files) if named != "."]
 

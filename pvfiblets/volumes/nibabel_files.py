@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from pvfiblets.errors import FormatError
-from pvfiblets.memory import check_room
+from pvfiblets.support.memory import check_room
 
 __all__ = ["opened"]
 
@@ -25,24 +25,7 @@ LIKELY = 8
 
 @contextmanager
 def opened(path: Path) -> Iterator[Any]:
-    """Open an image; what its data raise while they are read, inside the ``with`` block, are errors of the file, too.
-
-    Parameters
-    ----------
-    path : Path
-
-    Yields
-    ------
-    nibabel image
-        Not read yet.
-
-    Raises
-    ------
-    FileNotFoundError
-        If there is no such file.
-    FormatError
-        If nibabel cannot read it, or it holds less than its header says.
-    """
+    """Open an image; what its data raise while they are read inside the ``with`` block are its errors, too."""
     import nibabel as nib
     from nibabel.filebasedimages import ImageFileError
     from nibabel.freesurfer.mghformat import MGHError

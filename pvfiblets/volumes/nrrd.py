@@ -101,30 +101,7 @@ class _Header:
 
 
 def read_nrrd(path: str | os.PathLike[str], *, components: bool = False) -> tuple[npt.NDArray[Any], Array]:
-    """Read a volume.
-
-    Parameters
-    ----------
-    path : str or PathLike
-        The file, or of data kept apart its header.
-    components : bool, default: False
-        Whether there may be axes besides those of space: of colours, vectors or times.
-
-    Returns
-    -------
-    values : ndarray
-        ``(nx, ny, nz)``, of the file's type; of raw encoding a memory map. Axes of components follow these.
-    affine : ndarray
-        ``(4, 4)`` voxel indices to mm, RAS+ where the file says what its space is.
-
-    Raises
-    ------
-    FileNotFoundError
-        If the file, or the one of its data, is not there.
-    FormatError
-        If it is not such a file, is damaged, or is of a kind that is not read: other than three axes, more than one
-        number per voxel, data in several files, hexadecimal encoding.
-    """
+    """Read a volume."""
     header = _header(Path(path))
     dimension = _whole(header, "dimension", header.need("dimension"))
     sizes = [_whole(header, "sizes", word) for word in header.need("sizes").split()]

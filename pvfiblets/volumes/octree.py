@@ -156,19 +156,7 @@ def build_octree(volume: RaycastVolume, margin: int = 1) -> Octree:
 
 
 def flags(octree: Octree, visible: Callable[[npt.NDArray[Any], npt.NDArray[Any]], npt.NDArray[np.bool_]]) -> Flags:
-    """Say which nodes rays must look into.
-
-    Parameters
-    ----------
-    octree : Octree
-    visible : callable
-        ``visible(least, greatest)`` gives, for arrays of bounds, whether anything within them would be seen.
-
-    Returns
-    -------
-    list of ndarray
-        uint8 per level, leaves first: `SKIP` or `VISIT`. A parent is skipped only if all its children are.
-    """
+    """Say which nodes rays must look into."""
     leaves = octree.levels[0]
     seen = [np.where(visible(leaves.least, leaves.greatest), VISIT, SKIP).astype(np.uint8)]
     while len(seen) < len(octree.levels):
@@ -177,27 +165,7 @@ def flags(octree: Octree, visible: Callable[[npt.NDArray[Any], npt.NDArray[Any]]
 
 
 def homogeneous(octree: Octree, threshold: float, seen: Flags | None = None) -> Flags:
-    """Mark nodes whose field is about the same everywhere.
-
-    Parameters
-    ----------
-    octree : Octree
-    threshold : float
-        Largest difference between a node's bounds; 0 for constant ones only.
-    seen : list of ndarray, optional
-        What :func:`flags` gave: only what is visited is marked, the rest kept. Default: all are visited.
-
-    Returns
-    -------
-    list of ndarray
-        uint8 per level, leaves first: `HOMOGENEOUS`, else as in ``seen``. All below a homogeneous node are homogeneous
-        or skipped.
-
-    Raises
-    ------
-    ValueError
-        If the threshold is negative or not finite.
-    """
+    """Mark nodes whose field is about the same everywhere."""
     if not 0.0 <= threshold < np.inf:
         raise ValueError(f"the threshold of homogeneous nodes is {threshold!r}; expected a finite number, 0 or above")
     marked = []

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pvfiblets.errors import FormatError
-from pvfiblets.memory import check_room
+from pvfiblets.support.memory import check_room
 
 __all__ = ["Packing", "data_file", "numbers"]
 
@@ -26,32 +26,7 @@ LOOKED_AT = 1 << 24  # bytes unpacked beyond those that are needed, to see wheth
 def numbers(
     path: Path, start: int, count: int, dtype: npt.DTypeLike, packing: Packing = "raw", skip: int = 0
 ) -> npt.NDArray[Any]:
-    """Read numbers.
-
-    Parameters
-    ----------
-    path : Path
-    start : int
-        Byte at which they, or the compressed data, begin.
-    count : int
-        How many there must be at least.
-    dtype : dtype_like
-        Their type, byte order included.
-    packing : {'raw', 'gzip', 'zlib', 'bzip2', 'ascii'}
-        How they are stored; ``'ascii'``: as text, between blanks.
-    skip : int, default: 0
-        Bytes to leave out of what was unpacked; -1: all but the last that are needed.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(count,)``; of raw ones a memory map.
-
-    Raises
-    ------
-    FormatError
-        If there are fewer, or compressed data are damaged.
-    """
+    """Read numbers."""
     kind = np.dtype(dtype)
     needed, size = count * kind.itemsize, path.stat().st_size
     if packing == "raw":
@@ -76,13 +51,7 @@ def numbers(
 
 
 def data_file(header: Path, name: str) -> Path:
-    """Return the place of a file that a header names.
-
-    Raises
-    ------
-    FileNotFoundError
-        If it is not there.
-    """
+    """Return the place of a file that a header names."""
     path = header.parent / name
     try:
         there = path.is_file()

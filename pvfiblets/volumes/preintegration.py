@@ -22,20 +22,7 @@ Array = npt.NDArray[np.float64]
 
 
 def preintegrate(rgba: Array, units: float) -> npt.NDArray[np.float32]:
-    """Colour and opacity of a step between all pairs of entries.
-
-    Parameters
-    ----------
-    rgba : ndarray
-        ``(n, 4)`` float64, linear between entries.
-    units : float
-        Length of the step in units of opacity.
-
-    Returns
-    -------
-    ndarray
-        ``(n, n, 4)`` float32: front, back; RGB multiplied by opacity, opacity.
-    """
+    """Colour and opacity of a step between all pairs of entries."""
     rgba = np.ascontiguousarray(rgba, np.float64)
     thin = np.polynomial.legendre.leggauss(8)
     x, weights = (thin[0] + 1.0) / 2.0, thin[1] / 2.0

@@ -19,28 +19,7 @@ Array = npt.NDArray[np.float64]
 
 
 def evenly(values: npt.NDArray[Any], axes: tuple[Array, Array, Array]) -> tuple[npt.NDArray[Any], Array]:
-    """Return the values at even distances, and their affine.
-
-    Parameters
-    ----------
-    values : numpy.ndarray
-        ``(nx, ny, nz)``.
-    axes : tuple of 3 numpy.ndarray
-        Coordinates of the planes along each axis, increasing, mm.
-
-    Returns
-    -------
-    values : numpy.ndarray
-        As they are along axes that are even. Along others linear between planes, at the least distance of two, but at
-        most `MOST_TIMES` as many: float32, then.
-    affine : numpy.ndarray
-        ``(4, 4)`` float64.
-
-    Raises
-    ------
-    ValueError
-        If coordinates do not increase.
-    """
+    """Return the values at even distances, and their affine."""
     affine = np.eye(4)
     for axis, at in enumerate(axes):
         apart = np.diff(at)

@@ -122,26 +122,6 @@ def isosurface(
 
     A value is crossed where the field gets to it from below, or falls below it. Where it only touches a value nothing
     is crossed, nor where a ray begins.
-
-    Parameters
-    ----------
-    volume : RaycastVolume
-    values : array_like
-        ``(k,)`` or one number: the isosurfaces' values. The nearest one shows; where the field jumps past several at
-        once, as the nearest voxel's does, the one that it would come to first.
-    through : Rays
-    filter : str, default: 'trilinear'
-        ``'nearest'``, ``'trilinear'`` or ``'tricubic'``.
-
-    Returns
-    -------
-    Crossings
-        Gradients of nearest voxels are those at the centre of the voxel that the ray enters.
-
-    Raises
-    ------
-    ValueError
-        If the filter is unknown, or the values are none or not finite.
     """
     from . import reference_kernels as kernels
 
@@ -172,28 +152,7 @@ def mip(
     high: float = math.inf,
     threshold: float | None = None,
 ) -> Maxima:
-    """Greatest value along rays (section III-F, equation 9), or the first local maximum above a threshold.
-
-    Parameters
-    ----------
-    volume : RaycastVolume
-    through : Rays
-    filter : str, default: 'trilinear'
-    low, high : float, optional
-        What is lower or higher is not there.
-    threshold : float, optional
-        Local maximum intensity projection (Sato et al. 1998): the first local maximum that is no less; where there is
-        none, the greatest value, as without. Where a ray begins and ends may be one.
-
-    Returns
-    -------
-    Maxima
-
-    Raises
-    ------
-    ValueError
-        If the filter is unknown, or ``low``, ``high`` or the threshold is NaN or in the wrong order.
-    """
+    """Greatest value along rays (section III-F, equation 9), or the first local maximum above a threshold."""
     from . import reference_kernels as kernels
 
     if not low <= high:
@@ -220,30 +179,7 @@ def composite(
     low: float = -math.inf,
     high: float = math.inf,
 ) -> Array:
-    """What rays show of a volume that emits and absorbs light (section III-E, equations 6 to 8).
-
-    Parameters
-    ----------
-    volume : RaycastVolume
-    transfer : Transfer
-        Of this its table, interval and unit are looked at, and nothing else.
-    through : Rays
-    tolerance : float, default: 1e-8
-        Of each of the four numbers.
-    filter : str, default: 'trilinear'
-    low, high : float, optional
-        What is lower or higher is not there.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(..., 4)`` float64 RGBA, the colours multiplied by the opacity; 0 where rays miss the volume.
-
-    Raises
-    ------
-    ValueError
-        If the filter is unknown, the tolerance is not above 0, or ``low`` and ``high`` are NaN or in the wrong order.
-    """
+    """What rays show of a volume that emits and absorbs light (section III-E, equations 6 to 8)."""
     from . import reference_light as light
 
     if not 0.0 < tolerance < 1.0:
@@ -295,20 +231,7 @@ def _gauss(order: int) -> tuple[Array, Array, Array]:
 
 
 def sample(volume: RaycastVolume, points: npt.ArrayLike, filter: str = "trilinear") -> Array:  # noqa: A002
-    """The field at places.
-
-    Parameters
-    ----------
-    volume : RaycastVolume
-    points : array_like
-        ``(..., 3)`` mm. Outside the box of the voxels' centres the nearest place in it counts, along the grid's axes.
-    filter : str, default: 'trilinear'
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(...)`` float64.
-    """
+    """The field at places."""
     from . import reference_kernels as kernels
 
     field, how = _field(volume, filter)
@@ -323,18 +246,6 @@ def gradient(volume: RaycastVolume, points: npt.ArrayLike, filter: str = "trilin
 
     Differences are those of the field one voxel to either side along each axis of the grid, or at the edge of the box
     of the voxels' centres where that is nearer, over the distance between the two.
-
-    Parameters
-    ----------
-    volume : RaycastVolume
-    points : array_like
-        ``(..., 3)`` mm, in the box of the voxels' centres.
-    filter : str, default: 'trilinear'
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(..., 3)`` float64 per mm, in the axes of space, oblique grids included.
     """
     points = np.asarray(points, np.float64)
     return _gradients(volume, _in_voxels(volume, points), filter).reshape(points.shape)

@@ -136,25 +136,7 @@ def first_crossings(
     field: Any, how: int, origins: Any, directions: Any, near: Any, far: Any, levels: Any, rounding: float, t: Any,
     level: Any, chord: Any, voxels: Any,
 ) -> None:  # fmt: skip
-    """Where rays first cross one of several levels.
-
-    Parameters
-    ----------
-    field : (nx, ny, nz) float32
-    how : int
-        The filter.
-    origins, directions : (n, 3) float64
-    near, far : (n,) float64
-    levels : (m,) float64
-    rounding : float
-        What is no farther from a level is at it.
-    t, chord : (n,) float64
-        Filled: where the ray crosses, and how far it then is to where it crosses that level again, or to its far end.
-    level : (n,) int64
-        Filled: which is crossed.
-    voxels : (n, 3) int64
-        Filled: the cell in which it is, of nearest voxels the one entered.
-    """
+    """Where rays first cross one of several levels."""
     for i in range(len(t)):
         if near[i] < far[i]:
             found, at, again = _first_crossing(
@@ -208,17 +190,7 @@ def greatest(
     field: Any, how: int, origins: Any, directions: Any, near: Any, far: Any, low: float, high: float, enough: float,
     fall: float, value: Any, t: Any,
 ) -> None:  # fmt: skip
-    """Greatest value along rays of those from ``low`` to ``high``, the first that is at least ``enough`` if any is.
-
-    Parameters
-    ----------
-    field, how, origins, directions, near, far
-        As of :func:`first_crossings`.
-    fall : float
-        By how much the field falls behind a maximum for it to be one, so that rounding makes none.
-    value, t : (n,) float64
-        Filled.
-    """
+    """Greatest value along rays of those from ``low`` to ``high``, the first that is at least ``enough`` if any is."""
     for i in range(len(t)):
         if near[i] < far[i]:
             value[i], t[i] = _greatest(

@@ -199,25 +199,7 @@ def integrals(
     field: Any, how: int, origins: Any, directions: Any, near: Any, far: Any, knots: Any, pieces: Any, unit: float,
     nodes: Any, weights: Any, sums: Any, cap: float, tolerance: float, light: Any,
 ) -> None:  # fmt: skip
-    """Light that comes along rays.
-
-    Parameters
-    ----------
-    field, how, origins, directions, near, far
-        As of :func:`.reference_kernels.first_crossings`.
-    knots, pieces : ndarray
-        (m,) and (m + 1, 10) float64; see the module.
-    unit : float
-        mm that the pieces' opacities are of.
-    nodes, weights, sums : ndarray
-        (q,), (q,) and (q, q) float64: a Gauss rule on 0..1, and rules from 0 to each of its nodes.
-    cap : float
-        Largest optical depth of a unit.
-    tolerance : float
-        Of each of the four numbers.
-    light : (n, 4) float64
-        RGB and transparency, changed in place: 0, 0, 0, 1 at first.
-    """
+    """Light that comes along rays."""
     for i in range(len(light)):
         if near[i] < far[i]:
             rule = nodes, weights, sums, np.empty((len(nodes), 4))

@@ -117,22 +117,7 @@ def _pieces(front: Array, back: Array, units: Array, same: npt.NDArray[np.bool_]
 
 
 def profiles(depths: Iterable[float] = (1.0,), length: float = 64.0) -> Iterator[Profile]:
-    """Profiles of some optical depths.
-
-    Parameters
-    ----------
-    depths : iterable of float
-        Extinction where a profile is densest, times its length.
-    length : float
-        Of the rays, mm.
-
-    Yields
-    ------
-    Profile
-        ``constant``: one value all along. ``fade``: even extinction, the colour changes evenly. ``ramp``: opacity grows
-        evenly. ``edge``: nothing, then from one entry of the table to the next all. ``peak``: nothing but at one entry.
-        ``haze``: a thousandth, in another colour, before all. ``teeth``: values that go up and down through a peak.
-    """
+    """Profiles of some optical depths."""
     x = np.linspace(0.0, 1.0, ENTRIES)
     ramp = np.array([0.0, 1.0])
     thin = -np.expm1(np.log1p(-DENSE) / 1e3)  # a thousandth of the extinction

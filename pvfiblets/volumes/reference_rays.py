@@ -66,32 +66,7 @@ def rays(
     depths: npt.ArrayLike | None = None,
     box: Sequence[float] | None = None,
 ) -> Rays:
-    """Rays through the centres of a picture's pixels (equation 1), from the near plane on.
-
-    Parameters
-    ----------
-    matrix : array_like
-        ``(4, 4)``: data coordinates in mm (column vectors) to OpenGL's clip coordinates; perspective or parallel.
-    size : tuple of int
-        Width and height in pixels.
-    volume : RaycastVolume
-    clip_planes : array_like, optional
-        ``(k, 4)`` planes (a, b, c, d), mm: rays are only where ax + by + cz + d >= 0 for all of them.
-    depths : array_like, optional
-        ``(height, width)`` window depths, 0 to 1, of opaque things at which rays end.
-    box : sequence of float, optional
-        (xmin, xmax, ymin, ymax, zmin, zmax) in voxels: rays are only in it.
-
-    Returns
-    -------
-    Rays
-        ``(height, width)`` of them.
-
-    Raises
-    ------
-    ValueError
-        If shapes do not fit, a number is not finite, or the matrix shows no space: its pixels have no rays.
-    """
+    """Rays through the centres of a picture's pixels (equation 1), from the near plane on."""
     matrix = np.array(matrix, np.float64)
     width, height = (int(n) for n in size)
     planes = np.array(clip_planes, np.float64)

@@ -58,25 +58,7 @@ def smoothed(volume: RaycastVolume, sigma: Any, unit: Literal["voxels", "mm"] = 
 
 
 def gaussian(values: npt.NDArray[Any], sigma: Any) -> Floats:
-    """Return an array smoothed by a Gaussian.
-
-    Parameters
-    ----------
-    values : ndarray
-        ``(nx, ny, nz)`` numbers; NaN is missing, and infinities are not allowed for.
-    sigma : float or array_like
-        Standard deviation in voxels, one or along each axis.
-
-    Returns
-    -------
-    ndarray
-        ``(nx, ny, nz)`` float32, in the order of memory of ``values``.
-
-    Raises
-    ------
-    ValueError
-        As of :func:`smoothed`.
-    """
+    """Return an array smoothed by a Gaussian."""
     deviations = _checked(sigma)
     # Axes from the farthest to the nearest neighbours in memory, so that the kernel runs along memory.
     order = np.argsort([-abs(stride) for stride in values.strides], kind="stable")

@@ -16,15 +16,7 @@ STRIP = 512  # numbers of a row that are summed together: 4 KB, which stay in th
 
 @parallel_kernel
 def along(values: Any, weights: Any, out: Any) -> None:
-    """Filter the middle axis of a contiguous float32 array, ends repeated; sums are float64.
-
-    Parameters
-    ----------
-    values, out : ndarray
-        ``(before, n, after)`` float32.
-    weights : ndarray
-        ``(2 r + 1,)`` float64.
-    """
+    """Filter the middle axis of a contiguous float32 array, ends repeated; sums are float64."""
     before, n, after = values.shape
     reach = len(weights) // 2
     if after == 1:

@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.value_reference import value_reference
+from pvfiblets.support.value_reference import value_reference
 
 from .smoothing import smoothed
 from .volume import RaycastVolume

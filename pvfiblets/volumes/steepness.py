@@ -67,23 +67,7 @@ def largest_bend(volume: RaycastVolume) -> float:
 
 @lru_cache(maxsize=8)
 def allowed_bends(transfer: Transfer, step: float, low: float = -np.inf, high: float = np.inf) -> npt.NDArray[Any]:
-    """Return by how much a value's change may differ from that in the step before, for `OFF` of light at most.
-
-    Parameters
-    ----------
-    transfer : Transfer
-    step : float
-        mm.
-    low, high : float
-        Values that are there; opacity jumps where others begin.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(n, n)`` float32 for the value at the step's front, first, and back, second, in n intervals of ``clim`` each:
-        a difference of values, at most the length of ``clim``, which says that nothing is too much; or `UNTRUSTED`.
-        Not to be written to.
-    """
+    """Return by how much a value's change may differ from that in the step before, for `OFF` of light at most."""
     from .steepness_kernels import tents
 
     table = transfer.preintegrated(step)

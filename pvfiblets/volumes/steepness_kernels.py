@@ -17,19 +17,7 @@ LEAST = 0.25  # entries: the lowest tent that is tried
 
 
 def tents(table: npt.NDArray[np.float32], off: float) -> npt.NDArray[np.float64]:
-    """Height of tents over the chord of a step up to which light differs by no more than a number.
-
-    Parameters
-    ----------
-    table : ndarray
-        ``(n, n, 4)`` float32: front, back; RGB multiplied by opacity, opacity.
-    off : float
-
-    Returns
-    -------
-    ndarray
-        ``(n - 1, n - 1)`` float64, entries, for values in the middles between entries; n - 1 where nothing is too much.
-    """
+    """Height of tents over the chord of a step up to which light differs by no more than a number."""
     out = np.empty((len(table) - 1, len(table) - 1))
     _tents(table, off, out)
     return out

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.value_reference import relative, value_reference
+from pvfiblets.support.value_reference import relative, value_reference
 
 __all__ = ["FILTERS", "RaycastVolume"]
 

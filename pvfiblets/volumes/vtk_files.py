@@ -9,31 +9,13 @@ from typing import Any
 from pvfiblets.errors import FormatError
 from pvfiblets.formats.vtk_sizes import stated_bytes
 from pvfiblets.formats.vtk_xml import Element, XmlFile
-from pvfiblets.memory import check_room
+from pvfiblets.support.memory import check_room
 
 __all__ = ["check_sizes", "read"]
 
 
 def read(reader: Any, path: Path) -> Any:
-    """Return what a VTK reader gives.
-
-    Parameters
-    ----------
-    reader : vtkAlgorithm
-        With ``SetFileName``.
-    path : Path
-
-    Returns
-    -------
-    vtkImageData
-
-    Raises
-    ------
-    FileNotFoundError
-        If there is no such file.
-    FormatError
-        If VTK complains.
-    """
+    """Return what a VTK reader gives."""
     with path.open("rb"):  # says plainly what is wrong with a path
         pass
     complaints: list[str] = []
@@ -58,11 +40,6 @@ def check_sizes(path: Path) -> None:
     """Compare the sizes that a ``.vti`` file tells with each other and with its own.
 
     VTK takes memory for whatever a file says, and if there is not as much it ends the process.
-
-    Raises
-    ------
-    FormatError
-        If they do not agree.
     """
     file = XmlFile(path, "ImageData")
     pieces = [(piece, _sides(file, piece, "Extent")) for piece in file.content.children("Piece")]

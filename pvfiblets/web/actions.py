@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from pvfiblets.web.document import LINES
-from pvfiblets.web.loading import Cancelled, Watch
+from pvfiblets.web.scene.loading import Cancelled, Watch
+from pvfiblets.web.session.document import LINES
 
 __all__ = ["Actions", "LineActions"]
 

@@ -1,7 +1,7 @@
 """The application of one session: a scene, its page, and what the page's controls do.
 
-Calls of browsers have passed :mod:`pvfiblets.web.rpc_allowlist`; the scene checks their meaning. An error becomes a
-sentence on the page, and the scene stays as it was.
+Calls of browsers have passed :mod:`pvfiblets.web.server.rpc_allowlist`; the scene checks their meaning. An error
+becomes a sentence on the page, and the scene stays as it was.
 """
 
 from __future__ import annotations
@@ -15,37 +15,37 @@ from typing import Any
 
 from trame.app import TrameApp
 
-from pvfiblets.web import describe, layout
-from pvfiblets.web.atlas_tab import AtlasActions
-from pvfiblets.web.browser_drawing import BrowserDrawing
-from pvfiblets.web.bundle_finding import FindingActions
-from pvfiblets.web.bundle_measures import MeasureActions
-from pvfiblets.web.bundles_tab import BundleActions
-from pvfiblets.web.camera import CameraActions
-from pvfiblets.web.clip_tab import CutActions
-from pvfiblets.web.confined import Confined
-from pvfiblets.web.csv_tables import selection_csv
-from pvfiblets.web.document import volume_in
-from pvfiblets.web.exporting import ExportActions
-from pvfiblets.web.filter_regions import RegionActions
-from pvfiblets.web.filter_tab import FilterActions
-from pvfiblets.web.first_document import first_document
-from pvfiblets.web.history import History
-from pvfiblets.web.info_tables import tables
-from pvfiblets.web.matrix_panel import MatrixActions
-from pvfiblets.web.opening import FileActions
-from pvfiblets.web.options import Options
-from pvfiblets.web.painting_tab import PaintActions
-from pvfiblets.web.rpc_allowlist import EXPECTED, AllowedCalls, sentence
-from pvfiblets.web.scene import Scene
-from pvfiblets.web.scratch import Notes
-from pvfiblets.web.selection_tab import SelectionActions
-from pvfiblets.web.sent_scene import URL
-from pvfiblets.web.slices_tab import SliceActions
-from pvfiblets.web.slicing import VIEWS, ready_views
-from pvfiblets.web.sliders import SlideActions
+from pvfiblets.web.panels import describe, layout
+from pvfiblets.web.panels.atlas_tab import AtlasActions
+from pvfiblets.web.panels.bundle_finding import FindingActions
+from pvfiblets.web.panels.bundle_measures import MeasureActions
+from pvfiblets.web.panels.bundles_tab import BundleActions
+from pvfiblets.web.panels.clip_tab import CutActions
+from pvfiblets.web.panels.csv_tables import selection_csv
+from pvfiblets.web.panels.exporting import ExportActions
+from pvfiblets.web.panels.filter_regions import RegionActions
+from pvfiblets.web.panels.filter_tab import FilterActions
+from pvfiblets.web.panels.info_tables import tables
+from pvfiblets.web.panels.matrix_panel import MatrixActions
+from pvfiblets.web.panels.opening import FileActions
+from pvfiblets.web.panels.painting_tab import PaintActions
+from pvfiblets.web.panels.selection_tab import SelectionActions
+from pvfiblets.web.panels.slices_tab import SliceActions
+from pvfiblets.web.panels.sliders import SlideActions
+from pvfiblets.web.scene.confined import Confined
+from pvfiblets.web.scene.scene import Scene
+from pvfiblets.web.scene.slicing import VIEWS, ready_views
+from pvfiblets.web.server.options import Options
+from pvfiblets.web.server.rpc_allowlist import EXPECTED, AllowedCalls, sentence
+from pvfiblets.web.server.scratch import Notes
+from pvfiblets.web.session.document import volume_in
+from pvfiblets.web.session.history import History
 from pvfiblets.web.state import WRITABLE, bind
-from pvfiblets.web.stream import PictureStream
+from pvfiblets.web.view.browser_drawing import BrowserDrawing
+from pvfiblets.web.view.camera import CameraActions
+from pvfiblets.web.view.first_document import first_document
+from pvfiblets.web.view.sent_scene import URL
+from pvfiblets.web.view.stream import PictureStream
 
 logger = logging.getLogger("pvfiblets.web")
 
@@ -227,7 +227,7 @@ class Explorer(TrameApp):
             chosen = scene.layer(page.chosen) if page.chosen else None
             page.chosen_name = chosen.name if chosen is not None else ""
             page.chosen_kind = chosen.kind if chosen is not None else ""
-            page.groups = describe.groups(scene.properties(page.chosen)) if page.chosen else []
+            page.groups = describe.groups(scene.queries.properties(page.chosen)) if page.chosen else []
             page.range_chart = self._charts.of_range(page.chosen)
             page.undo_label = self.history.undo_label or ""
             page.redo_label = self.history.redo_label or ""
@@ -248,7 +248,7 @@ class Explorer(TrameApp):
         """Show the facts of the chosen layer, some of which are counted on the GPU: only while somebody looks."""
         page = self.page
         if page.tab == "info":
-            page.info = tables(self.scene.info(page.chosen)) if page.chosen else []
+            page.info = tables(self.scene.queries.info(page.chosen)) if page.chosen else []
 
     def choose(self, layer_id: str) -> None:
         """Make a layer the one that the panels are about."""
@@ -336,7 +336,7 @@ class Explorer(TrameApp):
         self.set_property(layer_id, name, value)
 
     def _property(self, layer_id: str, name: str) -> dict[str, Any]:
-        for described in self.scene.properties(layer_id):
+        for described in self.scene.queries.properties(layer_id):
             if described["name"] == name:
                 return dict(described)
         raise ValueError(f"there is no property {name!r}")

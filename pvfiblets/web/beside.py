@@ -9,11 +9,11 @@ import time
 from collections.abc import AsyncIterator, Callable
 from typing import TYPE_CHECKING, Any
 
-from pvfiblets import memory
+from pvfiblets.support import memory
 from pvfiblets.web.actions import Actions
 
 if TYPE_CHECKING:
-    from pvfiblets.web.loading import Cancel, Progress
+    from pvfiblets.web.scene.loading import Cancel, Progress
 
     Work = Callable[[Progress, Cancel], Any]
 
@@ -38,22 +38,6 @@ class Beside(Actions):
         """Do what takes long in a thread of its own, with progress; the page goes on.
 
         One thing at a time: what comes meanwhile waits for its turn, and the page names it.
-
-        Parameters
-        ----------
-        name : str
-            Of what it is about, for people.
-        work : callable
-            Takes what :meth:`.Scene.load` takes as ``progress`` and ``cancel``; it must not touch the scene.
-        what : str
-            What is done, until `work` says it.
-        cancellable : bool
-            Whether `work` asks if it is to stop.
-
-        Returns
-        -------
-        object
-            What `work` returned.
         """
         app = self._app
         loop = asyncio.get_running_loop()

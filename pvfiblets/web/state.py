@@ -138,13 +138,7 @@ WRITABLE: dict[str, type] = {
 
 
 def bind(state: Any) -> Page:
-    """Return a page whose fields are keys of trame's state: reading and writing them reads and writes the state.
-
-    Parameters
-    ----------
-    state : trame_server.state.State
-        Keys that it lacks get the defaults of :class:`Page`.
-    """
+    """Return a page whose fields are keys of trame's state: reading and writing them reads and writes the state."""
     return cast("Page", _Bound(state))
 
 

@@ -20,10 +20,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
 from pvfiblets.errors import FibletsError
-from pvfiblets.web.log_limiter import LogLimiter
+from pvfiblets.web.server.log_limiter import LogLimiter
 
 if TYPE_CHECKING:
-    from pvfiblets.web.options import Options
+    from pvfiblets.web.server.options import Options
 
 KEY_HEADER = "X-Pvfiblets-Key"
 LEAST = 256 << 20  # bytes that must be left for pictures and files
@@ -51,8 +51,8 @@ def main() -> int:
 
 
 def _run(told: dict[str, Any], speaker: TextIO) -> None:
-    from pvfiblets.web.options import Options
-    from pvfiblets.web.rpc_allowlist import guard_messages
+    from pvfiblets.web.server.options import Options
+    from pvfiblets.web.server.rpc_allowlist import guard_messages
 
     options = Options.from_dict(told["options"])
     folder = Path(told["folder"])
@@ -88,7 +88,7 @@ def listen(server: Any) -> None:
     """Run a server of trame's on a port of loopback until it is stopped.
 
     It never stops by itself, as trame's do 300 seconds after the last browser has gone: when a session ends is the
-    gate's to say (:mod:`pvfiblets.web.launcher`), which keeps the only clock.
+    gate's to say (:mod:`pvfiblets.web.server.launcher`), which keeps the only clock.
     """
     server.start(
         port=0,
@@ -106,7 +106,7 @@ def hold_to(most: int | None) -> None:
     """Let this process have no more memory than it may."""
     if most is None:
         return
-    from pvfiblets import memory
+    from pvfiblets.support import memory
 
     taken = memory.taken()
     if taken + LEAST > most:
@@ -122,7 +122,7 @@ def hold_to(most: int | None) -> None:
 def make_app(options: Options, folder: Path) -> Any:
     """Return the application of a session."""
     from pvfiblets.web.app import Explorer
-    from pvfiblets.web.scratch import Notes
+    from pvfiblets.web.server.scratch import Notes
 
     return Explorer(options, Notes(folder))
 

@@ -44,11 +44,10 @@ vec4 colour_of(uint point) { return texelFetch(point_colours, texel(point), 0); 
 #endif
 #if FEATURE_VALUES_STORED
 uniform highp usampler2D value_texels; // r8ui or r16ui, by point
-uniform vec3 value_code;               // value of code 0, value per code, the code of NaN
+uniform highp usampler2D value_table;  // r32ui, by code: a float's bits
 
 float value_of(uint point) {
-    uint code = texelFetch(value_texels, texel(point), 0).x;
-    return float(code) == value_code.z ? uintBitsToFloat(0x7FC00000u) : value_code.x + value_code.y * float(code);
+    return uintBitsToFloat(texelFetch(value_table, texel(texelFetch(value_texels, texel(point), 0).x), 0).x);
 }
 #endif
 

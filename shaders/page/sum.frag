@@ -1,5 +1,5 @@
 // All lines behind the nearest of a pixel, added up in slices by how far behind it they are: the page's counterpart of
-// fiblets/hardware_raster/add_to_sums.glsl, of the same sums (pvfiblets/engine/fiblets/gathering.py). What is opaque hides lines by
+// fiblets/hardware_raster/add_to_sums.glsl, of the same sums (pvfiblets/engine/fiblets/gather/gathering.py). What is opaque hides lines by
 // the depth test.
 //
 // Symbols

@@ -1,5 +1,5 @@
 // The region that the caller drew or asked about: shapes and the expression that joins them. pvfiblets/engine/regions/uniform_block.py
-// declares and packs the block, pvfiblets/query/shapes.py says what the unit shapes are.
+// declares and packs the block, pvfiblets/query/regions/shapes.py says what the unit shapes are.
 //
 // Symbols
 //   u            coordinates in which a leaf is its unit shape, from local millimetres by an affine map that is composed in

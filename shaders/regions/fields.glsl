@@ -1,4 +1,4 @@
-// Closed surfaces and label volumes by their distance fields (pvfiblets/query/fields.py): a texel holds a lower bound of
+// Closed surfaces and label volumes by their distance fields (pvfiblets/query/regions/fields.py): a texel holds a lower bound of
 // the distance from its centre to the nearest place where inside and outside change, positive inside. From a texel g at a
 // distance |q - g| of a ball's centre q, the ball of radius r is sure where |d| - |q - g| > r.
 //

@@ -1,5 +1,5 @@
 // Where the ray of a pixel enters and leaves the convex shapes of a region: planes, slabs, boxes and spheres, placed by any
-// affine map. pvfiblets/engine/regions/convex_rays.py declares and packs the block, pvfiblets/query/shapes.py says what the shapes are.
+// affine map. pvfiblets/engine/regions/convex_rays.py declares and packs the block, pvfiblets/query/regions/shapes.py says what the shapes are.
 //
 // Symbols
 //   q            window coordinates (x, y, z) of a position: pixels, and depth in 0..1

@@ -1,4 +1,4 @@
-// Layers: what lies behind the nearest line shows through it (pvfiblets/engine/fiblets/depth_peeling.py).
+// Layers: what lies behind the nearest line shows through it (pvfiblets/engine/fiblets/gather/depth_peeling.py).
 //
 // Every layer (layers_geometry.glsl) has its own colour, light and depth.
 //

@@ -1,4 +1,4 @@
-// Slices: all lines behind the nearest show through it, added up in slices by distance (pvfiblets/engine/fiblets/gathering.py).
+// Slices: all lines behind the nearest show through it, added up in slices by distance (pvfiblets/engine/fiblets/gather/gathering.py).
 //
 // Layer k (layers_geometry.glsl; layers.glsl says how VTK blends them) is slice k - 1. A slice stands where it begins: there
 // it is in front of all that is behind any of its lines.

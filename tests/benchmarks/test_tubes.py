@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from pvfiblets.report.baselines import tessellated
 from pvfiblets.report.cameras import ELEVATION, orbit
+from pvfiblets.report.studies.codec.baselines import tessellated
 
 from .scripts import imported, run
 

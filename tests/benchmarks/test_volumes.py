@@ -9,7 +9,7 @@ import pytest
 
 from pvfiblets.engine import View
 from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle
-from pvfiblets.report import volumes_scene
+from pvfiblets.report.studies.volumes import scene as volumes_scene
 from pvfiblets.volumes import RaycastVolume
 
 from .scripts import imported, run

@@ -17,9 +17,9 @@ import pytest
 
 import pvfiblets as pf
 from pvfiblets import regions
-from pvfiblets.cli import main
+from pvfiblets.cli.command import main
 from pvfiblets.cluster import batch, operations
-from pvfiblets.query.profile import mean_profile
+from pvfiblets.query.measures.profile import mean_profile
 from tests.cluster.conftest import SUBJECTS
 
 pytestmark = pytest.mark.more
@@ -166,6 +166,7 @@ def test_selections_are_those_of_numpy(client, cohort, tmp_path, compressed):
         np.testing.assert_allclose(made.points, np.concatenate(keep), atol=1e-5)
 
 
+@pytest.mark.filterwarnings("ignore:.*changed step_size")
 @pytest.mark.parametrize("suffix", [".tck", ".fiblets"])
 def test_what_crosses_a_region_between_its_points_passes_it(tmp_path, suffix):
     """Of 21 segments that cross a ball, 12 have no point in it."""
@@ -326,7 +327,7 @@ def test_what_cannot_be_begun(cohort, tmp_path):
 
 
 def test_regions_of_the_command_line(tmp_path):
-    from pvfiblets.query.region_text import parse_region
+    from pvfiblets.query.regions.region_text import parse_region
 
     assert parse_region("sphere:1,2,3,4") == regions.Sphere((1, 2, 3), 4)
     assert parse_region("box:0,1,0,2,0,3") == regions.Box((0, 1, 0, 2, 0, 3))
@@ -342,7 +343,7 @@ def test_regions_of_the_command_line(tmp_path):
 
 
 def test_images_are_sampled_linearly():
-    from pvfiblets.query.image_samples import sample_image
+    from pvfiblets.query.measures.image_samples import sample_image
 
     rng = np.random.default_rng(1)
     affine = np.array([[2.0, 0.3, 0, -5], [-0.3, 2.0, 0.1, 3], [0, 0, 1.5, -2], [0, 0, 0, 1]])

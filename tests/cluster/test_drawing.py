@@ -10,19 +10,19 @@ import pytest
 import pyvista as pv
 
 from pvfiblets import compress, regions
-from pvfiblets.cli import main
+from pvfiblets.cli.command import main
 from pvfiblets.cluster import connection
 from pvfiblets.cluster.connection import connected
 from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View
-from pvfiblets.engine.fiblets import cluster_renderer
-from pvfiblets.engine.fiblets.cluster_renderer import ClusterRenderer, _client_at
-from pvfiblets.engine.fiblets.filter_textures import Filter
-from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
-from pvfiblets.engine.fiblets.sparse_picture import SparsePicture, nearer
-from pvfiblets.report.stability.render_checks import camera
-from pvfiblets.web.scene import Scene
-from pvfiblets.web.slicing import ready_views
+from pvfiblets.engine.fiblets.data.filter_textures import Filter
+from pvfiblets.engine.fiblets.data.sampled_volume import VolumeSource
+from pvfiblets.engine.fiblets.parts import cluster_renderer
+from pvfiblets.engine.fiblets.parts.cluster_renderer import ClusterRenderer, _client_at
+from pvfiblets.engine.fiblets.parts.sparse_picture import SparsePicture, nearer
+from pvfiblets.report.studies.stability.render_checks import camera
+from pvfiblets.web.scene.scene import Scene
+from pvfiblets.web.scene.slicing import ready_views
 from tests.engine.pictures import SIZE, assert_alike, brain_with_gaps, read
 
 pytestmark = pytest.mark.more

@@ -10,7 +10,7 @@ import pyarrow.parquet
 import pytest
 
 import pvfiblets as pf
-from pvfiblets.cli import main
+from pvfiblets.cli.command import main
 from pvfiblets.synthetic import brain_streamlines
 from tests.cluster.conftest import AFFINE
 

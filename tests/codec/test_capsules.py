@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 
 import pvfiblets as pf
 from pvfiblets import synthetic
-from pvfiblets.codec import capsule_kernels, capsules, layout
+from pvfiblets.codec import capsules, layout
+from pvfiblets.codec.kernels import capsule_kernels
 from pvfiblets.streamlines import Streamlines
 
 from .samples import extremes, noisy, smooth, wandering

@@ -9,7 +9,7 @@ from PIL import Image
 
 import pvfiblets as pf
 from pvfiblets import formats
-from pvfiblets.cli import main
+from pvfiblets.cli.command import main
 from pvfiblets.streamlines import Streamlines
 
 T = np.linspace(0.0, 1.0, 50)

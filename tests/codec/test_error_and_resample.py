@@ -5,7 +5,7 @@ import pytest
 
 import pvfiblets as pf
 from pvfiblets.codec.decompress import iter_chunks
-from pvfiblets.codec.quantised import quantise_values
+from pvfiblets.codec.point_values import code_values
 from pvfiblets.codec.resample import resample
 from pvfiblets.streamlines import Streamlines
 
@@ -120,19 +120,60 @@ def test_bad_points_are_named():
         pf.compress([points])
 
 
-@pytest.mark.parametrize("bits", [8, 16])
-def test_quantised_values(bits):
-    rng = np.random.default_rng(0)
-    values = rng.normal(size=1000)
-    values[[3, 500]] = np.nan, np.inf
+RNG = np.random.default_rng(0)
+FA = np.clip(0.4 + 0.0015 * np.cumsum(RNG.normal(size=100_000)), 0.0, 1.0)
+
+
+def with_one(value):
+    values = FA.astype(np.float32)
+    values[77] = value
+    return values
+
+
+@pytest.mark.parametrize(
+    ("values", "bits"),
+    [
+        (FA, 8), (with_one(-9999.0), 8), (with_one(1e6), 8), (with_one(np.nan), 8), (RNG.normal(size=100_000), 8),
+        (np.exp(3.0 * RNG.normal(size=100_000)), 16), (10.0 ** RNG.uniform(-12.0, 0.0, 100_000), 16),
+        (1.7e9 + RNG.uniform(0.0, 60.0, 100_000), 8), (FA * 1e-30, 8), (np.where(FA > 0.4, np.inf, FA), 8),
+    ],
+)  # fmt: skip
+def test_no_value_is_off_by_more_than_a_level_of_the_middle_98_percent(values, bits):
     finite = np.isfinite(values)
-    coded = quantise_values(values, values[finite].min(), values[finite].max(), bits)
+    coded = code_values(values)
     decoded = coded.values()
+    assert (coded.codes.dtype.itemsize, decoded.dtype) == (bits // 8, values.dtype)
     assert np.isnan(decoded[~finite]).all()
-    worst = np.abs(decoded[finite] - values[finite]).max()
-    assert coded.max_error == pytest.approx(worst, rel=1e-6)
-    assert worst <= np.ptp(values[finite]) / (2**bits - 2) / 2 * (1 + 1e-3) + 1e-6
-    constant = quantise_values(np.full(5, 3.25), 3.25, 3.25, bits)
-    assert constant.values().tolist() == [3.25] * 5
-    nothing = quantise_values(np.full(5, np.nan), 0.0, 0.0, bits)
-    assert np.isnan(nothing.values()).all()
+    off = np.abs(decoded[finite].astype(float) - values[finite])
+    assert (coded.max_error, coded.mean_error) == pytest.approx((off.max(), off.mean()), rel=1e-6)
+    low, high = np.quantile(values[finite], [0.01, 0.99])
+    assert off.max() <= (high - low) / 255.0 * 1.01
+    if values.min() > 0.0 and high > 100.0 * low:  # colours on a log scale
+        levels = np.log(decoded[finite] / values[finite]) / np.log(high / low) * 255.0
+        assert np.abs(levels).max() < 1.01
+
+
+@pytest.mark.parametrize(
+    ("values", "size"),
+    [
+        (np.repeat([2, 10, 41, 1035], 50), 1), (RNG.integers(0, 3000, 9000), 2), (np.arange(70_000), 8),
+        (2**60 + np.arange(300), 2), (FA > 0.4, 1), (np.full(5, 3.25), 1), (np.array([0.1, 0.2, np.nan]), 1),
+        (np.zeros(0), 1), (np.full(5, np.nan), 1),
+    ],
+)  # fmt: skip
+def test_integers_categories_and_few_numbers_are_exact_in_value_and_type(values, size):
+    coded = code_values(values)
+    np.testing.assert_array_equal(coded.values(), values)
+    assert (coded.values().dtype, coded.codes.dtype.itemsize, coded.max_error) == (values.dtype, size, 0.0)
+
+
+def test_exact_sets_keep_every_bit_of_values_and_others_the_bound_that_is_asked_for():
+    lines = Streamlines(np.cumsum(RNG.normal(size=(100_000, 3)), axis=0), np.arange(0, 100_001, 1000), {"fa": FA})
+    exact = pf.compress(lines, per_point=["fa"], exact=True)
+    np.testing.assert_array_equal(exact.decompress().per_point["fa"], FA)
+    coded = pf.compress(lines, per_point=["fa"], max_value_error={"fa": 1e-5})
+    off = np.abs(coded.decompress().per_point["fa"] - FA).max()
+    assert coded.per_point["fa"].max_error == pytest.approx(off)
+    assert off <= 1e-5
+    with pytest.raises(ValueError, match="max_value_error of 'fa' is -1; a positive number in the array's unit"):
+        pf.compress(lines, per_point=["fa"], max_value_error={"fa": -1})

@@ -11,11 +11,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import pvfiblets as pf
-from pvfiblets.cli import main
-from pvfiblets.codec import exact_file
+from pvfiblets.cli.command import main
 from pvfiblets.codec.decompress import decode_fiblets
-from pvfiblets.codec.exact_file import FORMS, pack_points, unpack_points
-from pvfiblets.codec.fiblets_format import verify_file
+from pvfiblets.codec.files import exact_file
+from pvfiblets.codec.files.exact_file import FORMS, pack_points, unpack_points
+from pvfiblets.codec.files.fiblets_format import verify_file
 from pvfiblets.codec.layout import MAX_POINTS, PLAIN_POINTS, unpack
 from pvfiblets.codec.reference import decode_lattice
 from pvfiblets.errors import FormatError
@@ -263,7 +263,7 @@ def test_points_come_back_from_their_bytes(data):
 def test_no_compiler_is_loaded_for_small_sets(tmp_path):
     write(tmp_path / "a.tck", wandering(20))
     program = (
-        "import sys, pvfiblets as pf; from pvfiblets.cli import main\n"
+        "import sys, pvfiblets as pf; from pvfiblets.cli.command import main\n"
         f"assert pf.compress(pf.read({str(tmp_path / 'a.tck')!r})).exact is not None\n"
         f"assert main(['convert', {str(tmp_path / 'a.tck')!r}, {str(tmp_path / 'a.fiblets')!r}]) == 0\n"
         f"pf.FibletSet.open({str(tmp_path / 'a.fiblets')!r}).decompress()\n"

@@ -10,8 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import pvfiblets as pf
-from pvfiblets.codec import archive, fiblets_file, fiblets_format, layout
-from pvfiblets.codec.file_error import measure_file_error
+from pvfiblets.codec import layout
+from pvfiblets.codec.files import archive, fiblets_file, fiblets_format
+from pvfiblets.codec.files.file_error import measure_file_error
 from pvfiblets.errors import FormatError
 from pvfiblets.streamlines import Streamlines
 
@@ -249,7 +250,7 @@ def test_chunks_keep_empty_streamlines(offsets):
 
 def test_conversion_writes_what_compressing_gives(tmp_path, monkeypatch):
     pf.write(tmp_path / "a.trx", rich("cluster"))
-    monkeypatch.setattr("pvfiblets.codec.convert.CHUNK_POINTS", 100)
+    monkeypatch.setattr("pvfiblets.codec.files.convert.CHUNK_POINTS", 100)
     report = pf.compress_file(tmp_path / "a.trx", tmp_path / "a.fiblets", per_point=["fa"])
     fiblets_format.verify_file(tmp_path / "a.fiblets")
     source = pf.read(tmp_path / "a.trx")
@@ -270,7 +271,7 @@ def test_conversion_of_nothing(tmp_path):
 
 def test_conversion_tells_how_far_it_is_and_can_be_stopped(tmp_path, monkeypatch):
     pf.write(tmp_path / "a.tck", smooth(20, 50))
-    monkeypatch.setattr("pvfiblets.codec.convert.CHUNK_POINTS", 100)
+    monkeypatch.setattr("pvfiblets.codec.files.convert.CHUNK_POINTS", 100)
     told = []
     pf.compress_file(tmp_path / "a.tck", tmp_path / "a.fiblets", progress=lambda *step: told.append(step))
     for what in ("compressing", "measuring"):

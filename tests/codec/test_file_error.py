@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import pvfiblets as pf
-from pvfiblets.cli import main
-from pvfiblets.codec.error_kernels import add_up, distances
-from pvfiblets.codec.file_error import measure_file_error
+from pvfiblets.cli.command import main
+from pvfiblets.codec.files.file_error import measure_file_error
+from pvfiblets.codec.kernels.error_kernels import add_up, distances
 
 from .samples import smooth, wandering
 
@@ -44,8 +44,8 @@ def test_a_sample_is_of_every_so_many_th_streamline(step, tmp_path, monkeypatch)
     source, target = tmp_path / "a.trx", tmp_path / "a.fiblets"
     lines = wandering(40, 50)
     pf.write(source, lines)
-    monkeypatch.setattr("pvfiblets.codec.convert.SAMPLE_POINTS", 670)  # of 2,000: every third
-    monkeypatch.setattr("pvfiblets.codec.convert.CHUNK_POINTS", 400)  # and chunks that three does not divide
+    monkeypatch.setattr("pvfiblets.codec.files.convert.SAMPLE_POINTS", 670)  # of 2,000: every third
+    monkeypatch.setattr("pvfiblets.codec.files.convert.CHUNK_POINTS", 400)  # and chunks that three does not divide
     told = pf.compress_file(source, target, step=step, exact=False, verify="sample")
     every = told["compared_every"]
     assert every == round(told["points"] / 670) >= 3
@@ -74,7 +74,7 @@ def test_a_sample_finds_what_is_of_another_set(tmp_path):
 def test_the_command_says_what_a_sample_was_of(tmp_path, monkeypatch, capsys):
     source, target = tmp_path / "a.trx", tmp_path / "a.fiblets"
     pf.write(source, wandering(40, 50))
-    monkeypatch.setattr("pvfiblets.codec.convert.SAMPLE_POINTS", 1000)
+    monkeypatch.setattr("pvfiblets.codec.files.convert.SAMPLE_POINTS", 1000)
     assert main(["convert", str(source), str(target), "--no-exact", "--verify", "sample"]) == 0
     assert "every 2nd streamline" in capsys.readouterr().out
     assert main(["convert", str(source), str(tmp_path / "a.trk"), "--verify", "sample"]) == 1

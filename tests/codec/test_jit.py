@@ -110,7 +110,8 @@ def test_all_that_codes_is_compiled_beforehand():
 
 BEFOREHAND = """
 import pvfiblets
-from pvfiblets.codec import compiled_coder, decode_kernels, direction_kernels, jit, lattice_kernels, turn_kernels
+from pvfiblets.codec import compiled_coder, jit
+from pvfiblets.codec.kernels import decode_kernels, direction_kernels, lattice_kernels, turn_kernels
 from pvfiblets.codec.small_sets import STATES
 from pvfiblets.synthetic import brain_streamlines
 

@@ -23,7 +23,7 @@ pvfiblets.write("brain.trx", brain_streamlines(400, seed=1, fa=True))
 SCENE = """
 import nibabel, numpy as np
 from pvfiblets.web import session
-from pvfiblets.web.scene import Scene
+from pvfiblets.web.scene.scene import Scene
 affine = np.diag([12.0, 14.0, 12.0, 1.0])
 affine[:3, 3] = -80, -100, -60
 numbers = np.random.default_rng(0).integers(0, 120, (12, 12, 12)).astype(np.int16)

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pvfiblets.report.stability import render_checks
+from pvfiblets.report.studies.stability import render_checks
 
 _spec = importlib.util.spec_from_file_location("fabricate", Path(__file__).with_name("fabricate.py"))
 _module = importlib.util.module_from_spec(_spec)

@@ -8,10 +8,10 @@ primitive by primitive, to the rasteriser and the pipeline's own fragment stage.
 import moderngl
 import numpy as np
 
-from pvfiblets.engine.bindings import FIBLET_ROUNDS
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS
 from pvfiblets.engine.fiblets.pipelines.mesh import TASK_FIBLETS, MeshPipeline
-from pvfiblets.engine.shaders import assemble
+from pvfiblets.engine.gl.bindings import FIBLET_ROUNDS
+from pvfiblets.engine.gl.shaders import assemble
 
 TASK_WORDS, VERTICES, INDICES, VARYING, MOST = 16, 480, 180, 24, 60
 MESH_WORDS = VERTICES + INDICES + VARYING * MOST + 4

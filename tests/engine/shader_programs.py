@@ -14,18 +14,18 @@ from functools import cache
 
 import numpy as np
 
-from pvfiblets.engine import shaders
 from pvfiblets.engine.effects.ambient_occlusion import BIAS, GAIN
 from pvfiblets.engine.effects.antialias_coverage import TILE as LINE_TILE
 from pvfiblets.engine.effects.halos import TILE as HALO_TILE
 from pvfiblets.engine.effects.picture import STEPS
 from pvfiblets.engine.effects.picture import TILE as PICTURE_TILE
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS as OF_PIPELINES
+from pvfiblets.engine.gl import shaders
+from pvfiblets.engine.gl.shaders import EXTENDED, NEWEST, assemble
 from pvfiblets.engine.halos.uniform_blocks import CONSTANTS as OF_HALOS
-from pvfiblets.engine.shaders import EXTENDED, NEWEST, assemble
 from pvfiblets.engine.volumes.ray_occlusion import GOLDEN, LIFT
 from pvfiblets.engine.volumes.uniform_blocks import CONSTANTS as OF_VOLUMES
-from pvfiblets.report.baselines.tessellated import LEAST_SIDES, MOST_SIDES, TOLERANCE
+from pvfiblets.report.studies.codec.baselines.tessellated import LEAST_SIDES, MOST_SIDES, TOLERANCE
 
 __all__ = ["EXCLUSIVE", "KINDS", "NEEDS", "Choice", "Kind", "preprocessed", "rows", "varied"]
 

@@ -4,9 +4,9 @@ import re
 
 import pytest
 
-from pvfiblets.engine.bindings import BLOCKS, CONSTANTS, BindingError, Scope, together
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS as OF_FIBLETS
-from pvfiblets.engine.shaders import assemble
+from pvfiblets.engine.gl.bindings import BLOCKS, CONSTANTS, BindingError, Scope, together
+from pvfiblets.engine.gl.shaders import assemble
 
 
 def test_two_names_for_one_number_are_an_error():

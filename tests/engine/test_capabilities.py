@@ -6,8 +6,8 @@ import sys
 
 import pytest
 
-from pvfiblets.engine.capabilities import Capabilities, PipelineInfo, atomics64, check_choices, choose, pipelines
 from pvfiblets.engine.errors import EngineError
+from pvfiblets.engine.gl.capabilities import Capabilities, PipelineInfo, atomics64, check_choices, choose, pipelines
 
 MESH = "GL_NV_mesh_shader"
 
@@ -142,7 +142,7 @@ def test_this_context_is_described_and_can_compute(gl):
     [("4.1", "tessellation"), ("4.0", "geometry"), ("3.3", "geometry"), ("3.2", None)],
 )
 def test_an_older_opengl_is_seen_for_what_it_is(older_opengl, version, auto):
-    command = [sys.executable, "-m", "pvfiblets.cli", "gl", "--json"]
+    command = [sys.executable, "-m", "pvfiblets", "gl", "--json"]
     result = subprocess.run(command, capture_output=True, text=True, check=False, env=older_opengl(version))
     assert result.returncode == 0, result.stderr
     report = json.loads(result.stdout)

@@ -7,7 +7,7 @@ import pytest
 
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS
-from pvfiblets.engine.shaders import assemble
+from pvfiblets.engine.gl.shaders import assemble
 
 from .gl_lines import gl_lines
 from .pictures import EMPTY, EVERY_POINT, SIZE, assert_same, differences, draw, near, read

@@ -13,11 +13,11 @@ from pvfiblets import synthetic
 from pvfiblets.codec import layout
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.culling.coverage import CoverageBuffer, dilation_radius
-from pvfiblets.engine.fiblets.chunks import storage_buffer
+from pvfiblets.engine.fiblets.data.chunks import storage_buffer
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS
 from pvfiblets.engine.gbuffer import GBuffer
-from pvfiblets.engine.moderngl_extras import GLExtras
-from pvfiblets.engine.shaders import Programs, assemble
+from pvfiblets.engine.gl.moderngl_extras import GLExtras
+from pvfiblets.engine.gl.shaders import Programs, assemble
 
 ROOT = Path(__file__).resolve().parents[2]
 SIZE = (960, 600)
@@ -327,8 +327,8 @@ from types import SimpleNamespace
 from pvfiblets.engine import FibletStyle, View
 from pvfiblets.engine.culling.coverage import CoverageBuffer
 from pvfiblets.engine.gbuffer import GBuffer
-from pvfiblets.engine.moderngl_extras import GLExtras
-from pvfiblets.engine.shaders import Programs
+from pvfiblets.engine.gl.moderngl_extras import GLExtras
+from pvfiblets.engine.gl.shaders import Programs
 ctx = moderngl.create_context(standalone=True, backend="egl")
 programs = Programs(ctx, {})
 fiblets = SimpleNamespace(origin=[0, 0, 0], anchor_scale=[1e-3] * 3, anchors_low=None, n_fiblets=0, pages=[0])

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from pvfiblets.engine import FibletRenderer, FibletStyle, View, shaders
+from pvfiblets.engine import FibletRenderer, FibletStyle, View
+from pvfiblets.engine.gl import shaders
 
 from .pictures import SIZE, assert_same, read
 from .visibility_bits import planned

@@ -7,8 +7,8 @@ import pytest
 from pvfiblets import compress
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.culling.choice import LONGEST, CullingChoice
-from pvfiblets.engine.moderngl_extras import GLExtras
-from pvfiblets.engine.picture_clock import TimestampClock
+from pvfiblets.engine.gl.moderngl_extras import GLExtras
+from pvfiblets.engine.gl.picture_clock import TimestampClock
 from pvfiblets.synthetic import brain_streamlines
 from tests.drivers import MESH
 

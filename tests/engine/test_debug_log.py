@@ -1,6 +1,6 @@
 """What watches OpenGL's own messages notices a wrong call, and forgets it once it was told."""
 
-from pvfiblets.engine.moderngl_extras import GLExtras
+from pvfiblets.engine.gl.moderngl_extras import GLExtras
 from tests.debug_log import DebugLog
 
 

@@ -8,9 +8,9 @@ import pytest
 
 from pvfiblets.codec import layout, reference
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
-from pvfiblets.engine.fiblets.chunks import storage_buffer
+from pvfiblets.engine.fiblets.data.chunks import storage_buffer
 from pvfiblets.engine.frame import FRAME_BLOCK
-from pvfiblets.engine.shaders import assemble
+from pvfiblets.engine.gl.shaders import assemble
 
 SEQUENTIAL = """
 #version 430

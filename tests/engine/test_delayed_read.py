@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
-from pvfiblets.engine.delayed_read import AT_ONCE, DelayedRead
-from pvfiblets.engine.moderngl_extras import GLExtras
+from pvfiblets.engine.gl.delayed_read import AT_ONCE, DelayedRead
+from pvfiblets.engine.gl.moderngl_extras import GLExtras
 from tests.gl_calls import possible, recording
 
 from .pictures import SIZE

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
-from pvfiblets.engine.fiblets.depth_peeling import MOST_LAYERS, _Stage
-from pvfiblets.engine.fiblets.filter_textures import Filter
+from pvfiblets.engine.fiblets.data.filter_textures import Filter
+from pvfiblets.engine.fiblets.gather.depth_peeling import MOST_LAYERS, _Stage
 
 from .pictures import EMPTY, SIZE, near, read, unpacked_tangent
 

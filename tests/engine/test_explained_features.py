@@ -8,10 +8,10 @@ import pytest
 
 from pvfiblets import compress, regions
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
-from pvfiblets.engine.fiblets.filter_textures import Filter
+from pvfiblets.engine.fiblets.data.filter_textures import Filter
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS
+from pvfiblets.engine.gl.shaders import Programs, switched_on
 from pvfiblets.engine.halos import HaloDrawStyle, HaloRenderer
-from pvfiblets.engine.shaders import Programs, switched_on
 from pvfiblets.engine.tubes import TubeRenderer
 from pvfiblets.halos import HaloStyle
 from pvfiblets.halos.build import as_halo_lines

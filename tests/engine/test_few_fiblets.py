@@ -5,7 +5,7 @@ import pytest
 
 from pvfiblets import regions
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
-from pvfiblets.engine.fiblets.filter_textures import Filter
+from pvfiblets.engine.fiblets.data.filter_textures import Filter
 from pvfiblets.engine.fiblets.pipelines import compute
 
 from .pictures import SIZE, assert_same, read, unpacked_tangent

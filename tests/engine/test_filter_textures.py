@@ -8,8 +8,8 @@ from pvfiblets import Streamlines, compress
 from pvfiblets.codec.restrict import restrict
 from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View
 from pvfiblets.engine.errors import GPUMemoryError
-from pvfiblets.engine.fiblets.filter_textures import Filter, FilterTextures
-from pvfiblets.query.bits import stretch
+from pvfiblets.engine.fiblets.data.filter_textures import Filter, FilterTextures
+from pvfiblets.query.selection.bits import stretch
 from pvfiblets.synthetic import brain_streamlines
 from tests.drivers import MESH
 

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from pvfiblets.engine import FibletRenderer, FibletStyle, View, shaders
-from pvfiblets.engine.fiblets.filter_textures import Filter
-from pvfiblets.engine.fiblets.gathering import SLICES, SliceDistances, slice_edges
-from pvfiblets.engine.fiblets.paint import Paint
+from pvfiblets.engine import FibletRenderer, FibletStyle, View
+from pvfiblets.engine.fiblets.data.filter_textures import Filter
+from pvfiblets.engine.fiblets.gather.gathering import SLICES, SliceDistances, slice_edges
+from pvfiblets.engine.fiblets.gather.paint import Paint
+from pvfiblets.engine.gl import shaders
 from tests.drivers import MESH
 
 from .cells import clear_of, line_samples

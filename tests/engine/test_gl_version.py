@@ -13,8 +13,9 @@ DRAW = """
 import sys
 import moderngl, numpy as np
 from pvfiblets import Streamlines, compress
-from pvfiblets.engine import FibletRenderer, View, capabilities, gl_version
-from pvfiblets.report.stability import render_checks
+from pvfiblets.engine import FibletRenderer, View
+from pvfiblets.engine.gl import capabilities, gl_version
+from pvfiblets.report.studies.stability import render_checks
 
 ctx = moderngl.create_standalone_context(require=320, backend="egl")
 if sys.argv[1] == "generous":

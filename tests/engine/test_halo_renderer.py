@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from pvfiblets.engine import EngineError, FibletStyle, View, passes
+from pvfiblets.engine import EngineError, FibletStyle, View
+from pvfiblets.engine.gl import passes
+from pvfiblets.engine.gl.moderngl_extras import GLExtras
+from pvfiblets.engine.gl.queries import Timers
 from pvfiblets.engine.halos import HaloDrawStyle, HaloRenderer
-from pvfiblets.engine.moderngl_extras import GLExtras
-from pvfiblets.engine.queries import Timers
 from pvfiblets.halos import HaloLines, HaloPoints
 from pvfiblets.halos.reference import LINE
 

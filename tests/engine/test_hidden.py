@@ -11,12 +11,13 @@ import moderngl
 import numpy as np
 import pytest
 
-from pvfiblets.engine import FibletStyle, View, shaders
+from pvfiblets.engine import FibletStyle, View
 from pvfiblets.engine.culling import DepthPyramid
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS
 from pvfiblets.engine.frame import FRAME_BLOCK, frame_block
-from pvfiblets.engine.moderngl_extras import GLExtras
-from pvfiblets.engine.shaders import Programs, assemble
+from pvfiblets.engine.gl import shaders
+from pvfiblets.engine.gl.moderngl_extras import GLExtras
+from pvfiblets.engine.gl.shaders import Programs, assemble
 
 from .cells import line_cells
 from .pictures import EMPTY

@@ -15,8 +15,8 @@ import pytest
 
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS
 from pvfiblets.engine.fiblets.pipelines.compute import _has_int64_atomics
-from pvfiblets.engine.moderngl_extras import GLExtras
-from pvfiblets.engine.shaders import EXTENDED, assemble
+from pvfiblets.engine.gl.moderngl_extras import GLExtras
+from pvfiblets.engine.gl.shaders import EXTENDED, assemble
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -50,9 +50,10 @@ import sys
 import moderngl
 import numpy as np
 from pvfiblets import compress, synthetic
-from pvfiblets.engine import FibletRenderer, FibletStyle, View, shaders
+from pvfiblets.engine import FibletRenderer, FibletStyle, View
+from pvfiblets.engine.gl import shaders
 from pvfiblets.engine.fiblets.pipelines import compute
-from pvfiblets.report.stability.render_checks import camera
+from pvfiblets.report.studies.stability.render_checks import camera
 
 ctx = moderngl.create_context(standalone=True, backend="egl")
 if "GL_ARB_gpu_shader_int64" not in ctx.extensions:

@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 
 from pvfiblets.codec import layout
-from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View, passes, shaders
-from pvfiblets.engine.bindings import BLOCKS
-from pvfiblets.engine.fiblets import upload
-from pvfiblets.engine.fiblets.chunks import CHUNK_BLOCK, plan_chunks, storage_buffer
+from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View
+from pvfiblets.engine.fiblets.data import upload
+from pvfiblets.engine.fiblets.data.chunks import CHUNK_BLOCK, plan_chunks, storage_buffer
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS, limits
 from pvfiblets.engine.fiblets.pipelines.compute import ARGUMENT_BYTES, CLASSES, ROUNDS
-from pvfiblets.engine.shaders import assemble
+from pvfiblets.engine.gl import passes, shaders
+from pvfiblets.engine.gl.bindings import BLOCKS
+from pvfiblets.engine.gl.shaders import assemble
 from tests.drivers import MESH
 
 from .imagined import imagined

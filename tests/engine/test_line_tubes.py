@@ -6,7 +6,7 @@ import pytest
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS, compute
 from pvfiblets.engine.gbuffer import GBuffer
-from pvfiblets.engine.shaders import assemble
+from pvfiblets.engine.gl.shaders import assemble
 
 from .emulated import emulated_renderer
 from .line_tubes import entries, smoothed
@@ -312,7 +312,7 @@ def test_mesh_stages_draw_the_same_tubes(gl, monkeypatch, knots, camera, name, p
 
 def test_tubes_hand_over_no_more_than_wide_lines():
     """So that the geometry and mesh stages' shares hold for them."""
-    from pvfiblets.engine.shaders import read_shader
+    from pvfiblets.engine.gl.shaders import read_shader
 
     def components(features):
         sizes = {"float": 1, "uint": 1, "vec2": 2, "uvec2": 2, "vec3": 3, "vec4": 4, "uvec4": 4}

@@ -8,13 +8,15 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from pvfiblets import FibletSet, Streamlines, compress, memory
+from pvfiblets import FibletSet, Streamlines, compress
 from pvfiblets.codec.restrict import even_share, restrict
 from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View
 from pvfiblets.engine.errors import GPUMemoryError
-from pvfiblets.engine.fiblets import memory_fit, renderer, upload
+from pvfiblets.engine.fiblets import renderer
+from pvfiblets.engine.fiblets.data import memory_fit, upload
 from pvfiblets.engine.fiblets.pipelines import Limits
-from pvfiblets.engine.moderngl_extras import INTEGERS, GLExtras
+from pvfiblets.engine.gl.moderngl_extras import INTEGERS, GLExtras
+from pvfiblets.support import memory
 
 from .pictures import SIZE, assert_same, brain_with_gaps, draw, read
 

@@ -15,8 +15,8 @@ from pvfiblets import compress, synthetic
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS
 from pvfiblets.engine.fiblets.pipelines.mesh import TASK_FIBLETS, MeshPipeline
-from pvfiblets.engine.mesh_program import MeshProgram, nvidia_program
-from pvfiblets.engine.shaders import EXTENDED, assemble, read_shader
+from pvfiblets.engine.gl.mesh_program import MeshProgram, nvidia_program
+from pvfiblets.engine.gl.shaders import EXTENDED, assemble, read_shader
 from tests.reference_compiler import glslang, link
 
 from .cells import SHIFT_256

@@ -7,9 +7,9 @@ import moderngl
 import numpy as np
 import pytest
 
-from pvfiblets.engine import moderngl_extras
 from pvfiblets.engine.errors import EngineError
-from pvfiblets.engine.moderngl_extras import INTEGERS, TEXEL_FORMATS, GLExtras
+from pvfiblets.engine.gl import moderngl_extras
+from pvfiblets.engine.gl.moderngl_extras import INTEGERS, TEXEL_FORMATS, GLExtras
 
 DTYPES = {"ui": {"8": "u1", "16": "u2", "32": "u4"}, "f": {"32": "f4"}}
 CHANNELS = {"r": 1, "rg": 2, "rgba": 4}
@@ -215,7 +215,7 @@ def test_what_this_opengl_lacks_is_named(gl, monkeypatch):
 
 
 def test_without_a_context_nothing_is_looked_up():
-    code = "from pvfiblets.engine.gl_loader import loader; loader()"
+    code = "from pvfiblets.engine.gl.gl_loader import loader; loader()"
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert result.returncode == 1
     assert "EngineError: no OpenGL context is current; make it so" in result.stderr

@@ -5,9 +5,9 @@ import pytest
 
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine import pieces as pieces_module
-from pvfiblets.engine.passes import Passes
+from pvfiblets.engine.gl.passes import Passes
 from pvfiblets.engine.pieces import Pieces, finish
-from pvfiblets.report.stability.render_checks import camera
+from pvfiblets.report.studies.stability.render_checks import camera
 from pvfiblets.synthetic import brain_streamlines
 
 from .pictures import SIZE, assert_same, read

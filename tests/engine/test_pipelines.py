@@ -8,10 +8,10 @@ import pytest
 
 from pvfiblets import compress
 from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View
-from pvfiblets.engine.fiblets import measures
+from pvfiblets.engine.fiblets.data import measures
 from pvfiblets.engine.fiblets.pipelines.hardware_raster import RasterTarget, SeenTexture
 from pvfiblets.engine.fiblets.pipelines.limits import Limits
-from pvfiblets.engine.moderngl_extras import GLExtras
+from pvfiblets.engine.gl.moderngl_extras import GLExtras
 from pvfiblets.synthetic import brain_streamlines
 from tests.drivers import MESH
 

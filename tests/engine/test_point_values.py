@@ -1,10 +1,10 @@
 """Per-point values in the G-buffer against NumPy on the decoded points."""
 
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from pvfiblets.codec.point_values import PointValues, linear_table
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
 
 from .pictures import SIZE, read
@@ -79,7 +79,7 @@ def test_stored_values(gl, fabricate, random_lines, camera, dtype):
     rng = np.random.default_rng(5)
     top = np.iinfo(dtype).max
     codes = rng.integers(0, top, fiblets.n_points).astype(dtype)
-    fiblets.per_point["fa"] = SimpleNamespace(codes=codes, lo=-2.0, hi=3.0, max_error=0.0)
+    fiblets.per_point["fa"] = PointValues(codes, -2.0, 3.0, 0.0, table=linear_table(-2.0, 3.0, 8 * codes.itemsize))
     streamline, place, value, found_range = draw_values(gl, fiblets, camera(SIZE), "fa")
     truth = -2.0 + 5.0 * codes / (top - 1)
     starts = np.cumsum([0] + [len(line) for line in fiblets.lines])
@@ -94,6 +94,6 @@ def test_values_that_are_not_numbers_stay_so(gl, fabricate, random_lines, camera
     fiblets = fabricate(lines, kind=2, per_fiblet=7)
     missing = np.concatenate([np.full(len(line), s % 2) for s, line in enumerate(lines)])
     codes = np.where(missing, 255, 100).astype(np.uint8)
-    fiblets.per_point["fa"] = SimpleNamespace(codes=codes, lo=0.0, hi=1.0, max_error=0.0)
+    fiblets.per_point["fa"] = PointValues(codes, 0.0, 1.0, 0.0, table=linear_table(0.0, 1.0, 8))
     streamline, _, value, _ = draw_values(gl, fiblets, camera(SIZE), "fa")
     assert (np.isnan(value) == (streamline % 2 == 1)).all()

@@ -4,7 +4,7 @@ import moderngl
 import numpy as np
 import pytest
 
-from pvfiblets.engine.program_uniforms import set_uniforms
+from pvfiblets.engine.gl.program_uniforms import set_uniforms
 from tests.gl_calls import possible, recording
 
 SOURCE = """

@@ -10,9 +10,9 @@ DRAW = """
 import moderngl
 from pvfiblets import compress
 from pvfiblets.engine import FibletRenderer, FibletStyle
-from pvfiblets.engine.shaders import switched_on
-from pvfiblets.engine.standalone import bare_context
-from pvfiblets.report.culling_pictures import views
+from pvfiblets.engine.gl.shaders import switched_on
+from pvfiblets.engine.gl.standalone import bare_context
+from pvfiblets.report.studies.culling.pictures import views
 from pvfiblets.synthetic import brain_streamlines
 import hashlib
 

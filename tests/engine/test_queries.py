@@ -6,10 +6,11 @@ import moderngl
 import numpy as np
 import pytest
 
-from pvfiblets.engine import FibletRenderer, View, passes
-from pvfiblets.engine.gl_functions import FUNCTIONS, RETURNS
-from pvfiblets.engine.moderngl_extras import GLExtras
-from pvfiblets.engine.queries import Query, Timers
+from pvfiblets.engine import FibletRenderer, View
+from pvfiblets.engine.gl import passes
+from pvfiblets.engine.gl.gl_functions import FUNCTIONS, RETURNS
+from pvfiblets.engine.gl.moderngl_extras import GLExtras
+from pvfiblets.engine.gl.queries import Query, Timers
 from pvfiblets.engine.tubes import TubeRenderer
 from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle
 from pvfiblets.engine.volumes.ray_occlusion import RayOcclusionPass

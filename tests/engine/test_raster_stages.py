@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 from pvfiblets.engine.fiblets import pipelines
-from pvfiblets.engine.shaders import Programs, read_shader
+from pvfiblets.engine.gl.shaders import Programs, read_shader
 
 from .shader_programs import preprocessed
 

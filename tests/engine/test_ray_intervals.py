@@ -10,10 +10,10 @@ import pytest
 from pvfiblets import regions
 from pvfiblets.engine.errors import EngineError
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS
-from pvfiblets.engine.moderngl_extras import GLExtras
+from pvfiblets.engine.gl.moderngl_extras import GLExtras
+from pvfiblets.engine.gl.shaders import Programs, assemble
 from pvfiblets.engine.regions.layer_stack import Squares
 from pvfiblets.engine.regions.ray_intervals import RegionIntervals
-from pvfiblets.engine.shaders import Programs, assemble
 from pvfiblets.engine.view import View
 
 from .elsewhere import run_elsewhere

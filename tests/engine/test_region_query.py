@@ -8,7 +8,7 @@ from pvfiblets import regions
 from pvfiblets.codec.layout import DIRECTION, LATTICE8, LATTICE16, WIDE, unpack
 from pvfiblets.engine import EngineError, FibletRenderer, View
 from pvfiblets.engine.fiblets.region_query import ALL, ANY, FIRST, LAST, nearest_anchor
-from pvfiblets.query.passing import region_flags
+from pvfiblets.query.selection.passing import region_flags
 
 from .region_shapes import NAMES, made
 

@@ -5,14 +5,14 @@ import numpy as np
 import pytest
 
 from pvfiblets import regions
-from pvfiblets.engine.bindings import BLOCKS
 from pvfiblets.engine.errors import GPUMemoryError
-from pvfiblets.engine.fiblets.chunks import storage_buffer
+from pvfiblets.engine.fiblets.data.chunks import storage_buffer
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS
-from pvfiblets.engine.moderngl_extras import GLExtras
-from pvfiblets.engine.passes import nowhere
+from pvfiblets.engine.gl.bindings import BLOCKS
+from pvfiblets.engine.gl.moderngl_extras import GLExtras
+from pvfiblets.engine.gl.passes import nowhere
+from pvfiblets.engine.gl.shaders import assemble
 from pvfiblets.engine.regions.uniform_block import REGIONS_BLOCK, FieldTextures, RegionBlock, region_block
-from pvfiblets.engine.shaders import assemble
 
 from .region_shapes import NAMES, made, torus
 
@@ -135,7 +135,7 @@ def test_older_glsl_says_the_same(gl, name):
 
 
 def test_where_it_is_decided_as_on_the_cpu(gl):
-    from pvfiblets.query.classify import classify
+    from pvfiblets.query.regions.classify import classify
 
     for name, region in made(size=50.0).items():
         a, _, radii = capsules(3000, seed=4, spread=40.0)

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View, gbuffer, passes
+from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View, gbuffer
+from pvfiblets.engine.gl import passes
 
 from .pictures import SIZE, assert_same, draw, read
 

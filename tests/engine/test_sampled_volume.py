@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View
-from pvfiblets.engine.fiblets.sampled_volume import VolumeSource, VolumeTexture
+from pvfiblets.engine.fiblets.data.sampled_volume import VolumeSource, VolumeTexture
 
 from .emulated import emulated_renderer
 from .pictures import SIZE, read

@@ -10,8 +10,8 @@ import pytest
 
 from pvfiblets.engine import EngineError
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS as OF_PIPELINES
+from pvfiblets.engine.gl.shaders import FEATURES, Programs, assemble, tell_of_compiling
 from pvfiblets.engine.halos.uniform_blocks import CONSTANTS as OF_HALOS
-from pvfiblets.engine.shaders import FEATURES, Programs, assemble, tell_of_compiling
 
 ROOT = Path(__file__).resolve().parents[2]
 SOURCES = sorted(p for p in (ROOT / "shaders").rglob("*") if p.is_file() and "resolve" not in p.parts)
@@ -72,7 +72,8 @@ def test_unknown_names_are_errors(source, features, message):
 
 
 def test_a_compiler_error_shows_the_composed_source(gl, monkeypatch):
-    monkeypatch.setattr("pvfiblets.engine.shaders.read_shader", lambda name: "#version 430\nvoid main() { wrong(); }\n")
+    wrong = "#version 430\nvoid main() { wrong(); }\n"
+    monkeypatch.setattr("pvfiblets.engine.gl.shaders.read_shader", lambda name: wrong)
     with pytest.raises(EngineError, match=r"(?s)wrong.*   3 void main\(\) \{ wrong\(\); \}"):
         Programs(gl, CONSTANTS).compute("compute/broken.comp")
 

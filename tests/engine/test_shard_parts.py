@@ -11,9 +11,9 @@ from pvfiblets.codec.shards.store import Folder
 from pvfiblets.codec.shards.unread_set import UnreadSet
 from pvfiblets.codec.shards.write import write_shards
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
-from pvfiblets.engine.fiblets.filter_textures import Filter
-from pvfiblets.engine.fiblets.shard_parts import ShardGroups, ShardParts, gpu_bytes_of_shards
-from pvfiblets.engine.fiblets.streamed_renderer import StreamedRenderer, streamed_renderer
+from pvfiblets.engine.fiblets.data.filter_textures import Filter
+from pvfiblets.engine.fiblets.parts.shard_parts import ShardGroups, ShardParts, gpu_bytes_of_shards
+from pvfiblets.engine.fiblets.parts.streamed_renderer import StreamedRenderer, streamed_renderer
 
 from .pictures import SIZE, assert_alike, brain_with_gaps, read
 

@@ -6,12 +6,12 @@ import pytest
 from pvfiblets import regions
 from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View
 from pvfiblets.engine.errors import GPUMemoryError
-from pvfiblets.engine.fiblets import streamed_renderer as streamed
-from pvfiblets.engine.fiblets.filter_textures import Filter
-from pvfiblets.engine.fiblets.paint import Paint
-from pvfiblets.engine.fiblets.parts import Stretches, in_view, reach_of
-from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
-from pvfiblets.engine.fiblets.streamed_renderer import StreamedRenderer, streamed_renderer
+from pvfiblets.engine.fiblets.data.filter_textures import Filter
+from pvfiblets.engine.fiblets.data.sampled_volume import VolumeSource
+from pvfiblets.engine.fiblets.gather.paint import Paint
+from pvfiblets.engine.fiblets.parts import streamed_renderer as streamed
+from pvfiblets.engine.fiblets.parts.parts import Stretches, in_view, reach_of
+from pvfiblets.engine.fiblets.parts.streamed_renderer import StreamedRenderer, streamed_renderer
 
 from .pictures import SIZE, assert_alike, brain_with_gaps, read
 

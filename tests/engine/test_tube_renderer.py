@@ -5,8 +5,9 @@ import pickle
 import numpy as np
 import pytest
 
-from pvfiblets.engine import EngineError, View, passes
+from pvfiblets.engine import EngineError, View
 from pvfiblets.engine.culling.two_phase_items import LEAST_SEGMENTS
+from pvfiblets.engine.gl import passes
 from pvfiblets.engine.tubes import SILHOUETTES, SOLVERS, TubeRenderer, TubeStyle
 from pvfiblets.engine.tubes.options import check_choices
 from pvfiblets.tubes import NodeValues, SplineTubes

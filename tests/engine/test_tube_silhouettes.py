@@ -6,10 +6,10 @@ import pytest
 from hypothesis import strategies as st
 
 from pvfiblets.engine import View
-from pvfiblets.engine.bindings import TUBES
+from pvfiblets.engine.gl.bindings import TUBES
+from pvfiblets.engine.gl.moderngl_extras import GLExtras
+from pvfiblets.engine.gl.shaders import Programs
 from pvfiblets.engine.lattice import TOP
-from pvfiblets.engine.moderngl_extras import GLExtras
-from pvfiblets.engine.shaders import Programs
 from pvfiblets.engine.tubes.nodes import Nodes
 from pvfiblets.engine.tubes.uniform_blocks import TubeBlocks
 from pvfiblets.tubes import SplineTubes

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from pvfiblets import Streamlines, compress
-from pvfiblets.engine import FibletRenderer, FibletStyle, View, shaders
+from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.culling import DepthPyramid
+from pvfiblets.engine.gl import shaders
 from pvfiblets.synthetic import brain_streamlines
 
 from .pictures import differences, read

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from pvfiblets.engine import EngineError
-from pvfiblets.engine.bindings import BLOCKS
-from pvfiblets.engine.gl_loader import loader
-from pvfiblets.engine.shaders import assemble, read_shader
-from pvfiblets.engine.uniform_struct import MODULES, Field, UniformStruct, UniformStructError, find_struct
+from pvfiblets.engine.gl.bindings import BLOCKS
+from pvfiblets.engine.gl.gl_loader import loader
+from pvfiblets.engine.gl.shaders import assemble, read_shader
+from pvfiblets.engine.gl.uniform_struct import MODULES, Field, UniformStruct, UniformStructError, find_struct
 
 ROOT = Path(__file__).resolve().parents[2]
 ASKED = {"type": 0x8A37, "size": 0x8A38, "block": 0x8A3A, "offset": 0x8A3B, "array": 0x8A3C, "matrix": 0x8A3D}

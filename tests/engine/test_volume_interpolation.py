@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pvfiblets.engine.moderngl_extras import GLExtras
+from pvfiblets.engine.gl.moderngl_extras import GLExtras
 from pvfiblets.engine.volumes import interpolation
 from pvfiblets.engine.volumes import renderer as volume_renderer
 from pvfiblets.volumes.raycast_options import RaycastOptions

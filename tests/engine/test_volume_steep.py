@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pvfiblets.engine import View
-from pvfiblets.engine.passes import is_software
+from pvfiblets.engine.gl.passes import is_software
 from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle, nodes
 from pvfiblets.volumes import reference
 from pvfiblets.volumes.raycast_options import RaycastOptions

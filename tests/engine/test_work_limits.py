@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from pvfiblets.engine import View
-from pvfiblets.engine.fiblets.chunks import plan_chunks
+from pvfiblets.engine.fiblets.data.chunks import plan_chunks
 from pvfiblets.engine.fiblets.pipelines.limits import Limits
-from pvfiblets.engine.moderngl_extras import GLExtras
+from pvfiblets.engine.gl.moderngl_extras import GLExtras
+from pvfiblets.engine.gl.work_limits import DISCRETE, INTEGRATED, SOFTWARE, WorkLimits
 from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle
-from pvfiblets.engine.work_limits import DISCRETE, INTEGRATED, SOFTWARE, WorkLimits
 from pvfiblets.volumes.raycast_options import RaycastOptions
 from pvfiblets.volumes.volume import RaycastVolume
 

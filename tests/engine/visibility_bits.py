@@ -5,7 +5,7 @@ import re
 import numpy as np
 
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS
-from pvfiblets.engine.shaders import assemble
+from pvfiblets.engine.gl.shaders import assemble
 
 CLASSES = 4
 

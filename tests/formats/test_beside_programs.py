@@ -14,7 +14,7 @@ from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkPartitionedDat
 
 import pvfiblets as pf
 from pvfiblets import formats
-from pvfiblets.cli import main
+from pvfiblets.cli.command import main
 from pvfiblets.formats import registry
 from pvfiblets.formats.attachments import write_scalars
 from pvfiblets.other_libraries import streamlines_of

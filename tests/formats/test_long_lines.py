@@ -10,11 +10,12 @@ import numpy as np
 import pytest
 
 from pvfiblets import formats
-from pvfiblets.codec import convert, encode, parameters
-from pvfiblets.codec.convert import compress_file
+from pvfiblets.codec import encode, parameters
 from pvfiblets.codec.encode import Encoder
 from pvfiblets.codec.fibletset import FibletSet
-from pvfiblets.codec.file_error import measure_file_error
+from pvfiblets.codec.files import convert
+from pvfiblets.codec.files.convert import compress_file
+from pvfiblets.codec.files.file_error import measure_file_error
 from pvfiblets.codec.parameters import Parameters, survey
 from pvfiblets.codec.record_writer import join
 from pvfiblets.formats import scratch
@@ -185,7 +186,8 @@ def test_a_long_line_that_is_cut_short_is_told(cut, tmp_path, short_memory) -> N
 
 PEAK = """
 import sys
-from pvfiblets.codec import convert, encode, parameters
+from pvfiblets.codec.files import convert
+from pvfiblets.codec import encode, parameters
 from pvfiblets.formats import scratch
 scratch.LONG, scratch.SPAN = 200_000, 100_000
 parameters.SAMPLED = convert.CHUNK_POINTS = parameters.BLOCK_POINTS = encode.LONG_PART = 100_000

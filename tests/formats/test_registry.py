@@ -14,7 +14,7 @@ from nibabel.streamlines.trk import header_2_dtype
 
 import pvfiblets as pf
 from pvfiblets import formats
-from pvfiblets.cli import main
+from pvfiblets.cli.command import main
 from pvfiblets.formats import registry
 from pvfiblets.streamlines import Streamlines
 

@@ -64,8 +64,8 @@ def test_pieces_with_other_columns_are_refused(tmp_path: Path) -> None:
 
 PEAK = """
 import sys
-import pvfiblets.codec.convert
-pvfiblets.codec.convert.CHUNK_POINTS = 200_000
+import pvfiblets.codec.files.convert
+pvfiblets.codec.files.convert.CHUNK_POINTS = 200_000
 pvfiblets.compress_file(sys.argv[1], sys.argv[2])
 # Not getrusage: that also remembers the process that started this one.
 status = dict(line.split(":", 1) for line in open("/proc/self/status"))

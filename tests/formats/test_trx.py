@@ -267,7 +267,7 @@ def test_a_folder_is_read_as_its_archive(name, tmp_path, capsys):
     """The format allows both; trx-python opens both."""
     from trx.trx_file_memmap import load_from_directory
 
-    from pvfiblets.cli import main
+    from pvfiblets.cli.command import main
 
     formats.write(tmp_path / "packed.trx", rich(counts=(5, 1, 12, 3, 2, 7)))
     folder = tmp_path / name

@@ -6,7 +6,7 @@ import re
 import moderngl
 import numpy as np
 
-from pvfiblets.engine import moderngl_extras, shaders
+from pvfiblets.engine.gl import moderngl_extras, shaders
 
 SWITCHED_ON = re.compile(r"^#define FEATURE_(\w+) 1$", re.MULTILINE)
 STAGES = ("vertex", "fragment", "geometry", "tess_control", "tess_evaluation", "task", "mesh")

@@ -15,8 +15,8 @@ import pyvista as pv
 
 import pvfiblets
 from pvfiblets import regions
-from pvfiblets.cli import main
-from pvfiblets.codec.archive import open_archive
+from pvfiblets.cli.command import main
+from pvfiblets.codec.files.archive import open_archive
 from pvfiblets.page.scene import PageScene, fiblet_layer
 from pvfiblets.page.writing import write_page
 from pvfiblets.plotting.page_scene import page_of

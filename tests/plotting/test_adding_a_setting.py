@@ -45,10 +45,10 @@ import pyvista as pv
 
 import pvfiblets
 from pvfiblets.plotting import {actor}
-from pvfiblets.web import layers
-from pvfiblets.web.scene import Scene
-from pvfiblets.web.script import as_script
-from pvfiblets.web.session import from_dict, to_dict
+from pvfiblets.web.scene import layers
+from pvfiblets.web.scene.scene import Scene
+from pvfiblets.web.session.script import as_script
+from pvfiblets.web.session.files import from_dict, to_dict
 
 root = Path(sys.argv[1])
 assert Path(pvfiblets.__file__).is_relative_to(root)

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from pvfiblets.engine import shaders
 from pvfiblets.engine.effects.sample_positions import sample_positions
 from pvfiblets.engine.errors import EngineError
 from pvfiblets.engine.fiblets import sample_layers
 from pvfiblets.engine.fiblets.sample_layers import SampleLayers
+from pvfiblets.engine.gl import shaders
 from pvfiblets.mappers import antialias_windows
 from pvfiblets.mappers.antialias_windows import Finishing
 from pvfiblets.mappers.picture import Picture

@@ -159,7 +159,8 @@ def test_distance_of_points(streamlines):
     points = fiblets.decompress(dtype=np.float64).points
     expected = np.maximum(np.linalg.norm(points - (0.0, 0.0, 20.0), axis=1) - 15.0, 0.0)
     stored = fiblets.per_point[name]
-    np.testing.assert_allclose(stored.values(), expected, atol=(stored.hi - stored.lo) / stored.levels + 1e-4)
+    np.testing.assert_allclose(stored.values(), expected, atol=stored.max_error + 1e-4)
+    assert stored.max_error < (stored.hi - stored.lo) / 250
     assert find_scalars(fiblets, name).title == "distance [mm]"
 
 
@@ -167,7 +168,7 @@ def test_coding_error_is_that_of_every_point(streamlines):
     fiblets, name = as_fiblets(streamlines, scalars="coding_error", max_error=0.2)
     error = np.linalg.norm(fiblets.decompress(dtype=np.float64).points - streamlines.points.astype(float), axis=1)
     stored = fiblets.per_point[name]
-    np.testing.assert_allclose(stored.values(), error, atol=(stored.hi - stored.lo) / stored.levels + 1e-5)
+    np.testing.assert_allclose(stored.values(), error, atol=stored.max_error + 1e-5)
     assert 0.0 < stored.hi <= 0.2
     with pytest.raises(KeyError, match="only while streamlines are compressed"):
         find_scalars(compress(streamlines), "coding_error")

@@ -8,7 +8,7 @@ import pytest
 from pvfiblets import compress
 from pvfiblets.codec.restrict import even_share
 from pvfiblets.engine.errors import EngineError
-from pvfiblets.engine.fiblets import memory_fit
+from pvfiblets.engine.fiblets.data import memory_fit
 from pvfiblets.synthetic import brain_streamlines
 
 from .views import shot

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from pvfiblets.value_reference import relative, value_reference
+from pvfiblets.support.value_reference import relative, value_reference
 from pvfiblets.volumes import as_raycast_volume
 
 UNIX, JULIAN = 1.7e9, 2460000.5

@@ -9,9 +9,9 @@ from pvfiblets.codec.compress import compress
 from pvfiblets.engine.effects.halos import HaloPass
 from pvfiblets.mappers.spacing import MOST_STREAMLINES, line_spacing_of
 from pvfiblets.plotting.fiblets.looks import LOOKS, PLAIN, Apart, Fewer, look_of, settings_of
-from pvfiblets.query.measures import measure
+from pvfiblets.query.measures.measures import measure
 from pvfiblets.streamlines import Streamlines
-from pvfiblets.web import layers
+from pvfiblets.web.scene import layers
 
 from .views import shot
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from pvfiblets.engine.fiblets.filter_textures import Filter
+from pvfiblets.engine.fiblets.data.filter_textures import Filter
 from pvfiblets.mappers.picking import EMPTY
 from pvfiblets.mappers.windows import contexts_with
 from pvfiblets.plotting.fiblets.pick_result import Picked

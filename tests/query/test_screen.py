@@ -7,8 +7,8 @@ import pytest
 
 import pvfiblets as pf
 from pvfiblets.codec import layout
-from pvfiblets.query.screen import area_distances, under_polygon
-from pvfiblets.report.stability import render_checks
+from pvfiblets.query.selection.screen import area_distances, under_polygon
+from pvfiblets.report.studies.stability import render_checks
 from pvfiblets.streamlines import Streamlines
 from tests.codec.samples import extremes, noisy, smooth, wandering
 
@@ -172,7 +172,7 @@ def test_streamline_mask_and_point_mask():
 
 
 def test_planes_and_regions_take_away_the_same():
-    from pvfiblets.query.shapes import Plane
+    from pvfiblets.query.regions.shapes import Plane
 
     fiblets, matrix = pf.compress(mixed()), camera((0, 0, 0), 300)
     everything = under_polygon(fiblets, matrix, SIZE, LASSO)

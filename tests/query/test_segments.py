@@ -8,9 +8,9 @@ import pytest
 import pvfiblets as pf
 from pvfiblets import regions
 from pvfiblets.codec.layout import unpack
-from pvfiblets.query.passing import region_flags
-from pvfiblets.query.region import AND, NOT
-from pvfiblets.query.segments import segment_flags
+from pvfiblets.query.regions.region import AND, NOT
+from pvfiblets.query.regions.segments import segment_flags
+from pvfiblets.query.selection.passing import region_flags
 from pvfiblets.streamlines import Streamlines
 
 

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pvfiblets import regions
-from pvfiblets.query.region import AND, MAX_STACK, NOT, OR
+from pvfiblets.query.regions.region import AND, MAX_STACK, NOT, OR
 
 RNG = np.random.default_rng(7)
 POINTS = RNG.uniform(-3.0, 3.0, (4000, 3))

@@ -7,7 +7,7 @@ from vtkmodules.vtkFiltersCore import vtkImplicitPolyDataDistance
 from vtkmodules.vtkFiltersModeling import vtkSelectEnclosedPoints
 
 from pvfiblets import regions
-from pvfiblets.query import surfaces
+from pvfiblets.query.regions import surfaces
 
 from .test_shapes import SHEAR, place, placement, rotation
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import pvfiblets as pf
-from pvfiblets import cli
-from pvfiblets.query.measures import measure
+from pvfiblets.cli import command as cli
+from pvfiblets.query.measures.measures import measure
 
 
 @pytest.fixture

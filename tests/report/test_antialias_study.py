@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from pvfiblets.report import antialias
 from pvfiblets.report.pareto import mark_fronts
+from pvfiblets.report.studies.antialias import study as antialias
 from pvfiblets.report.study import Budget
 
 from .little import little

@@ -12,13 +12,15 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from pvfiblets.cli import main
-from pvfiblets.report import card_check, card_fiblets, card_file
-from pvfiblets.report.card_counts import counted
-from pvfiblets.report.card_findings import DIFFERS, DRAWN, FAILS, MISSING, SLOW, WORKS, Finding, table, totals
-from pvfiblets.report.card_lines import LineSamples, Shown
-from pvfiblets.report.card_scenes import tried
-from pvfiblets.report.culling_pictures import views
+from pvfiblets.cli.command import main
+from pvfiblets.report.studies.card import check as card_check
+from pvfiblets.report.studies.card import fiblets as card_fiblets
+from pvfiblets.report.studies.card import report_file as card_file
+from pvfiblets.report.studies.card.counts import counted
+from pvfiblets.report.studies.card.findings import DIFFERS, DRAWN, FAILS, MISSING, SLOW, WORKS, Finding, table, totals
+from pvfiblets.report.studies.card.lines import LineSamples, Shown
+from pvfiblets.report.studies.card.scenes import tried
+from pvfiblets.report.studies.culling.pictures import views
 from tests.engine.cells import clear_of, line_samples
 
 SIZE = (96, 72)
@@ -217,7 +219,8 @@ def test_a_part_works_and_needs_no_vtk(gl, tmp_path, part):
     code = (
         "import sys\n"
         "sys.modules.update(dict.fromkeys(('vtk', 'vtkmodules', 'pyvista', 'matplotlib', 'nibabel', 'tqdm')))\n"
-        "from pathlib import Path; from pvfiblets.report.card_part import main; main(sys.argv[1], Path(sys.argv[2]))"
+        "from pathlib import Path; from pvfiblets.report.studies.card.part import main\n"
+        "main(sys.argv[1], Path(sys.argv[2]))"
     )
     done = subprocess.run(
         [sys.executable, "-c", code, part, str(tmp_path)], capture_output=True, text=True, check=False
@@ -230,7 +233,7 @@ def test_a_part_works_and_needs_no_vtk(gl, tmp_path, part):
 
 
 def test_speed_is_measured_on_brains_of_a_size(gl, tmp_path):
-    from pvfiblets.report.card_speed import make_brains, named, speed_part
+    from pvfiblets.report.studies.card.speed import make_brains, named, speed_part
 
     make_brains((2e4, 5e4), tmp_path)
     found = [tried(gl, "speed compute", name, make)[0] for name, make in speed_part(gl, "compute", tmp_path)]

@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 
 from pvfiblets import compress
-from pvfiblets.report import features, features_window
-from pvfiblets.report.features_pictures import PICTURE_EFFECTS, PictureEffect, WholePicture
-from pvfiblets.report.features_scenes import PLAIN, Drawn
-from pvfiblets.report.features_subjects import brain_subject
 from pvfiblets.report.pareto import mark_fronts
+from pvfiblets.report.studies.features import study as features
+from pvfiblets.report.studies.features import window as features_window
+from pvfiblets.report.studies.features.pictures import PICTURE_EFFECTS, PictureEffect, WholePicture
+from pvfiblets.report.studies.features.scenes import PLAIN, Drawn
+from pvfiblets.report.studies.features.subjects import brain_subject
 from pvfiblets.report.study import Budget
 from pvfiblets.synthetic import brain_streamlines
 

@@ -12,12 +12,13 @@ from pvfiblets.codec.compress import compress
 from pvfiblets.engine.halos import HaloRenderer
 from pvfiblets.halos import HaloLines, HaloStyle
 from pvfiblets.halos.reference import picture as reference
-from pvfiblets.report import data_sets, halos
 from pvfiblets.report.cameras import Camera
-from pvfiblets.report.halos_drawing import FibletHalos, Strips
-from pvfiblets.report.halos_exact import crossings, gaps, pixel_errors
-from pvfiblets.report.halos_pictures import helices, look_of, orbit, picture
 from pvfiblets.report.record import LeftOut
+from pvfiblets.report.studies.codec import data_sets
+from pvfiblets.report.studies.halos import study as halos
+from pvfiblets.report.studies.halos.drawing import FibletHalos, Strips
+from pvfiblets.report.studies.halos.exact import crossings, gaps, pixel_errors
+from pvfiblets.report.studies.halos.pictures import helices, look_of, orbit, picture
 from pvfiblets.report.study import Budget
 
 from .little import little

@@ -12,16 +12,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
-from pvfiblets.cli import main
+from pvfiblets.cli.command import main
 from pvfiblets.errors import FormatError
 from pvfiblets.report import plots
 from pvfiblets.report.dot_plot import in_rows
 from pvfiblets.report.drawing import timing
-from pvfiblets.report.errors_and_times import Turns, distances, error_figures, median_step
 from pvfiblets.report.page import page
 from pvfiblets.report.pareto import mark_fronts, pareto
 from pvfiblets.report.record import Axes, Figure, LeftOut, Record, StudyResult, Timing
 from pvfiblets.report.report_file import Report
+from pvfiblets.report.studies.codec.errors_and_times import Turns, distances, error_figures, median_step
 
 
 def a_record(method="a", data="d", size=1.0, error=0.5, **rest):
@@ -358,8 +358,9 @@ def test_what_many_things_were_left_out_for_is_told_once():
 
 def test_measuring_needs_no_vtk_and_no_matplotlib(tmp_path, monkeypatch, capsys):
     code = (
-        "import sys, pvfiblets.report.run, pvfiblets.report.codec, pvfiblets.report.decode, pvfiblets.cli_report\n"
-        "from pvfiblets.report.data_sets import synthetic_tracking\n"
+        "import sys, pvfiblets.report.run, pvfiblets.cli.report\n"
+        "import pvfiblets.report.studies.codec.study, pvfiblets.report.studies.decode.study\n"
+        "from pvfiblets.report.studies.codec.data_sets import synthetic_tracking\n"
         "synthetic_tracking(1.0, True, 500, 0)\n"
         "print(sorted({'vtkmodules', 'vtk', 'pyvista', 'matplotlib', 'dipy'} & set(sys.modules)))"
     )

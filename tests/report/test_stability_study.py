@@ -9,8 +9,8 @@ from pvfiblets.report.page import page
 from pvfiblets.report.record import StudyResult
 from pvfiblets.report.report_file import FORMAT, Report
 from pvfiblets.report.run import one_study
-from pvfiblets.report.stability import study
-from pvfiblets.report.stability.case import Case, Cases, Outcome, Setting, refused, worst
+from pvfiblets.report.studies.stability import study
+from pvfiblets.report.studies.stability.case import Case, Cases, Outcome, Setting, refused, worst
 from pvfiblets.report.study import Budget, Options, Unavailable
 
 from .test_records import ABOUT

@@ -11,8 +11,12 @@ import pytest
 from pvfiblets import formats
 from pvfiblets.codec.compress import compress
 from pvfiblets.codec.reference import encode_direction
-from pvfiblets.report import codec, data_sets, decode, decoders, drawing, run, studies
+from pvfiblets.report import drawing, run, studies
 from pvfiblets.report.record import Axes, Figure, LeftOut, Record
+from pvfiblets.report.studies.codec import data_sets
+from pvfiblets.report.studies.codec import study as codec
+from pvfiblets.report.studies.decode import decoders
+from pvfiblets.report.studies.decode import study as decode
 from pvfiblets.report.study import Budget, Options, Unavailable
 from pvfiblets.streamlines import Streamlines
 
@@ -73,8 +77,8 @@ def test_files_are_taken_from_folders_and_what_cannot_be_read_is_named(tmp_path,
 
 
 def test_made_up_sets_have_constant_steps_and_noise_turns_them_more():
-    from pvfiblets.report.baselines.directions import widest_turn
-    from pvfiblets.report.errors_and_times import median_step
+    from pvfiblets.report.studies.codec.baselines.directions import widest_turn
+    from pvfiblets.report.studies.codec.errors_and_times import median_step
 
     smooth, noisy = (data_sets.synthetic_tracking(0.5, noise, 3000, 0) for noise in (False, True))
     for made in (smooth, noisy):

@@ -4,14 +4,15 @@ import numpy as np
 import pytest
 
 from pvfiblets import compress, formats
-from pvfiblets.report import pixels, run
-from pvfiblets.report.data_sets import DataSet
+from pvfiblets.report import run
 from pvfiblets.report.page import page
-from pvfiblets.report.pixels import STUDY as PIXELS
-from pvfiblets.report.pixels import beyond, difference_picture
 from pvfiblets.report.record import Figure
 from pvfiblets.report.report_file import Report
-from pvfiblets.report.tractograms import STUDY
+from pvfiblets.report.studies.codec import pixels
+from pvfiblets.report.studies.codec.data_sets import DataSet
+from pvfiblets.report.studies.codec.pixels import STUDY as PIXELS
+from pvfiblets.report.studies.codec.pixels import beyond, difference_picture
+from pvfiblets.report.studies.codec.tractograms import STUDY
 from pvfiblets.synthetic.trackers import ALGORITHMS, tracked_streamlines
 
 from .little import little

@@ -2,7 +2,7 @@
 
 import pytest
 
-from pvfiblets.report import translucency
+from pvfiblets.report.studies.translucency import study as translucency
 from pvfiblets.report.study import Budget
 
 from .little import little

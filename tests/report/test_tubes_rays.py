@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from pvfiblets.report.cameras import Lens, orbit
-from pvfiblets.report.tubes_pictures import helices
-from pvfiblets.report.tubes_rays import Rays, of_class, of_set
-from pvfiblets.report.tubes_sweeps import lengthwise
+from pvfiblets.report.studies.tubes.pictures import helices
+from pvfiblets.report.studies.tubes.rays import Rays, of_class, of_set
+from pvfiblets.report.studies.tubes.sweeps import lengthwise
 
 
 @pytest.fixture

@@ -6,11 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pvfiblets.report import tubes, tubes_solvers
 from pvfiblets.report.cameras import Lens, by_turns, orbit
 from pvfiblets.report.record import LeftOut
+from pvfiblets.report.studies.tubes import solvers as tubes_solvers
+from pvfiblets.report.studies.tubes import study as tubes
+from pvfiblets.report.studies.tubes.pictures import FORMATS, Truth, helices
 from pvfiblets.report.study import Budget
-from pvfiblets.report.tubes_pictures import FORMATS, Truth, helices
 from pvfiblets.tubes import SplineTubes
 
 from .little import little

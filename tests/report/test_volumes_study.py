@@ -9,16 +9,26 @@ import pytest
 from pvfiblets.engine import View
 from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle
 from pvfiblets.engine.volumes.ray_occlusion import LIFT
-from pvfiblets.report import (
-    volumes,
-    volumes_fields,
-    volumes_integrators,
-    volumes_occlusion,
-    volumes_pictures,
-    volumes_scene,
+from pvfiblets.report.studies.volumes import (
+    fields as volumes_fields,
 )
+from pvfiblets.report.studies.volumes import (
+    integrators as volumes_integrators,
+)
+from pvfiblets.report.studies.volumes import (
+    occlusion as volumes_occlusion,
+)
+from pvfiblets.report.studies.volumes import (
+    pictures as volumes_pictures,
+)
+from pvfiblets.report.studies.volumes import (
+    scene as volumes_scene,
+)
+from pvfiblets.report.studies.volumes import (
+    study as volumes,
+)
+from pvfiblets.report.studies.volumes.openness import exact_openness, seen_from
 from pvfiblets.report.study import Budget
-from pvfiblets.report.volumes_openness import exact_openness, seen_from
 from pvfiblets.volumes import RaycastVolume, reference
 from pvfiblets.volumes.raycast_options import INTEGRATORS
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from pvfiblets.report.stability import MODULES, all_cases
-from pvfiblets.report.stability.case import Setting
+from pvfiblets.report.studies.stability import MODULES, all_cases
+from pvfiblets.report.studies.stability.case import Setting
 
 pytestmark = pytest.mark.more
 

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pvfiblets.ragged import offsets_from_counts
+from pvfiblets.support.ragged import offsets_from_counts
 from pvfiblets.tubes.tangents import METHODS, Steps, derivatives
 
 

@@ -165,8 +165,8 @@ def gltf(target, megabytes):
 def _opened(folder, room, names):
     import pyvista as pv
 
-    from pvfiblets import memory
-    from pvfiblets.web.scene import Scene
+    from pvfiblets.support import memory
+    from pvfiblets.web.scene.scene import Scene
     from tests.web.desk import Desk
 
     plotter = pv.Plotter(off_screen=True, window_size=(200, 160))

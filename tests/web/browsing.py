@@ -37,6 +37,14 @@ ANSWER = f"""() => Promise.race([
 ])"""
 
 # Of Firefox's web sockets Playwright hears nothing: the page tells what comes, of its text and bytes the beginning.
+LISTENING = """
+new MutationObserver(() => {
+  const told = document.querySelector("[data-toast]");
+  if (told) window.toldLast = told.innerText;
+}).observe(document, {subtree: true, childList: true, characterData: true});
+"""
+"""What the page tells goes after some seconds, which a slow machine may need to look."""
+
 HEARING = """
 window.WebSocket = class extends WebSocket {
     constructor(...given) {
@@ -79,7 +87,7 @@ class Served:
         self.root = Path(root)
         self.log = self.root.parent / f"serve-{time.monotonic_ns()}.log"
         command = [
-            sys.executable, "-m", "pvfiblets.cli", "serve",
+            sys.executable, "-m", "pvfiblets", "serve",
             *map(str, arguments),
             "--port",
             "0",
@@ -118,6 +126,7 @@ class Visit:
         self.errors = []
         self.requests = []
         self.received = []
+        self.page.add_init_script(LISTENING)
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
         self.page.on("console", self._said)
         self.page.on("request", lambda request: self.requests.append(request.url))
@@ -256,7 +265,8 @@ class Visit:
         self.wait(lambda: self.toast() == text, text)
 
     def toast(self):
-        return self.page.locator("[data-toast]").inner_text()
+        """Return what the page told last, be it gone again."""
+        return self.page.evaluate("window.toldLast || ''")
 
     def close(self):
         try:

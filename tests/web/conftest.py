@@ -92,7 +92,7 @@ def plotter():
 @pytest.fixture
 def scene(plotter, folder):
     """Return an empty scene whose root is the folder."""
-    from pvfiblets.web.scene import Scene
+    from pvfiblets.web.scene.scene import Scene
 
     scene = Scene(plotter, folder)
     yield scene
@@ -102,11 +102,11 @@ def scene(plotter, folder):
 def look_down(scene, at, per_pixel):
     """Look along z from above at a place, with so many mm a pixel, and draw."""
     x, y, z = at
-    scene.set_camera(
+    scene.cameras.set_camera(
         {"position": [x, y, z + 300], "focal_point": [x, y, z], "up": [0, 1, 0], "view_angle": 30.0,
          "parallel": True, "parallel_scale": per_pixel * scene.plotter.window_size[1] / 2}
     )  # fmt: skip
-    scene.screenshot()
+    scene.cameras.screenshot()
 
 
 @pytest.fixture

@@ -7,22 +7,22 @@ from types import SimpleNamespace
 import numpy as np
 import pyvista as pv
 
-from pvfiblets.web.bundle_finding import FindingActions
-from pvfiblets.web.bundle_measures import MeasureActions
-from pvfiblets.web.bundles_tab import BundleActions
-from pvfiblets.web.clip_tab import CutActions
-from pvfiblets.web.confined import Confined
-from pvfiblets.web.describe import Charts
-from pvfiblets.web.filter_regions import RegionActions
-from pvfiblets.web.filter_tab import FilterActions
-from pvfiblets.web.history import History
-from pvfiblets.web.matrix_panel import MatrixActions
-from pvfiblets.web.opening import FileActions
-from pvfiblets.web.options import Options
-from pvfiblets.web.scene import Scene
-from pvfiblets.web.scratch import Notes
-from pvfiblets.web.script import as_script
-from pvfiblets.web.slicing import VIEWS, ready_views
+from pvfiblets.web.panels.bundle_finding import FindingActions
+from pvfiblets.web.panels.bundle_measures import MeasureActions
+from pvfiblets.web.panels.bundles_tab import BundleActions
+from pvfiblets.web.panels.clip_tab import CutActions
+from pvfiblets.web.panels.describe import Charts
+from pvfiblets.web.panels.filter_regions import RegionActions
+from pvfiblets.web.panels.filter_tab import FilterActions
+from pvfiblets.web.panels.matrix_panel import MatrixActions
+from pvfiblets.web.panels.opening import FileActions
+from pvfiblets.web.scene.confined import Confined
+from pvfiblets.web.scene.scene import Scene
+from pvfiblets.web.scene.slicing import VIEWS, ready_views
+from pvfiblets.web.server.options import Options
+from pvfiblets.web.server.scratch import Notes
+from pvfiblets.web.session.history import History
+from pvfiblets.web.session.script import as_script
 from pvfiblets.web.state import Page
 
 

@@ -2,7 +2,7 @@
 
 import asyncio
 
-from pvfiblets.web.stream import REST, PictureStream
+from pvfiblets.web.view.stream import REST, PictureStream
 
 
 def slow_stream(plotter, seconds=1.0, **settings):

@@ -7,10 +7,10 @@ import nibabel
 import numpy as np
 import pytest
 
-from pvfiblets.web import session
-from pvfiblets.web.atlas_tab import AtlasActions
-from pvfiblets.web.history import History
-from pvfiblets.web.script import as_script
+from pvfiblets.web.panels.atlas_tab import AtlasActions
+from pvfiblets.web.session import files as session
+from pvfiblets.web.session.history import History
+from pvfiblets.web.session.script import as_script
 from tests.web.desk import Desk
 from tests.web.test_slicing import scene  # noqa: F401 - a fixture
 
@@ -88,7 +88,7 @@ def test_one_label_asks_for_its_streamlines_and_two_for_what_connects_them(desk)
 def test_other_regions_stay_and_a_label_is_found_in_the_image(desk):
     lines = desk.scene.layers[0]
     sphere = {"kind": "sphere", "center": [4.0, 0.0, 0.0], "radius": 1.0, "name": "A"}
-    desk.scene.set_regions(lines.id, {"op": "and", "of": [{"how": "passes", "region": sphere}]})
+    desk.scene.filters.set_regions(lines.id, {"op": "and", "of": [{"how": "passes", "region": sphere}]})
     do(desk, ("ask", 3), ("go", 7))
     assert shown(desk) == [0]
     x, y, z = desk.scene.slicing.view.position

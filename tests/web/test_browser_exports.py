@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 import pvfiblets
-from pvfiblets import memory
+from pvfiblets.support import memory
 from tests.web import bombs
 
 pytestmark = pytest.mark.more

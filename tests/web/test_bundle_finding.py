@@ -9,7 +9,7 @@ import pytest
 import pvfiblets
 from pvfiblets import Streamlines
 from pvfiblets.query.bundles import clusters as clustering
-from pvfiblets.web import bundle_finding
+from pvfiblets.web.panels import bundle_finding
 from tests.web.desk import Desk
 
 
@@ -21,7 +21,7 @@ def desk(scene, folder):
 
 
 def names(desk):
-    return [one.name for one in desk.scene.bundles(desk.page.chosen)]
+    return [one.name for one in desk.scene.bundles.of_layer(desk.page.chosen)]
 
 
 def selected(desk):
@@ -43,7 +43,7 @@ def near(lines, like, distance):
 
 def test_more_like_this_selects_what_runs_near(desk, lines):
     layer = desk.page.chosen
-    desk.scene.select(layer, [14])
+    desk.scene.selection.select(layer, [14])
     desk.run(lambda: desk.finding.similar("6,5"))
     wanted = near(lines, [14], 6.5)
     assert 1 < len(wanted) < 20
@@ -55,11 +55,11 @@ def test_more_like_this_selects_what_runs_near(desk, lines):
     assert desk.history.undo() == "select"
     assert selected(desk) == wanted
     # What somebody else selected is asked about as it is.
-    desk.scene.select(layer, [1, 50])
+    desk.scene.selection.select(layer, [1, 50])
     desk.run(lambda: desk.finding.similar("5"))
     assert selected(desk) == near(lines, [1, 50], 5.0)
     # Without a selection, chosen bundles are.
-    desk.scene.deselect()
+    desk.scene.selection.deselect()
     desk.bundles.check("near", True)
     desk.run(lambda: desk.finding.similar("4.5"))
     assert selected(desk) == near(lines, range(30), 4.5)
@@ -67,7 +67,7 @@ def test_more_like_this_selects_what_runs_near(desk, lines):
 
 def test_of_many_an_even_share_is_asked_about_and_said(desk, monkeypatch):
     monkeypatch.setattr(bundle_finding, "COMPARED", 3)
-    desk.scene.select(desk.page.chosen, np.arange(21))
+    desk.scene.selection.select(desk.page.chosen, np.arange(21))
     desk.run(lambda: desk.finding.similar("0.5"))
     assert selected(desk) == [0, 10, 20]
     assert "an even 3 of the 21" in desk.said[-1][1]
@@ -79,7 +79,7 @@ def test_clusters_become_bundles_in_one_step(desk, monkeypatch):
     assert len(found) > 5
     desk.run(lambda: desk.finding.cluster("9 mm"))
     assert names(desk) == ["near", "far", *(f"cluster {k}" for k in range(1, 6))]
-    bundles = desk.scene.bundles(desk.page.chosen)
+    bundles = desk.scene.bundles.of_layer(desk.page.chosen)
     assert [one.ids.array().tolist() for one in bundles[2:]] == [found[k].ids.tolist() for k in range(5)]
     assert len({one.color for one in bundles}) == 7
     assert f"{len(found)} clusters; the 5 largest" in desk.said[-1][1]
@@ -147,7 +147,7 @@ def test_models_of_a_folder_are_recognised(desk, brain):
     desk.finding.fold(True)
     assert desk.page.finding == {"open": True, "folders": ["atlas/models"], "dipy": True}
     desk.run(lambda: desk.finding.recognise("atlas/models"))
-    found = {one.name: one.ids.array() for one in desk.scene.bundles(desk.page.chosen)}
+    found = {one.name: one.ids.array() for one in desk.scene.bundles.of_layer(desk.page.chosen)}
     assert list(found) == ["one", "two"]
     for k, ids in enumerate(found.values()):
         assert len(ids) >= 30
@@ -201,7 +201,7 @@ def test_what_makes_no_sense_is_refused(desk, act, says):
 def test_bundles_move_by_buttons_and_by_dragging(desk):
     scene, layer = desk.scene, desk.page.chosen
     for k in range(3):
-        scene.add_bundle(layer, [k], "abc"[k])
+        scene.bundles.add_bundle(layer, [k], "abc"[k])
     for name in ("b", "far"):
         desk.bundles.check(name, True)
     desk.bundles.move(-1)

@@ -7,8 +7,8 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 
-from pvfiblets.web import session
-from pvfiblets.web.history import History
+from pvfiblets.web.session import files as session
+from pvfiblets.web.session.history import History
 from tests.web.desk import Desk, assert_script_draws
 
 
@@ -18,7 +18,7 @@ def lines_layer(scene):
 
 
 def told(scene, layer):
-    return {one.name: (len(one.ids), one.visible) for one in scene.bundles(layer)}
+    return {one.name: (len(one.ids), one.visible) for one in scene.bundles.of_layer(layer)}
 
 
 def shown(scene, layer):
@@ -28,24 +28,24 @@ def shown(scene, layer):
 def test_groups_selections_and_what_is_shown_are_one_list(scene, lines_layer):
     history = History(scene, together=0.0)
     assert told(scene, lines_layer) == {"near": (30, True), "far": (30, True)}
-    scene.select(lines_layer, [1, 2, 40])
-    scene.add_bundle(lines_layer, "selected", "picked <b>ones</b>")
-    scene.set_filter(lines_layer, "weight", 10, 14)
-    scene.add_bundle(lines_layer, "shown")
-    scene.remove_filter(lines_layer)
+    scene.selection.select(lines_layer, [1, 2, 40])
+    scene.bundles.add_bundle(lines_layer, "selected", "picked <b>ones</b>")
+    scene.filters.set_filter(lines_layer, "weight", 10, 14)
+    scene.bundles.add_bundle(lines_layer, "shown")
+    scene.filters.remove_filter(lines_layer)
     assert told(scene, lines_layer) == {
         "near": (30, True), "far": (30, True), "picked <b>ones</b>": (3, True), "bundle 4": (5, True),
     }  # fmt: skip
     groups = scene.actor(lines_layer).fiblets.groups
     assert list(groups) == ["near", "far", "picked <b>ones</b>", "bundle 4"]
     assert groups["bundle 4"].tolist() == [10, 11, 12, 13, 14]
-    scene.merge_bundles(lines_layer, ["bundle 4", "picked <b>ones</b>"])
-    scene.subtract_bundles(lines_layer, ["near", "bundle 4"])
+    scene.bundles.merge_bundles(lines_layer, ["bundle 4", "picked <b>ones</b>"])
+    scene.bundles.subtract_bundles(lines_layer, ["near", "bundle 4"])
     assert told(scene, lines_layer) == {"near": (23, True), "far": (30, True), "bundle 4": (8, True)}
-    scene.set_groups(lines_layer, ["far", "near"])
-    scene.set_bundle(lines_layer, "far", name="away")
+    scene.filters.set_groups(lines_layer, ["far", "near"])
+    scene.bundles.set_bundle(lines_layer, "far", name="away")
     assert scene.layer(lines_layer).filters.groups == ("away", "near")
-    scene.remove_bundles(lines_layer, ["away"])
+    scene.bundles.remove_bundles(lines_layer, ["away"])
     assert scene.layer(lines_layer).filters.groups == ("near",)
     while history.undo() is not None:
         pass
@@ -55,16 +55,16 @@ def test_groups_selections_and_what_is_shown_are_one_list(scene, lines_layer):
 
 
 def test_hidden_bundles_are_not_drawn_but_what_is_in_none_stays(scene, lines_layer):
-    scene.remove_bundles(lines_layer, ["far"])
-    scene.add_bundle(lines_layer, [25, 35], "mixed")
-    scene.set_bundle(lines_layer, "near", visible=False)
+    scene.bundles.remove_bundles(lines_layer, ["far"])
+    scene.bundles.add_bundle(lines_layer, [25, 35], "mixed")
+    scene.bundles.set_bundle(lines_layer, "near", visible=False)
     assert shown(scene, lines_layer) == [25, *range(30, 60)]
-    scene.show_bundles(lines_layer, ["near"])
+    scene.bundles.show_bundles(lines_layer, ["near"])
     assert shown(scene, lines_layer) == [n for n in range(60) if n != 35]
     twin = scene.duplicate(lines_layer).id  # of the same source
     assert told(scene, twin) == told(scene, lines_layer)
     assert shown(scene, twin) == shown(scene, lines_layer)
-    scene.show_bundles(lines_layer, None)
+    scene.bundles.show_bundles(lines_layer, None)
     assert shown(scene, lines_layer) == shown(scene, twin) == list(range(60))
 
 
@@ -72,33 +72,33 @@ def test_colours_are_those_of_the_list(scene, lines_layer):
     scene.set(lines_layer, "scalars", "group")
     scene.set(lines_layer, "lighting", False)
     scene.set(lines_layer, "line_width", 3)
-    scene.view("coronal")
-    listed = {tuple(int(one.color[k : k + 2], 16) for k in (1, 3, 5)) for one in scene.bundles(lines_layer)}
+    scene.cameras.view("coronal")
+    listed = {tuple(int(one.color[k : k + 2], 16) for k in (1, 3, 5)) for one in scene.bundles.of_layer(lines_layer)}
     assert len(listed) == 2
-    found = scene.screenshot().reshape(-1, 3)
+    found = scene.cameras.screenshot().reshape(-1, 3)
     lit = found[found.max(axis=1) > 0]
     assert {tuple(one) for one in np.unique(lit, axis=0).tolist()} == listed
-    scene.set_bundle(lines_layer, "near", color="#ff0000")
-    scene.set_bundle(lines_layer, "far", color="#0000ff")
-    scene.view("coronal")
-    found = scene.screenshot().reshape(-1, 3)
+    scene.bundles.set_bundle(lines_layer, "near", color="#ff0000")
+    scene.bundles.set_bundle(lines_layer, "far", color="#0000ff")
+    scene.cameras.view("coronal")
+    found = scene.cameras.screenshot().reshape(-1, 3)
     lit = found[found.max(axis=1) > 0]
     assert {tuple(one) for one in np.unique(lit, axis=0).tolist()} == {(255, 0, 0), (0, 0, 255)}
-    scene.remove_bundles(lines_layer, ["near", "far"])
+    scene.bundles.remove_bundles(lines_layer, ["near", "far"])
     assert scene.layer(lines_layer).settings["scalars"] == "orientation"
 
 
 def test_sessions_and_scripts_have_bundles(scene, lines_layer, folder):
-    scene.remove_bundles(lines_layer, ["far"])
-    scene.add_bundle(lines_layer, [3, 4, 5], "a")
-    scene.set_bundle(lines_layer, "near", visible=False)
-    scene.set_groups(lines_layer, ["a", "near"])
+    scene.bundles.remove_bundles(lines_layer, ["far"])
+    scene.bundles.add_bundle(lines_layer, [3, 4, 5], "a")
+    scene.bundles.set_bundle(lines_layer, "near", visible=False)
+    scene.filters.set_groups(lines_layer, ["a", "near"])
     scene.set(lines_layer, "scalars", "group")
     scene.set(lines_layer, "line_width", 2)
-    scene.set_groups(lines_layer, None)
-    scene.view("coronal")
+    scene.filters.set_groups(lines_layer, None)
+    scene.cameras.view("coronal")
     state, wanted = session.to_dict(scene), told(scene, lines_layer)
-    picture = scene.screenshot()
+    picture = scene.cameras.screenshot()
     assert_script_draws(scene, folder, picture)
     scene.remove(lines_layer)
     scene.forget_unused()
@@ -119,20 +119,20 @@ def test_sessions_and_scripts_have_bundles(scene, lines_layer, folder):
 
 def test_what_makes_no_sense_is_refused(scene, lines_layer):
     for act, said in (
-        (lambda: scene.add_bundle(lines_layer, "selected"), "nothing of"),
-        (lambda: scene.add_bundle(lines_layer, [], "x"), "no streamlines"),
-        (lambda: scene.add_bundle(lines_layer, [60], "x"), "streamline 60"),
-        (lambda: scene.add_bundle(lines_layer, [1], "near"), "already"),
-        (lambda: scene.merge_bundles(lines_layer, ["near"]), "two bundles"),
-        (lambda: scene.subtract_bundles(lines_layer, ["near"]), "taken out"),
-        (lambda: scene.set_bundle(lines_layer, "near", size=3), "size"),
+        (lambda: scene.bundles.add_bundle(lines_layer, "selected"), "nothing of"),
+        (lambda: scene.bundles.add_bundle(lines_layer, [], "x"), "no streamlines"),
+        (lambda: scene.bundles.add_bundle(lines_layer, [60], "x"), "streamline 60"),
+        (lambda: scene.bundles.add_bundle(lines_layer, [1], "near"), "already"),
+        (lambda: scene.bundles.merge_bundles(lines_layer, ["near"]), "two bundles"),
+        (lambda: scene.bundles.subtract_bundles(lines_layer, ["near"]), "taken out"),
+        (lambda: scene.bundles.set_bundle(lines_layer, "near", size=3), "size"),
     ):
         with pytest.raises(ValueError, match=said):
             act()
     with pytest.raises(KeyError, match="no bundle 'other'"):
-        scene.select_bundles(lines_layer, ["other"])
-    scene.select_bundles(lines_layer, ["far"])
-    assert scene.count() == 30
+        scene.bundles.select_bundles(lines_layer, ["other"])
+    scene.bundles.select_bundles(lines_layer, ["far"])
+    assert scene.selection.count() == 30
 
 
 @pytest.fixture
@@ -198,13 +198,13 @@ def test_statistics_are_a_row_for_each_bundle(desk):
 
 def test_what_was_measured_goes_when_its_bundles_change(desk):
     layer = desk.page.chosen
-    desk.scene.add_bundle(layer, [1, 2], "=cmd()")
+    desk.scene.bundles.add_bundle(layer, [1, 2], "=cmd()")
     desk.run(desk.measuring.statistics)
     assert "'=cmd()" in desk.measuring.fetch("table", "csv")
-    desk.scene.move_bundles(layer, ["far"], 0)
+    desk.scene.bundles.move_bundles(layer, ["far"], 0)
     desk.measuring.refresh()
     assert desk.page.measures["table"]["rows"]  # still of these bundles
-    desk.scene.remove_bundles(layer, ["far"])
+    desk.scene.bundles.remove_bundles(layer, ["far"])
     desk.measuring.refresh()
     assert not desk.page.measures["table"]
     with pytest.raises(ValueError, match="nothing was measured"):
@@ -213,9 +213,9 @@ def test_what_was_measured_goes_when_its_bundles_change(desk):
 
 def test_hidden_and_empty_bundles_are_left_out(desk):
     layer = desk.page.chosen
-    desk.scene.set_bundle(layer, "near", visible=False)
+    desk.scene.bundles.set_bundle(layer, "near", visible=False)
     desk.run(desk.measuring.statistics)
     assert [row[0] for row in desk.page.measures["table"]["rows"]] == ["far"]
-    desk.scene.set_bundle(layer, "far", visible=False)
+    desk.scene.bundles.set_bundle(layer, "far", visible=False)
     with pytest.raises(ValueError, match="no bundle"):
         desk.measuring.profile()

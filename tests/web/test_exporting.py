@@ -15,20 +15,20 @@ from aiohttp import web
 import pvfiblets
 from pvfiblets.formats import attachments
 from pvfiblets.streamlines import Streamlines
-from pvfiblets.web import csv_tables, exporting
-from pvfiblets.web.csv_tables import profile_csv, selection_csv
-from pvfiblets.web.exporting import ExportActions
-from pvfiblets.web.loading import Cancelled
-from pvfiblets.web.selection_tab import SelectionActions
-from pvfiblets.web.writing import EXPORTS, write
+from pvfiblets.web.panels import csv_tables, exporting
+from pvfiblets.web.panels.csv_tables import profile_csv, selection_csv
+from pvfiblets.web.panels.exporting import ExportActions
+from pvfiblets.web.panels.selection_tab import SelectionActions
+from pvfiblets.web.panels.writing import EXPORTS, write
+from pvfiblets.web.scene.loading import Cancelled
 from tests.web.desk import Desk
 
 
 @pytest.fixture
 def desk(scene, folder):
     layer = scene.open("lines.fiblets")
-    scene.select(layer.id, [3, 4, 30])
-    scene.set_filter(layer.id, "length", 40.25)
+    scene.selection.select(layer.id, [3, 4, 30])
+    scene.filters.set_filter(layer.id, "length", 40.25)
     desk = Desk(scene, folder)
     desk.page.chosen = layer.id
     desk.exports = ExportActions(desk)
@@ -123,7 +123,7 @@ def test_other_requests_are_refused(desk, folder, suffix, what, to, says):
 
 
 def test_nothing_selected_or_no_tractogram_is_said(desk, scene):
-    scene.deselect()
+    scene.selection.deselect()
     with pytest.raises(ValueError, match="nothing is selected"):
         export(desk, ".trk")
     desk.page.chosen = scene.open("ball.ply").id
@@ -168,7 +168,7 @@ async def test_a_cancelled_export_leaves_nothing(desk, folder, monkeypatch, suff
 def test_whenever_writing_is_stopped_no_file_is_left(desk, tmp_path, suffix):
     home = tmp_path / "apart"
     home.mkdir()
-    fiblets, ids = desk.scene.chosen(desk.page.chosen, "shown")
+    fiblets, ids = desk.scene.selection.chosen(desk.page.chosen, "shown")
     asked = []
     write(fiblets, ids, home / f"whole{suffix}", None, lambda: asked.append(1))
     (whole,) = home.iterdir()
@@ -212,7 +212,7 @@ def many(scene, folder):
     attachments.write_scalars(folder / "odd.tsf", walks, "odd")
     layer = scene.open("walks.trk")
     assert scene.actor(layer.id).fiblets.exact is None
-    scene.select(layer.id, [7, 8, 150])
+    scene.selection.select(layer.id, [7, 8, 150])
     desk = Desk(scene, folder)
     desk.page.chosen = layer.id
     desk.exports = ExportActions(desk)
@@ -236,7 +236,7 @@ def test_a_part_of_a_part_is_that_of_the_source(many):
     desk, walks = many
     scene = desk.scene
     part = scene.keep_selection(desk.page.chosen)
-    scene.select(part.id, [1, 2])
+    scene.selection.select(part.id, [1, 2])
     desk.page.chosen = part.id
     path, _ = export(desk, ".trx")
     np.testing.assert_array_equal(pvfiblets.read(path).points, walks[[8, 150]].points)
@@ -321,7 +321,7 @@ def test_the_table_has_every_selected_streamline_in_full(scene, folder, lines, m
     with pytest.raises(ValueError, match="nothing is selected"):
         selection_csv(scene)
     chosen = [1, 2, 3, 29, 30, 40, 59]
-    scene.select(layer.id, chosen)
+    scene.selection.select(layer.id, chosen)
     found = rows(selection_csv(scene))
     assert [int(row["streamline"]) for row in found] == chosen
     assert {row["layer"] for row in found} == {'tracts, "all"'}
@@ -338,7 +338,7 @@ def test_the_profile_is_the_one_that_is_shown(scene, folder):
     layer = scene.open("lines.fiblets")
     desk = Desk(scene, folder)
     desk.selecting = SelectionActions(desk)
-    scene.select(layer.id, [3, 4])
+    scene.selection.select(layer.id, [3, 4])
     desk.selecting.set_profile("fa")
     found = rows(desk.selecting.profile_csv())
     assert list(found[0]) == ["share_of_length", "mean of fa", "standard deviation of fa"]
@@ -353,7 +353,7 @@ def test_the_profile_is_the_one_that_is_shown(scene, folder):
 def test_names_are_no_formulas(scene, name):
     layer = scene.open("lines.fiblets")
     scene.become(type(scene.state)((__import__("dataclasses").replace(scene.layer(layer.id), name=name),)))
-    scene.select(layer.id, [3])
+    scene.selection.select(layer.id, [3])
     (row,) = rows(selection_csv(scene))
     assert row["layer"] == f"'{name}"
     text = profile_csv({"position": [0.0], "mean": [-1.5], "std": [None]}, name)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pvfiblets.web import session
+from pvfiblets.web.session import files as session
 from tests.slices.test_fixels import AFFINE, write_mif
 from tests.web.desk import assert_script_draws, scene_of_views
 
@@ -29,20 +29,20 @@ def red(picture):
 def test_a_file_of_fixels_opens_as_lines_and_is_kept(scene, tmp_path):
     layer = scene.open("fixels/fd.mif")
     assert (layer.kind, layer.settings["glyphs"]) == ("image", "fixels")
-    scene.set_slices(layout="axial", cross_hair=False)
-    assert red(scene.screenshot()) > 50  # along x
+    scene.images.set_slices(layout="axial", cross_hair=False)
+    assert red(scene.cameras.screenshot()) > 50  # along x
     scene.set(layer.id, "glyph_colour", "fd")
     scene.set(layer.id, "cmap", "gray")
     scene.set(layer.id, "clim", [0.0, 1.0])
     scene.set(layer.id, "glyph_length", "fd")
-    picture = scene.screenshot()
+    picture = scene.cameras.screenshot()
     assert red(picture) == 0
     folder = tmp_path / "root"
     assert_script_draws(scene, folder, picture)
     kept = session.to_dict(scene)
     scene.remove(layer.id)
     session.from_dict(scene, kept)
-    assert np.abs(scene.screenshot().astype(int) - picture).max() <= 2
+    assert np.abs(scene.cameras.screenshot().astype(int) - picture).max() <= 2
     assert scene.open("fixels/index.mif").settings["glyphs"] == "fixels"
 
 

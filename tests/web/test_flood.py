@@ -13,10 +13,10 @@ from pathlib import Path
 import aiohttp
 import pytest
 
-from pvfiblets.web import relay
-from pvfiblets.web.access import LARGEST_MESSAGE
-from pvfiblets.web.connections import Connections, room
-from pvfiblets.web.log_limiter import LogLimiter, printable
+from pvfiblets.web.server import relay
+from pvfiblets.web.server.access import LARGEST_MESSAGE
+from pvfiblets.web.server.connections import Connections, room
+from pvfiblets.web.server.log_limiter import LogLimiter, printable
 from tests.web.visitors import TOKEN, Browser, gate, message, raw
 
 
@@ -212,7 +212,7 @@ async def test_running_out_of_file_descriptors_is_a_few_lines_and_passes(tmp_pat
 def test_the_limit_fits_into_the_file_descriptors():
     script = (
         "import resource\n"
-        "from pvfiblets.web.connections import room\n"
+        "from pvfiblets.web.server.connections import room\n"
         "resource.setrlimit(resource.RLIMIT_NOFILE, (300, 400))\n"
         "print(room(1000, 8), room(10, 8), resource.getrlimit(resource.RLIMIT_NOFILE)[0])\n"
     )

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from pvfiblets.web.document import LINES
-from pvfiblets.web.history import History
-from pvfiblets.web.region_marks import Sight, dragged, mark
+from pvfiblets.web.session.document import LINES
+from pvfiblets.web.session.history import History
+from pvfiblets.web.view.region_marks import Sight, dragged, mark
 from tests.web.desk import Desk, scene_of_views
 
 
@@ -34,18 +34,18 @@ def test_everything_that_was_done_is_undone_and_done_again(scene, history, clock
     def do(step):
         clock.now += 10.0
         step()
-        scene.view("axial")
-        done.append((scene.state, scene.screenshot()))
+        scene.cameras.view("axial")
+        done.append((scene.state, scene.cameras.screenshot()))
 
     do(lambda: None)
     do(lambda: scene.open("lines.fiblets"))
     (layer,) = scene.layers
     do(lambda: scene.set(layer.id, "scalars", "fa"))
     do(lambda: scene.set(layer.id, "line_width", 3))
-    do(lambda: scene.set_filter(layer.id, "length", 30, 60))
-    do(lambda: scene.set_groups(layer.id, ["far"]))
-    do(lambda: scene.select(layer.id, [31, 40]))
-    do(lambda: scene.add_clip("sphere", center=[20, 10, 10], radius=18))
+    do(lambda: scene.filters.set_filter(layer.id, "length", 30, 60))
+    do(lambda: scene.filters.set_groups(layer.id, ["far"]))
+    do(lambda: scene.selection.select(layer.id, [31, 40]))
+    do(lambda: scene.filters.add_clip("sphere", center=[20, 10, 10], radius=18))
     do(lambda: scene.open("ball.ply"))
     do(lambda: scene.set_background("#203040"))
     do(lambda: scene.duplicate(layer.id))
@@ -56,14 +56,14 @@ def test_everything_that_was_done_is_undone_and_done_again(scene, history, clock
     for state, picture in reversed(done[:-1]):
         assert history.undo()
         assert scene.state == state
-        scene.view("axial")
-        np.testing.assert_array_equal(scene.screenshot(), picture)
+        scene.cameras.view("axial")
+        np.testing.assert_array_equal(scene.cameras.screenshot(), picture)
     assert history.undo() is None
     for state, picture in done[1:]:
         assert history.redo()
         assert scene.state == state
-        scene.view("axial")
-        np.testing.assert_array_equal(scene.screenshot(), picture)
+        scene.cameras.view("axial")
+        np.testing.assert_array_equal(scene.cameras.screenshot(), picture)
     assert history.redo() is None
 
 
@@ -169,7 +169,7 @@ def test_moving_a_region_is_one_step_and_joining_another_is_its_own(scene, histo
     for condition in (ball(20.0), ball(21.0), ball(22.0), {"op": "and", "of": [ball(22.0), ball(30.0)]},
                       {"op": "or", "of": [ball(22.0), ball(30.0)]}):  # fmt: skip
         clock.now += 0.1
-        scene.set_regions(layer.id, condition)
+        scene.filters.set_regions(layer.id, condition)
     assert len(history) == begun + 4  # a ball, where it went, another beside it, and how they are joined
     history.undo()
     assert scene.layers[0].filters.regions["op"] == "and"
@@ -281,10 +281,10 @@ def test_a_region_is_typed_renamed_and_negated_in_words(desk, scene):
 def test_layers_share_a_region_and_lose_it_again(desk, scene, lines):
     other = scene.duplicate(scene.layers[0].id)
     desk.regions.add("sphere")
-    assert scene.sharing("A") == [scene.layers[0].id]
+    assert scene.regions.sharing("A") == [scene.layers[0].id]
     ids = [layer.id for layer in scene.layers if layer.kind in LINES]
     desk.regions.set_layers(0, ids)
-    assert scene.sharing("A") == ids
+    assert scene.regions.sharing("A") == ids
     desk.regions.set_end(0, "radius", 0, "9")  # for both of them, and in one step
     radii = [layer.filters.regions["of"][0]["region"]["radius"] for layer in scene.layers]
     assert radii == [9.0, 9.0]
@@ -298,8 +298,8 @@ def test_layers_share_a_region_and_lose_it_again(desk, scene, lines):
 
 
 def test_named_regions_are_in_sessions_and_scripts(desk, scene):
-    from pvfiblets.web import session
-    from pvfiblets.web.script import as_script
+    from pvfiblets.web.session import files as session
+    from pvfiblets.web.session.script import as_script
 
     desk.regions.add("sphere")
     desk.regions.rename(0, "A'; import os")
@@ -320,12 +320,12 @@ def test_marks_lie_in_the_3d_view_beside_slices(folder):
     with scene_of_views(folder) as scene:
         lines = scene.open("lines.fiblets")
         scene.open("head.nii.gz", "image")
-        scene.set_slices(layout="beside")
-        scene.screenshot()
+        scene.images.set_slices(layout="beside")
+        scene.cameras.screenshot()
         desk = Desk(scene, folder)
         desk.page.chosen, desk.page.chosen_kind = lines.id, "tractogram"
         sphere = {"kind": "sphere", "center": [30.0, 12.0, 8.0], "radius": 4.0, "name": "A"}
-        scene.set_regions(lines.id, {"op": "and", "of": [{"how": "passes", "region": sphere}]})
+        scene.filters.set_regions(lines.id, {"op": "and", "of": [{"how": "passes", "region": sphere}]})
         desk.regions.refresh_marks()
         (mark,) = desk.page.marks
         found = next(one for one in mark["handles"] if one["name"] == "center")

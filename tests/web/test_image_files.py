@@ -19,10 +19,11 @@ from pvfiblets.plotting.gifti import read_surface, with_vertex_values
 from pvfiblets.slices.image import as_slice_image
 from pvfiblets.tubes.build import as_spline_tubes
 from pvfiblets.volumes import RaycastVolume
-from pvfiblets.web import layers, session
-from pvfiblets.web.document import Ids
-from pvfiblets.web.history import History
-from pvfiblets.web.loading import Files
+from pvfiblets.web.scene import layers
+from pvfiblets.web.scene.loading import Files
+from pvfiblets.web.session import files as session
+from pvfiblets.web.session.document import Ids
+from pvfiblets.web.session.history import History
 from tests.web.desk import Desk, assert_script_draws, scene_of_views
 
 TURN = np.array([[0.8, -0.6, 0.0], [0.6, 0.8, 0.0], [0.0, 0.0, 1.0]])
@@ -82,7 +83,7 @@ def test_an_image_of_each_format_is_listed_and_lies_where_its_affine_says(views,
     views.set(image.id, "interpolation", "nearest")
     workspace = views.slicing.workspace
     for voxel in ((0, 0, 0), (4, 5, 6), (1, 3, 2)):
-        views.set_slices(position=(nib.affines.apply_affine(AFFINE, voxel)).tolist())
+        views.images.set_slices(position=(nib.affines.apply_affine(AFFINE, voxel)).tolist())
         assert workspace.values().images[name] == VALUES[voxel]
     assert views.open(name).kind == "volume"
     np.testing.assert_allclose(views.data(views.layers[-1]).data.affine, AFFINE, atol=1e-5)
@@ -95,7 +96,7 @@ def test_an_image_of_several_numbers_a_voxel_opens_as_slices(views, tmp_path, su
     assert layer.kind == "image"
     views.set(layer.id, "index", 2)
     views.set(layer.id, "interpolation", "nearest")
-    views.set_slices(position=nib.affines.apply_affine(AFFINE, (1, 2, 3)).tolist())
+    views.images.set_slices(position=nib.affines.apply_affine(AFFINE, (1, 2, 3)).tolist())
     assert views.slicing.workspace.values().images[layer.name] == four[1, 2, 3, 2]
 
 
@@ -149,7 +150,7 @@ def test_a_gifti_surface_takes_labels_and_numbers_of_its_vertices(views, tmp_pat
     wanted = np.array([[128, 128, 128], [255, 0, 0], [0, 0, 255]])[NUMBERS]
     np.testing.assert_allclose(found.point_data["lh.aparc_rgb"], wanted, atol=1)
     views.set(mesh.id, "lighting", False)
-    picture = views.screenshot()
+    picture = views.cameras.screenshot()
     seen = picture[(picture > 0).any(axis=2)].astype(int)
     assert (seen[:, 0] > 200).any()
     assert (seen[:, 2] > 200).any()
@@ -324,7 +325,7 @@ def test_actors_do_what_settings_say(scene, file, kind):
     }[kind]  # fmt: skip
     for name, value in told.items():
         scene.set(layer.id, name, value)
-    described = {entry["name"]: entry for entry in scene.properties(layer.id)}
+    described = {entry["name"]: entry for entry in scene.queries.properties(layer.id)}
     json.dumps(list(described.values()), allow_nan=False)
     actor = scene.actor(layer.id)
     for name, value in told.items():

@@ -7,7 +7,7 @@ import pytest
 
 import pvfiblets
 from pvfiblets.plotting.colours import MOST_WORDS
-from pvfiblets.web.bundles_tab import LISTED
+from pvfiblets.web.panels.bundles_tab import LISTED
 from tests.web.desk import Desk
 
 

@@ -6,10 +6,11 @@ import io
 import numpy as np
 import pytest
 
-from pvfiblets.query import connectome as kernels
-from pvfiblets.web import scene_matrix, session
-from pvfiblets.web.matrix_panel import matrix_image
-from pvfiblets.web.script import as_script
+from pvfiblets.query.connectome import matrix as kernels
+from pvfiblets.web.panels.matrix_panel import matrix_image
+from pvfiblets.web.scene import matrix as scene_matrix
+from pvfiblets.web.session import files as session
+from pvfiblets.web.session.script import as_script
 from tests.web.desk import Desk
 
 
@@ -67,7 +68,7 @@ def test_a_cell_shows_its_streamlines_and_again_all(desk):
     desk.matrix.refresh()
     assert desk.page.matrix["cell"] == "back – =front"
     assert desk.page.matrix["pair"] == [0, 1]
-    desk.scene.set_filter(desk.page.chosen, "weight", 8, 50)
+    desk.scene.filters.set_filter(desk.page.chosen, "weight", 8, 50)
     assert shown(desk) == [line for line in wanted if line >= 8]
     assert desk.history.undo() == "range of weight of lines.fiblets"
     assert desk.history.undo() == "connection of lines.fiblets"

@@ -13,12 +13,12 @@ import threading
 import pytest
 
 import pvfiblets
-from pvfiblets import memory
-from pvfiblets.cli_serve import memory_of
-from pvfiblets.web import endings
-from pvfiblets.web.launcher import WORKER
-from pvfiblets.web.options import SMALLEST_MEMORY, Options, chosen_memory
-from pvfiblets.web.server import FrontServer
+from pvfiblets.cli.serve import memory_of
+from pvfiblets.support import memory
+from pvfiblets.web.server import endings
+from pvfiblets.web.server.front import FrontServer
+from pvfiblets.web.server.launcher import WORKER
+from pvfiblets.web.server.options import SMALLEST_MEMORY, Options, chosen_memory
 from tests.web import bombs
 from tests.web.desk import Desk
 from tests.web.visitors import Browser, gate, run, until
@@ -131,7 +131,7 @@ def test_what_cannot_be_drawn_for_want_of_memory_is_not_kept(scene, folder, monk
     def add_actor(*_):
         raise MemoryError("Unable to allocate 3.00 GiB for an array with shape (3, 1) and data type float32")
 
-    monkeypatch.setattr("pvfiblets.web.scene.add_actor", add_actor)
+    monkeypatch.setattr("pvfiblets.web.scene.scene.add_actor", add_actor)
     with pytest.raises(ValueError, match="ball.ply was not opened: it needs more memory than is left; remove"):
         asyncio.run(desk.files.open("ball.ply"))
     assert scene.state is state
@@ -139,20 +139,20 @@ def test_what_cannot_be_drawn_for_want_of_memory_is_not_kept(scene, folder, monk
 
 
 def test_what_a_session_may_have_is_chosen_checked_and_said(monkeypatch, tmp_path):
-    monkeypatch.setattr("pvfiblets.web.options.of_machine", lambda: 100 * 2**30)
+    monkeypatch.setattr("pvfiblets.web.server.options.of_machine", lambda: 100 * 2**30)
     assert chosen_memory("auto", 1) == 80 * 2**30
     assert chosen_memory("auto", 2) == 40 * 2**30
     assert chosen_memory("auto", 8) == 20 * 2**30  # few are full at once
     assert chosen_memory("3G", 8) == 3 * 2**30
-    monkeypatch.setattr("pvfiblets.web.options.of_machine", lambda: 2**30)
+    monkeypatch.setattr("pvfiblets.web.server.options.of_machine", lambda: 2**30)
     assert chosen_memory("auto", 8) == SMALLEST_MEMORY
-    monkeypatch.setattr("pvfiblets.web.options.of_machine", lambda: 0)
+    monkeypatch.setattr("pvfiblets.web.server.options.of_machine", lambda: 0)
     assert chosen_memory("auto", 8) is None
     with pytest.raises(ValueError, match="--max-memory 'lots' is no size of memory; give one such as 4G"):
         chosen_memory("lots", 8)
     with pytest.raises(ValueError, match=r"--max-memory 100 MB: a session needs 640 MB .* give as much or more"):
         Options(root=str(tmp_path), token=None, memory=100 << 20).checked()
-    monkeypatch.setattr("pvfiblets.web.options.CAN_LIMIT", False)
+    monkeypatch.setattr("pvfiblets.web.server.options.CAN_LIMIT", False)
     with pytest.raises(ValueError, match="--max-memory: this system cannot"):
         Options(root=str(tmp_path), token=None, memory=2**30).checked()
     options = Options(root=str(tmp_path), token=None, memory=3 * 2**30)

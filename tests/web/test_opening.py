@@ -7,11 +7,11 @@ from dataclasses import replace
 
 import pytest
 
-from pvfiblets.web import session
-from pvfiblets.web.access import LARGEST_SESSION
-from pvfiblets.web.document import Source
-from pvfiblets.web.scratch import Notes
-from pvfiblets.web.session import SessionError
+from pvfiblets.web.server.access import LARGEST_SESSION
+from pvfiblets.web.server.scratch import Notes
+from pvfiblets.web.session import files as session
+from pvfiblets.web.session.document import Source
+from pvfiblets.web.session.files import SessionError
 from tests.web.desk import Desk
 
 
@@ -99,10 +99,10 @@ def test_a_session_that_is_stopped_or_wrong_changes_nothing(desk, scene):
 
 
 def test_what_a_process_keeps_is_restored_by_the_next_after_its_first_files(desk, scene, tmp_path, monkeypatch):
-    monkeypatch.setattr("pvfiblets.web.session_actions.QUIET", 0.0)
+    monkeypatch.setattr("pvfiblets.web.panels.session_actions.QUIET", 0.0)
     desk.notes = Notes(tmp_path)
     layer = scene.open("lines.trk")
-    scene.select(layer.id, [4, 5, 9])
+    scene.selection.select(layer.id, [4, 5, 9])
 
     async def dies():
         desk.files.keep_soon()
@@ -225,7 +225,7 @@ def test_meshes_and_labels_are_regions_and_cuts_read_beside_the_page(desk, scene
 
 def test_a_cut_goes_through_the_layers_that_are_chosen(desk, scene):
     lines, ball = scene.open("lines.fiblets"), scene.open("ball.ply")
-    clip = scene.add_clip("plane")
+    clip = scene.filters.add_clip("plane")
     desk.cuts.refresh()
     (shown,) = desk.page.clips
     assert shown["layers"] == ["*"]

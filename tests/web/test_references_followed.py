@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from pvfiblets.errors import FibletsError
-from pvfiblets.web.document import Source
-from pvfiblets.web.loading import Files
+from pvfiblets.web.scene.loading import Files
+from pvfiblets.web.session.document import Source
 
 pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="inotify is Linux's")
 
@@ -217,8 +217,8 @@ def test_members_of_an_archive_are_written_nowhere(home):
 
 @pytest.mark.parametrize("named", ["../secret.nhdr", "{outside}/secret.nhdr", "link.nhdr", "naming.nhdr"])
 def test_sessions_name_nothing_outside(scene, folder, named):
-    from pvfiblets.web import session
-    from pvfiblets.web.session import SessionError
+    from pvfiblets.web.session import files as session
+    from pvfiblets.web.session.files import SessionError
 
     outside = folder.parent / "secret.nhdr"
     header = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n"

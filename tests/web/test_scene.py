@@ -11,9 +11,9 @@ import pyvista as pv
 import pvfiblets
 from pvfiblets.errors import FibletsError
 from pvfiblets.formats.registry import UnknownFormatError
-from pvfiblets.web.loading import Cancelled
-from pvfiblets.web.scalar_bar_layout import DOTS, Wanted, arrange
-from pvfiblets.web.scene import Scene
+from pvfiblets.web.scene.loading import Cancelled
+from pvfiblets.web.scene.scalar_bar_layout import DOTS, Wanted, arrange
+from pvfiblets.web.scene.scene import Scene
 
 
 def drawn(picture):
@@ -28,8 +28,8 @@ def test_a_layer_looks_as_the_plotters_own_actor(scene, folder):
     scene.set(layer.id, "scalars", "fa")
     scene.set(layer.id, "line_width", 3)
     scene.set(layer.id, "show_bar", False)
-    scene.view("coronal")
-    picture = scene.screenshot()
+    scene.cameras.view("coronal")
+    picture = scene.cameras.screenshot()
     other = pv.Plotter(off_screen=True, window_size=(200, 160))
     other.set_background("black")
     other.disable_anti_aliasing()
@@ -51,10 +51,10 @@ def test_kinds_are_found_by_file(scene):
     assert scene.open("vessel.vtp", kind="tractogram").kind == "tractogram"
     assert len({layer.id for layer in scene.layers}) == len({layer.name for layer in scene.layers}) == 5
     for layer in scene.layers:
-        json.dumps(scene.info(layer.id), allow_nan=False)
-        json.dumps(scene.histogram(layer.id), allow_nan=False)
-    json.dumps(scene.legend, allow_nan=False)
-    scene.screenshot()
+        json.dumps(scene.queries.info(layer.id), allow_nan=False)
+        json.dumps(scene.queries.histogram(layer.id), allow_nan=False)
+    json.dumps(scene.queries.legend, allow_nan=False)
+    scene.cameras.screenshot()
 
 
 def test_progress_is_told_and_a_load_can_be_cancelled(scene):
@@ -71,7 +71,7 @@ def test_progress_is_told_and_a_load_can_be_cancelled(scene):
 
 
 def test_the_error_of_a_compressed_file_is_measured(scene, lines):
-    info = scene.info(scene.open("lines.trk").id)
+    info = scene.queries.info(scene.open("lines.trk").id)
     fiblets = scene.actor(scene.layers[0].id).fiblets
     expected = np.linalg.norm(fiblets.decompress(dtype=np.float64).points - lines.points, axis=1).max()
     assert info["error_mm"]["max"] == pytest.approx(expected, rel=0.05, abs=1e-6)
@@ -91,9 +91,9 @@ def test_paths_do_not_lead_out_of_the_root(scene, folder, path):
     lines = scene.open("lines.fiblets").id
     for refused in (
         lambda: scene.open(path),
-        lambda: scene.add_clip("mesh", path=path),
-        lambda: scene.set_regions(lines, {"how": "passes", "region": {"kind": "mesh", "path": path}}),
-        lambda: scene.export(lines, path.replace(".ply", ".trk").replace("passwd", "x.trk"), what="all"),
+        lambda: scene.filters.add_clip("mesh", path=path),
+        lambda: scene.filters.set_regions(lines, {"how": "passes", "region": {"kind": "mesh", "path": path}}),
+        lambda: scene.selection.export(lines, path.replace(".ply", ".trk").replace("passwd", "x.trk"), what="all"),
     ):
         with pytest.raises(PermissionError, match="outside of the folder"):
             refused()
@@ -138,50 +138,50 @@ def test_bad_files_leave_nothing_behind(scene, folder, name, content, error):
 
 def test_what_is_refused_changes_nothing(flat):
     (layer,) = flat.layers
-    state, picture = flat.state, flat.screenshot()
+    state, picture = flat.state, flat.cameras.screenshot()
     for refused in (
         lambda: flat.set(layer.id, "opacity", 7),
         lambda: flat.set("layer99", "opacity", 1.0),
-        lambda: flat.set_filter(layer.id, "no such", 0, 1),
-        lambda: flat.set_filter(layer.id, "length", 5, 1),
-        lambda: flat.set_groups(layer.id, ["nobody"]),
-        lambda: flat.set_subset(layer.id, -1),
-        lambda: flat.set_regions(layer.id, {"how": "passes", "region": {"kind": "mesh", "path": "open.ply"}}),
-        lambda: flat.add_clip("mesh", path="open.ply"),
-        lambda: flat.add_clip("plane", normal=[0, 0, 0]),
+        lambda: flat.filters.set_filter(layer.id, "no such", 0, 1),
+        lambda: flat.filters.set_filter(layer.id, "length", 5, 1),
+        lambda: flat.filters.set_groups(layer.id, ["nobody"]),
+        lambda: flat.filters.set_subset(layer.id, -1),
+        lambda: flat.filters.set_regions(layer.id, {"how": "passes", "region": {"kind": "mesh", "path": "open.ply"}}),
+        lambda: flat.filters.add_clip("mesh", path="open.ply"),
+        lambda: flat.filters.add_clip("plane", normal=[0, 0, 0]),
         lambda: flat.rename(layer.id, "\n"),
         lambda: flat.set_background("no colour"),
     ):
         with pytest.raises((ValueError, KeyError)):
             refused()
         assert flat.state is state
-    np.testing.assert_array_equal(flat.screenshot(), picture)
+    np.testing.assert_array_equal(flat.cameras.screenshot(), picture)
 
 
 def test_a_filter_that_fails_halfway_is_taken_back(flat, monkeypatch):
     (layer,) = flat.layers
-    flat.set_filter(layer.id, "length", 20, 30)
-    actor, picture = flat.actor(layer.id), flat.screenshot()
+    flat.filters.set_filter(layer.id, "length", 20, 30)
+    actor, picture = flat.actor(layer.id), flat.cameras.screenshot()
 
     def fail(*_, **__):
         raise MemoryError("no more")
 
     monkeypatch.setattr(actor, "subset", fail)
     with pytest.raises(MemoryError):
-        flat.set_subset(layer.id, 0.5)
+        flat.filters.set_subset(layer.id, 0.5)
     monkeypatch.undo()
     assert dict(actor.criteria) == {"length": (20.0, 30.0)}
-    np.testing.assert_array_equal(flat.screenshot(), picture)
+    np.testing.assert_array_equal(flat.cameras.screenshot(), picture)
 
 
 def test_layers_are_shown_hidden_duplicated_renamed_and_removed(flat):
     (layer,) = flat.layers
-    before = flat.screenshot()
+    before = flat.cameras.screenshot()
     flat.show(layer.id, False)
-    assert not drawn(flat.screenshot()).any()
+    assert not drawn(flat.cameras.screenshot()).any()
     twin = flat.duplicate(layer.id)
     flat.show(twin.id, True)
-    np.testing.assert_array_equal(flat.screenshot(), before)
+    np.testing.assert_array_equal(flat.cameras.screenshot(), before)
     flat.rename(twin.id, "twin")
     assert [other.name for other in flat.layers] == ["lines.trk", "twin"]
     assert flat.data(twin).data is flat.data(flat.layers[0]).data
@@ -189,30 +189,30 @@ def test_layers_are_shown_hidden_duplicated_renamed_and_removed(flat):
     flat.remove(layer.id)
     assert flat.layers == ()
     assert list(flat.plotter.fiblets) == []
-    assert not drawn(flat.screenshot()).any()
+    assert not drawn(flat.cameras.screenshot()).any()
 
 
 def test_meshes_are_coloured_and_show_edges(scene):
     ball = scene.open("ball.ply")
     scene.set(ball.id, "color", "#ff0000")
     scene.set(ball.id, "lighting", False)
-    picture = scene.screenshot()
+    picture = scene.cameras.screenshot()
     colours = {tuple(c) for c in picture[drawn(picture)].tolist()}
     assert colours == {(255, 0, 0)}
     assert scene.actor(ball.id).prop.color.hex_rgb == "#ff0000"
     scene.set(ball.id, "representation", "wireframe")
-    assert 0 < drawn(scene.screenshot()).sum() < drawn(picture).sum()
+    assert 0 < drawn(scene.cameras.screenshot()).sum() < drawn(picture).sum()
 
 
 def test_tubes_are_as_thick_as_they_are_told(scene):
     tubes = scene.open("vessel.vtp")
     actor, given = scene.actor(tubes.id), scene.data(tubes).data
-    thin = drawn(scene.screenshot()).sum()
+    thin = drawn(scene.cameras.screenshot()).sum()
     scene.set(tubes.id, "radius_scale", 2.0)
     np.testing.assert_allclose(actor.tubes.radius, 2.0 * given.radius)
-    assert drawn(scene.screenshot()).sum() > 1.5 * thin
+    assert drawn(scene.cameras.screenshot()).sum() > 1.5 * thin
     scene.set(tubes.id, "radius_scale", 1.0)
-    assert drawn(scene.screenshot()).sum() == thin
+    assert drawn(scene.cameras.screenshot()).sum() == thin
 
 
 def test_images_of_vtk_are_volumes(scene):
@@ -222,18 +222,18 @@ def test_images_of_vtk_are_volumes(scene):
     layer = scene.open("image.vtk")
     assert layer.kind == "volume"
     assert scene.data(layer).data.shape == (6, 6, 6)
-    assert drawn(scene.screenshot()).any()
+    assert drawn(scene.cameras.screenshot()).any()
 
 
 def test_volumes_show_what_their_mode_says(scene):
     head = scene.open("head.nii.gz")
-    surface = drawn(scene.screenshot())
+    surface = drawn(scene.cameras.screenshot())
     scene.set(head.id, "mode", "composite")
-    light = drawn(scene.screenshot())
+    light = drawn(scene.cameras.screenshot())
     assert 0 < surface.sum() < light.sum()  # at the middle value, and from the least on
     scene.set(head.id, "values", [0.7])
     scene.set(head.id, "mode", "isosurface")
-    assert 0 < drawn(scene.screenshot()).sum() < surface.sum()
+    assert 0 < drawn(scene.cameras.screenshot()).sum() < surface.sum()
 
 
 # Questions ----------------------------------------------------------------------------------------
@@ -241,16 +241,16 @@ def test_volumes_show_what_their_mode_says(scene):
 
 def test_histograms_count_as_numpy_does(scene, lines):
     layer = scene.open("lines.fiblets")
-    found = scene.histogram(layer.id, "length", bins=6)
+    found = scene.queries.histogram(layer.id, "length", bins=6)
     counts, edges = np.histogram(lines.lengths(), bins=6)
     np.testing.assert_allclose(found["edges"], edges, atol=0.1)
     assert found["counts"] == counts.tolist()
     assert (found["missing"], found["share"]) == (0, 1.0)
     head = scene.open("head.nii.gz")
     values = scene.data(head).data.values
-    assert scene.histogram(head.id, bins=4)["counts"] == np.histogram(values, bins=4)[0].tolist()
+    assert scene.queries.histogram(head.id, bins=4)["counts"] == np.histogram(values, bins=4)[0].tolist()
     with pytest.raises(ValueError, match="no such"):
-        scene.histogram(layer.id, "no such")
+        scene.queries.histogram(layer.id, "no such")
 
 
 def test_bars_are_of_visible_layers_and_say_their_values(scene):
@@ -266,7 +266,7 @@ def test_bars_are_of_visible_layers_and_say_their_values(scene):
     assert ranges[1] == (0.0, 5.0)
     scene.show(one.id, False)
     assert list(scene.plotter.scalar_bars.keys()) == ["length [mm]"]
-    assert [entry["name"] for entry in scene.legend] == ["lines.trk"]
+    assert [entry["name"] for entry in scene.queries.legend] == ["lines.trk"]
     scene.set(two.id, "show_bar", False)
     assert list(scene.plotter.scalar_bars.keys()) == []
     scene.show(one.id, True)
@@ -283,8 +283,8 @@ def test_bars_leave_the_places_of_letters_free(scene, size):
         layer = scene.open("lines.fiblets")
         scene.set(layer.id, "scalars", values)
         scene.set(layer.id, "opacity", 0.0)
-    scene.screenshot()
-    bars = drawn(scene.screenshot())
+    scene.cameras.screenshot()
+    bars = drawn(scene.cameras.screenshot())
     assert bars.sum() > 500
     middle = slice(height // 2 - 12, height // 2 + 12)
     assert not bars[middle].any()
@@ -300,50 +300,50 @@ def test_bars_leave_the_places_of_letters_free(scene, size):
 )
 def test_views_know_their_sides(scene, view, edges):
     scene.open("ball.ply")
-    scene.view(view)
-    found = scene.edges()
+    scene.cameras.view(view)
+    found = scene.cameras.edges()
     assert "".join(found[side] for side in ("left", "right", "top", "bottom")) == edges
-    scene.parallel = True
-    assert scene.camera()["parallel"] is True
-    picture = scene.screenshot(scale=2)
+    scene.cameras.parallel = True
+    assert scene.cameras.camera()["parallel"] is True
+    picture = scene.cameras.screenshot(scale=2)
     assert picture.shape == (320, 400, 3)
     with pytest.raises(ValueError, match="scale"):
-        scene.screenshot(scale=100)
+        scene.cameras.screenshot(scale=100)
 
 
 def test_only_pictures_render_and_views_show_what_is_visible(scene):
     """Every render of a large tractogram costs; whoever streams pictures decides when."""
     layer = scene.open("lines.fiblets")
-    scene.screenshot()
+    scene.cameras.screenshot()
     renders = []
     scene.plotter.render_window.AddObserver("StartEvent", lambda *_: renders.append(1))
-    scene.view("axial")
-    scene.reset()
+    scene.cameras.view("axial")
+    scene.cameras.reset()
     scene.set(layer.id, "scalars", "fa")
-    scene.set_filter(layer.id, "length", 20)
-    scene.add_clip("plane")
-    scene.select_box(0, 0, 199, 159, through=True)
+    scene.filters.set_filter(layer.id, "length", 20)
+    scene.filters.add_clip("plane")
+    scene.selection.select_box(0, 0, 199, 159, through=True)
     ball = scene.open("ball.ply")
     scene.set(ball.id, "opacity", 0.5)
     scene.set_background("#101010")
-    scene.info(layer.id)
+    scene.queries.info(layer.id)
     scene.show(layer.id, False)
-    scene.view("coronal")
+    scene.cameras.view("coronal")
     assert renders == []
-    assert scene.camera()["focal_point"] == pytest.approx([20, 18, 10], abs=0.1)
-    assert scene.usual_shape("plane")["origin"] == pytest.approx([20, 18, 10], abs=0.1)
+    assert scene.cameras.camera()["focal_point"] == pytest.approx([20, 18, 10], abs=0.1)
+    assert scene.filters.usual_shape("plane")["origin"] == pytest.approx([20, 18, 10], abs=0.1)
 
 
 def test_distances_are_between_what_pixels_show(ball):
     scene = ball
-    np.testing.assert_allclose(scene.place_at(100, 80), [20.125, 18.125, 18.0], atol=0.1)
-    found = scene.measure(100 - 16, 80, 100 + 16, 80)
+    np.testing.assert_allclose(scene.cameras.place_at(100, 80), [20.125, 18.125, 18.0], atol=0.1)
+    found = scene.measurements.measure(100 - 16, 80, 100 + 16, 80)
     assert found["mm"] == pytest.approx(8.0, abs=0.1)
     assert found["from"][2] == pytest.approx(10 + np.sqrt(64 - 16), abs=0.15)  # of facets
-    assert scene.place_at(0, 0) is None
-    assert scene.measure(0, 0, 100, 80) is None
+    assert scene.cameras.place_at(0, 0) is None
+    assert scene.measurements.measure(0, 0, 100, 80) is None
     with pytest.raises(ValueError, match="x is"):
-        scene.place_at(1000, 0)
+        scene.cameras.place_at(1000, 0)
 
 
 def test_a_closed_scene_leaves_nothing(plotter, folder, monkeypatch, tmp_path):
@@ -353,7 +353,7 @@ def test_a_closed_scene_leaves_nothing(plotter, folder, monkeypatch, tmp_path):
     monkeypatch.setattr(tempfile, "tempdir", None)
     scene = Scene(plotter, folder)
     scene.open("lines.trk")
-    scene.screenshot()
+    scene.cameras.screenshot()
     made = [name for name in os.listdir(tmp_path) if name.startswith("pvfiblets-")]
     assert len(made) == 1
     scene.close()
@@ -368,132 +368,132 @@ def test_layers_are_drawn_in_their_order_whenever_they_came(flat):
     flat.set(first.id, "color", "#ff0000")
     second = flat.duplicate(first.id)
     flat.set(second.id, "color", "#00ff00")
-    state, picture = flat.state, flat.screenshot()
-    bytes_before = flat.info(second.id)["gpu_bytes"]
+    state, picture = flat.state, flat.cameras.screenshot()
+    bytes_before = flat.queries.info(second.id)["gpu_bytes"]
     flat.remove(first.id)
-    assert {tuple(c) for c in flat.screenshot()[drawn(picture)].tolist()} == {(0, 255, 0)}
+    assert {tuple(c) for c in flat.cameras.screenshot()[drawn(picture)].tolist()} == {(0, 255, 0)}
     flat.become(state)
-    np.testing.assert_array_equal(flat.screenshot(), picture)
-    assert flat.info(second.id)["gpu_bytes"] >= bytes_before > 0
+    np.testing.assert_array_equal(flat.cameras.screenshot(), picture)
+    assert flat.queries.info(second.id)["gpu_bytes"] >= bytes_before > 0
 
 
 def test_a_pixel_picks_the_line_that_is_there(flat):
     # From above, line 50 + j lies over those below at y = 4 j; x = 10 mm is 40 columns left of the middle.
     row = 80 + round((4 * 3 - 18) / 0.5)
-    found = flat.pick_at(100 + round((55 - 30) / 0.5), row)
+    found = flat.selection.pick_at(100 + round((55 - 30) / 0.5), row)
     assert found["streamline"] == 53
     assert found["position"][0] == pytest.approx(55.0, abs=0.6)
     assert flat.layers[0].selected.array().tolist() == [53]
     other = 80 + round((4 * 7 - 18) / 0.5)
-    assert flat.pick_at(100, other, mode="add")["streamline"] == 57
+    assert flat.selection.pick_at(100, other, mode="add")["streamline"] == 57
     assert flat.layers[0].selected.array().tolist() == [53, 57]
-    flat.pick_at(100, row, mode="toggle")
+    flat.selection.pick_at(100, row, mode="toggle")
     assert flat.layers[0].selected.array().tolist() == [57]
-    assert flat.pick_at(2, 2) is None
-    assert flat.count() == 0
+    assert flat.selection.pick_at(2, 2) is None
+    assert flat.selection.count() == 0
 
 
 def test_boxes_and_lassos_select_what_they_hold(flat, lines):
     (layer,) = flat.layers
     x0 = 100 + round((50 - 30) / 0.5)
     reach = np.array([line[-1, 0] for line in lines])
-    flat.select_box(x0, 0, 199, 159, through=True)
+    flat.selection.select_box(x0, 0, 199, 159, through=True)
     beyond = set(np.flatnonzero(reach > 51).tolist())
     found = set(flat.layers[0].selected.array().tolist())
     assert beyond <= found <= set(np.flatnonzero(reach >= 49).tolist())
-    before = flat.count()
-    flat.select_polygon([[x0, 0], [199, 0], [199, 80], [x0, 80]], mode="remove", through=True)
+    before = flat.selection.count()
+    flat.selection.select_polygon([[x0, 0], [199, 0], [199, 80], [x0, 80]], mode="remove", through=True)
     y = np.array([line[0, 1] for line in lines])
     assert set(flat.layers[0].selected.array().tolist()) == {i for i in found if y[i] > 18}
-    assert 0 < flat.count() < before
-    flat.deselect()
+    assert 0 < flat.selection.count() < before
+    flat.selection.deselect()
     assert flat.layers[0].selected is None
     assert len(flat.actor(layer.id).selection) == 0
     with pytest.raises(ValueError, match="lasso"):
-        flat.select_polygon([[0, 0]])
+        flat.selection.select_polygon([[0, 0]])
     with pytest.raises(ValueError, match="mode"):
-        flat.select_box(0, 0, 9, 9, mode="perhaps")
+        flat.selection.select_box(0, 0, 9, 9, mode="perhaps")
 
 
 def test_the_table_says_what_is_selected(scene, lines):
     layer = scene.open("lines.fiblets")
     scene.set(layer.id, "scalars", "fa")
-    scene.select(layer.id, [7, 31, 59])
-    table = scene.table()
+    scene.selection.select(layer.id, [7, 31, 59])
+    table = scene.selection.table()
     assert table["total"] == 3
     assert [row["streamline"] for row in table["rows"]] == [7, 31, 59]
     np.testing.assert_allclose([row["length"] for row in table["rows"]], lines.lengths()[[7, 31, 59]], atol=0.1)
     assert [row["points"] for row in table["rows"]] == lines.counts[[7, 31, 59]].tolist()
     np.testing.assert_allclose([row["value"] for row in table["rows"]], 0.5, atol=0.01)
     assert [row["groups"] for row in table["rows"]] == [["near"], ["far"], ["far"]]
-    assert [row["streamline"] for row in scene.table(first=1, limit=1)["rows"]] == [31]
+    assert [row["streamline"] for row in scene.selection.table(first=1, limit=1)["rows"]] == [31]
     json.dumps(table, allow_nan=False)
-    profile = scene.profile(layer.id, n=5)
+    profile = scene.selection.profile(layer.id, n=5)
     np.testing.assert_allclose(profile["mean"], [0, 0.25, 0.5, 0.75, 1], atol=0.01)
     assert (profile["name"], profile["count"]) == ("fa", 3)
     for ids in ([60], [-1], [0.5]):
         with pytest.raises(ValueError, match="streamlines are"):
-            scene.select(layer.id, ids)
+            scene.selection.select(layer.id, ids)
 
 
 @pytest.mark.parametrize("suffix", [".trk", ".tck", ".trx", ".vtp", ".vtk", ".fiblets"])
 def test_exports_hold_what_was_selected(scene, lines, suffix):
     layer = scene.open("lines.fiblets")
     with pytest.raises(ValueError, match="nothing"):
-        scene.export(layer.id, f"some{suffix}")
-    scene.select(layer.id, [3, 10, 11, 40])
-    said = scene.export(layer.id, f"some{suffix}")
+        scene.selection.export(layer.id, f"some{suffix}")
+    scene.selection.select(layer.id, [3, 10, 11, 40])
+    said = scene.selection.export(layer.id, f"some{suffix}")
     assert (said["path"], said["streamlines"]) == (f"some{suffix}", 4)
     place = scene.root / f"some{suffix}"
     found = pvfiblets.FibletSet.open(place).decompress() if suffix == ".fiblets" else pvfiblets.read(place)
     assert len(found) == 4
     np.testing.assert_allclose(found.points, lines[[3, 10, 11, 40]].points, atol=0.06)
     with pytest.raises(FileExistsError):
-        scene.export(layer.id, f"some{suffix}")
-    scene.set_groups(layer.id, ["far"])
-    assert scene.export(layer.id, f"some{suffix}", what="shown", overwrite=True)["streamlines"] == 30
+        scene.selection.export(layer.id, f"some{suffix}")
+    scene.filters.set_groups(layer.id, ["far"])
+    assert scene.selection.export(layer.id, f"some{suffix}", what="shown", overwrite=True)["streamlines"] == 30
     with pytest.raises(ValueError, match="end in one of"):
-        scene.export(layer.id, "some.txt")
+        scene.selection.export(layer.id, "some.txt")
 
 
 def test_what_is_selected_becomes_a_layer_of_its_own(scene, lines):
     layer = scene.open("lines.fiblets")
-    scene.select(layer.id, np.arange(20, 50))
+    scene.selection.select(layer.id, np.arange(20, 50))
     part = scene.keep_selection(layer.id)
     assert part.kind == "selection"
-    scene.select(part.id, [0, 5, 29], mode="replace")
+    scene.selection.select(part.id, [0, 5, 29], mode="replace")
     nested = scene.keep_selection(part.id)
     assert nested.source.ids.array().tolist() == [20, 25, 49]
     np.testing.assert_allclose(
         scene.actor(nested.id).fiblets.decompress().points, lines[[20, 25, 49]].points, atol=0.06
     )
     scene.remove(layer.id)
-    scene.screenshot()
+    scene.cameras.screenshot()
 
 
 def test_criteria_groups_and_subsets_add_up(flat, lines):
     (layer,) = flat.layers
     length = lines.lengths()
-    flat.set_filter(layer.id, "length", 30.25, None)
+    flat.filters.set_filter(layer.id, "length", 30.25, None)
     np.testing.assert_array_equal(flat.actor(layer.id).shown, length >= 30.25)
-    flat.set_filter(layer.id, "length", 30.25, 50.25)
+    flat.filters.set_filter(layer.id, "length", 30.25, 50.25)
     expected = (length >= 30.25) & (length <= 50.25)
     np.testing.assert_array_equal(flat.actor(layer.id).shown, expected)
-    flat.set_subset(layer.id, every=3)
+    flat.filters.set_subset(layer.id, every=3)
     expected &= np.arange(60) % 3 == 0
     np.testing.assert_array_equal(flat.actor(layer.id).shown, expected)
-    assert flat.info(layer.id)["streamlines"] == {"total": 60, "shown": int(expected.sum())}
-    flat.remove_filter(layer.id, "length")
+    assert flat.queries.info(layer.id)["streamlines"] == {"total": 60, "shown": int(expected.sum())}
+    flat.filters.remove_filter(layer.id, "length")
     np.testing.assert_array_equal(flat.actor(layer.id).shown, np.arange(60) % 3 == 0)
-    flat.remove_filter(layer.id)
+    flat.filters.remove_filter(layer.id)
     assert flat.actor(layer.id).shown.all()
 
 
 def test_groups_of_a_file_are_shown(scene):
     layer = scene.open("lines.fiblets")
-    scene.set_groups(layer.id, ["far"])
+    scene.filters.set_groups(layer.id, ["far"])
     np.testing.assert_array_equal(scene.actor(layer.id).shown, np.arange(60) >= 30)
-    scene.set_groups(layer.id, None)
+    scene.filters.set_groups(layer.id, None)
     assert scene.actor(layer.id).shown.all()
 
 
@@ -510,22 +510,24 @@ def test_regions_are_joined_by_and_or_not(flat, lines):
     passes = {"how": "passes", "region": box}
     reaches = {"how": "ends_in", "region": far}
     hits = {"how": "passes", "region": ball}
-    flat.set_regions(layer.id, {"op": "and", "of": [passes, {"op": "not", "of": [reaches]}]})
+    flat.filters.set_regions(layer.id, {"op": "and", "of": [passes, {"op": "not", "of": [reaches]}]})
     np.testing.assert_array_equal(flat.actor(layer.id).shown, (y <= 9) & ~(ends >= 40.25))
-    flat.set_regions(layer.id, {"op": "or", "of": [passes, hits]})
+    flat.filters.set_regions(layer.id, {"op": "or", "of": [passes, hits]})
     np.testing.assert_array_equal(flat.actor(layer.id).shown, (y <= 9) | through)
     between = {"kind": "sphere", "center": [float(n) for n in lines[0][:2].mean(axis=0)], "radius": 1e-3}
-    flat.set_regions(layer.id, {"how": "passes", "region": between})
+    flat.filters.set_regions(layer.id, {"how": "passes", "region": between})
     assert flat.actor(layer.id).shown.sum() == 1
-    flat.set_regions(layer.id, {"how": "passes", "region": between, "sampling": "points"})
+    flat.filters.set_regions(layer.id, {"how": "passes", "region": between, "sampling": "points"})
     assert not flat.actor(layer.id).shown.any()
-    flat.set_regions(layer.id, {"how": "stays_in", "region": box})
+    flat.filters.set_regions(layer.id, {"how": "stays_in", "region": box})
     np.testing.assert_array_equal(flat.actor(layer.id).shown, y <= 9)
-    flat.set_regions(layer.id, {"how": "both_ends_in", "region": far})
+    flat.filters.set_regions(layer.id, {"how": "both_ends_in", "region": far})
     assert not flat.actor(layer.id).shown.any()
-    flat.set_regions(layer.id, {"how": "ends_in", "region": {"kind": "labels", "path": "atlas.nii.gz", "labels": [5]}})
+    flat.filters.set_regions(
+        layer.id, {"how": "ends_in", "region": {"kind": "labels", "path": "atlas.nii.gz", "labels": [5]}}
+    )
     np.testing.assert_array_equal(flat.actor(layer.id).shown, (ends >= 14.3) & (ends < 30.3))
-    flat.set_regions(layer.id, None)
+    flat.filters.set_regions(layer.id, None)
     assert flat.actor(layer.id).shown.all()
 
 
@@ -549,88 +551,88 @@ def test_regions_are_joined_by_and_or_not(flat, lines):
 )
 def test_conditions_that_are_none_are_refused(flat, condition):
     with pytest.raises((ValueError, PermissionError)):
-        flat.set_regions(flat.layers[0].id, condition)
+        flat.filters.set_regions(flat.layers[0].id, condition)
     nested = {"how": "passes", "region": {"kind": "sphere", "center": [0, 0, 0], "radius": 1}}
     for _ in range(50):
         nested = {"op": "not", "of": [nested]}
     with pytest.raises(ValueError, match="nested"):
-        flat.set_regions(flat.layers[0].id, nested)
+        flat.filters.set_regions(flat.layers[0].id, nested)
 
 
 def test_cuts_leave_the_side_that_they_say(flat):
     (layer,) = flat.layers
-    whole = drawn(flat.screenshot())
-    clip = flat.add_clip("plane", normal=[1, 0, 0], origin=[20, 0, 0])
-    right = drawn(flat.screenshot())
-    flat.set_clip(clip.id, inside=False)
-    left = drawn(flat.screenshot())
+    whole = drawn(flat.cameras.screenshot())
+    clip = flat.filters.add_clip("plane", normal=[1, 0, 0], origin=[20, 0, 0])
+    right = drawn(flat.cameras.screenshot())
+    flat.filters.set_clip(clip.id, inside=False)
+    left = drawn(flat.cameras.screenshot())
     column = 100 + round((20 - 30) / 0.5)  # of 200, at half a millimetre a pixel
     assert not right[:, : column - 1].any()
     assert not left[:, column + 2 :].any()
     assert right.any()
     assert left.any()
     assert (whole == (right | left)).mean() > 0.99
-    flat.set_clip(clip.id, enabled=False)
-    np.testing.assert_array_equal(drawn(flat.screenshot()), whole)
-    flat.set_clip(clip.id, enabled=True, origin=[30.0, 0.0, 0.0])
-    assert drawn(flat.screenshot())[:, 80:98].any()
-    flat.remove_clip(clip.id)
-    np.testing.assert_array_equal(drawn(flat.screenshot()), whole)
+    flat.filters.set_clip(clip.id, enabled=False)
+    np.testing.assert_array_equal(drawn(flat.cameras.screenshot()), whole)
+    flat.filters.set_clip(clip.id, enabled=True, origin=[30.0, 0.0, 0.0])
+    assert drawn(flat.cameras.screenshot())[:, 80:98].any()
+    flat.filters.remove_clip(clip.id)
+    np.testing.assert_array_equal(drawn(flat.cameras.screenshot()), whole)
 
 
 def test_cuts_are_for_the_layers_that_they_name(flat):
     ball = flat.open("ball.ply")
     flat.show(flat.layers[0].id, False)
-    whole = drawn(flat.screenshot())
-    clip = flat.add_clip("plane", normal=[1, 0, 0], origin=[20, 0, 0])
-    np.testing.assert_array_equal(drawn(flat.screenshot()), whole)  # by default, lines only
-    flat.set_clip(clip.id, layers=[ball.id])
-    assert 0.35 < drawn(flat.screenshot()).sum() / whole.sum() < 0.65
+    whole = drawn(flat.cameras.screenshot())
+    clip = flat.filters.add_clip("plane", normal=[1, 0, 0], origin=[20, 0, 0])
+    np.testing.assert_array_equal(drawn(flat.cameras.screenshot()), whole)  # by default, lines only
+    flat.filters.set_clip(clip.id, layers=[ball.id])
+    assert 0.35 < drawn(flat.cameras.screenshot()).sum() / whole.sum() < 0.65
     flat.set(ball.id, "opacity", 0.99)  # of meshes another actor, cut all the same
-    assert 0.35 < drawn(flat.screenshot()).sum() / whole.sum() < 0.65
+    assert 0.35 < drawn(flat.cameras.screenshot()).sum() / whole.sum() < 0.65
     flat.remove(ball.id)
     assert flat.state.clips[0].layers == ()
     tubes = flat.open("vessel.vtp")
     with pytest.raises(ValueError, match="tubes are cut by planes"):
-        flat.set_clip(clip.id, kind="sphere", layers=[tubes.id])
-    flat.set_clip(clip.id, layers=[tubes.id])
+        flat.filters.set_clip(clip.id, kind="sphere", layers=[tubes.id])
+    flat.filters.set_clip(clip.id, layers=[tubes.id])
     with pytest.raises(ValueError, match="VTK allows 6"):
-        flat.add_clip("box", layers=[tubes.id])
+        flat.filters.add_clip("box", layers=[tubes.id])
 
 
 def test_meshes_are_cut_by_balls_boxes_and_meshes_from_either_side(flat):
     """A ball of 8 mm, 16 pixels, around (20, 18, 10), seen from above."""
     ball = flat.open("ball.ply")
     flat.show(flat.layers[0].id, False)
-    whole = drawn(flat.screenshot())
-    clip = flat.add_clip("sphere", center=[20, 18, 18], radius=4, layers=[ball.id])
-    inner = drawn(flat.screenshot())
+    whole = drawn(flat.cameras.screenshot())
+    clip = flat.filters.add_clip("sphere", center=[20, 18, 18], radius=4, layers=[ball.id])
+    inner = drawn(flat.cameras.screenshot())
     # Both balls meet where z - 10 = (64 + 64 - 16) / 16 = 7: a ring of sqrt(64 - 49) mm.
     assert inner.sum() == pytest.approx(np.pi * 15.0 * 4.0, rel=0.05)
-    flat.set_clip(clip.id, inside=False)
+    flat.filters.set_clip(clip.id, inside=False)
     outer = flat.actor(ball.id).mapper.dataset
     assert outer.area == pytest.approx(flat.data(ball).data.area - 2 * np.pi * 8.0 * 1.0, rel=0.01)
     flat.set(ball.id, "color", "#00ff00")  # another actor, cut all the same
     assert flat.actor(ball.id).mapper.dataset.area == pytest.approx(outer.area)
-    flat.set_clip(clip.id, kind="box", bounds=[0, 20, 0, 100, 0, 100], inside=True)
-    flat.add_clip("slab", inside=False, normal=[0, 1, 0], origin=[20, 18, 10], thickness=4.0, layers=[ball.id])
-    left = drawn(flat.screenshot())
+    flat.filters.set_clip(clip.id, kind="box", bounds=[0, 20, 0, 100, 0, 100], inside=True)
+    flat.filters.add_clip("slab", inside=False, normal=[0, 1, 0], origin=[20, 18, 10], thickness=4.0, layers=[ball.id])
+    left = drawn(flat.cameras.screenshot())
     assert left.sum() == pytest.approx(0.5 * whole.sum() - 4.0 * 2.0 * 8.0 * 2.0, rel=0.1)
-    flat.remove_clip(flat.state.clips[-1].id)
-    flat.set_clip(clip.id, kind="mesh", path="ball.ply", inside=False)
-    flat.screenshot()
-    flat.set_clip(clip.id, enabled=False)
-    np.testing.assert_array_equal(drawn(flat.screenshot()), whole)
+    flat.filters.remove_clip(flat.state.clips[-1].id)
+    flat.filters.set_clip(clip.id, kind="mesh", path="ball.ply", inside=False)
+    flat.cameras.screenshot()
+    flat.filters.set_clip(clip.id, enabled=False)
+    np.testing.assert_array_equal(drawn(flat.cameras.screenshot()), whole)
 
 
 def test_a_mesh_of_which_nothing_is_left_comes_back(flat):
     ball = flat.open("ball.ply")
     flat.show(flat.layers[0].id, False)
-    whole = drawn(flat.screenshot())
-    clip = flat.add_clip("sphere", center=[500, 0, 0], radius=4, layers=[ball.id])
-    assert not drawn(flat.screenshot()).any()
-    flat.remove_clip(clip.id)
-    np.testing.assert_array_equal(drawn(flat.screenshot()), whole)
+    whole = drawn(flat.cameras.screenshot())
+    clip = flat.filters.add_clip("sphere", center=[500, 0, 0], radius=4, layers=[ball.id])
+    assert not drawn(flat.cameras.screenshot()).any()
+    flat.filters.remove_clip(clip.id)
+    np.testing.assert_array_equal(drawn(flat.cameras.screenshot()), whole)
 
 
 SIZES = [(760, 856), (800, 556), (320, 596), (320, 276), (276, 320), (1600, 400)]  # of pictures in pages
@@ -660,7 +662,7 @@ class Bars:
             layer = scene.open("lines.fiblets")
             scene.set(layer.id, "scalars", name)
             scene.set(layer.id, "opacity", 0.0)
-        scene.screenshot()
+        scene.cameras.screenshot()
 
     @property
     def shown(self):
@@ -672,7 +674,7 @@ class Bars:
         for other in others:
             other.VisibilityOff()
         try:
-            return self.scene.screenshot()
+            return self.scene.cameras.screenshot()
         finally:
             for other in others:
                 other.VisibilityOn()
@@ -724,16 +726,16 @@ def test_nothing_of_a_bar_touches_anything(scene, size, dpi):
 def test_bars_follow_the_size_of_the_window(scene):
     bars = Bars(scene)
     scene.plotter.window_size = 800, 600
-    scene.screenshot()
+    scene.cameras.screenshot()
     assert len(bars.shown) == 4
     wide = [rectangle(bars.alone(bar)) for bar in bars.shown.values()]
     scene.plotter.window_size = 200, 160
-    scene.screenshot()
+    scene.cameras.screenshot()
     assert not bars.shown
     assert scene.bars.left_out == ["length [mm]", "fa", "group", "weight"]
-    assert rectangle(scene.screenshot()) is None
+    assert rectangle(scene.cameras.screenshot()) is None
     scene.plotter.window_size = 800, 600
-    scene.screenshot()
+    scene.cameras.screenshot()
     assert scene.bars.left_out == []
     assert [rectangle(bars.alone(bar)) for bar in bars.shown.values()] == wide
 
@@ -746,7 +748,7 @@ def test_half_as_many_pixels_show_the_same_bars(scene):
     whole = {title: rectangle(bars.alone(bar)) for title, bar in bars.shown.items()}
     scene.plotter.window_size = 400, 300
     scene.plotter.render_window.SetDPI(36)
-    scene.screenshot()
+    scene.cameras.screenshot()
     for title, bar in bars.shown.items():
         np.testing.assert_allclose(2 * np.array(rectangle(bars.alone(bar))), whole[title], atol=8)
 
@@ -788,7 +790,7 @@ def test_names_that_find_no_room_are_left_out():
 def test_enlarged_pictures_have_their_bars_where_the_page_has_them(scene):
     bars = Bars(scene, ["length"])
     scene.plotter.window_size = 400, 320
-    before = np.array(rectangle(scene.screenshot()))
-    after = np.array(rectangle(scene.screenshot(scale=3)))
+    before = np.array(rectangle(scene.cameras.screenshot()))
+    after = np.array(rectangle(scene.cameras.screenshot(scale=3)))
     assert len(bars.shown) == 1
     np.testing.assert_allclose(after / 3, before, atol=3)

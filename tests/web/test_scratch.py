@@ -10,13 +10,13 @@ from pathlib import Path
 
 import pytest
 
-from pvfiblets.web.scratch import PRIVATE, Notes, Scratch
+from pvfiblets.web.server.scratch import PRIVATE, Notes, Scratch
 from tests.web.test_server import Browser, gate
 
 SERVER = """
 import sys, time
 from pathlib import Path
-from pvfiblets.web.scratch import Notes, Scratch
+from pvfiblets.web.server.scratch import Notes, Scratch
 scratch = Scratch()
 folder = scratch.session()
 (folder / "lines.trk").write_text("large")

@@ -13,9 +13,9 @@ import pyvista as pv
 import pvfiblets
 from pvfiblets.volumes import RaycastVolume
 from pvfiblets.volumes.raycast_options import INTEGRATORS
-from pvfiblets.web import layers
-from pvfiblets.web.layers import USUAL
-from pvfiblets.web.script import as_script
+from pvfiblets.web.scene import layers
+from pvfiblets.web.scene.layers import USUAL
+from pvfiblets.web.session.script import as_script
 
 
 def tracts(scene):
@@ -25,24 +25,24 @@ def tracts(scene):
     scene.set(lines.id, "cmap", "plasma_r")
     scene.set(lines.id, "line_width", 2)
     scene.set(lines.id, "illuminated", True)
-    scene.set_filter(lines.id, "length", 15, None)
-    scene.set_subset(lines.id, 0.9)
+    scene.filters.set_filter(lines.id, "length", 15, None)
+    scene.filters.set_subset(lines.id, 0.9)
     labels = {"how": "ends_in", "region": {"kind": "labels", "path": "atlas.nii.gz", "labels": [5]}}
     ball = {"how": "passes", "region": {"kind": "mesh", "path": "ball.ply"}}
     anything = {"how": "passes", "region": {"kind": "sphere", "center": [0, 0, 0], "radius": 30}, "sampling": "points"}
-    scene.set_regions(lines.id, {"op": "or", "of": [labels, ball, {"op": "not", "of": [anything]}, anything]})
-    scene.select(lines.id, [*range(10, 20), 40, 45])
+    scene.filters.set_regions(lines.id, {"op": "or", "of": [labels, ball, {"op": "not", "of": [anything]}, anything]})
+    scene.selection.select(lines.id, [*range(10, 20), 40, 45])
     scene.set(lines.id, "selection_color", "#00ff00")
     scene.set(lines.id, "selection_dim", 0.4)
     mesh = scene.open("ball.ply")
     scene.set(mesh.id, "color", "#ff8800")
     scene.set(mesh.id, "show_edges", True)
-    scene.add_clip("plane", normal=[0, 0, 1], origin=[0, 0, 3], layers=[lines.id, mesh.id])
-    scene.add_clip("sphere", inside=False, center=[10, 0, 0], radius=6)
-    scene.add_clip("sphere", inside=False, center=[20, 18, 18], radius=5, layers=[mesh.id])
-    scene.add_clip("box", bounds=[0, 24, 0, 40, 0, 40], layers=[mesh.id])
+    scene.filters.add_clip("plane", normal=[0, 0, 1], origin=[0, 0, 3], layers=[lines.id, mesh.id])
+    scene.filters.add_clip("sphere", inside=False, center=[10, 0, 0], radius=6)
+    scene.filters.add_clip("sphere", inside=False, center=[20, 18, 18], radius=5, layers=[mesh.id])
+    scene.filters.add_clip("box", bounds=[0, 24, 0, 40, 0, 40], layers=[mesh.id])
     scene.show(scene.duplicate(lines.id).id, False)
-    scene.view("coronal")
+    scene.cameras.view("coronal")
 
 
 def anatomy(scene):
@@ -51,13 +51,13 @@ def anatomy(scene):
     scene.set(lines.id, "scalars", "length")
     scene.set(lines.id, "opacity", 0.6)
     scene.set(lines.id, "transparency", "layers")
-    scene.set_groups(lines.id, ["near"])
-    scene.select(lines.id, [5, 6, 7, 50, 52])
+    scene.filters.set_groups(lines.id, ["near"])
+    scene.selection.select(lines.id, [5, 6, 7, 50, 52])
     part = scene.keep_selection(lines.id)
     scene.set(part.id, "scalars", None)
     scene.set(part.id, "color", "#cc0000")
     scene.set(part.id, "tube_radius", 1.0)
-    scene.deselect()
+    scene.selection.deselect()
     head = scene.open("head.nii.gz")
     scene.set(head.id, "mode", "composite")
     scene.set(head.id, "opacity", "sigmoid_5")
@@ -68,12 +68,12 @@ def anatomy(scene):
     scene.set(tubes.id, "radius_scale", 1.5)
     grouped = scene.duplicate(lines.id)
     scene.set(grouped.id, "scalars", "group")
-    scene.set_groups(grouped.id, ["far"])
+    scene.filters.set_groups(grouped.id, ["far"])
     ink = scene.duplicate(part.id)
     scene.set(ink.id, "style", "halo")
     scene.set_background("white")
-    scene.view("sagittal")
-    scene.parallel = True
+    scene.cameras.view("sagittal")
+    scene.cameras.parallel = True
 
 
 def volumes(scene):
@@ -93,9 +93,9 @@ def volumes(scene):
         lines = scene.open("lines.fiblets")
         scene.set(lines.id, "scalars", value)
         scene.set(lines.id, "line_width", 2.0)
-        scene.set_filter(lines.id, "weight", 15 * group, 15 * group + 14)
+        scene.filters.set_filter(lines.id, "weight", 15 * group, 15 * group + 14)
     scene.remove(demo.id)
-    scene.view("coronal")
+    scene.cameras.view("coronal")
 
 
 @pytest.mark.more
@@ -104,8 +104,8 @@ def volumes(scene):
 def test_a_script_makes_the_same_picture(scene, folder, fill):
     scene.plotter.window_size = 420, 360
     fill(scene)
-    scene.screenshot()
-    picture = scene.screenshot()
+    scene.cameras.screenshot()
+    picture = scene.cameras.screenshot()
     assert fill is anatomy or any(bar.GetVisibility() for bar in scene.plotter.scalar_bars.values())
     script = as_script(scene, "again.png")
     assert str(folder) not in script
@@ -126,7 +126,7 @@ def test_a_script_can_be_read(scene):
     layer = scene.open("lines.fiblets")
     scene.rename(layer.id, "class: arcuate (left) #1")
     scene.rename(scene.duplicate(layer.id).id, "class_arcuate_left_1")
-    scene.select(layer.id, np.arange(0, 60, 2))
+    scene.selection.select(layer.id, np.arange(0, 60, 2))
     script = as_script(scene)
     compile(script, "script", "exec")
     assert max(map(len, script.splitlines())) <= 120
@@ -149,15 +149,17 @@ def test_no_file_is_called_as_what_the_script_uses(scene, folder, lines):
             pvfiblets.write(folder / name, lines)
     made = [scene.open(name) for name in HOSTILE]
     one = made[0]
-    scene.set_filter(made[1].id, "length", 20, None)  # float('inf')
-    scene.add_bundle(made[1].id, [1, 2, 3], "for")
-    scene.select(one.id, [3, 4])
+    scene.filters.set_filter(made[1].id, "length", 20, None)  # float('inf')
+    scene.bundles.add_bundle(made[1].id, [1, 2, 3], "for")
+    scene.selection.select(one.id, [3, 4])
     scene.keep_selection(one.id)
     scene.remove(one.id)  # of which the selection is a part: fiblets
-    scene.show_matrix(scene.prepare_matrix(layer=made[1].id, labels="atlas.nii.gz"))  # print(matrix), parcels
-    scene.set_connection(made[2].id, [3, 5], "atlas.nii.gz")  # ends
-    scene.add_measurement([0, 0, 0], [1, 2, 3])
-    scene.add_clip("plane")
+    scene.matrix.show_matrix(
+        scene.matrix.prepare_matrix(layer=made[1].id, labels="atlas.nii.gz")
+    )  # print(matrix), parcels
+    scene.matrix.set_connection(made[2].id, [3, 5], "atlas.nii.gz")  # ends
+    scene.measurements.add_measurement([0, 0, 0], [1, 2, 3])
+    scene.filters.add_clip("plane")
     script = as_script(scene)
     variables = re.findall(r"^(\w+) = plotter\.add_fiblets\(", script, re.MULTILINE)
     assert len(set(variables)) == len(HOSTILE)

@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import pytest
 
-from pvfiblets.web.access import LARGEST_MESSAGE, Access, RefusedError, check_message
-from pvfiblets.web.confined import Confined, ConfinedError
-from pvfiblets.web.options import Options, is_loopback
-from pvfiblets.web.rpc_allowlist import AllowedCalls, MalformedError, plain, pointer_event, view_size
+from pvfiblets.web.scene.confined import Confined, ConfinedError
+from pvfiblets.web.server.access import LARGEST_MESSAGE, Access, RefusedError, check_message
+from pvfiblets.web.server.options import Options, is_loopback
+from pvfiblets.web.server.rpc_allowlist import AllowedCalls, MalformedError, plain, pointer_event, view_size
 
 TOKEN = "correct-horse-battery"
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pvfiblets.web.selection_tab import SelectionActions
+from pvfiblets.web.panels.selection_tab import SelectionActions
 from tests.web.desk import Desk
 
 
@@ -33,34 +33,34 @@ def millimetres(desk):
 
 
 def test_distances_stay_in_the_picture_until_they_are_removed_or_undone(desk, scene):
-    before = scene.screenshot()
+    before = scene.cameras.screenshot()
     desk.selecting.point("measure", [share(84, 80), share(116, 80)], False)
     assert millimetres(desk) == [pytest.approx(8.0, abs=0.01)]
-    line = amber(scene.screenshot())
+    line = amber(scene.cameras.screenshot())
     assert line[79:83, 85:115].any(axis=0).all()
     assert not line[:, :80].any()
     # The next one ends on the ball, not on the line before.
     desk.selecting.point("measure", [share(90, 80), share(110, 80)], False)
     desk.selecting.point("measure", [share(100, 60), share(100, 100)], False)
     assert millimetres(desk) == [pytest.approx(mm, abs=0.01) for mm in (8.0, 5.0, 10.0)]
-    three = scene.screenshot()
+    three = scene.cameras.screenshot()
     assert amber(three)[90:98, 99:102].any(axis=1).all()
     assert desk.history.undo_label == f"measure {desk.page.measured[-1]}"
     desk.history.undo()
     assert len(millimetres(desk)) == 2
-    assert not amber(scene.screenshot())[90:98, 99:102].any()
+    assert not amber(scene.cameras.screenshot())[90:98, 99:102].any()
     desk.history.redo()
-    np.testing.assert_array_equal(scene.screenshot(), three)
+    np.testing.assert_array_equal(scene.cameras.screenshot(), three)
     desk.selecting.remove_distance(1)
     assert millimetres(desk) == [pytest.approx(mm, abs=0.01) for mm in (8.0, 10.0)]
     with pytest.raises(ValueError, match="row of a measurement is 2"):
         desk.selecting.remove_distance(2)
     desk.selecting.clear_distances()
     assert millimetres(desk) == []
-    np.testing.assert_array_equal(scene.screenshot(), before)
+    np.testing.assert_array_equal(scene.cameras.screenshot(), before)
     desk.selecting.point("measure", [share(84, 80), share(5, 5)], False)
     assert desk.said == [("info", "Begin and end on something that is drawn.")]
-    assert not amber(scene.screenshot()).any()
+    assert not amber(scene.cameras.screenshot()).any()
     desk.selecting.point("measure", [share(84, 80), share(116, 80)], False)
     scene.close()
     assert list(scene.plotter.actors) == []
@@ -72,7 +72,7 @@ def test_a_region_is_placed_on_what_lies_behind_a_measured_line(desk, scene):
     desk.page.chosen, desk.page.chosen_kind = layer.id, layer.kind
     scene.show(layer.id, False)
     desk.regions.add("sphere")
-    scene.screenshot()
+    scene.cameras.screenshot()
     desk.regions.begin_placing(0)
     desk.regions.place(100, 80)
     (row,) = scene.layer(layer.id).filters.regions["of"]
@@ -83,13 +83,13 @@ def test_a_region_is_placed_on_what_lies_behind_a_measured_line(desk, scene):
 def test_sessions_and_scripts_have_all_distances(desk, scene, tmp_path):
     import json
 
-    from pvfiblets.web import session
-    from pvfiblets.web.script import as_script
+    from pvfiblets.web.session import files as session
+    from pvfiblets.web.session.script import as_script
 
     places = [[share(84, 80), share(116, 80)], [share(100, 60), share(100, 100)]]
     for pair in places:
         desk.selecting.point("measure", pair, False)
-    picture, said = scene.screenshot(), millimetres(desk)
+    picture, said = scene.cameras.screenshot(), millimetres(desk)
     saved = json.loads(json.dumps(session.to_dict(scene)))
     script = as_script(scene, str(tmp_path / "again.png")).replace("FOLDER = Path('.')", "")
     script = script.replace('FOLDER = Path(".")', f"FOLDER = Path({str(scene.root)!r})")
@@ -98,10 +98,10 @@ def test_sessions_and_scripts_have_all_distances(desk, scene, tmp_path):
 
     again = np.asarray(Image.open(tmp_path / "again.png").convert("RGB"))
     np.testing.assert_array_equal(again, picture)
-    scene.clear_measurements()
+    scene.measurements.clear_measurements()
     session.from_dict(scene, saved)
     assert millimetres(desk) == said
-    np.testing.assert_array_equal(scene.screenshot(), picture)
+    np.testing.assert_array_equal(scene.cameras.screenshot(), picture)
     for wrong in ([[1, 2]], [[[0, 0, 0], [0, 0, "x"]]], [[[0, 0, 0], [0, 0, 1e30]]], 5, 65 * [[[0, 0, 0], [1, 0, 0]]]):
         with pytest.raises(session.SessionError, match="measurement"):
             session.from_dict(scene, {**saved, "measurements": wrong})
@@ -111,11 +111,11 @@ def test_sessions_and_scripts_have_all_distances(desk, scene, tmp_path):
 def test_tables_and_profiles_are_made_when_what_they_say_has_changed(desk, scene, monkeypatch):
     layer = scene.open("lines.fiblets")
     made = []
-    table = type(scene).table
-    monkeypatch.setattr(type(scene), "table", lambda self, **rest: made.append(1) or table(self, **rest))
+    table = type(scene.selection).table
+    monkeypatch.setattr(type(scene.selection), "table", lambda self, **rest: made.append(1) or table(self, **rest))
     desk.selecting.refresh()
     assert (made, desk.page.selection) == ([], {"count": 0})
-    scene.select(layer.id, [3, 4])
+    scene.selection.select(layer.id, [3, 4])
     for _ in range(3):
         desk.selecting.refresh()
     assert len(made) == 1
@@ -125,14 +125,14 @@ def test_tables_and_profiles_are_made_when_what_they_say_has_changed(desk, scene
     scene.set(layer.id, "scalars", "fa")
     desk.selecting.refresh()
     assert desk.page.selection["columns"] == ["streamline", "points", "mm", "mean of fa"]
-    scene.select(layer.id, [3])
+    scene.selection.select(layer.id, [3])
     desk.selecting.refresh()
     assert desk.page.selection["title"] == "1 streamline"
     desk.selecting.set_profile("curvature")
     desk.selecting.refresh()
     assert desk.page.selection["profile"] == "curvature"
-    scene.deselect()
+    scene.selection.deselect()
     desk.selecting.refresh()
-    scene.select(layer.id, [3])
+    scene.selection.select(layer.id, [3])
     desk.selecting.refresh()
     assert desk.page.selection["count"] == 1

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from pvfiblets.web.browser_drawing import BrowserDrawing
-from pvfiblets.web.options import Options
-from pvfiblets.web.scene import Scene
-from pvfiblets.web.sent_scene import LARGEST, SentScene, SentScenes
-from pvfiblets.web.slicing import LAYOUTS, ready_views
+from pvfiblets.web.scene.scene import Scene
+from pvfiblets.web.scene.slicing import LAYOUTS, ready_views
+from pvfiblets.web.server.options import Options
+from pvfiblets.web.view.browser_drawing import BrowserDrawing
+from pvfiblets.web.view.sent_scene import LARGEST, SentScene, SentScenes
 from tests.web.desk import Desk
 
 CARD = "ANGLE (NVIDIA GeForce RTX 3060)"
@@ -34,11 +34,11 @@ def test_a_filter_and_a_selection_send_a_byte_for_each_streamline(scene):
     first, again = scenes.make(), scenes.make()
     assert isinstance(first, SentScene)
     assert again.content == first.content
-    scene.set_filter(layer.id, "length", 40.5)
+    scene.filters.set_filter(layer.id, "length", 40.5)
     filtered = scenes.make()
     (kept,) = filtered.blobs.keys() - first.blobs.keys()
     assert np.array_equal(np.frombuffer(filtered.blobs[kept], np.uint8), np.arange(10, 70) > 40.5)
-    scene.select(layer.id, [3, 59])
+    scene.selection.select(layer.id, [3, 59])
     selected = scenes.make()
     (chosen,) = selected.blobs.keys() - filtered.blobs.keys()
     assert np.flatnonzero(np.frombuffer(selected.blobs[chosen], np.uint8)).tolist() == [3, 59]
@@ -49,11 +49,13 @@ def test_colours_by_values_of_points_send_those_alone(scene):
     scenes = SentScenes(scene)
     sent = [scenes.make()]
     points = scene.actor(layer.id).fiblets.n_points
-    for name, size in (("fa", 1), ("curvature", 2), ("fa", 1)):
+    for name in ("fa", "curvature", "fa"):
         scene.set(layer.id, "scalars", name)
         sent.append(scenes.make())
-        (values,) = sent[-1].blobs.keys() - sent[0].blobs.keys()
-        assert len(sent[-1].blobs[values]) == size * points
+        codes, blobs = sent[-1].content["layers"][0]["colours"]["codes"], list(sent[-1].blobs.values())
+        assert len(blobs[codes["data"]]) == points * codes["bits"] // 8
+        assert len(blobs[codes["table"]]) == 4 << codes["bits"]
+        assert len(sent[-1].blobs.keys() - sent[0].blobs.keys()) == 2
         assert sent[0].blobs.keys() < sent[-1].blobs.keys()
     assert sent[3].content == sent[1].content
 
@@ -79,7 +81,7 @@ def test_the_camera_is_no_part_of_the_scene(scene):
     scene.open("lines.fiblets")
     scenes = SentScenes(scene)
     first = scenes.make()
-    scene.view("axial")
+    scene.cameras.view("axial")
     assert scenes.make().content == first.content
 
 
@@ -93,7 +95,10 @@ def test_the_camera_is_no_part_of_the_scene(scene):
             lambda scene: scene.set(scene.layers[0].id, "ambient_occlusion", True),
             "ambient occlusion of 'lines.fiblets'",
         ),
-        (lambda scene: scene.add_clip("mesh", path="ball.ply"), "the cut of 'lines.fiblets' by a closed surface"),
+        (
+            lambda scene: scene.filters.add_clip("mesh", path="ball.ply"),
+            "the cut of 'lines.fiblets' by a closed surface",
+        ),
         (lambda scene: scene.remove(scene.layers[0].id), ""),
     ],
 )
@@ -106,7 +111,7 @@ def test_what_cannot_be_drawn_is_named(scene, change, why):
 def test_measured_distances_go_along_and_are_no_layers(scene):
     scene.open("lines.fiblets")
     before = SentScenes(scene).make()
-    scene.add_measurement([0, 0, 0], [9, 0, 0])
+    scene.measurements.add_measurement([0, 0, 0], [9, 0, 0])
     sent = SentScenes(scene).make()
     assert sent.content["distances"] == [{"from": (0.0, 0.0, 0.0), "to": (9.0, 0.0, 0.0), "text": "9 mm"}]
     assert {**sent.content, "distances": []} == before.content
@@ -114,7 +119,7 @@ def test_measured_distances_go_along_and_are_no_layers(scene):
 
 def test_a_selection_as_tubes_is_named_once(scene):
     layer = scene.open("lines.fiblets")
-    scene.select(layer.id, [3])
+    scene.selection.select(layer.id, [3])
     scene.set(layer.id, "selection_as_tubes", True)
     assert SentScenes(scene).make() == "the width or the tubes of what is selected of 'lines.fiblets'"
 
@@ -127,7 +132,7 @@ def sliced(folder):
     scene = Scene(plotter, folder)
     scene.open("lines.fiblets")
     scene.open("head.nii.gz", kind="image")
-    scene.set_slices(layout="3d")
+    scene.images.set_slices(layout="3d")
     yield scene
     scene.close()
     plotter.close()
@@ -140,7 +145,7 @@ def test_panes_and_glyphs_are_the_servers(sliced):
         alone = sliced.slicing.workspace.layout in ("axial", "coronal", "sagittal")
         assert (scenes.make() == "panes of slices") is alone
         assert sliced.slicing.beside is (layout != "3d")
-    sliced.set_slices(layout="3d")
+    sliced.images.set_slices(layout="3d")
     sent = scenes.make()
     assert [layer["kind"] for layer in sent.content["layers"]] == ["fiblets", "image", "image", "image"]
     peaks = nibabel.Nifti1Image(np.zeros((4, 4, 4, 3), np.float32), np.diag([16.0, 16.0, 16.0, 1.0]))
@@ -155,16 +160,18 @@ def test_panes_and_glyphs_are_the_servers(sliced):
 def test_a_slice_that_moves_sends_its_pixels_alone(sliced):
     scenes = SentScenes(sliced)
     x, y, z = sliced.slicing.view.position
-    sliced.set_slices(position=(x + 4.0, y + 8.0, z + 12.0))  # the image is round: in its middle slices are alike
+    sliced.images.set_slices(
+        position=(x + 4.0, y + 8.0, z + 12.0)
+    )  # the image is round: in its middle slices are alike
     first = scenes.make()
     assert len(first.pixels) == 3
-    sliced.set_slices(position=(x + 4.0, y + 8.0, z + 20.0))
+    sliced.images.set_slices(position=(x + 4.0, y + 8.0, z + 20.0))
     moved = scenes.make()
     (pixels,) = moved.blobs.keys() - first.blobs.keys()
     assert pixels in moved.pixels
     found = np.frombuffer(moved.blobs[pixels], np.uint8)
     assert np.array_equal(found, sliced.slicing.workspace.slices["axial"].actor.pixels.ravel())
-    sliced.set_slices(planes=False)
+    sliced.images.set_slices(planes=False)
     assert scenes.make().pixels == frozenset()
 
 
@@ -214,18 +221,18 @@ def test_the_camera_goes_both_ways_and_only_when_it_has_moved(scene, folder):
     desk = drawing(scene, folder)
     desk.drawing.report(True, CARD)
     desk.drawing.draws()
-    assert desk.page.there_camera == {"camera": scene.camera(), "from": ""}
-    moved = {**scene.camera(), "position": [300.0, 20.0, 10.0]}
+    assert desk.page.there_camera == {"camera": scene.cameras.camera(), "from": ""}
+    moved = {**scene.cameras.camera(), "position": [300.0, 20.0, 10.0]}
     desk.drawing.moved(moved, "one page", False)
-    assert scene.camera()["position"] == [300.0, 20.0, 10.0]
+    assert scene.cameras.camera()["position"] == [300.0, 20.0, 10.0]
     desk.page.there_camera = {}
     desk.drawing.draws()
     assert desk.page.there_camera == {}  # the browser knows
     desk.drawing.moved(moved, "one page", True)
     assert desk.page.there_camera["from"] == "one page"  # others do not
-    scene.view("axial")
+    scene.cameras.view("axial")
     desk.drawing.draws()
-    assert desk.page.there_camera == {"camera": scene.camera(), "from": ""}
+    assert desk.page.there_camera == {"camera": scene.cameras.camera(), "from": ""}
     with pytest.raises(ValueError, match="position"):
         desk.drawing.moved({**moved, "position": ["far", 0, 0]}, "one page", False)
 

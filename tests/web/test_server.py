@@ -14,7 +14,7 @@ from pathlib import Path
 import aiohttp
 import pytest
 
-from pvfiblets.web.access import LARGEST_MESSAGE
+from pvfiblets.web.server.access import LARGEST_MESSAGE
 from tests.web.visitors import TOKEN, Browser, gate, message, raw
 
 
@@ -157,7 +157,7 @@ async def test_what_is_cut_off_is_said_on_the_page(tmp_path):
 
 
 async def test_sessions_are_larger_than_messages_and_where_nothing_may_be_uploaded(tmp_path, monkeypatch):
-    monkeypatch.setattr("pvfiblets.web.server.LARGEST_SESSION", 8 * LARGEST_MESSAGE)
+    monkeypatch.setattr("pvfiblets.web.server.front.LARGEST_SESSION", 8 * LARGEST_MESSAGE)
     async with gate(tmp_path, upload=0) as server, Browser(server) as browser:
         await browser.enter()
         most = 8 * LARGEST_MESSAGE
@@ -275,7 +275,7 @@ async def test_the_last_state_of_a_dead_session_is_restored_to_its_browser_alone
         await one.enter()
         assert (await died(one, server, "late"))["restore"]
         assert len(list(scratch.folder.rglob("*.json"))) == 1
-        monkeypatch.setattr("pvfiblets.web.launcher.RESCUED", -1.0)
+        monkeypatch.setattr("pvfiblets.web.server.launcher.RESCUED", -1.0)
         await server.launcher.end_idle()
         assert not list(scratch.folder.rglob("*.json"))
         assert not json.loads((await one.get("/status"))[1])["restore"]

@@ -13,16 +13,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import pvfiblets
-from pvfiblets.engine.fiblets import streamed_renderer
+from pvfiblets.engine.fiblets.parts import streamed_renderer
 from pvfiblets.streamlines import Streamlines
-from pvfiblets.web import session
-from pvfiblets.web.confined import Confined
-from pvfiblets.web.history import History
-from pvfiblets.web.loading import Files
-from pvfiblets.web.options import Options
-from pvfiblets.web.runs import numbers_in, pack, runs_of, unpack
-from pvfiblets.web.scene import Scene
-from pvfiblets.web.script import as_script
+from pvfiblets.web.scene.confined import Confined
+from pvfiblets.web.scene.loading import Files
+from pvfiblets.web.scene.scene import Scene
+from pvfiblets.web.server.options import Options
+from pvfiblets.web.session import files as session
+from pvfiblets.web.session.history import History
+from pvfiblets.web.session.runs import numbers_in, pack, runs_of, unpack
+from pvfiblets.web.session.script import as_script
 
 
 def fill(scene):
@@ -30,26 +30,26 @@ def fill(scene):
     lines = scene.open("lines.trk")
     scene.set(lines.id, "scalars", "fa")
     scene.set(lines.id, "clim", [0.2, 0.9])
-    scene.set_filter(lines.id, "length", 20, None)
-    scene.set_subset(lines.id, 0.8, seed=3)
+    scene.filters.set_filter(lines.id, "length", 20, None)
+    scene.filters.set_subset(lines.id, 0.8, seed=3)
     ball = {"how": "passes", "region": {"kind": "mesh", "path": "ball.ply"}, "sampling": "points"}
     box = {"how": "ends_in", "region": {"kind": "box", "bounds": [-1, 5, -1, 50, -1, 50]}}
-    scene.set_regions(lines.id, {"op": "or", "of": [ball, {"op": "not", "of": [box]}, box]})
-    scene.select(lines.id, [20, 21, 22, 40])
+    scene.filters.set_regions(lines.id, {"op": "or", "of": [ball, {"op": "not", "of": [box]}, box]})
+    scene.selection.select(lines.id, [20, 21, 22, 40])
     part = scene.keep_selection(lines.id)
     scene.set(part.id, "tube_radius", 0.7)
     grouped = scene.open("lines.fiblets")
-    scene.set_groups(grouped.id, ["far"])
+    scene.filters.set_groups(grouped.id, ["far"])
     scene.show(grouped.id, False)
     mesh = scene.open("ball.ply")
     scene.set(mesh.id, "opacity", 0.5)
     scene.set(scene.open("vessel.vtp").id, "scalars", "radius")
     scene.set(scene.open("head.nii.gz").id, "values", [0.3])
-    scene.add_clip("plane", normal=[0, 0, 1], origin=[0, 0, 4], layers=[lines.id, mesh.id])
-    scene.add_clip("mesh", inside=False, path="ball.ply")
+    scene.filters.add_clip("plane", normal=[0, 0, 1], origin=[0, 0, 4], layers=[lines.id, mesh.id])
+    scene.filters.add_clip("mesh", inside=False, path="ball.ply")
     scene.set_background("#102030")
-    scene.view("oblique")
-    scene.parallel = True
+    scene.cameras.view("oblique")
+    scene.cameras.parallel = True
 
 
 @pytest.fixture
@@ -66,7 +66,7 @@ def other(folder):
 @pytest.mark.more
 def test_a_session_brings_everything_back(scene, other, folder):
     fill(scene)
-    picture = scene.screenshot()
+    picture = scene.cameras.screenshot()
     assert len(np.unique(picture.reshape(-1, 3), axis=0)) > 50
     session.save(scene, "view.json")
     text = (folder / "view.json").read_text()
@@ -74,8 +74,8 @@ def test_a_session_brings_everything_back(scene, other, folder):
     history = History(other)
     session.load(other, "view.json")
     assert other.state == scene.state
-    assert other.camera() == scene.camera()
-    np.testing.assert_array_equal(other.screenshot(), picture)
+    assert other.cameras.camera() == scene.cameras.camera()
+    np.testing.assert_array_equal(other.cameras.screenshot(), picture)
     assert len(history) == 1
     history.undo()
     assert other.layers == ()
@@ -89,18 +89,18 @@ def test_random_halves_of_many_streamlines_are_saved_small_and_come_back(scene, 
     pvfiblets.compress(Streamlines(ends.reshape(-1, 3), np.arange(0, 400_001, 2))).save(folder / "many.fiblets")
     layer = scene.open("many.fiblets")
     halves = [np.flatnonzero(rng.random(200_000) < 0.5) for _ in range(3)]
-    scene.select(layer.id, halves[0])
+    scene.selection.select(layer.id, halves[0])
     part = scene.keep_selection(layer.id)
-    scene.select(part.id, np.arange(0, len(halves[0]), 2))
-    scene.add_bundle(layer.id, halves[1], "half")
-    scene.add_bundle(layer.id, halves[2][:40], "few")
+    scene.selection.select(part.id, np.arange(0, len(halves[0]), 2))
+    scene.bundles.add_bundle(layer.id, halves[1], "half")
+    scene.bundles.add_bundle(layer.id, halves[2][:40], "few")
     text = session.to_text(scene)
     assert len(text) < 150_000
     session.from_dict(other, session.from_text(text))
     assert other.state == scene.state
     assert len(other.layer(part.id).selected) == (len(halves[0]) + 1) // 2
     np.testing.assert_array_equal(other.layer(part.id).source.ids.array(), halves[0])
-    np.testing.assert_array_equal(other.bundles(layer.id)[-2].ids.array(), halves[1])
+    np.testing.assert_array_equal(other.bundles.of_layer(layer.id)[-2].ids.array(), halves[1])
     script = as_script(scene)
     assert len(script) < 150_000
     names = {}
@@ -116,9 +116,9 @@ def test_names_that_files_have_are_saved_and_come_back(scene, other, folder, lin
     pvfiblets.compress(Streamlines(lines.points, lines.offsets, groups=groups)).save(folder / "a.fiblets")
     (folder / "a.fiblets").rename(folder / name)
     layer = scene.open(name)
-    scene.set_bundle(layer.id, "long" * 50, visible=False)
+    scene.bundles.set_bundle(layer.id, "long" * 50, visible=False)
     for _ in range(3):
-        scene.select(layer.id, [0, 1, 2, 3])
+        scene.selection.select(layer.id, [0, 1, 2, 3])
         layer = scene.keep_selection(layer.id)
     session.from_dict(other, session.from_text(session.to_text(scene)))
     assert other.state == scene.state
@@ -151,7 +151,7 @@ def test_damaged_runs_are_refused(value):
 
 def test_sessions_of_before_runs_were_packed_still_open(scene, other, folder):
     fill(scene)
-    scene.add_bundle(scene.layers[0].id, [1, 2, 9], "three")
+    scene.bundles.add_bundle(scene.layers[0].id, [1, 2, 9], "three")
     data = session.to_dict(scene)
     lines, part = data["layers"][:2]
     lines["selected"], part["source"]["ids"] = [20, 23, 40, 41], [20, 23, 40, 41]
@@ -192,11 +192,11 @@ DELETED = object()
 def saved(other):
     """Return a small session."""
     layer = other.open("lines.fiblets")
-    other.set_filter(layer.id, "length", 20, 60)
-    other.select(layer.id, [1, 2, 3])
+    other.filters.set_filter(layer.id, "length", 20, 60)
+    other.selection.select(layer.id, [1, 2, 3])
     other.keep_selection(layer.id)
     other.open("ball.ply")
-    other.add_clip("plane")
+    other.filters.add_clip("plane")
     return session.to_dict(other)
 
 
@@ -255,11 +255,11 @@ def saved(other):
 )  # fmt: skip
 def test_what_is_malformed_is_refused_whole(scene, saved, path, value, says):
     scene.open("vessel.vtp")
-    state, camera = scene.state, scene.camera()
+    state, camera = scene.state, scene.cameras.camera()
     with pytest.raises(session.SessionError, match=says):
         session.from_dict(scene, edited(saved, path, value))
     assert scene.state is state
-    assert scene.camera() == camera
+    assert scene.cameras.camera() == camera
     assert len(list(scene.plotter.fiblets)) == 0
 
 
@@ -347,28 +347,28 @@ def test_shards_are_listed_as_a_file_and_stay_in_the_root(folder, shards, tmp_pa
 def test_a_session_of_shards_brings_everything_back(scene, shards, tmp_path):
     layer = scene.open("many.fiblets")
     scene.set(layer.id, "scalars", "fa")
-    scene.set_filter(layer.id, "length", 20, None)
+    scene.filters.set_filter(layer.id, "length", 20, None)
     box = {"how": "ends_in", "region": {"kind": "box", "bounds": [-1, 5, -1, 50, -1, 50]}}
-    scene.set_regions(layer.id, box)
-    scene.set_groups(layer.id, ["far"])
-    scene.add_clip("plane", normal=[0, 0, 1], origin=[0, 0, 4], layers=[layer.id])
-    scene.view("axial")
-    picture = scene.screenshot()
+    scene.filters.set_regions(layer.id, box)
+    scene.filters.set_groups(layer.id, ["far"])
+    scene.filters.add_clip("plane", normal=[0, 0, 1], origin=[0, 0, 4], layers=[layer.id])
+    scene.cameras.view("axial")
+    picture = scene.cameras.screenshot()
     actor = scene.actor(layer.id)
     assert actor.explain()["parts"]["total"] > 3
     assert actor.explain()["share"] == 1.0
-    assert scene.select_box(0, 0, 200, 160) > 5
-    told = scene.table()
+    assert scene.selection.select_box(0, 0, 200, 160) > 5
+    told = scene.selection.table()
     assert len(told["rows"]) > 5
-    scene.export(layer.id, "some.tck")
-    assert len(pvfiblets.read(shards.parent / "some.tck")) == scene.count()
-    scene.deselect()
+    scene.selection.export(layer.id, "some.tck")
+    assert len(pvfiblets.read(shards.parent / "some.tck")) == scene.selection.count()
+    scene.selection.deselect()
     session.save(scene, "a.json")
     plotter = pv.Plotter(off_screen=True, window_size=(200, 160))
     plotter.disable_anti_aliasing()
     other = Scene(plotter, shards.parent)
     session.load(other, "a.json")
-    assert (other.screenshot() == picture).all()
+    assert (other.cameras.screenshot() == picture).all()
     assert picture.max() > 50
     other.close()
     plotter.close()

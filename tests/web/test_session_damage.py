@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from pvfiblets.web import session
-from pvfiblets.web.scene import Scene
+from pvfiblets.web.scene.scene import Scene
+from pvfiblets.web.session import files as session
 
 N = int(os.environ.get("PVFIBLETS_FUZZ", "20"))
 
@@ -38,10 +38,10 @@ def test_damaged_session_files_are_refused_or_shown(folder, damage):
     refused = 0
     try:
         lines = scene.open("lines.fiblets")
-        scene.set_filter(lines.id, "length", 20, None)
-        scene.select(lines.id, [20, 21, 40])
-        scene.add_bundle(lines.id, np.flatnonzero(np.random.default_rng(0).random(60) < 0.5), "half")
-        scene.add_clip("plane", normal=[0, 0, 1], origin=[0, 0, 4], layers=[lines.id])
+        scene.filters.set_filter(lines.id, "length", 20, None)
+        scene.selection.select(lines.id, [20, 21, 40])
+        scene.bundles.add_bundle(lines.id, np.flatnonzero(np.random.default_rng(0).random(60) < 0.5), "half")
+        scene.filters.add_clip("plane", normal=[0, 0, 1], origin=[0, 0, 4], layers=[lines.id])
         whole = session.save(scene, "a.json").read_bytes()
         session.load(scene, "a.json")
         for i in range(N):

@@ -6,11 +6,11 @@ import pytest
 import pyvista as pv
 
 from pvfiblets.plotting.slices.oblique import HANDLE
-from pvfiblets.web import session
-from pvfiblets.web.history import History
-from pvfiblets.web.scene import Scene
-from pvfiblets.web.slicing import NAMES, angles_of, normal_of
-from pvfiblets.web.touch import Fingers
+from pvfiblets.web.scene.scene import Scene
+from pvfiblets.web.scene.slicing import NAMES, angles_of, normal_of
+from pvfiblets.web.session import files as session
+from pvfiblets.web.session.history import History
+from pvfiblets.web.view.touch import Fingers
 from tests.web.desk import assert_script_draws, scene_of_views
 
 
@@ -31,8 +31,8 @@ def test_an_image_is_shown_as_slices_beside_the_3d_view(scene):
     image = scene.open("head.nii.gz", "image")
     assert shown(scene) == {"axial", "coronal", "sagittal", "3d"}
     scene.set(image.id, "clim", [-1.0, 1.0])
-    scene.set_slices(position=[30.0, 30.0, 30.0], cross_hair=False)
-    picture = scene.screenshot()
+    scene.images.set_slices(position=[30.0, 30.0, 30.0], cross_hair=False)
+    picture = scene.cameras.screenshot()
     # The head is 1 in the middle of 16 voxels of 4 mm, and falls by the distance; the axial pane shows that.
     pane = scene.slicing.workspace.panes["axial"]
     x, y = (round(part) for part in pane.pixel_of(np.array([30.0, 30.0, 30.0])))
@@ -43,7 +43,7 @@ def test_an_image_is_shown_as_slices_beside_the_3d_view(scene):
 def test_the_3d_view_is_there_again_when_the_last_image_goes_out_of_a_large_pane(scene):
     scene.open("lines.trk")
     image = scene.open("head.nii.gz", kind="image")
-    scene.set_slices(layout="axial")
+    scene.images.set_slices(layout="axial")
     assert shown(scene) == {"axial"}
     scene.remove(image.id)
     assert shown(scene) == {"3d"}
@@ -82,24 +82,24 @@ def test_labels_have_the_names_of_a_table(scene, folder):
     (folder / "names.tsv").write_text("index\tname\tcolor\n3\tleft <b>part</b>\t#ff0000\n5\tright\t#00ff00\n")
     (folder / "empty.tsv").write_text("nothing\n")
     atlas = scene.open("atlas.nii.gz", "image")
-    named = scene.name_labels(atlas.id, scene.load_labels(atlas.id, "names.tsv"))
+    named = scene.images.name_labels(atlas.id, scene.images.load_labels(atlas.id, "names.tsv"))
     assert named.settings["meaning"] == "labels"
-    scene.set_slices(position=[4.0, 30.0, 30.0])
+    scene.images.set_slices(position=[4.0, 30.0, 30.0])
     assert scene.slicing.workspace.values().images["atlas.nii.gz"] == (3, "left <b>part</b>")
     with pytest.raises(ValueError, match="columns index and name"):
-        scene.load_labels(atlas.id, "empty.tsv")
+        scene.images.load_labels(atlas.id, "empty.tsv")
     with pytest.raises(PermissionError, match="outside"):
-        scene.load_labels(atlas.id, "../names.tsv")
+        scene.images.load_labels(atlas.id, "../names.tsv")
 
 
 def test_sessions_keep_images_and_how_they_are_looked_at(scene, folder):
     image = scene.open("head.nii.gz", "image")
     scene.set(image.id, "cmap", "hot")
-    scene.set_slices(layout="sagittal", convention="neurological", thickness=7.0, position=[10.0, 20.0, 30.0])
+    scene.images.set_slices(layout="sagittal", convention="neurological", thickness=7.0, position=[10.0, 20.0, 30.0])
     told = session.to_dict(scene)
     scene.remove(image.id)
     assert "slices" not in session.to_dict(scene)
-    scene.set_slices(layout="3d", position=[0.0, 0.0, 0.0])
+    scene.images.set_slices(layout="3d", position=[0.0, 0.0, 0.0])
     session.from_dict(scene, told)
     workspace = scene.slicing.workspace
     assert (workspace.layout, workspace.convention, workspace.thickness) == ("sagittal", "neurological", 7.0)
@@ -117,19 +117,19 @@ def test_the_script_makes_the_same_picture(scene, folder):
     scene.set(image.id, "clim", [-1.0, 1.0])
     (folder / "names.tsv").write_text("index\tname\n3\tone\n5\tother\n")
     atlas = scene.open("atlas.nii.gz", "image")
-    scene.name_labels(atlas.id, scene.load_labels(atlas.id, "names.tsv"))
+    scene.images.name_labels(atlas.id, scene.images.load_labels(atlas.id, "names.tsv"))
     scene.set(atlas.id, "opacity", 0.3)
-    scene.set_slices(position=[18.0, 22.0, 12.0], thickness=9.0)
-    picture = scene.screenshot()
+    scene.images.set_slices(position=[18.0, 22.0, 12.0], thickness=9.0)
+    picture = scene.cameras.screenshot()
     assert_script_draws(scene, folder, picture)
 
 
 def test_two_fingers_move_a_slice_and_reset_shows_all_of_it(scene):
     scene.open("head.nii.gz", "image")
-    scene.set_slices(layout="axial")
-    scene.screenshot()
+    scene.images.set_slices(layout="axial")
+    scene.cameras.screenshot()
     pane, fingers = scene.slicing.workspace.panes["axial"], Fingers(scene.plotter, scene.slicing.pane_at)
-    camera = scene.camera()
+    camera = scene.cameras.camera()
     under = pane.position_at(100.0, 70.0)
 
     def send(kind, *xs):
@@ -141,7 +141,7 @@ def test_two_fingers_move_a_slice_and_reset_shows_all_of_it(scene):
     send("EndPinch", 90.0, 170.0)
     assert pane.zoom == pytest.approx(2.0)
     np.testing.assert_allclose(pane.position_at(130.0, 70.0), under, atol=1e-9)
-    assert scene.camera() == camera
+    assert scene.cameras.camera() == camera
     scene.slicing.show_all()
     assert pane.zoom == 1.0
 
@@ -149,7 +149,7 @@ def test_two_fingers_move_a_slice_and_reset_shows_all_of_it(scene):
 def test_images_are_not_cut_and_need_four_views(scene, folder, plotter):
     image = scene.open("head.nii.gz", "image")
     with pytest.raises(ValueError, match="not cut"):
-        scene.add_clip("plane", layers=[image.id])
+        scene.filters.add_clip("plane", layers=[image.id])
     one = Scene(plotter, folder)
     with pytest.raises(ValueError, match=r"shape=\(2, 2\)"):
         one.open("head.nii.gz", "image")
@@ -157,8 +157,8 @@ def test_images_are_not_cut_and_need_four_views(scene, folder, plotter):
     one.close()
     with pytest.raises(ValueError, match="slices are of images"):
         scene.open("lines.trk", "image")
-    assert scene.histogram(image.id)["name"]
-    assert scene.info(image.id)["facts"]["voxels"] == [16, 16, 16]
+    assert scene.queries.histogram(image.id)["name"]
+    assert scene.queries.info(image.id)["facts"]["voxels"] == [16, 16, 16]
 
 
 def test_an_image_of_colours_and_one_of_several_volumes(scene, folder):
@@ -166,7 +166,7 @@ def test_an_image_of_colours_and_one_of_several_volumes(scene, folder):
     nibabel.save(nibabel.Nifti1Image(many, np.eye(4)), folder / "many.nii")
     image = scene.open("many.nii", "image")
     scene.set(image.id, "index", 2)
-    scene.set_slices(position=[2.0, 2.0, 2.0])
+    scene.images.set_slices(position=[2.0, 2.0, 2.0])
     assert scene.slicing.workspace.values().images["many.nii"] == 3.0
     with pytest.raises(ValueError, match="index"):
         scene.set(image.id, "index", 3)
@@ -186,22 +186,22 @@ def test_directions_are_as_bright_as_another_image_of_the_scene(scene, folder):
     assert image.kind == "image"
     history = History(scene)
     scene.set(image.id, "meaning", "direction")
-    choices = {one["name"]: one for one in scene.properties(image.id)}["modulate"]["choices"]
+    choices = {one["name"]: one for one in scene.queries.properties(image.id)}["modulate"]["choices"]
     value = next(one["value"] for one in choices if one["title"] == "fa.nii.gz")
     scene.set(image.id, "modulate", value)
     scene.set(image.id, "clim", [0.0, 1.0])
-    scene.set_slices(position=[30.0, 30.0, 30.0], cross_hair=False, layout="axial")
-    picture = scene.screenshot()
+    scene.images.set_slices(position=[30.0, 30.0, 30.0], cross_hair=False, layout="axial")
+    picture = scene.cameras.screenshot()
     assert (abs(picture[80, 120].astype(int) - [128, 0, 0]) <= 2).all()  # right to left is red, by half
     scene.remove(weights.id)
-    assert (scene.screenshot()[80, 120] == picture[80, 120]).all()
+    assert (scene.cameras.screenshot()[80, 120] == picture[80, 120]).all()
     kept = session.to_dict(scene)
     assert_script_draws(scene, folder, picture)
     while history.undo():
         pass
-    assert scene.screenshot()[80, 120].tolist() != picture[80, 120].tolist()
+    assert scene.cameras.screenshot()[80, 120].tolist() != picture[80, 120].tolist()
     session.from_dict(scene, kept)
-    assert (scene.screenshot()[80, 120] == picture[80, 120]).all()
+    assert (scene.cameras.screenshot()[80, 120] == picture[80, 120]).all()
 
 
 def test_a_table_beside_labels_is_taken_and_other_tables_are_not(scene, folder):
@@ -209,7 +209,7 @@ def test_a_table_beside_labels_is_taken_and_other_tables_are_not(scene, folder):
     (folder / "head.tsv").write_text("index\tname\n1\tone\n")  # beside numbers that are no labels
     atlas = scene.open("atlas.nii.gz", "image")
     assert atlas.settings["meaning"] == "labels"
-    scene.set_slices(position=[2.0, 8.0, 8.0])
+    scene.images.set_slices(position=[2.0, 8.0, 8.0])
     assert scene.slicing.workspace.values().images["atlas.nii.gz"] == (3, "putamen")
     assert scene.open("head.nii.gz", "image").settings["meaning"] == "scalars"
     (folder / "atlas.tsv").write_text("subject\tage\n1\t40\n")
@@ -231,28 +231,28 @@ def test_glyphs_of_an_image_are_those_of_python(scene, folder, n, kind):
     glyph_image(folder, n)
     history = History(scene, together=0.0)
     image = scene.open("glyphs.nii.gz")
-    choices = {one["name"]: one for one in scene.properties(image.id)}["glyphs"]["choices"]
+    choices = {one["name"]: one for one in scene.queries.properties(image.id)}["glyphs"]["choices"]
     assert {one["value"] for one in choices} == {3: {None, "peaks"}, 6: {None, "peaks", "tensor", "sh"},
                                                   15: {None, "peaks", "sh"}}[n]  # fmt: skip
-    scene.set_slices(position=[30.0, 30.0, 30.0], cross_hair=False)
-    before = scene.screenshot()
+    scene.images.set_slices(position=[30.0, 30.0, 30.0], cross_hair=False)
+    before = scene.cameras.screenshot()
     scene.set(image.id, "glyphs", kind)
     scene.set(image.id, "glyph_size", 0.9)
-    picture = scene.screenshot()
+    picture = scene.cameras.screenshot()
     assert (abs(picture.astype(int) - before).max(axis=2) > 30).any()
     assert (picture.max(axis=2) > 30).sum() < (before.max(axis=2) > 30).sum()  # lines and lobes, no faces of voxels
     assert_script_draws(scene, folder, picture)
     kept = session.to_dict(scene)
     scene.show(image.id, False)
-    hidden = scene.screenshot().astype(int)
+    hidden = scene.cameras.screenshot().astype(int)
     assert (picture.astype(int)[..., 0] - picture[..., 1] > 60).any()
     assert not (hidden[..., 0] - hidden[..., 1] > 60).any()  # letters are yellow
     history.undo()
     history.undo()
     history.undo()
-    assert np.abs(scene.screenshot().astype(int) - before).max() <= 2
+    assert np.abs(scene.cameras.screenshot().astype(int) - before).max() <= 2
     session.from_dict(scene, kept)
-    assert np.abs(scene.screenshot().astype(int) - picture).max() <= 2
+    assert np.abs(scene.cameras.screenshot().astype(int) - picture).max() <= 2
 
 
 @pytest.mark.parametrize(
@@ -267,12 +267,12 @@ def test_angles_of_a_normal_give_it_again(normal):
 def test_turning_an_oblique_slice_by_hand_is_undone_and_done_again(scene):
     scene.open("head.nii.gz", "image")
     history = History(scene, clock=lambda: 0.0)
-    scene.set_slices(oblique=[30.0, 0.0], layout="oblique")
+    scene.images.set_slices(oblique=[30.0, 0.0], layout="oblique")
     workspace = scene.slicing.workspace
     pane = workspace.panes["oblique"]
     np.testing.assert_allclose(pane.toward, [0.0, -0.5, -np.sqrt(0.75)], atol=1e-12)  # mirrored: from below
     assert [box["name"] for box in scene.slicing.boxes()] == ["oblique"]
-    scene.set_slices(layout="grid")
+    scene.images.set_slices(layout="grid")
     trace = workspace.oblique.traces["sagittal"]
     start = trace.pane.pixel_of(workspace.position)
     workspace.oblique.normal = trace.normal_towards(start[0] + 30, start[1] + 30, 1)  # as a drag does
@@ -293,7 +293,7 @@ def test_a_drag_of_a_handle_is_one_step_to_undo_however_long_it_pauses(scene):
     scene.open("head.nii.gz", "image")
     clock = iter(range(0, 10000, 100))  # seconds: no two changes are near each other
     history = History(scene, clock=lambda: next(clock))
-    scene.set_slices(oblique=[30.0, 0.0], layout="grid")
+    scene.images.set_slices(oblique=[30.0, 0.0], layout="grid")
     steps, (pane, oblique) = len(history), (scene.slicing.workspace.panes["sagittal"], scene.slicing.workspace.oblique)
     for begin, end in ((30.0, 60.0), (60.0, 45.0)):
         drag_handle(scene.plotter, pane, oblique, end)
@@ -329,21 +329,21 @@ def drag_handle(plotter, pane, oblique, tilt):
 
 def test_an_oblique_slice_lies_as_its_angles_say(scene, folder):
     scene.open("head.nii.gz", "image")
-    scene.set_slices(position=[30.0, 30.0, 30.0], oblique=[30.0, 90.0])
+    scene.images.set_slices(position=[30.0, 30.0, 30.0], oblique=[30.0, 90.0])
     plane = scene.slicing.workspace.slices["oblique"]
     np.testing.assert_allclose(plane.normal, [-0.5, 0.0, np.sqrt(0.75)], atol=1e-12)
     np.testing.assert_allclose(plane.origin, [30.0, 30.0, 30.0])
-    scene.set_slices(planes=False, cross_hair=False)
+    scene.images.set_slices(planes=False, cross_hair=False)
     assert [one.name for one in scene.slicing.workspace.slices if one.visible] == ["oblique"]
-    picture = scene.screenshot()
+    picture = scene.cameras.screenshot()
     assert_script_draws(scene, folder, picture)
     kept = session.to_dict(scene)
-    scene.set_slices(oblique=None)
+    scene.images.set_slices(oblique=None)
     assert not plane.visible
     session.from_dict(scene, kept)
     assert scene.slicing.view.oblique == (30.0, 90.0)
     with pytest.raises(ValueError, match="degrees from -180 to 180"):
-        scene.set_slices(oblique=[30.0, 200.0])
+        scene.images.set_slices(oblique=[30.0, 200.0])
 
 
 CENTRE = np.array([100.0, 80.0])  # of the plotter's 200 by 160 pixels

@@ -5,11 +5,11 @@ import asyncio
 import numpy as np
 import pytest
 
-from pvfiblets.web import sliders
-from pvfiblets.web.controls import axis_of, controls, moved
-from pvfiblets.web.describe import typed
-from pvfiblets.web.filter_regions import condition, flat
-from pvfiblets.web.sliders import SlideActions
+from pvfiblets.web.panels import sliders
+from pvfiblets.web.panels.controls import axis_of, controls, moved
+from pvfiblets.web.panels.describe import typed
+from pvfiblets.web.panels.filter_regions import condition, flat
+from pvfiblets.web.panels.sliders import SlideActions
 from tests.web.desk import Desk
 
 
@@ -57,10 +57,10 @@ def test_a_slider_that_rests_without_being_let_go_is_shown_as_it_is(desk, scene,
 
 def test_cuts_filters_and_regions_slide(desk, scene):
     (layer,) = scene.layers
-    clip = scene.add_clip("box")
+    clip = scene.filters.add_clip("box")
     drag(desk, ("clip", clip.id, "x", [1.0, 5.0]), ("clip", clip.id, "x", [1.0, 7.0]))
     assert scene.state.clip(clip.id).shape["bounds"][:2] == [1.0, 7.0]
-    scene.remove_clip(clip.id)
+    scene.filters.remove_clip(clip.id)
     desk.filtering.add("length")
 
     async def held():
@@ -133,7 +133,7 @@ def test_planes_move_along_their_normal_and_numbers_are_typed_with_units():
             typed(text, "x", optional=False)
     from xml.etree import ElementTree as ET
 
-    from pvfiblets.web.charts import profile_chart
+    from pvfiblets.web.panels.charts import profile_chart
 
     chart = profile_chart([0.0, 1.0], [1.0, 2.0], [1.0, 2.0], [1.0, 2.0], "<img src=x>")
     assert "<img" not in chart
@@ -157,7 +157,7 @@ def test_regions_are_rows_joined_by_a_word_and_back():
 def test_profiles_have_axes_with_units_and_tell_what_lies_under_the_pointer():
     from xml.etree import ElementTree as ET
 
-    from pvfiblets.web.charts import profile_chart
+    from pvfiblets.web.panels.charts import profile_chart
 
     mean = np.array([1.0, np.nan, 3.0])
     chart = ET.fromstring(profile_chart([0.0, 0.5, 1.0], mean, mean - 0.5, mean + 0.5, "curvature [1/mm]"))
@@ -171,11 +171,11 @@ def test_profiles_have_axes_with_units_and_tell_what_lies_under_the_pointer():
 
 
 def test_facts_are_tables_with_units(scene):
-    from pvfiblets.web.info_tables import tables
+    from pvfiblets.web.panels.info_tables import tables
 
     lines = scene.open("lines.trk")
-    scene.screenshot()
-    found = {table["title"]: table for table in tables(scene.info(lines.id))}
+    scene.cameras.screenshot()
+    found = {table["title"]: table for table in tables(scene.queries.info(lines.id))}
     layer = dict(found["Layer"]["rows"])
     assert layer["Streamlines"] == "60 of 60 shown"
     assert layer["File"] == "lines.trk"
@@ -192,7 +192,7 @@ def test_facts_are_tables_with_units(scene):
         "Drawing",
     }
     assert all(isinstance(cell, str) for table in found.values() for row in table["rows"] for cell in row)
-    head = {table["title"]: table for table in tables(scene.info(scene.open("head.nii.gz").id))}
+    head = {table["title"]: table for table in tables(scene.queries.info(scene.open("head.nii.gz").id))}
     assert head["Voxels to mm"]["rows"][0] == ["4", "0", "0", "0"]
     assert tables({}) == []
 

@@ -16,10 +16,10 @@ from pvfiblets.engine.pieces import Pieces
 from pvfiblets.mappers.ahead import draw_ahead
 from pvfiblets.mappers.scene import hurry, slack
 from pvfiblets.synthetic import brain_streamlines
-from pvfiblets.web import stream as stream_module
-from pvfiblets.web.encoding import encode
-from pvfiblets.web.pace import BUDGET, LEVELS, Pace
-from pvfiblets.web.stream import REST, PictureStream
+from pvfiblets.web.view import stream as stream_module
+from pvfiblets.web.view.encoding import encode
+from pvfiblets.web.view.pace import BUDGET, LEVELS, Pace
+from pvfiblets.web.view.stream import REST, PictureStream
 
 from .streams import Streamer, drag, slow_stream
 

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from pvfiblets.web import tokens
-from pvfiblets.web.tokens import chosen_token
+from pvfiblets.web.server import tokens
+from pvfiblets.web.server.tokens import chosen_token
 from tests.web.visitors import STUB, TOKEN, Browser, gate
 
 POSIX = pytest.mark.skipif(os.name != "posix", reason="modes of files")
@@ -101,7 +101,7 @@ async def test_processes_of_sessions_are_told_nothing_in_public(tmp_path, monkey
 SERVE = """
 import sys
 from pvfiblets import cli
-from pvfiblets.web import launcher, server
+from pvfiblets.web.server import launcher, front as server
 
 server.FrontServer.__init__.__defaults__ = (tuple(sys.argv[1:3]), *server.FrontServer.__init__.__defaults__[1:])
 sys.exit(cli.main(["serve", "--port", "0", *sys.argv[3:]]))

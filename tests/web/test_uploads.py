@@ -9,13 +9,13 @@ import msgpack
 import pytest
 import pyvista as pv
 
-from pvfiblets import memory
-from pvfiblets.web.access import Access, RefusedError
-from pvfiblets.web.launcher import WORKER
-from pvfiblets.web.options import Options
-from pvfiblets.web.rpc_allowlist import MalformedError, check_call, guard_messages
-from pvfiblets.web.scratch import Notes, remove
-from pvfiblets.web.server import FrontServer
+from pvfiblets.support import memory
+from pvfiblets.web.server.access import Access, RefusedError
+from pvfiblets.web.server.front import FrontServer
+from pvfiblets.web.server.launcher import WORKER
+from pvfiblets.web.server.options import Options
+from pvfiblets.web.server.rpc_allowlist import MalformedError, check_call, guard_messages
+from pvfiblets.web.server.scratch import Notes, remove
 from tests.web import bombs
 from tests.web.visitors import TOKEN, Browser, gate, message, raw, until
 

@@ -10,14 +10,14 @@ import pytest
 import pyvista as pv
 
 import pvfiblets
-from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
+from pvfiblets.engine.fiblets.data.sampled_volume import VolumeSource
 from pvfiblets.errors import FormatError
 from pvfiblets.formats import attachments
 from pvfiblets.streamlines import Streamlines
-from pvfiblets.web import session
-from pvfiblets.web.history import History
-from pvfiblets.web.sampling import sampled
-from pvfiblets.web.script import as_script
+from pvfiblets.web.scene.sampling import sampled
+from pvfiblets.web.session import files as session
+from pvfiblets.web.session.history import History
+from pvfiblets.web.session.script import as_script
 from tests.web.desk import Desk
 
 
@@ -41,7 +41,7 @@ def values_of(scene, layer):
 @pytest.mark.parametrize("name", ["lines.trk", "lines.fiblets"])
 async def test_a_file_of_values_colours_the_chosen_tractogram(desk, scene, heights, name):
     first = scene.open(name)
-    scene.select(first.id, [4, 5])
+    scene.selection.select(first.id, [4, 5])
     scene.open("lines.fiblets")
     desk.page.chosen = first.id
     desk.files.browse("")
@@ -52,7 +52,7 @@ async def test_a_file_of_values_colours_the_chosen_tractogram(desk, scene, heigh
     assert layer.settings["scalars"] == "heights"
     assert len(layer.selected) == 2
     np.testing.assert_allclose(values_of(scene, layer), heights, atol=np.ptp(heights) / 500)
-    assert {"name": "heights", "title": "heights"} in scene.arrays(layer.id)
+    assert {"name": "heights", "title": "heights"} in scene.queries.arrays(layer.id)
     assert scene.layers[1].source.values == ()
     part = scene.keep_selection(layer.id)
     assert scene.actor(part.id).fiblets.n_streamlines == 2
@@ -85,10 +85,10 @@ def test_scripts_attach_files_of_values(scene, folder, heights):
     scene.plotter.window_size = 420, 360
     layer = scene.open("lines.trk")
     scene.attach(layer.id, scene.load_values(layer.id, "heights.tsf"))
-    scene.select(layer.id, [4, 5, 6])
+    scene.selection.select(layer.id, [4, 5, 6])
     scene.keep_selection(layer.id)
-    scene.screenshot()
-    picture = scene.screenshot()
+    scene.cameras.screenshot()
+    picture = scene.cameras.screenshot()
     (folder / "again.py").write_text(as_script(scene, "again.png"))
     done = subprocess.run([sys.executable, "again.py"], cwd=folder, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
@@ -148,7 +148,7 @@ def test_volumes_of_the_scene_are_choices_and_stay_when_their_layer_goes(scene, 
     layer = scene.open("lines.fiblets")
 
     def choices():
-        (scalars,) = (item for item in scene.properties(layer.id) if item["name"] == "scalars")
+        (scalars,) = (item for item in scene.queries.properties(layer.id) if item["name"] == "scalars")
         return {choice["title"]: choice["value"] for choice in scalars["choices"]}
 
     assert "volume head.nii.gz" not in choices()
@@ -165,15 +165,15 @@ def test_volumes_of_the_scene_are_choices_and_stay_when_their_layer_goes(scene, 
     scene.set(layer.id, "line_width", 2.0)
     assert scene.actor(layer.id).scalars is volume
     assert choices()["volume head.nii.gz"] == HEAD
-    assert scene.legend[0]["title"] == "head"
+    assert scene.queries.legend[0]["title"] == "head"
     assert list(scene.plotter.scalar_bars.keys()) == ["head"]
     while history.undo():
         pass
     assert scene.actor(layer.id).scalars != volume
-    found = scene.histogram(layer.id)
+    found = scene.queries.histogram(layer.id)
     assert found["name"] != "head"
     history.redo()
-    found = scene.histogram(layer.id)
+    found = scene.queries.histogram(layer.id)
     assert (found["name"], sum(found["counts"])) == ("head", 16**3)
 
 
@@ -181,18 +181,18 @@ def test_tables_and_profiles_say_what_the_volume_has_there(scene, lines):
     scene.open("head.nii.gz")
     layer = scene.open("lines.trk")
     scene.set(layer.id, "scalars", HEAD)
-    scene.select(layer.id, [30, 47])
-    rows = scene.table()["rows"]
+    scene.selection.select(layer.id, [30, 47])
+    rows = scene.selection.table()["rows"]
     assert {row["of"] for row in rows} == {"mean of head"}
     for row, line in zip(rows, (lines[30], lines[47]), strict=True):
         inside = line[line[:, 0] <= 62.0]
         assert row["value"] == pytest.approx(distance_from_corner(inside).mean(), abs=0.01)
-    scene.select(layer.id, [30])
-    found = scene.profile(layer.id, n=5)
+    scene.selection.select(layer.id, [30])
+    found = scene.selection.profile(layer.id, n=5)
     assert (found["name"], found["count"]) == ("head", 1)
     places = np.linspace(lines[30][0], lines[30][-1], 5)
     np.testing.assert_allclose(found["mean"], distance_from_corner(places), atol=0.02)
-    assert scene.profile(layer.id, "curvature")["name"] == "curvature"
+    assert scene.selection.profile(layer.id, "curvature")["name"] == "curvature"
 
 
 def test_a_session_finds_its_volume_again_or_is_refused(scene, folder):

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import aiohttp
 
-from pvfiblets.web.options import Options
-from pvfiblets.web.server import FrontServer
+from pvfiblets.web.server.front import FrontServer
+from pvfiblets.web.server.options import Options
 
 TOKEN = "correct-horse-battery"
 STUB = (sys.executable, str(Path(__file__).with_name("stub_worker.py")))

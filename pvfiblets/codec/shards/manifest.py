@@ -114,19 +114,7 @@ class Manifest:
 
     @classmethod
     def from_json(cls, text: str | bytes, path: str) -> Manifest:
-        """Read the file's text.
-
-        Parameters
-        ----------
-        text : str or bytes
-        path : str
-            What errors call it.
-
-        Raises
-        ------
-        FormatError
-            If it is not what :meth:`to_json` writes.
-        """
+        """Read the file's text."""
         try:
             found = json.loads(text)
         except ValueError as error:

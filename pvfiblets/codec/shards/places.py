@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from ..archive import forget
+from ..files.archive import forget
 from ..layout import PAGE, WORDS, unpack
 from ..ordering import hilbert_keys
 
@@ -28,21 +28,7 @@ Ints = npt.NDArray[np.int64]
 
 
 def shards_of(fiblets: FibletSet, size: int) -> list[Ints]:
-    """Divide a set's streamlines.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-        In memory or mapped. About 40 bytes a streamline are taken meanwhile.
-    size : int
-        Bytes that a shard may have, but for one of a single streamline that has more.
-
-    Returns
-    -------
-    list of numpy.ndarray
-        For each shard the numbers of its streamlines, rising. Those without points belong to the first. There is at
-        least one shard, and none that is empty beside another.
-    """
+    """Divide a set's streamlines."""
     firsts = _firsts(fiblets)
     sizes = streamline_bytes(fiblets, firsts)
     order = np.argsort(_keys(fiblets, firsts), kind="stable")

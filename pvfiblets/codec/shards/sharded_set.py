@@ -276,18 +276,7 @@ class ShardedSet:
 
 
 def renumbered(joined: FibletSet, places: Ints, count: int, dropped: Mapping[str, int]) -> FibletSet:
-    """Give the streamlines of parts that stand behind each other the numbers that they have together.
-
-    Parameters
-    ----------
-    joined : FibletSet
-    places : numpy.ndarray
-        ``(n,)`` int64: the number of each of its streamlines, each once.
-    count : int
-        How many numbers there are; those that no streamline has are of one without points.
-    dropped : mapping
-        What the source of all left out.
-    """
+    """Give the streamlines of parts that stand behind each other the numbers that they have together."""
     old = np.arange(joined.n_ranks) if joined.rank_to_id is None else np.asarray(joined.rank_to_id)
     ids = places[old]
     plain = len(ids) == count and bool((ids == np.arange(count)).all())

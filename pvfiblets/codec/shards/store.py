@@ -17,10 +17,10 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
-from ...addresses import is_url
-from ...cache_folder import cache_folder
 from ...errors import FormatError
-from ...whole_files import replacing
+from ...support.addresses import is_url
+from ...support.cache_folder import cache_folder
+from ...support.whole_files import replacing
 from .manifest import StoredFile
 
 __all__ = ["Cache", "Folder", "Remote", "store_at"]
@@ -32,16 +32,7 @@ PAUSE = 0.5
 
 
 def store_at(place: str | PathLike[str], cache: Cache | None = None, **options: Any) -> Folder | Remote:
-    """Return what gives the files of a set.
-
-    Parameters
-    ----------
-    place : str or PathLike
-    cache : Cache, optional
-        For addresses; one of 10 GB in the user's cache folder by default.
-    **options
-        Of the file system, as fsspec takes them, such as ``endpoint_url``.
-    """
+    """Return what gives the files of a set."""
     return (
         Remote(os.fspath(place), cache or Cache(), **options)
         if is_url(place)
@@ -70,13 +61,7 @@ class Folder:
         return (self._path / file.name).is_file()
 
     def local(self, file: StoredFile) -> Path:
-        """Return the path of a file that is as long as it should be.
-
-        Raises
-        ------
-        FormatError
-            If it is missing or of another length.
-        """
+        """Return the path of a file that is as long as it should be."""
         path = self._path / file.name
         try:
             size = path.stat().st_size
@@ -181,15 +166,7 @@ class Remote:
         return self._cache.held(file) is not None
 
     def local(self, file: StoredFile) -> Path:
-        """Return the path of a file, fetched if the cache lacks it.
-
-        Raises
-        ------
-        OSError
-            If it cannot be fetched.
-        FormatError
-            If what comes is not what the manifest names.
-        """
+        """Return the path of a file, fetched if the cache lacks it."""
         held = self._cache.held(file)
         if held is not None:
             return held

@@ -1,8 +1,8 @@
 """`UnreadSet`: a :class:`.FibletSet` whose records stay in its shards until something asks for all of them.
 
 What is known from the manifest and from the first shard is told at once. What is asked streamline by streamline is
-asked of one shard after the other. Drawing takes shards as parts (:mod:`pvfiblets.engine.fiblets.shard_parts`). Only
-who asks for records of the whole, such as ``anchors``, has all shards put together in memory, if they fit.
+asked of one shard after the other. Drawing takes shards as parts (:mod:`pvfiblets.engine.fiblets.parts.shard_parts`).
+Only who asks for records of the whole, such as ``anchors``, has all shards put together in memory, if they fit.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ...memory import free_host_memory
 from ...streamlines import Streamlines
+from ...support.memory import free_host_memory
 from ..decompress import select_streamlines
 from ..extract import once
 from ..fibletset import FibletSet
+from ..files.stored_parts import of_streamlines
 from ..join import concatenate
 from ..parameters import Parameters
-from ..quantised import QuantisedPoints
-from ..stored_parts import of_streamlines
+from ..point_values import PointValues
 from .sharded_set import ShardedSet, renumbered
 
 __all__ = ["CodesOfShards", "UnreadSet"]
@@ -165,7 +165,7 @@ class UnreadSet(FibletSet):
         return found
 
     @cached_property
-    def per_point(self) -> dict[str, QuantisedPoints]:  # type: ignore[override]
+    def per_point(self) -> dict[str, PointValues]:  # type: ignore[override]
         """Values of points, whose codes are read when somebody reads them."""
         return {
             # No array, but one for whoever calls NumPy with it.

@@ -16,8 +16,8 @@ import numpy as np
 import numpy.typing as npt
 from tqdm import tqdm
 
-from ...unfinished import locked, remove_unfinished, scratch_beside, unfinished
-from ...whole_files import naming_target
+from ...support.unfinished import locked, remove_unfinished, scratch_beside, unfinished
+from ...support.whole_files import naming_target
 from ..extract import extract
 from ..progress import Progress
 from ..restrict import even_share
@@ -43,38 +43,7 @@ def compress_file_in_shards(
     progress: Progress = False,
     **options: Any,
 ) -> dict[str, Any]:
-    """Compress a tractogram file into a folder of shards.
-
-    Parameters
-    ----------
-    source : str or PathLike
-        Any format that :func:`pvfiblets.iter_chunks` reads. A ``.fiblets`` file or folder is divided as it is, without
-        being coded again.
-    target : str or PathLike
-        Name of the folder, ending in ``.fiblets``; it appears when it is whole. While it is made, its parent folder
-        holds the set a second time.
-    size : int
-        Bytes that a shard may have at most, but for one of a single streamline that has more.
-    progress : bool or callable
-        As in :func:`pvfiblets.compress_file`.
-    **options
-        As of :func:`pvfiblets.compress_file`.
-
-    Returns
-    -------
-    dict
-        As :func:`pvfiblets.compress_file`, ``bytes`` being those of all files, and ``shards``, how many there are. Of a
-        source that was compressed before there is no time and no error.
-
-    Raises
-    ------
-    FormatError
-        If the source breaks its format.
-    FileExistsError
-        If there is something at `target` that is no sharded set.
-    ValueError
-        As :func:`pvfiblets.compress_file`, if `size` is less than 1, and if `target` has another suffix.
-    """
+    """Compress a tractogram file into a folder of shards."""
     from ... import FibletSet, compress_file  # by the package's own names for them: sets are saved in shards, too
 
     target = Path(target).expanduser()
@@ -113,22 +82,7 @@ def compress_file_in_shards(
 
 
 def write_shards(fiblets: FibletSet, target: str | PathLike[str], size: int, *, progress: Progress = False) -> Manifest:
-    """Write a set as a folder of shards; every point decodes to the same bits.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-        In memory or mapped.
-    target, size, progress
-        As of :func:`compress_file_in_shards`.
-
-    Raises
-    ------
-    FileExistsError
-        If there is something at `target` that is no sharded set.
-    OSError
-        If it cannot be written to.
-    """
+    """Write a set as a folder of shards; every point decodes to the same bits."""
     target = Path(target).expanduser()
     _refuse(target, size)
     places = shards_of(fiblets, size)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ...lazy_imports import names_from
+from ...support.lazy_imports import names_from
 from ..errors import EngineError
 from .occlusion import Occlusion
 
@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     import moderngl
 
     from ...codec.fibletset import FibletSet
-    from ..moderngl_extras import GLExtras
-    from ..shaders import Programs
+    from ..gl.moderngl_extras import GLExtras
+    from ..gl.shaders import Programs
     from .coverage import CoverageBuffer
     from .pyramid import DepthPyramid
 
@@ -27,13 +27,7 @@ __getattr__, __dir__ = names_from(__name__, _HOME)
 def make_occlusion(
     culling: str | None, ctx: moderngl.Context, gl: GLExtras, programs: Programs, fiblets: FibletSet
 ) -> Occlusion | None:
-    """Return what a kind of culling tests against; None for none.
-
-    Raises
-    ------
-    EngineError
-        If there is no such kind.
-    """
+    """Return what a kind of culling tests against; None for none."""
     if culling in (None, "none"):
         return None
     if culling in ("two-phase", "auto"):

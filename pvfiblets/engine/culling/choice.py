@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterator
 from contextlib import contextmanager
 
-from ..picture_clock import PictureClock
+from ..gl.picture_clock import PictureClock
 
 __all__ = ["FEW_FIBLETS", "CullingChoice"]
 
@@ -52,13 +52,7 @@ class CullingChoice:
         self._trial = 0
 
     def next(self, key: Hashable) -> bool:
-        """Say whether the next picture is culled.
-
-        Parameters
-        ----------
-        key : hashable
-            Of what pictures look like but the camera: another one makes what is known old.
-        """
+        """Say whether the next picture is culled."""
         self._look()
         if key != self._key:
             self._key = key

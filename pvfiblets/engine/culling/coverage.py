@@ -32,12 +32,12 @@ import moderngl
 import numpy as np
 
 from ...codec import layout
-from ..bindings import CULLING
 from ..errors import EngineError
 from ..frame import Array, local_frame
 from ..gbuffer import GBuffer
-from ..moderngl_extras import GLExtras
-from ..shaders import Programs
+from ..gl.bindings import CULLING
+from ..gl.moderngl_extras import GLExtras
+from ..gl.shaders import Programs
 from ..view import Style, View
 from .pyramid import DepthPyramid
 
@@ -62,17 +62,7 @@ _EMPTY, _UNCOVERED = 3.0e38, -3.0e38
 
 
 def dilation_radius(fiblets: FibletSet) -> float:
-    """Choose by how much the coverage buffer is dilated.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-
-    Returns
-    -------
-    float
-        R (mm).
-    """
+    """Choose by how much the coverage buffer is dilated."""
     n, n_pages = int(fiblets.n_fiblets), len(fiblets.pages) - 1
     if n == 0:
         return 0.0

@@ -17,7 +17,7 @@ class Occlusion(Protocol):
     """A texture of depth that fiblets are tested against by ``hidden()`` of ``shaders/culling/occlusion.glsl``."""
 
     feature: str
-    """Key of :data:`pvfiblets.engine.shaders.FEATURES` that a testing program needs."""
+    """Key of :data:`pvfiblets.engine.gl.shaders.FEATURES` that a testing program needs."""
 
     halfway: bool
     """Whether it is made of the picture itself, by :meth:`build`, once what the last one showed is drawn; otherwise
@@ -30,14 +30,7 @@ class Occlusion(Protocol):
     """Whether the last picture predicts what will show: ``shaders/culling/visibility_prediction.glsl``."""
 
     def before(self, target: GBuffer, view: View, style: Style) -> None:
-        """Be told that a picture will be drawn; the target still holds what it held.
-
-        Parameters
-        ----------
-        target : GBuffer
-        view : View
-        style : Style
-        """
+        """Be told that a picture will be drawn; the target still holds what it held."""
         ...
 
     def forget(self) -> None:

@@ -11,11 +11,11 @@ from typing import Any
 
 import moderngl
 
-from ..bindings import CULLING
 from ..gbuffer import GBuffer
-from ..moderngl_extras import GLExtras
-from ..program_uniforms import set_uniforms
-from ..shaders import Programs
+from ..gl.bindings import CULLING
+from ..gl.moderngl_extras import GLExtras
+from ..gl.program_uniforms import set_uniforms
+from ..gl.shaders import Programs
 from ..view import Style, View
 
 __all__ = ["DepthPyramid"]

@@ -15,19 +15,19 @@ from typing import TYPE_CHECKING
 
 import moderngl
 
-from ..bindings import ITEM_STORAGE, ITEMS, ITEMS_SHOWN
-from ..gl_version import version_of
-from ..moderngl_extras import BufferTexture, GLExtras
-from ..passes import dispatch, work_groups
-from ..shaders import Programs
-from ..vertex_pulling import BATCH
+from ..gl.bindings import ITEM_STORAGE, ITEMS, ITEMS_SHOWN
+from ..gl.gl_version import version_of
+from ..gl.moderngl_extras import BufferTexture, GLExtras
+from ..gl.passes import dispatch, work_groups
+from ..gl.shaders import Programs
+from ..gl.vertex_pulling import BATCH
 from .pyramid import DepthPyramid
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from ..gl.passes import Passes
     from ..hit_target import HitTarget
-    from ..passes import Passes
 
 __all__ = ["LEAST_SEGMENTS", "Listing", "supports_listing"]
 
@@ -92,14 +92,7 @@ class Listing:
         return {"culling": sum(buffer.size for buffer in self.buffers.values()), "occlusion": self._pyramid.nbytes}
 
     def before(self, target: HitTarget, shown: moderngl.Texture) -> None:
-        """Note what the last picture shows; nothing, if there is none of this size. Call it before that is cleared.
-
-        Parameters
-        ----------
-        target : HitTarget
-        shown : moderngl.Texture
-            Its texture with the number of the quad that each pixel shows, EMPTY where there is none.
-        """
+        """Note what the last picture shows; nothing, if there is none of this size. Call it before that is cleared."""
         seen = self.buffers["seen"]
         self._gl.clear_words(seen)
         if not target.buffer.generation:
@@ -119,18 +112,7 @@ class Listing:
         prepare: Callable[[moderngl.ComputeShader], None],
         render: Callable[[moderngl.Buffer], None],
     ) -> None:
-        """Draw what may show, in two rounds.
-
-        Parameters
-        ----------
-        target : HitTarget
-            Cleared.
-        passes : Passes
-        prepare : callable
-            Tells a program where its data are.
-        render : callable
-            Draws the listed items by the calls in a buffer.
-        """
+        """Draw what may show, in two rounds."""
         with passes.timed("seen before"):
             self._list(prepare, second=False)
             render(self.buffers["commands"])

@@ -43,31 +43,7 @@ class AmbientOcclusionPass(ScreenEffect):
         strength: float,
         normals_to_view: npt.NDArray[np.float64] | None = None,
     ) -> moderngl.Texture:
-        """Bring the texture up to date.
-
-        Parameters
-        ----------
-        buffer : GBuffer
-            Its ``depth`` is read, and its ``ids``, or of surfaces ``across``.
-        lens : Projection
-            Of the same picture.
-        directions_to_view : numpy.ndarray
-            ``(3, 3)``: tangents in data coordinates to view coordinates, of any scale.
-        radius : float
-            mm: what is farther does not darken.
-        samples : int
-            Pixels to look at around each, 1 to `MAX_SAMPLES`.
-        strength : float
-            0 leaves everything open, 1 is the whole effect.
-        normals_to_view : numpy.ndarray, optional
-            ``(3, 3)``: normals in data coordinates to view coordinates, of any scale. With it the picture is one of
-            surfaces, whose normals are in ``across``; else they are those nearest to the viewer of lines.
-
-        Returns
-        -------
-        moderngl.Texture
-            8 bits normalised, 1 where open; valid until the next draw.
-        """
+        """Bring the texture up to date."""
         turn = tuple(np.asarray(directions_to_view, np.float64).T.ravel().tolist())
         uniforms = lens.uniforms() | {
             "data_to_view": turn,

@@ -41,18 +41,7 @@ class Accumulation(PicturePasses):
         *,
         alike: bool = False,
     ) -> None:
-        """Add a part of an attachment; the mean of its samples, where it has several a pixel.
-
-        Parameters
-        ----------
-        colour : Attachment
-        viewport : tuple of 4 ints
-            x, y, width, height of that part; of the same size each time, or `restart` comes before.
-        shares : moderngl.Texture, optional
-            r32ui, the 16ths of each pixel that it is: all pictures up to the next `restart` are one sample together.
-        alike : bool
-            Whether all samples of a pixel are the same: then one of them is read.
-        """
+        """Add a part of an attachment; the mean of its samples, where it has several a pixel."""
         sums = self._texture("sums", viewport[2:], 4, "f4")
         self._copy(colour, viewport, sums.size, "sums", mixed=self.samples > 0, shares=shares, alike=alike)
         self.samples = 1 if shares is not None else self.samples + 1

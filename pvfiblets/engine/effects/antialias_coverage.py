@@ -63,24 +63,7 @@ class Coverage(PicturePasses):
         *,
         alike: bool = False,
     ) -> None:
-        """Smooth the edges of lines.
-
-        Parameters
-        ----------
-        colour, depth : Attachment
-            What the picture consists of. Colours are changed, of all samples of a pixel alike.
-        viewport : tuple of 4 ints
-            x, y, width, height of the part of the attachments that counts.
-        drawn : sequence of SmoothedLines
-            Of every drawable in it.
-        alike : bool
-            Whether all samples of a pixel are the same, where it has several: then one of them is read.
-
-        Raises
-        ------
-        EngineError
-            If memory does not suffice.
-        """
+        """Smooth the edges of lines."""
         x, y, width, height = viewport
         drawn = [lines for lines in drawn if lines.buffer.edges is not None and lines.buffer.size == (width, height)]
         left, low, right, top = _union([lines.rectangle for lines in drawn])

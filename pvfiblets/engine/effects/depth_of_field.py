@@ -49,13 +49,7 @@ class Focus:
     darkening: float = 0.0
 
     def uniforms(self, lens: Projection) -> dict[str, object]:
-        """Return what ``shaders/effects/picture/blur.frag`` asks for.
-
-        Parameters
-        ----------
-        lens : Projection
-            Of the picture.
-        """
+        """Return what ``shaders/effects/picture/blur.frag`` asks for."""
         k, w0, w1 = lens.scale
         depth, shift = float(lens.projection[2, 2]), float(lens.projection[2, 3])
         if w1 != 0.0:
@@ -85,18 +79,7 @@ def distance_of(lens: Projection, depth: float) -> float:
 
 
 def disc_areas(widest: float) -> npt.NDArray[np.float32]:
-    """Return how many pixels discs of radius 0, 1 / STEPS, ... cover, to a step beyond the widest.
-
-    Parameters
-    ----------
-    widest : float
-        Pixels.
-
-    Returns
-    -------
-    numpy.ndarray
-        (n,) float32: sums of what ``shaders/effects/picture/disc.glsl`` says of each pixel.
-    """
+    """Return how many pixels discs of radius 0, 1 / STEPS, ... cover, to a step beyond the widest."""
     side = math.ceil(widest) + 2
     offsets = np.arange(-side, side + 1, dtype=np.float64)
     apart = np.sort(np.hypot(offsets[:, None], offsets).ravel())

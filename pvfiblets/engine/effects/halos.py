@@ -40,29 +40,7 @@ class HaloPass(ScreenEffect):
         nearest: float = 0.0,
         pixel_scale: float = 1.0,
     ) -> moderngl.Texture:
-        """Bring the texture up to date.
-
-        Parameters
-        ----------
-        buffer : GBuffer
-            Its ``depth`` is read.
-        lens : Projection
-            Of the same picture.
-        width : float
-            mm from a line's edge to its halo's; at most `WIDEST` pixels of the finished picture.
-        depth : float
-            mm by which the halo's edge lies behind the line.
-        nearest : float
-            mm: no line is nearer to the viewer's plane. It saves time and changes nothing.
-        pixel_scale : float
-            Pixels of the lens's picture for one of the finished picture.
-
-        Returns
-        -------
-        moderngl.Texture
-            r32ui keys as in the G-buffer: where a halo is nearer than the pixel's line, its key, else EMPTY. Valid
-            until the next draw.
-        """
+        """Bring the texture up to date."""
         widest = WIDEST * pixel_scale
         reach = math.ceil(min(width * lens.pixels_per_mm(nearest), widest))
         uniforms = lens.uniforms() | {"width": width, "depth": depth, "widest": widest, "reach": reach}

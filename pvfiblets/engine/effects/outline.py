@@ -30,22 +30,7 @@ class OutlinePass(ScreenEffect):
         self._source: object = None
 
     def draw(self, buffer: Any, chosen: npt.NDArray[np.bool_], *, width: float) -> moderngl.Texture:
-        """Bring the texture up to date.
-
-        Parameters
-        ----------
-        buffer : GBuffer
-            Its ``depth`` and ``ids`` are read.
-        chosen : numpy.ndarray
-            ``(n_streamlines,)`` bool; must not change afterwards. Streamlines beyond its end are not chosen.
-        width : float
-            Pixels.
-
-        Returns
-        -------
-        moderngl.Texture
-            r32ui keys: in the outline that of the chosen streamline, else EMPTY. Valid until the next draw.
-        """
+        """Bring the texture up to date."""
         size = buffer.depth.size
         texture = self._target("outline", size, "u4")
         marked = self._target("chosen pixels", size, "u4")

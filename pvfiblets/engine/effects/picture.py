@@ -15,7 +15,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ..delayed_read import DelayedRead
+from ..gl.delayed_read import DelayedRead
 from .depth_of_field import STEPS, TILE, Focus, disc_areas
 from .picture_passes import Attachment, PicturePasses, bytes_of
 from .projection import Projection
@@ -75,20 +75,7 @@ class PictureEffects(PicturePasses):
         size: tuple[int, int] | None = None,
         corner: tuple[int, int] = (0, 0),
     ) -> None:
-        """Take a picture over.
-
-        Parameters
-        ----------
-        colour : Attachment
-        depth : Attachment or None
-            None where nobody asks for depths.
-        viewport : tuple of 4 ints
-            x, y, width, height of the part of the attachments that counts.
-        size : tuple of 2 ints, optional
-            Of the copy, where that shall be larger: several pictures side by side.
-        corner : tuple of 2 ints
-            Pixel of the copy at which this picture's lower left one comes.
-        """
+        """Take a picture over."""
         x, y, width, height = viewport
         size = size or (width, height)
         targets = {"colours": (4, "f4" if colour.floats else "f1")} | ({"depths": (1, "f4")} if depth else {})
@@ -107,13 +94,7 @@ class PictureEffects(PicturePasses):
         self._corner = corner
 
     def take_in(self, things: Iterable[SeenThrough]) -> None:
-        """Have the copy's depths be those of things that one sees something through, where they are nearer.
-
-        Parameters
-        ----------
-        things : iterable of SeenThrough
-            Of the picture that was copied last, with its depths.
-        """
+        """Have the copy's depths be those of things that one sees something through, where they are nearer."""
         with self._plain_state():
             target = self._framebuffer(("depths",))
             self._ctx.enable_only(moderngl.BLEND)
@@ -135,18 +116,7 @@ class PictureEffects(PicturePasses):
             self._ctx.enable_only(moderngl.NOTHING)
 
     def depths(self, rectangle: tuple[int, int, int, int]) -> npt.NDArray[np.float32]:
-        """Read window depths of the copy.
-
-        Parameters
-        ----------
-        rectangle : tuple of 4 ints
-            x, y, width, height in pixels of the copy; what lies beyond its edges is left out.
-
-        Returns
-        -------
-        numpy.ndarray
-            (rows, columns) float32, the lowest row first; 1 where nothing was drawn.
-        """
+        """Read window depths of the copy."""
         target = self._framebuffer(("colours", "depths"))
         x, y, width, height = _within(rectangle, target.size)
         if width <= 0 or height <= 0:
@@ -157,20 +127,7 @@ class PictureEffects(PicturePasses):
     def depths_later(
         self, rectangle: tuple[int, int, int, int], tag: Any
     ) -> tuple[Any, npt.NDArray[np.float32]] | None:
-        """Have window depths of the copy read, and return those of an earlier picture, without waiting for the GPU.
-
-        Parameters
-        ----------
-        rectangle
-            As of `depths`.
-        tag : object
-            What comes back with them.
-
-        Returns
-        -------
-        tuple or None
-            Tag and depths of the newest that have come since the last call, None if none have.
-        """
+        """Have window depths of the copy read, and return those of an earlier picture, without waiting for the GPU."""
         if self._reads is None:
             self._reads = DelayedRead(self._ctx, self._gl)
         target = self._framebuffer(("colours", "depths"))
@@ -190,21 +147,7 @@ class PictureEffects(PicturePasses):
         focus: Focus | None = None,
         lens: Projection | None = None,
     ) -> None:
-        """Draw the copy, changed.
-
-        Parameters
-        ----------
-        target : Attachment
-            Its colours; all samples of a pixel get the same.
-        viewport : tuple of 4 ints
-            x, y, width, height of the part of the target that is drawn.
-        tone : Tone
-            Comes after the focus.
-        focus : Focus, optional
-            Of a picture that was copied with its depths.
-        lens : Projection, optional
-            With the focus: of the viewport.
-        """
+        """Draw the copy, changed."""
         x, y = viewport[:2]
         shift = {"shift": (self._corner[0] - x, self._corner[1] - y)}
         with self._plain_state():

@@ -9,10 +9,10 @@ from typing import Any
 
 import moderngl
 
-from ..bindings import FIRST_UNIT
 from ..errors import EngineError
-from ..moderngl_extras import GLExtras
-from ..shaders import Programs
+from ..gl.bindings import FIRST_UNIT
+from ..gl.moderngl_extras import GLExtras
+from ..gl.shaders import Programs
 
 __all__ = ["Attachment", "PicturePasses", "bytes_of"]
 

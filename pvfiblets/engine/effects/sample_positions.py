@@ -40,24 +40,7 @@ Array = npt.NDArray[np.float64]
 
 @cache
 def sample_positions(n: int) -> tuple[tuple[float, float], ...]:
-    """Return places of samples, in an order in which the first few are good ones, too.
-
-    Parameters
-    ----------
-    n : int
-        How many, 1 to `MOST`.
-
-    Returns
-    -------
-    tuple of (float, float)
-        x to the right and y up from the pixel's middle, in pixels, from -0.5 to 0.5. The last is the middle itself
-        from `CENTRED` samples on.
-
-    Raises
-    ------
-    ValueError
-        ``n`` is out of range.
-    """
+    """Return places of samples, in an order in which the first few are good ones, too."""
     if not 1 <= n <= MOST:
         raise ValueError(f"the number of samples is {n!r}; give one from 1 to {MOST}")
     i = np.arange(n)
@@ -75,13 +58,7 @@ def sample_positions(n: int) -> tuple[tuple[float, float], ...]:
 
 
 def energy_distance(points: npt.ArrayLike) -> float:
-    """Return the mean squared error that points make of edges, up to a factor; 0 for the whole square.
-
-    Parameters
-    ----------
-    points : array_like
-        (n, 2) places in a pixel, from its middle.
-    """
+    """Return the mean squared error that points make of edges, up to a factor; 0 for the whole square."""
     places = np.asarray(points, np.float64)
     apart = np.linalg.norm(places[:, None] - places, axis=-1)
     return float(2.0 * _to_square(places).mean() - apart.mean() - WITHIN)

@@ -7,11 +7,11 @@ from typing import Any
 
 import moderngl
 
-from ..bindings import FIRST_UNIT
 from ..errors import EngineError
-from ..moderngl_extras import GLExtras
-from ..queries import Timers
-from ..shaders import Programs
+from ..gl.bindings import FIRST_UNIT
+from ..gl.moderngl_extras import GLExtras
+from ..gl.queries import Timers
+from ..gl.shaders import Programs
 
 __all__ = ["ScreenEffect"]
 
@@ -85,14 +85,7 @@ class ScreenEffect:
             array.render(moderngl.TRIANGLES, vertices=3)
 
     def explain(self) -> dict[str, list[Any]]:
-        """Say what it is made of.
-
-        Returns
-        -------
-        dict
-            ``passes``, name and ms of when it last drew; ``features``, which are on in its programs; ``buffers``, name
-            and bytes of its textures.
-        """
+        """Say what it is made of."""
         sizes = {"f1": 1, "u1": 1, "f2": 2, "f4": 4, "u4": 4}
         buffers: list[dict[str, object]] = [
             {"name": f"{name} (effect)", "bytes": texture.width * texture.height * sizes[texture.dtype]}

@@ -18,14 +18,14 @@ from typing import TYPE_CHECKING
 import moderngl
 import numpy as np
 
-from ..bindings import BLOCKS, COUNT_STORAGE, STORAGE
 from ..gbuffer import EMPTY, GBuffer
-from ..moderngl_extras import GLExtras
-from ..passes import GROUP_SIZE, dispatch, nowhere
-from ..queries import Query
-from ..shaders import Programs
-from .chunks import Chunk, storage_buffer
-from .data_textures import DataTextures, set_data_samplers
+from ..gl.bindings import BLOCKS, COUNT_STORAGE, STORAGE
+from ..gl.moderngl_extras import GLExtras
+from ..gl.passes import GROUP_SIZE, dispatch, nowhere
+from ..gl.queries import Query
+from ..gl.shaders import Programs
+from .data.chunks import Chunk, storage_buffer
+from .data.data_textures import DataTextures, set_data_samplers
 from .pipelines import ComputePipeline
 
 if TYPE_CHECKING:
@@ -57,18 +57,7 @@ class Census:
     def count(
         self, chunks: Sequence[Chunk], features: Sequence[str], marks: moderngl.Buffer | None, kept: Visibility
     ) -> tuple[int, int | None]:
-        """Count fiblets in the view volume, and those drawn; the uniform blocks are bound already.
-
-        Parameters
-        ----------
-        chunks : sequence of Chunk
-        features : sequence of str
-            What the fiblets need to be decoded, and ``CLIP_PLANES``.
-        marks : moderngl.Buffer, optional
-            Of the compute pipeline.
-        kept : Visibility
-            What of the set is there to be drawn.
-        """
+        """Count fiblets in the view volume, and those drawn; the uniform blocks are bound already."""
         if self._max_groups:
             return self._by_compute(chunks, features, marks, kept)
         return self._by_query(chunks, features, kept), None
@@ -141,22 +130,7 @@ def count_fiblets(
     kept: Visibility,
     culled: bool,
 ) -> dict[str, int | None]:
-    """Count fiblets of the last picture; uniform blocks and camera are those of it.
-
-    Parameters
-    ----------
-    census : Census
-    total : int
-        Fiblets on the GPU.
-    chunks : sequence of Chunk
-    features : sequence of str
-        What the fiblets need to be decoded, and ``CLIP_PLANES``.
-    pipeline : Pipeline
-    target : GBuffer
-    kept : Visibility
-    culled : bool
-        Whether fiblets behind others were left out.
-    """
+    """Count fiblets of the last picture; uniform blocks and camera are those of it."""
     marks = None
     if isinstance(pipeline, ComputePipeline) and pipeline.planned:
         marks = pipeline.buffers["visibility_bits"]

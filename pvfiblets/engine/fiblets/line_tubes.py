@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..frame import Array, local_frame
-from ..uniform_struct import Field, UniformStruct
+from ..gl.uniform_struct import Field, UniformStruct
 from ..view import View
 
 __all__ = ["TUBES_BLOCK", "tubes_block"]
@@ -32,21 +32,7 @@ TUBES_BLOCK = UniformStruct(
 
 
 def tubes_block(view: View, radius: float, origin: Array, scale: Array, top: int) -> bytes:
-    """Pack the ``Tubes`` uniform block (std140).
-
-    Parameters
-    ----------
-    view : View
-    radius : float
-        Of the tubes (mm).
-    origin, scale, top
-        Of the anchors, as in :func:`pvfiblets.engine.frame.reference_anchor`.
-
-    Returns
-    -------
-    bytes
-        As many as :data:`TUBES_BLOCK` has. A matrix that shows no depth gets rays of no length, which hit nothing.
-    """
+    """Pack the ``Tubes`` uniform block (std140)."""
     _, _, local = local_frame(view, origin, scale, top)
     width, height = view.size
     x, y, z, w = local

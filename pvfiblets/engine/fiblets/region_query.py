@@ -2,7 +2,7 @@
 
 The GPU classifies fiblets by their capsules and decodes those that a capsule leaves undecided, in float32 with a
 margin (``shaders/fiblets/compute/query.comp``). What the margin leaves open, and only that, is settled from the same
-records in float64 by :func:`pvfiblets.query.passing.region_flags`: the answers are its own, bit for bit.
+records in float64 by :func:`pvfiblets.query.selection.passing.region_flags`: the answers are its own, bit for bit.
 """
 
 from __future__ import annotations
@@ -15,20 +15,20 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ...query.point_flags import ALL, ANY, FIRST, LAST, Sampling, check_sampling
-from ..bindings import ANSWER_STORAGE, BLOCKS
+from ...query.selection.point_flags import ALL, ANY, FIRST, LAST, Sampling, check_sampling
 from ..errors import GPUMemoryError
 from ..frame import FRAME_BLOCK, Array
-from ..gl_version import version_of
-from ..moderngl_extras import GLExtras
-from ..passes import GROUP_SIZE, dispatch, work_groups
+from ..gl.bindings import ANSWER_STORAGE, BLOCKS
+from ..gl.gl_version import version_of
+from ..gl.moderngl_extras import GLExtras
+from ..gl.passes import GROUP_SIZE, dispatch, work_groups
+from ..gl.shaders import Programs
 from ..regions.uniform_block import RegionBlock
-from ..shaders import Programs
-from .chunks import Chunk, reserve_buffer, storage_buffer
+from .data.chunks import Chunk, reserve_buffer, storage_buffer
 
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
-    from ...query.region import Region
+    from ...query.regions.region import Region
 
 __all__ = ["ALL", "ANY", "FIRST", "LAST", "RegionQuery", "nearest_anchor"]
 
@@ -92,31 +92,8 @@ class RegionQuery:
         return all(buffer.size <= largest for chunk in self._chunks for buffer in chunk.buffers.values())
 
     def flags(self, features: Sequence[str], region: Region, sampling: Sampling = "lines") -> Bytes:
-        """Return the answers for every streamline, by the GPU where it can, else by the CPU.
-
-        Parameters
-        ----------
-        features : sequence of str
-            What the fiblets need to be decoded. The blocks ``Coding`` and ``Rotations`` are bound already; ``Frame`` is
-            bound anew.
-        region : Region
-            In data mm.
-        sampling : {'lines', 'points'}
-            As for :func:`pvfiblets.query.passing.region_flags`.
-
-        Returns
-        -------
-        numpy.ndarray
-            ``(n_streamlines,)`` uint8 of :data:`ANY`, :data:`ALL`, :data:`FIRST`, :data:`LAST`.
-
-        Raises
-        ------
-        GPUMemoryError
-            If memory does not suffice for the answers.
-        ValueError
-            If the sampling is neither.
-        """
-        from ...query.passing import region_flags
+        """Return the answers for every streamline, by the GPU where it can, else by the CPU."""
+        from ...query.selection.passing import region_flags
 
         lines = check_sampling(sampling) == "lines"
         fiblets = self._fiblets
@@ -200,21 +177,7 @@ class RegionQuery:
 
 
 def nearest_anchor(region: Region, origin: Array, scale: Array, top: int) -> npt.NDArray[np.int64]:
-    """Choose the anchor that rounding is made relative to: near the middle of a region, where answers turn.
-
-    Parameters
-    ----------
-    region : Region
-    origin, scale : numpy.ndarray
-        ``(3,)`` position of anchor 0 and mm per anchor integer.
-    top : int
-        The largest anchor integer.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(3,)`` int64 in ``0..top``.
-    """
+    """Choose the anchor that rounding is made relative to: near the middle of a region, where answers turn."""
     low, high = np.asarray(region.bounds, np.float64).reshape(3, 2).T
     first, last = origin, origin + scale * top
     # Where a region has no end, the set's end stands for it; of an empty region any anchor serves.

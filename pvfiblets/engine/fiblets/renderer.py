@@ -10,27 +10,27 @@ from typing import TYPE_CHECKING, Any
 
 import moderngl
 
-from ..capabilities import check_choices, choose
 from ..culling import Occlusion, make_occlusion
 from ..culling.choice import FEW_FIBLETS, CullingChoice
 from ..drawable import Drawable
 from ..errors import EngineError
 from ..frame import local_frame
 from ..gbuffer import GBuffer
-from ..passes import is_software
-from ..picture_clock import CallClock, TimestampClock
+from ..gl.capabilities import check_choices, choose
+from ..gl.passes import is_software
+from ..gl.picture_clock import CallClock, TimestampClock
 from ..pieces import Pieces, finish
 from ..view import Style, View
 from .census import Census, count_fiblets, no_counts
-from .chunks import Chunk
-from .filter_textures import Filter
-from .lines_behind import LinesBehind
-from .memory_fit import MemoryBudget
+from .data.chunks import Chunk
+from .data.filter_textures import Filter
+from .data.memory_fit import MemoryBudget
+from .data.point_values import ValueSources
+from .data.uniform_blocks import SharedBlocks, decoding_features
+from .data.upload import release_chunks, upload_fitting
+from .gather.lines_behind import LinesBehind
 from .pipelines import CONSTANTS, ComputePipeline, DrawRequest, Limits, Pipeline, make_measurer, make_pipeline
-from .point_values import ValueSources
 from .style import FibletStyle
-from .uniform_blocks import SharedBlocks, decoding_features
-from .upload import release_chunks, upload_fitting
 from .visibility import Visibility
 
 if TYPE_CHECKING:
@@ -38,11 +38,11 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from ...codec.fibletset import FibletSet
-    from ...query.point_flags import Sampling
-    from ...query.region import Region
+    from ...query.regions.region import Region
+    from ...query.selection.point_flags import Sampling
+    from .data.sampled_volume import VolumeSource
     from .region_query import RegionQuery
     from .sample_layers import SampleLayers
-    from .sampled_volume import VolumeSource
 
 __all__ = ["FibletRenderer"]
 
@@ -60,7 +60,7 @@ class FibletRenderer(LinesBehind):
     fiblets : FibletSet
         Copied to the GPU here; not kept in memory otherwise.
     pipeline : str
-        ``'auto'`` takes the fastest that the context has; see :func:`pvfiblets.engine.capabilities.pipelines`.
+        ``'auto'`` takes the fastest that the context has; see :func:`pvfiblets.engine.gl.capabilities.pipelines`.
     culling : {'two-phase', 'auto', 'coverage', None}
         How fiblets behind others are found out. ``'two-phase'`` changes no pixel of the picture; ``'auto'`` is
         two-phase where pictures are measured to take less time by it, and none elsewhere
@@ -68,7 +68,7 @@ class FibletRenderer(LinesBehind):
         3.4), which may lose some for one frame after the camera jumped; ``None`` draws all that is in the view volume.
     fit : {None, 'sample'}
         What to do where memory does not suffice: refuse, or draw an even share of the streamlines, always the same one
-        (:mod:`pvfiblets.engine.fiblets.memory_fit`).
+        (:mod:`pvfiblets.engine.fiblets.data.memory_fit`).
     progress : bool
         Show a progress bar while copying.
     max_buffer_bytes, max_groups, max_total_bytes : int, optional
@@ -359,7 +359,7 @@ class FibletRenderer(LinesBehind):
         Parameters
         ----------
         region, sampling
-            As in :func:`pvfiblets.query.passing.region_flags`, which also says what is returned and raised.
+            As in :func:`pvfiblets.query.selection.passing.region_flags`, which also says what is returned and raised.
 
         Raises
         ------

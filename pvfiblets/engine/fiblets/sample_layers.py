@@ -16,14 +16,14 @@ from typing import TYPE_CHECKING
 import moderngl
 import numpy as np
 
-from ..bindings import SAMPLE_LAYER
 from ..errors import EngineError
 from ..gbuffer import EMPTY, GBuffer
-from ..moderngl_extras import GLExtras
-from ..queries import Query
-from ..shaders import Programs
+from ..gl.bindings import SAMPLE_LAYER
+from ..gl.moderngl_extras import GLExtras
+from ..gl.queries import Query
+from ..gl.shaders import Programs
 from ..view import View
-from .part_pictures import PictureTarget
+from .parts.part_pictures import PictureTarget
 from .pipelines import ComputePipeline, DrawRequest
 from .style import FibletStyle
 
@@ -78,24 +78,7 @@ class SampleLayers:
         request: Callable[[View, FibletStyle, GBuffer], DrawRequest],
         pipeline: ComputePipeline,
     ) -> Iterator[float]:
-        """Draw anew, part by part; yield the share of the work that is done after each.
-
-        Parameters
-        ----------
-        view : View
-        style : FibletStyle
-            Of lines; with neither edges nor places across.
-        rectangle : tuple of 4 ints
-            x, y, width, height of the part of the picture in which anything can be.
-        request : callable
-            Says what is to be drawn of a view and a style into a target.
-        pipeline : ComputePipeline
-
-        Raises
-        ------
-        EngineError
-            If memory does not suffice.
-        """
+        """Draw anew, part by part; yield the share of the work that is done after each."""
         self._drop_layers()
         size, tiles = _tiles(rectangle)
         sub = replace(style, line_width=SIDE * style.line_width, exact=True, tolerance=SIDE * style.tolerance)

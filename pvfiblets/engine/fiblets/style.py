@@ -22,7 +22,7 @@ class FibletStyle(Style):
     values : str or VolumeSource, optional
         The per-point value to write beside each pixel: ``'curvature'`` (1/mm), ``'arc_length'`` (mm from the
         streamline's first point), the name of an array in ``FibletSet.per_point`` or of colours there, or a volume to
-        be sampled at the points (:mod:`pvfiblets.engine.fiblets.sampled_volume`). None costs nothing.
+        be sampled at the points (:mod:`pvfiblets.engine.fiblets.data.sampled_volume`). None costs nothing.
     line_width : float
         Pixels, above 0. More than 1 draws round brushes of that diameter; else lines are thin, as OpenGL draws those of
         one pixel. Where ``exact``, all are brushes.

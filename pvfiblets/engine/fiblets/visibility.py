@@ -9,18 +9,18 @@ import numpy as np
 import numpy.typing as npt
 
 from ..frame import local_frame
-from .filter_textures import Filter, FilterTextures
+from .data.filter_textures import Filter, FilterTextures
 
 if TYPE_CHECKING:
     import moderngl
 
     from ...codec.fibletset import FibletSet
-    from ..moderngl_extras import GLExtras
+    from ..gl.moderngl_extras import GLExtras
+    from ..gl.shaders import Programs
     from ..regions.ray_intervals import RegionIntervals
     from ..regions.uniform_block import RegionBlock
-    from ..shaders import Programs
     from ..view import View
-    from .chunks import Chunk
+    from .data.chunks import Chunk
 
 __all__ = ["Visibility"]
 
@@ -66,21 +66,7 @@ class Visibility:
     def update(
         self, view: View, origin: npt.NDArray[np.float64], scale: npt.NDArray[np.float64], top: int
     ) -> None:
-        """Bring what depends on the region and the camera up to date.
-
-        Parameters
-        ----------
-        view : View
-        origin, scale, top
-            Of the anchors, as in :func:`pvfiblets.engine.frame.reference_anchor`.
-
-        Raises
-        ------
-        ValueError
-            If such a region cannot cut.
-        EngineError
-            If memory does not suffice.
-        """
+        """Bring what depends on the region and the camera up to date."""
         if view.region is None:
             self._drop_region()
             return
@@ -96,7 +82,7 @@ class Visibility:
 
     @property
     def culling(self) -> tuple[str, ...]:
-        """Keys of :data:`pvfiblets.engine.shaders.FEATURES` that programs need which look for fiblets to leave out."""
+        """Keys of `pvfiblets.engine.gl.shaders.FEATURES` that programs need which look for fiblets to leave out."""
         return (*self._filter.features, *self._region_features())
 
     @property

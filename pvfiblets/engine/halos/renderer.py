@@ -9,10 +9,10 @@ import moderngl
 import numpy as np
 
 from ...halos.geometry import HaloLines, HaloPoints
-from ..bindings import HALOS
 from ..gbuffer import EMPTY, GBuffer
+from ..gl.bindings import HALOS
+from ..gl.vertex_pulling import PulledShapes
 from ..hit_target import HitDrawable, HitTarget
-from ..vertex_pulling import PulledShapes
 from ..view import Style, View
 from .uniform_blocks import CONSTANTS, ITEM_SHIFT, HaloBlocks
 from .vertices import Vertices

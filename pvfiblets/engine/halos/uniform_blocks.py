@@ -10,12 +10,12 @@ import numpy as np
 import numpy.typing as npt
 
 from ...halos.style import DISPLACEMENTS, TABLE_SIZE, HaloStyle
-from ...value_reference import relative
-from ..bindings import BLOCKS
+from ...support.value_reference import relative
 from ..clipping import CLIP_PLANES_BLOCK, clip_planes_block
 from ..frame import FRAME_BLOCK, frame_block, local_frame
+from ..gl.bindings import BLOCKS
+from ..gl.uniform_struct import Field, UniformStruct
 from ..lattice import TOP
-from ..uniform_struct import Field, UniformStruct
 from ..view import Style, View
 from .vertices import MOST
 
@@ -86,25 +86,7 @@ class HaloBlocks:
     def write(
         self, view: View, look: HaloStyle, n_items: int, drawn_width: float, reference: float
     ) -> tuple[bool, bool]:
-        """Bring all up to date and bind them.
-
-        Parameters
-        ----------
-        view : View
-        look : HaloStyle
-        n_items : int
-        drawn_width : float
-            Pixels that a line is drawn with at least, ``look.min_width`` or more.
-        reference : float
-            What the numbers that filter are less by.
-
-        Returns
-        -------
-        planes : bool
-            Whether a clip plane may touch anything.
-        beside : bool
-            Whether anything may lie before the near plane, beyond the far one or far beside the picture.
-        """
+        """Bring all up to date and bind them."""
         self._put("frame", FRAME_BLOCK, frame_block(view, Style(), *self._place)[0])
         self._put("halos", HALOS_BLOCK, self._block(view, look, n_items, drawn_width, reference))
         planes = clip_planes_block(view, 0.0, *self._place, 0.0)

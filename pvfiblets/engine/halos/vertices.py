@@ -14,11 +14,11 @@ import numpy as np
 import numpy.typing as npt
 
 from ...halos.geometry import HaloLines, HaloPoints
-from ...value_reference import relative
-from ..bindings import HALOS
+from ...support.value_reference import relative
 from ..errors import EngineError
+from ..gl.bindings import HALOS
+from ..gl.moderngl_extras import TEXEL_FORMATS, BufferTexture, GLExtras
 from ..lattice import lattice, places
-from ..moderngl_extras import TEXEL_FORMATS, BufferTexture, GLExtras
 
 __all__ = ["LAST", "MOST", "Vertices", "mask_places"]
 
@@ -151,18 +151,6 @@ class Vertices:
 
 def mask_places(offsets: npt.NDArray[np.int64], n_tapered: int, t_tapered: float) -> npt.NDArray[np.uint16]:
     """Return where along its line's mask every vertex is.
-
-    Parameters
-    ----------
-    offsets : numpy.ndarray
-        (n_lines + 1,) int64, of the lines' points.
-    n_tapered, t_tapered
-        As of :class:`pvfiblets.halos.HaloStyle`.
-
-    Returns
-    -------
-    numpy.ndarray
-        (n_points,) uint16: u times :data:`LAST`, which only a line's last vertex has; only its first may have 0.
 
     Notes
     -----

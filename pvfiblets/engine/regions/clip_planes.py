@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...query.shapes import AND, BOX, LABELS, NOT, PLANE, SLAB, Shape
+from ...query.regions.shapes import AND, BOX, LABELS, NOT, PLANE, SLAB, Shape
 
 if TYPE_CHECKING:
-    from ...query.region import Region
+    from ...query.regions.region import Region
     from ..frame import Array
 
 __all__ = ["SIDES", "check_region", "placed_sides", "planes_of"]
@@ -31,13 +31,7 @@ SIDES = {
 
 
 def check_region(region: Region) -> None:
-    """Refuse what has no crossings along a ray.
-
-    Raises
-    ------
-    ValueError
-        If the region holds a label volume.
-    """
+    """Refuse what has no crossings along a ray."""
     if any(leaf.kind == LABELS for leaf in region.leaves):
         raise ValueError(
             "a label volume cannot cut, as it has no surface to cut at: use it to filter streamlines, or cut by a "
@@ -46,22 +40,7 @@ def check_region(region: Region) -> None:
 
 
 def planes_of(region: Region | None, room: int) -> tuple[Array, Region | None]:
-    """Take those parts out of a region that are planes.
-
-    Parameters
-    ----------
-    region : Region, optional
-    room : int
-        Planes that there may be. Parts are taken in order, each wholly or not at all.
-
-    Returns
-    -------
-    planes : numpy.ndarray
-        ``(k, 4)`` float64 rows (a, b, c, d), k <= `room`: what is kept has ax + by + cz + d >= 0, in the region's
-        coordinates.
-    rest : Region or None
-        The region is where both the planes and this keep; None for everywhere.
-    """
+    """Take those parts out of a region that are planes."""
     planes, rest = [np.zeros((0, 4))], []
     for part in () if region is None else _parts(region).all_of:
         found = _half_spaces(part)

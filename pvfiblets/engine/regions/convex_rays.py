@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from ...query.region import MAX_LEAVES
-from ...query.shapes import AND, BOX, NOT, SPHERE, SURFACE
+from ...query.regions.region import MAX_LEAVES
+from ...query.regions.shapes import AND, BOX, NOT, SPHERE, SURFACE
 from ..frame import Array
-from ..uniform_struct import Field, UniformStruct
+from ..gl.uniform_struct import Field, UniformStruct
 from .clip_planes import SIDES
 
 if TYPE_CHECKING:
-    from ...query.shapes import Region, Shape
+    from ...query.regions.shapes import Region, Shape
 
 __all__ = ["RAYS_BLOCK", "RegionSignature", "rays_block", "to_unit", "window_matrix"]
 
@@ -81,9 +81,9 @@ class RegionSignature:
     Attributes
     ----------
     kinds : tuple of int
-        Of each leaf, :data:`pvfiblets.query.shapes.PLANE` and so on.
+        Of each leaf, :data:`pvfiblets.query.regions.shapes.PLANE` and so on.
     program : tuple of int
-        As :attr:`pvfiblets.query.shapes.Region.program`.
+        As :attr:`pvfiblets.query.regions.shapes.Region.program`.
     """
 
     kinds: tuple[int, ...]
@@ -140,28 +140,7 @@ class RegionSignature:
 
 
 def rays_block(region: Region, window: Array, offset: Array, size: tuple[int, int]) -> npt.NDArray[Any]:
-    """Pack the ``Rays`` uniform block (std140), but for surfaces.
-
-    Parameters
-    ----------
-    region : Region
-    window : numpy.ndarray
-        ``(4, 4)`` local mm to homogeneous window coordinates, invertible.
-    offset : numpy.ndarray
-        ``(3,)`` data mm of local 0.
-    size : tuple of int
-        Pixels.
-
-    Returns
-    -------
-    numpy.ndarray
-        Scalar of ``RAYS_BLOCK.dtype``.
-
-    Raises
-    ------
-    numpy.linalg.LinAlgError
-        If the matrix is singular.
-    """
+    """Pack the ``Rays`` uniform block (std140), but for surfaces."""
     block: npt.NDArray[Any] = np.zeros((), RAYS_BLOCK.dtype)
     inverse = np.linalg.inv(window)
     if not np.isfinite(inverse).all():

@@ -8,10 +8,10 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ..delayed_read import DelayedRead
 from ..errors import EngineError
-from ..moderngl_extras import GLExtras
-from ..shaders import Programs
+from ..gl.delayed_read import DelayedRead
+from ..gl.moderngl_extras import GLExtras
+from ..gl.shaders import Programs
 
 __all__ = ["LayerStack", "Rectangle", "Squares"]
 
@@ -129,13 +129,7 @@ class Squares:
         return program
 
     def ask(self, name: str, rectangle: Rectangle) -> Array:
-        """Run a program on all squares of a rectangle, and wait for it.
-
-        Returns
-        -------
-        numpy.ndarray
-            ``(n_squares, 2)`` float32.
-        """
+        """Run a program on all squares of a rectangle, and wait for it."""
         framebuffer = self._run(name, rectangle)
         found: Array = np.frombuffer(framebuffer.read(framebuffer.viewport, 2, dtype="f4"), "<f4").reshape(-1, 2)
         return found

@@ -23,14 +23,14 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ...query.shapes import SURFACE
-from ..bindings import BLOCKS, REGIONS
-from ..delayed_read import DelayedRead
+from ...query.regions.shapes import SURFACE
 from ..errors import EngineError
 from ..frame import Array, local_frame
-from ..gl_version import version_of
-from ..moderngl_extras import GLExtras
-from ..shaders import NEWEST, Programs, assemble, switched_on
+from ..gl.bindings import BLOCKS, REGIONS
+from ..gl.delayed_read import DelayedRead
+from ..gl.gl_version import version_of
+from ..gl.moderngl_extras import GLExtras
+from ..gl.shaders import NEWEST, Programs, assemble, switched_on
 from ..view import View
 from .clip_planes import check_region
 from .convex_rays import RAYS_BLOCK, RegionSignature, rays_block, to_unit, window_matrix
@@ -38,8 +38,8 @@ from .layer_stack import LayerStack, Rectangle, Squares
 from .surface_crossings import SurfaceLayers, rectangle_of
 
 if TYPE_CHECKING:
-    from ...query.shapes import Region
-    from ...query.surfaces import Surface
+    from ...query.regions.shapes import Region
+    from ...query.regions.surfaces import Surface
 
 __all__ = ["RegionIntervals"]
 
@@ -86,26 +86,6 @@ class RegionIntervals:
         """Bring the boundaries up to date; nothing is done where region, size and camera are what they were.
 
         Changes the framebuffer's binding for a while, and leaves blending, culling and the depth test off.
-
-        Parameters
-        ----------
-        view : View
-            Its region in data mm. Where its matrix flattens space, no depth tells inside from outside, and every
-            pixel is kept.
-        origin, scale, top
-            Of the anchors, as in :func:`pvfiblets.engine.frame.reference_anchor`.
-
-        Returns
-        -------
-        bool
-            Whether there is a region to cut by.
-
-        Raises
-        ------
-        ValueError
-            If the region holds a label volume.
-        EngineError
-            If a pixel's boundaries are more than this OpenGL has layers for, or memory does not suffice.
         """
         region = view.region
         if region is None:

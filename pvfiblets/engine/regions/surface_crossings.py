@@ -23,16 +23,16 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ..bindings import CROSSINGS
-from ..delayed_read import DelayedRead
 from ..errors import EngineError, GPUMemoryError
 from ..frame import Array
-from ..moderngl_extras import GLExtras
-from ..shaders import Programs
+from ..gl.bindings import CROSSINGS
+from ..gl.delayed_read import DelayedRead
+from ..gl.moderngl_extras import GLExtras
+from ..gl.shaders import Programs
 from .layer_stack import LayerStack, Rectangle, Squares
 
 if TYPE_CHECKING:
-    from ...query.surfaces import Surface
+    from ...query.regions.surfaces import Surface
 
 __all__ = ["Peeled", "SurfaceLayers", "rectangle_of"]
 
@@ -87,16 +87,7 @@ class _Found(NamedTuple):
 
 
 def rectangle_of(clip: Array, low: Array, high: Array, size: tuple[int, int]) -> Rectangle:
-    """Return the pixels that a box may touch: left, lower, right, upper; all if it reaches behind the eye.
-
-    Parameters
-    ----------
-    clip : numpy.ndarray
-        ``(4, 4)`` from the box's coordinates.
-    low, high : numpy.ndarray
-        ``(3,)``.
-    size : tuple of int
-    """
+    """Return the pixels that a box may touch: left, lower, right, upper; all if it reaches behind the eye."""
     corners = np.array(list(np.ndindex(2, 2, 2)), np.float64) * (high - low) + low
     places = corners @ clip[:, :3].T + clip[:, 3]
     if not (places[:, 3] > 1e-6 * np.abs(places[:, 3]).max()).all():
@@ -176,28 +167,6 @@ class SurfaceLayers:
         """Draw all layers of some surfaces.
 
         Leaves no framebuffer of the caller's bound, and blending off.
-
-        Parameters
-        ----------
-        surfaces : sequence of Surface
-        to_clip : numpy.ndarray
-            ``(4, 4)`` local mm to clip coordinates.
-        offset : numpy.ndarray
-            ``(3,)`` data mm of local 0.
-        size : tuple of int
-            Pixels.
-        waits : bool
-            As of a :class:`.View`.
-
-        Returns
-        -------
-        list of Peeled
-            One for each.
-
-        Raises
-        ------
-        EngineError
-            If a ray crosses more faces than there can be layers for, or memory does not suffice.
         """
         self._keep_meshes(surfaces)
         matrices, rectangles = [], []

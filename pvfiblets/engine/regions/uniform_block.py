@@ -17,17 +17,17 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ...query.region import MAX_LEAVES, MAX_OPS
-from ...query.shapes import LABELS, SURFACE
-from ..bindings import BLOCKS, REGIONS
+from ...query.regions.region import MAX_LEAVES, MAX_OPS
+from ...query.regions.shapes import LABELS, SURFACE
 from ..errors import GPUMemoryError
-from ..uniform_struct import Field, UniformStruct
+from ..gl.bindings import BLOCKS, REGIONS
+from ..gl.uniform_struct import Field, UniformStruct
 
 if TYPE_CHECKING:
-    from ...query.fields import Field as DistanceField
-    from ...query.region import Region
-    from ...query.shapes import Shape
-    from ..moderngl_extras import GLExtras
+    from ...query.regions.fields import Field as DistanceField
+    from ...query.regions.region import Region
+    from ...query.regions.shapes import Shape
+    from ..gl.moderngl_extras import GLExtras
 
 __all__ = ["REGIONS_BLOCK", "FieldTextures", "RegionBlock", "region_block", "region_features"]
 
@@ -62,22 +62,7 @@ def region_features(region: Region) -> tuple[str, ...]:
 
 
 def region_block(region: Region, to_data: Array, corners: Sequence[Corner] = ()) -> bytes:
-    """Pack the ``Regions`` uniform block (std140).
-
-    Parameters
-    ----------
-    region : Region
-        In data mm.
-    to_data : numpy.ndarray
-        ``(4, 4)`` local mm to data mm, a translation (:func:`pvfiblets.engine.frame.local_frame`).
-    corners : sequence of tuple of int
-        First texel of each field of the region's leaves, in their order.
-
-    Returns
-    -------
-    bytes
-        As many as :data:`REGIONS_BLOCK` has.
-    """
+    """Pack the ``Regions`` uniform block (std140)."""
     block: npt.NDArray[Any] = np.zeros((), REGIONS_BLOCK.dtype)
     block["region_words"] = len(region.program)
     block["region_program"].reshape(-1)[: len(region.program)] = region.program
@@ -147,17 +132,7 @@ class FieldTextures:
         return 0 if self._texture is None else 4 * int(np.prod(self._texture.size))
 
     def update(self, fields: Sequence[DistanceField]) -> None:
-        """Make the texture of some fields, unless it is there.
-
-        Parameters
-        ----------
-        fields : sequence of DistanceField
-
-        Raises
-        ------
-        GPUMemoryError
-            If they do not fit into one texture, or memory does not suffice.
-        """
+        """Make the texture of some fields, unless it is there."""
         if len(fields) == len(self._fields) and all(a is b for a, b in zip(fields, self._fields, strict=True)):
             return
         self.release()
@@ -237,20 +212,7 @@ class RegionBlock:
         return self._textures.nbytes + (0 if self._buffer is None else REGIONS_BLOCK.nbytes)
 
     def write(self, region: Region, to_data: Array) -> None:
-        """Bring block and fields up to date, and bind the block.
-
-        Parameters
-        ----------
-        region : Region
-            In data mm.
-        to_data : numpy.ndarray
-            ``(4, 4)`` local mm to data mm (:func:`pvfiblets.engine.frame.local_frame`).
-
-        Raises
-        ------
-        GPUMemoryError
-            If the fields do not fit into one texture, or memory does not suffice.
-        """
+        """Bring block and fields up to date, and bind the block."""
         self._textures.update(_fields_of(region))
         packed = region_block(region, to_data, self._textures.corners)
         if self._buffer is None:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ...lazy_imports import names_from
+from ...support.lazy_imports import names_from
 
 if TYPE_CHECKING:
     from .options import SILHOUETTES, SOLVERS, TubeStyle, check_choices

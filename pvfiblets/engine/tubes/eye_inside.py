@@ -63,14 +63,7 @@ class EyeInsideTest:
         return np.stack([(centres - reach).min(axis=1), (centres + reach).max(axis=1)], axis=1)
 
     def touched(self, view: View, min_width: float) -> bool:
-        """Say whether a tube may reach the rectangle of the near plane that a view shows.
-
-        Parameters
-        ----------
-        view : View
-        min_width : float
-            Pixels to which thin tubes are widened.
-        """
+        """Say whether a tube may reach the rectangle of the near plane that a view shows."""
         if not len(self._groups):
             return False
         corners = np.array([[x, y, -1.0, 1.0] for x in (-1.0, 1.0) for y in (-1.0, 1.0)])

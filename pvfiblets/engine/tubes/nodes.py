@@ -13,11 +13,11 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ...value_reference import relative
-from ..bindings import TUBES
+from ...support.value_reference import relative
 from ..errors import EngineError
+from ..gl.bindings import TUBES
+from ..gl.moderngl_extras import BufferTexture, GLExtras
 from ..lattice import lattice, places
-from ..moderngl_extras import BufferTexture, GLExtras
 
 if TYPE_CHECKING:
     from ...tubes.spline_tubes import NodeValues, SplineTubes

@@ -93,13 +93,7 @@ def check_choices(
     min_width: float = 1.0,
     culling: str | None = None,
 ) -> None:
-    """Raise where a choice is none.
-
-    Raises
-    ------
-    ValueError
-        Naming the value and what there is.
-    """
+    """Raise where a choice is none."""
     for name, value, known in (("silhouettes", silhouettes, SILHOUETTES), ("solver", solver, SOLVERS)):
         if not isinstance(value, str) or (value != AUTO and value not in known):
             raise ValueError(f"{name} is {value!r}; use one of {[AUTO, *known]}")

@@ -9,8 +9,8 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ..shaders import Programs
-from ..vertex_pulling import BATCH, QUAD, PulledShapes
+from ..gl.shaders import Programs
+from ..gl.vertex_pulling import BATCH, QUAD, PulledShapes
 
 __all__ = ["ProxyGeometry"]
 

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 import moderngl
 
 from ...tubes.curves import MIDDLE
-from ..bindings import TUBES
 from ..errors import EngineError
 from ..gbuffer import GBuffer
+from ..gl.bindings import TUBES
 from ..hit_target import HitDrawable, HitTarget
 from ..lattice import TOP
 from ..view import View

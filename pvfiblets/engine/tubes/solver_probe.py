@@ -13,9 +13,9 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ..bindings import BLOCKS, TUBE_PROBE
-from ..moderngl_extras import GLExtras
-from ..shaders import Programs
+from ..gl.bindings import BLOCKS, TUBE_PROBE
+from ..gl.moderngl_extras import GLExtras
+from ..gl.shaders import Programs
 from .options import SOLVERS, check_choices
 from .uniform_blocks import SPLINES_BLOCK
 
@@ -80,28 +80,7 @@ class SolverProbe:
         start: npt.ArrayLike = -np.inf,
         capped: bool = False,
     ) -> tuple[Array, Array, npt.NDArray[np.int64]]:
-        """Return where each ray meets its half.
-
-        Parameters
-        ----------
-        controls : numpy.ndarray
-            (n, 3, 4) control points: x, y, z, radius.
-        origins, directions : numpy.ndarray
-            (n, 3); directions need not be of length 1.
-        start : array_like
-            Where rays begin, from their origins on.
-        capped : bool
-            Whether what a ray begins in is cut there.
-
-        Returns
-        -------
-        l : numpy.ndarray
-            (n,) along the ray from its origin; NaN for a miss.
-        t : numpy.ndarray
-            (n,) on the half.
-        kind : numpy.ndarray
-            (n,) int64: 0 miss, 1 entry, 2 exit, 3 cut.
-        """
+        """Return where each ray meets its half."""
         count = len(controls)
         unit = directions / np.linalg.norm(directions, axis=1, keepdims=True)
         low, high = controls[..., :3].min(axis=1), controls[..., :3].max(axis=1)

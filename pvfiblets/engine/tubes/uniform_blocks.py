@@ -9,11 +9,11 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ..bindings import BLOCKS
 from ..clipping import CLIP_PLANES_BLOCK, clip_planes_block
 from ..fiblets.line_tubes import TUBES_BLOCK, tubes_block
 from ..frame import FRAME_BLOCK, frame_block, local_frame
-from ..uniform_struct import Field, UniformStruct
+from ..gl.bindings import BLOCKS
+from ..gl.uniform_struct import Field, UniformStruct
 from ..view import Style, View
 
 __all__ = ["SPLINES_BLOCK", "TubeBlocks"]
@@ -63,19 +63,7 @@ class TubeBlocks:
         iterations: int,
         n_segments: int,
     ) -> bool:
-        """Bring all up to date and bind them; say whether a clip plane may touch anything.
-
-        Parameters
-        ----------
-        view : View
-        reach : float
-            Mm that a tube may lie outside the box of the nodes.
-        middle : float
-            Share of a derivative between control points.
-        min_width, drawn_width : float
-            Pixels that a tube has at least, and is drawn with at least: as many, or more.
-        iterations, n_segments : int
-        """
+        """Bring all up to date and bind them; say whether a clip plane may touch anything."""
         tubes = tubes_block(view, 1.0, *self._place)
         rays = np.frombuffer(tubes, TUBES_BLOCK.dtype)[0]
         pixel = max(np.linalg.norm(rays[axis].astype(np.float64)) for axis in ("tube_ray_x", "tube_ray_y"))

@@ -74,22 +74,7 @@ class BrickLayout:
 
 
 def lay_out(shape: tuple[int, int, int], side: int, layers: int, voxels: float) -> BrickLayout | None:
-    """Lay a volume out.
-
-    Parameters
-    ----------
-    shape : tuple of int
-        Voxels along each axis.
-    side, layers : int
-        Texels along each axis of a texture's layers, and layers, at most.
-    voxels : float
-        Of a page, at the most.
-
-    Returns
-    -------
-    BrickLayout or None
-        None if more than `MOST_PAGES` pages, or bricks of no voxel, would be needed.
-    """
+    """Lay a volume out."""
     (bx, w), (by, h) = (_shared(n, side) for n in shape[:2])
     most = min(layers, int(min(voxels // (w * h), shape[2])))
     if most < 1:

@@ -13,9 +13,9 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from ..bindings import VOLUMES
-from ..moderngl_extras import GLExtras
-from ..passes import nowhere
+from ..gl.bindings import VOLUMES
+from ..gl.moderngl_extras import GLExtras
+from ..gl.passes import nowhere
 
 __all__ = ["interpolates_finely"]
 
@@ -43,20 +43,7 @@ _known: dict[tuple[str, str, str], bool] = {}
 
 
 def interpolates_finely(ctx: moderngl.Context, gl: GLExtras, kind: str) -> bool:
-    """Try it, once for each driver.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    gl : GLExtras
-    kind : {'f1', 'nu2', 'f4'}
-        moderngl's type of the texels.
-
-    Returns
-    -------
-    bool
-        False if a mean of two texels is off by more than a thousandth of their difference.
-    """
+    """Try it, once for each driver."""
     key = (ctx.info["GL_RENDERER"], ctx.info["GL_VERSION"], kind)
     if key not in _known:
         texels, scale = TEXELS[kind]

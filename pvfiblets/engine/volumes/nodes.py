@@ -12,9 +12,9 @@ import numpy.typing as npt
 from ...volumes.octree import HOMOGENEOUS, SKIP, Octree, build_octree, flags, homogeneous
 from ...volumes.raycast_options import PROJECTIONS, RaycastOptions
 from ...volumes.volume import RaycastVolume
-from ..bindings import VOLUMES
 from ..errors import EngineError
-from ..moderngl_extras import BufferTexture, GLExtras
+from ..gl.bindings import VOLUMES
+from ..gl.moderngl_extras import BufferTexture, GLExtras
 
 __all__ = ["NodeList"]
 
@@ -57,13 +57,7 @@ class NodeList:
         self.octree: dict[str, float] = {}
 
     def make(self, casting: RaycastOptions) -> None:
-        """Bring the list up to date.
-
-        Raises
-        ------
-        EngineError
-            If memory does not suffice.
-        """
+        """Bring the list up to date."""
         key = (
             casting.octree, casting.mode, casting.filter, casting.values, casting.transfer, casting.low, casting.high,
             casting.homogeneous, casting.recon,

@@ -11,10 +11,10 @@ import numpy as np
 import numpy.typing as npt
 
 from ...volumes.octree import LEAF
-from ..bindings import VOLUME_OCCLUSION
 from ..effects.screen import ScreenEffect
 from ..errors import EngineError
-from ..work_limits import WorkLimits
+from ..gl.bindings import VOLUME_OCCLUSION
+from ..gl.work_limits import WorkLimits
 from .renderer import VolumeRenderer
 from .uniform_blocks import CONSTANTS
 
@@ -76,41 +76,7 @@ class RayOcclusionPass(ScreenEffect):
         seed: int = 0,
         smooth: bool = False,
     ) -> moderngl.Texture:
-        """Bring the texture up to date.
-
-        Parameters
-        ----------
-        renderer : VolumeRenderer
-            What drew the picture, and nothing else since.
-        buffer : GBuffer
-            The picture.
-        casting : RaycastOptions
-            What it was drawn with: of mode ``'isosurface'``.
-        view : View
-            Where it was drawn from. What its region takes away of the volume occludes nothing, as far as that is in the
-            picture: where the region ends is known of its pixels alone.
-        to_data : array_like, optional
-            ``(3, 3)``: directions in the world, in mm of which the hemisphere and the radius are, to those in the
-            volume's coordinates. The same by default.
-        radius : float
-            mm of the world: what is farther does not occlude. Above 0.
-        samples : int, default: 32
-            Rays of each pixel, 1 to `MAX_SAMPLES`.
-        seed : int, default: 0
-            The same picture with the same seed has the same rays; 32 bits are looked at.
-        smooth : bool, default: False
-            Take the mean over 5 x 5 pixels as far as they show the same piece of surface.
-
-        Returns
-        -------
-        moderngl.Texture
-            float16, how many of the rays meet nothing, 0 where nothing shows; valid until the next draw.
-
-        Raises
-        ------
-        EngineError
-            If the picture is of another mode, or memory does not suffice.
-        """
+        """Bring the texture up to date."""
         if casting.mode != "isosurface":
             raise EngineError(f"rays of occlusion start on surfaces; the picture is of mode {casting.mode!r}")
         turn = np.eye(3) if to_data is None else np.asarray(to_data, np.float64)

@@ -10,9 +10,9 @@ if TYPE_CHECKING:
     import moderngl
 
     from ...volumes.volume import RaycastVolume
-    from ..moderngl_extras import GLExtras
+    from ..gl.moderngl_extras import GLExtras
+    from ..gl.shaders import Programs
     from ..regions.ray_intervals import RegionIntervals
-    from ..shaders import Programs
     from ..view import View
 
 __all__ = ["VolumeRegionIntervals"]
@@ -41,15 +41,7 @@ class VolumeRegionIntervals:
         self._origin, self._scale = bounds[:, 0], np.ptp(bounds, axis=1) / TOP
 
     def update(self, view: View) -> list[str]:
-        """Bring the boundaries up to date and return the features of programs that look at them.
-
-        Raises
-        ------
-        ValueError
-            If the region holds a label volume.
-        EngineError
-            If a pixel's boundaries are more than this OpenGL has layers for, or memory does not suffice.
-        """
+        """Bring the boundaries up to date and return the features of programs that look at them."""
         if view.region is None:
             self.release()
             return []

@@ -9,11 +9,11 @@ import moderngl
 import numpy as np
 
 from ...volumes.raycast_options import MAX_VALUES
-from ..bindings import BLOCKS, VOLUME_COARSE, VOLUMES
 from ..drawable import Drawable
 from ..gbuffer import GBuffer
+from ..gl.bindings import BLOCKS, VOLUME_COARSE, VOLUMES
+from ..gl.work_limits import WorkLimits
 from ..view import Style, View
-from ..work_limits import WorkLimits
 from .interpolation import interpolates_finely
 from .nodes import NodeList
 from .ray_parts import VolumeRegionIntervals

@@ -10,9 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from ...volumes.volume import RaycastVolume
-from ..bindings import VOLUMES
 from ..errors import EngineError
-from ..passes import is_software
+from ..gl.bindings import VOLUMES
+from ..gl.passes import is_software
 from .bricks import MOST_PAGES, BrickLayout, Range, lay_out, pieces, voxels_of_page
 
 __all__ = ["ColourTexture", "Limits", "VolumeTexture"]

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from ...volumes.raycast_options import LARGEST
 from ...volumes.steepness import DEEP, KINKS, PARTS, allowed_bends, largest_bend
-from ..bindings import VOLUMES
+from ..gl.bindings import VOLUMES
 
 if TYPE_CHECKING:
     from ...volumes.raycast_options import RaycastOptions

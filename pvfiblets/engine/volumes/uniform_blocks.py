@@ -12,9 +12,9 @@ from ...volumes.raycast_options import MAX_VALUES, RaycastOptions
 from ...volumes.steepness import PARTS
 from ...volumes.transfer import ALLOWED, FINEST
 from ...volumes.volume import RaycastVolume
-from ..bindings import BLOCKS
 from ..errors import EngineError
-from ..uniform_struct import Field, UniformStruct
+from ..gl.bindings import BLOCKS
+from ..gl.uniform_struct import Field, UniformStruct
 from ..view import MAX_CLIP_PLANES, View
 
 __all__ = ["CONSTANTS", "MAX_LEVELS", "MOST_LAMPS", "RayBlock"]
@@ -101,15 +101,7 @@ class RayBlock:
         return casting.step_mm(self._volume.spacing, self._volume.shape)
 
     def write(self, view: View, casting: RaycastOptions, levels: npt.NDArray[np.int64]) -> None:
-        """Bring it up to date and bind it.
-
-        Parameters
-        ----------
-        view : View
-        casting : RaycastOptions
-        levels : numpy.ndarray
-            (n_levels, 4) nodes along each axis and place of the first, leaves first.
-        """
+        """Bring it up to date and bind it."""
         volume = self._volume
         size = np.array(volume.shape, np.float64)
         clip = view.model_view_projection @ volume.affine

@@ -29,7 +29,7 @@ from pvfiblets.plotting.shading import Shading
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
-    from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
+    from pvfiblets.engine.fiblets.data.sampled_volume import VolumeSource
 
 _LAYERS = "layers"
 _DENSITY = "density"

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from pvfiblets.codec.compress import PerPoint
     from pvfiblets.codec.fibletset import FibletSet
-    from pvfiblets.engine.capabilities import PipelineTable
+    from pvfiblets.engine.gl.capabilities import PipelineTable
     from pvfiblets.plotting.fiblets.actor import FibletActor
     from pvfiblets.plotting.notebook_view import PageView
     from pvfiblets.plotting.same_names import Preference
@@ -185,7 +185,7 @@ class FibletsComponent(ActorRegistry["FibletActor"], Picking, Widgets):
         >>> [info.name for info in pl.fiblets.pipelines() if info.available]  # doctest: +SKIP
         ['compute', 'tessellation', 'geometry']
         """
-        from pvfiblets.engine.capabilities import pipelines
+        from pvfiblets.engine.gl.capabilities import pipelines
         from pvfiblets.mappers.windows import borrowed_context
 
         window = self._plotter.render_window

@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pvfiblets.query.predicates import Listed, Predicate, passes
+from pvfiblets.query.selection.predicates import Listed, Predicate, passes
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
-    from pvfiblets.engine.fiblets.filter_textures import Filter
+    from pvfiblets.engine.fiblets.data.filter_textures import Filter
     from pvfiblets.regions import Region
 
 __all__ = ["Choices", "Condition", "Criterion", "as_predicate", "checked_range", "in_groups", "unique_name"]
@@ -35,7 +35,7 @@ class Criterion:
     what : Any
         What was asked for: a name, an array, a ``Distance``.
     values : Any
-        :class:`pvfiblets.query.measures.Values`.
+        :class:`pvfiblets.query.measures.measures.Values`.
     range : tuple of float
         Both ends included.
     keep_nan : bool
@@ -49,7 +49,7 @@ class Criterion:
     keep_nan: bool
 
     def within(self) -> tuple[Any, float, float, bool]:
-        """What :mod:`pvfiblets.query.bits` asks for."""
+        """What :mod:`pvfiblets.query.selection.bits` asks for."""
         return self.values, *self.range, self.keep_nan
 
 
@@ -89,7 +89,7 @@ class Choices:
         """Which streamlines are shown, (n_streamlines,) bool; None for all."""
         masks = [condition.mask for condition in self.conditions.values()]
         if per_streamline := self._of_kind("streamline"):
-            from pvfiblets.query.bits import streamline_mask
+            from pvfiblets.query.selection.bits import streamline_mask
 
             masks.append(streamline_mask(fiblets, [c.within() for c in per_streamline]))
         masks += [mask for mask in (self.subset, self.ids) if mask is not None]
@@ -104,7 +104,7 @@ class Choices:
         if not per_point:
             return None
         if self._words is None or self._words[0] != per_point:
-            from pvfiblets.query.bits import point_words
+            from pvfiblets.query.selection.bits import point_words
 
             self._words = per_point, point_words(fiblets, [c.within() for c in per_point])
         return self._words[1]
@@ -114,7 +114,7 @@ class Choices:
 
     def filter(self, fiblets: FibletSet) -> Filter | None:
         """What the engine is told; None where everything is shown."""
-        from pvfiblets.engine.fiblets.filter_textures import Filter
+        from pvfiblets.engine.fiblets.data.filter_textures import Filter
 
         mask, points = self.mask(fiblets), self.points(fiblets)
         return None if mask is None and points is None else Filter(mask, points)
@@ -125,13 +125,7 @@ class Choices:
 
 
 def in_groups(fiblets: FibletSet, names: Iterable[str]) -> np.ndarray:
-    """Which streamlines are in any of some groups, (n_streamlines,) bool.
-
-    Raises
-    ------
-    KeyError
-        If there is no such group; the message lists those that there are.
-    """
+    """Which streamlines are in any of some groups, (n_streamlines,) bool."""
     mask = np.zeros(fiblets.n_streamlines, bool)
     for name in names:
         if name not in fiblets.groups:
@@ -145,13 +139,7 @@ OPEN = (-math.inf, math.inf)
 
 
 def checked_range(limits: Any) -> tuple[float, float]:
-    """Return both ends of a range; an end that is None is open.
-
-    Raises
-    ------
-    ValueError
-        If these are not two numbers in rising order; infinite ones will do.
-    """
+    """Return both ends of a range; an end that is None is open."""
     try:
         low, high = (end if given is None else float(given) for given, end in zip(limits, OPEN, strict=True))
     except (TypeError, ValueError) as error:

@@ -25,12 +25,12 @@ from pvfiblets.plotting.fiblets.filter_state import (
 from pvfiblets.plotting.fiblets.painted import follow_painted
 from pvfiblets.plotting.region_sources import as_region
 from pvfiblets.query.bundles.bundle_list import Bundles, hidden_groups
-from pvfiblets.query.predicates import select
+from pvfiblets.query.selection.predicates import select
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.plotting.fiblets.actor import PlottedMapper
-    from pvfiblets.query.predicates import Predicate
+    from pvfiblets.query.selection.predicates import Predicate
     from pvfiblets.regions import Region
 
 
@@ -97,7 +97,7 @@ class Filtering(Clipping):
         elif name in known and _same(known[name].what, what):
             values = known[name].values
         else:
-            from pvfiblets.query.measures import measure
+            from pvfiblets.query.measures.measures import measure
 
             values = measure(self._data, what)
         if name is None:
@@ -329,7 +329,7 @@ class Filtering(Clipping):
 
     def _choices_for(self, fiblets: FibletSet) -> Choices:
         """Make the choices anew for other fiblets; nothing changes yet."""
-        from pvfiblets.query.measures import measure
+        from pvfiblets.query.measures.measures import measure
 
         old = self._choices
         criteria = {}
@@ -376,7 +376,7 @@ class Filtering(Clipping):
 
 def _same(a: Any, b: Any) -> bool:
     """Whether two criteria are of the same values: arrays by identity, distances by what they are to."""
-    from pvfiblets.query.measures import Distance
+    from pvfiblets.query.measures.measures import Distance
 
     return a is b or (isinstance(a, Distance) and isinstance(b, Distance) and a == b)
 

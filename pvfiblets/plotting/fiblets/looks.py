@@ -134,40 +134,20 @@ LOOKS: dict[str, Look] = {
 
 
 def check_look(name: str, value: Any) -> str | None:
-    """Return the name of a look, or None for none.
-
-    Raises
-    ------
-    ValueError
-        If there is no such look; the message lists all.
-    """
+    """Return the name of a look, or None for none."""
     if value is None or (isinstance(value, str) and value in LOOKS):
         return value
     raise ValueError(f"{name} is {value!r}; give one of {', '.join(map(repr, LOOKS))}")
 
 
 def settings_of(look: str, data: Any) -> dict[str, Any]:
-    """Return what a look sets for some data, by name.
-
-    Parameters
-    ----------
-    look : str
-        A name in `LOOKS`.
-    data : FibletSet
-    """
+    """Return what a look sets for some data, by name."""
     declared = LOOKS[look].settings
     return {name: value.of(data) if isinstance(value, (Apart, Fewer)) else value for name, value in declared.items()}
 
 
 def look_of(settings: Mapping[str, Any], data: Any) -> str | None:
-    """Return the look that some settings are; None if they are none.
-
-    Parameters
-    ----------
-    settings : mapping
-        All that looks set, by name; of effects True for any settings, or those that differ from the defaults or more.
-    data : FibletSet
-    """
+    """Return the look that some settings are; None if they are none."""
     for look in LOOKS:
         if all(_same(settings[name], value) for name, value in settings_of(look, data).items()):
             return look

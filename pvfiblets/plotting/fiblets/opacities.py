@@ -40,29 +40,7 @@ class Opacities:
 
 
 def find_opacities(fiblets: FibletSet, choice: Any) -> tuple[FibletSet, Opacities]:
-    """Find what a choice of opacities means.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-        Stays as it is.
-    choice : str or array_like
-        A name of a per-point or per-streamline array, or of a transfer function; or numbers from 0 to 1: as many as
-        points, as many as streamlines, or, of any other number, a transfer function.
-
-    Returns
-    -------
-    fiblets : FibletSet
-        The same, or one that shares its arrays and has the opacities of points.
-    opacities : Opacities
-
-    Raises
-    ------
-    KeyError
-        If there is no array and no transfer function of that name.
-    ValueError
-        If opacities do not lie between 0 and 1.
-    """
+    """Find what a choice of opacities means."""
     from pvfiblets.codec.point_arrays import with_point_values
 
     if isinstance(choice, str):
@@ -97,21 +75,7 @@ def _named(fiblets: FibletSet, name: str) -> Opacities:
 
 
 def as_transfer(choice: Any, arrays: Iterable[str] = ()) -> Any:
-    """Return opacities along a colour map, by name or from 0 to 1; bytes go to 255, as in PyVista.
-
-    Parameters
-    ----------
-    choice : str or numpy.ndarray
-    arrays : iterable of str
-        Names that would have been something else, for the message.
-
-    Raises
-    ------
-    KeyError
-        If no transfer function has that name.
-    ValueError
-        If opacities do not lie between 0 and 1.
-    """
+    """Return opacities along a colour map, by name or from 0 to 1; bytes go to 255, as in PyVista."""
     if isinstance(choice, str):
         from pyvista.plotting.tools import opacity_transfer_function
 

@@ -6,7 +6,7 @@ import weakref
 from typing import TYPE_CHECKING, Any
 
 from pvfiblets.plotting.fiblets.filter_state import unique_name
-from pvfiblets.query.predicates import Listed
+from pvfiblets.query.selection.predicates import Listed
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -109,27 +109,12 @@ def _between(offsets: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, np.nd
 
 
 def point_values(fiblets: Any, ids: np.ndarray, name: str) -> tuple[np.ndarray, np.ndarray] | None:
-    """Return one number per point of some streamlines, one after another, and their offsets.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-        Has them.
-    ids : numpy.ndarray
-        ``(n,)`` int64.
-    name : str
-        A stored per-point array, or one that is computed from the geometry.
-
-    Returns
-    -------
-    tuple of (numpy.ndarray, numpy.ndarray) or None
-        ``(n_points,)`` float64 and ``(n + 1,)``; ``None`` if the streamlines have no such numbers.
-    """
+    """Return one number per point of some streamlines, one after another, and their offsets."""
     if name in fiblets.per_point:
         lines = fiblets.decompress(ids)
         return np.asarray(lines.per_point[name], np.float64).reshape(len(lines.points), -1)[:, 0], lines.offsets
     from pvfiblets.codec.streamline_ranges import StreamlineRanges
-    from pvfiblets.query.measures import measure
+    from pvfiblets.query.measures.measures import measure
 
     part = fiblets.extract(ids)
     try:
@@ -147,21 +132,7 @@ def point_values(fiblets: Any, ids: np.ndarray, name: str) -> tuple[np.ndarray, 
 def visible(
     actor: FibletActor, polygon: Any, *, tolerance: float = 0.0, nearest: bool = False, renderer: Any = None
 ) -> Picked | None:
-    """Return what is seen of an actor in an area of the window; ``None`` if that is nothing.
-
-    Parameters
-    ----------
-    actor : FibletActor
-        Whose picture is looked into.
-    polygon : array_like
-        ``(k, 2)`` corners in window pixels; inside is by the even-odd rule.
-    tolerance : float
-        Pixels that a streamline may be away from the area.
-    nearest : bool
-        Only the one nearest to the area, of those as near the one in front.
-    renderer : vtkRenderer, optional
-        Whose picture; the one drawn last by default.
-    """
+    """Return what is seen of an actor in an area of the window; ``None`` if that is nothing."""
     hits = pick_area(actor.picking_layers, polygon, renderer=renderer, tolerance=tolerance)
     if hits is None or not len(hits.ids):
         return None
@@ -186,7 +157,7 @@ def everything(
     there. What is seen in the area is always among them, although its pixel may lie in it where the
     line's middle does not.
     """
-    from pvfiblets.query.screen import under_polygon
+    from pvfiblets.query.selection.screen import under_polygon
 
     shown = shown_by(actor.mapper, renderer)
     if shown is None:
@@ -236,13 +207,7 @@ def _context(actor: FibletActor) -> dict[str, Any]:
 
 
 def checked_box(box: Any) -> np.ndarray:
-    """Return the corners of a rectangle of pixels, those on its edges included.
-
-    Raises
-    ------
-    ValueError
-        If ``box`` is not four finite numbers.
-    """
+    """Return the corners of a rectangle of pixels, those on its edges included."""
     ends = np.asarray(box, dtype=np.float64)
     if ends.shape != (4,) or not np.isfinite(ends).all():
         raise ValueError(f"box is {box!r}; give four pixels (x0, y0, x1, y1)")

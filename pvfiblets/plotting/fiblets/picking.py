@@ -219,18 +219,7 @@ class Picking:
 
 
 def describe(picked: Picked) -> str:
-    """Return what a tooltip says of the first streamline picked.
-
-    Parameters
-    ----------
-    picked : Picked
-        At least one streamline.
-
-    Returns
-    -------
-    str
-        Streamline, place along it, value if there is one, and groups if there are any.
-    """
+    """Return what a tooltip says of the first streamline picked."""
     streamline, place, value = int(picked.ids[0]), float(picked.places[0]), float(picked.values[0])
     lines = [f"streamline {streamline}", f"point {place:.1f}"]
     if math.isfinite(value):

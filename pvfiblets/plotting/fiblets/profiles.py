@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyvista as pv
 
-from pvfiblets.query.band_plot import plot_band
+from pvfiblets.query.measures.band_plot import plot_band
 
 if TYPE_CHECKING:
     from os import PathLike
 
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.plotting.fiblets.scalars import Scalars
-    from pvfiblets.query.table import Table
+    from pvfiblets.query.measures.table import Table
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,7 +150,7 @@ class SelectionMeasures:
 
     def _values_of(self, scalars: Any, part: FibletSet, ids: np.ndarray) -> np.ndarray:
         """Return the numbers of the selected streamlines or of their points, in some order."""
-        from pvfiblets.query.measures import measure
+        from pvfiblets.query.measures.measures import measure
 
         if isinstance(scalars, str):
             return np.asarray(measure(part, scalars).array(), np.float64)
@@ -187,7 +187,7 @@ class SelectionMeasures:
         ValueError
             If the values are not per point, or ``n`` is below 2.
         """
-        from pvfiblets.query.profile import mean_profile
+        from pvfiblets.query.measures.profile import mean_profile
 
         if scalars is None:
             if self._scalars is None or self._scalars.kind != "point_scalar":

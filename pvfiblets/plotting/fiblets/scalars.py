@@ -14,16 +14,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pvfiblets.codec.point_arrays import colour_columns
-from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
+from pvfiblets.engine.fiblets.data.sampled_volume import VolumeSource
 from pvfiblets.mappers.colouring import Mode
 from pvfiblets.query.bundles.bundle_list import group_colours, hidden_groups
 from pvfiblets.query.bundles.colours import distinct_colours
-from pvfiblets.query.endpoints import anchor_points, end_points
-from pvfiblets.query.measures import COMPUTED, Distance, measure
+from pvfiblets.query.measures.measures import COMPUTED, Distance, measure
+from pvfiblets.query.selection.endpoints import anchor_points, end_points
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
-    from pvfiblets.codec.quantised import QuantisedPoints
+    from pvfiblets.codec.point_values import PointValues
     from pvfiblets.streamlines import Streamlines
 
 ORIENTATION = "orientation"
@@ -139,38 +139,13 @@ class Scalars:
                 f"{self.name!r} has no categories; give categories=False, or the number of colours "
                 "as n_colors"
             )
-        stored = fiblets.per_point[self.name]
-        return max(int(np.count_nonzero(np.bincount(stored.codes)[: stored.levels])), 1)
+        return max(fiblets.per_point[self.name].distinct(), 1)
 
 
 def find_scalars(
     fiblets: FibletSet, scalars: str | np.ndarray | VolumeSource | Distance | None, rgb: bool | None = None
 ) -> Scalars:
-    """Find what ``scalars`` means for ``fiblets``.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-        The data.
-    scalars : str, array, VolumeSource, Distance or None
-        A name, one value or colour per streamline, a volume to be sampled, or what distances are
-        to; ``None`` means orientation.
-    rgb : bool, optional
-        Whether 3 or 4 columns are colours, or vectors to be mapped by their magnitude; by default
-        colours where they are uint8, or floats from 0 to 1. Other integers are vectors.
-
-    Returns
-    -------
-    Scalars
-        The numbers or colours.
-
-    Raises
-    ------
-    KeyError
-        If no array has that name; the message lists those that exist.
-    ValueError
-        If an array has neither one value nor one colour per streamline.
-    """
+    """Find what ``scalars`` means for ``fiblets``."""
     if scalars is None:
         return Scalars(ORIENTATION, "orientation")
     if isinstance(scalars, VolumeSource):
@@ -187,8 +162,7 @@ def find_scalars(
     if scalars in fiblets.per_point:
         stored = fiblets.per_point[scalars]
         low, high = stored.lo, stored.hi
-        smallest = max(low, (high - low) / stored.levels, 1e-30)
-        return Scalars(scalars, "point_scalar", None, (low, high), positive=smallest)
+        return Scalars(scalars, "point_scalar", None, (low, high), positive=stored.least_positive())
     if columns := colour_columns(fiblets.per_point, scalars):
         return _of_colours(scalars, [fiblets.per_point[name] for name in columns])
     if scalars in fiblets.per_streamline:
@@ -243,7 +217,7 @@ def refuse_numbers(title: str | None, rgb: bool | None) -> None:
         )
 
 
-def _of_colours(name: str, columns: list[QuantisedPoints]) -> Scalars:
+def _of_colours(name: str, columns: list[PointValues]) -> Scalars:
     """Colours of points, of which the fiblets hold each channel."""
     low, high = min(column.lo for column in columns), max(column.hi for column in columns)
     if low < 0.0 or high > 255.0:
@@ -306,11 +280,6 @@ def by_group(fiblets: FibletSet) -> Scalars:
     """Number the streamlines by the first of the groups that they are in; NaN for those in none.
 
     Groups that are hidden come last. Colours are those of the list of bundles: a group's own, or one by its place.
-
-    Raises
-    ------
-    KeyError
-        If there are no groups.
     """
     if not fiblets.groups:
         raise KeyError("there are no groups to colour by; formats that keep groups are .trx and .fiblets")
@@ -334,13 +303,7 @@ def without_outliers(scalars: Scalars) -> Scalars:
 
 
 def refuse_unknown(streamlines: Streamlines, name: str) -> None:
-    """Refuse a name that neither streamlines have, which are to be compressed, nor is built in.
-
-    Raises
-    ------
-    KeyError
-        The message lists what there is: all arrays of the source, as compression has not left any behind yet.
-    """
+    """Refuse a name that neither streamlines have, which are to be compressed, nor is built in."""
     known = (streamlines.per_point, streamlines.per_streamline, BUILT_IN, ("coding_error",))
     if not any(name in names for names in known) and not colour_columns(streamlines.per_point, name):
         raise KeyError(missing_message(streamlines, name))

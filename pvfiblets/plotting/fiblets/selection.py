@@ -131,7 +131,7 @@ class Selecting(SelectionMeasures):
         return self._pick(points, through, tolerance, renderer)
 
     def _pick(self, points: Any, through: bool, tolerance: float, renderer: Any) -> Picked | None:
-        from pvfiblets.query.screen import checked_polygon
+        from pvfiblets.query.selection.screen import checked_polygon
 
         find = everything if through else visible
         corners = checked_polygon(points)
@@ -215,7 +215,7 @@ class Selecting(SelectionMeasures):
         ValueError
             If it is not a length above 0.
         """
-        from pvfiblets.query.endpoints import similar_ends
+        from pvfiblets.query.selection.endpoints import similar_ends
 
         self.select(similar_ends(self.fiblets, self.selection, distance), mode="add")
 

@@ -278,24 +278,7 @@ def weak_method(standout: SelectionOverlay) -> Any:
 
 
 def spline_tubes_of(fiblets: FibletSet, ids: np.ndarray, radius: float, values: str | None = None) -> SplineTubes:
-    """Return streamlines as spline tubes of one radius.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-        The whole.
-    ids : numpy.ndarray
-        ``(n,)`` int64 streamlines; tube ``i`` is streamline ``ids[i]``.
-    radius : float
-        mm.
-    values : str, optional
-        A per-point value to take along, stored or computed from the geometry.
-
-    Returns
-    -------
-    SplineTubes
-        Smooth through the points.
-    """
+    """Return streamlines as spline tubes of one radius."""
     from pvfiblets.plotting.fiblets.pick_result import point_values
     from pvfiblets.tubes.build import as_spline_tubes
 
@@ -309,23 +292,8 @@ def spline_tubes_of(fiblets: FibletSet, ids: np.ndarray, radius: float, values: 
 
 
 def part_of_filter(filtering: Any, fiblets: FibletSet, ids: np.ndarray) -> Any:
-    """Return a filter of a whole set as one of some of its streamlines.
-
-    Parameters
-    ----------
-    filtering : Filter or None
-        Of ``fiblets``.
-    fiblets : FibletSet
-        The whole.
-    ids : numpy.ndarray
-        ``(n,)`` int64, rising: streamlines of ``fiblets.extract(ids)``.
-
-    Returns
-    -------
-    Filter or None
-        Of the part.
-    """
-    from pvfiblets.engine.fiblets.filter_textures import Filter
+    """Return a filter of a whole set as one of some of its streamlines."""
+    from pvfiblets.engine.fiblets.data.filter_textures import Filter
 
     if filtering is None:
         return None

@@ -11,11 +11,10 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from pvfiblets import formats
-from pvfiblets.addresses import path_of
 from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.codec.point_arrays import unit_colours, with_coded_values, with_point_colours
 from pvfiblets.codec.point_arrays import with_point_values as add_values
-from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
+from pvfiblets.engine.fiblets.data.sampled_volume import VolumeSource
 from pvfiblets.formats.attachments import is_values_file, name_of, values_for
 from pvfiblets.invalid_points import Invalid, valid_points
 from pvfiblets.lines import refuse_words, rows_of
@@ -23,9 +22,10 @@ from pvfiblets.other_libraries import EXPECTED, streamlines_of
 from pvfiblets.plotting.fiblets.scalars import UNNAMED, are_colours, magnitudes, refuse_unknown
 from pvfiblets.plotting.fiblets.volume_sources import as_volume
 from pvfiblets.plotting.same_names import Preference, with_preference
-from pvfiblets.query.measures import Distance, measure
+from pvfiblets.query.measures.measures import Distance, measure
 from pvfiblets.streamlines import Streamlines
-from pvfiblets.summary import warn_of_losses
+from pvfiblets.support.addresses import path_of
+from pvfiblets.support.summary import warn_of_losses
 
 if TYPE_CHECKING:
     from pvfiblets.codec.compress import PerPoint
@@ -46,45 +46,7 @@ def as_fiblets(
     preference: Preference = "point",
     **options: Any,
 ) -> tuple[FibletSet, Colours]:
-    """Compress ``source`` unless it is compressed already.
-
-    Parameters
-    ----------
-    source : path, FibletSet, Streamlines, PolyData of lines, (n, 3) array or list of such
-        What to draw; also what :func:`pvfiblets.other_libraries.streamlines_of` takes.
-    scalars : str, path, array, list of an array for each streamline, or volume, optional
-        If this names, or is, per-point data of ``source``, that is kept; so is what a file of values has for it
-        (:mod:`pvfiblets.formats.attachments`). For volumes see
-        :func:`~pvfiblets.plotting.fiblets.volume_sources.as_volume`.
-    per_point : iterable of str, or {'all', 'fit', 'none'}
-        Further per-point arrays to keep, for criteria and a later change of the actor's ``scalars``, as in
-        :func:`pvfiblets.compress`.
-    max_error : float, optional
-        Greatest distance (mm) between a given and a drawn point; by default as :func:`pvfiblets.compress` has it.
-    progress : bool, default: False
-        Show a progress bar.
-    rgb : bool, optional
-        Whether ``scalars`` of 3 or 4 columns are colours, as for
-        :func:`~pvfiblets.plotting.fiblets.scalars.find_scalars`.
-    opacity : Any
-        If this names per-point data of ``source``, that is kept.
-    preference : {'point', 'cell'}
-        As :func:`~pvfiblets.plotting.same_names.with_preference` has it.
-    **options
-        Further arguments of :func:`pvfiblets.codec.compress`.
-
-    Returns
-    -------
-    fiblets : FibletSet
-        The compressed data.
-    scalars : str or array or None
-        What to pass on to :func:`~pvfiblets.plotting.fiblets.scalars.find_scalars`.
-
-    Raises
-    ------
-    TypeError
-        If ``source`` is something else.
-    """
+    """Compress ``source`` unless it is compressed already."""
     volume = as_volume(scalars)
     scalars = scalars if volume is None else volume
     name = os.fspath(source) if isinstance(source, (str, os.PathLike)) else type(source).__name__
@@ -169,25 +131,7 @@ def _warn_of_nothing(data: FibletSet | Streamlines) -> None:
 
 
 def with_point_values(fiblets: FibletSet, scalars: Any, rgb: bool | None = None) -> tuple[FibletSet, Colours]:
-    """Store ``scalars`` with the fiblets if they are an array with a number or colour per point, or a file of values.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-        Stays as it is.
-    scalars : str or path or array or None
-        Anything but an array of ``n_points`` numbers, vectors or colours, and the path of a file of values is passed
-        through.
-    rgb : bool, optional
-        As for :func:`as_fiblets`.
-
-    Returns
-    -------
-    fiblets : FibletSet
-        The same, or one that shares its arrays and has one per-point array more.
-    scalars : str, array, VolumeSource or None
-        The name of that array, a volume in one form, or ``scalars`` itself.
-    """
+    """Store ``scalars`` with the fiblets if they are an array per point, or a file of values."""
     volume = as_volume(scalars)
     if volume is not None:
         return fiblets, volume
@@ -207,21 +151,7 @@ def with_point_values(fiblets: FibletSet, scalars: Any, rgb: bool | None = None)
 
 
 def with_values_of(fiblets: FibletSet, path: str | os.PathLike[str], rgb: bool | None = None) -> FibletSet:
-    """Return a set that shares the arrays of another one and has the values of a file more, under the file's name.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-    path : str or PathLike
-        ``.tsf``, ``.npy``, ``.txt`` or ``.csv``; see :mod:`pvfiblets.formats.attachments`.
-    rgb : bool, optional
-        As for :func:`as_fiblets`.
-
-    Raises
-    ------
-    FormatError
-        If the file is damaged, or its counts fit neither points nor streamlines.
-    """
+    """Return a set that shares the arrays of another one and has the values of a file more, under the file's name."""
     where, values = values_for(path, np.diff(fiblets.offsets()), fiblets.space)
     name = name_of(path)
     if where == "per_streamline":
@@ -250,25 +180,13 @@ def _by_name(name: str, rgb: bool | None) -> bool | None:
 
 
 def numbers_of_points(name: str, values: np.ndarray) -> np.ndarray:
-    """Return one number per point: the values themselves, or the magnitude of vectors.
-
-    Raises
-    ------
-    ValueError
-        If they are words.
-    """
+    """Return one number per point: the values themselves, or the magnitude of vectors."""
     refuse_words(values, f"scalars {name!r}", per_line=False)
     return values if values.ndim == 1 else magnitudes(values)
 
 
 def as_streamlines(source: Any) -> Streamlines:
-    """Return streamlines from anything uncompressed that a user may hold.
-
-    Raises
-    ------
-    TypeError
-        If ``source`` is none of the known kinds.
-    """
+    """Return streamlines from anything uncompressed that a user may hold."""
     if isinstance(source, Streamlines):
         return source[:]
     found = streamlines_of(source)

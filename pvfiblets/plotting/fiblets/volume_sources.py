@@ -9,35 +9,14 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 
-from pvfiblets.engine.fiblets.sampled_volume import VolumeSource
+from pvfiblets.engine.fiblets.data.sampled_volume import VolumeSource
 
 SUFFIXES = (".nii", ".nii.gz", ".mgh", ".mgz")
 """Of a text that is not the name of an array but the path of a volume."""
 
 
 def as_volume(scalars: Any) -> VolumeSource | None:
-    """Return the volume that ``scalars`` are; ``None`` if they are something else.
-
-    Parameters
-    ----------
-    scalars : object
-        - :class:`pyvista.ImageData` whose active scalars are numbers: point data are voxel
-          centres, cell data voxels; origin, spacing and direction matrix place them.
-        - ``(array, affine)``: ``(i, j, k)`` numbers, and the ``(4, 4)`` matrix from voxel indices
-          to mm.
-        - An image of nibabel, or the path of one (``.nii``, ``.nii.gz``, ``.mgh``, ``.mgz``).
-        - A :class:`~pvfiblets.engine.fiblets.sampled_volume.VolumeSource`.
-
-        It lies in the coordinates of the streamlines' data, as they were given: what moves the
-        actor moves it along.
-
-    Raises
-    ------
-    FileNotFoundError
-        If there is no such file.
-    ValueError
-        If it has other than three axes, or more than one number per voxel, or no affine.
-    """
+    """Return the volume that ``scalars`` are; ``None`` if they are something else."""
     if isinstance(scalars, VolumeSource):
         return scalars
     if isinstance(scalars, pv.ImageData):

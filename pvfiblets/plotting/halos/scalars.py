@@ -53,24 +53,7 @@ def as_lines(
     filter_by: Any = None,
     preference: Preference = "point",
 ) -> Held:
-    """Return the lines that a source means, and what colours and filters them.
-
-    Parameters
-    ----------
-    source : Any
-        A path, HaloLines, or what :func:`pvfiblets.halos.build.as_halo_lines` takes.
-    scalars, filter_by : str, path or array, optional
-        A name that is built in (`BUILT_IN`), data of the source, an array for it, or a file of values for it
-        (:mod:`pvfiblets.formats.attachments`).
-    rgb : bool, optional
-        Whether three or four columns are colours; see :func:`pvfiblets.lines.numbers_or_colours`.
-    preference : {'point', 'cell'}
-        As :func:`~pvfiblets.plotting.same_names.with_preference` has it.
-
-    Returns
-    -------
-    Held
-    """
+    """Return the lines that a source means, and what colours and filters them."""
     if isinstance(source, HaloLines):
         return filtered(coloured(Held(source), scalars, rgb=rgb), filter_by)
     source = with_preference(_read_lines(source), preference)
@@ -90,22 +73,7 @@ def as_lines(
 
 
 def as_points(source: Any, *, scalars: Any = None, rgb: bool | None = None, filter_by: Any = None) -> Held:
-    """Return the points that a source means, and what colours and filters them.
-
-    Parameters
-    ----------
-    source : Any
-        A path of whatever :func:`pyvista.read` reads, HaloPoints, or what
-        :func:`pvfiblets.halos.build.as_halo_points` takes.
-    scalars, filter_by : str or array, optional
-        Data of the source, or an array for it.
-    rgb : bool, optional
-        Whether three or four columns are colours; see :func:`pvfiblets.lines.numbers_or_colours`.
-
-    Returns
-    -------
-    Held
-    """
+    """Return the points that a source means, and what colours and filters them."""
     if isinstance(source, HaloPoints):
         return filtered(coloured(Held(source), scalars, rgb=rgb), filter_by)
     source = read_points(source)
@@ -126,26 +94,7 @@ def read_points(source: Any) -> Any:
 
 
 def coloured(held: Held, scalars: Any, *, rgb: bool | None = None) -> Held:
-    """Have something else colour what is held; numbers at points are stored with it.
-
-    Parameters
-    ----------
-    held : Held
-        Stays as it is.
-    scalars : str or array, optional
-        A name, or a row of numbers or a colour for each point, or for each line.
-    rgb : bool, optional
-        Whether three or four columns are colours; by default those of uint8, and floats from 0 to 1.
-
-    Returns
-    -------
-    Held
-
-    Raises
-    ------
-    ValueError
-        If an array has no such shape.
-    """
+    """Have something else colour what is held; numbers at points are stored with it."""
     drawn = held.drawn
     if scalars is None or isinstance(scalars, str):
         if isinstance(scalars, str) and scalars == ARC_LENGTH and isinstance(drawn, HaloLines):
@@ -160,26 +109,7 @@ def coloured(held: Held, scalars: Any, *, rgb: bool | None = None) -> Held:
 
 
 def filtered(held: Held, filter_by: Any) -> Held:
-    """Have something else filter what is held; its numbers are stored with it, a row for each point.
-
-    Parameters
-    ----------
-    held : Held
-        Stays as it is.
-    filter_by : str or array, optional
-        A name, or a number for each point, or for each line; of lines also ``"arc_length"`` and ``"length"``.
-
-    Returns
-    -------
-    Held
-
-    Raises
-    ------
-    KeyError
-        If nothing has that name.
-    ValueError
-        If an array has no such shape, or is of colours.
-    """
+    """Have something else filter what is held; its numbers are stored with it, a row for each point."""
     drawn = held.drawn
     if filter_by is None:
         return replace(held, filter_by=None)
@@ -201,24 +131,7 @@ def filtered(held: Held, filter_by: Any) -> Held:
 
 
 def find_scalars(held: Held) -> Scalars | None:
-    """Find the numbers or colours by which something is coloured.
-
-    Parameters
-    ----------
-    held : Held
-
-    Returns
-    -------
-    Scalars or None
-        ``None`` for one colour.
-
-    Raises
-    ------
-    KeyError
-        If nothing has that name; the message lists what there is.
-    ValueError
-        If an array has neither one value nor one colour per line.
-    """
+    """Find the numbers or colours by which something is coloured."""
     choice, drawn = held.scalars, held.drawn
     if choice is None:
         return None
@@ -236,17 +149,7 @@ def find_scalars(held: Held) -> Scalars | None:
 
 
 def line_lengths(lines: HaloLines) -> np.ndarray:
-    """Return the length of each line.
-
-    Parameters
-    ----------
-    lines : HaloLines
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(n_lines,)`` float64, mm.
-    """
+    """Return the length of each line."""
     along = np.concatenate([_along(lines), np.zeros(1)])
     lengths = np.where(np.diff(lines.offsets) > 0, along[lines.offsets[1:] - 1], 0.0)
     return np.asarray(lengths)
@@ -317,7 +220,7 @@ def _read_lines(source: Any) -> Any:
     """Return the data of a file, or of an object of another library; anything else as it is."""
     if not isinstance(source, (str, os.PathLike)):
         return told_lines(source)
-    from pvfiblets.codec.open_lines import open_lines
+    from pvfiblets.codec.files.open_lines import open_lines
 
     return open_lines(source)
 

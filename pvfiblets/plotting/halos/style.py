@@ -96,24 +96,7 @@ class LookSettings:
     filter_taper: float | None = None
 
     def look(self, drawn: HaloLines | HaloPoints, spacing: Spacing) -> HaloStyle:
-        """Return what this means.
-
-        Parameters
-        ----------
-        drawn : HaloLines or HaloPoints
-            What is drawn.
-        spacing : Spacing
-            Of what is drawn.
-
-        Returns
-        -------
-        HaloStyle
-
-        Raises
-        ------
-        TypeError, ValueError
-            If a setting is out of its range; the message names it as the user does.
-        """
+        """Return what this means."""
         try:
             return self._look(isinstance(drawn, HaloLines), spacing)
         except ValueError as error:

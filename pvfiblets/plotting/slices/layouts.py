@@ -13,17 +13,7 @@ _THIRD = 1.0 / 3.0
 
 
 def viewports(layout: str, aspect: float = 1.5, *, oblique: bool = False) -> dict[str, Viewport]:
-    """Return left, bottom, right and top, as shares of the window, of the views that a layout shows.
-
-    Parameters
-    ----------
-    layout : str
-        Of `LAYOUTS`.
-    aspect : float, default: 1.5
-        The window's width by its height: in one that is higher than wide, slices beside the 3-D view lie below it.
-    oblique : bool, default: False
-        Whether there is an oblique pane beside the other three.
-    """
+    """Return left, bottom, right and top, as shares of the window, of the views that a layout shows."""
     panes = (*_ORDER[:3], "oblique") if oblique else _ORDER[:3]
     share = 1.0 / len(panes)
     if layout == "grid" and oblique:

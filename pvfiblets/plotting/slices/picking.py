@@ -15,20 +15,7 @@ __all__ = ["picked_on_planes"]
 
 
 def picked_on_planes(renderer: Any, planes: Iterable[SlicePlane], x: float, y: float) -> npt.NDArray[np.float64] | None:
-    """Return the place nearest to the viewer where a pixel shows a slice.
-
-    Parameters
-    ----------
-    renderer : vtkRenderer
-    planes : iterable of SlicePlane
-    x, y : float
-        Pixels of the window from its lower left corner.
-
-    Returns
-    -------
-    (3,) array or None
-        mm; None where no slice shows there.
-    """
+    """Return the place nearest to the viewer where a pixel shows a slice."""
     ends = []
     for depth in (0.0, 1.0):
         renderer.SetDisplayPoint(x, y, depth)

@@ -65,15 +65,7 @@ class SliceActor(pv.Actor):
         self._quad.Modified()
 
     def show(self, pixels: npt.NDArray[np.uint8], smooth: bool = True) -> None:
-        """Show colours.
-
-        Parameters
-        ----------
-        pixels : numpy.ndarray
-            ``(height, width, 4)`` uint8, the lowest row first.
-        smooth : bool
-            Whether colours between the centres of pixels are interpolated.
-        """
+        """Show colours."""
         height, width = pixels.shape[:2]
         self._pixels = np.ascontiguousarray(pixels)
         self.shows += 1
@@ -208,13 +200,7 @@ def before_render(renderer: Any, owner: Any, method: str) -> Any:
 
 
 def on_events(caller: Any, events: tuple[str, ...], owner: Any, method: str) -> Any:
-    """Call an owner's method at events of an object of VTK's; neither keeps the other alive.
-
-    Returns
-    -------
-    callable
-        Ends it; twice is harmless.
-    """
+    """Call an owner's method at events of an object of VTK's; neither keeps the other alive."""
     reference = weakref.ref(owner)
 
     def started(*_: Any) -> None:

@@ -38,8 +38,8 @@ class PointValues:
 
 def streamlines_near(actors: Iterable[Any], position: Array, radius: float) -> dict[str, npt.NDArray[np.int64]]:
     """Return ids of the shown streamlines that come within a radius, mm, by actor."""
-    from pvfiblets.query.passing import region_flags
-    from pvfiblets.query.point_flags import ANY
+    from pvfiblets.query.selection.passing import region_flags
+    from pvfiblets.query.selection.point_flags import ANY
     from pvfiblets.regions import Sphere
 
     ball = Sphere(position, radius)

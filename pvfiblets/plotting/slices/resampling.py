@@ -68,18 +68,7 @@ class Resampler:
         self._image.Modified()
 
     def at(self, grid: PlaneGrid, interpolation: str = "linear") -> npt.NDArray[np.float64]:
-        """Return what the image is at the pixels of a plane.
-
-        Parameters
-        ----------
-        grid : PlaneGrid
-        interpolation : {'nearest', 'linear', 'cubic'}
-
-        Returns
-        -------
-        numpy.ndarray
-            ``(height, width)`` or ``(height, width, n)`` float64; NaN outside of the image.
-        """
+        """Return what the image is at the pixels of a plane."""
         matrix = vtkMatrix4x4()
         for i, row in enumerate(grid.to_voxels(self._inverse)):
             for j, part in enumerate(row):

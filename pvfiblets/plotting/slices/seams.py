@@ -14,13 +14,7 @@ Viewport = tuple[float, float, float, float]
 
 
 def seams_of(viewports: Iterable[Viewport]) -> pv.PolyData:
-    """Return the edges of views that are none of the window, as lines in shares of the window.
-
-    Parameters
-    ----------
-    viewports : iterable of tuple
-        Left, bottom, right and top of each, as shares of the window.
-    """
+    """Return the edges of views that are none of the window, as lines in shares of the window."""
     found: dict[tuple[Any, ...], None] = {}
     for left, bottom, right, top in viewports:
         edges = [((x, bottom), (x, top)) for x in (left, right) if 0.0 < x < 1.0]
@@ -33,14 +27,7 @@ def seams_of(viewports: Iterable[Viewport]) -> pv.PolyData:
 
 
 def show_seams(plotter: pv.Plotter, viewports: Iterable[Viewport]) -> None:
-    """Have PyVista's lines between subplots lie between these views, if the plotter draws any.
-
-    Parameters
-    ----------
-    plotter : pyvista.Plotter
-    viewports : iterable of tuple
-        As for :func:`seams_of`.
-    """
+    """Have PyVista's lines between subplots lie between these views, if the plotter draws any."""
     overlay = getattr(plotter.renderers, "_border_overlay_renderer", None)
     actor = None if overlay is None else getattr(overlay, "_border_actor", None)
     if actor is not None:

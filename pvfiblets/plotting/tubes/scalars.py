@@ -27,29 +27,7 @@ _GAUSS = ((0.5 - 0.15**0.5, 5 / 18), (0.5, 4 / 9), (0.5 + 0.15**0.5, 5 / 18))
 def as_tubes(
     source: Any, *, scalars: Any = None, rgb: bool | None = None, preference: Preference = "point", **shape: Any
 ) -> tuple[SplineTubes, Any]:
-    """Return the tubes that a source means, and what colours them.
-
-    Parameters
-    ----------
-    source : Any
-        A path, or what :func:`pvfiblets.tubes.build.as_spline_tubes` takes.
-    scalars : str, path or array, optional
-        A name that is built in (`BUILT_IN`), data of the source, an array for it, or a file of values for it
-        (:mod:`pvfiblets.formats.attachments`).
-    rgb : bool, optional
-        Whether three or four columns are colours; see :func:`pvfiblets.lines.numbers_or_colours`.
-    preference : {'point', 'cell'}
-        As :func:`~pvfiblets.plotting.same_names.with_preference` has it.
-    **shape
-        Further arguments of ``as_spline_tubes``.
-
-    Returns
-    -------
-    tubes : SplineTubes
-        With the values that were asked for.
-    choice : str or None
-        What they are called, for :func:`find_tube_scalars`.
-    """
+    """Return the tubes that a source means, and what colours them."""
     if isinstance(source, SplineTubes):
         return with_node_values(as_spline_tubes(source, **shape), scalars, rgb=rgb)
     source = with_preference(_read(source), preference)
@@ -71,20 +49,7 @@ def as_tubes(
 
 
 def with_built_in(tubes: SplineTubes, scalars: Any) -> SplineTubes:
-    """Return tubes that have numbers at nodes for ``"radius"`` or ``"arc_length"``, computed if that is the choice.
-
-    Parameters
-    ----------
-    tubes : SplineTubes
-        Stay as they are.
-    scalars : str or array or None
-        What colours them.
-
-    Returns
-    -------
-    SplineTubes
-        The same where nothing is to be computed. Those with arc lengths may have more nodes, not other segments.
-    """
+    """Return tubes that have numbers at nodes for ``"radius"`` or ``"arc_length"``, computed if that is the choice."""
     if not isinstance(scalars, str) or scalars in tubes.values or scalars in tubes.tube_values:
         return tubes
     if scalars == RADIUS:
@@ -95,28 +60,6 @@ def with_built_in(tubes: SplineTubes, scalars: Any) -> SplineTubes:
 
 def with_node_values(tubes: SplineTubes, scalars: Any, *, rgb: bool | None = None) -> tuple[SplineTubes, Any]:
     """Store ``scalars`` with the tubes if they are an array with a row for each node.
-
-    Parameters
-    ----------
-    tubes : SplineTubes
-        Stay as they are.
-    scalars : str or array or None
-        ``(n_nodes,)`` numbers, ``(n_nodes, k)`` vectors, which are mapped by their magnitude, or ``(n_nodes, 3)`` or
-        ``(n_nodes, 4)`` colours, uint8 or from 0 to 1. All else is passed through.
-    rgb : bool, optional
-        Whether three or four columns are colours; by default those of uint8, and floats from 0 to 1.
-
-    Returns
-    -------
-    tubes : SplineTubes
-        The same, or some that share their arrays and have one more.
-    scalars : str or array or None
-        The name of that, or ``scalars`` itself.
-
-    Raises
-    ------
-    ValueError
-        If an array has neither a row for each node nor one for each tube, or colours are out of range.
 
     Notes
     -----
@@ -144,27 +87,7 @@ def with_node_values(tubes: SplineTubes, scalars: Any, *, rgb: bool | None = Non
 
 
 def find_tube_scalars(tubes: SplineTubes, scalars: Any) -> Scalars:
-    """Find what ``scalars`` means for tubes.
-
-    Parameters
-    ----------
-    tubes : SplineTubes
-        The data.
-    scalars : str or array
-        A name, or one value or colour per tube.
-
-    Returns
-    -------
-    Scalars
-        The numbers or colours.
-
-    Raises
-    ------
-    KeyError
-        If nothing has that name; the message lists what there is.
-    ValueError
-        If an array has neither one value nor one colour per tube.
-    """
+    """Find what ``scalars`` means for tubes."""
     if not isinstance(scalars, str):
         return of_streamlines(UNNAMED, scalars, tubes.n_tubes, whole="tube")
     if scalars in tubes.values:
@@ -182,17 +105,7 @@ def find_tube_scalars(tubes: SplineTubes, scalars: Any) -> Scalars:
 
 
 def tube_lengths(tubes: SplineTubes) -> np.ndarray:
-    """Return the length of each tube's centre line.
-
-    Parameters
-    ----------
-    tubes : SplineTubes
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(n_tubes,)`` float64, mm.
-    """
+    """Return the length of each tube's centre line."""
     found: np.ndarray = np.bincount(tubes.tubes, _segment_lengths(tubes), tubes.n_tubes)
     return found
 
@@ -286,7 +199,7 @@ def _read(source: Any) -> Any:
     """Return the data of a file, or of an object of another library; anything else as it is."""
     if not isinstance(source, (str, os.PathLike)):
         return told_lines(source)
-    from pvfiblets.codec.open_lines import open_lines
+    from pvfiblets.codec.files.open_lines import open_lines
 
     return open_lines(source)
 

@@ -9,13 +9,7 @@ BLENDING = {"composite": "composite", "maximum": "mip", "minimum": "minimum", "a
 
 
 def mode_of_blending(blending: str) -> str:
-    """Return the mode of a word of ``add_volume``'s.
-
-    Raises
-    ------
-    ValueError
-        If there is none.
-    """
+    """Return the mode of a word of ``add_volume``'s."""
     if blending == "additive":
         raise ValueError(
             "blending='additive' adds up values times opacities, which depends on the step; mode 'average' does not"

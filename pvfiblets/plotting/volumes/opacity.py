@@ -30,41 +30,14 @@ def is_number(given: Any) -> bool:
 
 
 def number(name: str, given: Any, expected: str) -> float:
-    """Return what is to be one number.
-
-    Raises
-    ------
-    ValueError
-        If it is not; the message names it and says what was expected.
-    """
+    """Return what is to be one number."""
     if not is_number(given):
         raise ValueError(f"{name} is {given!r}; give {expected}")
     return float(given)
 
 
 def opacities(given: Any, n_colors: int) -> np.ndarray:
-    """Return an opacity for each entry of a table of colours.
-
-    Parameters
-    ----------
-    given : str, float or array_like
-        A name of PyVista's (``"linear"``, ``"geom"``, ``"sigmoid"``, ``"foreground"``, with ``"_r"`` reversed, ...);
-        one number for all; or numbers from 0 to 1, linear between. Those of uint8 are from 0 to 255, and so are as many
-        numbers as there are colours, if one is above 1, as of ``add_volume``.
-    n_colors : int
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(n_colors,)`` float64 from 0 to 1.
-
-    Raises
-    ------
-    ValueError
-        If there is no such name, or a number is not from 0 to 1, or there are more of them than colours.
-    TypeError
-        If it is something else.
-    """
+    """Return an opacity for each entry of a table of colours."""
     if isinstance(given, str):
         named = opacity_transfer_function(given, n_colors)
         return np.asarray(named, np.float64) / 255.0
@@ -85,13 +58,7 @@ def opacities(given: Any, n_colors: int) -> np.ndarray:
 
 
 def surface_values(given: Any, bounds: tuple[float, float]) -> tuple[float, ...]:
-    """Return the values of surfaces: those given, or one in the middle of the volume's.
-
-    Raises
-    ------
-    ValueError
-        If it is neither a number nor a list of them.
-    """
+    """Return the values of surfaces: those given, or one in the middle of the volume's."""
     if given is None:
         return (0.5 * bounds[0] + 0.5 * bounds[1],)
     values = np.asarray(given)
@@ -101,13 +68,7 @@ def surface_values(given: Any, bounds: tuple[float, float]) -> tuple[float, ...]
 
 
 def surface_opacities(given: Any, count: int) -> tuple[float, ...] | None:
-    """Return an opacity for each of some surfaces, or None where none is given.
-
-    Raises
-    ------
-    ValueError
-        If it is neither a number from 0 to 1 nor one for each.
-    """
+    """Return an opacity for each of some surfaces, or None where none is given."""
     if given is None:
         return None
     numbers = np.asarray([given] * count if is_number(given) else given)
@@ -120,13 +81,7 @@ def surface_opacities(given: Any, count: int) -> tuple[float, ...] | None:
 
 
 def surface_colours(given: Any, count: int) -> list[pv.Color] | None:
-    """Return a colour for each of some surfaces, or None where none is given.
-
-    Raises
-    ------
-    ValueError
-        If there is not one for each.
-    """
+    """Return a colour for each of some surfaces, or None where none is given."""
     if given is None:
         return None
     if isinstance(given, str) or not isinstance(given, (Sequence, np.ndarray)) or len(given) != count:
@@ -151,18 +106,7 @@ def from_logarithm(rows: np.ndarray, clim: tuple[float, ...]) -> np.ndarray:
 
 
 def value_limits(given: Any) -> tuple[float, float]:
-    """Return the least and the greatest value that is there.
-
-    Parameters
-    ----------
-    given : float, (float or None, float or None) or None
-        One number is the least.
-
-    Raises
-    ------
-    ValueError
-        If it is something else.
-    """
+    """Return the least and the greatest value that is there."""
     if given is None:
         return -math.inf, math.inf
     ends = (given, None) if is_number(given) else given

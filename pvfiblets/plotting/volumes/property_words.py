@@ -91,14 +91,7 @@ class PropertyWords:
 
 
 def tell_given(actor: VolumeActor, given: Mapping[str, Any]) -> None:
-    """Warn of arguments of light that change nothing in an actor's mode.
-
-    Parameters
-    ----------
-    actor : VolumeActor
-    given : mapping
-        By name, what was said when it was made; None says nothing.
-    """
+    """Warn of arguments of light that change nothing in an actor's mode."""
     unused = {
         name: _instead(word, actor)
         for name, word in _WORDS.items()

@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...codec.decompress import select_streamlines
-from ..predicates import Predicate
+from ..selection.predicates import Predicate
 from .colours import as_colour, distinct_colours
 
 if TYPE_CHECKING:

@@ -40,18 +40,7 @@ def hex_colour(parts: Iterable[float]) -> str:
 
 
 def as_colour(given: Any) -> tuple[float, float, float]:
-    """Return a colour as red, green, blue from 0 to 1.
-
-    Parameters
-    ----------
-    given : str or sequence
-        ``"#rrggbb"``, a name that PyVista knows, three floats from 0 to 1, or three whole numbers up to 255.
-
-    Raises
-    ------
-    ValueError
-        If it is no colour.
-    """
+    """Return a colour as red, green, blue from 0 to 1."""
     if isinstance(given, str):
         text = given.lstrip("#")
         if given.startswith("#") and len(text) == 6:

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...codec.progress import Progress
-from ...progress_bar import progress_bar
+from ...support.progress_bar import progress_bar
 from .resampled import check_count, check_distance
 
 if TYPE_CHECKING:

@@ -11,8 +11,8 @@ import numpy.typing as npt
 
 from ...codec.progress import Progress
 from ...codec.small_sets import prefer_kernels
-from ...progress_bar import progress_bar
 from ...streamlines import Streamlines
+from ...support.progress_bar import progress_bar
 
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
@@ -40,18 +40,7 @@ def check_distance(distance: float, name: str) -> float:
 
 
 def resampled(lines: Streamlines, n_points: int) -> Lines:
-    """Resample streamlines that all have points.
-
-    Parameters
-    ----------
-    lines : Streamlines
-    n_points : int
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(n, n_points, 3)`` float32 mm, both ends included.
-    """
+    """Resample streamlines that all have points."""
     from .similarity_kernels import resample
 
     out = np.empty((len(lines), n_points, 3), np.float32)
@@ -65,26 +54,7 @@ def resampled(lines: Streamlines, n_points: int) -> Lines:
 def iter_resampled(
     data: FibletSet | Streamlines, n_points: int, ids: Ints | None = None, progress: Progress = False, what: str = ""
 ) -> Iterator[tuple[Ints, Lines]]:
-    """Resample streamlines, in bounded memory.
-
-    Parameters
-    ----------
-    data : FibletSet or Streamlines
-    n_points : int
-    ids : numpy.ndarray, optional
-        ``(m,)`` int64, in the order wanted; all by default.
-    progress : bool or callable
-        Show a bar, or call this with ``what`` and the share that is done before each chunk; what it raises ends all.
-    what : str
-        What is done with them, for people.
-
-    Yields
-    ------
-    ids : numpy.ndarray
-        ``(k,)`` int64 streamlines, those without points left out.
-    lines : numpy.ndarray
-        ``(k, n_points, 3)`` float32 mm.
-    """
+    """Resample streamlines, in bounded memory."""
     total = len(data) if ids is None else len(ids)
     with progress_bar(progress is True, total=total, desc=what, unit="streamlines", unit_scale=True) as bar:
         for first, chunk in _chunks(data, ids):

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..image_samples import three_axes
-from ..voxel_grid import grid_like
+from ..density.voxel_grid import grid_like
+from ..measures.image_samples import three_axes
 
 __all__ = ["Image", "as_image"]
 
@@ -37,19 +37,7 @@ class Image:
         self._inverse = np.linalg.inv(affine)
 
     def at(self, points: npt.ArrayLike) -> Floats:
-        """Return the values at positions.
-
-        Parameters
-        ----------
-        points : array_like
-            ``(n, 3)`` mm.
-
-        Returns
-        -------
-        numpy.ndarray
-            ``(n,)`` float64: between the eight voxels about a position linearly along each axis; NaN farther than half
-            a voxel outside of the outer centres, where those count on, and beside voxels that are NaN.
-        """
+        """Return the values at positions."""
         v = np.asarray(points, np.float64) @ self._inverse[:3, :3].T + self._inverse[:3, 3]
         sides = np.array(self.values.shape)
         inside = ((v >= -0.5) & (v <= sides - 0.5)).all(axis=1)
@@ -69,25 +57,11 @@ class Image:
 
 
 def as_image(given: Any) -> Image | None:
-    """Take an image, None if it is something else.
-
-    Parameters
-    ----------
-    given : object
-        An image of nibabel or its path (``.nii``, ``.nii.gz``, ``.mgh``, ``.mgz``), ``(array, affine)``, a
-        :class:`pyvista.ImageData` with active scalars per point, or anything with ``values`` and ``affine``.
-
-    Raises
-    ------
-    FileNotFoundError
-        If there is no such file.
-    ValueError
-        If it has other than one number per voxel.
-    """
+    """Take an image, None if it is something else."""
     if isinstance(given, Image):
         return given
     if isinstance(given, (str, os.PathLike)):
-        from ..voxel_grid import SUFFIXES
+        from ..density.voxel_grid import SUFFIXES
 
         if not os.fspath(given).lower().endswith(SUFFIXES):
             return None

@@ -23,16 +23,7 @@ SLACK = 1e-3  # mm, for rounding of means to float32
 
 @parallel_kernel
 def resample(points: Any, offsets: Any, out: Any) -> None:
-    """Positions at equal arc length along each streamline, its ends included.
-
-    Parameters
-    ----------
-    points : (n_points, 3) float32 or float64
-    offsets : (n + 1,) int64
-        Each has a point at least.
-    out : (n, m, 3) float32
-        Filled. Where a streamline has no length, all are its first point.
-    """
+    """Positions at equal arc length along each streamline, its ends included."""
     n, m = out.shape[0], out.shape[1]
     for block in numba.prange((n + BLOCK - 1) // BLOCK):
         first, last = block * BLOCK, min((block + 1) * BLOCK, n)
@@ -78,16 +69,7 @@ def _mean_gap(a: Any, b: Any, flipped: bool, limit: float) -> float:
 
 @parallel_kernel
 def nearest(lines: Any, others: Any, limit: float, distances: Any, which: Any) -> None:
-    """Nearest of some lines to each line.
-
-    Parameters
-    ----------
-    lines, others : (n, m, 3), (k, m, 3) float32
-    limit : float
-        mm: what is farther is not told.
-    distances, which : (n,) float64, (n,) int64
-        Filled: inf and -1 where none is so near.
-    """
+    """Nearest of some lines to each line."""
     m, k = lines.shape[1], len(others)
     means = np.zeros((k, 3))
     for j in range(k):
@@ -128,32 +110,7 @@ def pairs(lines: Any, others: Any, out: Any) -> None:
 def add_to_clusters(
     lines: Any, first: int, threshold: float, most: int, centroids: Any, means: Any, counts: Any, used: int, labels: Any
 ) -> Any:
-    """Put lines into clusters, one after the other; QuickBundles (Garyfallidis et al. 2012, section 2.3).
-
-    Parameters
-    ----------
-    lines : (n, m, 3) float32
-    first : int
-        Line to go on with.
-    threshold : float
-        mm: a line farther than this from all centroids begins a cluster.
-    most : int
-        Clusters, after which each line goes to the nearest.
-    centroids : (room, m, 3) float32
-        Mean of each cluster's lines, each turned as the mean of those before it.
-    means : (3, room) float32
-        Mean point of each centroid.
-    counts : (room,) int64
-    used : int
-        Clusters so far.
-    labels : (n,) int32
-        Filled.
-
-    Returns
-    -------
-    next, used : int
-        The first line that found no room for its cluster, or ``n``; clusters now.
-    """
+    """Put lines into clusters, one after the other; QuickBundles (Garyfallidis et al. 2012, section 2.3)."""
     n, m, room = lines.shape[0], lines.shape[1], len(counts)
     squares = np.empty(room, np.float32)
     for s in range(first, n):

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from ...ragged import blocks, offsets_from_counts
 from ...streamlines import Streamlines
-from ..density_sources import as_source
-from ..table import Table, without_groups
-from ..voxel_grid import grid_about, grid_like
+from ...support.ragged import blocks, offsets_from_counts
+from ..density.density_sources import as_source
+from ..density.voxel_grid import grid_about, grid_like
+from ..measures.table import Table, without_groups
 from .bundle_list import Bundles
 from .sampling import as_image
 
@@ -67,7 +67,7 @@ def bundle_table(
     TypeError, ValueError
         If an image or a voxel's size is none, or `weights` is unknown.
     """
-    from ..density import Visits
+    from ..density.volume import Visits
 
     if voxel_size is not None and like is not None:
         raise ValueError("give either voxel_size= (mm) or like= (an image whose grid is taken)")

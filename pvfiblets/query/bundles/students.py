@@ -21,20 +21,7 @@ def _share(t: float, freedom: int) -> float:
 
 
 def student_quantile(share: float, freedom: int) -> float:
-    """Return the value that a share of all lies within, on either side of 0.
-
-    Parameters
-    ----------
-    share : float
-        Between 0 and 1, such as 0.95.
-    freedom : int
-        Degrees of freedom, 1 or more.
-
-    Raises
-    ------
-    ValueError
-        If either is out of range.
-    """
+    """Return the value that a share of all lies within, on either side of 0."""
     if not 0.0 < share < 1.0:
         raise ValueError(f"the share is {share}; give a number between 0 and 1, such as 0.95")
     if freedom < 1:

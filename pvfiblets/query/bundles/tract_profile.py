@@ -21,8 +21,8 @@ import numpy.typing as npt
 
 from ...codec.decompress import select_streamlines
 from ...streamlines import Streamlines
-from ..band_plot import plot_band
-from ..table import Table, without_groups
+from ..measures.band_plot import plot_band
+from ..measures.table import Table, without_groups
 from .resampled import check_count
 from .sampling import as_image
 from .students import student_quantile
@@ -284,7 +284,7 @@ def _line(given: npt.ArrayLike, n: int) -> Floats:
 
 
 def _resampled(points: Any, values: Any, offsets: Any, n: int) -> tuple[Floats, Floats]:
-    from ..measure_kernels import resample
+    from ..measures.measure_kernels import resample
 
     m = len(offsets) - 1
     places, found = np.empty((m, n, 3)), np.empty((m, n))
@@ -304,7 +304,7 @@ def _along(data: FibletSet | Streamlines, chosen: Any, values: Any, n: int) -> t
             numbers = part.per_point[values]
         else:
             from ...codec.compress import compress
-            from ..measures import measure
+            from ..measures.measures import measure
 
             found = measure(compress(part, exact=True), values)
             if found.kind != "point":

@@ -270,33 +270,7 @@ def _mean(leaves: Any, leaf: int, nodes: int, linear: Any, corner: Any, mean: An
 def settle(near: Any, bits: Any, leaves: Any, pieces: Any, parts: int, per_stretch: int, stretch: int, states: Any,
            asked: int, linear: Any, corner: Any, rows: Any, mask: Any, shape: Any, changed: Any, whole: Any,
            in_mm: Any, about_changed: Any, about_whole: Any, within: Any, found: Any) -> None:  # fmt: skip
-    """What becomes of the fiblets of some leaves, ``found (n, LEAF)`` uint8: :data:`SAME` and so on.
-
-    Parameters
-    ----------
-    near, bits : (n,) int64, (n,) uint8
-        Leaves, and which of their parts are close.
-    leaves, pieces
-        Of the index, of fiblets in so many `parts`.
-    per_stretch, stretch : int
-        Leaves, and fiblets, that were sorted together.
-    states : (n_fiblets,) uint8
-        Flags before.
-    asked : int
-        :data:`ADDED`, :data:`REMOVED` or :data:`ALL_FLAGS`.
-    linear, corner, rows
-        From mm to voxels, and the lengths of rows of `linear`.
-    mask : (n_voxels,) uint8
-        :data:`HERE` and :data:`CHANGED`.
-    changed, whole : (6,) float64
-        Boxes of the changed voxels, and of the region's.
-    in_mm : (2, 3) float64
-        Lower and upper corner, mm, of a box along the axes that holds that of the changed voxels.
-    about_changed, about_whole : FreeSpace
-        About the changed voxels, and about the region's where that is asked: :data:`REMOVED`.
-    within : FreeSpace
-        About all voxels but the region's, where that is asked: :data:`ADDED`.
-    """
+    """What becomes of the fiblets of some leaves, ``found (n, LEAF)`` uint8: :data:`SAME` and so on."""
     changed_steps, changed_first = about_changed
     whole_steps, whole_first = about_whole
     within_steps, within_first = within

@@ -20,7 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...codec.decompress import decoding_arrays, fixed
-from ...codec.fiblets_file import INDEX as KEY
+from ...codec.files.fiblets_file import INDEX as KEY
 from ...codec.layout import unpack
 from ...codec.small_sets import prefer_kernels
 from ...errors import FormatError

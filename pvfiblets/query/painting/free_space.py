@@ -33,19 +33,7 @@ class FreeSpace(NamedTuple):
 
     @classmethod
     def of(cls, bits: npt.NDArray[np.uint8], bit: int, box: npt.ArrayLike, *, beyond: bool = False) -> FreeSpace:
-        """Return it of the voxels within a box that have a bit, or of all others.
-
-        Parameters
-        ----------
-        bits : numpy.ndarray
-            ``(nx, ny, nz)`` uint8 of all voxels; no more of it is read than the box.
-        bit : int
-            That voxels of the set have.
-        box : array_like
-            ``(6,)``: the box's first voxel, and that behind its last; without voxels it is far from the set.
-        beyond : bool
-            Whether the set is that of the voxels without the bit, and of all that lies beyond the box.
-        """
+        """Return it of the voxels within a box that have a bit, or of all others."""
         low, high = np.asarray(box, float).reshape(2, 3)
         if not (low < high).all():
             return cls(np.full((1, 1, 1), FAR, np.uint8), np.zeros(3, np.int64))

@@ -12,9 +12,9 @@ from typing import Any
 import numba
 import numpy as np
 
-from ...codec.capsule_kernels import end_part
-from ...codec.decode_kernels import decode_one
 from ...codec.jit import kernel, parallel_kernel
+from ...codec.kernels.capsule_kernels import end_part
+from ...codec.kernels.decode_kernels import decode_one
 from ...codec.layout import PAGE_BITS
 
 __all__ = ["LEAF", "chords", "leaf_boxes", "leaf_pieces", "near_leaves", "next_anchor", "sort_once", "sort_parts"]

@@ -21,16 +21,16 @@ import numpy.typing as npt
 from ...codec.decompress import decoding_arrays
 from ...codec.small_sets import prefer_kernels
 from ...errors import FormatError
-from ..point_flags import ALL
-from ..point_flags import ANY as PASSES
-from ..point_flags import FIRST as BEGINS
-from ..point_flags import LAST as ENDS
+from ..selection.point_flags import ALL
+from ..selection.point_flags import ANY as PASSES
+from ..selection.point_flags import FIRST as BEGINS
+from ..selection.point_flags import LAST as ENDS
 from .fiblet_index import CHUNK, LEAF, fiblets_of_streamlines, index_of
 from .free_space import FreeSpace
 
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
-    from ..voxel_grid import VoxelGrid
+    from ..density.voxel_grid import VoxelGrid
     from .painter import RegionPainter, Stroke
 
 __all__ = ["LiveRegion", "LiveRegions"]

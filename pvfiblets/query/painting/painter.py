@@ -15,10 +15,10 @@ import numpy.typing as npt
 
 from ...errors import FormatError
 from ..bundles.colours import as_colour, distinct_colour, hex_colour
-from ..image_samples import three_axes
-from ..labels import Labels
-from ..placement import finite_vector, positive
-from ..voxel_grid import VoxelGrid, grid_like
+from ..density.voxel_grid import VoxelGrid, grid_like
+from ..measures.image_samples import three_axes
+from ..regions.labels import Labels
+from ..regions.placement import finite_vector, positive
 
 __all__ = ["PaintedRegion", "RegionPainter", "Stroke"]
 

@@ -7,10 +7,10 @@ from typing import Any
 import numba
 import numpy as np
 
-from ...codec.decode_kernels import decode_one
 from ...codec.jit import kernel, parallel_kernel
+from ...codec.kernels.decode_kernels import decode_one
 from ...codec.layout import PAGE_BITS
-from ..voxel_walk_kernels import walk, within
+from ..density.voxel_walk_kernels import walk, within
 from .index_kernels import ROWS, next_anchor
 
 __all__ = ["ANY", "BAD", "CHANGED", "DAMAGED", "FIRST", "HERE", "LAST", "OUT", "apply", "in_order", "lines_of", "look",

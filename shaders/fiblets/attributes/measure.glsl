@@ -1,5 +1,5 @@
 // What lies between the anchors, for per-point values that run on from fiblet to fiblet: lengths and turns.
-// pvfiblets/engine/fiblets/point_values.py turns the measures of consecutive fiblets into arc length and curvature at every anchor.
+// pvfiblets/engine/fiblets/data/point_values.py turns the measures of consecutive fiblets into arc length and curvature at every anchor.
 
 #include "fiblets/decode/sequential.glsl"
 #include "fiblets/attributes/turn.glsl"

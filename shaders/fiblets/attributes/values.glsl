@@ -1,6 +1,6 @@
 // The per-point value of the G-buffer, if the style asks for one; without, nothing of this file is left but a zero.
 //
-//   stored       one or two bytes per point; code c means value_of_code_0 + value_per_code * c, the largest means NaN
+//   stored       one or two bytes per point, code c means the c-th word of the buffer, before the codes; or a float32
 //   colours      stored as a word per point, RGBA; the value is a colour as a number (fiblets/attributes/packed_colour.glsl)
 //   arc length   mm from the streamline's first point; `starts` holds it for every fiblet's anchor
 //   curvature    turn() at every point; the ends of a streamline take their neighbour's. `starts` holds it for every
@@ -9,7 +9,7 @@
 //
 // `step` and `rest` are t in steps from point to point, where a segment stands for a whole fiblet (far views).
 // value_of_point(i) serves stages that hand values on with points: that of the point which start_values() came to last, but 0
-// where fragments look it up. pvfiblets/engine/fiblets/point_values.py makes the buffers. Between points a value is interpolated; next to NaN the nearer counts.
+// where fragments look it up. pvfiblets/engine/fiblets/data/point_values.py makes the buffers. Between points a value is interpolated; next to NaN the nearer counts.
 
 #include "fiblets/data/values.glsl"
 
@@ -33,19 +33,20 @@ float value_along(uint segment, float t, uint step, float rest) {
 // Two codes of 16 bits or four of 8 to a word. A chunk's points are fewer than 2^32, their bits are not.
 uint value_code(uint segment) {
     uint bits = value_bits, point = values_first + min(segment, values_last);
-    uint shift = bits == 8u ? 2u : 1u, within = point & ((1u << shift) - 1u);
-    return bitfieldExtract(value_word(point >> shift), int(within * bits), int(bits));
+    uint shift = bits == 8u ? 2u : bits == 16u ? 1u : 0u, within = point & ((1u << shift) - 1u);
+    return bitfieldExtract(value_word(value_table + (point >> shift)), int(within * bits), int(bits));
 }
+
+uint value_of_code(uint code) { return value_bits == 32u ? code : value_word(code); }
+
+bool is_none(uint value) { return (value & 0x7FFFFFFFu) > 0x7F800000u; }
 
 float value_along(uint segment, float t, uint step, float rest) {
     segment += step;
     t = rest;
-    uint a = value_code(segment), b = value_code(segment + 1u), invalid = (1u << value_bits) - 1u;
-    if (a == invalid || b == invalid) {
-        a = b = t < 0.5 ? a : b;
-        if (a == invalid) return uintBitsToFloat(0x7FC00000u);
-    }
-    return value_of_code_0 + value_per_code * mix(float(a), float(b), t);
+    uint a = value_of_code(value_code(segment)), b = value_of_code(value_code(segment + 1u));
+    if (is_none(a) || is_none(b)) return uintBitsToFloat(t < 0.5 ? a : b);
+    return mix(uintBitsToFloat(a), uintBitsToFloat(b), t);
 }
 #endif
 

@@ -2,7 +2,7 @@
 // knows where data lie: the functions are the same.
 //
 // `f` is an index within the chunk. A chunk holds whole pages, and at its end the anchor of the fiblet that follows.
-// pvfiblets/engine/fiblets/chunks.py makes the buffers.
+// pvfiblets/engine/fiblets/data/chunks.py makes the buffers.
 //
 //   anchors      two words a fiblet
 //   pages        four words a row: rank, first code, first point of a page; behind the pages, streamlines by rank

@@ -6,7 +6,13 @@ uint bitfieldExtract(uint value, int offset, int bits) {
 int bitfieldExtract(int value, int offset, int bits) {
     return bits == 32 ? value : (value << (32 - offset - bits)) >> (32 - bits);
 }
-// Of the highest bit set; -1 where there is none.
+int bitCount(uint value) {
+    int bits = 0;
+    for (; value != 0u; value &= value - 1u) ++bits;
+    return bits;
+}
+// Of the lowest bit set, and of the highest; -1 where there is none.
+int findLSB(uint value) { return value == 0u ? -1 : bitCount((value & (~value + 1u)) - 1u); }
 int findMSB(uint value) {
     int at = value == 0u ? -1 : 0;
     for (int width = 16; width > 0; width >>= 1) {

@@ -1,5 +1,5 @@
 // The one per-point value that a style may ask for: codes of a stored array, or a float32 for every anchor
-// (pvfiblets/engine/fiblets/point_values.py), from storage buffers or from buffer textures.
+// (pvfiblets/engine/fiblets/data/point_values.py), from storage buffers or from buffer textures.
 
 #if FEATURE_VALUES_STORED
 #if FEATURE_TEXTURE_DATA

@@ -1,4 +1,4 @@
-// A volume that is sampled at points of a streamline; pvfiblets/engine/fiblets/sampled_volume.py declares and packs the
+// A volume that is sampled at points of a streamline; pvfiblets/engine/fiblets/data/sampled_volume.py declares and packs the
 // block and makes the texture.
 //
 // Symbols
@@ -13,7 +13,7 @@
 #include "uniforms/Sampling.glsl"
 
 #if FEATURE_TEXTURE_DATA
-uniform sampler3D sampled_volume;  // pvfiblets/engine/fiblets/data_textures.py says where
+uniform sampler3D sampled_volume;  // pvfiblets/engine/fiblets/data/data_textures.py says where
 #else
 layout(binding = {{ unit_sampled_volume }}) uniform sampler3D sampled_volume;
 #endif

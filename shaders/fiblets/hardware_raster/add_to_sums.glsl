@@ -1,5 +1,5 @@
 // Adds what a fragment shows to one of its pixel's sums, where OpenGL blends: the attachments of
-// pvfiblets/engine/fiblets/gathering.py. A wide line or a tube adds once to a pixel (fiblets/compute/gather.comp).
+// pvfiblets/engine/fiblets/gather/gathering.py. A wide line or a tube adds once to a pixel (fiblets/compute/gather.comp).
 
 #include "fiblets/gather/slices.glsl"
 #if FEATURE_PAINTED

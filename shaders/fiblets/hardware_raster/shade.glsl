@@ -10,7 +10,7 @@
 #if FEATURE_CLIP_REGION
 #include "regions/boundaries.glsl"
 #endif
-#if FEATURE_MESH_EXT  // Mesa wants them without `flat` (pvfiblets/engine/mesh_program.py)
+#if FEATURE_MESH_EXT  // Mesa wants them without `flat` (pvfiblets/engine/gl/mesh_program.py)
 #define VARYING flat perprimitiveEXT in
 #elif FEATURE_PER_PRIMITIVE
 #define VARYING flat perprimitiveNV in

@@ -1,4 +1,4 @@
-// Copies what was drawn into one layer of what keeps them all (pvfiblets/engine/fiblets/depth_peeling.py).
+// Copies what was drawn into one layer of what keeps them all (pvfiblets/engine/fiblets/gather/depth_peeling.py).
 
 #version 430
 

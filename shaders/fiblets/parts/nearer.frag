@@ -1,4 +1,4 @@
-// The nearer of two pictures of parts of one set (pvfiblets/engine/fiblets/part_pictures.py): what parts show together
+// The nearer of two pictures of parts of one set (pvfiblets/engine/fiblets/parts/part_pictures.py): what parts show together
 // is what the whole shows. Depth compositing of Molnar et al. 1994 ("sort last"), for G-buffers.
 //
 // kept    the parts so far; its owner is the order of the part that a pixel is of, or, by streamline, the streamline

@@ -1,4 +1,4 @@
-// Layers: of every pixel only what lies behind the layers drawn so far (pvfiblets/engine/fiblets/depth_peeling.py). Layer k shows the
+// Layers: of every pixel only what lies behind the layers drawn so far (pvfiblets/engine/fiblets/gather/depth_peeling.py). Layer k shows the
 // nearest depth key behind that of layer k - 1; of several fiblets at the same key a pixel shows one.
 //
 // A wide line or a tube covers a pixel by many segments, one after the other, each at a depth of its own: they are one

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 import pvfiblets as pf
-from pvfiblets.addresses import is_url
-from pvfiblets.cli import main
+from pvfiblets.cli.command import main
 from pvfiblets.codec.shards import store
 from pvfiblets.codec.shards.store import Cache, Remote
 from pvfiblets.codec.shards.write import write_shards
+from pvfiblets.support.addresses import is_url
 
 from ..samples import smooth
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import pvfiblets as pf
-from pvfiblets.cli import main
+from pvfiblets.cli.command import main
 from pvfiblets.codec.shards.manifest import MANIFEST
 from pvfiblets.codec.shards.places import shards_of, streamline_bytes
 from pvfiblets.codec.shards.write import compress_file_in_shards, write_shards

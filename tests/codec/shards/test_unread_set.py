@@ -13,10 +13,10 @@ from pvfiblets.codec.shards import unread_set
 from pvfiblets.codec.shards.unread_set import UnreadSet
 from pvfiblets.codec.shards.write import write_shards
 from pvfiblets.codec.streamline_ranges import StreamlineRanges, coded_rows
-from pvfiblets.query.endpoints import end_points
-from pvfiblets.query.measures import measure
-from pvfiblets.query.passing import region_flags
-from pvfiblets.query.screen import under_polygon
+from pvfiblets.query.measures.measures import measure
+from pvfiblets.query.selection.endpoints import end_points
+from pvfiblets.query.selection.passing import region_flags
+from pvfiblets.query.selection.screen import under_polygon
 
 from ..samples import assert_equal_streamlines
 from ..test_extract import with_groups

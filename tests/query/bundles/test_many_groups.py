@@ -8,7 +8,7 @@ import pytest
 from pvfiblets import Streamlines, compress
 from pvfiblets.query.bundles import statistics
 from pvfiblets.query.bundles.tract_profile import tract_profile
-from pvfiblets.query.density import density
+from pvfiblets.query.density.volume import density
 
 
 @pytest.fixture(scope="module")

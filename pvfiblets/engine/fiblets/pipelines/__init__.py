@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..measures import ComputeMeasurer, FeedbackMeasurer, Measurer
+from ..data.measures import ComputeMeasurer, FeedbackMeasurer, Measurer
 from .compute import ComputePipeline
 from .constants import CONSTANTS
 from .draw_request import DrawRequest, Pipeline
@@ -13,8 +13,8 @@ from .limits import TEXTURED, Limits
 if TYPE_CHECKING:
     import moderngl
 
-    from ...moderngl_extras import GLExtras
-    from ...shaders import Programs
+    from ...gl.moderngl_extras import GLExtras
+    from ...gl.shaders import Programs
 
 __all__ = ["CONSTANTS", "ComputePipeline", "DrawRequest", "Limits", "Pipeline", "make_measurer", "make_pipeline"]
 

@@ -43,15 +43,15 @@ import moderngl
 import numpy as np
 
 from ....codec.layout import MAX_POINTS
-from ...bindings import IMAGES, STORAGE
 from ...errors import EngineError
-from ...gl_version import version_of
-from ...moderngl_extras import GLExtras
-from ...passes import GROUP_SIZE, dispatch, is_software
+from ...gl.bindings import IMAGES, STORAGE
+from ...gl.gl_version import version_of
+from ...gl.moderngl_extras import GLExtras
+from ...gl.passes import GROUP_SIZE, dispatch, is_software
+from ...gl.program_uniforms import set_uniforms
+from ...gl.shaders import EXTENDED, Programs
 from ...pieces import Pieces, finish
-from ...program_uniforms import set_uniforms
-from ...shaders import EXTENDED, Programs
-from ..chunks import Chunk, storage_buffer
+from ..data.chunks import Chunk, storage_buffer
 from .constants import GROUP_WORDS, VISIBILITY_WORDS
 from .draw_request import DrawRequest
 from .segment_shares import segment_shares
@@ -140,23 +140,11 @@ class ComputePipeline:
         return {**self._own, **{f"{name} of tubes": held for name, held in others.items()}}
 
     def draw(self, request: DrawRequest) -> None:
-        """Draw all chunks; the uniform blocks are bound already.
-
-        Raises
-        ------
-        EngineError
-            If lines are so wide that software OpenGL would lose parts of them.
-        """
+        """Draw all chunks; the uniform blocks are bound already."""
         finish(self.steps(request))
 
     def steps(self, request: DrawRequest, pieces: Pieces | None = None) -> Generator[None, None, None]:
-        """Draw the same, and yield after each piece; in one without `pieces`. Pixels are the same in any case.
-
-        Raises
-        ------
-        EngineError
-            As :meth:`draw`.
-        """
+        """Draw the same, and yield after each piece; in one without `pieces`. Pixels are the same in any case."""
         if self._software and request.tubes and TUBES_BY_RASTER:
             self._draw_by_raster(request)
             self.planned = False
@@ -220,13 +208,7 @@ class ComputePipeline:
         return not (self._software and request.tubes and TUBES_BY_RASTER)
 
     def gather(self, request: DrawRequest) -> None:
-        """Add up what all lines show; the uniform blocks are bound already.
-
-        Raises
-        ------
-        EngineError
-            As :meth:`draw`.
-        """
+        """Add up what all lines show; the uniform blocks are bound already."""
         assert request.gather is not None
         if not self.gathers_words(request):
             self._by_raster().gather(request)

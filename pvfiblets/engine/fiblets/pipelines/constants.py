@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from ...passes import GROUP_SIZE
+from ...gl.passes import GROUP_SIZE
 from ...view import MAX_CLIP_PLANES
-from ..filter_textures import MASK_BITS
+from ..data.filter_textures import MASK_BITS
 
 __all__ = [
     "CONSTANTS",

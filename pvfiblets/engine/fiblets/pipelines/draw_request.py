@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
 from ...gbuffer import GBuffer
-from ...passes import Passes
-from ..chunks import Chunk
+from ...gl.passes import Passes
+from ..data.chunks import Chunk
 
 if TYPE_CHECKING:
     from ...culling.occlusion import Occlusion
-    from ..depth_peeling import Peel
-    from ..gathering import Gather
+    from ..gather.depth_peeling import Peel
+    from ..gather.gathering import Gather
     from ..visibility import Visibility
 
 __all__ = ["DrawRequest", "Pipeline", "Sized"]
@@ -33,7 +33,7 @@ class DrawRequest:
     passes : Passes
         Takes the times.
     decoding : tuple of str
-        Features (keys of :data:`pvfiblets.engine.shaders.FEATURES`) that the fiblets' records ask for.
+        Features (keys of :data:`pvfiblets.engine.gl.shaders.FEATURES`) that the fiblets' records ask for.
     values : tuple of str
         Feature of the per-point value.
     clipping : bool
@@ -105,13 +105,7 @@ class DrawRequest:
         return (*self.planes, *self.kept.cutting)
 
     def classes(self, *, one: bool = False) -> list[tuple[int, tuple[str, ...]]]:
-        """Classes of fiblets (``fiblets/compute/cull.comp``) that there can be, with the features of their programs.
-
-        Parameters
-        ----------
-        one : bool
-            Whether there is but one, whose program draws any fiblet.
-        """
+        """Classes of fiblets (``fiblets/compute/cull.comp``) that there can be, with the features of their programs."""
         common = (*self.decoding, *self.values, *self.wide, *self.extra, *self.peeling, *self.gathering)
         whole = (*common, *self.detail, *self.cutting, "CLIPPING", "CLIPPING_DEPTH")
         if one:
@@ -149,7 +143,7 @@ class Pipeline(Protocol):
         ...
 
     def gathers_words(self, request: DrawRequest) -> bool:
-        """Say whether sums for such a request are words, not floats (:class:`..gathering.Gathered`)."""
+        """Say whether sums for such a request are words, not floats (`gathering.Gathered`)."""
         ...
 
     def gather(self, request: DrawRequest) -> None:

@@ -29,13 +29,13 @@ from typing import Any, TypeVar
 
 import moderngl
 
-from ...bindings import BETWEEN_ROUNDS, FIBLET_ROUNDS
-from ...depth_texture import depth_texture
 from ...errors import EngineError
 from ...gbuffer import EMPTY, GBuffer
-from ...moderngl_extras import GLExtras
-from ...shaders import Programs
-from ..chunks import Chunk
+from ...gl.bindings import BETWEEN_ROUNDS, FIBLET_ROUNDS
+from ...gl.depth_texture import depth_texture
+from ...gl.moderngl_extras import GLExtras
+from ...gl.shaders import Programs
+from ..data.chunks import Chunk
 from .draw_request import DrawRequest
 
 __all__ = ["RasterPipeline", "RasterTarget", "SeenTexture"]
@@ -238,13 +238,7 @@ class RasterPipeline(abc.ABC):
         """Draw one chunk with a program; its uniform block is bound."""
 
     def draw(self, request: DrawRequest) -> None:
-        """Draw all chunks; the uniform blocks are bound already.
-
-        Raises
-        ------
-        EngineError
-            If a program does not compile, or memory does not suffice.
-        """
+        """Draw all chunks; the uniform blocks are bound already."""
         passes, culling = request.passes, request.occlusion
         two_rounds = culling is not None and culling.halfway
         target = self._attach(request.target, two_rounds)
@@ -272,13 +266,7 @@ class RasterPipeline(abc.ABC):
         return False
 
     def gather(self, request: DrawRequest) -> None:
-        """Add up what all lines show; the uniform blocks are bound already.
-
-        Raises
-        ------
-        EngineError
-            If a program does not compile.
-        """
+        """Add up what all lines show; the uniform blocks are bound already."""
         assert request.gather is not None
         with request.passes.timed("gather"), self._gl.framebuffers_kept(), self._drawing():
             if request.gather.own is None:

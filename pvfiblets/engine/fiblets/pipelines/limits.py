@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import moderngl
 
-from ...moderngl_extras import GLExtras
-from ...passes import work_groups
-from ...work_limits import WorkLimits
+from ...gl.moderngl_extras import GLExtras
+from ...gl.passes import work_groups
+from ...gl.work_limits import WorkLimits
 from .compute import CLASSES
 from .constants import VISIBILITY_WORDS
 
@@ -40,7 +40,7 @@ class Limits:
     marked_by : str
         What holds them.
     fiblets : int
-        Of one buffer of records, and with that of one call (:mod:`pvfiblets.engine.work_limits`).
+        Of one buffer of records, and with that of one call (:mod:`pvfiblets.engine.gl.work_limits`).
     """
 
     buffer_bytes: int
@@ -57,16 +57,7 @@ class Limits:
     def of(
         cls, ctx: moderngl.Context, gl: GLExtras, pipeline: str, buffer_bytes: int | None, groups: int | None
     ) -> Limits:
-        """Ask the driver, and take what is less.
-
-        Parameters
-        ----------
-        ctx : moderngl.Context
-        gl : GLExtras
-        pipeline : str
-        buffer_bytes, groups : int, optional
-            Of the user's.
-        """
+        """Ask the driver, and take what is less."""
         work = WorkLimits.of(ctx).fiblets
         side = gl.get_integer("GL_MAX_TEXTURE_SIZE")
         if pipeline in TEXTURED:

@@ -24,10 +24,10 @@ from typing import Any
 
 import moderngl
 
-from ...capabilities import MESH, MESH_EXT
-from ...moderngl_extras import GLExtras
-from ...shaders import Programs
-from ..chunks import Chunk
+from ...gl.capabilities import MESH, MESH_EXT
+from ...gl.moderngl_extras import GLExtras
+from ...gl.shaders import Programs
+from ..data.chunks import Chunk
 from .constants import TASK_FIBLETS, THREADS
 from .draw_request import DrawRequest
 from .hardware_raster import RasterPipeline

@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 from ....codec.layout import MAX_POINTS
 from ...errors import EngineError
-from ...passes import GROUP_SIZE
+from ...gl.passes import GROUP_SIZE
 from .constants import GROUP_WORDS
 
 __all__ = ["SOFTWARE_ITERATIONS", "WIDEST_IN_SOFTWARE", "segment_shares"]

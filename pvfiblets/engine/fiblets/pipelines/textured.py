@@ -7,11 +7,11 @@ from collections.abc import Sequence
 
 import moderngl
 
-from ...moderngl_extras import GLExtras
-from ...passes import is_software
-from ...shaders import Programs
-from ..chunks import Chunk
-from ..data_textures import DataTextures, set_data_samplers
+from ...gl.moderngl_extras import GLExtras
+from ...gl.passes import is_software
+from ...gl.shaders import Programs
+from ..data.chunks import Chunk
+from ..data.data_textures import DataTextures, set_data_samplers
 from .draw_request import DrawRequest
 from .hardware_raster import RasterPipeline
 

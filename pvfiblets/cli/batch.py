@@ -1,0 +1,163 @@
+"""What ``pvfiblets batch`` asks and does."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from typing import Any
+
+from pvfiblets.cli.files import print_json, show_progress, which_per_point
+from pvfiblets.codec.parameters import DEFAULT_ANGLE
+
+__all__ = ["add_options", "batch"]
+
+_ABOUT = {
+    "convert": "compress each file, or write it in another format",
+    "verify": "check .fiblets files against their checksums, and against their originals",
+    "density": "write a volume of how many streamlines pass each voxel, or of more, for each file",
+    "select": "write the streamlines of each file that pass, end or stay in regions",
+    "profile": "put mean values along each bundle of each file into a table",
+    "connectome": "put each file's matrix of connections into a table",
+}
+_REGION = "a region: sphere:X,Y,Z,R or box:XMIN,XMAX,YMIN,YMAX,ZMIN,ZMAX (mm), IMAGE, or IMAGE:LABEL,LABEL; may repeat"
+
+
+def add_options(parser: argparse.ArgumentParser, positive: Any, angle: Any, count: Any) -> None:
+    """Give a parser what ``batch`` takes; the checks of numbers are the command line's own."""
+    parser.description = (
+        "Do one thing to each FILE of a cohort, on all cores of this machine or on a cluster of dask's. Files go to "
+        "OUT, numbers to OUT/OPERATION.parquet, and what was done is written down in OUT/OPERATION.jsonl, so that "
+        "--resume skips it. In paths {subject}, {session}, {stem}, {folder} and other parts of a FILE's BIDS name "
+        "stand for themselves."
+    )
+    operations = parser.add_subparsers(
+        metavar="OPERATION", required=True, dest="operation", help="what to do to each file"
+    )
+    made = {name: operations.add_parser(name, help=about, description=f"{about[0].upper()}{about[1:]}.")
+            for name, about in _ABOUT.items()}  # fmt: skip
+    for name, sub in made.items():
+        _common(sub, count)
+        globals()[f"_{name}"](sub, positive, angle, count)
+    parser.set_defaults(run="pvfiblets.cli.batch:batch")
+
+
+def _common(parser: argparse.ArgumentParser, count: Any) -> None:
+    add = parser.add_argument
+    add("sources", metavar="FILE", nargs="+", help="tractograms, or patterns between quotes: 'sub-*/dwi/*.trk'")
+    add("-o", "--output", required=True, metavar="OUT", help="the folder for all that is made")
+    add("--cluster", metavar="ADDRESS", help="dask's scheduler, tcp://HOST:PORT, or its file (default: this machine)")
+    add("--workers", type=count, metavar="N", help="processes of this machine (default: one a core)")
+    add(
+        "--max-memory",
+        "--memory",
+        dest="memory",
+        metavar="SIZE",
+        help="most that a worker may have, such as 4G (default: 80%% of this machine's, divided by the workers)",
+    )
+    old = parser.add_mutually_exclusive_group()
+    old.add_argument("--resume", action="store_true", help="skip what an earlier run has finished")
+    old.add_argument("--overwrite", action="store_true", help="do all again")
+    add("--quiet", action="store_true", help="no progress bar")
+    add("--json", action="store_true", help="print the result as one JSON object")
+
+
+def _convert(parser: argparse.ArgumentParser, positive: Any, angle: Any, count: Any) -> None:  # noqa: ARG001
+    add = parser.add_argument
+    add("--to", default=".fiblets", metavar="SUFFIX", help="format to write, such as .trk (default: %(default)s)")
+    add("--step", type=positive, metavar="MM", help="resample to this distance")
+    add("--max-error", type=positive, metavar="MM", help="greatest error of any point")
+    add("--max-angle", type=angle, default=DEFAULT_ANGLE, metavar="DEG", help="greatest angle of directions, or none")
+    add("--effort", choices=("fast", "high"), default="fast", help="high: slower, less mean error")
+    add("--per-point", action="append", default=[], metavar="all|none|NAME", help="per-point arrays to keep")
+    add("--per-point-bits", type=int, choices=(8, 16), default=8, help="for each value kept, or more (default: 8)")
+    add("--exact", action=argparse.BooleanOptionalAction, default=None, help="keep every bit of the points, or none")
+
+
+def _verify(parser: argparse.ArgumentParser, positive: Any, angle: Any, count: Any) -> None:  # noqa: ARG001
+    parser.add_argument("--original", metavar="PATH", help="what each was made from: 'raw/{folder}/{stem}.trk'")
+    parser.add_argument("--max-angle", type=angle, default=DEFAULT_ANGLE, metavar="DEG", help="for directions, or none")
+
+
+def _density(parser: argparse.ArgumentParser, positive: Any, angle: Any, count: Any) -> None:  # noqa: ARG001
+    add = parser.add_argument
+    grid = parser.add_mutually_exclusive_group(required=True)
+    grid.add_argument("--voxel", type=positive, nargs="+", metavar="MM", help="side of the voxels, or three")
+    grid.add_argument("--like", metavar="IMAGE", help="an image whose grid it is: NIfTI or MGH")
+    add("--contrast", default="count", metavar="WHAT", help="count, length, direction, an array, or a file of values")
+    add("--weights", metavar="WHAT", help="of streamlines: a file of numbers, or the name of an array")
+    add("--ends-only", action="store_true", help="count end points instead")
+    add("--to", default=".nii.gz", metavar="SUFFIX", help=".nii or .nii.gz (default: %(default)s)")
+
+
+def _select(parser: argparse.ArgumentParser, positive: Any, angle: Any, count: Any) -> None:  # noqa: ARG001
+    add = parser.add_argument
+    for option, what in (
+        ("--passes", "streamlines that pass through"), ("--avoids", "streamlines that do not pass through"),
+        ("--ends-in", "streamlines with an end in"), ("--both-ends-in", "streamlines with both ends in"),
+        ("--stays-in", "streamlines that never leave"),
+    ):  # fmt: skip
+        add(option, action="append", default=[], metavar="REGION", help=f"{what} {_REGION}")
+    add("--sampling", choices=("lines", "points"), default="lines",
+        help="points: what lies between points does not count, as for MRtrix's tckedit (default: %(default)s)")
+    add("--to", default=".fiblets", metavar="SUFFIX", help="format to write (default: %(default)s)")
+
+
+def _profile(parser: argparse.ArgumentParser, positive: Any, angle: Any, count: Any) -> None:  # noqa: ARG001
+    parser.add_argument("--values", required=True, metavar="NAME|IMAGE",
+                        help="an array of points, curvature, arc_length, or an image that is sampled")  # fmt: skip
+    parser.add_argument("--positions", type=count, default=100, metavar="N", help="along it (default: %(default)s)")
+
+
+def _connectome(parser: argparse.ArgumentParser, positive: Any, angle: Any, count: Any) -> None:  # noqa: ARG001
+    add = parser.add_argument
+    add("--labels", required=True, metavar="IMAGE", help="of parcels: 'atlas/sub-{subject}.nii.gz'")
+    add("--weights", metavar="NAME|FILE", help="of streamlines, such as SIFT2's")
+    add("--contrast", default="count", metavar="NAME|FILE", help="count, length, or numbers by name or from a file")
+    add("--radius", type=float, default=4.0, metavar="MM", help="about an end (default: %(default)s)")
+    add("--statistic", choices=("sum", "mean", "min", "max"), help="of a pair's numbers")
+
+
+def batch(
+    operation: str,
+    sources: list[str],
+    output: str,
+    *,
+    cluster: str | None,
+    workers: int | None,
+    memory: str | None,
+    resume: bool,
+    overwrite: bool,
+    quiet: bool,
+    json: bool,
+    **options: Any,
+) -> int:
+    """Do one thing to many files; return 1 if any failed."""
+    from pvfiblets.cluster import batch as run
+
+    if "per_point" in options:
+        options["per_point"] = which_per_point(options["per_point"])
+    voxel = options.get("voxel")
+    if voxel is not None:
+        if len(voxel) not in (1, 3):
+            raise ValueError(f"--voxel has {len(voxel)} numbers; give one side in mm, or three")
+        options["voxel"] = voxel[0] if len(voxel) == 1 else voxel
+    result = run(
+        operation, sources, output, cluster=cluster, workers=workers, memory=memory, resume=resume,
+        overwrite=overwrite, progress=show_progress(quiet, json), **options,
+    )  # fmt: skip
+    if json:
+        print_json({
+            "operation": operation, "folder": str(result.folder), "done": len(result.done),
+            "skipped": len(result.skipped), "failed": dict(result.failed),
+            "table": None if result.table is None else str(result.table), "seconds": result.seconds,
+        })  # fmt: skip
+    else:
+        parts = [f"{len(result.done):,} done"]
+        parts += [f"{len(result.skipped):,} finished before"] * bool(result.skipped)
+        parts += [f"{len(result.failed):,} failed"] * bool(result.failed)
+        print(f"{result.folder}: {', '.join(parts)}, in {result.seconds:.1f} s")
+        if result.table is not None:
+            print(f"table    {result.table}")
+    for name, why in result.failed.items():
+        print(f"pvfiblets: {why if name in why else f'{name}: {why}'}", file=sys.stderr)
+    return 0 if result.ok else 1

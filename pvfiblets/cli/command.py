@@ -1,0 +1,164 @@
+"""The ``pvfiblets`` command.
+
+Exit codes: 0 when it did what was asked, 1 when it could not, with one plain sentence on standard
+error, 2 when it was called wrongly. With ``--json`` the result is one JSON object on standard
+output and nothing else.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from importlib import import_module
+from typing import Any
+
+from pvfiblets.cli import file_arguments as files
+from pvfiblets.cli import scene_arguments as scenes
+from pvfiblets.cli.batch import add_options as add_batch_options
+from pvfiblets.cli.memory import held_to
+from pvfiblets.cli.parser import Parser
+from pvfiblets.cli.pipes import Pipes
+from pvfiblets.cli.values import angle, count, positive
+from pvfiblets.errors import EXPECTED, sentence
+from pvfiblets.support.vtk_space import unnamed_as
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command."""
+    options = vars(make_parser().parse_args(arguments))
+    debug = options.pop("debug")
+    module, function = options.pop("run").split(":")
+    pipes, space = Pipes(options), options.pop("space", None)
+    try:
+        with _plain_warnings(pipes), held_to(options.pop("max_memory", None)), unnamed_as(space), pipes:
+            code = getattr(import_module(module), function)(**options) or 0
+        sys.stdout.flush()  # here, where a reader that has gone is no error
+        return code
+    except BrokenPipeError:  # the reader of our output, such as `head`, has gone: not an error
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except KeyboardInterrupt:
+        print("pvfiblets: interrupted", file=sys.stderr)
+        return 1
+    except EXPECTED as error:
+        if debug:
+            raise
+        print(f"pvfiblets: {pipes.renamed(sentence(error))}", file=sys.stderr)
+        return 1
+
+
+@contextmanager
+def _plain_warnings(pipes: Pipes) -> Iterator[None]:
+    """Print warnings that people are meant to read as one sentence each, without the place in the source."""
+
+    def show(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
+        if category is UserWarning:
+            print(f"pvfiblets: {pipes.renamed(' '.join(str(message).split()))}", file=sys.stderr)
+        else:
+            usual(message, category, *place, **more)
+
+    usual = warnings.showwarning
+    warnings.showwarning = show
+    try:
+        yield
+    finally:
+        warnings.showwarning = usual
+
+
+def make_parser() -> argparse.ArgumentParser:
+    """Return the parser of the command line."""
+    parser = Parser(prog="pvfiblets", description="Compress, check and draw tractograms of any size.")
+    parser.add_argument("--version", action=_Version)
+    parser.add_argument("--debug", action="store_true", help="show the traceback of an error")
+    commands = parser.add_subparsers(metavar="COMMAND", required=True)
+
+    files.add_convert(commands)
+    files.add_info(commands)
+    files.add_verify(commands)
+    files.add_density(commands)
+    files.add_connectome(commands)
+    files.add_table(commands)
+    files.add_profile(commands)
+    batch = commands.add_parser("batch", help="do one of these to each file of a cohort, on all cores or on a cluster")
+    add_batch_options(batch, positive, angle, count)
+    scenes.add_screenshot(commands)
+    scenes.add_show(commands)
+    scenes.add_page(commands)
+    scenes.add_serve(commands)
+
+    gl = commands.add_parser(
+        "gl",
+        help="say what this machine's OpenGL is, which pipelines can draw with it, and whether they draw right",
+        description="List the driver, its limits, and every pipeline: available, or why not. With --check, draw with "
+        "all of them, compare with the CPU, measure, and write one file to attach to a report of a bug; it ends with 1 "
+        "if anything differs or fails.",
+    )
+    gl.add_argument("--check", action="store_true", help="draw with everything that there is, and compare")
+    gl.add_argument(
+        "-o", "--output", default="pvfiblets-check.zip", metavar="FILE", help="of --check (default: %(default)s)"
+    )
+    gl.add_argument(
+        "--segments", type=positive, nargs="*", metavar="N", help="sizes to measure speed at (default: 1e6 1e7 1e8)"
+    )
+    gl.add_argument(
+        "--only", action="append", default=[], metavar="PART", help="parts of the check whose names begin like that"
+    )
+    files.json_option(gl)
+    gl.set_defaults(run="pvfiblets.cli.gl:gl")
+
+    demo = commands.add_parser(
+        "demo",
+        help="make, compress and draw a whole-brain-like tractogram, and print size and error",
+        description="Make a tractogram like a whole brain's, compress it, draw it, and print its size and error.",
+    )
+    demo.add_argument("--output", default="pvfiblets-demo", metavar="FOLDER", help="for files (default: %(default)s)")
+    demo.add_argument("--streamlines", type=count, default=50_000, metavar="N", help="how many (default: %(default)s)")
+    demo.add_argument("--step", type=positive, default=0.5, metavar="MM", help="between points (default: %(default)s)")
+    demo.add_argument("--seed", type=int, default=0, metavar="N", help="another, another brain (default: %(default)s)")
+    files.json_option(demo)
+    demo.set_defaults(run="pvfiblets.cli.pictures:demo")
+
+    report = commands.add_parser(
+        "report",
+        help="measure error against run time of every approximation in the program, beside its rivals",
+        description="Write report.json, a Markdown page and plots into DIR. All studies, unless --only names some.",
+    )
+    report.add_argument(
+        "--only", nargs="+", metavar="STUDY",
+        help="codec, decode, tractograms, pixels, culling, tubes, volumes, halos, features, antialias, "
+        "translucency, stability",
+    )  # fmt: skip
+    report.add_argument(
+        "--data", nargs="+", default=[], metavar="FILE",
+        help="tractograms to measure with, or folders of such (default: the folder that PVFIBLETS_DATA names)",
+    )  # fmt: skip
+    report.add_argument("--quick", action="store_true", help="a little of each, in at most two minutes on two cores")
+    report.add_argument(
+        "--minutes", type=float, metavar="M", help="for measuring, shared among the studies (default: no limit)"
+    )
+    report.add_argument("--seed", type=int, default=0, metavar="N", help="of all made-up data (default: 0)")
+    report.add_argument("--from", dest="source", metavar="JSON", help="make page and plots again, without measuring")
+    report.add_argument("-o", "--output", required=True, metavar="DIR", help="the folder to write into")
+    report.set_defaults(run="pvfiblets.cli.report:report")
+    return parser
+
+
+class _Version(argparse.Action):
+    """Print the versions that a report of a problem needs."""
+
+    def __init__(self, option_strings: Sequence[str], **_: object) -> None:
+        super().__init__(option_strings, dest=argparse.SUPPRESS, nargs=0, help="print the version")
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        from importlib.metadata import version
+
+        print(f"pvfiblets {version('pvfiblets')} (pyvista {version('pyvista')}, vtk {version('vtk')})")
+        parser.exit()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,72 @@
+"""``--max-memory``: how much memory a command may take."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from pvfiblets.errors import FibletsError
+
+__all__ = ["add_memory_option", "bytes_of_file", "held_to"]
+
+HALF = "50%"
+LEAST_MEMORY = 256 << 20
+
+
+def add_memory_option(parser: argparse.ArgumentParser) -> None:
+    """Give a command the option."""
+    parser.add_argument(
+        "--max-memory",
+        default=HALF,
+        metavar="SIZE",
+        help="most memory it may take, such as 4G or 25%% of this machine's (default: 50%%); files are read in parts, "
+        "and lines of millions of points lie on disk meanwhile, where TMPDIR says",
+    )
+
+
+def bytes_of_file(text: str) -> int:
+    """Parse the size of a file, such as ``2G``."""
+    from pvfiblets.support import memory
+
+    try:
+        if "%" in text:
+            raise ValueError
+        return memory.parse(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is no size of a file; give one such as 2G or 500M") from None
+
+
+@contextmanager
+def held_to(most: str | None) -> Iterator[None]:
+    """Let this process have as much memory meanwhile as ``--max-memory`` says.
+
+    By default it may take half of the machine's beyond what it has: a command that runs within a larger program, whose
+    memory nobody limited, is not refused for that.
+    """
+    from pvfiblets.support import memory
+
+    if most is None:
+        yield
+        return
+    chosen = most != HALF
+    if not memory.CAN_LIMIT:
+        if chosen:
+            raise FibletsError("--max-memory: only Linux can hold a program to a limit; leave it out")
+        yield
+        return
+    has = memory.taken()
+    size = memory.parse(most) + (0 if chosen else has) if chosen or memory.of_machine() else None
+    if size is not None and size < (least := has + LEAST_MEMORY):
+        raise FibletsError(f"--max-memory {most}: {memory.shown(least)} are needed to begin with; give as much or more")
+    try:
+        with memory.limited(size):
+            yield
+    except MemoryError as error:
+        if size is None:
+            raise
+        why = f" ({' '.join(str(error).split())})" if str(error) else ""
+        raise FibletsError(
+            f"this takes more memory than the {memory.shown(size)} of --max-memory{why}; give it more, or convert the "
+            "file to .trx, .trk or .tck where memory suffices: these are read in parts"
+        ) from error

@@ -1,0 +1,162 @@
+"""``-`` on the command line: standard input and output in place of files.
+
+Formats need to jump about in what they read, and commands look at their output again, so that both lie in temporary
+files meanwhile (``TMPDIR`` says where). Output leaves when it is whole, and alone: messages go to standard error then.
+"""
+
+from __future__ import annotations
+
+import argparse
+import shutil
+import sys
+import tempfile
+from collections.abc import Sequence
+from contextlib import ExitStack, redirect_stdout
+from pathlib import Path
+from typing import IO, Any, Self
+
+from pvfiblets.formats.recognise import suffix_by_content
+from pvfiblets.support.addresses import is_url
+from pvfiblets.support.whole_files import naming_target
+
+__all__ = ["Pipes", "add_format_option"]
+
+_IN, _OUT = "standard input", "standard output"
+
+
+def add_format_option(
+    parser: argparse.ArgumentParser, *, reads: Sequence[str], writes: str | None = None, usual: str | None = None
+) -> None:
+    """Let a command take ``-`` for files, and be told the space of files that name none."""
+    which = "what - stands for, such as tck: standard input (default: its first bytes tell)"
+    if writes is not None:
+        which += f" or output ({f'default: {usual}' if usual else 'needed'}); of both, that of output comes last"
+    parser.add_argument("--format", action="append", default=[], metavar="SUFFIX", help=which)
+    parser.add_argument(
+        "--space", choices=("RAS", "LPS"), type=str.upper,
+        help="space of points in VTK's files that name none (default: RAS); DIPY wrote LPS up to 1.11",
+    )  # fmt: skip
+    parser.set_defaults(pipes=(tuple(reads), writes, usual))
+
+
+class Pipes:
+    """Standard input and output of one command, as files; a context manager.
+
+    Parameters
+    ----------
+    options : dict
+        Of the command. Taken out are ``pipes`` and ``format``; in the context, temporary files stand for ``-``.
+
+    Raises
+    ------
+    ValueError
+        On entering: if a format is missing or of no use, or one standard input is to be two files.
+    """
+
+    def __init__(self, options: dict[str, Any]) -> None:
+        self._options = options
+        self._reads, self._writes, self._usual = options.pop("pipes", ((), None, None))
+        self._formats: list[str] = [f".{given.lstrip('.').lower()}" for given in options.pop("format", [])]
+        self._names: dict[str, str] = {}
+        self._stack = ExitStack()
+        self._output: Path | None = None
+        self._stdout = sys.stdout
+
+    def __enter__(self) -> Self:
+        self._stdout = sys.stdout
+        with self._stack:  # only if what follows fails
+            self._enter()
+            self._stack = self._stack.pop_all()
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        with self._stack:
+            if kind is None and self._output is not None:
+                with self._output.open("rb") as file:
+                    shutil.copyfileobj(file, _binary(self._stdout), 1 << 20)
+                self._stdout.flush()
+
+    def renamed(self, text: str) -> str:
+        """Return a message that calls temporary files what they stand for."""
+        for path, name in self._names.items():
+            text = text.replace(path, name)
+        return text
+
+    def _enter(self) -> None:
+        target = self._options.get(self._writes or "")
+        if isinstance(target, str) and is_url(target):
+            raise ValueError(f"{target} is an address, and files are written here only; give a path")
+        sources = [name for name in self._reads if _asks(self._options.get(name))]
+        into = self._writes is not None and self._options[self._writes] == "-"
+        if len(sources) + sum(_asks(self._options[name]) > 1 for name in sources) > 1:
+            raise ValueError("- is given for two files, but there is one standard input; save one of them to a file")
+        if len(self._formats) > len(sources) + into:
+            raise ValueError(
+                f"--format {self._formats[0].lstrip('.')} says what - stands for, and "
+                + ("there is only one -; give one" if sources or into else "no file is -; names say it by their suffix")
+            )
+        if not (sources or into):
+            return
+        given = list(self._formats)
+        written = (given.pop() if given else self._usual) if into else None
+        if into and written is None:
+            raise ValueError(
+                "- is standard output here, whose format no name tells; add --format, such as --format tck"
+            )
+        if into and self._options.get("shards") is not None:
+            raise ValueError("--shards writes a folder, which standard output cannot be; give the folder's name")
+        if into and self._stdout.isatty():
+            raise ValueError("- is standard output, a terminal here; send it to a file or another program (> or |)")
+        folder = Path(self._stack.enter_context(tempfile.TemporaryDirectory(prefix="pvfiblets-pipe-")))
+        self._names[f"{folder}/"] = ""
+        for name in sources:
+            path = self._name(_spooled(folder, given[0] if given else None), _IN)
+            value = self._options[name]
+            self._options[name] = path if value == "-" else [path if one == "-" else one for one in value]
+        if into:
+            self._output = folder / f"standard-output.{str(written).lstrip('.')}"
+            self._options[self._writes] = self._name(self._output, _OUT)
+        self._stack.enter_context(redirect_stdout(_Renaming(sys.stderr if into else sys.stdout, self)))
+
+    def _name(self, path: Path, name: str) -> str:
+        self._names[path.name] = name
+        return str(path)
+
+
+def _asks(value: Any) -> int:
+    """How often ``-`` is given for an argument."""
+    return (value or []).count("-") if isinstance(value, list) else int(value == "-")
+
+
+def _spooled(folder: Path, suffix: str | None) -> Path:
+    """Put standard input into a file with the suffix of its format."""
+    if sys.stdin is None or sys.stdin.isatty():
+        raise ValueError("- is standard input, a terminal here; send a file or a program's output to it (< or |)")
+    path = folder / "standard-input"
+    with naming_target(folder / _IN), path.open("wb") as file:
+        shutil.copyfileobj(_binary(sys.stdin), file, 1 << 20)
+        size = file.tell()
+    if size == 0:
+        raise ValueError("standard input is empty; send a file or a program's output to it (< or |)")
+    suffix = suffix or suffix_by_content(path)
+    if suffix is None:
+        raise ValueError("standard input is of no format known by its first bytes; add --format, such as --format trk")
+    return path.rename(path.with_name(path.name + suffix))
+
+
+def _binary(stream: Any) -> IO[bytes]:
+    binary: IO[bytes] = stream.buffer
+    return binary
+
+
+class _Renaming:
+    """A text stream that calls temporary files what they stand for."""
+
+    def __init__(self, stream: Any, pipes: Pipes) -> None:
+        self._stream, self._pipes = stream, pipes
+
+    def write(self, text: str) -> int:
+        return int(self._stream.write(self._pipes.renamed(text)))
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)

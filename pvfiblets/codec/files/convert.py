@@ -1,0 +1,378 @@
+"""File to file, in memory that does not grow with the file."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import closing
+from dataclasses import replace
+from os import PathLike
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from ... import formats
+from ...errors import FormatError
+from ...streamlines import Streamlines
+from ...support.memory import fits
+from ...support.unfinished import remove_unfinished, scratch_beside
+from ...support.whole_files import naming_target
+from .. import parameters as limits
+from ..compress import (
+    CHUNK_POINTS,
+    PerPoint,
+    ValueBounds,
+    check_exact,
+    choose_per_point,
+    compress,
+    grows,
+    is_plain,
+    not_kept,
+    value_coders,
+)
+from ..exact import raw_bytes
+from ..fibletset import FibletSet
+from ..layout import WORDS
+from ..ordering import Order, check_order
+from ..parameters import CUT_SHARE, DEFAULT_ANGLE, Parameters, Survey, bounds_of, tell_far
+from ..point_values import PointValues, ValueCoder, value_columns, value_errors
+from ..progress import Progress, shown
+from .archive import Member, write_archive
+from .fiblets_file import CORE, OPTIONAL, index_members, make_header
+from .file_error import compare_file
+
+if TYPE_CHECKING:
+    from ..encode import Effort
+
+__all__ = ["compress_file"]
+
+SAMPLE_POINTS = 1_000_000
+"""About so many are compared where a sample will do."""
+
+
+def compress_file(
+    source: str | PathLike[str],
+    target: str | PathLike[str],
+    *,
+    step: float | Literal["auto"] = "auto",
+    max_error: float | None = None,
+    max_angle: float | None = DEFAULT_ANGLE,
+    effort: Effort = "fast",
+    order: Order = "input",
+    per_point: PerPoint = "fit",
+    per_point_bits: int = 8,
+    max_value_error: float | Mapping[str, float] | None = None,
+    exact: bool | None = None,
+    verify: Literal["all", "sample"] = "all",
+    prepare: Callable[[FibletSet], object] | None = None,
+    progress: Progress = False,
+) -> dict[str, Any]:
+    """Compress a tractogram file into a ``.fiblets`` file.
+
+    The source is read three times: for its bounds and steps, for coding, and to compare the finished file with it.
+    Where it is resampled it is read once more, to know the promise before corners are cut.
+
+    Parameters
+    ----------
+    source : str or PathLike
+        Any format that :func:`pvfiblets.iter_chunks` reads.
+    target : str or PathLike
+        A name ending in ``.fiblets``; it appears when it is whole.
+    step, max_error, max_angle, effort, per_point_bits, max_value_error, exact
+        As in :func:`pvfiblets.compress`.
+    per_point : sequence of str, or {'all', 'fit', 'none'}
+        As in :func:`pvfiblets.compress`, but for the default: per-point arrays are kept in their order, each that still
+        fits into 16 bytes a point. ``dropped`` names the others, in the result and in the file.
+    order : {'input'}
+        Another order needs all streamlines at once, and is refused here.
+    verify : {'all', 'sample'}
+        Compare all of the finished file with the source, or every so many-th streamline, about a million points in all.
+        That the promise is kept is seen to while coding, in either case.
+    prepare : callable, optional
+        Called with the coded set before it is written, unless it keeps every bit: what it keeps with the set, as
+        :func:`pvfiblets.regions.index_of` does, is in the file.
+    progress : bool or callable
+        Show a progress bar; or call this with what is being done and which share of it is, from 0 to 1 (0 while that
+        cannot be told). What it raises stops the work.
+
+    Returns
+    -------
+    dict
+        ``streamlines, points, fiblets, bytes`` (of the file), ``bytes_per_point, error_mm{max, mean, p999},
+        error_steps{...}, error_degrees{max, mean, p99}, error_values{name: {max, mean}}, compared_every`` (1 for all
+        streamlines), ``promise_mm, seconds`` (to read and code), ``points_per_second, seconds_to_measure, dropped,
+        per_point`` (names of the arrays kept), and ``exact`` (whether every bit of the points is).
+
+    Raises
+    ------
+    FormatError
+        If the source breaks its format.
+    ValueError
+        As :func:`pvfiblets.compress`.
+    """
+    started = time.perf_counter()
+    check_order(order)
+    if order != "input":
+        raise ValueError(
+            f"order is {order!r}, which needs all streamlines in memory; compress_file holds a part of them at a time: "
+            f"pvfiblets.compress(pvfiblets.read(source), order={order!r}).save(target) does it where memory suffices"
+        )
+
+    if verify not in ("all", "sample"):
+        raise ValueError(f"verify is {verify!r}; 'all' or 'sample' is needed")
+    check_exact(exact, step, order, max_error)
+    how = ValueBounds(per_point_bits, max_value_error)
+    remove_unfinished(Path(target).resolve().parent)
+    promise = None
+    if step != "auto":
+        from ..resample import resample
+
+        coarse = Survey()
+        for chunk in shown(formats.iter_chunks(source, CHUNK_POINTS), None, "surveying", progress):
+            coarse.add(resample(chunk, step))
+        promise = Parameters.choose(coarse, max_error).promise
+
+    def chunks() -> Iterator[Streamlines]:
+        for chunk in formats.iter_chunks(source, CHUNK_POINTS):
+            yield chunk if promise is None or step == "auto" else resample(chunk, step, CUT_SHARE * promise)
+
+    found = Survey()
+    raw, small = 0, []  # all chunks, while they are few enough to be kept exactly
+    names: tuple[str, ...] = ()
+    behind: dict[str, int] = {}
+    for n, chunk in enumerate(shown(chunks(), None, "surveying", progress)):
+        if n == 0:  # all chunks of a file have the same arrays
+            names = choose_per_point(chunk, per_point, per_point_bits)
+            behind = not_kept(chunk, names)
+        found.add(chunk, names)
+        raw += raw_bytes(chunk)
+        small.append(chunk)
+        if not exact and raw >= limits.EXACT_BELOW:
+            small.clear()
+    plain = is_plain(step, max_error, max_angle, effort, order)
+    if exact or (exact is None and plain and raw < limits.EXACT_BELOW):
+        return _keep_exactly(small, target, names, started)
+    small.clear()
+    from ..encode import Encoder  # which needs a compiler
+
+    if promise is None or step == "auto":
+        parameters = Parameters.choose(found, max_error)
+    else:
+        parameters = Parameters.of_resampled(found, promise, step)
+    encoder = Encoder(parameters, effort, max_angle)
+    coders = value_coders(found, found.values or names, how)
+    spooled = [0]
+    with (
+        naming_target(target, lambda: 2 * spooled[0]),  # once in parts, once put together
+        scratch_beside(Path(target)) as scratch,
+        closing(_Spool(scratch, spooled)) as spool,  # before its folder goes, whatever happens
+    ):
+        whole = _Whole(behind)
+        for chunk in shown(chunks(), found.n_points, "compressing", progress):
+            for records in encoder.parts(chunk):
+                for name in ("anchors", "decoding", "reach", "codes", "ends", "anchors_low"):
+                    if getattr(records, name) is not None:
+                        spool.add(f"{name}.npy", getattr(records, name))
+            for name, column in value_columns(chunk, names):
+                values = coders[name].code(column)
+                spool.add(name, values.codes)
+                whole.add_values(name, values)
+            whole.add(chunk)
+        spool.close()
+        # To keep them as they are, all are in memory at once, and their records.
+        if exact is None and step == "auto" and grows(encoder, raw) and fits(6 * raw):
+            return _keep_exactly(chunks(), target, names, started)
+        tell_far(found)
+        if not encoder.n_fiblets:
+            spool.add_empty(coders, whole)
+        pages, ids = encoder.page_table(), encoder.rank_to_id()
+        spool.add("pages.npy", pages)
+        if ids is not None:
+            spool.add("rank_to_id.npy", ids)
+        spool.close()
+        header_set = FibletSet(
+            parameters=encoder.parameters if promise is None else replace(encoder.parameters, promise=promise),
+            anchors=np.empty((encoder.n_fiblets, 0), np.uint32),
+            decoding=np.empty((0, WORDS["decoding"]), np.uint32),
+            reach=np.empty(0, np.uint16),
+            codes=np.empty(0, np.uint8),
+            ends=np.empty(0, np.uint32),
+            pages=pages,
+            bounds=bounds_of(found),
+            n_streamlines=encoder.n_streamlines,
+            per_point=whole.per_point,
+            per_streamline={k: np.concatenate(v) for k, v in whole.per_streamline.items()},
+            groups={k: np.concatenate(v) for k, v in whole.groups.items()},
+            per_group=whole.per_group,
+            affine=whole.affine,
+            space=whole.space,
+            dropped=whole.dropped,
+        )
+        members = spool.members()
+        header, more = make_header(header_set, {k: members.pop(k) for k in whole.per_point})
+        if prepare is not None:
+            mapped = spool.mapped(header_set)
+            prepare(mapped)
+            members |= index_members(mapped)
+        write_archive(target, header, members | more)
+    seconds = time.perf_counter() - started
+    originals = chunks() if promise is None else formats.iter_chunks(source, CHUNK_POINTS)
+    every = 1 if verify == "all" else max(1, round(found.n_points / SAMPLE_POINTS))
+    error = compare_file(originals, found.n_points, target, progress, every=every, max_points=CHUNK_POINTS)
+    size = Path(target).stat().st_size
+    return {
+        "streamlines": encoder.n_streamlines,
+        "points": encoder.n_points,
+        "fiblets": encoder.n_fiblets,
+        "bytes": size,
+        "bytes_per_point": size / max(encoder.n_points, 1),
+        **error.summary(),
+        "compared_every": every,
+        "promise_mm": header_set.promise,
+        "seconds": seconds,
+        "points_per_second": encoder.n_points / seconds,
+        "seconds_to_measure": time.perf_counter() - started - seconds,
+        "dropped": whole.dropped,
+        "per_point": list(whole.per_point),
+        "exact": False,
+    }
+
+
+def _keep_exactly(
+    chunks: Iterable[Streamlines], target: str | PathLike[str], names: tuple[str, ...], started: float
+) -> dict[str, Any]:
+    """Write a file that keeps every bit of the points, and say what :func:`compress_file` says."""
+    whole = Streamlines.concatenate(chunks)
+    fiblets = compress(whole, exact=True, per_point=names)
+    with naming_target(target):
+        fiblets.save(target)
+    seconds = time.perf_counter() - started
+    back = FibletSet.open(target)
+    if not (np.array_equal(back.decompress().points, whole.points) and np.array_equal(back.offsets(), whole.offsets)):
+        raise FormatError(target, None, "other points than were written", "the same: is the disk damaged?")
+    none = {"max": 0.0, "mean": 0.0}
+    size = Path(target).stat().st_size
+    return {
+        "streamlines": len(whole),
+        "points": whole.n_points,
+        "fiblets": fiblets.n_fiblets,
+        "bytes": size,
+        "bytes_per_point": size / max(whole.n_points, 1),
+        "error_mm": {**none, "p999": 0.0},
+        "error_steps": {**none, "p999": 0.0},
+        "error_degrees": {**none, "p99": 0.0},
+        "error_values": value_errors(fiblets.per_point),
+        "compared_every": 1,
+        "promise_mm": 0.0,
+        "seconds": seconds,
+        "points_per_second": whole.n_points / seconds,
+        "seconds_to_measure": time.perf_counter() - started - seconds,
+        "dropped": fiblets.dropped,
+        "per_point": list(fiblets.per_point),
+        "exact": True,
+    }
+
+
+class _Whole:
+    """What is kept whole: per-streamline data, groups and the header, gathered over chunks."""
+
+    def __init__(self, dropped: dict[str, int]) -> None:
+        self.n = 0
+        self.per_point: dict[str, PointValues] = {}
+        self._values_of: dict[str, int] = {}
+        self.per_streamline: dict[str, list[npt.NDArray[Any]]] = {}
+        self.groups: dict[str, list[npt.NDArray[Any]]] = {}
+        self.per_group: dict[str, dict[str, Any]] = {}
+        self.affine: npt.NDArray[np.float64] = np.eye(4)
+        self.space: dict[str, Any] = {}
+        self.dropped = dict(dropped)
+
+    def add(self, chunk: Streamlines) -> None:
+        for name, values in chunk.per_streamline.items():
+            self.per_streamline.setdefault(name, []).append(np.array(values))
+        for name, members in chunk.groups.items():
+            self.groups.setdefault(name, []).append(np.asarray(members, np.int64) + self.n)
+        for name, data in chunk.per_group.items():
+            self.per_group.setdefault(name, {}).update(data)
+        if self.n == 0:
+            self.affine, self.space = np.asarray(chunk.affine, np.float64), dict(chunk.space)
+        for reason, count in chunk.dropped.items():
+            self.dropped[reason] = self.dropped.get(reason, 0) + int(count)
+        self.n += len(chunk)
+
+    def add_values(self, name: str, values: PointValues) -> None:
+        """Remember a per-point array's table and errors, not its codes."""
+        n, before = len(values.codes), self.per_point.get(name, values)
+        had = self._values_of.get(name, 0)
+        mean = (before.mean_error * had + values.mean_error * n) / max(had + n, 1)
+        worst = max(before.max_error, values.max_error)
+        self._values_of[name] = had + n
+        self.per_point[name] = replace(values, codes=values.codes[:0], max_error=worst, mean_error=mean)
+
+
+class _Spool:
+    """Arrays that grow on disk, because a zip's members need their shapes before their bytes."""
+
+    def __init__(self, folder: Path, total: list[int]) -> None:
+        self._folder, self._total = folder, total
+        self._streams: dict[str, IO[bytes]] = {}
+        self._paths: dict[str, Path] = {}
+        self._shapes: dict[str, tuple[np.dtype[Any], tuple[int, ...]]] = {}
+
+    def add(self, name: str, rows: npt.NDArray[Any]) -> None:
+        if name not in self._paths:
+            self._paths[name] = self._folder / str(len(self._paths))
+        if name not in self._streams:
+            self._streams[name] = self._paths[name].open("ab")
+        before = self._shapes[name][1][0] if name in self._shapes else 0
+        self._shapes[name] = (rows.dtype, (before + len(rows), *rows.shape[1:]))
+        self._total[0] += rows.nbytes
+        self._streams[name].write(np.ascontiguousarray(rows).tobytes())
+
+    def add_empty(self, coders: dict[str, ValueCoder], whole: _Whole) -> None:
+        """Empty arrays, for a source without points."""
+        for name, dtype, shape in (
+            ("anchors.npy", np.uint32, (0, WORDS["anchors"])),
+            ("decoding.npy", np.uint32, (0, WORDS["decoding"])),
+            ("reach.npy", np.uint16, (0,)),
+            ("codes.npy", np.uint8, (0,)),
+            ("ends.npy", np.uint32, (0,)),
+        ):
+            if name not in self._shapes:
+                self.add(name, np.empty(shape, dtype))
+        for name, coder in coders.items():
+            if name not in self._shapes:
+                empty = coder.code(np.empty(0, coder.kind))
+                self.add(name, empty.codes)
+                whole.add_values(name, empty)
+
+    def close(self) -> None:
+        for stream in self._streams.values():
+            stream.close()
+        self._streams.clear()
+
+    def members(self) -> dict[str, Member]:
+        return {name: self._member(name) for name in self._paths}
+
+    def mapped(self, header_set: FibletSet) -> FibletSet:
+        """Return a set whose arrays are those on disk, without values of points."""
+        there = (name for name in (*CORE, *OPTIONAL) if f"{name}.npy" in self._shapes)
+        arrays: dict[str, Any] = {name: self._map(f"{name}.npy") for name in there}
+        return replace(header_set, **arrays | {"per_point": {}})
+
+    def _map(self, name: str) -> npt.NDArray[Any]:
+        dtype, shape = self._shapes[name]
+        return np.memmap(self._paths[name], dtype, "r", 0, shape) if math.prod(shape) else np.empty(shape, dtype)
+
+    def _member(self, name: str) -> Member:
+        dtype, shape = self._shapes[name]
+
+        def pieces() -> Iterator[bytes]:
+            with self._paths[name].open("rb") as stream:
+                while piece := stream.read(1 << 24):
+                    yield piece
+
+        return Member(dtype, shape, pieces)

@@ -1,0 +1,41 @@
+"""Compiled kernels: distances between original and decoded points, and sums of errors."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numba
+import numpy as np
+
+from ..jit import kernel, parallel_kernel
+
+__all__ = ["add_up", "distances"]
+
+
+@parallel_kernel
+def distances(true: Any, drawn: Any, single: bool, distance: Any) -> None:
+    """Distance of every decoded point from its original."""
+    for i in numba.prange(len(true)):
+        square = 0.0
+        for j in range(3):
+            value = drawn[i, j]
+            delta = np.float64(true[i, j]) - (np.float64(np.float32(value)) if single else np.float64(value))
+            square += delta * delta
+        distance[i] = math.sqrt(square)
+
+
+@kernel
+def add_up(values: Any, weights: Any, scale: float, up: bool, histogram: Any) -> Any:
+    """Sum, by weights, and largest of some values, which are counted into a histogram."""
+    total = largest = 0.0
+    last = len(histogram) - 1
+    for i in range(len(values)):
+        value = values[i]
+        place = value * scale
+        if up:
+            place = math.ceil(place)
+        histogram[int(place) if place < last else last] += weights[i]
+        total += value * weights[i]
+        largest = max(largest, value)
+    return total, largest

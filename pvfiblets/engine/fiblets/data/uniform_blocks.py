@@ -1,0 +1,143 @@
+"""Uniform blocks that every pass of a renderer shares: what the set's numbers mean, and what a camera makes of them."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import moderngl
+import numpy as np
+import numpy.typing as npt
+
+from ....codec import direction_codebook, layout
+from ...clipping import CLIP_PLANES_BLOCK, clip_planes_block
+from ...frame import FRAME_BLOCK, frame_block, segment_pixels
+from ...gl.bindings import BLOCKS
+from ...gl.uniform_struct import Field, UniformStruct
+from ..line_tubes import TUBES_BLOCK, tubes_block
+
+if TYPE_CHECKING:
+    from ....codec.fibletset import FibletSet
+    from ...view import View
+    from ..style import FibletStyle
+    from .chunks import Chunk
+
+__all__ = ["CODING_BLOCK", "ROTATIONS_BLOCK", "SharedBlocks", "decoding_features"]
+
+CODING_BLOCK = UniformStruct(
+    "Coding",
+    Field("anchor_scale", "vec3", "mm per anchor integer, along each axis"),
+    Field("radius_scale", "float", "mm per unit of a capsule's radius"),
+    Field("step_low", "float", "mm: the least step of direction fiblets"),
+    Field("step_span", "float", "mm from there to the greatest"),
+    Field("lattice_edge", "float", "mm"),
+    Field("end_vector_scale", "float", "mm per unit of an end vector"),
+    Field("rotation_scales", "vec4[4]", "of each cap angle, by fours: what the integers of its rotations are times"),
+)
+ROTATIONS_BLOCK = UniformStruct(
+    "Rotations", Field("rotations", "uvec4[1024]", "256 words a cap angle, by fours, of codec/direction_codebook.py")
+)
+
+Array = npt.NDArray[np.float64]
+
+
+def decoding_features(fiblets: FibletSet, chunks: list[Chunk]) -> list[str]:
+    """Return what fiblets need to be decoded, keys of :data:`pvfiblets.engine.gl.shaders.FEATURES`."""
+    kinds = frozenset().union(*(chunk.kinds for chunk in chunks))
+    wanted = {
+        "ANCHORS_LOW": fiblets.anchors_low is not None,
+        "DIRECTION": layout.Kind.DIRECTION in kinds,
+        "LATTICE": bool(kinds - {layout.Kind.DIRECTION}),
+        "WIDE_LATTICE": layout.Kind.WIDE in kinds,
+        "RANK_TO_ID": fiblets.rank_to_id is not None,
+    }
+    return [name for name, on in wanted.items() if on]
+
+
+class SharedBlocks:
+    """The blocks of one set.
+
+    Parameters
+    ----------
+    ctx : moderngl.Context
+    fiblets : FibletSet
+
+    Attributes
+    ----------
+    buffers : dict of str to moderngl.Buffer
+        ``rotations``, ``coding``, ``frame``, and ``tubes`` and ``clip_planes`` while there are any.
+    """
+
+    def __init__(self, ctx: moderngl.Context, fiblets: FibletSet) -> None:
+        self._ctx = ctx
+        self._fiblets = fiblets
+        self.top = 2**32 - 1 if fiblets.anchors_low is not None else 2**16 - 1
+        self._view: View | None = None
+        coding = CODING_BLOCK.pack(
+            anchor_scale=fiblets.anchor_scale,
+            radius_scale=fiblets.reach_scale,
+            step_low=fiblets.step_lo,
+            step_span=fiblets.step_hi - fiblets.step_lo,
+            lattice_edge=fiblets.lattice,
+            end_vector_scale=fiblets.parameters.end_scale,
+            rotation_scales=direction_codebook.packed_scales().reshape(4, 4),
+        )
+        self.buffers: dict[str, moderngl.Buffer] = {
+            "rotations": ctx.buffer(ROTATIONS_BLOCK.pack(rotations=direction_codebook.packed().reshape(-1, 4))),
+            "coding": ctx.buffer(coding),
+            "frame": ctx.buffer(bytes(FRAME_BLOCK.nbytes)),
+        }
+
+    @cached_property
+    def place(self) -> tuple[Array, Array, int]:
+        """Where anchors count from and mm per anchor integer, ``(3,)`` float64, and the largest such integer."""
+        fiblets = self._fiblets
+        return np.asarray(fiblets.origin, np.float64), np.asarray(fiblets.anchor_scale, np.float64), self.top
+
+    def bind(self) -> None:
+        """Bind those that are always there."""
+        for name, block in (("frame", "Frame"), ("coding", "Coding"), ("rotations", "Rotations")):
+            self.buffers[name].bind_to_uniform_block(BLOCKS[block])
+
+    def forget_camera(self) -> None:
+        """Have positions count from the first anchor's, so that what is measured does not depend on the camera."""
+        self.buffers["frame"].write(bytes(FRAME_BLOCK.nbytes))
+
+    def write_camera(self, view: View, style: FibletStyle) -> tuple[bool, bool]:
+        """Bring the blocks of the camera up to date; say whether anything may cross the edges, or planes."""
+        self._view = view
+        block, margin = frame_block(view, style, *self.place)
+        radius = self._fiblets.parameters.largest_radius
+        self.buffers["frame"].write(block)
+        if style.radius is None:
+            self._drop("tubes")
+        else:
+            self._write("tubes", TUBES_BLOCK, tubes_block(view, style.radius, *self.place))
+            radius += style.radius
+        planes = clip_planes_block(view, style.half_width, *self.place, radius)
+        if planes is None:
+            self._drop("clip_planes")
+        else:
+            self._write("clip_planes", CLIP_PLANES_BLOCK, planes)
+        return margin < radius, planes is not None
+
+    def segment(self) -> float:
+        """Return roughly how many pixels the longest segments take in the last view."""
+        # Where steps vary, four times their mean stands for the longest.
+        return 0.0 if self._view is None else segment_pixels(self._view, *self.place, 4.0 * self._fiblets.step)
+
+    def _write(self, name: str, struct: UniformStruct, data: bytes) -> None:
+        if name not in self.buffers:
+            self.buffers[name] = self._ctx.buffer(reserve=struct.nbytes)
+        self.buffers[name].write(data)
+        self.buffers[name].bind_to_uniform_block(BLOCKS[struct.name])
+
+    def _drop(self, name: str) -> None:
+        if name in self.buffers:
+            self.buffers.pop(name).release()
+
+    def release(self) -> None:
+        """Give the buffers back; twice is harmless."""
+        for buffer in self.buffers.values():
+            buffer.release()
+        self.buffers.clear()

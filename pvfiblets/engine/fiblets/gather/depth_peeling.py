@@ -1,0 +1,265 @@
+"""What lies behind the nearest: several layers of a picture, the nearest first, for lines that one looks through.
+
+Layer 0 is the picture itself. Layer k is drawn like a picture, but of every pixel only what lies behind layer k - 1
+(``shaders/fiblets/segments/peel.glsl``; the method is depth peeling, Everitt 2001): so there is no order to sort lines
+into, and what a pixel shows does not depend on the order of streamlines. All layers together are exact as far as they
+reach; what lies behind the last one is not there.
+
+Each layer is drawn from all fiblets in the view volume. What hides a fiblet of a layer is that layer's own depth so
+far, by two-phase culling as of the picture itself; what the last picture's same layer showed is drawn first. So each
+layer has a pipeline and a pyramid of its own. The layers are kept until the picture changes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import moderngl
+
+from ...errors import EngineError, GPUMemoryError
+from ...gbuffer import RELIEF, GBuffer
+from ...gl.bindings import LAYER_COPY, PEELING
+
+if TYPE_CHECKING:
+    from ...culling import Occlusion
+    from ...gl.moderngl_extras import GLExtras
+    from ...gl.shaders import Programs
+    from ...view import View
+    from ..pipelines import DrawRequest, Pipeline
+    from ..style import FibletStyle
+
+__all__ = ["MOST_LAYERS", "LayeredBuffer", "Layers", "Peel"]
+
+MOST_LAYERS = 64
+
+
+
+
+class LayeredBuffer:
+    """Layers of a picture: texture arrays with the content of the G-buffer's textures, layer 0 the nearest.
+
+    Parameters
+    ----------
+    ctx : moderngl.Context
+    gl : GLExtras
+    target : GBuffer
+        Of the same size and kind as what is to be kept.
+    count : int
+        Layers.
+
+    Raises
+    ------
+    EngineError
+        If memory does not suffice.
+
+    Attributes
+    ----------
+    size : tuple of int
+    count : int
+    depth, ids, position : moderngl.TextureArray
+        See :mod:`pvfiblets.engine.gbuffer`. A layer is empty where those before it left nothing.
+    across : moderngl.TextureArray or None
+        If the G-buffer has it.
+    """
+
+    def __init__(self, ctx: moderngl.Context, gl: GLExtras, target: GBuffer, count: int) -> None:
+        self.size, self.count = target.size, count
+        self.relief = target.relief
+        self.nbytes = 0
+        self._things: list[Any] = []
+        self.across: moderngl.TextureArray | None = None
+        try:
+            self.depth = self._array(ctx, 1, "u4")
+            self.ids = self._array(ctx, 2, "u4")
+            self.position = self._array(ctx, 2, "f4")
+            if self.relief is not None:
+                self.across = self._array(ctx, 1, RELIEF[self.relief])
+            self._framebuffers = [self._framebuffer(ctx, gl, target, layer) for layer in range(count)]
+        except moderngl.Error as error:
+            self.release()
+            width, height = self.size
+            raise GPUMemoryError(f"no memory for {count} layers of {width} x {height} pixels: {error}") from error
+
+    def _array(self, ctx: moderngl.Context, components: int, dtype: str) -> moderngl.TextureArray:
+        array = ctx.texture_array((*self.size, self.count), components, dtype=dtype)
+        array.filter = moderngl.NEAREST, moderngl.NEAREST
+        self._things.append(array)
+        self.nbytes += self.size[0] * self.size[1] * self.count * components * int(dtype[1])
+        return array
+
+    @property
+    def arrays(self) -> dict[str, moderngl.TextureArray]:
+        """All of them, by name."""
+        across = {} if self.across is None else {"across": self.across}
+        return {"depth": self.depth, "ids": self.ids, "position": self.position, **across}
+
+    def _framebuffer(self, ctx: moderngl.Context, gl: GLExtras, target: GBuffer, layer: int) -> moderngl.Framebuffer:
+        # moderngl attaches whole textures: those of the picture hold the places.
+        framebuffer = ctx.framebuffer([getattr(target, name) for name in self.arrays])
+        self._things.append(framebuffer)
+        for attachment, array in enumerate(self.arrays.values()):
+            gl.attach_layer(framebuffer, array, layer, attachment)
+        return framebuffer
+
+    def keep(self, ctx: moderngl.Context, gl: GLExtras, programs: Programs, drawn: GBuffer, layer: int) -> None:
+        """Copy a picture into a layer."""
+        features = {None: [], "across": ["CROSS_LINE"], "normal": ["CROSS_LINE", "TUBES"]}[self.relief]
+        program, array = programs.screen("fiblets/layers/copy.frag", features)
+        for name in self.arrays:
+            getattr(drawn, name).use(LAYER_COPY[name])
+            program[f"drawn_{name}"] = LAYER_COPY[name]
+        with gl.framebuffers_kept():
+            ctx.enable_only(moderngl.NOTHING)
+            self._framebuffers[layer].use()
+            array.render(moderngl.TRIANGLES, vertices=3)
+
+    def release(self) -> None:
+        """Give the textures back; twice is harmless."""
+        for thing in reversed(self._things):
+            thing.release()
+        self._things.clear()
+
+
+@dataclass(frozen=True)
+class Peel:
+    """What a picture is drawn behind.
+
+    Attributes
+    ----------
+    layers : LayeredBuffer
+    drawn : int
+        How many of them there are so far.
+    """
+
+    layers: LayeredBuffer
+    drawn: int
+
+    def bind(self, program: Any) -> None:
+        """Bind the layers, and tell a program how many count."""
+        if "peeled_layers" in program:
+            program["peeled_layers"] = self.drawn
+            self.layers.depth.use(PEELING["peeled_depth"])
+            self.layers.ids.use(PEELING["peeled_ids"])
+            self.layers.position.use(PEELING["peeled_position"])
+
+
+class _Stage:
+    """What draws one layer, and remembers its last picture."""
+
+    def __init__(self, ctx: moderngl.Context, pipeline: Pipeline, occlusion: Occlusion | None) -> None:
+        self._ctx = ctx
+        self.pipeline = pipeline
+        self.occlusion = occlusion
+        self.target: GBuffer | None = None
+
+    def draw(self, request: DrawRequest, peel: Peel, view: View, style: FibletStyle) -> GBuffer:
+        """Draw what lies behind some layers."""
+        if self.target is not None and self.target.size != request.target.size:
+            self.target.release()
+            self.target = None
+        if self.target is None:
+            self.target = GBuffer(self._ctx, request.target.size)
+        try:
+            self.target.want_relief(self._ctx, request.target.relief)
+        except EngineError:
+            self.target = None  # its textures are given back
+            raise
+        if self.occlusion is not None:
+            self.occlusion.before(self.target, view, style)
+        self.pipeline.draw(replace(request, target=self.target, occlusion=self.occlusion, peel=peel))
+        if self.occlusion is not None:
+            self.occlusion.after(self.target, view, style)
+        self.target.generation += 1
+        return self.target
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of GPU memory."""
+        held = sum(buffer.size for buffer in self.pipeline.buffers.values())
+        return held + sum(thing.nbytes for thing in (self.target, self.occlusion) if thing is not None)
+
+    def release(self) -> None:
+        """Give everything on the GPU back; twice is harmless."""
+        self.pipeline.release()
+        for thing in (self.target, self.occlusion):
+            if thing is not None:
+                thing.release()
+        self.target = None
+
+
+class Layers:
+    """Draws layers behind a picture and keeps them.
+
+    Parameters
+    ----------
+    ctx : moderngl.Context
+    gl : GLExtras
+    programs : Programs
+    make : callable
+        Makes a pipeline, and what it culls by, if anything.
+    """
+
+    def __init__(
+        self,
+        ctx: moderngl.Context,
+        gl: GLExtras,
+        programs: Programs,
+        make: Callable[[], tuple[Pipeline, Occlusion | None]],
+    ) -> None:
+        self._ctx = ctx
+        self._gl = gl
+        self._programs = programs
+        self._make = make
+        self._stages: list[_Stage] = []
+        self._held: LayeredBuffer | None = None
+        self._drawn: tuple[int, int] | None = None
+
+    def of(
+        self, nearest: GBuffer, count: int, view: View, style: FibletStyle, make_job: Callable[[], DrawRequest]
+    ) -> LayeredBuffer:
+        """Return the layers of a picture, drawn unless they are there."""
+        if not 2 <= count <= MOST_LAYERS:
+            raise ValueError(f"{count} layers are asked for; give 2 to {MOST_LAYERS}")
+        if self._held is not None and self._drawn == (nearest.generation, count):
+            return self._held
+        self._drawn = None
+        held = self._resize(nearest, count)
+        while len(self._stages) < count - 1:
+            self._stages.append(_Stage(self._ctx, *self._make()))
+        while len(self._stages) >= count:
+            self._stages.pop().release()
+        request = make_job()
+        held.keep(self._ctx, self._gl, self._programs, nearest, 0)
+        for layer, stage in enumerate(self._stages, 1):
+            drawn = stage.draw(request, Peel(held, layer), view, style)
+            held.keep(self._ctx, self._gl, self._programs, drawn, layer)
+        self._drawn = nearest.generation, count
+        return held
+
+    def _resize(self, nearest: GBuffer, count: int) -> LayeredBuffer:
+        """Have textures for a picture like this one."""
+        held = self._held
+        wanted = nearest.size, count, nearest.relief
+        if held is None or (held.size, held.count, held.relief) != wanted:
+            if held is not None:
+                held.release()
+                self._held = None
+            self._held = held = LayeredBuffer(self._ctx, self._gl, nearest, count)
+        return held
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of GPU memory."""
+        held = 0 if self._held is None else self._held.nbytes
+        return held + sum(stage.nbytes for stage in self._stages)
+
+    def release(self) -> None:
+        """Give everything on the GPU back; twice is harmless."""
+        for stage in self._stages:
+            stage.release()
+        self._stages.clear()
+        if self._held is not None:
+            self._held.release()
+        self._held = self._drawn = None

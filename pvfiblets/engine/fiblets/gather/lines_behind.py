@@ -1,0 +1,243 @@
+"""`LinesBehind`: what a renderer of fiblets draws of the lines behind the nearest, layers and sums."""
+
+from __future__ import annotations
+
+import abc
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import moderngl
+
+from ...drawable import Drawable
+from ...view import View
+from ..style import FibletStyle
+from .depth_peeling import LayeredBuffer, Layers
+
+if TYPE_CHECKING:
+    from ...culling import Occlusion
+    from ...gbuffer import GBuffer
+    from ..data.uniform_blocks import SharedBlocks
+    from ..pipelines import DrawRequest, Pipeline
+    from .gatherer import Gatherer
+    from .gathering import Gathered, SliceDistances
+    from .paint import Paint
+
+__all__ = ["LinesBehind"]
+
+
+class LinesBehind(Drawable[FibletStyle]):
+    """The part of a renderer that looks behind its picture. What it keeps is made when it is first asked for.
+
+    Parameters
+    ----------
+    ctx, constants, lender
+        As of `Drawable`.
+    """
+
+    _shared: SharedBlocks
+
+    def __init__(self, ctx: moderngl.Context, constants: Any, lender: Drawable[Any] | None = None) -> None:
+        super().__init__(ctx, constants, lender)
+        self._features_behind: frozenset[str] = frozenset()
+        self._layers: Layers | None = None
+        self._gatherer: Gatherer | None = None
+
+    @abc.abstractmethod
+    def _request(self, view: View, style: FibletStyle, target: GBuffer) -> DrawRequest:
+        """Bring everything up to date that a view and a style need, bind it, and say what is to be drawn."""
+
+    @abc.abstractmethod
+    def _make_pipeline(self) -> Pipeline:
+        """Make one with a record of fiblets of its own."""
+
+    @abc.abstractmethod
+    def _make_stage(self) -> tuple[Pipeline, Occlusion | None]:
+        """Make what draws one layer."""
+
+    def render_layers(self, view: View, style: FibletStyle | None = None, count: int = 4) -> LayeredBuffer:
+        """Draw what lies behind the nearest too; nothing is done that has been done for this view and style.
+
+        Parameters
+        ----------
+        view : View
+        style : FibletStyle, optional
+        count : int
+            Layers, the picture of :meth:`render` included.
+
+        Returns
+        -------
+        LayeredBuffer
+            The renderer's own (:mod:`pvfiblets.engine.fiblets.gather.depth_peeling`); the same object until the size
+            changes.
+
+        Raises
+        ------
+        EngineError
+            As :meth:`render`.
+        ValueError
+            If the number of layers is not from 2 to 64.
+        """
+        style = style or FibletStyle()
+        nearest = self.render(view, style)
+        if self._layers is None:
+            self._layers = self._keep(Layers(self._ctx, self._gl, self._programs, self._make_stage), "layers")
+        with self._noting():
+            return self._layers.of(nearest, count, view, style, lambda: self._request(view, style, nearest))
+
+    def drop_layers(self) -> None:
+        """Give back what :meth:`render_layers` keeps; twice is harmless."""
+        self._drop_one(self._layers)
+        self._layers = None
+
+    def gather(
+        self,
+        view: View,
+        style: FibletStyle | None = None,
+        paint: Paint | None = None,
+        *,
+        sliced: bool = False,
+        outside: Callable[[], moderngl.Texture | None] | None = None,
+        state: Any = None,
+    ) -> Gathered:
+        """Add up what all lines show in each pixel; nothing is done that has been done for this picture.
+
+        Parameters
+        ----------
+        view : View
+        style : FibletStyle, optional
+        paint : Paint, optional
+            Their colours. Without, lines are counted.
+        sliced : bool
+            Whether the nearest line is left out and the others are parted by how far behind it they are.
+        outside : callable, optional
+            Returns depth keys of other things in the scene, r32ui of the view's size, or None; called if something is
+            to be done. Lines behind it are left out.
+        state : object
+            Another one where that depth may be another.
+
+        Returns
+        -------
+        Gathered
+            The renderer's own (:mod:`pvfiblets.engine.fiblets.gather.gathering`).
+
+        Raises
+        ------
+        EngineError
+            As :meth:`render`.
+        """
+        from .gathering import SLICES
+        from .paint import Paint
+
+        style = style or FibletStyle()
+        nearest = self.render(view, style)
+        gatherer = self._with_gatherer()
+        with self._noting():
+            return gatherer.of(
+                nearest,
+                paint or Paint(),
+                SLICES if sliced else 1,
+                self.slice_distances(view),
+                lambda: self._request(view, style, nearest),
+                outside,
+                state,
+            )
+
+    def slice_distances(self, view: View) -> SliceDistances:
+        """Return how slices of a view's depth lie, the same for all parts of a set."""
+        from .gathering import SliceDistances
+
+        origin, scale, top = self._shared.place
+        return SliceDistances.of(view, origin, origin + top * scale)
+
+    def gathers_words(self, view: View, style: FibletStyle, nearest: GBuffer) -> bool:
+        """Say whether sums of such a picture are words, not floats."""
+        return self._with_gatherer().gathers_words(self._request(view, style, nearest))
+
+    def gather_into(
+        self,
+        held: Gathered,
+        view: View,
+        style: FibletStyle,
+        paint: Paint,
+        nearest: GBuffer,
+        hides: moderngl.Texture | None,
+    ) -> None:
+        """Add what all lines show to sums of a set of which this is a part.
+
+        Parameters
+        ----------
+        held : Gathered
+        view, style, paint
+            As of :meth:`gather`.
+        nearest : GBuffer
+            The picture of all parts. Where there are slices, a line of the part's own picture that is as near is left
+            out.
+        hides : moderngl.Texture, optional
+            Depth keys of what hides lines.
+        """
+        picture = self.render(view, style) if held.slices > 1 else nearest
+        gatherer = self._with_gatherer()
+        with self._noting():
+            gatherer.add_to(held, paint, nearest, picture, self._request(view, style, picture), hides)
+
+    def _with_gatherer(self) -> Gatherer:
+        from .gatherer import Gatherer
+
+        if self._gatherer is None:
+            maker = Gatherer(self._ctx, self._gl, self._programs, self._make_pipeline)
+            self._gatherer = self._keep(maker, "gathered")
+        return self._gatherer
+
+    def most_lines(self, *, wait: bool = True) -> float:
+        """Return the greatest weight of a pixel in what :meth:`gather` made last: lines, where it was not sliced.
+
+        Parameters
+        ----------
+        wait : bool
+            Whether to wait for the GPU; if not, it may be that of some pictures earlier.
+        """
+        if self._gatherer is None:
+            return 0.0
+        with self._noting():
+            return self._gatherer.greatest(wait=wait)
+
+    def drop_gathered(self) -> None:
+        """Give back what :meth:`gather` keeps; twice is harmless."""
+        self._drop_one(self._gatherer)
+        self._gatherer = None
+
+    @contextmanager
+    def _noting(self) -> Iterator[None]:
+        """Tell the features of what is drawn meanwhile with those of the picture."""
+        with self._programs.noting() as features:
+            yield
+        self._features_behind |= features
+
+    def _drop_one(self, kept: Any) -> None:
+        if kept is not None:
+            self._drop(kept)
+        self._features_behind = frozenset()
+
+    def explain(self, *, counts: bool = True) -> dict[str, Any]:
+        """Say what the last redraw was made of, and wait for it to end.
+
+        Parameters
+        ----------
+        counts : bool
+            Whether to count fiblets, which takes a pass over all of them and reads the picture back.
+
+        Returns
+        -------
+        dict
+            As :meth:`.Drawable.explain`, the features of layers included; ``fiblets_total``, ``share``; ``fiblets``:
+            ``total``, ``in_frustum``, ``drawn`` and ``visible`` (:mod:`pvfiblets.engine.fiblets.census`), None where
+            not known.
+        """
+        return super().explain(counts=counts) | {"features": sorted(self._features | self._features_behind)}
+
+    def release(self) -> None:
+        """Give back everything on the GPU; twice is harmless."""
+        super().release()
+        self._layers = self._gatherer = None
+        self._features_behind = frozenset()

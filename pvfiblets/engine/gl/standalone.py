@@ -1,0 +1,39 @@
+"""An OpenGL context without a window, for what draws on its own: the command line, reports and benchmarks."""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+from ..errors import EngineError
+
+__all__ = ["bare_context"]
+
+# Some drivers give the version that is asked for and no later one. 3.3 is the least that any pipeline needs; 3.2, which
+# VTK itself needs, is tried so as to be able to say so.
+VERSIONS = (460, 450, 430, 410, 330, 320)
+
+
+def bare_context() -> Any:
+    """Return a moderngl context without a window: through EGL where there is one, else as the system has it.
+
+    Raises
+    ------
+    EngineError
+        If there is no OpenGL.
+    """
+    import moderngl
+
+    problems = []
+    headless: list[dict[str, Any]] = [{"backend": "egl"}] if sys.platform.startswith("linux") else []
+    for settings in [*headless, {}]:
+        for version in VERSIONS:
+            try:
+                return moderngl.create_standalone_context(require=version, **settings)
+            except Exception as error:  # noqa: BLE001  the back ends raise bare Exceptions
+                problems.append(f"{settings.get('backend', 'default')}: {error}")
+    tried = "; ".join(dict.fromkeys(problems))
+    raise EngineError(
+        f"no OpenGL {VERSIONS[-1] / 100:.1f} or later could be started on this machine ({tried}). Install a graphics "
+        "driver, or Mesa's software OpenGL (Debian: libegl1 libegl-mesa0 libgl1-mesa-dri)"
+    )

@@ -1,0 +1,82 @@
+"""How much one call may ask of a graphics card, so that it ends within a second on the slowest that one meets.
+
+A system takes a card for hung, and resets it with all that it holds, when it cannot be interrupted for some seconds
+(two on Windows), and what it surely is interrupted between are calls. While one runs, nothing else is drawn either: no
+mouse pointer moves.
+
+What cards do in a second is an estimate. Mesa's software OpenGL decodes and draws 34 million segments a second on two
+cores of some 0.15 TFLOPS; others are taken to do as much for each of theirs:
+
+============  ==============================  =======  ==================  ==========================
+card          the slowest that is thought of  TFLOPS   segments a second   texture samples a second
+============  ==============================  =======  ==================  ==========================
+integrated    Intel UHD 620                   0.4      90 million          1 thousand million
+of its own    NVIDIA GTX 1650                 3        700 million         8 thousand million
+============  ==============================  =======  ==================  ==========================
+
+A call has fiblets of 60 segments for 0.7 s, if all are in view and none is hidden; or samples along rays for half a
+second. Software has no such limits: nobody takes a processor for hung.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import NamedTuple
+
+import moderngl
+
+from .passes import is_software
+
+__all__ = ["DISCRETE", "INTEGRATED", "SOFTWARE", "WorkLimits"]
+
+
+class WorkLimits(NamedTuple):
+    """What a call may have at most.
+
+    Attributes
+    ----------
+    fiblets : int
+        To be decoded and drawn.
+    samples : int
+        Along rays through volumes, of all pixels.
+    """
+
+    fiblets: int
+    samples: int
+
+    @classmethod
+    def of(cls, ctx: moderngl.Context) -> WorkLimits:
+        """Return the limits for a context's card; one of no known name counts as integrated."""
+        if is_software(ctx):
+            return SOFTWARE
+        name = f"{ctx.info['GL_VENDOR']} {ctx.info['GL_RENDERER']}"
+        return DISCRETE if _DISCRETE.search(name) else INTEGRATED
+
+    def bands(self, size: tuple[int, int], samples: float) -> list[tuple[int, int, int, int]]:
+        """Cut a picture into bands of rows for a call each: x, y, width, height in pixels."""
+        width, height = size
+        rows = max(int(self.samples / max(width * samples, 1.0)), 1)
+        return [(0, first, width, min(rows, height - first)) for first in range(0, height, rows)]
+
+    def draw(self, framebuffer: moderngl.Framebuffer, samples: float, render: Callable[[], object]) -> None:
+        """Draw a picture of rays in so many calls; the framebuffer has no scissor afterwards."""
+        bands = self.bands(framebuffer.size, samples)
+        try:
+            for band in bands:
+                if len(bands) > 1:
+                    framebuffer.scissor = band
+                framebuffer.use()
+                render()
+        finally:
+            if len(bands) > 1:
+                framebuffer.scissor = None  # type: ignore[assignment]  # none, to moderngl
+
+
+INTEGRATED = WorkLimits(1 << 20, 500_000_000)
+DISCRETE = WorkLimits(1 << 23, 4_000_000_000)
+SOFTWARE = WorkLimits(1 << 31, 1 << 62)
+
+_DISCRETE = re.compile(
+    r"\b(nvidia|geforce|quadro|tesla|rtx|gtx|radeon (rx|pro|vii|instinct)|instinct|firepro|arc\(tm\)|arc [ab]\d)", re.I
+)

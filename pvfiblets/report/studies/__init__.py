@@ -1,0 +1,48 @@
+"""The studies by name. Their modules are imported when they are run.
+
+To add one, such as ``culling``: write ``pvfiblets/report/studies/culling/study.py`` with an object ``STUDY`` that is a
+:class:`~pvfiblets.report.study.Study`, and put ``"culling": "pvfiblets.report.studies.culling.study"`` into
+``MODULES``. Nothing else
+knows of it: records, Pareto fronts, page and plots are the same for all. It takes its share of a run's time, asks
+``options.budget.allows()`` before each measurement, and raises ``Unavailable`` where it cannot be done (a drawing
+study: where no OpenGL context can be made).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from importlib import import_module
+
+from ..study import Study
+
+__all__ = ["MODULES", "chosen_names", "find"]
+
+MODULES = {
+    "codec": "pvfiblets.report.studies.codec.study",
+    "decode": "pvfiblets.report.studies.decode.study",
+    "tractograms": "pvfiblets.report.studies.codec.tractograms",
+    "pixels": "pvfiblets.report.studies.codec.pixels",
+    "culling": "pvfiblets.report.studies.culling.study",
+    "tubes": "pvfiblets.report.studies.tubes.study",
+    "volumes": "pvfiblets.report.studies.volumes.study",
+    "halos": "pvfiblets.report.studies.halos.study",
+    "features": "pvfiblets.report.studies.features.study",
+    "antialias": "pvfiblets.report.studies.antialias.study",
+    "translucency": "pvfiblets.report.studies.translucency.study",
+    "stability": "pvfiblets.report.studies.stability.study",
+}
+
+
+def chosen_names(only: Sequence[str] | None = None) -> list[str]:
+    """Return the names of the studies asked for, all if none are named."""
+    names = list(dict.fromkeys(only or MODULES))
+    for name in names:
+        if name not in MODULES:
+            raise ValueError(f"there is no study {name!r}; choose among {', '.join(MODULES)}")
+    return names
+
+
+def find(name: str) -> Study:
+    """Import a study's module and return its ``STUDY``."""
+    study: Study = import_module(MODULES[name]).STUDY
+    return study

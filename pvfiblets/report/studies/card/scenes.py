@@ -1,0 +1,109 @@
+"""How the check of a graphics card draws something and judges it, and the parts that it is made of."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .findings import DIFFERS, Finding, verdict_of
+
+__all__ = ["SIZE", "SMALL", "Judged", "Part", "Scene", "Tell", "share", "tried"]
+
+SIZE, SMALL = (320, 240), (160, 120)  # the latter where a reference takes its time
+TIMED = 3  # pictures
+
+Mask = npt.NDArray[np.bool_]
+Pixels = npt.NDArray[np.uint8]
+
+
+@dataclass(frozen=True, eq=False)
+class Judged:
+    """A picture, held against what is right.
+
+    Attributes
+    ----------
+    figures, limits : dict
+        As in `Finding`.
+    pictures : dict
+        By name, ``(height, width)`` bool or ``(height, width, 3)`` uint8, row 0 at the bottom: what to look at where it
+        differs.
+    note : str
+    compared : bool
+        Whether it was held against anything; else it only had to be drawn.
+    """
+
+    figures: Mapping[str, float]
+    limits: Mapping[str, float]
+    pictures: Mapping[str, Any] = field(default_factory=dict)
+    note: str = ""
+    compared: bool = True
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """Something to be drawn and judged.
+
+    Attributes
+    ----------
+    feature : str
+    draw : callable
+        Draws picture number so and so, each from another place, and waits for it.
+    judge : callable
+        Judges the last picture.
+    release : callable, optional
+    """
+
+    feature: str
+    draw: Callable[[int], object]
+    judge: Callable[[], Judged]
+    release: Callable[[], object] = lambda: None
+
+
+Tell = Callable[[Finding, Mapping[str, Any]], None]
+"""Takes a finding, and the pictures of one that differs."""
+
+Part = Callable[[Any], Iterator[tuple[str, Callable[[], Scene]]]]
+"""Of a check: takes a context; yields names of features, and what makes their scenes."""
+
+
+def tried(ctx: Any, part: str, feature: str, make: Callable[[], Scene]) -> tuple[Finding, Mapping[str, Any]]:
+    """Draw a scene some times, judge the last picture, and give all back.
+
+    What OpenGL complains of makes it differ, whatever the picture looks like.
+    """
+    while ctx.error != "GL_NO_ERROR":  # of what came before
+        pass
+    begin = time.perf_counter()
+    scene = make()
+    try:
+        scene.draw(0)
+        ctx.finish()
+        first = 1e3 * (time.perf_counter() - begin)
+        taken = []
+        for number in range(1, 1 + TIMED):
+            begin = time.perf_counter()
+            scene.draw(number)
+            ctx.finish()
+            taken.append(1e3 * (time.perf_counter() - begin))
+        judged = scene.judge()
+        complaint = ctx.error
+    finally:
+        scene.release()
+    figures = {name: float(value) for name, value in judged.figures.items()}
+    found = Finding(
+        part, feature, verdict_of(figures, judged.limits, judged.compared), judged.note, figures, dict(judged.limits),
+        float(np.median(taken)), first,
+    )  # fmt: skip
+    if complaint != "GL_NO_ERROR":
+        found = replace(found, verdict=DIFFERS, note=f"OpenGL complained: {complaint}")
+    return found, judged.pictures if found.bad else {}
+
+
+def share(mask: Mask, of: Mask) -> float:
+    """Return how many of a mask's pixels are true, as a share of those of another that are."""
+    return float(mask.sum()) / max(int(of.sum()), 1)

@@ -1,0 +1,129 @@
+"""The study of whole tractograms: size and error by algorithm and step (table 1 of the fiblets paper)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import chain
+from pathlib import Path
+
+import numpy as np
+
+from pvfiblets.streamlines import Streamlines
+
+from ...record import Axes, Figure, LeftOut, Record
+from ...study import Options
+from .data_sets import LENGTH, QUICK_STEPS, SMALL, STEPS, DataSet, files_of
+from .errors_and_times import Turns, median_step
+from .study import DEFAULT, Variant, measured, one_thread, variants
+
+__all__ = ["METHODS", "STUDY", "TractogramsStudy", "trackings"]
+
+METHODS = ("fiblets", "QFib", "paper's fiblets")
+BITS = "8 bits"  # of QFib, as in the paper
+POINTS, QUICK_POINTS = 1_000_000, 20_000  # of a made-up set
+RAW_BYTES = 12.0  # of a point of a .tck file, and of what ends a streamline
+
+
+class TractogramsStudy:
+    """Whole sets of four tracking algorithms, and whole files."""
+
+    name = "tractograms"
+    title = "Whole tractograms"
+    approximates = "Points of whole tractograms kept in fewer bytes, by tracking algorithm and step."
+    axes = (
+        Axes("ratio", "costs/size", "errors/max of a step", "bytes per point", "largest error, % of a step"),
+        Axes("average", "costs/size", "errors/mean of a step", "bytes per point", "mean error, % of a step"),
+    )
+    across = (
+        "costs/ratio",
+        "errors/max",
+        "errors/mean",
+        "errors/max of a step",
+        "errors/mean of a step",
+        "times/compress",
+        "times/decompress",
+    )
+    notes = (
+        "Table 1 of Schertzer et al. 2022 with other data: made-up tractograms that turn as those of four algorithms "
+        "do (pvfiblets/synthetic/trackers.py says how), of steps from 0.05 to 1 mm and about "
+        f"{POINTS / 1e6:g} million points each, and whole files: nothing is left out of a set. The paper's has iFOD1 "
+        "and SD_STREAM at 0.05 and 0.1 mm.",
+        "*ratio*: bytes of the .tck file, 12 a point and 12 a streamline, over those of the method; *max*, *mean*: "
+        "distances of decoded points from the originals, as float64, point by point; a step is the median one. "
+        "*fiblets*: at their default, which promises a tenth of the step; *QFib*, *paper's fiblets*: from their "
+        "description (pvfiblets/report/studies/codec/baselines/directions.py). Times are of one thread, in memory. "
+        "Sizes and errors "
+        "do not depend on the machine.",
+    )
+
+    def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+        """Yield a record for every set and method."""
+        chosen = [
+            variant
+            for variant in variants(quick=True)
+            if variant.name in METHODS and variant.setting in (DEFAULT, BITS, "")
+        ]
+        with one_thread():
+            for data in chain(trackings(options), _files(options, left_out)):
+                if not options.budget.allows():
+                    left_out.append(LeftOut(data.name, "the time given was used up"))
+                    continue
+                yield from _measured(data, chosen, options, left_out)
+
+
+def trackings(options: Options) -> Iterator[DataSet]:
+    """Make sets of all algorithms and steps, one after the other."""
+    from pvfiblets.synthetic.trackers import ALGORITHMS, tracked_streamlines
+
+    points = min(QUICK_POINTS, options.points) if options.quick else POINTS
+    for algorithm in ALGORITHMS:
+        for step in QUICK_STEPS if options.quick else STEPS:
+            made = tracked_streamlines(algorithm, max(round(points * step / LENGTH), 1), step, options.seed)
+            yield DataSet(f"{algorithm}-like, {step:g} mm", algorithm, made)
+
+
+def _files(options: Options, left_out: list[LeftOut]) -> Iterator[DataSet]:
+    """Read whole files, the largest first."""
+    from pvfiblets import formats
+
+    paths, reason = files_of(options.files)
+    if reason:
+        left_out.append(LeftOut("real files", reason))
+    for path in paths[:2] if options.quick else paths:
+        try:
+            found = formats.read(path)
+        except (ValueError, OSError) as error:
+            left_out.append(LeftOut(path.name, _told(error, path)))
+            continue
+        if found.n_points < SMALL or not np.isfinite(found.points).all():
+            left_out.append(LeftOut(path.name, f"it has fewer than {SMALL:,} points, or some that are not finite"))
+            continue
+        yield DataSet(path.name, "files", Streamlines(found.points, found.offsets))
+
+
+def _told(error: Exception, path: Path) -> str:
+    return " ".join(str(error).replace(str(path), path.name).split())
+
+
+def _measured(data: DataSet, chosen: list[Variant], options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+    points, offsets = data.streamlines.points, np.asarray(data.streamlines.offsets, np.int64)
+    step, turns, done = median_step(points, offsets), Turns(), []
+    for variant in chosen:
+        try:
+            done.append(measured(data, variant, points, offsets, step, turns, options.machine))
+        except ValueError as error:
+            left_out.append(LeftOut(f"{data.name}: {variant.name} {variant.setting}".strip(), str(error)))
+    turns.run(options.repeats, options.budget.allows)
+    raw = RAW_BYTES * (len(points) + len(offsets) - 1) / len(points)
+    for record, numbers in done:
+        kept = {name: record.errors[name] for name in ("max", "mean")}
+        record.errors = kept | {
+            f"{name} of a step": Figure(100.0 * figure.value / step, "%") for name, figure in kept.items()
+        }
+        record.costs["ratio"] = Figure(raw / record.costs["size"].value, "to 1")
+        record.times = {name: turns.timing(number, len(points)) for name, number in numbers.items()}
+        yield record
+    options.log(f"tractograms: {data.name}: {len(points):,} points, {len(done)} methods")
+
+
+STUDY = TractogramsStudy()

@@ -1,0 +1,1 @@
+"""The study of decoding: what order, number format, table and algebra cost."""

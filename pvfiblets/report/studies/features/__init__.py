@@ -1,0 +1,1 @@
+"""The study of features: what each adds to a scene that has none of the others."""

@@ -1,0 +1,1 @@
+"""The study of lines that one looks through."""

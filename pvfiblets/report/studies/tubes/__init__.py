@@ -1,0 +1,1 @@
+"""The study of ray-cast spline tubes: solvers, pictures, sweeps."""

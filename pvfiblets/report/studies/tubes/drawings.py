@@ -1,0 +1,119 @@
+"""The methods of drawing spline tubes that their study compares: each draws a picture and tells what is visible."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from pvfiblets.tubes import SplineTubes
+
+from ...cameras import Camera, Lens
+from ..codec.baselines.tessellated import TessellatedTubes
+from .pictures import reversed_depth_of
+
+__all__ = ["CastTubes", "Drawing", "MeshedTubes", "drawings"]
+
+SIDES = ((6, 6), (12, 12), (30, 30), (6, 30))
+GROWS = ("gbuffer", "occlusion", "framebuffer", "depth")  # with the picture, not with the data
+
+VisibleDepths = tuple[npt.NDArray[np.float64], npt.NDArray[np.bool_]]
+
+
+class Drawing(Protocol):
+    """One method of drawing one set of tubes."""
+
+    method: str
+    setting: str
+    ours: bool
+    default: bool
+    nbytes: int
+
+    def draw(self, camera: Camera) -> None:
+        """Draw a picture and wait for it."""
+        ...
+
+    def visible(self, lens: Lens) -> VisibleDepths:
+        """Return mm in front of the eye, ``(n,)``, of the last picture's pixels, and which of them show a tube."""
+        ...
+
+    def release(self) -> None:
+        """Give everything back."""
+        ...
+
+
+class CastTubes:
+    """Ray casting, as this program has it, by one solver, of tubes that are not widened."""
+
+    method = "ray cast"
+
+    def __init__(self, ctx: Any, tubes: SplineTubes, solver: str = "auto") -> None:
+        from pvfiblets.engine.tubes import TubeRenderer
+
+        self._ctx, self._renderer = ctx, TubeRenderer(ctx, tubes, solver=solver)
+        self.setting = self._renderer.solver
+        self.ours = self.setting != "bisection"
+        self.default = solver == "auto"
+        buffers: Any = self._renderer.explain()["buffers"]
+        self.nbytes = sum(part["bytes"] for part in buffers if part["name"] not in GROWS)
+
+    def draw(self, camera: Camera | Lens) -> None:
+        """Draw a G-buffer, if the camera is not that of the last one."""
+        from pvfiblets.engine import View
+        from pvfiblets.engine.tubes import TubeStyle
+
+        self._gbuffer = self._renderer.render(View(camera.size, camera.model_view_projection), TubeStyle(min_width=0.0))
+        self._ctx.finish()
+
+    def visible(self, lens: Lens) -> VisibleDepths:
+        """Return what the G-buffer's keys mean."""
+        from pvfiblets.engine.gbuffer import EMPTY
+
+        keys = np.frombuffer(self._gbuffer.depth.read(), np.uint32)
+        return lens.distance(reversed_depth_of(keys)), keys != EMPTY
+
+    def release(self) -> None:
+        """Give everything back."""
+        self._renderer.release()
+
+
+class MeshedTubes:
+    """Hardware tessellation with so many sides at least and at most."""
+
+    method, ours, default = "tessellated", False, False
+
+    def __init__(self, ctx: Any, tubes: SplineTubes, size: tuple[int, int], sides: tuple[int, int]) -> None:
+        self._ctx, self._tubes = ctx, TessellatedTubes(ctx, tubes, size, sides=sides)
+        self.setting = f"{sides[0]} sides" if sides[0] == sides[1] else f"{sides[0]} to {sides[1]} sides by size"
+        self.nbytes = self._tubes.nbytes
+
+    def draw(self, camera: Camera) -> None:
+        """Draw it, whatever was drawn last."""
+        self._tubes.render(camera.model_view_projection)
+        self._ctx.finish()
+
+    def visible(self, lens: Lens) -> VisibleDepths:
+        """Return what the depth buffer means."""
+        depth = self._tubes.depth().ravel()
+        return lens.distance(1.0 - depth), depth < 1.0
+
+    def release(self) -> None:
+        """Give everything back."""
+        self._tubes.release()
+
+
+def drawings(ctx: Any, tubes: SplineTubes, size: tuple[int, int]) -> list[Callable[[], Drawing]]:
+    """Return what makes each method, the program's default first."""
+    from pvfiblets.engine.tubes import SOLVERS
+
+    default, *others = SOLVERS
+
+    def cast(solver: str) -> Callable[[], Drawing]:
+        return lambda: CastTubes(ctx, tubes, "auto" if solver == default else solver)
+
+    def meshed(sides: tuple[int, int]) -> Callable[[], Drawing]:
+        return lambda: MeshedTubes(ctx, tubes, size, sides)
+
+    return [cast(default), *map(meshed, SIDES), *map(cast, others)]

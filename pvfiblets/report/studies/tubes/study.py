@@ -1,0 +1,285 @@
+"""The study of ray-cast spline tubes: solvers by iterations, whole pictures, float32's limits, and stored depth."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from pvfiblets.tubes import curves
+
+from ...cameras import VIEWS, Lens, by_turns, orbit
+from ...drawing import LATE, Part, run_parts, turns_of
+from ...record import FRAME, Axes, Figure, LeftOut, Record
+from ...study import Options
+from .drawings import CastTubes, Drawing, drawings
+from .pictures import FORMATS, Truth, helices, sampled
+from .rays import GOAL
+from .solvers import SET_SIZE, SETS, ray_sweeps, solvers
+from .sweeps import PICTURE_SWEEPS
+
+__all__ = ["STUDY", "TubesStudy"]
+
+SIZE, QUICK_SIZE = (480, 270), (160, 90)
+TUBES = 6  # helices of 24 segments each
+RANGES = (10.0, 1e2, 1e3, 1e4, 1e5, 1e6)  # far over near
+QUICK_RANGES = (10.0, 1e3, 1e6)
+QUICK_SETS = ("fibers",)
+SAMPLE, QUICK_SAMPLE = 1000, 200  # pixels of these that are compared with float64
+SEGMENTS = 20_000  # of a set that are compared with their cubics
+
+
+# ----------------------------------------------------------------------------------------------------------- the parts
+
+
+def picture_sweeps(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+    """Yield records of whole small pictures by ratio: how far the eye is, and how far the tubes are from 0."""
+    for name, (about, ratios, make) in PICTURE_SWEEPS.items():
+        if not options.budget.allows():
+            left_out.append(LeftOut(f"sweep of {about}", LATE))
+            continue
+        errors: dict[str, dict[str, Figure]] = {}
+        for ratio in ratios[:: 3 if options.quick else 1]:
+            tubes, lens = make(ratio)
+            truth = Truth.of(tubes, lens)
+            by = {}
+            for solver in ("auto", "bisection"):
+                drawn = CastTubes(ctx, tubes, solver)
+                try:
+                    drawn.draw(lens)
+                    by[drawn.setting] = truth.errors(*drawn.visible(lens))["depth p99"]
+                finally:
+                    drawn.release()
+            by["right, stored as float32"] = truth.stored(FORMATS["float32"])
+            for solver, p99 in by.items():
+                errors.setdefault(solver, {})[f"p99 at ratio {ratio:g}"] = Figure(p99, "radii")
+        for number, (solver, found) in enumerate(errors.items()):
+            yield Record(
+                about, "stiff", f"pictures by {name}", "ray cast" if number < 2 else solver,
+                solver if number < 2 else "", found, ours=number == 0, machine=options.machine,
+            )  # fmt: skip
+
+
+def pictures(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+    """Yield records of whole pictures: silhouettes and depths against float64, and what a picture takes."""
+    size = QUICK_SIZE if options.quick else SIZE
+    tubes = helices(TUBES)
+    for view in VIEWS:
+        name = f"{TUBES} helices, {view}"
+        if not options.budget.allows():
+            left_out.append(LeftOut(name, LATE))
+            continue
+        camera = orbit(tubes, view, 2, size)[0]
+        lens = Lens.of(camera)
+        truth = Truth.of(tubes, lens)
+        options.log(f"tubes: {name}: {int(truth.there.sum())} of {len(truth.there)} pixels show tubes")
+        within = options.budget.share()  # the reference took longer than pictures do
+        turns, done, late = turns_of(ctx), [], 0
+        made: list[Drawing] = []
+        try:
+            for make in drawings(ctx, tubes, size):
+                if not within.allows():
+                    late += 1
+                    continue
+                drawn = make()
+                made.append(drawn)
+                drawn.draw(camera)
+                found = truth.errors(*drawn.visible(lens))
+                units = {"silhouette": "pixels", "depth p50": "radii", "depth p99": "radii"}
+                record = Record(
+                    data=name,
+                    group="pictures",
+                    approximation="a picture of tubes",
+                    method=drawn.method,
+                    setting=drawn.setting,
+                    errors={key: Figure(value, units[key]) for key, value in found.items()},
+                    costs={"geometry": Figure(float(drawn.nbytes), "bytes")},
+                    ours=drawn.ours,
+                    default=drawn.default,
+                    machine=options.machine,
+                )
+                done.append((record, turns.add(by_turns(drawn.draw, [camera]))))
+            turns.run(options.repeats, within.allows)
+            for record, number in done:
+                record.times["draw"] = turns.timing(number, 1.0, FRAME)
+                yield record
+        finally:
+            for drawn in made:
+                drawn.release()
+        if late:
+            left_out.append(LeftOut(f"{name}: {late} further methods of drawing", LATE))
+
+
+def sets(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+    """Yield records of pictures of the paper's sets by every solver, against float64 in a sample of the pixels."""
+    from pvfiblets.engine.tubes import SOLVERS
+    from pvfiblets.synthetic.tubes import tube_set
+
+    size, count = (QUICK_SIZE, QUICK_SAMPLE) if options.quick else (SET_SIZE, SAMPLE)
+    for name in QUICK_SETS if options.quick else SETS:
+        tubes = tube_set(name, options.seed)
+        for view in VIEWS:
+            data, camera = f"the set {name}, {view}", orbit(tubes, view, 2, size)[0]
+            lens, truth = Lens.of(camera), None
+            turns, done, late = turns_of(ctx), [], []
+            made: list[CastTubes] = []
+            try:
+                for solver in ("auto", *list(SOLVERS)[1:]):
+                    if not options.budget.allows():
+                        late.append(solver)
+                        continue
+                    drawn = CastTubes(ctx, tubes, solver)
+                    made.append(drawn)
+                    drawn.draw(camera)
+                    shown, there = drawn.visible(lens)
+                    if truth is None:
+                        rng = np.random.default_rng([options.seed, 1])
+                        truth = Truth.of(tubes, lens, sampled(there.reshape(size[::-1]), count, rng))
+                    done.append((_set_record(data, drawn, truth, shown, there, options), drawn))
+                for _, drawn in done:
+                    turns.add(by_turns(drawn.draw, [camera]))
+                turns.run(options.repeats, options.budget.allows)
+                for number, (record, _) in enumerate(done):
+                    record.times["draw"] = turns.timing(number, 1.0, FRAME)
+                    yield record
+            finally:
+                for drawn in made:
+                    drawn.release()
+            if late:
+                left_out.append(LeftOut(f"{data}: {', '.join(late)}", LATE))
+            options.log(f"tubes: {data}: {len(done)} solvers")
+
+
+def _set_record(data: str, drawn: CastTubes, truth: Truth, shown: Any, there: Any, options: Options) -> Record:
+    here, should = there[truth.pixels], truth.there
+    off = truth.depth_errors(shown[truth.pixels], here)
+    quantiles = np.quantile(off, (0.5, 0.99, 0.999)) if len(off) else (np.nan,) * 3
+    errors = {f"depth {q}": Figure(float(value), "radii") for q, value in zip(("p50", "p99", "p99.9"), quantiles,
+                                                                                strict=True)}  # fmt: skip
+    errors["depth p99 by storing"] = Figure(truth.stored(FORMATS["float32"]), "radii")
+    for name, wrong, of in (("holes", should & ~here, ~here), ("false", here & ~should, here)):
+        errors[name] = Figure(100.0 * float(wrong.sum()) / max(int(of.sum()), 1), "%")
+    errors[f"off by {GOAL:g}"] = Figure(100.0 * float((off > GOAL).mean()) if len(off) else 0.0, "%")
+    return Record(
+        data=data,
+        group="sets",
+        approximation="a picture of tubes",
+        method="ray cast",
+        setting=drawn.setting,
+        errors=errors,
+        costs={"geometry": Figure(float(drawn.nbytes), "bytes")},
+        ours=drawn.ours,
+        default=drawn.default,
+        machine=options.machine,
+    )
+
+
+def stored(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+    """Yield records of depth by what it is stored as, and by how far the near and the far plane lie apart."""
+    tubes, size = helices(2), QUICK_SIZE
+    far = orbit(tubes, "far", 2, size)[0]
+    lens = Lens.of(far)
+    truth = Truth.of(tubes, lens)
+    drawn = CastTubes(ctx, tubes)
+    names = [f"p99 at far/near {ratio:g}" for ratio in (QUICK_RANGES if options.quick else RANGES)]
+    errors: dict[str, dict[str, Figure]] = {name: {} for name in ("key of 32 bits, as drawn", *FORMATS)}
+    try:
+        for name, ratio in zip(names, QUICK_RANGES if options.quick else RANGES, strict=True):
+            if not options.budget.allows():
+                left_out.append(LeftOut(f"stored depth: {name}", LATE))
+                continue
+            camera = replace(far, near=far.far / ratio)
+            seen = replace(truth, lens=Lens.of(camera))
+            drawn.draw(camera)
+            shown = seen.errors(*drawn.visible(seen.lens))["depth p99"]
+            errors["key of 32 bits, as drawn"][name] = Figure(shown, "radii")
+            for kind, rounded in FORMATS.items():
+                errors[kind][name] = Figure(seen.stored(rounded), "radii")
+    finally:
+        drawn.release()
+    for kind, found in errors.items():
+        if found:
+            bits = 24 if "24" in kind else 32
+            yield Record(
+                "stored depth", "stored", "depth of a pixel", kind, "", found,
+                {"depth": Figure(bits / 8.0, "bytes/pixel")}, ours=kind.startswith("key"), machine=options.machine,
+            )  # fmt: skip
+
+
+def halves(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:  # noqa: ARG001 - as other parts
+    """Yield records of how far the two quadratics of a segment are from its cubic, by the share of a derivative."""
+    from pvfiblets.synthetic.tubes import tube_set
+
+    rng = np.random.default_rng([options.seed, 2])
+    for name in QUICK_SETS if options.quick else SETS:
+        if not options.budget.allows():
+            left_out.append(LeftOut(f"quadratics for cubics: {name}", LATE))
+            continue
+        tubes = tube_set(name, options.seed)
+        chosen = rng.permutation(tubes.n_segments)[:SEGMENTS]
+        radius = np.maximum(tubes.radius[tubes.segments[chosen]].min(axis=1), 1e-300)
+        for share, setting in ((curves.MIDDLE, f"c = {curves.MIDDLE:g}"), (1.0 / 3.0, "c = 1/3, the paper's")):
+            off = curves.deviations(tubes, chosen, share, 32).sum(axis=1) / radius
+            found = dict(zip(("p50", "p99", "max"), map(float, np.quantile(off, (0.5, 0.99, 1.0))), strict=True))
+            yield Record(
+                f"cubics of the set {name}", "", "a cubic segment", "two quadratics", setting,
+                {f"apart {key}": Figure(value, "radii") for key, value in found.items()},
+                ours=share == curves.MIDDLE, machine=options.machine,
+            )  # fmt: skip
+
+
+PARTS: dict[Part, float] = {
+    solvers: 3.0, pictures: 5.0, sets: 4.0, ray_sweeps: 2.0, picture_sweeps: 1.0, stored: 1.0, halves: 1.0,
+}  # fmt: skip
+"""What is measured, and by what weight each part has its share of the time."""
+
+
+class TubesStudy:
+    """Ray-cast spline tubes beside the paper's solver and beside tessellation."""
+
+    name = "tubes"
+    title = "Ray-cast spline tubes"
+    approximates = (
+        "Where rays meet tubes of varying radius, found in float32 by a bounded number of steps: solvers by "
+        "iterations, beside the paper's; whole pictures, beside tessellation; depth, by what it is stored as."
+    )
+    axes = (
+        Axes("hit-p99", "times/hit", "errors/hit p99", "ns per ray", "99th percentile of errors, radii"),
+        Axes("hit-max", "times/hit", "errors/hit max", "ns per ray", "largest error, radii"),
+        Axes("silhouette", "times/draw", "errors/silhouette", "ms per frame", "silhouettes off, pixels"),
+        Axes("depth", "times/draw", "errors/depth p50", "ms per frame", "median of depth errors, radii"),
+        Axes("ratio", "", "errors/p99 at ratio ", "ratio that the title names", "99th percentile, radii", series=True),
+        Axes("stored", "", "errors/p99 at far/near ", "far over near plane", "99th percentile, radii", series=True),
+    )
+    notes = (
+        "What is right is found in float64 by another method (pvfiblets/tubes/reference.py: eigenvalues of companion "
+        "matrices, nothing is bracketed). Errors are in radii of the sphere that is met: along the ray, where it meets "
+        "the tube and should; where only one of both is so, by how much the radius would have to change to make the "
+        "answer right; *missed* and *false* are such rays. Rays pass a sphere of a half segment within 1.15 radii of "
+        "its middle. *loop*: one loop for all minima; *chain*: the paper's chain of derivatives "
+        "(Russig et al. 2020), which its *bisection* always runs. Solvers end as soon as they are exact: their own "
+        "numbers of iterations are bounds that few rays reach.",
+        f"Pictures: {SIZE[0]}×{SIZE[1]}, quickly {QUICK_SIZE[0]}×{QUICK_SIZE[1]}, no anti-aliasing; *far* shows "
+        "all, *close* is at a third of that distance. Ours draw a G-buffer with depth, place and tangent, not lit. "
+        "*tessellated*: hardware tessellation with light (after Nunes et al. 2012), up to 6 steps along a segment; it "
+        "draws the cubic itself, which this program's two quadratics differ from (the sets *cubics of*), and circles "
+        "across the axis in place of spheres. *silhouettes off*: pixel middles between the picture's outline and the "
+        "true one, over the true one's length. *depth* errors are along the ray, where a tube shows and should; "
+        "their 99th percentile is that of inner outlines, where another tube shows.",
+        f"Sets: the five of Russig et al. 2020, section 4, {SET_SIZE[0]}×{SET_SIZE[1]}; each solver against float64 in "
+        f"{SAMPLE} pixels, half of them covered, half empty beside these. *holes*: of the empty ones, those that a "
+        "tube covers; *false*: of the covered ones, those that none does; *depth p99 by storing*: what the right depth "
+        f"would be off by if stored as float32; *off by {GOAL:g}*: share of covered pixels with a larger error.",
+        "*stored depth*: what rounding the right depth to a format costs, and the depths of a picture as drawn and "
+        "stored, as a key of 32 bits; the near plane moves towards the eye. Where software draws, times are of the "
+        "processor, of all threads; those of cards are by the clock.",
+    )
+
+    def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+        """Yield records part by part, each with its share of what time is left."""
+        return run_parts(PARTS, options, left_out)
+
+
+STUDY = TubesStudy()

@@ -1,0 +1,1 @@
+"""The study of ray-cast volumes: integrators, occlusion, pictures."""

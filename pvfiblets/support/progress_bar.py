@@ -1,0 +1,27 @@
+"""A bar of how far work has come; who wants none neither loads nor needs the library that draws it."""
+
+from __future__ import annotations
+
+from contextlib import AbstractContextManager, nullcontext
+from typing import Any
+
+__all__ = ["progress_bar"]
+
+
+class _NoBar:
+    """Takes what a bar is told, and shows nothing."""
+
+    total: float | None = None
+
+    def update(self, n: float | None = 1) -> None:
+        """Forget it."""
+
+
+def progress_bar(show: bool, **settings: Any) -> AbstractContextManager[Any]:
+    """Return a bar, to be entered with ``with`` and told of every step by ``update(n)``."""
+    if not show:
+        return nullcontext(_NoBar())
+    from tqdm import tqdm
+
+    bar: AbstractContextManager[Any] = tqdm(**settings)
+    return bar

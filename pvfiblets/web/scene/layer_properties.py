@@ -1,0 +1,172 @@
+"""The properties of tractograms, tubes, volumes, meshes and images of slices, in the order of a panel.
+
+Those that are settings of actors are found where these are declared (`pvfiblets.plotting.settings`); here stands
+what is the page's alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from pvfiblets.plotting import shared_settings as shared
+from pvfiblets.plotting.fiblets.looks import LOOKS
+from pvfiblets.plotting.fiblets.settings import FibletSettings
+from pvfiblets.plotting.settings import Setting, Settings
+from pvfiblets.plotting.slices.settings import MEANING, SliceSettings
+from pvfiblets.plotting.tubes.settings import TubeSettings
+from pvfiblets.plotting.volumes.settings import VolumeSettings
+from pvfiblets.web.scene.glyph_layers import ROWS as GLYPH_ROWS
+from pvfiblets.web.scene.properties import Choices, Property
+
+__all__ = ["IMAGE", "MESH", "TRACTOGRAM", "TUBES", "VOLUME", "value_names"]
+
+
+def value_names(fiblets: Any) -> list[str]:
+    """Names of numbers that fiblets have, per streamline or per point."""
+    from pvfiblets.query.measures.measures import measure_names
+
+    return [name for name in measure_names(fiblets) if name != "coding_error" or name in fiblets.per_point]
+
+
+def _line_scalars(fiblets: Any) -> Choices:
+    from pvfiblets.plotting.fiblets.scalars import COUNTED, DENSITY, ENDS, GROUP, ID, ORIENTATION, RANDOM, UNITS
+
+    found: list[tuple[Any, str]] = [(ORIENTATION, "orientation"), (None, "one colour")]
+    colours = [
+        name
+        for name, rows in fiblets.per_streamline.items()
+        if rows.ndim == 2 and rows.shape[1] in (3, 4) and rows.dtype.kind in "uf"
+    ]
+    found += [(name, UNITS.get(name, name)) for name in [*value_names(fiblets), *colours]]
+    found += [(ENDS, "direction from end to end"), (ID, "number"), (RANDOM, "a colour each"), (DENSITY, COUNTED)]
+    return [*found, (GROUP, "group")] if fiblets.groups else found
+
+
+def _tube_scalars(tubes: Any) -> Choices:
+    from pvfiblets.plotting.fiblets.scalars import UNITS
+    from pvfiblets.plotting.tubes.scalars import BUILT_IN
+
+    names = dict.fromkeys([*BUILT_IN, *tubes.values, *tubes.tube_values])
+    return [(None, "one colour"), *((name, UNITS.get(name, name)) for name in names)]
+
+
+def _mesh_scalars(mesh: Any) -> Choices:
+    arrays = [(name, data[name]) for data in (mesh.point_data, mesh.cell_data) for name in data]
+    names = dict.fromkeys(name for name, array in arrays if array.dtype.kind in "buif" and array.ndim <= 2)
+    return [(None, "one colour"), *((name, name) for name in names)]
+
+
+def _meanings(image: Any) -> Choices:
+    found: list[tuple[Any, str]] = [("scalars", "values")]
+    found += [("labels", "labels")] if image.n_volumes == 1 or image.is_labels else []
+    found += [("rgb", "colours")] if image.n_volumes in (3, 4) else []
+    return [*found, ("direction", "directions")] if image.n_volumes == 3 else found
+
+
+def _table(
+    settings: type[Settings], first: Sequence[Property], after: Mapping[str, Sequence[Property]]
+) -> tuple[Property, ...]:
+    """Return all rows of a drawable's settings in their order, with the page's own in their places."""
+    found = list(first)
+    for name, one in settings.DECLARED.items():
+        if isinstance(one, Setting) and one.row is not None:
+            found.append(Property.of(one))
+        found += after.get(name, ())
+    return tuple(found)
+
+
+def _scalars(choices: Any, default: Any, *, volumes: bool = False) -> Property:
+    """Return the row of what colours."""
+    return own("scalars", "choice", "Colour by", "What the colours stand for.", default=default, choices=choices,
+               resets=("clim", "log_scale"), volumes=volumes)  # fmt: skip
+
+
+own = Property.own
+_BAR = own("show_bar", "bool", "Colour bar", "Show which colour stands for which value.", default=True,
+           matters=shared.by_numbers)  # fmt: skip
+
+TRACTOGRAM = _table(
+    FibletSettings,
+    [
+        own("look", "choice", "Look", "Widths, light and shading that give a finished picture together.", "Look",
+            "plain",
+            choices=[(None, "my own"), *((name, name) for name in LOOKS)]),
+        _scalars(_line_scalars, "orientation", volumes=True),
+    ],
+    {
+        "log_scale": [_BAR],
+        "halos": [
+            own("selection_color", "colour", "Selected", "Colour of what is selected; empty: its own.", "Selection",
+                optional=True),
+            own("selection_dim", "number", "Dim the others", "How much of the others' colours gives way.", "Selection",
+                0.8, limits=(0.0, 1.0)),
+            own("selection_as_tubes", "bool", "As tubes", "Draw what is selected as tubes.", "Selection", False),
+            own("selection_radius", "number", "Radius", "Of these tubes, mm.", "Selection", 0.5, limits=(1e-6, 1e6),
+                matters=lambda s: s["selection_as_tubes"]),
+        ],
+        "fit": [
+            own("share", "text", "Drawn", "How many of the streamlines that are shown fit the GPU's memory.", "Drawing",
+                read_only=True, read=lambda actor: "" if actor.share is None else f"{actor.share:.1%}"),
+            own("promise", "text", "Error promise", "No point is drawn farther than this from where it was.", "Drawing",
+                read_only=True, read=lambda actor: f"{actor.fiblets.promise:.3g} mm"),
+        ],
+    },
+)  # fmt: skip
+
+TUBES = _table(
+    TubeSettings,
+    [_scalars(_tube_scalars, None)],
+    {
+        "log_scale": [_BAR],
+        "opacity": [own("radius_scale", "number", "Radius", "Times the radius that the file gives.", "Tubes", 1.0,
+                        limits=(0.01, 100.0))],
+    },
+)  # fmt: skip
+
+VOLUME = _table(
+    VolumeSettings,
+    [],
+    {
+        "opacity": [own("surface_opacity", "number", "Opacity of surfaces", "From 0, not to be seen, to 1.",
+                        default=0.4, limits=(0.0, 1.0), matters=lambda s: s["mode"] == "isosurface")],
+        "opacity_unit_distance": [replace(_BAR, default=False, matters=lambda s: s["color"] is None)],
+    },
+)  # fmt: skip
+
+IMAGE = _table(
+    SliceSettings,
+    [],
+    {
+        "interpolation": [own(MEANING, "choice", "Numbers are", "What the numbers of the image mean.", "Drawing",
+                              "scalars", choices=_meanings, resets=("clim", "below", "above", "index"))],
+        "outline": list(GLYPH_ROWS),
+        "cmap": [own("modulate", "choice", "Bright by", "An image by whose values directions are bright, such as FA.",
+                     choices=[(None, "nothing")], volumes=True, resets=("clim",),
+                     matters=lambda settings: settings[MEANING] == "direction")],
+    },
+)  # fmt: skip
+
+MESH: tuple[Property, ...] = (
+    _scalars(_mesh_scalars, None),
+    replace(Property.of(TubeSettings.color), default="#d3d3d3"),
+    Property.of(shared.CMAP),
+    Property.of(shared.LOG_SCALE),
+    _BAR,
+    replace(Property.of(shared.CLIM), read=lambda actor: list(actor.mapper.scalar_range)),
+    Property.of(TubeSettings.opacity),
+    own("representation", "choice", "Show", "Faces, edges or corners.", "Surface", "surface",
+             choices=[("surface", "surface"), ("wireframe", "edges alone"), ("points", "points")]),
+    own("show_edges", "bool", "Edges", "Draw edges over faces.", "Surface", False,
+             matters=lambda s: s["representation"] == "surface"),
+    own("line_width", "number", "Edge width", "Pixels.", "Surface", 1.0, limits=(0.25, 64.0),
+             matters=lambda s: s["show_edges"] or s["representation"] == "wireframe"),
+    own("point_size", "number", "Point size", "Pixels.", "Surface", 5.0, limits=(1.0, 64.0),
+             matters=lambda s: s["representation"] == "points"),
+    own("culling", "choice", "Leave out", "Which faces are not drawn.", "Surface", None,
+             choices=[(None, "none"), ("back", "those seen from behind"), ("front", "those seen from the front")]),
+    own("smooth_shading", "bool", "Smooth", "Shade as if the surface were curved.", "Shading", True),
+    own("specular", "number", "Gloss", "How much it shines.", "Shading", 0.0, limits=(0.0, 1.0)),
+    Property.of(TubeSettings.lighting),
+)  # fmt: skip

@@ -1,0 +1,76 @@
+"""Measured distances of a scene; they are part of its document, as layers and cuts are."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pvfiblets.web.scene.cameras import NEAR
+from pvfiblets.web.scene.distance_label import hidden_distances
+from pvfiblets.web.session.document import Measurement
+from pvfiblets.web.values import numbers, shown, whole
+
+if TYPE_CHECKING:
+    from pvfiblets.web.scene.scene import Scene
+
+__all__ = ["MOST_MEASUREMENTS", "SceneMeasurements", "check_measurements"]
+
+MOST_MEASUREMENTS = 64
+_FARTHEST = 1e12  # mm from the origin
+
+
+class SceneMeasurements:
+    """Of a scene: measures; pixels count from the lower left corner."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
+
+    def measure(self, x0: float, y0: float, x1: float, y1: float) -> dict[str, Any] | None:
+        """Return the straight distance between what two pixels show; lines of measurements are looked through."""
+        with hidden_distances(self.scene.plotter):
+            begin, end = (
+                self.scene.cameras.place_at(x0, y0, tolerance=NEAR),
+                self.scene.cameras.place_at(x1, y1, tolerance=NEAR),
+            )
+        if begin is None or end is None:
+            return None
+        return {"mm": float(np.linalg.norm(np.subtract(begin, end))), "from": begin, "to": end}
+
+    def add_measurement(self, begin: Any, end: Any) -> Measurement:
+        """Keep the distance between two places, mm, in the picture; it can be undone."""
+        before = self.scene.state.measurements
+        (found,) = check_measurements([[begin, end]])
+        if len(before) >= MOST_MEASUREMENTS:
+            raise ValueError(f"there are {MOST_MEASUREMENTS} measurements, which is the most; remove one first")
+        self.scene.become(replace(self.scene.state, measurements=(*before, found)), f"measure {found.text}")
+        return found
+
+    def remove_measurement(self, row: int) -> None:
+        """Take one measurement away."""
+        before = self.scene.state.measurements
+        if not before:
+            raise ValueError("there are no measurements")
+        at = whole(row, "row of a measurement", 0, len(before) - 1)
+        kept = (*before[:at], *before[at + 1 :])
+        self.scene.become(replace(self.scene.state, measurements=kept), f"remove {before[at].text}")
+
+    def clear_measurements(self) -> None:
+        """Take all measurements away."""
+        self.scene.become(replace(self.scene.state, measurements=()), "clear measurements")
+
+
+def check_measurements(value: Any) -> tuple[Measurement, ...]:
+    """Return measurements of pairs of places, mm."""
+    if not isinstance(value, list) or len(value) > MOST_MEASUREMENTS:
+        raise ValueError(f"measurements is {shown(value)}; give a list of {MOST_MEASUREMENTS} at most")
+    found = []
+    for pair in value:
+        if not isinstance(pair, list) or len(pair) != 2:
+            raise ValueError(f"a measurement is {shown(pair)}; give two places of x, y and z, mm")
+        begin, end = (numbers(place, "place of a measurement", 3) for place in pair)
+        if max(map(abs, (*begin, *end))) > _FARTHEST:
+            raise ValueError(f"a measurement is from {begin} to {end}; give places within {_FARTHEST:g} mm")
+        found.append(Measurement((begin[0], begin[1], begin[2]), (end[0], end[1], end[2])))
+    return tuple(found)

@@ -1,0 +1,182 @@
+"""What ``pvfiblets serve`` was asked for, checked before anything starts."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+from ipaddress import ip_address
+from pathlib import Path
+from typing import Any
+
+from pvfiblets.plotting.fiblets.looks import check_look
+from pvfiblets.support.memory import CAN_LIMIT, of_machine, parse, shown
+from pvfiblets.web.scene.file_kinds import is_tractogram_folder
+
+MEBIBYTE = 1024 * 1024
+SMALLEST_MEMORY = 640 * MEBIBYTE
+"""Of a session: it has taken 320 MB when its page opens, and OpenGL in software takes some for its pictures."""
+SHORTEST_TOKEN = 8  # characters of a token that a person chose
+FEWEST_CONNECTIONS = 8  # six at once for a page's files, its WebSocket, and one to spare
+CODECS = ("jpeg", "png", "webp")
+DRAW = ("auto", "here", "there")
+
+
+@dataclass(frozen=True)
+class Options:
+    """The settings of one server; :meth:`checked` says what is wrong with them.
+
+    Parameters
+    ----------
+    files, volume, mesh : list of str
+        What a session opens with; they need not lie under `root`.
+    demo : bool
+        Open with a made-up tractogram.
+    host, port : str, int
+        Where to listen; port 0 lets the system choose.
+    root : str
+        The only folder that browsers may open files from and save to.
+    token : str or None
+        What a browser must present; ``None`` asks for nothing.
+    shared : bool
+        All browsers see and steer one session.
+    limit : int
+        The greatest number of sessions at once.
+    timeout : float
+        Seconds that a session without a browser is kept.
+    upload : int
+        The greatest size of an uploaded file, in bytes.
+    codec : str
+        How pictures travel: 'jpeg', 'png' or 'webp'.
+    draw : str
+        Who draws: 'here' this server, 'there' browsers where they can, 'auto' those of a graphics card.
+    look : str or None
+        That lines begin with, as of ``plotter.add_fiblets``.
+    antialias : str, int or None
+        As of ``plotter.picture``; None for the default.
+    cluster : str or None
+        Address of a dask scheduler, or path of its file, whose workers draw fiblets.
+    memory : int or None
+        Bytes that a session may have; ``None``: no limit.
+    origins : list of str
+        Other origins that pages may come from, such as that of a proxy which renames the host.
+    connections, by_address : int
+        The most connections at once, in all and from one address.
+    proxies : list of str
+        Addresses of proxies, which are believed when they say for whom they ask.
+    """
+
+    files: list[str] = field(default_factory=list)
+    volume: list[str] = field(default_factory=list)
+    mesh: list[str] = field(default_factory=list)
+    demo: bool = False
+    host: str = "127.0.0.1"
+    port: int = 8080
+    root: str = "."
+    token: str | None = None
+    shared: bool = False
+    limit: int = 8
+    timeout: float = 300.0
+    upload: int = 2048 * MEBIBYTE
+    codec: str = "jpeg"
+    draw: str = "auto"
+    look: str | None = None
+    antialias: str | int | None = None
+    cluster: str | None = None
+    memory: int | None = None
+    origins: list[str] = field(default_factory=list)
+    connections: int = 1000
+    by_address: int = 100
+    proxies: list[str] = field(default_factory=list)
+
+    @property
+    def on_loopback(self) -> bool:
+        """Whether only this machine can reach the server."""
+        return is_loopback(self.host)
+
+    def checked(self) -> Options:
+        """Return these options."""
+        if not 0 <= self.port <= 65535:
+            raise ValueError(f"--port {self.port}: a port is from 0 to 65535")
+        if self.limit < 1:
+            raise ValueError(f"--limit {self.limit}: at least one session is needed")
+        if not self.timeout > 0.0:
+            raise ValueError(f"--timeout {self.timeout:g}: seconds above zero are needed")
+        for name, number in (("--connections", self.connections), ("--connections-by-address", self.by_address)):
+            if number < FEWEST_CONNECTIONS:
+                raise ValueError(f"{name} {number}: a browser alone opens {FEWEST_CONNECTIONS}")
+        for proxy in self.proxies:
+            _check_address(proxy)
+        if self.upload < 0:
+            raise ValueError(f"--upload {self.upload}: a size of zero or more is needed")
+        if self.memory is not None and not CAN_LIMIT:
+            raise ValueError("--max-memory: this system cannot hold a process to it; leave it out")
+        if self.memory is not None and self.memory < SMALLEST_MEMORY:
+            raise ValueError(
+                f"--max-memory {shown(self.memory)}: a session needs {shown(SMALLEST_MEMORY)} before it opens anything "
+                "large; give as much or more"
+            )
+        check_look("--look", self.look)
+        if self.codec not in CODECS:
+            raise ValueError(f"--codec {self.codec!r} is none of {', '.join(CODECS)}")
+        if self.draw not in DRAW:
+            raise ValueError(f"--draw {self.draw!r} is none of {', '.join(DRAW)}")
+        for name, given in (("--shared", self.shared), ("--cluster", self.cluster is not None)):
+            if given and self.draw == "there":
+                raise ValueError(f"--draw there: with {name} the server draws; leave one of them out")
+        if self.token is None and not self.on_loopback:
+            raise ValueError(
+                f"--token none: {self.host} can be reached from other machines, so a token is needed; "
+                "use --token auto, or --host 127.0.0.1 and an SSH tunnel"
+            )
+        if self.token is not None and len(self.token) < SHORTEST_TOKEN:
+            raise ValueError(f"the token: at least {SHORTEST_TOKEN} characters are needed; --token auto makes one")
+        if not Path(self.root).is_dir():
+            raise NotADirectoryError(
+                20, "not a folder; --root names the one that browsers may open files from", self.root
+            )
+        for path in (*self.files, *self.volume, *self.mesh):
+            if not (Path(path).is_file() or is_tractogram_folder(Path(path))):
+                raise FileNotFoundError(2, "No such file", path)
+        return self
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data for :meth:`from_dict` in another process."""
+        return asdict(self)
+
+    @classmethod
+    def from_dict(cls, data: dict[str, Any]) -> Options:
+        """Return the options that :meth:`as_dict` gave."""
+        return cls(**data)
+
+
+def chosen_memory(text: str, sessions: int) -> int | None:
+    """Return the bytes that ``--max-memory auto|SIZE`` means, for each session; ``None`` where none can be set.
+
+    By default, sessions share four fifths of the machine's memory. Few are full at once, so that none has less than a
+    fifth of the machine: four that are full leave the server what it needs.
+    """
+    if text != "auto":
+        try:
+            return parse(text)
+        except ValueError as error:
+            raise ValueError(f"--max-memory {error}") from None
+    machine = of_machine()
+    if not CAN_LIMIT or not machine:
+        return None
+    return max(machine * 4 // 5 // min(sessions, 4), SMALLEST_MEMORY)
+
+
+def is_loopback(host: str) -> bool:
+    """Return whether a host name or address can be reached from this machine only."""
+    if host.lower() == "localhost":
+        return True
+    try:
+        return ip_address(host.strip("[]")).is_loopback
+    except ValueError:
+        return False
+
+
+def _check_address(proxy: str) -> None:
+    try:
+        ip_address(proxy)
+    except ValueError as error:
+        raise ValueError(f"--proxy {proxy!r} is no address; one such as 127.0.0.1 is expected") from error
