@@ -21,7 +21,7 @@ from pvfiblets.web.server.launcher import WORKER
 from pvfiblets.web.server.options import SMALLEST_MEMORY, Options, chosen_memory
 from tests.web import bombs
 from tests.web.desk import Desk
-from tests.web.visitors import Browser, gate, run
+from tests.web.visitors import Browser, gate, run, until
 
 pytestmark = pytest.mark.skipif(not memory.CAN_LIMIT, reason="only Linux limits the data of a process")
 
@@ -103,16 +103,16 @@ async def test_what_is_opened_meanwhile_waits_for_its_turn_and_the_page_names_it
 
     files = desk.files
     first = asyncio.create_task(files.beside("a.trk", slow, "reading"))
-    await asyncio.sleep(0.05)
+    await until(lambda: desk.page.job.get("text") == "a.trk: reading")
     others = [asyncio.create_task(files.beside(f"{i}.trk", slow, "reading")) for i in range(16)]
-    await asyncio.sleep(0.05)
+    await until(lambda: desk.page.job.get("then"))
     seen.append(desk.page.job)
     with pytest.raises(ValueError, match="16 others wait"):
         await files.beside("one too many.trk", slow, "reading")
     files.cancel()
     with pytest.raises(ValueError, match="stopped"):
         await first
-    await asyncio.sleep(0.05)
+    await until(lambda: desk.page.job.get("text") == "0.trk: reading")
     seen.append(desk.page.job)
     go.set()
     assert await asyncio.gather(*others) == ["done"] * 16

@@ -17,7 +17,7 @@ from pvfiblets.web.server.options import Options
 from pvfiblets.web.server.rpc_allowlist import MalformedError, check_call, guard_messages
 from pvfiblets.web.server.scratch import Notes, remove
 from tests.web import bombs
-from tests.web.visitors import TOKEN, Browser, gate, message, raw
+from tests.web.visitors import TOKEN, Browser, gate, message, raw, until
 
 REFUSED = (
     "a" * 260 + ".ply", "a\n.ply", "a\r\nX: y.ply", "\x1b[2J.ply", ".a.ply", " a.ply", "<img src=x>.ply", "a&b.ply",
@@ -46,12 +46,6 @@ async def aborted(browser, name):
     await writer.drain()
     await asyncio.sleep(0.3)
     writer.transport.abort()
-
-
-async def until(condition):
-    async with asyncio.timeout(120):
-        while not condition():
-            await asyncio.sleep(0.05)
 
 
 @pytest.mark.more

@@ -92,3 +92,10 @@ async def raw(gate, text, *, seconds=5.0):
 
 def run(coroutine):
     return asyncio.run(asyncio.wait_for(coroutine, 60))
+
+
+async def until(condition):
+    """Let other tasks run until a condition holds; only a hang reaches the bound."""
+    async with asyncio.timeout(120):
+        while not condition():
+            await asyncio.sleep(0.01)
