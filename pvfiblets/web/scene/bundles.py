@@ -30,7 +30,7 @@ LONGEST = 120
 
 
 class SceneBundles:
-    """Of a scene: edits bundles."""
+    """Bundles of a scene's tractograms, edited as steps that can be undone."""
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene

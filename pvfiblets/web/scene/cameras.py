@@ -25,7 +25,7 @@ LARGEST_PICTURE = 64_000_000  # pixels
 
 
 class Cameras:
-    """Of a scene: looks; where from is no part of what can be undone."""
+    """Where a scene is looked at from, which is no part of what can be undone, and pictures of it."""
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene

@@ -21,7 +21,7 @@ MOST_CLIPS = 16
 
 
 class SceneFilters:
-    """Of a scene: says what is left out."""
+    """What a scene leaves out: cuts, criteria, groups, subsets and regions."""
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene

@@ -23,7 +23,7 @@ _KEPT = 64  # histograms
 
 
 class LayerQueries:
-    """Of a scene: answers; nothing changes."""
+    """What can be asked of a scene's layers; nothing changes."""
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene

@@ -27,7 +27,7 @@ WIDEST = 100.0
 
 
 class SceneMatrix:
-    """Of a scene: connects parcels."""
+    """The matrix of a scene, and the streamlines behind one of its cells."""
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene

@@ -22,7 +22,7 @@ _FARTHEST = 1e12  # mm from the origin
 
 
 class SceneMeasurements:
-    """Of a scene: measures; pixels count from the lower left corner."""
+    """Measured distances of a scene; pixels count from the lower left corner."""
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene

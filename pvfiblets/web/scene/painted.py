@@ -30,7 +30,7 @@ MOST_PLACES = 600
 
 
 class ScenePainting:
-    """Of a scene: paints."""
+    """Regions of a scene that are painted on its slices."""
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene

@@ -23,7 +23,7 @@ APART = 3.0  # half widths between the middles of a region and of the next
 
 
 class SceneRegions:
-    """Of a scene: names regions and changes them for all layers at once."""
+    """Named regions of a scene, which change for all layers at once."""
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene

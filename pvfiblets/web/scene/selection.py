@@ -24,7 +24,7 @@ _LONGEST_TABLE = 5000
 
 
 class SceneSelection:
-    """Of a scene: selects; pixels count from the lower left corner."""
+    """Streamlines of a scene that are chosen; pixels count from the lower left corner."""
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene

@@ -20,7 +20,7 @@ __all__ = ["SliceImages"]
 
 
 class SliceImages:
-    """Of a scene: is about slices."""
+    """Images of a scene that are shown as slices: names of their labels, and how they are looked at."""
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
