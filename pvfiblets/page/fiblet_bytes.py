@@ -11,6 +11,7 @@ import numpy as np
 
 from pvfiblets.codec.files.archive import array_member, write_archive
 from pvfiblets.codec.files.fiblets_file import make_header
+from pvfiblets.codec.point_values import PointValues, as_codes
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
@@ -29,8 +30,8 @@ def fiblet_bytes(fiblets: FibletSet, keep: tuple[str, ...] = ()) -> bytes:
     if missing := [name for name in keep if name not in fiblets.per_point]:
         raise KeyError(f"there are no values per point {missing}; there are {sorted(fiblets.per_point)}")
     bare = replace(
-        fiblets, per_point={name: fiblets.per_point[name] for name in keep}, per_streamline={}, groups={}, per_group={},
-        space={}, dropped={}, exact=None,
+        fiblets, per_point={name: _coded(fiblets.per_point[name]) for name in keep}, per_streamline={}, groups={},
+        per_group={}, space={}, dropped={}, exact=None,
     )  # fmt: skip
     arrays = {name: getattr(bare, name) for name in _MEMBERS}
     members = {f"{name}.npy": array_member(np.asarray(array)) for name, array in arrays.items() if array is not None}
@@ -40,3 +41,9 @@ def fiblet_bytes(fiblets: FibletSet, keep: tuple[str, ...] = ()) -> bytes:
         path = Path(folder) / "page.fiblets"
         write_archive(path, header, more | members)
         return path.read_bytes()
+
+
+def _coded(values: PointValues) -> PointValues:
+    """Values as pages read them: codes of what float32 holds."""
+    coded, table = (values, values.table) if values.table is not None else as_codes(values.values())
+    return replace(coded, table=np.asarray(table, "<f4"))

@@ -33,7 +33,6 @@ CHANGED = {
         features="VALUES_STORED",
         resolve="-colour_orientation, -line_light, legend_colours, colour_point_scalar",
         buffers="fibletTable, values",
-        packages="numba",
     ),
     "colours: arc length": What(
         features="VALUES_ARC_LENGTH",

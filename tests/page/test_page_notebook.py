@@ -192,5 +192,5 @@ def test_executed_notebook_keeps_the_page_and_has_the_state(visit, tmp_path):
     page = tmp_path / "saved.html"
     page.write_text(re.sub(r"<script.*?</script>", "", text, flags=re.DOTALL))  # none of the exporter's own is needed
     shown = visit(page).page
-    frame = next(frame for frame in shown.frames if frame.name == name)
+    frame = shown.wait_for_selector(f"iframe[name='{name}']").content_frame()
     frame.wait_for_selector("body[data-state=drawn]")

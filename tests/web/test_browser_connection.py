@@ -256,7 +256,6 @@ def test_a_file_that_is_opened_while_another_one_is_waits_and_is_named(revisit):
         here.page.wait_for_selector("#dialog-open", state="hidden")  # the key would toggle it
     here.wait(lambda: "then ball.ply" in here.page.locator("#busy").inner_text(), "what waits")
     here.page.click("[data-action=cancel]")
-    here.wait(lambda: here.layers() == 2, "its turn")
-    names = here.page.locator("[data-layer]").all_inner_texts()
-    assert any("ball.ply" in name for name in names)
+    layers = here.page.locator("[data-layer]")
+    here.wait(lambda: any("ball.ply" in name for name in layers.all_inner_texts()), "its turn")
     (here.served.root / "large.tck").unlink()
