@@ -20,6 +20,7 @@ from pvfiblets.mappers import antialias_windows
 from pvfiblets.mappers.antialias_windows import Finishing
 from pvfiblets.mappers.picture import Picture
 from pvfiblets.regions import Box
+from pvfiblets.streamlines import Streamlines
 from pvfiblets.synthetic import brain_streamlines
 
 from .refined_scene import Renders, real_default, shot  # noqa: F401 - a fixture
@@ -99,12 +100,34 @@ def test_the_picture_is_that_of_samples_one_after_the_other(scene, change, parts
     assert frames >= 15
     apart = off_by(at_once, mean)
     assert apart.size > 5000
-    assert np.percentile(apart, 99.8) <= 1.0
-    assert apart.max() <= 32  # two samples, as cameras round
+    assert (apart > 1).mean() <= 0.02  # where points within a sample are left out
+    assert apart.max() <= 48  # three samples
     actor.lighting = True
     actor.scalars = None
     at_once, mean = shown(plotter, monkeypatch)[0], shown(plotter, monkeypatch, singly=True)[0]
     assert np.sqrt((off_by(at_once, mean) ** 2.0).mean()) < 6.0
+
+
+@pytest.mark.parametrize("colours", ["values", "arc length", "image", "tangents", "kept"])
+def test_points_that_lie_within_a_pixel_leave_the_picture_as_it_is(colours, monkeypatch):
+    turn = np.linspace(0.0, 12.0, 3000)
+    spirals = [np.stack([(4 + turn) * np.cos(turn + i), (4 + turn) * np.sin(turn + i), turn * i], 1) for i in range(4)]
+    image = pv.ImageData(dimensions=(40, 40, 20), spacing=(1.0, 1.0, 2.0), origin=(-20.0, -20.0, -1.0))
+    image["x"] = image.points[:, 0]
+    scalars = {"values": "wave", "arc length": "arc_length", "image": image, "tangents": None, "kept": None}[colours]
+    wave = np.tile(np.sin(3.0 * turn), 4).astype(np.float32)
+    lines = Streamlines.from_list(spirals, per_point={"wave": wave})
+    plotter = pv.Plotter(off_screen=True, window_size=SIZE)
+    actor = plotter.add_fiblets(lines, scalars=scalars, lighting=colours == "tangents", show_scalar_bar=False)
+    actor.line_width = 5.0
+    if colours == "kept":
+        actor.criterion("wave", (-0.5, 0.9))
+    plotter.show(auto_close=False)
+    at_once, mean = shown(plotter, monkeypatch)[0], shown(plotter, monkeypatch, singly=True)[0]
+    # A pixel's line is lit once, by one of its samples; edges lie by less than a sample off.
+    assert np.median(off_by(at_once, mean)) <= 6.0
+    assert abs((at_once.astype(float) - mean).mean()) < 0.3
+    plotter.close()
 
 
 def add_mesh(plotter, _actor):
@@ -229,6 +252,38 @@ def shown_plain(plotter):
     return shot(plotter)
 
 
+@pytest.mark.parametrize("change", [nothing, look_close, hide, "remove", "close"])
+def test_between_frames_parts_are_drawn_until_something_changes(scene, change, monkeypatch):
+    monkeypatch.setattr(sample_layers, "MOST_TEXELS", 16 * SIZE[0] * SIZE[1] // 4)
+    plotter, actor = scene
+    plotter.show(auto_close=False)
+    plotter.picture.antialias = "off"
+    plotter.picture.antialias = "refined"
+    plotter.render()
+    renders = Renders(plotter)
+    assert plotter.picture.refine()
+    assert plotter.picture.refine()
+    assert renders.since() == 0
+    if change == "close":
+        return
+    if change == "remove":
+        plotter.remove_actor(actor)
+        plotter.render()
+        while plotter.picture.refine():
+            pass
+        assert not (shot(plotter)[..., 0]).any()
+        return
+    change(plotter, actor)
+    if change is not nothing:
+        plotter.render()
+    while plotter.picture.refine():
+        pass
+    assert plotter.picture.samples == 16
+    assert renders.since() == (1 if change is nothing else 2)
+    found = shot(plotter)
+    np.testing.assert_array_equal(found, shown(plotter, monkeypatch)[0])
+
+
 def test_progress_is_shown_after_a_while(scene, monkeypatch):
     plotter, _ = scene
     plotter.show(auto_close=False)
@@ -248,4 +303,4 @@ def test_progress_is_shown_after_a_while(scene, monkeypatch):
     assert sum(told[1:]) >= 15
     told.clear()
     shown(plotter, monkeypatch)
-    assert sum(told[1:]) == 16
+    assert sum(told[1:]) >= 8  # parts but the last

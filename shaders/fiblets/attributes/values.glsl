@@ -76,6 +76,12 @@ void begin_values(uint f) {
 // A whole fiblet drawn as one segment is longer than that: its length is that of its steps.
 void start_values(uint segment, vec3 to, vec3 delta, float steps) {
     arc_from = arc_to;
+#if FEATURE_SUBSAMPLES
+    if (!polyline.whole) {
+        arc_to += polyline.run;
+        return;
+    }
+#endif
     if (steps <= 1.0) arc_to += length(delta);
     else if (!ends(arc_fiblet)) arc_to = start_value(arc_fiblet + 1u);
     else arc_to += max(length(delta), whole_length(decoding_words(arc_fiblet)));

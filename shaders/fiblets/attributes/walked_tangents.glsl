@@ -27,7 +27,16 @@ void start_tangents(uint segment, vec3 delta, vec3 ahead) {
     if (segment == 0u && polyline.whole) tangent_before = unit_or_none(direction_before(polyline.fiblet, true));
     vec3 here = segment > 0u ? tangent_next : unit_or_none(delta);
     tangent_next = unit_or_none(ahead);
+#if FEATURE_SUBSAMPLES
+    bool leads = !polyline.whole && segment + uint(max(polyline.steps, 1.0)) == polyline.count;
+    Tangents found = tangents_of(tangent_before, here, tangent_next, leads);
+    if (!polyline.whole && polyline.steps > 1.0) {
+        here = unit_or_none(polyline.last_run);
+        found.end = tangents_of(here, here, tangent_next, leads).end;
+    }
+#else
     Tangents found = tangents_of(tangent_before, here, tangent_next, !polyline.whole && segment + 1u == polyline.count);
+#endif
     if (segment > 0u) found.start = tangents.end;
     tangents = found;
     if (here != vec3(0.0)) tangent_before = here;

@@ -21,6 +21,10 @@ struct Polyline {
     bool whole;    // one segment stands for the fiblet
     bool on;       // of wide lines: the next fiblet is drawn as this one is
     vec3 next;
+#if FEATURE_SUBSAMPLES
+    vec3 last_run;   // of segments merged into one, the last's
+    float run;       // and the length of all, mm
+#endif
 };
 
 Polyline polyline;

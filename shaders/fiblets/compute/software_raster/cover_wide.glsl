@@ -42,7 +42,7 @@ void cover(Segment segment) {
     vec2 from = steep ? piece.a.yx : piece.a.xy, to = steep ? piece.b.yx : piece.b.xy, size = steep ? viewport.yx : viewport;
     vec2 run = to - from;
     float inverse = 1.0 / max(dot(run, run), 1e-12);
-    vec2 onward = piece.cap || !goes_on(segment.index + 1u) ? vec2(0.0) : onward_at(piece.b, segment.ahead);
+    vec2 onward = piece.cap || !segment.goes_on ? vec2(0.0) : onward_at(piece.b, segment.ahead);
     if (steep) onward = onward.yx;
     vec2 left = (steep ? vec2(d.x, -d.y) : vec2(-d.y, d.x)) * sqrt(inverse) / r;
     float slope = abs(run.x) > 1e-6 ? run.y / run.x : 0.0;

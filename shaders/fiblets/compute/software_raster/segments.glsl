@@ -15,6 +15,8 @@
 // pixels are left out that lie beyond a plane at the depth that they show: a cut seen from the side is a straight edge,
 // and a line cut head-on shows the whole brush.
 //
+// FEATURE_SUBSAMPLES: segments that run straight on are merged into one. Points deviate by less than a sample from what is drawn.
+//
 // Depth is interpolated in the window, where it is linear; everything else is corrected for perspective (along()).
 
 #include "fiblets/segments/polyline.glsl"
@@ -23,12 +25,13 @@
 
 // A segment that is drawn.
 struct Segment {
-    uint index;      // within the fiblet
+    uint index;      // within the fiblet; of several merged into one, the first's
     Vertex from;
     Vertex to;
     ClippedSegment piece;
     float steps;     // from point to point that it stands for
     vec3 ahead;      // the next one's run
+    bool goes_on;    // whether the line does
 };
 
 // What a segment shows in a pixel.
@@ -60,7 +63,7 @@ float along(Fragment fragment, Segment segment) {
 // The run of what follows a segment, where that is drawn.
 vec3 next_run(Segment segment) {
 #if FEATURE_CLIP_REGION
-    return segment.piece.cap || !goes_on(segment.index + 1u) ? vec3(0.0) : segment.ahead;
+    return segment.piece.cap || !segment.goes_on ? vec3(0.0) : segment.ahead;
 #else
     return vec3(0.0);
 #endif
@@ -73,6 +76,16 @@ vec3 next_run(Segment segment) {
 #include "fiblets/compute/software_raster/cover_thin.glsl"
 #endif
 
+#if FEATURE_SUBSAMPLES
+const float MERGED_DEVIATION = 0.25;   // samples, of which a pixel has four along each axis
+
+// Whether the line from a vertex to a point goes on to the next one as it began, in `direction`.
+bool goes_straight(Vertex from, vec3 direction, vec3 here, vec3 next) {
+    vec3 run = next - from.local;
+    return dot(direction, next - here) > 0.0 && length(cross(direction, run)) * most_pixels_per_mm <= MERGED_DEVIATION * from.clip.w;
+}
+#endif
+
 // Draws fiblet f and the segment that joins it to the next.
 void draw_fiblet(uint f) {
     begin_polyline(f);
@@ -82,14 +95,26 @@ void draw_fiblet(uint f) {
     Vertex from = vertex_of(walk_point);
     next_point(1u);
     for (uint i = 1u; i <= polyline.count; ++i) {
-        Vertex to = vertex_of(walk_point);
-        vec3 delta = walk_delta, ahead = walk_ahead(i);
-        bool start = i == 1u && polyline.begin, cap = i == polyline.count && polyline.end;
-        bool drawn = mask_segment(i - 1u, start, cap);
-        start_segment(i - 1u, to.local, delta, ahead);
+        uint first = i - 1u;
+        vec3 here = walk_point, delta = walk_delta, ahead = walk_ahead(i);
+#if FEATURE_SUBSAMPLES
+        polyline.run = length(delta);
+        vec3 direction = delta / max(polyline.run, 1e-30);
+        while (i < polyline.count && all_points_shown() && goes_straight(from, direction, here, walk_point)) {
+            here = walk_point;
+            polyline.last_run = ahead;
+            polyline.run += length(ahead);
+            ahead = walk_ahead(++i);
+        }
+        if (polyline.count > 1u) polyline.steps = float(i - first);
+#endif
+        Vertex to = vertex_of(here);
+        bool start = first == 0u && polyline.begin, cap = i == polyline.count && polyline.end;
+        bool drawn = mask_segment(first, start, cap);
+        start_segment(first, to.local, delta, ahead);
         ClippedSegment piece;
         bool any_part = piece_of(from, to, start, cap, piece);
-        if (any_part && drawn) cover(Segment(i - 1u, from, to, piece, polyline.steps, ahead));
+        if (any_part && drawn) cover(Segment(first, from, to, piece, polyline.steps, ahead, goes_on(i)));
         from = to;
     }
 }
