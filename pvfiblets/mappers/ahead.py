@@ -33,7 +33,8 @@ def draw_ahead(window: Any, *, refining: bool = False) -> Iterator[None]:
         picture = picture_of(renderer) if refining else None
         camera, refinement = None, None
         if refining:
-            refinement = picture.refinement if picture is not None and picture.unfinished else None
+            if picture is not None and picture.unfinished and not picture.draws_at_once():
+                refinement = picture.refinement
             camera = None if refinement is None else refinement.sample_camera(renderer)
             if camera is None:
                 continue

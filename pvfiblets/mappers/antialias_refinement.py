@@ -24,16 +24,13 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Generator, Hashable, Iterable, Iterator
 from enum import Enum, auto
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from pvfiblets.engine.effects.antialias_accumulation import Accumulation
 from pvfiblets.engine.effects.picture_passes import Attachment
 from pvfiblets.engine.effects.sample_positions import sample_positions
 from pvfiblets.mappers.shifted_cameras import exact_wanted, note_depths, note_sample, shift, shifted_copy
 from pvfiblets.mappers.windows import Slot
-
-if TYPE_CHECKING:
-    from pvfiblets.mappers.antialias_windows import Finishing
 
 __all__ = ["SHOWN_FROM", "Refinement"]
 
@@ -146,7 +143,6 @@ class Refinement:
         if self._over:
             self._left = []
         if self._left and (due or self._taken) and not exact_wanted(renderer):
-            layered = layered and not self._taken and len(self.positions) == SAMPLES and self.seconds is None
             self._frame = _Frame.ADDED if layered else _Frame.SAMPLE
             if layered:
                 self._left = []
@@ -157,22 +153,19 @@ class Refinement:
         note_sample(renderer, begun=self._frame is not _Frame.PLAIN)
 
     @property
+    def untaken(self) -> bool:
+        """Whether the picture lacks all of its samples, and they are as many as are drawn at once."""
+        return bool(self._left) and not self._taken and len(self.positions) == SAMPLES and self.seconds is None
+
+    @property
     def layered(self) -> bool:
         """Whether the frame is to show all samples at once."""
         return self._frame is _Frame.ADDED
 
-    def layer_frames(self, layers: Iterable[Any], finishing: Finishing) -> Generator[Any, None, None]:
-        """Yield the layers of all samples (`pvfiblets.engine.fiblets.sample_layers`), each to be drawn as it is.
-
-        Before them come shares of the work that have been done.
-        """
+    def layer_frames(self, layers: Iterable[Any]) -> Generator[Any, None, None]:
+        """Yield the layers of all samples (`pvfiblets.engine.fiblets.sample_layers`), each to be drawn as it is."""
         try:
             for layer in layers:
-                if isinstance(layer, float):
-                    if not finishing.reach(int(layer * len(self.positions))):
-                        self.draw_singly()
-                        return
-                    continue
                 self._shares = layer.owner
                 yield layer
             self._frame, self._taken = _Frame.MEAN, len(self.positions)

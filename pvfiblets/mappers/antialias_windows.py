@@ -23,8 +23,13 @@ shown_pictures: weakref.WeakSet[Any] = weakref.WeakSet()
 
 
 def refine(window: Any) -> bool:
-    """Draw one more frame of the pictures of a window that want more samples or parts; nothing if none does."""
+    """Draw one more frame of the pictures of a window that want more samples or parts, or what it takes.
+
+    Nothing if none does; return whether another one is wanted.
+    """
     wanting = _unfinished(window)
+    if any(picture.draw_part() for picture in wanting):
+        return True
     for picture in wanting:
         picture.refinement.due = True  # also where parts are wanted: views that stay as they were are not drawn
     if wanting:
@@ -37,14 +42,8 @@ def finish(window: Any) -> None:
     wanting = _unfinished(window)
     total = sum(len(picture.refinement.positions) for picture in wanting)
     with Finishing(total) as finishing:
-        for picture in wanting:
-            picture.finishing = finishing
-        try:
-            while refine(window) and finishing.reach(sum(picture.refinement.taken for picture in wanting)):
-                pass
-        finally:
-            for picture in wanting:
-                picture.finishing = None
+        while refine(window) and finishing.reach(sum(picture.progress for picture in wanting)):
+            pass
         few = [picture for picture in wanting if finishing.stopped and picture.refinement.few]
         for picture in few:
             picture.refinement.forget()

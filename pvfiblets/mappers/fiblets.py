@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Generator, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -259,8 +259,11 @@ class FibletMapper(CutMapper[EngineOptions]):
         frame = frame_of(renderer, self.actor, (*renderer.GetOrigin(), *renderer.GetSize()))
         return frame, *self._wanted(renderer, frame, True)
 
-    def sample_layers(self, renderer: vtkRenderer) -> Iterator[Any]:
-        """Yield the layers of the samples (`pvfiblets.engine.fiblets.sample_layers`) of what a renderer shows."""
+    def sample_layers(self, renderer: vtkRenderer) -> Generator[Any, None, None]:
+        """Yield what the engine does (`pvfiblets.engine.fiblets.sample_layers`) for samples of what a renderer shows.
+
+        Others may draw in between.
+        """
         context = self._context_in(renderer)
         assert context is not None
         frame, view, style = self._sampled(renderer)
@@ -268,16 +271,18 @@ class FibletMapper(CutMapper[EngineOptions]):
         engine = self._engine(context, context.slot(self))
         steps = engine.sample_layers(view, style, rectangle)
         try:
-            while True:
+            while context.alive:
                 with context.foreign():
-                    layer = next(steps, None)
-                if layer is None:
+                    step = next(steps, None)
+                if step is None:
                     break
-                yield layer
+                yield step
         finally:
-            with context.foreign():
-                steps.close()
-                engine.drop_samples()
+            if context.alive:
+                context.window.MakeCurrent()
+                with context.foreign():
+                    steps.close()
+                    engine.drop_samples()
 
     def _context_in(self, renderer: vtkRenderer) -> WindowContext | None:
         """Return the context in which a renderer's window shows it; None before the first frame."""

@@ -19,7 +19,8 @@ While nothing is changed, none of this exists.
 from __future__ import annotations
 
 import weakref
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Generator, Hashable
+from dataclasses import dataclass
 from typing import Any
 
 from vtkmodules.vtkRenderingCore import vtkRenderer
@@ -28,7 +29,7 @@ from pvfiblets.engine.effects.picture import Attachment, PictureEffects
 from pvfiblets.engine.effects.tone import Tone
 from pvfiblets.engine.errors import EngineError
 from pvfiblets.mappers.antialias_refinement import Refinement
-from pvfiblets.mappers.antialias_windows import Finishing, finish, shown_pictures
+from pvfiblets.mappers.antialias_windows import finish, shown_pictures
 from pvfiblets.mappers.lens_focus import FOLLOWED, DepthOfField, Focusing, lens_of
 from pvfiblets.mappers.overlays import Overlay
 from pvfiblets.mappers.picture_prop import COLOUR, DEPTH, PictureProp, attachment
@@ -45,6 +46,15 @@ _EVENTS = ("StartEvent", "EndEvent", "ActiveCameraEvent")
 _COVERAGE = "coverage"
 ANTIALIAS = ("off", _COVERAGE)
 """How edges of lines may be smoothed."""
+
+
+@dataclass(slots=True)
+class _Job:
+    """Samples that are drawn at once, part by part, between the frames of a resting picture."""
+
+    state: Hashable
+    steps: Generator[Any, None, None]   # shares of the work that is done, then layers
+    share: float = 0.0
 
 
 class Picture:
@@ -65,8 +75,6 @@ class Picture:
         Called after each frame of a picture that is refined.
     paced : callable
         Says whether somebody asks for more frames of the picture while it rests.
-    finishing : Finishing or None
-        Told of samples where nobody sees the frames before the finished picture.
     """
 
     def __init__(self, renderer: vtkRenderer) -> None:
@@ -87,7 +95,7 @@ class Picture:
         self.focusing = Focusing()
         self.drawn: Callable[[], None] | None = None
         self.paced: Callable[[], bool] = lambda: False
-        self.finishing: Finishing | None = None
+        self._job: _Job | None = None
         self._lacks_memory = False
         shown_pictures.add(self)
 
@@ -137,6 +145,51 @@ class Picture:
         if self._streamed:
             return self.fetching
         return self._refinement.unfinished(self._state(renderer))
+
+    @property
+    def progress(self) -> int:
+        """Samples that have been drawn of the picture at rest."""
+        assert self._refinement is not None
+        job = self._job
+        return self._refinement.taken if job is None else int(job.share * len(self._refinement.positions))
+
+    def draw_part(self) -> bool:
+        """Draw a part of all samples at once, if that can be done; return whether there are more parts.
+
+        Called between frames of a picture that is unfinished: the next frame shows what all parts together are.
+        """
+        renderer, refinement = self.renderer, self._refinement
+        assert refinement is not None
+        state = self._state(renderer)
+        lines = self._layered_lines(renderer) if refinement.untaken and not self._lacks_memory else None
+        if self._job is not None and (lines is None or self._job.state != state):
+            self._drop_job()
+        if lines is None:
+            return False
+        if self._job is None:
+            self._job = _Job(state, lines.sample_layers(renderer))
+        job = self._job
+        if job.share < 1.0:
+            renderer.GetRenderWindow().MakeCurrent()
+            try:
+                job.share = next(job.steps)
+            except EngineError:
+                self._lacks_memory = True
+                self._drop_job()
+                return False
+        if job.share < 1.0 and self.drawn is not None:
+            self.drawn()
+        return job.share < 1.0
+
+    def draws_at_once(self) -> bool:
+        """Whether the samples that the picture wants next are drawn at once."""
+        wanted = self._refinement is not None and self._refinement.untaken and not self._lacks_memory
+        return wanted and self._layered_lines(self.renderer) is not None
+
+    def _drop_job(self) -> None:
+        job, self._job = self._job, None
+        if job is not None:
+            job.steps.close()
 
     @property
     def fetching(self) -> bool:
@@ -237,6 +290,7 @@ class Picture:
 
     def release(self) -> None:
         """Leave the renderer and give everything on the GPU back; twice is harmless."""
+        self._drop_job()
         if self._smoothing is not None:
             self._smoothing.release()
         lenses.pop(self._address, None)
@@ -283,10 +337,13 @@ class Picture:
             return
         refinement = self._refinement
         if refinement is not None and tuple(renderer.GetRenderWindow().GetTileScale()) == (1, 1):
-            lines = self._layered_lines(renderer) if self.finishing is not None and not self._lacks_memory else None
-            refinement.start(renderer, self._state(renderer), layered=lines is not None)
+            state, job = self._state(renderer), self._job
+            ready = job is not None and job.state == state and job.share == 1.0
+            if job is not None and job.state != state:
+                self._drop_job()
+            refinement.start(renderer, state, layered=ready)
             if refinement.layered:
-                self._draw_layers(renderer, lines)
+                self._draw_layers(renderer)
         elif refinement is not None and _refinable(renderer) and _starts_empty(renderer):
             self._insert()
             for _ in refinement.other_tile_frames(renderer):
@@ -312,12 +369,12 @@ class Picture:
         lines = self._smoothing.only_lines() if _starts_empty(renderer) else None
         return lines if lines is not None and lines.layers_samples(renderer) else None
 
-    def _draw_layers(self, renderer: Any, lines: Any) -> None:
+    def _draw_layers(self, renderer: Any) -> None:
         """Add up the layers of all samples, each in a frame inside of the one that the renderer is about to draw."""
         assert self._refinement is not None
-        assert self.finishing is not None
+        assert self._job is not None
         self._insert()
-        frames = self._refinement.layer_frames(lines.sample_layers(renderer), self.finishing)
+        frames = self._refinement.layer_frames(self._job.steps)
         try:
             for self._smoothing.layer in frames:
                 self._draw_inside(renderer)
@@ -327,6 +384,7 @@ class Picture:
         finally:
             self._smoothing.layer = None
             frames.close()
+            self._drop_job()
         self._overlay.hold(renderer)
 
     def _draw_around(self, renderer: Any) -> None:

@@ -121,13 +121,15 @@ class PictureComponent:
     def refine(self) -> bool:
         """Draw one more sample of the plotter's resting pictures, or more parts of sets larger than GPU memory.
 
+        Of scenes of nothing but lines, all samples are drawn at once, part by part.
+
         Windows on a screen, notebooks and pages do it by themselves, screenshots draw all that are left. It is for
         event loops of other kinds, which call it while nothing happens.
 
         Returns
         -------
         bool
-            Whether another one is wanted. If none was, nothing has been drawn.
+            Whether another call is wanted. If none was, nothing has been drawn.
         """
         window = self._plotter.render_window
         return window is not None and refine(window)

@@ -88,26 +88,25 @@ class SampleLayers:
             entries, listed = _target(self._ctx, size, 4)
             held.callback(entries.release)
             held.callback(listed.release)
-            restore = held.enter_context(self._marks_kept(pipeline))
             undo = held.enter_context(ExitStack())
             undo.callback(self._drop_layers)
             for done, corner in enumerate(tiles, start=1):
                 wanted = request(_part(view, corner, size), sub, samples)
-                restore()
-                pipeline.draw(replace(wanted, occlusion=None, samples=("SUBSAMPLES",)))
+                with self._marks_kept(pipeline):
+                    pipeline.draw(replace(wanted, occlusion=None, samples=("SUBSAMPLES",)))
                 with self._gl.framebuffers_kept():
                     self._sort(view.size, samples, entries, listed, corner)
                 yield done / len(tiles)
             undo.pop_all()
 
     @contextmanager
-    def _marks_kept(self, pipeline: ComputePipeline) -> Iterator[Callable[[], None]]:
+    def _marks_kept(self, pipeline: ComputePipeline) -> Iterator[None]:
         """Lend what marks those fiblets as seen that the last picture shows, which are also so in the end."""
         marks = pipeline.buffers["visibility_bits"]
         kept = self._ctx.buffer(reserve=marks.size)
         self._copy(kept, marks)
         try:
-            yield lambda: self._copy(marks, kept)
+            yield
         finally:
             self._copy(marks, kept)
             kept.release()
