@@ -14,7 +14,7 @@ SIZE = (90, 70)
 
 @pytest.fixture
 def small(monkeypatch):
-    for name, value in {"SEGMENTS": 3000, "BUNDLE": 8, "TUBES": 4, "SIZE": SIZE, "REFERENCE": 4}.items():
+    for name, value in {"SEGMENTS": (3000,), "BUNDLE": 8, "TUBES": 4, "SIZE": SIZE, "REFERENCE": 4}.items():
         monkeypatch.setattr(antialias, f"QUICK_{name}", value)
 
 
@@ -30,7 +30,7 @@ def measured(small):
 @pytest.mark.more
 def test_refined_pictures_are_the_nearest_to_the_mean_and_cost_as_many_frames(measured):
     groups = {group for group, _ in measured}
-    assert groups == {"whole-brain", "bundle", "tubes", "bundle-and-surface", "lines-drawn-by-VTK"}
+    assert groups == {"brain-of-3,000-segments", "bundle", "tubes", "halos", "bundle-and-surface", "lines-drawn-by-VTK"}
     for group in groups:
         refined, off = measured[group, "refined"], measured[group, "off"]
         assert refined.default
@@ -67,4 +67,4 @@ def test_differences_are_of_pixels_that_show_something():
 def test_what_there_is_no_time_for_is_named(small):
     left = []
     assert not list(antialias.STUDY.run(little(budget=Budget(0.0)), left))
-    assert [one.what for one in left][:2] == ["whole brain", "bundle"]
+    assert [one.what for one in left][:2] == ["brain of 3,000 segments", "bundle"]

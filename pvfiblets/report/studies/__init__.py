@@ -18,6 +18,7 @@ from ..study import Study
 __all__ = ["MODULES", "chosen_names", "find"]
 
 MODULES = {
+    "antialias": "pvfiblets.report.studies.antialias.study",
     "codec": "pvfiblets.report.studies.codec.study",
     "decode": "pvfiblets.report.studies.decode.study",
     "tractograms": "pvfiblets.report.studies.codec.tractograms",
@@ -27,7 +28,6 @@ MODULES = {
     "volumes": "pvfiblets.report.studies.volumes.study",
     "halos": "pvfiblets.report.studies.halos.study",
     "features": "pvfiblets.report.studies.features.study",
-    "antialias": "pvfiblets.report.studies.antialias.study",
     "translucency": "pvfiblets.report.studies.translucency.study",
     "stability": "pvfiblets.report.studies.stability.study",
 }

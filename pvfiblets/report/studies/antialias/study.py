@@ -24,8 +24,9 @@ __all__ = [
 ]  # fmt: skip
 
 SIZE, QUICK_SIZE, FILE_SIZE = (800, 600), (320, 240), (1000, 800)
-SEGMENTS, QUICK_SEGMENTS = 1_000_000, 60_000  # of a synthetic brain
-STEP, LENGTH = 0.5, 94.0  # mm, of its points and of its streamlines on average
+SCREEN = (1920, 1080)
+SEGMENTS, QUICK_SEGMENTS = (1_100_000, 6_000_000), (60_000,)  # of synthetic brains
+STEP, QUICK_STEP, LENGTH = 0.1, 0.5, 94.0  # mm, of its points and of its streamlines on average
 BUNDLE, QUICK_BUNDLE = 300, 60  # streamlines of it
 TUBES, QUICK_TUBES = 60, 15
 REFERENCE, QUICK_REFERENCE = 16, 8  # samples along a pixel's side
@@ -54,7 +55,7 @@ class Variant:
     vtk : callable, optional
         Called with a plotter: what VTK does about edges.
     singly : bool
-        Whether one sample is drawn after the other where all could be drawn at once, as windows on a screen do.
+        Whether one sample is drawn after the other where all could be drawn at once.
     """
 
     method: str
@@ -92,26 +93,29 @@ class Subject:
 
 
 def subjects(options: Options) -> list[Subject]:
-    """Return the scenes: lines, tubes, lines with a surface, lines that VTK draws itself, and files, each whole."""
+    """Return the scenes, whole brains first."""
     import pyvista as pv
 
     from pvfiblets.report.studies.codec.coded import compress
     from pvfiblets.synthetic import brain_streamlines
 
     quick = options.quick
-    n = max(round((QUICK_SEGMENTS if quick else SEGMENTS) * STEP / LENGTH), 1)
-    brain = brain_streamlines(n, step=STEP, seed=options.seed)
-    compressed = compress(brain)
-    few = brain[np.arange(min(QUICK_BUNDLE if quick else BUNDLE, n))]
-    thick = brain[np.arange(min(QUICK_TUBES if quick else TUBES, n))]
+    few = brain_streamlines(QUICK_BUNDLE if quick else BUNDLE, step=QUICK_STEP, seed=options.seed)
+    thick = few[np.arange(QUICK_TUBES if quick else TUBES)]
 
     def look(plotter: Any, zoom: float) -> None:
         plotter.view_vector((1.0, 0.8, 0.5), (0.0, 0.0, 1.0))
         plotter.camera.zoom(zoom)
 
-    def whole(plotter: Any) -> None:
-        plotter.add_fiblets(compressed, show_scalar_bar=False)
-        look(plotter, 1.4)
+    def whole(segments: int) -> Subject:
+        step = QUICK_STEP if quick else STEP
+
+        def fill(plotter: Any) -> None:
+            streamlines = brain_streamlines(max(round(segments * step / LENGTH), 1), step=step, seed=options.seed)
+            plotter.add_fiblets(compress(streamlines), show_scalar_bar=False)
+            look(plotter, 1.4)
+
+        return Subject(f"brain of {segments:,} segments", fill, size=QUICK_SIZE if quick else SCREEN)
 
     def bundle(plotter: Any) -> None:
         plotter.add_fiblets(few, color="orange", lighting=False, line_width=2, show_scalar_bar=False)
@@ -119,6 +123,10 @@ def subjects(options: Options) -> list[Subject]:
 
     def tubes(plotter: Any) -> None:
         plotter.add_spline_tubes(thick, radius=0.6, color="orange", show_scalar_bar=False)
+        look(plotter, 2.0)
+
+    def halos(plotter: Any) -> None:
+        plotter.add_halo_lines(few)
         look(plotter, 2.0)
 
     def surface(plotter: Any) -> None:
@@ -140,9 +148,10 @@ def subjects(options: Options) -> list[Subject]:
 
         return Subject(path.stem.replace("_", " "), fill, size=QUICK_SIZE if quick else FILE_SIZE)
 
-    return [Subject("whole brain", whole), Subject("bundle", bundle), Subject("tubes", tubes),
-            Subject("bundle and surface", surface), Subject("lines drawn by VTK", lines, only_vtk=True),
-            *map(file, files_of(options.files)[0] if options.files else [])]  # fmt: skip
+    files = files_of(options.files)[0] if options.files else []
+    return [*map(whole, QUICK_SEGMENTS if quick else SEGMENTS), Subject("bundle", bundle), Subject("tubes", tubes),
+            Subject("halos", halos), Subject("bundle and surface", surface),
+            Subject("lines drawn by VTK", lines, only_vtk=True), *map(file, files)]  # fmt: skip
 
 
 class AntialiasStudy:
@@ -162,7 +171,7 @@ class AntialiasStudy:
         "it is shown while the camera turns; *at rest*: the finished picture, and the time from the change to it. Both "
         "are the same but for *refined*, which then draws as many samples as a screenshot has, 16 unless a number says "
         "otherwise, each with the camera moved by parts of a pixel: those of one set of lines at once, *singly* one "
-        "after the other, as in windows on a screen. *samples*: pictures that the finished one is the mean "
+        "after the other, as in all other scenes. *samples*: pictures that the finished one is the mean "
         "of. *shimmer*: the mean difference of the colours of two frames while the camera turns by 0.1° between them, "
         "over the pixels that show anything in either.",
         "Errors are root mean squares over the pixels that show anything, beside the mean of 256 pictures (64 in quick "
@@ -228,6 +237,7 @@ class PictureWindow:
         self.plotter.disable_anti_aliasing()
         self.plotter.renderer.SetUseFXAA(False)
         self.plotter.picture.antialias = variant.antialias
+        self.plotter.picture.antialias_seconds = 1e6 if variant.singly else None  # with a limit, they come one by one
         variant.vtk(self.plotter)
 
     def look_back(self) -> None:
@@ -258,13 +268,9 @@ class PictureWindow:
             frames.append(self.pixels())
         return float(np.mean([differences(after, before)["mean"] for before, after in itertools.pairwise(frames)]))
 
-    def samples(self, *, singly: bool) -> float:
+    def samples(self) -> float:
         """Draw what is left of the picture, and return the seconds that it took."""
-        from pvfiblets.mappers.antialias_windows import finish
-
         begun = self.clock()
-        if not singly:
-            finish(self.plotter.render_window)
         while self.plotter.picture.refine():
             pass
         self._finish()
@@ -343,14 +349,14 @@ def _measured(subject: Subject, options: Options, left_out: list[LeftOut]) -> It
 def _record(subject: Subject, variant: Variant, window: PictureWindow, reference: Pixels, options: Options) -> Record:
     window.look_back()
     moving = window.pixels()
-    window.samples(singly=variant.singly)
+    window.samples()
     still, n = window.pixels(), window.plotter.picture.samples
     window.look_back()
     shimmer = window.shimmer(TURNS)
     frames, whole = [], []
     for _ in range(options.repeats):
         frames.append(window.frame())
-        whole.append(frames[-1] + (window.samples(singly=variant.singly) if n > 1 else 0.0))
+        whole.append(frames[-1] + (window.samples() if n > 1 else 0.0))
     found = {"at rest": differences(still, reference), "moving": differences(moving, reference)}
     errors = {name: Figure(figures["rms"], "levels") for name, figures in found.items()}
     errors["shimmer"] = Figure(shimmer, "levels")
