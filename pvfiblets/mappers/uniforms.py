@@ -53,7 +53,9 @@ def set_uniforms(program: Any, frame: Frame, style: Any, fiblets: Any, colouring
         program.SetUniform3f("fibletColour", colouring.color)
     if "colour_point_scalar" in colouring.features and colouring.lut is not None:
         program.SetUniformi("fibletTableSize", len(colouring.lut))
-        reference = fiblets.value_reference(colouring.source)
+        reference = getattr(colouring.source, "reference", None)  # of an image
+        if reference is None:
+            reference = fiblets.value_reference(colouring.source)
         program.SetUniform3f("fibletTableRange", colouring.scaled_range(reference=reference))
         if colouring.log_scale:
             program.SetUniformf("fibletTableReference", reference)

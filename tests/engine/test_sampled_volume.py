@@ -65,7 +65,7 @@ def draw(gl, fiblets, matrix, source, *, tolerance=0.0, width=1.0, renderer=None
     finally:
         renderer.release()
     place, value = picture.position[picture.drawn].astype(float).T
-    return picture.ids[picture.drawn][:, 0], place, value
+    return picture.ids[picture.drawn][:, 0], place, value + source.reference
 
 
 def compare(fiblets, volume, affine, drawn, *, nearest=False, atol=2e-4, unsure=0.0):

@@ -48,6 +48,19 @@ def test_colours_of_points(draw, offset):
     assert len(np.unique(far.reshape(-1, 3), axis=0)) > 60
 
 
+@pytest.mark.parametrize("kind", ["int32", "int64", "float64"])
+@pytest.mark.parametrize("steps", [16, 70000])
+def test_colours_of_fiblets_by_an_image(kind, steps):
+    numbers = np.linspace(0, steps, 16**3).reshape(16, 16, 16).round().astype(kind)
+    affine = np.diag([0.2, 0.2, 0.2, 1.0])
+    affine[:3, 3] = -1.0
+    near, _ = picture(fiblets, scalars=(numbers, affine))
+    far, actor = picture(fiblets, scalars=(numbers + type(numbers.flat[0])(10**8), affine))
+    assert actor.clim == (1e8, 1e8 + steps)
+    assert (abs(near - far).max(-1) > 3).sum() == 0
+    assert len(np.unique(far.reshape(-1, 3), axis=0)) > 15
+
+
 @pytest.mark.parametrize("draw", [fiblets, halos, tubes])
 def test_colours_of_lines(draw):
     near, _ = picture(draw, scalars=[0.0, 2.0])

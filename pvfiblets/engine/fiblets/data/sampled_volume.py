@@ -32,6 +32,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
+from ....support.value_reference import relative, value_reference
 from ...errors import EngineError, GPUMemoryError
 from ...gl.bindings import BLOCKS, SAMPLED
 from ...gl.uniform_struct import Field, UniformStruct
@@ -103,7 +104,8 @@ class VolumeSource:
             raise ValueError(f"the volume's affine {affine.tolist()} flattens space; give an invertible one")
         if values.dtype.kind in "ui":
             low, high = int(values.min()), int(values.max())
-            if high - low > 65535 and max(-low, high) > LARGEST_WHOLE:
+            middle = round(value_reference(values))
+            if high - low > 65535 and max(middle - low, high - middle) > LARGEST_WHOLE:
                 raise ValueError(
                     f"the volume's integers run from {low} to {high}; beyond {LARGEST_WHOLE} float32 cannot tell them "
                     "apart: number the labels anew, or give floats"
@@ -126,6 +128,11 @@ class VolumeSource:
         return (low, high) if low <= high else (0.0, 0.0)
 
     @cached_property
+    def reference(self) -> float:
+        """What graphics cards subtract from the values first (`pvfiblets.support.value_reference`)."""
+        return value_reference(self.values)
+
+    @cached_property
     def least_positive(self) -> float:
         """Least finite value above zero, where a logarithmic scale may begin; 1e-6 where there is none."""
         least = np.inf
@@ -143,21 +150,21 @@ class VolumeSource:
 
 
 def _texels(source: VolumeSource) -> tuple[npt.NDArray[Any], str, float, float]:
-    """Return what the texture holds (i, j, k), its dtype for moderngl, and the value of texel 0 and per texel unit."""
+    """Return what the texture holds, its dtype for moderngl, and the value less reference of texel 0 and per unit."""
     values = source.values
     if values.dtype.kind == "f":
         if values.dtype == np.float16:
             return values, "f2", 0.0, 1.0
         with np.errstate(over="ignore"):  # beyond float32's range lies infinity
-            return values.astype("<f4"), "f4", 0.0, 1.0
+            return relative(values, source.reference).astype("<f4"), "f4", 0.0, 1.0
     if values.dtype.kind == "b":
         return values.view(np.uint8), "nu1", 0.0, 255.0
     low, high = int(values.min()), int(values.max())
     if high - low > 65535:
-        return values.astype("<f4"), "f4", 0.0, 1.0
+        return relative(values, source.reference).astype("<f4"), "f4", 0.0, 1.0
     small, dtype, scale = (np.uint8, "nu1", 255.0) if high - low < 256 else (np.uint16, "nu2", 65535.0)
     # Differences wrap around in the array's own type and come out right in the smaller one.
-    return (values - values.dtype.type(low)).astype(small), dtype, float(low), scale
+    return (values - values.dtype.type(low)).astype(small), dtype, low - source.reference, scale
 
 
 class VolumeTexture:
