@@ -16,11 +16,13 @@ from importlib import import_module
 from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
 import pyvista as pv
+from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
 from vtkmodules.vtkRenderingCore import vtkPicker
 
 from pvfiblets.antialias import default_antialias
 from pvfiblets.plotting import exports, transparent, visible_picking  # noqa: F401 - of which plotters are to know
 from pvfiblets.plotting.call_signature import document
+from pvfiblets.plotting.scalar_bar_labels import label_format
 from pvfiblets.plotting.settings import Given, Setting, Settings
 from pvfiblets.plotting.settings import arguments as settings_of_call
 from pvfiblets.plotting.shared_settings import Common
@@ -364,6 +366,7 @@ class ActorRegistry(Generic[A]):
         if wanted is not None:
             wanted = state.arguments.get("title", wanted)
         if wanted == state.title and actor.shows_labels == state.labels:
+            self._write_labels(actor, state)
             return
         if state.title is not None:
             # PyVista's own way when an actor goes; it removes a bar once nobody else uses it.
@@ -378,6 +381,15 @@ class ActorRegistry(Generic[A]):
             arguments = {**usual, **state.arguments, "title": wanted}
             self._plotter.add_scalar_bar(mapper=actor.mapper, render=False, **arguments)
         state.title, state.labels = wanted, actor.shows_labels
+        self._write_labels(actor, state)
+
+    def _write_labels(self, actor: A, state: _Bar) -> None:
+        """Give numbers as many digits as tell them apart, unless the user says how they are written."""
+        if "fmt" in state.arguments or self._plotter.theme.font.fmt is not None or state.title is None:
+            return
+        table = actor.mapper.lookup_table
+        form = None if table.GetScale() else label_format(*table.GetTableRange())
+        self._plotter.scalar_bars[state.title].SetLabelFormat(form or vtkScalarBarActor().GetLabelFormat())
 
     def _small_names(self, actor: A) -> dict[str, Any]:
         """Return sizes of fonts by which names beside a bar take less than half of the window."""

@@ -166,3 +166,24 @@ def test_long_names_of_groups_are_neither_cut_nor_all_over_the_picture():
     rows = dark[150:, 400:438].any(axis=1).astype(int)
     assert np.count_nonzero(np.diff(rows) == 1) >= len(names)  # apart from each other
     plotter.close()
+
+
+@pytest.mark.parametrize(("low", "high", "wanted"), [
+    (1.7e9, 1.7e9 + 60.0, ["1700000000", "1700000015", "1700000030", "1700000045", "1700000060"]),
+    (2459000.5, 2459001.5, ["2459000.50", "2459000.75", "2459001.00", "2459001.25", "2459001.50"]),
+    (-7000.0, -6999.0, ["-7000.00", "-6999.75", "-6999.50", "-6999.25", "-6999.00"]),
+])  # fmt: skip
+def test_numbers_beside_a_bar_differ_where_three_digits_are_the_same(low, high, wanted):
+    points = np.linspace((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), 9)
+    times = Streamlines.from_list([points], per_point={"t": np.linspace(low, high, 9)})
+    plotter = pv.Plotter(off_screen=True)
+    actor = plotter.add_fiblets(times, scalars="t")
+    bar = plotter.scalar_bars["t"]
+    assert [bar.GetLabelFormat() % value for value in np.linspace(low, high, 5)] == wanted
+    actor.clim = (0.0, 1.0)
+    assert bar.GetLabelFormat() == pv.Plotter(off_screen=True).add_scalar_bar("x", mapper=actor.mapper).GetLabelFormat()
+    plotter.close()
+    plotter = pv.Plotter(off_screen=True)
+    plotter.add_fiblets(times, scalars="t", scalar_bar_args={"fmt": "%.1e"})
+    assert plotter.scalar_bars["t"].GetLabelFormat() == "%.1e"
+    plotter.close()

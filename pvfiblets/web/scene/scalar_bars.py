@@ -8,6 +8,7 @@ from functools import lru_cache
 from typing import Any
 
 from pvfiblets.mappers.scene import USUAL_DPI
+from pvfiblets.plotting.scalar_bar_labels import label_format, label_text
 from pvfiblets.web.scene.scalar_bar_layout import MOST_LABELS, Place, Wanted, arrange
 from pvfiblets.web.session.document import Layer
 
@@ -85,8 +86,11 @@ class Bars:
         self.places = arrange(
             self._wanted, size, dpi / USUAL_DPI, lambda text, font: _width_of(text, font, dpi, family)
         )
-        for (title, *_), place in zip(self._shown, self.places, strict=True):
+        for (title, actor, *_), place in zip(self._shown, self.places, strict=True):
             bar = self._plotter.scalar_bars[title]
+            form = None if actor.mapper.lookup_table.GetScale() else label_format(*actor.mapper.scalar_range)
+            if form is not None:
+                bar.SetLabelFormat(form)
             bar.SetVisibility(place is not None)
             if place is not None:
                 _put(bar, title, place, size)
@@ -193,7 +197,8 @@ def _wanted(title: str, actor: Any) -> Wanted:
     values = [low + share * (high - low) for share in shares]
     if table.GetScale() and low > 0.0:  # logarithmic
         values = [low * (high / low) ** share for share in shares]
-    return Wanted(title, tuple(sorted({f"{value:#.3g}" for value in values})))
+    form = None if table.GetScale() else label_format(low, high)
+    return Wanted(title, tuple(sorted({label_text(value, form) for value in values})))
 
 
 @lru_cache(4096)
