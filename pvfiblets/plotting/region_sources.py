@@ -9,6 +9,7 @@ import numpy as np
 import pyvista as pv
 
 from pvfiblets.query.measures.image_samples import three_axes
+from pvfiblets.support.nifti_space import affine_of
 from pvfiblets.support.vtk_space import space_of_dataset, to_ras
 
 if TYPE_CHECKING:
@@ -49,7 +50,10 @@ def as_region(what: Any) -> Region:
 
         what = nibabel.load(what)
     if hasattr(what, "affine") and hasattr(what, "dataobj"):
-        return regions.Labels(_whole_numbers(np.asanyarray(what.dataobj)), what.affine)
+        affine = affine_of(what)
+        if affine is None:
+            raise ValueError("the image has no affine; give regions.Labels(array, affine)")
+        return regions.Labels(_whole_numbers(np.asanyarray(what.dataobj)), affine)
     if isinstance(what, np.ndarray) and what.ndim == 3:
         raise TypeError(
             f"an array of shape {what.shape} is no region: it does not say where it lies; "
