@@ -20,7 +20,7 @@ from pvfiblets.support.addresses import is_url
 from pvfiblets.support.nifti_space import MATRICES, UNITS
 from pvfiblets.support.whole_files import naming_target
 
-__all__ = ["Pipes", "add_format_option", "add_image_options"]
+__all__ = ["Pipes", "add_format_option", "add_image_options", "add_surface_option"]
 
 _IN, _OUT = "standard input", "standard output"
 
@@ -50,6 +50,14 @@ def add_image_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--nifti-units", choices=UNITS, default="mm",
         help="unit of their coordinates: mm, or the header's (xyzt_units) (default: %(default)s)",
+    )  # fmt: skip
+
+
+def add_surface_option(parser: argparse.ArgumentParser) -> None:
+    """Let a command leave FreeSurfer's surfaces where they are stored."""
+    parser.add_argument(
+        "--tkras", action="store_true",
+        help="leave FreeSurfer's surfaces in its surface space (default: moved by c_ras to where tracts are)",
     )  # fmt: skip
 
 

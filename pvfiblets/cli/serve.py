@@ -11,6 +11,7 @@ from typing import Any
 
 from pvfiblets.errors import FibletsError
 from pvfiblets.support.nifti_space import chosen
+from pvfiblets.support.surface_space import tkras_chosen
 
 
 def serve(
@@ -68,6 +69,7 @@ def serve(
         proxies=proxy,
         nifti_space=chosen()[0],
         nifti_units=chosen()[1],
+        tkras=tkras_chosen(),
     ).checked()
     try:
         import trame_rca  # noqa: F401

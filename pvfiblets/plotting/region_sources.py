@@ -11,6 +11,8 @@ import pyvista as pv
 from pvfiblets.query.measures.image_samples import three_axes
 from pvfiblets.support.nifti_space import affine_of
 from pvfiblets.support.vtk_space import space_of_dataset, to_ras
+from pvfiblets.volumes.freesurfer_files import SURFACES as FREESURFER
+from pvfiblets.volumes.gifti_files import SUFFIXES as GIFTI
 
 if TYPE_CHECKING:
     from pvfiblets.regions import Region
@@ -45,6 +47,10 @@ def as_region(what: Any) -> Region:
 
         image = as_slice_image(what)
         return regions.Labels(_whole_numbers(image.values), image.affine)
+    if isinstance(what, (str, Path)) and str(what).lower().endswith((*GIFTI, *FREESURFER)):
+        from pvfiblets.plotting.meshes import read_mesh
+
+        return _surface(read_mesh(what))
     if isinstance(what, (str, Path)):
         import nibabel
 

@@ -52,6 +52,7 @@ def main() -> int:
 
 def _run(told: dict[str, Any], speaker: TextIO) -> None:
     from pvfiblets.support.nifti_space import nifti_space
+    from pvfiblets.support.surface_space import as_stored
     from pvfiblets.web.server.options import Options
 
     options = Options.from_dict(told["options"])
@@ -59,7 +60,7 @@ def _run(told: dict[str, Any], speaker: TextIO) -> None:
     tempfile.tempdir = str(folder)  # of all that runs here: the front server takes it away where this process cannot
     if sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
         os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")  # VTK need not try X and complain
-    with nifti_space(options.nifti_space, units=options.nifti_units):
+    with nifti_space(options.nifti_space, units=options.nifti_units), as_stored(options.tkras):
         _serve(options, folder, told["key"], speaker)
 
 

@@ -61,6 +61,8 @@ class Options:
         Other origins that pages may come from, such as that of a proxy which renames the host.
     nifti_space, nifti_units : str
         What places images of NIfTI, as of :func:`pvfiblets.nifti_space`.
+    tkras : bool
+        Whether surfaces of FreeSurfer stay in its surface space.
     connections, by_address : int
         The most connections at once, in all and from one address.
     proxies : list of str
@@ -91,6 +93,7 @@ class Options:
     proxies: list[str] = field(default_factory=list)
     nifti_space: Matrix | None = None
     nifti_units: Units = "mm"
+    tkras: bool = False
 
     @property
     def on_loopback(self) -> bool:
