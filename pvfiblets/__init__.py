@@ -28,6 +28,7 @@ _HOME = {
     "iter_chunks": "formats",
     "end_parcels": "query.connectome.parcels",
     "measure_error": "codec.error",
+    "nifti_space": "support.nifti_space",
     "plot": "plotting.plot",
     "read": "formats",
     "read_volume": "plotting.read_volume",
@@ -66,6 +67,7 @@ if TYPE_CHECKING:
     from .query.density.volume import density as density
     from .query.measures.table import table as table
     from .streamlines import Streamlines
+    from .support.nifti_space import nifti_space as nifti_space
     from .tubes.spline_tubes import SplineTubes
 
 

@@ -7,6 +7,7 @@ import sys
 from typing import Any
 
 from pvfiblets.cli.files import print_json, show_progress, which_per_point
+from pvfiblets.cli.pipes import add_image_options
 from pvfiblets.codec.parameters import DEFAULT_ANGLE
 
 __all__ = ["add_options", "batch"]
@@ -57,6 +58,7 @@ def _common(parser: argparse.ArgumentParser, count: Any) -> None:
     old = parser.add_mutually_exclusive_group()
     old.add_argument("--resume", action="store_true", help="skip what an earlier run has finished")
     old.add_argument("--overwrite", action="store_true", help="do all again")
+    add_image_options(parser)
     add("--quiet", action="store_true", help="no progress bar")
     add("--json", action="store_true", help="print the result as one JSON object")
 

@@ -24,6 +24,8 @@ from pvfiblets.cli.parser import Parser
 from pvfiblets.cli.pipes import Pipes
 from pvfiblets.cli.values import angle, count, positive
 from pvfiblets.errors import EXPECTED, sentence
+from pvfiblets.support.nifti_space import nifti_space
+from pvfiblets.support.surface_space import as_stored
 from pvfiblets.support.vtk_space import unnamed_as
 
 
@@ -33,8 +35,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
     debug = options.pop("debug")
     module, function = options.pop("run").split(":")
     pipes, space = Pipes(options), options.pop("space", None)
+    images = nifti_space(options.pop("nifti_space", None), units=options.pop("nifti_units", "mm"))
+    surfaces = as_stored(options.pop("tkras", False))
     try:
-        with _plain_warnings(pipes), held_to(options.pop("max_memory", None)), unnamed_as(space), pipes:
+        with (
+            _plain_warnings(pipes),
+            held_to(options.pop("max_memory", None)),
+            unnamed_as(space),
+            images,
+            surfaces,
+            pipes,
+        ):
             code = getattr(import_module(module), function)(**options) or 0
         sys.stdout.flush()  # here, where a reader that has gone is no error
         return code

@@ -6,7 +6,7 @@ import argparse
 from typing import Any
 
 from pvfiblets.cli.memory import add_memory_option, bytes_of_file
-from pvfiblets.cli.pipes import add_format_option
+from pvfiblets.cli.pipes import add_format_option, add_image_options
 from pvfiblets.cli.values import angle, count, positive
 from pvfiblets.codec.parameters import DEFAULT_ANGLE
 
@@ -173,6 +173,7 @@ def add_density(commands: Any) -> None:
     )
     parser.add_argument("--ends-only", action="store_true", help="count end points instead")
     add_format_option(parser, reads=["source"], writes="target", usual="nii")
+    add_image_options(parser)
     _quiet_and_json(parser)
     add_memory_option(parser)
     parser.set_defaults(run="pvfiblets.cli.density:density")
@@ -204,6 +205,7 @@ def add_connectome(commands: Any) -> None:
         help="of a pair's numbers (default: sum of counts, else mean)",
     )
     add_format_option(matrix, reads=["source"], writes="target", usual="csv")
+    add_image_options(matrix)
     json_option(matrix)
     add_memory_option(matrix)
     matrix.set_defaults(run="pvfiblets.cli.connectome:connectome")
@@ -233,6 +235,7 @@ def add_table(commands: Any) -> None:
                        help="by bundle: whether points count by the length they stand for in means, as in tcksample "
                        "-stat_tck mean, or all the same (default: %(default)s)")  # fmt: skip
     add_format_option(table, reads=["source"])
+    add_image_options(table)
     add_memory_option(table)
     table.set_defaults(run="pvfiblets.cli.bundles:table")
 
@@ -260,6 +263,7 @@ def add_profile(commands: Any) -> None:
     parser.add_argument("--confidence", type=float, default=0.95, metavar="SHARE", help="of the band (default: 0.95)")
     parser.add_argument("--quiet", action="store_true", help="no progress bar")
     add_format_option(parser, reads=["sources"])
+    add_image_options(parser)
     add_memory_option(parser)
     parser.set_defaults(run="pvfiblets.cli.bundles:profile")
 

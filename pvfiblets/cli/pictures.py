@@ -5,15 +5,27 @@ from __future__ import annotations
 import os
 import sys
 import time
+from collections.abc import Sequence
 from pathlib import Path, PurePosixPath
 from typing import Any
 
+import numpy as np
+
 from pvfiblets import formats
 from pvfiblets.cli.files import print_json
-from pvfiblets.formats.registry import UnknownFormatError, suffix_of
+from pvfiblets.formats.by_vtk import read_dataset
+from pvfiblets.formats.registry import READ_BY_VTK, UnknownFormatError, suffix_of
 from pvfiblets.support.addresses import is_url, path_of
 from pvfiblets.support.whole_files import made_folder, replacing
+from pvfiblets.volumes.freesurfer_files import SURFACES, VALUES
+from pvfiblets.volumes.gifti_files import SUFFIXES as GIFTI
+from pvfiblets.volumes.gifti_files import VALUES as OF_GIFTI
 from pvfiblets.web.values import plain
+
+MESHES = (".ply", ".stl", ".obj", ".off", *GIFTI, *SURFACES)
+OF_VERTICES = (*OF_GIFTI, *VALUES)
+VTK = (".vtk", ".vtp")
+LINE_CELLS = (3, 4)  # VTK_LINE, VTK_POLY_LINE
 
 # Where a scalar bar covers nothing of a brain.
 NOTHING: dict[str, Any] = {"clip": [], "clip_away": [], "include": [], "exclude": [], "criterion": [], "groups": None,
@@ -108,7 +120,6 @@ def fill(
 ) -> Any:
     """Put files into a plotter's scene and point the camera; of a session, return the scene that keeps it."""
     from pvfiblets.cli.scene import cut_and_filter, open_session, options_of
-    from pvfiblets.plotting.meshes import read_mesh
     from pvfiblets.plotting.viewpoints import point_camera
 
     if antialias is not None:
@@ -138,10 +149,11 @@ def fill(
     bars = {"color": text, **UPRIGHT}
     of = {kind: options_of(wishes.get(kind, []), f"--{kind}") for kind in ("lines", "volumes", "meshes")}
     actors: dict[str, list[Any]] = {kind: [] for kind in of}
-    for path in paths:
+    for path, values in with_their_values(paths):
         kind = kind_of(path)
         if kind == "meshes":
-            added = plotter.add_mesh(read_mesh(path), **{"color": "lightgray", **of[kind]})
+            mesh, colours = coloured_mesh(path, values, bars)
+            added = plotter.add_mesh(mesh, **{**colours, **of[kind]})
         elif kind == "volumes":
             usual = {"cmap": "gray", "show_scalar_bar": False, "render": False}
             added = plotter.add_raycast_volume(read_volume(path), **{**usual, **of[kind]})
@@ -167,17 +179,58 @@ def kind_of(path: str) -> str:
     try:
         suffix = suffix_of(path)
     except UnknownFormatError:
-        if lower.endswith((".ply", ".stl", ".obj", ".vtu", ".off", ".gii", ".gii.gz")):
+        if lower.endswith(MESHES):
             return "meshes"
         raise
-    if suffix not in (".vtk", ".vtp"):
+    if suffix not in (*VTK, *READ_BY_VTK):
         return "lines"
     import pyvista
 
-    data = pyvista.read(path)
+    data = read_dataset(path) if suffix in READ_BY_VTK else pyvista.read(path)
     if isinstance(data, (pyvista.ImageData, pyvista.RectilinearGrid)):
         return "volumes"
-    return "lines" if isinstance(data, pyvista.PolyData) and data.n_lines else "meshes"
+    return "lines" if _has_lines(data) else "meshes"
+
+
+def _has_lines(data: Any) -> bool:
+    """Return True if a dataset of VTK's, or a block of it, has cells that are lines."""
+    import pyvista
+
+    if isinstance(data, pyvista.MultiBlock):
+        return any(block is not None and _has_lines(block) for block in data)
+    if isinstance(data, pyvista.UnstructuredGrid):
+        return bool(np.isin(data.celltypes, LINE_CELLS).any())
+    return bool(isinstance(data, pyvista.PolyData) and data.n_lines)
+
+
+def with_their_values(paths: Sequence[str]) -> list[tuple[str, list[str]]]:
+    """Return files, each surface with the files of values for its vertices that follow it."""
+    found: list[tuple[str, list[str]]] = []
+    for path in paths:
+        if not path.lower().endswith(OF_VERTICES):
+            found.append((path, []))
+        elif found and kind_of(found[-1][0]) == "meshes":
+            found[-1][1].append(path)
+        else:
+            raise ValueError(
+                f"{path} holds values for the vertices of a surface, and follows none; give the surface before it: "
+                f"lh.pial {Path(path).name}"
+            )
+    return found
+
+
+def coloured_mesh(path: str, values: Sequence[str], bars: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
+    """Return a surface, and what colours it: the last of its files of values, or light gray."""
+    from pvfiblets.plotting.gifti import shown_array, with_vertex_values
+    from pvfiblets.plotting.meshes import read_mesh
+
+    mesh = read_mesh(path)
+    colours: dict[str, Any] = {"color": "lightgray"}
+    for one in values:
+        mesh = with_vertex_values(mesh, one)
+        name = shown_array(mesh, one)
+        colours = {"scalars": name, "rgb": name.endswith("_rgb"), "scalar_bar_args": bars}
+    return mesh, colours
 
 
 def read_volume(path: str) -> Any:

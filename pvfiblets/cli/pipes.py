@@ -17,9 +17,10 @@ from typing import IO, Any, Self
 
 from pvfiblets.formats.recognise import suffix_by_content
 from pvfiblets.support.addresses import is_url
+from pvfiblets.support.nifti_space import MATRICES, UNITS
 from pvfiblets.support.whole_files import naming_target
 
-__all__ = ["Pipes", "add_format_option"]
+__all__ = ["Pipes", "add_format_option", "add_image_options", "add_surface_option"]
 
 _IN, _OUT = "standard input", "standard output"
 
@@ -37,6 +38,27 @@ def add_format_option(
         help="space of points in VTK's files that name none (default: RAS); DIPY wrote LPS up to 1.11",
     )  # fmt: skip
     parser.set_defaults(pipes=(tuple(reads), writes, usual))
+
+
+def add_image_options(parser: argparse.ArgumentParser) -> None:
+    """Let a command be told what places the images of NIfTI that it reads."""
+    parser.add_argument(
+        "--nifti-space", choices=MATRICES,
+        help="what places NIfTI images: a matrix of theirs, or voxel sizes alone with the first axis to the left (LAS) "
+        "or right (RAS) (default: sform, else qform, else LAS)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--nifti-units", choices=UNITS, default="mm",
+        help="unit of their coordinates: mm, or the header's (xyzt_units) (default: %(default)s)",
+    )  # fmt: skip
+
+
+def add_surface_option(parser: argparse.ArgumentParser) -> None:
+    """Let a command leave FreeSurfer's surfaces where they are stored."""
+    parser.add_argument(
+        "--tkras", action="store_true",
+        help="leave FreeSurfer's surfaces in its surface space (default: moved by c_ras to where tracts are)",
+    )  # fmt: skip
 
 
 class Pipes:

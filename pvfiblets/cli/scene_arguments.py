@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from pvfiblets.cli.pipes import add_format_option
+from pvfiblets.cli.pipes import add_format_option, add_image_options, add_surface_option
 from pvfiblets.cli.scene import add_options
 from pvfiblets.cli.values import antialias, count, positive, size
 
@@ -28,6 +28,8 @@ def add_screenshot(commands: Any) -> None:
     screenshot.add_argument("--size", type=size, default=(1200, 900), metavar="WxH", help="pixels (default: 1200x900)")
     screenshot.add_argument("--transparent", action="store_true", help="leave the background out")
     add_format_option(screenshot, reads=["paths"], writes="output", usual="png")
+    add_image_options(screenshot)
+    add_surface_option(screenshot)
     screenshot.set_defaults(run="pvfiblets.cli.pictures:screenshot")
 
 
@@ -40,6 +42,8 @@ def add_show(commands: Any) -> None:
     )
     _scene(show)
     add_format_option(show, reads=["paths"])
+    add_image_options(show)
+    add_surface_option(show)
     show.set_defaults(run="pvfiblets.cli.pictures:show")
 
 
@@ -56,6 +60,8 @@ def add_page(commands: Any) -> None:
     page.add_argument("-o", "--output", required=True, metavar="HTML", help="the page to write, or a folder")
     page.add_argument("--title", help="of the page (default: the name of the first FILE)")
     add_format_option(page, reads=["paths"])
+    add_image_options(page)
+    add_surface_option(page)
     page.set_defaults(run="pvfiblets.cli.pictures:page")
 
 
@@ -129,13 +135,16 @@ def add_serve(commands: Any) -> None:
         metavar="N",
         help="connections at once from one address (default: %(default)s)",
     )
+    add_image_options(parser)
+    add_surface_option(parser)
     parser.set_defaults(run="pvfiblets.cli.serve:serve")
 
 
 def _scene(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "paths", metavar="FILE", nargs="+", help="tractograms, images (NIfTI, MGH, NRRD, MetaImage, .vti) and meshes "
-        "(.vtp, .ply, .stl, .obj, .gii) of any format; or a session that `serve` saved, .json; or -"
+        "(.vtp, .ply, .stl, .obj, .gii, lh.pial) of any format, a surface before its values (.annot, .label.gii); or "
+        "a session that `serve` saved, .json; or -"
     )  # fmt: skip
     parser.add_argument(
         "--view", choices=VIEWS, help="from where (default: oblique, or as a session says; coronal is from the front)"

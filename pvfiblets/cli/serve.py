@@ -10,6 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from pvfiblets.errors import FibletsError
+from pvfiblets.support.nifti_space import chosen
+from pvfiblets.support.surface_space import tkras_chosen
 
 
 def serve(
@@ -65,6 +67,9 @@ def serve(
         connections=connections,
         by_address=connections_by_address,
         proxies=proxy,
+        nifti_space=chosen()[0],
+        nifti_units=chosen()[1],
+        tkras=tkras_chosen(),
     ).checked()
     try:
         import trame_rca  # noqa: F401

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from pvfiblets.errors import sentence
 from pvfiblets.support import memory as limits
+from pvfiblets.support.nifti_space import chosen
 from pvfiblets.support.progress_bar import progress_bar
 from pvfiblets.support.whole_files import made_folder
 
@@ -218,7 +219,7 @@ def _jobs(
     kind: Operation, files: list[SourceFile], out: Path, options: dict[str, Any], size: int | None
 ) -> tuple[list[Job], dict[str, str]]:
     """Return what is to be done, and what cannot be begun, with why."""
-    jobs, failed = [], {}
+    jobs, failed, images = [], {}, chosen()
     for file in files:
         try:
             kind.check_source(file.path)
@@ -228,9 +229,9 @@ def _jobs(
             continue
         target = f"{file.stem}{options['to']}" if kind.makes_file else ""
         rows = f".{kind.name}/{file.name}.parquet"
-        asked = _asked(kind.name, own)
+        asked = _asked(kind.name, own | ({} if images == (None, "mm") else {"nifti": images}))
         jobs.append(
-            Job(kind.name, str(file.path), file.name, target, rows, str(out), "", own, file.said, asked, size)
+            Job(kind.name, str(file.path), file.name, target, rows, str(out), "", own, file.said, asked, size, images)
         )
     return jobs, failed
 

@@ -235,9 +235,13 @@ def _sampled(fiblets: FibletSet, image: str) -> Any:
 
     from pvfiblets.query.measures.image_samples import sample_image
     from pvfiblets.query.measures.measures import decoded_by_rank
+    from pvfiblets.support.nifti_space import affine_of
 
     loaded = nibabel.load(image)
-    volume, affine = np.asanyarray(loaded.dataobj), loaded.affine
+    affine = affine_of(loaded)
+    if affine is None:
+        raise ValueError(f"{image} has no affine; give an image that says where it lies")
+    volume = np.asanyarray(loaded.dataobj)
     parts = [sample_image(volume, affine, c.points) for c in decoded_by_rank(fiblets, PIECE, np.float64)]
     return np.concatenate(parts) if parts else np.zeros(0)
 

@@ -23,6 +23,7 @@ from typing import Any
 
 from pvfiblets.errors import EXPECTED, sentence
 from pvfiblets.support import memory
+from pvfiblets.support.nifti_space import Matrix, Units, nifti_space
 
 from .operations import OPERATIONS
 from .record import Entry, Output, checksum, fingerprint
@@ -57,6 +58,8 @@ class Job:
         Hash of all that was asked.
     memory : int or None
         Bytes that the process may have meanwhile.
+    images : tuple
+        What places images of NIfTI, as of :func:`pvfiblets.nifti_space`.
     """
 
     operation: str
@@ -70,6 +73,7 @@ class Job:
     said: dict[str, str] = field(default_factory=dict)
     asked: str = ""
     memory: int | None = None
+    images: tuple[Matrix | None, Units] = (None, "mm")
 
 
 def run(job: Job) -> Entry:
@@ -80,7 +84,7 @@ def run(job: Job) -> Entry:
     facts = (0, 0, "")
     with _TURN:
         try:
-            with _bounded(job.memory):
+            with _bounded(job.memory), nifti_space(job.images[0], units=job.images[1]):
                 facts = (*fingerprint(Path(job.source)), checksum(Path(job.source)))
                 outputs = _done(job)
         except EXPECTED as problem:

@@ -20,7 +20,7 @@ from pvfiblets.formats.vtk_xml import XmlFile
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.support.vtk_space import FIELD, OURS, Space, space_of_dataset, space_taken
 
-__all__ = ["info", "iter_chunks", "read"]
+__all__ = ["info", "iter_chunks", "read", "read_dataset"]
 
 
 def read(
@@ -33,11 +33,9 @@ def read(
     return _read(path, space)[0]
 
 
-def _read(path: str | PathLike[str], given: Space | None) -> tuple[Streamlines, dict[str, str]]:
-    """Read the streamlines, and the facts of their space."""
+def read_dataset(path: str | PathLike[str]) -> Any:
+    """Read whatever dataset a file holds."""
     import pyvista as pv
-
-    from pvfiblets.other_libraries import streamlines_of
 
     if not str(path).lower().endswith(".vtkhdf"):
         XmlFile(path, None)  # broken XML is an error before VTK prints it
@@ -47,10 +45,17 @@ def _read(path: str | PathLike[str], given: Space | None) -> tuple[Streamlines, 
     try:
         with warnings.catch_warnings(), pv.VtkErrorCatcher(raise_errors=True, send_to_logging=False):
             warnings.simplefilter("ignore", UserWarning)  # PyVista's, of the same errors
-            dataset = pv.read(path)
+            return pv.read(path)
     except RuntimeError as error:
         text = str(error).strip().splitlines()[-1]
         raise FormatError(path, None, f"an error of VTK's reader ({text})", "a whole file") from error
+
+
+def _read(path: str | PathLike[str], given: Space | None) -> tuple[Streamlines, dict[str, str]]:
+    """Read the streamlines, and the facts of their space."""
+    from pvfiblets.other_libraries import streamlines_of
+
+    dataset = read_dataset(path)
     named = space_of_dataset(dataset)
     space, why = space_taken(named, given)
     if named is None and space != OURS:

@@ -8,7 +8,9 @@ from typing import Any
 
 import pyvista as pv
 
+from pvfiblets.support.surface_space import as_stored, tkras_chosen
 from pvfiblets.support.vtk_space import FIELD, OURS, Space, space_in_header, space_of_dataset
+from pvfiblets.volumes.freesurfer_files import SURFACES as FREESURFER
 from pvfiblets.volumes.gifti_files import SUFFIXES as GIFTI
 
 __all__ = ["read_mesh", "space_of_file"]
@@ -16,12 +18,16 @@ __all__ = ["read_mesh", "space_of_file"]
 _HEAD = 1 << 16  # bytes in which titles and comments are looked for
 
 
-def read_mesh(path: str | PathLike[str]) -> Any:
-    """Read a surface of any format, GIFTI included, in RAS+ mm.
+def read_mesh(path: str | PathLike[str], *, tkras: bool | None = None) -> Any:
+    """Read a surface of any format, GIFTI and FreeSurfer's included, in RAS+ mm.
 
     Parameters
     ----------
     path : str or PathLike
+    tkras : bool, optional
+        Whether surfaces of FreeSurfer, GIFTI or not, stay in its surface space. By default they are moved to the
+        scanner's space, by ``c_ras`` of the file, unless the file says that they are there (its coordinate system is
+        the scanner's, or ``c_ras`` is 0).
 
     Returns
     -------
@@ -36,10 +42,11 @@ def read_mesh(path: str | PathLike[str]) -> Any:
         If the file holds no points.
     """
     place = Path(path).expanduser()
-    if place.name.lower().endswith(GIFTI):
+    if place.name.lower().endswith((*GIFTI, *FREESURFER)):
         from pvfiblets.plotting.gifti import read_surface
 
-        return read_surface(place)
+        with as_stored(tkras_chosen() if tkras is None else tkras):
+            return read_surface(place)
     mesh = pv.read(place)
     if isinstance(mesh, pv.DataSet) and not mesh.n_points:
         raise ValueError(f"{path} holds no points: there is nothing to draw; check what wrote it")

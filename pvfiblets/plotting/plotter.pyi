@@ -152,7 +152,7 @@ class _AddSlices(Protocol):
     def __call__(
         self, source: SlicesSource, *, position: Any = None,
         planes: str | Iterable[str] = ('axial', 'coronal', 'sagittal'), axes: str | np.ndarray = "world",
-        kind: str | None = None, labels: Any = None, modulate: Any = None,
+        kind: str | None = None, labels: Any = None, modulate: Any = None, vectors: str = "scanner",
         cmap: ColormapOptions | pv.LookupTable = "gray", clim: float | Sequence[float] | None = None,
         percentiles: tuple[float, float] = (1.0, 99.0), log_scale: bool = False, below: float | None = None,
         above: float | None = None, opacity: float = 1.0, blend: str = "over", interpolation: str = "linear",

@@ -9,7 +9,10 @@ import numpy as np
 import pyvista as pv
 
 from pvfiblets.query.measures.image_samples import three_axes
+from pvfiblets.support.nifti_space import affine_of
 from pvfiblets.support.vtk_space import space_of_dataset, to_ras
+from pvfiblets.volumes.freesurfer_files import SURFACES as FREESURFER
+from pvfiblets.volumes.gifti_files import SUFFIXES as GIFTI
 
 if TYPE_CHECKING:
     from pvfiblets.regions import Region
@@ -44,12 +47,19 @@ def as_region(what: Any) -> Region:
 
         image = as_slice_image(what)
         return regions.Labels(_whole_numbers(image.values), image.affine)
+    if isinstance(what, (str, Path)) and str(what).lower().endswith((*GIFTI, *FREESURFER)):
+        from pvfiblets.plotting.meshes import read_mesh
+
+        return _surface(read_mesh(what))
     if isinstance(what, (str, Path)):
         import nibabel
 
         what = nibabel.load(what)
     if hasattr(what, "affine") and hasattr(what, "dataobj"):
-        return regions.Labels(_whole_numbers(np.asanyarray(what.dataobj)), what.affine)
+        affine = affine_of(what)
+        if affine is None:
+            raise ValueError("the image has no affine; give regions.Labels(array, affine)")
+        return regions.Labels(_whole_numbers(np.asanyarray(what.dataobj)), affine)
     if isinstance(what, np.ndarray) and what.ndim == 3:
         raise TypeError(
             f"an array of shape {what.shape} is no region: it does not say where it lies; "

@@ -9,10 +9,11 @@ import numpy.typing as npt
 
 from pvfiblets.slices.image import SliceImage
 from pvfiblets.slices.spherical_harmonics import degrees, sh_matrix
+from pvfiblets.slices.vectors import check_axes, fsl_axes
 
 __all__ = [
-    "KINDS", "LINES", "TENSORS", "Glyphs", "check_glyphs", "ellipsoids", "lines_of_fixels", "lines_of_peaks", "lobes",
-    "voxels_on_plane",
+    "KINDS", "LINES", "TENSORS", "Glyphs", "axes_of_glyphs", "check_glyphs", "ellipsoids", "lines_of_fixels",
+    "lines_of_peaks", "lobes", "voxels_on_plane",
 ]  # fmt: skip
 
 Array = npt.NDArray[np.float64]
@@ -42,6 +43,15 @@ class Glyphs:
 
     points: Array
     colours: npt.NDArray[np.uint8]
+
+
+def axes_of_glyphs(kind: str, tensor: str, vectors: str | None) -> str:
+    """Return the axes of peaks and tensors: FSL's for tensors in FSL's order, else the scanner's, unless given."""
+    if vectors is None:
+        return "fsl" if kind == "tensor" and tensor == "fsl" else "scanner"
+    if check_axes(vectors) != "scanner" and kind not in ("peaks", "tensor"):
+        raise ValueError(f"vectors is of peaks and tensors, but kind is {kind!r}; leave it out")
+    return vectors
 
 
 def check_glyphs(image: SliceImage, kind: str, basis: str, full: bool, tensor: str) -> None:
@@ -131,16 +141,21 @@ def lines_of_fixels(
     return Glyphs(points, np.repeat(_of_direction(directions)[:, None], 2, axis=1)), fixels
 
 
-def ellipsoids(image: SliceImage, voxels: Ints, sphere: Array, size: float, each: bool, tensor: str) -> Glyphs:
+def ellipsoids(
+    image: SliceImage, voxels: Ints, sphere: Array, size: float, each: bool, tensor: str, vectors: str | None = None
+) -> Glyphs:
     """Return a unit sphere's points ``(m, 3)`` under each voxel's tensor: half axes are its eigenvalues."""
     values = image.values[tuple(voxels.T)].astype(np.float64)
     matrices = values[:, TENSORS[tensor]].reshape(-1, 3, 3)
-    own, vectors = np.linalg.eigh(matrices)
+    if axes_of_glyphs("tensor", tensor, vectors) == "fsl":
+        turn = fsl_axes(image.affine)
+        matrices = turn @ matrices @ turn.T
+    own, directions = np.linalg.eigh(matrices)
     own = np.maximum(own, 0.0)  # noise makes eigenvalues below 0, which have no extent
-    matrices = np.einsum("nij,nj,nkj->nik", vectors, own, vectors)
+    matrices = np.einsum("nij,nj,nkj->nik", directions, own, directions)
     scale = _normalised(own, each)[:, -1] / np.where(own[:, -1] > 0.0, own[:, -1], 1.0)
     points = np.einsum("nij,mj->nmi", matrices * (scale * size * _reach(image))[:, None, None], sphere)
-    colours = np.repeat(_of_direction(vectors[:, :, -1])[:, None], len(sphere), axis=1)
+    colours = np.repeat(_of_direction(directions[:, :, -1])[:, None], len(sphere), axis=1)
     return Glyphs(points + _centres(image, voxels)[:, None], colours)
 
 

@@ -136,8 +136,6 @@ def as_slice_image(source: Any, name: str | None = None) -> SliceImage:
     elif hasattr(source, "IsA"):
         values, affine, own = _of_vtk(source)
     elif hasattr(source, "dataobj") and hasattr(source, "affine"):
-        if source.affine is None:
-            raise ValueError("the image has no affine; give (array, affine)")
         values, affine, labels = values_of_nibabel(source)
     elif hasattr(source, "values") and hasattr(source, "affine"):
         values, affine, own = np.asarray(source.values), source.affine, str(getattr(source, "name", "image"))

@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from pvfiblets.support.nifti_space import affine_of
+
 __all__ = ["SUFFIXES", "colour_fields", "read_image", "values_of_nibabel"]
 
 NIBABEL = (".nii", ".nii.gz", ".mgh", ".mgz")
@@ -54,6 +56,9 @@ def read_image(path: Path) -> tuple[npt.NDArray[Any], Array, str, bool]:
 
 def values_of_nibabel(image: Any) -> tuple[npt.NDArray[Any], Array, bool]:
     """Return the numbers of an image of nibabel, scaled ones as float32, its affine, and whether they are labels."""
+    affine = affine_of(image)
+    if affine is None:
+        raise ValueError("the image has no affine; give (array, affine)")
     data = image.dataobj
     kind = getattr(data, "dtype", np.dtype(np.float32))
     scaled = getattr(data, "slope", 1.0) not in (1.0, None) or getattr(data, "inter", 0.0) not in (0.0, None)
@@ -63,7 +68,7 @@ def values_of_nibabel(image: Any) -> tuple[npt.NDArray[Any], Array, bool]:
         values = np.asarray(data)
     header = getattr(image, "header", None)
     intent = header["intent_code"] if header is not None and "intent_code" in header else 0
-    return values, np.asarray(image.affine, np.float64), int(intent) == LABEL_INTENT
+    return values, affine, int(intent) == LABEL_INTENT
 
 
 def colour_fields(values: npt.NDArray[Any]) -> npt.NDArray[Any]:

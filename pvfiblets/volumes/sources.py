@@ -9,6 +9,7 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
+from pvfiblets.support.nifti_space import affine_of
 from pvfiblets.support.value_reference import value_reference
 
 from .smoothing import smoothed
@@ -203,14 +204,15 @@ def _check_axes(shape: tuple[int, ...], what: str) -> None:
 
 def _of_nibabel(image: Any, what: str, name: str) -> Found:
     """An image of nibabel's, in memory only as far as it must be."""
-    if image.affine is None:
+    affine = affine_of(image)
+    if affine is None:
         raise ValueError(f"{what} has no affine; give affine=..., or (array, affine)")
     _check_axes(image.shape, what)  # before anything is read
     data = image.dataobj
     kind = getattr(data, "dtype", np.dtype(np.float32))
     if kind.names == ("R", "G", "B", "A"):
         parts = np.asarray(data)
-        return np.stack([parts[name] for name in kind.names], axis=-1).astype(np.uint8), image.affine, name
+        return np.stack([parts[name] for name in kind.names], axis=-1).astype(np.uint8), affine, name
     if kind.names is not None:
         raise ValueError(
             f"{what} holds colours, the fields {', '.join(kind.names)} of each voxel; one number each is needed: "
@@ -221,7 +223,7 @@ def _of_nibabel(image: Any, what: str, name: str) -> Found:
         values = data.get_scaled(dtype=np.float32)  # half of what the default, float64, takes
     else:
         values = np.asarray(data)
-    return _three_axes(values, what), image.affine, name
+    return _three_axes(values, what), affine, name
 
 
 def _of_file(path: Path, scalars: Any) -> Found:

@@ -51,14 +51,22 @@ def main() -> int:
 
 
 def _run(told: dict[str, Any], speaker: TextIO) -> None:
+    from pvfiblets.support.nifti_space import nifti_space
+    from pvfiblets.support.surface_space import as_stored
     from pvfiblets.web.server.options import Options
-    from pvfiblets.web.server.rpc_allowlist import guard_messages
 
     options = Options.from_dict(told["options"])
     folder = Path(told["folder"])
     tempfile.tempdir = str(folder)  # of all that runs here: the front server takes it away where this process cannot
     if sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
         os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")  # VTK need not try X and complain
+    with nifti_space(options.nifti_space, units=options.nifti_units), as_stored(options.tkras):
+        _serve(options, folder, told["key"], speaker)
+
+
+def _serve(options: Options, folder: Path, key: str, speaker: TextIO) -> None:
+    from pvfiblets.web.server.rpc_allowlist import guard_messages
+
     loop = asyncio.new_event_loop()
     asyncio.set_event_loop(loop)
     app = make_app(options, folder)
@@ -71,7 +79,7 @@ def _run(told: dict[str, Any], speaker: TextIO) -> None:
         for handler in web_server._ws_handlers:  # noqa: SLF001
             app.doors.guard(handler.functionMap)
             guard_messages(handler, app.complain)
-        web_server.app.middlewares.append(key_check(told["key"]))
+        web_server.app.middlewares.append(key_check(key))
         app.add_routes(web_server.app.router)
 
     def ready(**_: Any) -> None:

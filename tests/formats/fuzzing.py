@@ -138,8 +138,22 @@ def _labels(path: Path) -> None:
     assert all(0 <= part <= 255 for colour in table.colours.values() for part in colour)
 
 
+def _surface(path: Path) -> None:
+    from pvfiblets.plotting.gifti import read_surface
+    from pvfiblets.volumes.freesurfer_files import SURFACES, read_annotation, read_numbers
+
+    if path.name.endswith(SURFACES):
+        assert np.isfinite(read_surface(path).points).all()
+    elif path.suffix == ".annot":
+        labels, colours = read_annotation(path)
+        assert len(labels) == len(colours)
+    else:
+        assert read_numbers(path).ndim == 1
+
+
 READERS: dict[str, Callable[[Path], None]] = {
     "lines": _lines, "fiblets": _fiblets, "values": _values, "volume": _volume, "image": _image, "labels": _labels,
+    "surface": _surface,
 }  # fmt: skip
 
 
@@ -191,7 +205,8 @@ def _one(read: Callable[[Path], None], reader: str, target: Path, outcomes: dict
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             warnings.filterwarnings(
-                "ignore", message=r"(?s).*(which is believed|is taken, by the voxel-to-RAS|left out line [\d, ]+)"
+                "ignore",
+                message=r"(?s).*(which is believed|is taken, by the voxel-to-RAS|left out line [\d, ]+|moved by c_ras)",
             )
             read(target)
     except _expected_of(reader) as error:

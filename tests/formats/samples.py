@@ -202,6 +202,24 @@ def image_corpus(folder: Path) -> dict[str, Path]:
     return {name: folder / name for name in ("v.mif", "v.mif.gz")}
 
 
+def surface_corpus(folder: Path) -> dict[str, Path]:
+    """A tetrahedron of FreeSurfer, with labels in both kinds of table and numbers of its corners."""
+    import nibabel.freesurfer as fs
+
+    points, faces = (
+        np.array([[0, 0, 0], [9, 0, 0], [0, 9, 0], [0, 0, 9.0]]),
+        np.array([[0, 1, 2], [0, 1, 3], [0, 2, 3]]),
+    )
+    axes = {"xras": [-1, 0, 0], "yras": [0, 0, -1], "zras": [0, 1, 0], "cras": [5.5, -17, 32]}
+    volume = {"head": np.array([2, 0, 20]), "valid": "1  # volume info valid", "filename": "a.mgz",
+              "volume": [256] * 3, "voxelsize": [1.0] * 3} | axes  # fmt: skip
+    fs.write_geometry(folder / "s.pial", points, faces, volume_info=volume)
+    table = np.array([[25, 5, 25, 0], [255, 0, 0, 0], [0, 0, 255, 0]])
+    fs.write_annot(folder / "s.annot", np.array([0, 1, 2, 1]), table, ["unknown", "a", "b"], fill_ctab=True)
+    fs.write_morph_data(folder / "s.thickness", np.linspace(1, 2, 4))
+    return {name: folder / name for name in ("s.pial", "s.annot", "s.thickness")}
+
+
 def label_corpus(folder: Path) -> dict[str, Path]:
     """Names of three labels in tables of every kind."""
     import nibabel as nib

@@ -18,7 +18,7 @@ import pytest
 from pvfiblets import compress, formats
 from pvfiblets.errors import FormatError
 
-from .samples import corpus, image_corpus, label_corpus, rich, values_corpus, volume_corpus
+from .samples import corpus, image_corpus, label_corpus, rich, surface_corpus, values_corpus, volume_corpus
 
 N = int(os.environ.get("PVFIBLETS_FUZZ", "20"))
 SEED = os.environ.get("PVFIBLETS_FUZZ_SEED", "1")
@@ -36,12 +36,14 @@ VOLUMES = [
 
 
 IMAGES = ["v.mif", "v.mif.gz"]
+SURFACES = ["s.pial", "s.annot", "s.thickness"]
 LABELS = ["v.ctab", "v.label", "v.tsv", "v.label.gii"]
 # Reader, file, and of how many damaged copies more than one is refused: in tables of labels much may be anything.
 DAMAGED = [
     *(("lines", variant, 20) for variant in VARIANTS), ("fiblets", ".fiblets", 20),
     *(("values", variant, 20) for variant in VALUES), *(("volume", variant, 50) for variant in VOLUMES),
     *(("image", variant, 20) for variant in IMAGES), *(("labels", variant, None) for variant in LABELS),
+    *(("surface", variant, 20) for variant in SURFACES),
 ]  # fmt: skip
 
 
@@ -49,6 +51,7 @@ DAMAGED = [
 def healthy(tmp_path_factory):
     folder = tmp_path_factory.mktemp("corpus")
     files = corpus(folder) | values_corpus(folder) | volume_corpus(folder) | image_corpus(folder) | label_corpus(folder)
+    files |= surface_corpus(folder)
     files[".fiblets"] = folder / "rich.fiblets"
     compress(rich(counts=(80, 1, 125, 0, 2, 7)), per_point=("fa",)).save(files[".fiblets"])
     return files

@@ -367,6 +367,27 @@ def test_every_kind_is_seen_in_its_colour(plotter, kind, n):
         assert red[100].sum() > 60
 
 
+def test_vectors_of_fsl_have_the_colours_and_lines_of_their_directions(plotter):
+    """Right and front in the scanner's axes, on a grid whose first axis runs to the front."""
+    affine = np.array([[0.0, 0, -2, 9], [2, 0, 0, 9], [0, 2, 0, 9], [0, 0, 0, 1]])  # i front, j up, k left
+    assert np.linalg.det(affine[:3, :3]) < 0
+    values = np.zeros((6, 6, 6, 3), np.float32)
+    values[...] = np.array([0.6, 0.0, -0.8])
+    made = {"kind": "direction", "planes": "axial", "interpolation": "nearest", "axes": "image"}
+    slices = plotter.add_slices((values, affine), vectors="fsl", **made)
+    assert set(map(tuple, slices.pixels(slices["axial"].grid).reshape(-1, 4).tolist())) == {(204, 153, 0, 255)}
+    np.testing.assert_allclose(slices.values(slices.position)["image"], [0.8, 0.6, 0.0], atol=1e-6)
+    np.testing.assert_array_equal(slices.layers[0].image.values, values)  # as it was given
+    found = slices.add_glyphs((values, affine), vectors="fsl")
+    mesh, n = found.mesh(slices.position, np.array([0.0, 0.0, 1.0]))
+    ends = np.asarray(mesh.points).reshape(n, 2, 3)
+    np.testing.assert_allclose(np.diff(ends, axis=1)[:, 0] / 2, np.tile([0.8, 0.6, 0.0], (n, 1)), atol=1e-6)
+    with pytest.raises(ValueError, match="vectors is of direction-coded images, but kind is 'rgb'"):
+        slices.add((values, affine), kind="rgb", vectors="fsl")
+    with pytest.raises(ValueError, match="vectors is 'FSL'; choose"):
+        slices.add_glyphs((values, affine), vectors="FSL")
+
+
 def test_glyphs_of_other_numbers_are_refused(plotter, peaks):
     slices = plotter.add_slices((peaks[0][..., 0], peaks[1]))
     for arguments, said in (

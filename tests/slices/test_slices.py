@@ -18,6 +18,7 @@ from pvfiblets.slices.frames import ORIENTATIONS, covered, grid_of, letters, nea
 from pvfiblets.slices.image import SliceImage
 from pvfiblets.slices.labels import LabelTable, as_label_table, distinct_colours
 from pvfiblets.slices.spherical_harmonics import degrees, sh_matrix
+from pvfiblets.slices.vectors import fsl_axes, in_scanner_axes
 
 SHEARED = np.array([[2.0, 0.7, 0.3, -20.0], [-0.4, 1.5, 0.2, 5.0], [0.1, 0.5, 3.0, 9.0], [0.0, 0.0, 0.0, 1.0]])
 
@@ -133,9 +134,67 @@ def test_ellipsoids_have_the_eigenvectors_as_axes(tensor):
              "dipy": [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)],
              "fsl": [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)]}[tensor]  # fmt: skip
     image = SliceImage(np.array([matrix[one] for one in parts]).reshape(1, 1, 1, 6), np.diag([2.0, 2.0, 2.0, 1.0]))
-    found = glyphs.ellipsoids(image, np.zeros((1, 3), int), turn.T, 1.0, True, tensor)
+    found = glyphs.ellipsoids(image, np.zeros((1, 3), int), turn.T, 1.0, True, tensor, "scanner")
     np.testing.assert_allclose(abs(found.points[0] @ turn), np.diag(own / own[-1]), atol=1e-12)
     np.testing.assert_array_equal(found.colours[0, 0], np.rint(255 * abs(turn[:, 2])))
+
+
+SCANNER = np.array([[1, 2, 3], [-2, 1, 0.5], [0, 0, 1]]) / np.sqrt([[14], [5.25], [1]])
+"""Directions in the scanner's axes."""
+OBLIQUE = np.array([[-2.11486244, -0.25335181, 1.05308151], [1.13436055, -1.89819956, 1.2550137],
+                    [0.70041627, 2.30925345, 1.1471529]])  # fmt: skip
+OF_MRTRIX = np.array(
+    [[-0.241081, 0.256393, 0.936025], [-0.997569, -0.034459, -0.060571], [-0.280166, 0.769751, 0.573576]]
+)
+"""The same in FSL's axes, as ``mrconvert -export_grad_fsl`` of MRtrix 3.0.3 writes them for this affine."""
+
+
+@pytest.mark.parametrize("flip", [1.0, -1.0])
+def test_fsls_axes_are_those_of_mrtrix(flip):
+    """With the third axis of the image reversed, its part changes sign, and x as well: the determinant does."""
+    found = SCANNER @ fsl_axes(OBLIQUE * [1.0, 1.0, flip])
+    np.testing.assert_allclose(found, OF_MRTRIX * [flip, 1.0, flip], atol=1e-6)
+
+
+AXES_OF_IMAGES = {
+    "positive": np.diag([2.0, 2.0, 2.0]), "negative": np.diag([-2.0, 2.0, 2.0]), "oblique": OBLIQUE,
+    "oblique, negative": OBLIQUE * [1.0, 1.0, -1.0], "permuted": np.eye(3)[[2, 0, 1]],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", AXES_OF_IMAGES)
+def test_tensors_and_vectors_of_fsl_are_turned(name):
+    """A tensor and a vector along (1, 1, 0) of the scanner, written along the image's axes, x as FSL has it."""
+    affine = np.eye(4)
+    affine[:3, :3] = AXES_OF_IMAGES[name]
+    units = affine[:3, :3] / np.linalg.norm(affine[:3, :3], axis=0)
+    into = units.T.copy()
+    if np.linalg.det(affine[:3, :3]) > 0:
+        into[0] = -into[0]
+    along, across = np.array([1.0, 1, 0]) / np.sqrt(2), np.array([-1.0, 1, 0]) / np.sqrt(2)
+    matrix = into @ (0.2 * np.eye(3) + 1.5 * np.outer(along, along)) @ into.T
+    image = SliceImage(matrix[[0, 0, 0, 1, 1, 2], [0, 1, 2, 1, 2, 2]].reshape(1, 1, 1, 6), affine)
+    voxel, half = np.zeros((1, 3), int), 0.5 * np.linalg.norm(affine[:3, :3], axis=0).min()
+    found = glyphs.ellipsoids(image, voxel, np.stack([along, across]), 1.0, True, "fsl").points[0] / half
+    np.testing.assert_allclose(found, [along, across * 0.2 / 1.7], atol=1e-6)
+    in_dipys_order = SliceImage(image.values[..., [0, 1, 3, 2, 4, 5]], affine)
+    again = glyphs.ellipsoids(in_dipys_order, voxel, np.stack([along, across]), 1.0, True, "dipy", "fsl").points[0]
+    np.testing.assert_allclose(again / half, found)
+    peaks = in_scanner_axes(SliceImage((into @ along).reshape(1, 1, 1, 3), affine), "fsl")
+    np.testing.assert_allclose(peaks.values[0, 0, 0], along, atol=1e-6)
+    integers = SliceImage(np.array([1, 2, 3], np.uint8).reshape(1, 1, 1, 3), affine, is_colours=True)
+    np.testing.assert_allclose(in_scanner_axes(integers, "fsl").values[0, 0, 0], into.T @ [1, 2, 3], rtol=1e-6)
+
+
+def test_axes_of_vectors_are_checked():
+    image = SliceImage(np.ones((1, 1, 1, 4)), np.eye(4), "four")
+    assert in_scanner_axes(image, "scanner") is image
+    with pytest.raises(ValueError, match="four has 4 numbers per voxel; vectors are three each"):
+        in_scanner_axes(image, "fsl")
+    with pytest.raises(ValueError, match=r"vectors is 'voxel'; choose 'scanner' \(right, front, up\) or 'fsl'"):
+        in_scanner_axes(image, "voxel")
+    with pytest.raises(ValueError, match="vectors is of peaks and tensors, but kind is 'sh'"):
+        glyphs.axes_of_glyphs("sh", "mrtrix", "fsl")
 
 
 def test_lines_of_peaks_go_through_the_centres_of_voxels():

@@ -164,6 +164,34 @@ def test_a_gifti_surface_takes_labels_and_numbers_of_its_vertices(views, tmp_pat
     assert "lh.aparc_rgb" in views.actor(mesh.id).mapper.dataset.point_data
 
 
+@pytest.mark.filterwarnings("ignore:.*moved by c_ras")
+def test_a_surface_of_freesurfer_opens_with_its_annotation(views, tmp_path):
+    labels = NUMBERS.copy()
+    volume = {"head": np.array([2, 0, 20]), "valid": "1", "filename": "a", "volume": [256] * 3, "voxelsize": [1.0] * 3,
+              "xras": [-1, 0, 0], "yras": [0, 0, -1], "zras": [0, 1, 0], "cras": [5.5, -17, 32]}  # fmt: skip
+    nib.freesurfer.write_geometry(tmp_path / "lh.pial", BALL.points, BALL.regular_faces, volume_info=volume)
+    table = np.array([[25, 5, 25, 0], [255, 0, 0, 0], [0, 0, 255, 0]])
+    nib.freesurfer.write_annot(tmp_path / "lh.aparc.annot", labels, table, ["none", "a", "b"], fill_ctab=True)
+    desk = Desk(views, tmp_path)
+
+    async def opened(*names):
+        for name in names:
+            desk.files.browse("")
+            assert name in {entry["name"] for entry in desk.page.entries}
+            desk.files.take(name, False)
+            await desk.done()
+
+    asyncio.run(opened("lh.pial", "lh.aparc.annot"))
+    (mesh,) = views.layers
+    found = views.actor(mesh.id).mapper.dataset
+    np.testing.assert_allclose(found.points, BALL.points + [5.5, -17, 32], atol=1e-4)
+    assert mesh.settings["scalars"] == "lh.aparc_rgb"
+    np.testing.assert_array_equal(found.point_data["lh.aparc_rgb"], table[labels, :3])
+    (text,) = views.data(mesh).facts["notes"]
+    assert "moved by c_ras = (5.5, -17, 32) mm" in text
+    assert_script_draws(views, tmp_path, views.cameras.screenshot())
+
+
 def test_what_is_wrong_with_gifti_is_said(tmp_path):
     ball = read_surface(tmp_path / surface(tmp_path))
     assert ball.n_points == BALL.n_points

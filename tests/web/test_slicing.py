@@ -204,6 +204,26 @@ def test_directions_are_as_bright_as_another_image_of_the_scene(scene, folder):
     assert (scene.cameras.screenshot()[80, 120] == picture[80, 120]).all()
 
 
+def test_vectors_of_fsl_are_turned_on_the_page(scene, folder):
+    affine = np.array([[0.0, 0, -4, 30], [4, 0, 0, -30], [0, 4, 0, -30], [0, 0, 0, 1.0]])  # i front, j up, k left
+    vectors = np.zeros((16, 16, 16, 3), np.float32)
+    vectors[..., 0] = 1.0
+    nibabel.save(nibabel.Nifti1Image(vectors, affine), folder / "v1.nii.gz")
+    image = scene.open("v1.nii.gz")
+    scene.set(image.id, "meaning", "direction")
+    scene.images.set_slices(position=[0.0, 0.0, 0.0], cross_hair=False, layout="axial")
+    assert scene.cameras.screenshot()[80, 120].tolist() == [255, 0, 0]
+    scene.set(image.id, "vectors", "fsl")
+    picture = scene.cameras.screenshot()
+    assert picture[80, 120].tolist() == [0, 255, 0]
+    scene.set(image.id, "glyphs", "peaks")
+    scene.set(image.id, "image_under", True)
+    picture = scene.cameras.screenshot()
+    assert_script_draws(scene, folder, picture)
+    session.from_dict(scene, session.to_dict(scene))
+    assert (scene.cameras.screenshot() == picture).all()
+
+
 def test_a_table_beside_labels_is_taken_and_other_tables_are_not(scene, folder):
     (folder / "atlas.tsv").write_text("index\tname\tcolor\n3\tputamen\t#ff0000\n5\tinsula\t#00ff00\n")
     (folder / "head.tsv").write_text("index\tname\n1\tone\n")  # beside numbers that are no labels

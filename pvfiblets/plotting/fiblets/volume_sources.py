@@ -10,6 +10,7 @@ import numpy as np
 import pyvista as pv
 
 from pvfiblets.engine.fiblets.data.sampled_volume import VolumeSource
+from pvfiblets.support.nifti_space import affine_of
 
 SUFFIXES = (".nii", ".nii.gz", ".mgh", ".mgz")
 """Of a text that is not the name of an array but the path of a volume."""
@@ -52,11 +53,12 @@ def _three_axes(values: np.ndarray, what: str) -> np.ndarray:
 
 def _of_nibabel(image: Any, what: str, name: str) -> VolumeSource:
     """Return a volume of nibabel's; numbers are as stored unless the file scales them."""
-    if image.affine is None:
+    affine = affine_of(image)
+    if affine is None:
         raise ValueError(f"{what} has no affine; give (array, affine)")
     _three_axes(np.broadcast_to(np.float32(0), image.shape), what)  # before anything is read
     values = _three_axes(np.asanyarray(image.dataobj), what)
-    return VolumeSource(values, image.affine, name=name)
+    return VolumeSource(values, affine, name=name)
 
 
 def _of_image(image: pv.ImageData) -> VolumeSource:

@@ -107,6 +107,7 @@ class SlicesComponent:
         kind: str | None = None,
         labels: Any = None,
         modulate: Any = None,
+        vectors: str = "scanner",
     ) -> SliceStack:
         """Add axial, coronal and sagittal slices of an image to the scene.
 
@@ -134,6 +135,9 @@ class SlicesComponent:
             of BIDS, a GIFTI file, or a dict such as ``{17: ("hippocampus", "yellow")}``. With it numbers are labels.
         modulate : image, optional
             What brightens direction-coded colours, such as FA; any of what ``source`` may be, on any grid.
+        vectors : {"scanner", "fsl"}, default: "scanner"
+            Axes of the vectors of ``kind="direction"``: right, front and up, or those of FSL (V1 of ``dtifit``,
+            ``dyads`` of ``bedpostx``), which are the image's, x reversed if the affine's determinant is above 0.
 
         Returns
         -------
@@ -165,7 +169,7 @@ class SlicesComponent:
         from pvfiblets.plotting.slices.stack import SliceStack
 
         stack = SliceStack("slices", planes, axes)
-        stack.put(source, settings, kind=kind, labels=labels, modulate=modulate)
+        stack.put(source, settings, kind=kind, labels=labels, modulate=modulate, vectors=vectors)
         if position is not None:
             stack.position = position
         return stack

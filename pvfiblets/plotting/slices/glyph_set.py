@@ -13,6 +13,7 @@ import pyvista as pv
 from pvfiblets.plotting.slices.plane import before_render
 from pvfiblets.slices import glyphs
 from pvfiblets.slices.image import SliceImage
+from pvfiblets.slices.vectors import in_scanner_axes
 
 __all__ = ["GlyphSet"]
 
@@ -34,7 +35,7 @@ class GlyphSet:
     Parameters
     ----------
     image : SliceImage
-    kind, size, normalize, line_width, basis, full, tensor, scalars, length, cmap, clim
+    kind, size, normalize, line_width, basis, full, tensor, vectors, scalars, length, cmap, clim
         As of ``slices.add_glyphs``; the last four of fixels.
     """
 
@@ -49,6 +50,7 @@ class GlyphSet:
         basis: str,
         full: bool,
         tensor: str,
+        vectors: str | None = None,
         scalars: Any = None,
         length: Any = None,
         cmap: Any = None,
@@ -57,7 +59,8 @@ class GlyphSet:
         glyphs.check_glyphs(image, kind, basis, full, tensor)
         if image.fixels is None and not (scalars is None and length is None):
             raise ValueError(f"scalars and length are of fixels; {image.name} has {kind}")
-        self.image, self.kind = image, kind
+        self._vectors = glyphs.axes_of_glyphs(kind, tensor, vectors)
+        self.image, self.kind = in_scanner_axes(image, self._vectors) if kind == "peaks" else image, kind
         self._basis, self._full, self._tensor = basis, bool(full), tensor
         self._normalize, self._width = bool(normalize), float(line_width)
         self._visible = True
@@ -124,7 +127,7 @@ class GlyphSet:
             ball = _sphere(len(voxels))
             points = np.asarray(ball.points, np.float64)
             if self.kind == "tensor":
-                found = glyphs.ellipsoids(image, voxels, points, size, self._normalize, self._tensor)
+                found = glyphs.ellipsoids(image, voxels, points, size, self._normalize, self._tensor, self._vectors)
             else:
                 found = glyphs.lobes(image, voxels, points, size, self._normalize, self._basis, self._full)
             n = len(found.points)

@@ -14,6 +14,7 @@ from pvfiblets.plotting.slices.settings import SliceSettings
 from pvfiblets.slices import colours
 from pvfiblets.slices.image import KINDS, SliceImage, as_slice_image
 from pvfiblets.slices.labels import LabelTable, as_label_table
+from pvfiblets.slices.vectors import check_axes, fsl_axes, in_scanner_axes
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -39,6 +40,8 @@ class SliceLayer(SliceSettings):
         As of ``plotter.add_slices``.
     modulate : object, optional
         As of ``plotter.add_slices``.
+    vectors : str
+        As of ``plotter.add_slices``.
     """
 
     def __init__(
@@ -49,10 +52,13 @@ class SliceLayer(SliceSettings):
         kind: str | None = None,
         labels: Any = None,
         modulate: Any = None,
+        vectors: str = "scanner",
     ) -> None:
-        self.image = image
+        if check_axes(vectors) != "scanner" and kind not in (None, "direction"):
+            raise ValueError(f"vectors is of direction-coded images, but kind is {kind!r}; leave one of both out")
+        self.kind = _kind(image, "direction" if vectors != "scanner" else kind, labels, modulate)
+        self.image, self._vectors = image, vectors
         self.name = image.name
-        self.kind = _kind(image, kind, labels, modulate)
         self.labels: LabelTable | None = None
         self._changed: Callable[[], None] | None = None
         self._resamplers: dict[int, Resampler] = {}
@@ -145,7 +151,10 @@ class SliceLayer(SliceSettings):
             return int(found[0]) if np.isfinite(found[0]) else None
         if self.kind == "direction":  # the vector itself, signs and all, of the nearest voxel
             voxel = self.image.voxel_at(position)
-            return None if voxel is None else np.asarray(self.image.values[voxel], np.float64)
+            if voxel is None:
+                return None
+            turn = np.eye(3) if self._vectors == "scanner" else fsl_axes(self.image.affine)
+            return turn @ np.asarray(self.image.values[voxel], np.float64)
         found = self._resampler().value(position, self._how())
         if not np.isfinite(found).all():
             return None
@@ -198,7 +207,7 @@ class SliceLayer(SliceSettings):
     def _resampler(self) -> Resampler:
         index = self._state["index"] % self.n_volumes
         if index not in self._resamplers:
-            values = self.image.values
+            values = in_scanner_axes(self.image, self._vectors).values
             if self.kind == "direction":
                 values = abs(values.astype(np.float32))  # directions have no sign, and would cancel between voxels
             elif self.kind != "rgb":

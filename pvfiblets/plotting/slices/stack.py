@@ -103,6 +103,7 @@ class SliceStack:
         kind: str | None = None,
         labels: Any = None,
         modulate: Any = None,
+        vectors: str = "scanner",
         name: str | None = None,
         **settings: Any,
     ) -> SliceLayer:
@@ -110,7 +111,7 @@ class SliceStack:
 
         Parameters
         ----------
-        source, kind, labels, modulate
+        source, kind, labels, modulate, vectors
             As of ``plotter.add_slices``.
         name : str, optional
             Of the layer; the file's by default.
@@ -132,7 +133,15 @@ class SliceStack:
             raise TypeError(
                 f"add() got an unexpected keyword argument {unknown!r}; a layer has {', '.join(SliceSettings.DECLARED)}"
             )
-        return self.put(source, Given(SliceSettings, settings), kind=kind, labels=labels, modulate=modulate, name=name)
+        return self.put(
+            source,
+            Given(SliceSettings, settings),
+            kind=kind,
+            labels=labels,
+            modulate=modulate,
+            vectors=vectors,
+            name=name,
+        )
 
     def put(self, source: Any, given: Given, *, name: str | None = None, **meaning: Any) -> SliceLayer:
         """Add a layer of settings that are checked already."""
@@ -188,6 +197,7 @@ class SliceStack:
         basis: str = "mrtrix",
         full: bool = False,
         tensor: str = "mrtrix",
+        vectors: str | None = None,
         scalars: Any = None,
         length: Any = None,
         cmap: Any = None,
@@ -217,6 +227,10 @@ class SliceStack:
             Whether harmonics of odd degree are there, too.
         tensor : {"mrtrix", "dipy", "fsl"}, default: "mrtrix"
             Order of a tensor's parts: xx, yy, zz, xy, xz, yz; xx, xy, yy, xz, yz, zz; or xx, xy, xz, yy, yz, zz.
+        vectors : {"scanner", "fsl"}, optional
+            Axes of peaks and tensors: right, front and up, or those of FSL (``dtifit``, ``bedpostx``), which are the
+            image's, x reversed if the affine's determinant is above 0. Default: FSL's for ``tensor="fsl"``, else the
+            scanner's.
         scalars, length : str or (n,) array, optional
             Numbers of fixels that colour them, by default their direction does, and that lines are as long as, of which
             the 99th percentile is as long as a voxel; names of files of the directory, without suffix.
@@ -244,6 +258,7 @@ class SliceStack:
             basis=basis,
             full=full,
             tensor=tensor,
+            vectors=vectors,
             scalars=scalars,
             length=length,
             cmap=cmap,

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ...support.nifti_space import affine_of
 from ..density.voxel_grid import grid_like
 from ..measures.image_samples import three_axes
 
@@ -69,7 +70,10 @@ def as_image(given: Any) -> Image | None:
 
         given = nibabel.load(given)
     if hasattr(given, "dataobj") and hasattr(given, "affine"):
-        return Image(three_axes(np.asanyarray(given.dataobj)), np.asarray(given.affine, np.float64))
+        affine = affine_of(given)
+        if affine is None:
+            raise ValueError("the image has no affine; give (array, affine)")
+        return Image(three_axes(np.asanyarray(given.dataobj)), affine)
     if isinstance(given, tuple) and len(given) == 2 and np.shape(given[1]) == (4, 4):
         return Image(three_axes(np.asarray(given[0])), np.asarray(given[1], np.float64))
     if hasattr(given, "IsA") and given.IsA("vtkImageData"):

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from ...support.nifti_space import affine_of
 from ..measures.image_samples import three_axes
 from ..selection.endpoints import end_points
 
@@ -69,7 +70,7 @@ def read_atlas(given: Any) -> tuple[npt.NDArray[Any], npt.NDArray[np.float64]]:
 
         given = nibabel.load(Path(given).expanduser())
     if hasattr(given, "dataobj") and hasattr(given, "affine"):
-        given = np.asanyarray(given.dataobj), given.affine
+        given = np.asanyarray(given.dataobj), affine_of(given)
     if not isinstance(given, (tuple, list)) or len(given) != 2:
         raise TypeError(f"atlas is a {type(given).__name__}; give a NIfTI image, its path, or (array, affine)")
     labels, affine = three_axes(given[0]), np.asarray(given[1], np.float64)

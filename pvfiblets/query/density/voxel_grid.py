@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...errors import FormatError
+from ...support.nifti_space import affine_of, code_of
 from ..regions.placement import affine as checked
 from ..regions.placement import invert_affine
 
@@ -109,9 +110,10 @@ def grid_like(image: Any) -> VoxelGrid:
     if hasattr(image, "IsA") and image.IsA("vtkImageData"):
         return _of_vtk(image)
     if hasattr(image, "affine") and hasattr(image, "dataobj"):
-        if image.affine is None:
+        affine = affine_of(image)
+        if affine is None:
             raise ValueError("like is an image without an affine; give (array, affine)")
-        return VoxelGrid(_sides(image.shape), image.affine, _space_code(getattr(image, "header", None)))
+        return VoxelGrid(_sides(image.shape), affine, code_of(image))
     if hasattr(image, "affine") and hasattr(image, "values"):
         return VoxelGrid(_sides(np.shape(image.values)), image.affine)
     if isinstance(image, tuple) and len(image) == 2 and np.shape(image[1]) == (4, 4):
@@ -137,17 +139,6 @@ def _loaded(path: str) -> Any:
         return nibabel.load(path)
     except (ImageFileError, HeaderDataError, EOFError) as error:
         raise FormatError(path, None, f"what nibabel cannot read ({error})", "a NIfTI or MGH image") from None
-
-
-def _space_code(header: Any) -> int:
-    """NIfTI's code of an image's space."""
-    for key in ("sform_code", "qform_code"):
-        try:
-            if code := int(header[key]):
-                return code
-        except (KeyError, TypeError, ValueError, IndexError):
-            continue
-    return 1
 
 
 def _of_vtk(image: Any) -> VoxelGrid:

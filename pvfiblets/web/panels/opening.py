@@ -104,6 +104,8 @@ class FileActions(SessionActions):
         if layer.kind in LINES or app.page.chosen not in lines:  # what is explored stays chosen
             app.page.chosen = layer.id
         app.refresh()
+        for text in loaded.facts.get("notes", ()):
+            app.say(text.replace(f"{app.confined.root}{os.sep}", ""), "warning")
         return True
 
     async def _attach(self, path: str) -> bool:

@@ -9,8 +9,10 @@ from pvfiblets.codec.shards.manifest import is_set_in_shards
 from pvfiblets.errors import FormatError
 from pvfiblets.formats import vtk_sizes
 from pvfiblets.formats.registry import UnknownFormatError, is_trx_folder, suffix_of, suffixes
+from pvfiblets.volumes.freesurfer_files import SURFACES as FREESURFER
+from pvfiblets.volumes.freesurfer_files import VALUES as OF_FREESURFER
 from pvfiblets.volumes.gifti_files import SUFFIXES as GIFTI
-from pvfiblets.volumes.gifti_files import VALUES as OF_VERTICES
+from pvfiblets.volumes.gifti_files import VALUES as OF_GIFTI
 from pvfiblets.volumes.sources import SUFFIXES as VOLUMES
 
 __all__ = [
@@ -18,8 +20,11 @@ __all__ = [
     "read_vtk",
 ]  # fmt: skip
 
-MESHES = (".ply", ".stl", ".obj", ".vtu", ".vtp", ".vtk", ".off", ".glb", ".gltf", *GIFTI)
+MESHES = (".ply", ".stl", ".obj", ".vtu", ".vtp", ".vtk", ".off", ".glb", ".gltf", *GIFTI, *FREESURFER)
 """Suffixes of surfaces; those of VTK's formats may hold lines instead."""
+
+OF_VERTICES = (*OF_GIFTI, *OF_FREESURFER)
+"""Suffixes of files with a number or a label for each vertex of a surface."""
 
 VALUES = (".tsf", *OF_VERTICES)
 """Suffixes of files with values for the lines, or for the vertices, of another file."""

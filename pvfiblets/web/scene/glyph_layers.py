@@ -9,9 +9,9 @@ from pvfiblets.slices.glyphs import TENSORS
 from pvfiblets.slices.spherical_harmonics import BASES
 from pvfiblets.web.scene.properties import Choices, Property
 
-__all__ = ["GLYPHS", "ROWS", "UNDER", "GlyphLayers", "arguments", "covers"]
+__all__ = ["GLYPHS", "ROWS", "UNDER", "VECTORS", "GlyphLayers", "arguments", "covers"]
 
-GLYPHS, UNDER = "glyphs", "image_under"
+GLYPHS, UNDER, VECTORS = "glyphs", "image_under", "vectors"
 _SIZE, _BASIS, _TENSOR = "glyph_size", "glyph_basis", "glyph_tensor"
 _BY_NUMBERS, _LONG = "glyph_colour", "glyph_length"
 
@@ -65,6 +65,8 @@ def arguments(settings: Mapping[str, Any]) -> dict[str, Any]:
     """Return arguments of ``slices.add_glyphs``."""
     found = {"kind": settings[GLYPHS], "size": settings[_SIZE]}
     own = {"sh": {"basis": settings[_BASIS]}, "tensor": {"tensor": settings[_TENSOR]}}
+    if settings[VECTORS] != "scanner":
+        own["peaks"] = {"vectors": settings[VECTORS]}
     if settings[GLYPHS] == "fixels":
         by, long = settings[_BY_NUMBERS], settings[_LONG]
         own["fixels"] = {name: value for name, value in (("scalars", by), ("length", long)) if value is not None}

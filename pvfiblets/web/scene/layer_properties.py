@@ -17,6 +17,7 @@ from pvfiblets.plotting.settings import Setting, Settings
 from pvfiblets.plotting.slices.settings import MEANING, SliceSettings
 from pvfiblets.plotting.tubes.settings import TubeSettings
 from pvfiblets.plotting.volumes.settings import VolumeSettings
+from pvfiblets.web.scene.glyph_layers import GLYPHS, VECTORS
 from pvfiblets.web.scene.glyph_layers import ROWS as GLYPH_ROWS
 from pvfiblets.web.scene.properties import Choices, Property
 
@@ -142,7 +143,10 @@ IMAGE = _table(
         "interpolation": [own(MEANING, "choice", "Numbers are", "What the numbers of the image mean.", "Drawing",
                               "scalars", choices=_meanings, resets=("clim", "below", "above", "index"))],
         "outline": list(GLYPH_ROWS),
-        "cmap": [own("modulate", "choice", "Bright by", "An image by whose values directions are bright, such as FA.",
+        "cmap": [own(VECTORS, "choice", "Axes", "Of vectors: right, front and up, or those of FSL.", "Drawing",
+                     "scanner", choices=[("scanner", "scanner's"), ("fsl", "FSL's")],
+                     matters=lambda settings: settings[MEANING] == "direction" or settings[GLYPHS] == "peaks"),
+                 own("modulate", "choice", "Bright by", "An image by whose values directions are bright, such as FA.",
                      choices=[(None, "nothing")], volumes=True, resets=("clim",),
                      matters=lambda settings: settings[MEANING] == "direction")],
     },

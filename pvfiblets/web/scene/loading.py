@@ -17,6 +17,8 @@ from pvfiblets import formats
 from pvfiblets.codec.shards.manifest import MANIFEST
 from pvfiblets.formats.gzipped import check_ratio
 from pvfiblets.formats.registry import UnknownFormatError, is_trx_folder, suffix_of, suffixes
+from pvfiblets.support.file_notes import notes_of
+from pvfiblets.support.nifti_space import affine_of
 from pvfiblets.volumes.sources import NIBABEL
 from pvfiblets.web.scene.file_kinds import (
     MESHES,
@@ -166,6 +168,11 @@ class Files:
         self, source: Source, kind: str | None = None, progress: Progress | None = None, cancel: Cancel | None = None
     ) -> Loaded:
         """Read, and where it must be, compress a source; it may take minutes."""
+        loaded = self._load(source, kind, progress, cancel)
+        texts = () if source.path is None else notes_of(self.resolve(source.path))
+        return replace(loaded, facts=loaded.facts | {"notes": list(texts)}) if texts else loaded
+
+    def _load(self, source: Source, kind: str | None, progress: Progress | None, cancel: Cancel | None) -> Loaded:
         watch = Watch(progress, cancel)
         watch("reading", 0.0)
         if source.demo is not None:
@@ -210,8 +217,10 @@ class Files:
                 from pvfiblets.web.scene.label_images import read_labels
 
                 return Loaded(kind, source, name, read_labels(place))
+            from pvfiblets.web.scene.label_images import LabelVolume
+
             with opened(place) as image:  # and read where it is used
-                return Loaded(kind, source, name, image)
+                return Loaded(kind, source, name, LabelVolume(image.dataobj, affine_of(image)))
         if kind == "colours":
             return Loaded(kind, source, name, read_colours(place))
         mesh = read_mesh(place)

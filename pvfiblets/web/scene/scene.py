@@ -326,10 +326,9 @@ class Scene:
         """Return what to colour by of the last file of values: of labels, by the colours of their table."""
         if loaded.kind != "mesh":
             return name_of(loaded.source.values[-1])
-        from pvfiblets.plotting.gifti import name_of as name_of_gifti
+        from pvfiblets.plotting.gifti import shown_array
 
-        name = name_of_gifti(loaded.source.values[-1])
-        return f"{name}_rgb" if f"{name}_rgb" in loaded.data.point_data else name
+        return shown_array(loaded.data, loaded.source.values[-1])
 
     def load_demo(self, streamlines: int = 5000, voxels: int = 64) -> list[Loaded]:
         """Make tracts up, and a head around them, for :meth:`add_loaded_demo`; may run in a thread of its own."""

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pvfiblets.plotting.slices.settings import MEANING
-from pvfiblets.web.scene.glyph_layers import GlyphLayers, covers
+from pvfiblets.web.scene.glyph_layers import VECTORS, GlyphLayers, covers
 from pvfiblets.web.scene.layers import looks
 from pvfiblets.web.session.document import Layer, volume_in
 from pvfiblets.web.values import mapping, number, numbers, shown, truth
@@ -277,6 +277,8 @@ class Slicing:
         """
         meaning = layer.settings[MEANING]
         made = {"kind": meaning, "labels": image.table if meaning == "labels" else None}
+        if meaning == "direction" and layer.settings[VECTORS] != "scanner":
+            made["vectors"] = layer.settings[VECTORS]
         weights = volume_in(layer.settings[WEIGHTS])
         if meaning == "direction" and weights is not None:
             made["modulate"] = colours(weights)
@@ -296,7 +298,7 @@ class Slicing:
 
     def look(self, image: Any, old: Layer, new: Layer, data: LabelledImage, colours: Colours) -> Any:
         """Bring an image in step with its layer; return its layer of the stack, which may be another one."""
-        if any(old.settings[name] != new.settings[name] for name in (MEANING, WEIGHTS)):
+        if any(old.settings[name] != new.settings[name] for name in (MEANING, WEIGHTS, VECTORS)):
             found = self.add(new, data, colours)
             self._glyphs.remove(self.workspace.slices, image)
             self.workspace.slices.remove_layer(image)

@@ -9,6 +9,7 @@ from typing import Any
 
 from pvfiblets.plotting.fiblets.looks import check_look
 from pvfiblets.support.memory import CAN_LIMIT, of_machine, parse, shown
+from pvfiblets.support.nifti_space import Matrix, Units
 from pvfiblets.web.scene.file_kinds import is_tractogram_folder
 
 MEBIBYTE = 1024 * 1024
@@ -58,6 +59,10 @@ class Options:
         Bytes that a session may have; ``None``: no limit.
     origins : list of str
         Other origins that pages may come from, such as that of a proxy which renames the host.
+    nifti_space, nifti_units : str
+        What places images of NIfTI, as of :func:`pvfiblets.nifti_space`.
+    tkras : bool
+        Whether surfaces of FreeSurfer stay in its surface space.
     connections, by_address : int
         The most connections at once, in all and from one address.
     proxies : list of str
@@ -86,6 +91,9 @@ class Options:
     connections: int = 1000
     by_address: int = 100
     proxies: list[str] = field(default_factory=list)
+    nifti_space: Matrix | None = None
+    nifti_units: Units = "mm"
+    tkras: bool = False
 
     @property
     def on_loopback(self) -> bool:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pvfiblets.web.scene.glyph_layers import VECTORS
 from pvfiblets.web.scene.slicing import normal_of
 from pvfiblets.web.session.document import LINES
 from pvfiblets.web.session.runs import runs_of
@@ -29,6 +30,8 @@ def image_arguments(layer: Layer, meaning: str, file: Callable[[str], str]) -> d
     found: dict[str, Any] = {"kind": meaning}
     if meaning == "labels" and layer.source.values:
         found["labels"] = Python(file(layer.source.values[-1]))
+    if meaning == "direction" and layer.settings[VECTORS] != "scanner":
+        found["vectors"] = layer.settings[VECTORS]
     return found
 
 
