@@ -5,6 +5,7 @@ import os
 import shutil
 import subprocess
 import sys
+import tomllib
 from graphlib import CycleError, TopologicalSorter
 from importlib.metadata import entry_points
 from itertools import combinations
@@ -187,3 +188,16 @@ def test_every_entry_point_resolves(group):
     assert ours
     for point in ours:
         assert point.load() is not None
+
+
+@pytest.mark.parametrize("room", sorted(path.stem for path in (ROOT / "tests" / "mutants").glob("*.toml")))
+def test_faults_made_by_hand_fit_the_code_and_name_tests_that_exist(room):
+    for fault in tomllib.loads((ROOT / "tests" / "mutants" / f"{room}.toml").read_text())["mutant"]:
+        assert (ROOT / fault["file"]).read_text().count(fault["was"]) == 1, fault["fault"]
+        assert fault["now"] != fault["was"]
+        assert fault["tests"]
+        for name in fault["tests"]:
+            file, *inner = name.split("::")
+            assert (ROOT / file).exists(), name
+            if inner:
+                assert f"def {inner[-1].partition('[')[0]}(" in (ROOT / file).read_text(), name

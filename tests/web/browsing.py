@@ -26,7 +26,7 @@ FLAGS = (
     "--disable-quic", "--no-first-run",
 )  # fmt: skip
 PATIENCE = int(os.environ.get("PVFIBLETS_PATIENCE", "120000"))  # ms: machines that run tests are busy
-QUIET = 150  # ms between questions to a server that is to be at rest; pages throttle events to one in 100 ms
+QUIET = 150  # ms of a page's own clock: what it holds back, for 100 ms, has been sent by then
 FINE = 90  # the least quality of pictures at rest
 QUALITY = re.compile(rb"\xa7quality([\x00-\x7f]|\xcc.)", re.DOTALL)  # of a picture, an integer of msgpack
 # What the page has sent is taken, and what is drawn is drawn, when this comes back: the server does one after another.
@@ -35,6 +35,20 @@ LOAD = "(text) => fetch('/session', {method: 'POST', body: text}).then((answer) 
 ANSWER = f"""() => Promise.race([
     {SESSION}, new Promise((done) => setTimeout(done, 20000)),
 ])"""
+HELD_BACK = f"() => new Promise((done) => setTimeout(done, {QUIET}))"
+STANDS = """async (patience) => {
+    const end = performance.now() + patience;
+    const runs = (one) => one.playState === 'running' && one.effect.getComputedTiming().endTime < Infinity;
+    for (let still = 0; still < 3; ++still) {  // what changes now begins to move a frame or two later
+        await new Promise(requestAnimationFrame);
+        const moving = document.getAnimations().filter(runs);
+        if (!moving.length) continue;
+        if (performance.now() > end) throw new Error('a page that moves for ever');
+        const late = new Promise((done) => setTimeout(done, patience));
+        await Promise.race([late, Promise.allSettled(moving.map((one) => one.finished))]);
+        still = -1;
+    }
+}"""
 
 # Of Firefox's web sockets Playwright hears nothing: the page tells what comes, of its text and bytes the beginning.
 LISTENING = """
@@ -199,9 +213,14 @@ class Visit:
             count = self.pictures
             self.page.evaluate(ANSWER)  # by then all that was done is known there
             for _ in range(2):
-                self.page.wait_for_timeout(QUIET)
+                self.page.evaluate(HELD_BACK)
                 self.page.evaluate(ANSWER)  # by then it is drawn; then, by then it is coded and sent
         return self.picture()
+
+    def stands(self):
+        """Wait until what the page was told is shown, and nothing of it slides, grows or fades."""
+        self.page.evaluate(ANSWER)
+        self.page.evaluate(STANDS, PATIENCE)
 
     def changed(self, before, what="another picture", least=0.05):
         """Wait until the picture differs from one before, and is at rest."""

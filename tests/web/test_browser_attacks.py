@@ -66,7 +66,7 @@ def test_names_in_files_are_text_wherever_they_are_shown(evil):
     here.rests()
     for tab in ("clip", "filter", "selection", "info"):
         here.tab(tab)
-        here.page.wait_for_timeout(100)
+        here.stands()
         unharmed(here)
     here.press("b")
     here.page.wait_for_selector("#pv-over[data-tool=box]")
@@ -101,7 +101,7 @@ def test_names_in_sessions_are_text_wherever_they_are_shown(revisit):
     assert all(any(name in text for text in names) for name in NAMES)
     for tab in ("clip", "filter", "info"):
         here.tab(tab)
-        here.page.wait_for_timeout(100)
+        here.stands()
         unharmed(here)
     for k in (0, 1):
         here.page.locator("[data-layer]").nth(k).click()
@@ -109,7 +109,7 @@ def test_names_in_sessions_are_text_wherever_they_are_shown(revisit):
         here.press("v")
         here.wait(lambda k=k: NAMES[k] in here.state("undo_label"), "what can be undone")
         here.page.hover("[data-action=undo]")
-        here.page.wait_for_timeout(300)
+        here.page.locator(".v-tooltip .v-overlay__content", has_text=NAMES[k]).wait_for()
         unharmed(here)
     # Writing that turns what is beside it round, lines that break, and what moves a terminal's cursor.
     for bad in ("a\u202ebdp.exe", "a\nb", "a\x1b[2Jb", "\u2066x\u2069"):

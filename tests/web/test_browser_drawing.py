@@ -11,10 +11,16 @@ from PIL import Image
 
 from tests.page.conftest import WEBGL
 from tests.page.pages import differing
-from tests.web.browsing import FLAGS, LOAD, Visit, launched
+from tests.web.browsing import ANSWER, FLAGS, LOAD, Visit, launched
 from tests.web.cable import Cable
 
 pytestmark = pytest.mark.more
+
+TAKEN = """() => {
+    const {camera, ...shown} = pvfibletsThere.scene;
+    return JSON.stringify(shown) === JSON.stringify(trame.state.get('there').scene);
+}"""
+"""Whether the page shows the scene that it was told; data may have to come first."""
 
 
 class There(Visit):
@@ -31,9 +37,27 @@ class There(Visit):
             " && document.querySelector('#pv-there').style.visibility === 'visible')"
         )
 
+    def begin_again(self):
+        if self.state("there")["on"]:
+            self.in_step()  # else the camera of before would be told after that of the session
+        return super().begin_again()
+
+    def rests(self):
+        self.wait(self.draws, "a picture that the browser draws")
+        agrees(self)
+
+    def in_step(self):
+        """Wait until the server knows where the browser's camera is."""
+
+        def known():
+            here, there = self.page.evaluate("pvfibletsThere.camera.state"), self.session()["camera"]
+            return all(np.allclose(here[name], there[name]) for name in ("position", "focal_point", "up"))
+
+        self.wait(known, "the server to know the camera")
+
     def drawn(self):
-        """Return what the browser has drawn, finished."""
-        self.page.wait_for_timeout(100)  # what the server says last is on its way
+        """Return what the browser has drawn of the scene that it was told last, finished."""
+        self.wait(lambda: self.page.evaluate(TAKEN), "the scene to be taken")
         width, data = self.page.evaluate(
             """async () => {
                 await pvfibletsThere.settled();
@@ -67,6 +91,9 @@ class There(Visit):
         """Return the bytes of the largest message that comes while something is done, and what is fetched."""
         before, fetched = len(self.received), len(self.requests)
         act()
+        self.in_step()
+        for _ in range(2):
+            self.page.evaluate(ANSWER)  # by then it is drawn; then, by then what follows from that is sent
         self.drawn()
         return max(self.received[before:], default=0), [url for url in self.requests[fetched:] if "/there/" in url]
 
@@ -103,11 +130,9 @@ def _page(browser, server, cable):
 @pytest.fixture
 def here(_page):
     """Return the page, which tests share; each finds it as the first one did."""
-    yield _page
+    yield _page.begin_again()
     errors, _page.errors[:] = list(_page.errors), []
     assert not errors
-    _page.page.evaluate(LOAD, _page.begun)
-    _page.page.evaluate("trame.state.update({tool: 'rotate', dialog: ''})")
 
 
 def agrees(page):
@@ -151,8 +176,12 @@ def test_moving_sends_no_picture_and_the_session_knows_the_camera(here):
 def test_filters_colours_and_selections_send_what_they_change(here):
     layer = here.state("layers")[0]["id"]
     here.page.click("[data-layer] >> nth=0")
+    scene = here.state("there")["scene"]
     _, fetched = here.sends(
-        lambda: here.page.evaluate("trame.trigger('slide', ['criterion', '', 'length', [40.5, 80]])")
+        lambda: [
+            here.page.evaluate("trame.trigger('slide', ['criterion', '', 'length', [40.5, 80]])"),
+            here.wait(lambda: here.state("there")["scene"] != scene, "another scene"),
+        ]
     )
     here.page.evaluate("trame.trigger('release')")
     assert len(fetched) <= 1  # a byte for each streamline
@@ -176,8 +205,8 @@ def test_a_ball_and_a_box_cut_as_the_server_cuts(here):
         nonlocal seen
         before = seen
         here.wait(lambda: np.abs(here.drawn() - before).mean() > 0.05, what)
-        seen = here.drawn()
         assert agrees(here)
+        seen = here.drawn()
 
     here.tab("clip")
     for kind in ("sphere", "box"):  # a box of which the outside stays is no planes
@@ -284,6 +313,7 @@ def test_distances_lie_over_the_picture_where_the_server_has_them(here):
             yellow = np.abs(server[y[seen], x[seen]] - (255, 204, 0)).max(axis=1) < 60
             assert yellow.mean() > 0.8  # the rest is beneath letters and their shadows
         here.drag()
+        here.in_step()
     assert here.state("drawing") == ""
     here.page.evaluate(LOAD, here.begun)
     here.page.wait_for_selector("#pv-there-distances svg", state="detached")
@@ -316,7 +346,7 @@ def test_a_page_that_loses_its_graphics_has_the_servers_pictures(here):
     here.wait(lambda: "lost its graphics" in here.state("drawing"), "why the server draws")
     here.told("The server draws: this browser lost its graphics.")
     assert not here.state("there")["on"]
-    assert (np.abs(here.rests() - expected).max(axis=2) > 60).mean() < 0.01
+    assert (np.abs(Visit.rests(here) - expected).max(axis=2) > 60).mean() < 0.01
     here.page.evaluate("lost.restoreContext()")
     here.wait(here.draws, "the browser to draw again")
     assert agrees(here)
@@ -324,10 +354,11 @@ def test_a_page_that_loses_its_graphics_has_the_servers_pictures(here):
 
 def test_a_page_that_was_reloaded_or_cut_off_draws_again(here, cable):
     here.drag()
+    here.in_step()
     before = here.drawn()
     here.page.reload()
     here.ready()
-    assert np.array_equal(here.drawn(), before)
+    here.wait(lambda: np.array_equal(here.drawn(), before), "what was drawn before")
     cable.cut()
     lost = here.page.locator("#pv-lost")
     lost.wait_for()
@@ -340,7 +371,7 @@ def test_a_page_that_was_reloaded_or_cut_off_draws_again(here, cable):
     here.page.evaluate(now)  # unless it has tried by itself meanwhile
     here.wait(lambda: lost.count() == 0, "the page again")
     here.ready()
-    assert np.array_equal(here.drawn(), before)
+    here.wait(lambda: np.array_equal(here.drawn(), before), "what was drawn before")
     here.drag((0.6, 0.5), (0.4, 0.5))
     assert np.abs(here.drawn() - before).mean() > 1.0
     assert agrees(here)

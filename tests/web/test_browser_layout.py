@@ -9,6 +9,15 @@ pytestmark = pytest.mark.more
 FAULTS = Path(__file__).with_name("layout_faults.js").read_text(encoding="utf-8")
 SIZES = [(1280, 720), (800, 600), (320, 640)]
 DIALOGS = ("open", "session", "picture", "script", "help", "rename", "end")
+EACH_FRAME = """() => {
+    const fits = window.fits = new Set();
+    const look = () => {
+        fits.add(getComputedStyle(document.querySelector('#pv-view img')).objectFit);
+        if (window.fits === fits) requestAnimationFrame(look);
+    };
+    look();
+}"""
+"""Notes in each frame from now on how the picture fits its place."""
 LONG = "a_tractogram_of_a_study_with_a_very_long_name_that_nobody_wants_to_read.trk"
 
 
@@ -21,17 +30,14 @@ def resize(here, size, *, left, right):
     here.page.set_viewport_size({"width": size[0], "height": size[1]})
     wanted = {"left": left, "right": right}
     for panels in (dict.fromkeys(wanted, False), wanted):  # what a narrower page closes by itself is closed by then
-        here.page.wait_for_timeout(300)
+        here.stands()
         for side, opened in panels.items():
             here.page.evaluate("([name, value]) => window.trame.state.set(name, value)", [f"{side}_open", opened])
 
-    def stand_still():
-        at = [here.page.locator(f"#{side}").bounding_box() for side in wanted]
-        shown = [box is not None and box["x"] < size[0] - 1 and box["x"] + box["width"] > 1 for box in at]
-        here.page.wait_for_timeout(100)
-        return shown == [left, right] and at == [here.page.locator(f"#{side}").bounding_box() for side in wanted]
-
-    here.wait(stand_still, "the panels")
+    here.stands()
+    at = [here.page.locator(f"#{side}").bounding_box() for side in wanted]
+    shown = [box is not None and box["x"] < size[0] - 1 and box["x"] + box["width"] > 1 for box in at]
+    assert shown == [left, right]
 
 
 def pick(here, title, layer):
@@ -94,7 +100,7 @@ def test_panels_are_whole(pages, size):
     resize(here, size, left=size[0] > 1100, right=True)
     for name in ("clip", "filter", "selection", "info"):
         here.tab(name)
-        here.page.wait_for_timeout(200)
+        here.stands()
         wrong += [f"{name}: {fault}" for fault in faults(here, "#right")]
     assert "\n".join(wrong) == ""
 
@@ -109,7 +115,7 @@ def test_dialogs_are_whole(pages, size):
     for name in DIALOGS:
         here.page.evaluate(f"window.trame.state.set('dialog', '{name}')")
         here.page.wait_for_selector(f"#dialog-{name}")
-        here.page.wait_for_timeout(350)  # it grows
+        here.stands()
         wrong += faults(here, f"#dialog-{name}")
         here.press("Escape")
         here.wait(lambda name=name: not here.page.locator(f"#dialog-{name}").is_visible(), "the dialog to close")
@@ -117,10 +123,10 @@ def test_dialogs_are_whole(pages, size):
     here.page.evaluate(f"window.trame.state.update({{toast: '{LONG} was not opened. ' + 'It is damaged. '.repeat(9)}})")
     here.page.evaluate("window.trame.state.update({toast_open: true})")
     here.page.wait_for_selector("#uploading")
-    here.page.wait_for_timeout(350)
+    here.stands()
     wrong += faults(here, "#uploading", ".v-snackbar__wrapper")
     here.page.evaluate("window.trame.state.update({uploading: '', toast_open: false})")
-    here.page.wait_for_timeout(350)
+    here.stands()
     assert "\n".join(wrong) == ""
 
 
@@ -172,7 +178,7 @@ def test_all_of_the_bar_is_within_reach_of_a_thumb(visit):
     here.page.tap("[data-action=more-of-bar]")
     menu = here.page.locator(".v-overlay--active .v-list")
     menu.wait_for()
-    here.page.wait_for_timeout(300)
+    here.stands()
     listed = here.page.locator("[data-menu]")
     names = {item.get_attribute("data-menu") for item in listed.all()}
     assert wanted - seen - names == {"screenshot"}  # of a key
@@ -187,7 +193,7 @@ def test_all_of_the_bar_is_within_reach_of_a_thumb(visit):
     here.page.tap("[data-action=more-of-bar]")
     here.page.tap("[data-menu=picture]")
     here.page.wait_for_selector("#dialog-picture")
-    here.page.wait_for_timeout(350)
+    here.stands()
     assert "\n".join(faults(here, "#dialog-picture")) == ""
 
 
@@ -201,20 +207,13 @@ def test_a_narrow_page_begins_with_the_picture_and_none_is_stretched_by_a_new_si
     here.press("1")
     here.rests()
     for size in ((1280, 560), (640, 700), (700, 900)):
+        here.page.evaluate(EACH_FRAME)
         here.page.set_viewport_size({"width": size[0], "height": size[1]})
-        for wait in (0, 60, 500):
-            here.page.wait_for_timeout(wait)
-            shape = here.page.evaluate(
-                """() => {
-                    const image = document.querySelector('#pv-view img'), box = image.getBoundingClientRect();
-                    return [image.naturalWidth, image.naturalHeight, box.width, box.height,
-                            getComputedStyle(image).objectFit];
-                }"""
-            )
-            assert shape[4] == "contain"
-        here.rests()
-        image = here.picture().max(axis=2) > 30
+        here.stands()
+        view = here.page.locator("#pv-view").bounding_box()
+        whole = (round(view["height"]), round(view["width"]))
+        here.wait(lambda whole=whole: here.picture().shape[:2] == whole, "a picture of the new size")
+        assert here.page.evaluate("[...window.fits]") == ["contain"]
+        image = here.rests().max(axis=2) > 30
         rows, columns = np.flatnonzero(image.any(axis=1)), np.flatnonzero(image.any(axis=0))
         assert np.ptp(rows) == pytest.approx(np.ptp(columns), rel=0.02)
-        view = here.page.locator("#pv-view").bounding_box()
-        assert image.shape == (round(view["height"]), round(view["width"]))

@@ -324,7 +324,7 @@ def test_a_phone_has_slices_below_and_tools_that_paint_at_hand(visit):
     view = here.page.locator("#pv-view").bounding_box()
     middle = [view[side] + view[length] * (box["axial"][k] + 0.5 * box["axial"][n])
               for side, length, k, n in (("x", "width", "x", "w"), ("y", "height", "y", "h"))]  # fmt: skip
-    here.page.wait_for_timeout(400)  # the panel slides away
+    here.stands()  # the panel slides away
     here.page.touchscreen.tap(*middle)
     here.wait(lambda: here.state("painting")["regions"][0]["voxels"] == "256", "the slice that is filled")
     for _ in range(3):  # as fast as they go

@@ -15,8 +15,9 @@ def test_a_slider_acts_while_it_is_held_and_is_one_step(visit):
     here.page.mouse.move(x, y)
     here.page.mouse.down()
     for step in range(1, 8):
+        was = thumb.get_attribute("aria-valuenow")
         here.page.mouse.move(x - 8 * step, y)
-        here.page.wait_for_timeout(60)
+        here.wait(lambda was=was: thumb.get_attribute("aria-valuenow") != was, "the thumb to follow")
     dimmed = here.changed(before)  # the button is still down
     held = float(thumb.get_attribute("aria-valuenow"))
     assert held < 0.7
