@@ -12,7 +12,7 @@ SHELL := /bin/bash
 # Compiled modules are kept, for the many processes that tests start.
 PYTEST := env -u PYTHONDONTWRITEBYTECODE $(BIN)/python -m pytest --numprocesses=auto --maxprocesses=8 --dist=loadfile --no-loadscope-reorder
 
-.PHONY: demo serve test test-more test-all lint fuzz soak bench docs check-wheel drivers drivers-part wheel client environment gl shaders browser display proxy clean
+.PHONY: demo serve test test-more test-programs test-all lint fuzz soak bench docs check-wheel drivers drivers-part wheel client environment gl shaders browser display proxy clean
 
 demo: $(VENV)/.ready-user gl
 	$(BIN)/pvfiblets demo --output $(DEMO)
@@ -30,8 +30,14 @@ test: environment lint gl
 # What `make test` leaves out: browsers, windows, proxies, workflows, the docs' pages and the examples as programs, soak, the
 # wheel and other drivers.
 test-more: $(VENV)/.ready-more gl shaders browser display proxy
-	$(PYTEST) -m 'more and not exhaustive'
-	@$(MAKE) check-wheel drivers-part
+	$(PYTEST) -m 'more and not exhaustive and not programs'
+	@$(MAKE) check-wheel drivers-part test-programs
+
+# Beside MRtrix3, ParaView, DIPY, trx-python and SimpleITK; `PVFIBLETS_PAGE=1 make test-programs` writes what was found to
+# docs/reference/programs.md.
+test-programs: environment
+	@PYTHON=$(BIN)/python scripts/programs.sh
+	$(BIN)/python -m pytest -m programs tests/programs
 
 test-all: $(VENV)/.ready-more lint gl shaders browser display proxy
 	PVFIBLETS_FUZZ=1000 $(PYTEST) -m '' --hypothesis-profile=exhaustive --timeout=3600

@@ -5,7 +5,8 @@ Rules that live here:
 * Real data is found, never copied: the ``shared_data`` fixture.
 * A test that leaves an OpenGL error behind, or starts with one, fails: the ``gl`` fixture.
 * On continuous integration (``PVFIBLETS_CI`` is set) a check cannot vanish unseen: every test function
-  must run with some of its parameters, unless the real data is not on that machine, or Firefox is not to be had there.
+  must run with some of its parameters, unless the real data is not on that machine, or Firefox or another
+  program is not to be had there.
 * ``make test`` takes minutes: tests that open a browser or are marked ``more``, and most parameters of those marked
   ``few``, run by ``make test-more``; tests marked ``exhaustive``, and what a product of parameters marked ``every`` has
   besides every value or pair, by ``make test-all`` only.
@@ -45,6 +46,7 @@ os.environ["PVFIBLETS_ANTIALIAS"] = "off"
 
 NO_DATA = "real data is not on this machine"
 NO_FIREFOX = "Firefox is not to be had on this machine"
+NO_PROGRAM = "is not on this machine: scripts/programs.sh installs it"
 
 SIZES = {"value": 1, "pair": 2}
 """What ``pytest.mark.every`` may say, and of how many parameters it speaks."""
@@ -288,7 +290,7 @@ class _SkipRule:
         function = report.nodeid.partition("[")[0]
         if report.skipped and not hasattr(report, "wasxfail"):
             reason = str(report.longrepr[2] if isinstance(report.longrepr, tuple) else report.longrepr)
-            if not any(allowed in reason for allowed in (NO_DATA, NO_FIREFOX)):
+            if not any(allowed in reason for allowed in (NO_DATA, NO_FIREFOX, NO_PROGRAM)):
                 self.skipped[function] = reason
         elif getattr(report, "when", "") == "call":
             self.ran.add(function)
