@@ -12,7 +12,7 @@ import warnings
 from collections.abc import Callable, Mapping
 from typing import Any, cast
 
-from vtkmodules.vtkRenderingCore import vtkActor
+from vtkmodules.vtkRenderingCore import VTK_PBR, vtkActor
 
 from pvfiblets.mappers import resolve
 from pvfiblets.mappers.depth_peeling import with_layers
@@ -44,6 +44,7 @@ class Attached:
         self._found = False
         self._alone = ("", 0)
         self._unused: frozenset[str] = frozenset()
+        self._shaders_seen = 0
 
     @property
     def actor(self) -> vtkActor | None:
@@ -128,6 +129,27 @@ class Attached:
             )
         self._alone = seen
 
+    def _drop_vertex_stages(self) -> None:
+        """Take out what others do to vertices, as PyVista's camera distortion does: here these are a rectangle's."""
+        shaders: Any = self._shader_property.Get()
+        if shaders is None or shaders.GetMTime() == self._shaders_seen:
+            return
+        own = {(edit.original, edit.first, edit.text) for edit in self._installed if edit.stage == "vertex"}
+        there = set(resolve.vertex_replacements(shaders))
+        found = there - own
+        for name, first, _ in found:
+            shaders.ClearVertexShaderReplacement(name, first)
+        if found or own - there:  # a tag has one of each
+            resolve.install(shaders, self._installed)
+        self._shaders_seen = shaders.GetMTime()
+        if found:
+            warnings.warn(
+                "a replacement of the vertex shader changes nothing here, neither camera distortion nor maximum "
+                "intensity projection: what is drawn is computed pixel by pixel, and stays undistorted",
+                UserWarning,
+                stacklevel=2,
+            )
+
     def _watch_property(self, actor: vtkActor) -> None:
         if self._property.Get() is not None:
             self._property.Get().RemoveObserver(self._tags[1])
@@ -182,7 +204,7 @@ def _follow_actor(mapper: Any) -> Callable[[Any, str], None]:
 
 
 def _keep_surface(actor_property: Any, event: str) -> None:
-    """Undo wireframe, points, edges and culling of front faces, in which VTK would not fill the covering triangle."""
+    """Undo wireframe, points, edges, culled front faces and physical shading: what is drawn is no surface of VTK's."""
     undone = []
     if actor_property.GetRepresentation() != VTK_SURFACE:
         actor_property.SetRepresentationToSurface()
@@ -193,6 +215,9 @@ def _keep_surface(actor_property: Any, event: str) -> None:
     if actor_property.GetFrontfaceCulling():
         actor_property.SetFrontfaceCulling(False)
         undone.append("culling")
+    if actor_property.GetInterpolation() == VTK_PBR:
+        actor_property.SetInterpolationToGouraud()
+        undone.append("interpolation")
     if undone and event:  # not what a theme or a property brings with it
         warnings.warn(
             f"prop.{' and prop.'.join(undone)} changes nothing here: what is drawn has no facets",

@@ -448,6 +448,7 @@ def _update_shader(mapper: EngineMapper[Any], _event: str, program: Any) -> None
 def _begin(mapper: EngineMapper[Any], _event: str) -> None:
     make_current_again(mapper)
     mapper._begin()  # noqa: SLF001
+    mapper._drop_vertex_stages()  # noqa: SLF001
 
 
 def _connections_changed(mapper: EngineMapper[Any], _event: str) -> None:

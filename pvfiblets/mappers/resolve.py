@@ -15,9 +15,12 @@ asked for leaves no text behind.
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cache
 from typing import Any
+
+from vtkmodules.vtkCommonCore import reference
 
 from pvfiblets.engine.errors import EngineError
 from pvfiblets.engine.gl.shaders import read_shader
@@ -187,6 +190,15 @@ def install(shader_property: Any, replacements: tuple[Replacement, ...]) -> None
             shader_property.AddVertexShaderReplacement(edit.original, edit.first, edit.text, True)
         else:
             shader_property.AddFragmentShaderReplacement(edit.original, edit.first, edit.text, True)
+
+
+def vertex_replacements(shader_property: Any) -> Iterator[tuple[str, bool, str]]:
+    """Yield tag, whether it comes first, and text of those of a ``vtkShaderProperty``, by whomever."""
+    for index in range(shader_property.GetNumberOfShaderReplacements()):
+        name, first, text, every = reference(""), reference(False), reference(""), reference(False)
+        shader_property.GetNthShaderReplacement(index, name, first, text, every)
+        if shader_property.GetNthShaderReplacementTypeAsString(index) == "Vertex":
+            yield str(name), bool(first), str(text)
 
 
 def uninstall(shader_property: Any, replacements: tuple[Replacement, ...]) -> None:
