@@ -134,7 +134,7 @@ def add_serve(commands: Any) -> None:
 
 def _scene(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "paths", metavar="FILE", nargs="+", help="tractograms, images (NIfTI, MGH, NRRD, MetaImage, .vti) and meshes "
+        "paths", metavar="FILE", nargs="+", help="tractograms, images (NIfTI, MGH, MIF, NRRD, MetaImage, .vti), meshes "
         "(.vtp, .ply, .stl, .obj, .gii) of any format; or a session that `serve` saved, .json; or -"
     )  # fmt: skip
     parser.add_argument(

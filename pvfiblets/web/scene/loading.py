@@ -17,7 +17,7 @@ from pvfiblets import formats
 from pvfiblets.codec.shards.manifest import MANIFEST
 from pvfiblets.formats.gzipped import check_ratio
 from pvfiblets.formats.registry import UnknownFormatError, is_trx_folder, suffix_of, suffixes
-from pvfiblets.volumes.sources import NIBABEL
+from pvfiblets.images.sources import as_image
 from pvfiblets.web.scene.file_kinds import (
     MESHES,
     TABLES,
@@ -204,14 +204,7 @@ class Files:
             watch("reading", 1.0)
             return Loaded(kind, source, name, image, facts_of(image))
         if kind == "labels":
-            from pvfiblets.volumes.nibabel_files import opened
-
-            if not name.lower().endswith(NIBABEL):
-                from pvfiblets.web.scene.label_images import read_labels
-
-                return Loaded(kind, source, name, read_labels(place))
-            with opened(place) as image:  # and read where it is used
-                return Loaded(kind, source, name, image)
+            return Loaded(kind, source, name, as_image(place))  # and read where it is used
         if kind == "colours":
             return Loaded(kind, source, name, read_colours(place))
         mesh = read_mesh(place)
