@@ -149,9 +149,8 @@ def test_a_missing_matrix_and_unknown_words_are_refused(tmp_path):
 
 
 USES = {
-    "atlas": lambda path: pvfiblets.query.connectome.parcels.read_atlas(path)[1],
     "density": lambda path: pvfiblets.query.density.voxel_grid.grid_like(path).affine,
-    "image": lambda path: pvfiblets.query.bundles.sampling.as_image(path).affine,
+    "image": lambda path: pvfiblets.images.sources.as_image(path).affine,
     "painter": lambda path: pvfiblets.query.painting.painter.RegionPainter.open(path).grid.affine,
     "slices": lambda path: pvfiblets.slices.image.as_slice_image(path).affine,
     "volume": lambda path: pvfiblets.volumes.sources.as_raycast_volume(path).affine,
@@ -182,10 +181,9 @@ def test_the_page_shows_the_warning_of_a_file_it_opens(tmp_path):
 
 @pytest.mark.parametrize("use", USES)
 def test_every_use_of_a_file_or_an_image_has_the_rule(tmp_path, use):
+    import pvfiblets.images.sources
     import pvfiblets.plotting.fiblets.volume_sources
     import pvfiblets.plotting.region_sources
-    import pvfiblets.query.bundles.sampling
-    import pvfiblets.query.connectome.parcels
     import pvfiblets.query.density.voxel_grid
     import pvfiblets.query.painting.painter
     import pvfiblets.slices.image

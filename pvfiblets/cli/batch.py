@@ -84,7 +84,7 @@ def _density(parser: argparse.ArgumentParser, positive: Any, angle: Any, count: 
     add = parser.add_argument
     grid = parser.add_mutually_exclusive_group(required=True)
     grid.add_argument("--voxel", type=positive, nargs="+", metavar="MM", help="side of the voxels, or three")
-    grid.add_argument("--like", metavar="IMAGE", help="an image whose grid it is: NIfTI or MGH")
+    grid.add_argument("--like", metavar="IMAGE", help="an image whose grid it is")
     add("--contrast", default="count", metavar="WHAT", help="count, length, direction, an array, or a file of values")
     add("--weights", metavar="WHAT", help="of streamlines: a file of numbers, or the name of an array")
     add("--ends-only", action="store_true", help="count end points instead")

@@ -12,6 +12,8 @@ import numpy as np
 from pvfiblets.cli.files import show_progress
 from pvfiblets.codec.files.open_lines import open_lines
 from pvfiblets.formats import registry
+from pvfiblets.images.files import SUFFIXES
+from pvfiblets.images.sources import is_image
 from pvfiblets.query.bundles.tract_profile import TractProfile, Weights, profile_table, tract_profile
 from pvfiblets.query.measures.table import Table, check_parquet
 from pvfiblets.support.progress_bar import progress_bar
@@ -37,7 +39,7 @@ def profile(
     with progress_bar(show_progress(quiet, False), total=len(bundles), desc="averaging", unit="bundles") as bar:
         for data, ids, name in bundles:
             for given in values:
-                called = Path(given).name if _is_image(given) else given
+                called = Path(given).name if is_image(given) else given
                 profiles.append(
                     tract_profile(data, ids, given, positions, weights=weights, confidence=confidence, name=called,
                                   bundle=name)
@@ -77,8 +79,8 @@ def bundle_rows(source: str, groups: Sequence[str], images: Sequence[str], weigh
             name, path = _stem(given), given
         if name in known:
             raise ValueError(f"two images are called {name!r}; give one another name: --image NAME={path}")
-        if not _is_image(path):
-            raise ValueError(f"{path} is no image; give a NIfTI or MGH file, of any name: --image fa={path}.nii.gz")
+        if not is_image(path):
+            raise ValueError(f"{path} is no image; give a file that ends in {', '.join(SUFFIXES)}")
         known[name] = path
     bundles = list(_bundles([source], groups))
     chosen = {name: ids for _, ids, name in bundles}
@@ -101,14 +103,8 @@ def _bundles(sources: Sequence[str], groups: Sequence[str]) -> Iterator[tuple[An
 def _stem(path: str) -> str:
     """Return a file's name without its suffix, be that ``.nii.gz``."""
     name = Path(path).name
-    suffixes = sorted((*registry.suffixes(), ".nii.gz", ".nii", ".mgh", ".mgz"), key=len, reverse=True)
+    suffixes = sorted((*registry.suffixes(), *SUFFIXES), key=len, reverse=True)
     return next((name[: -len(one)] for one in suffixes if name.lower().endswith(one)), name)
-
-
-def _is_image(given: str) -> bool:
-    from pvfiblets.query.density.voxel_grid import SUFFIXES
-
-    return given.lower().endswith(SUFFIXES)
 
 
 def _check_target(target: str) -> None:

@@ -15,7 +15,6 @@ from pvfiblets.formats.attachments import numbers_or_name as numbers
 from pvfiblets.query.density.density_map import DensityMap, check_target
 from pvfiblets.query.density.volume import CONTRASTS
 from pvfiblets.query.density.volume import density as add_up
-from pvfiblets.query.density.voxel_grid import SUFFIXES
 
 
 def density(
@@ -39,7 +38,7 @@ def density(
         found = add_up(
             source,
             None if voxel is None else voxel if len(voxel) == 3 else voxel[0],
-            like=_image(like),
+            like=like,
             weights=numbers(weights),
             contrast=contrast if contrast in CONTRASTS else numbers(contrast),
             ends_only=ends_only,
@@ -95,12 +94,3 @@ def summary(result: dict[str, Any]) -> str:
     if result["share_outside"] > 1e-9:
         lines.insert(2, f"outside  {100.0 * result['share_outside']:.3g} % of the streamlines, which no voxel holds")
     return "\n".join(lines)
-
-
-def _image(path: str | None) -> Any:
-    """Return what says where the voxels of an image lie."""
-    if path is None or path.lower().endswith(SUFFIXES):
-        return path
-    from pvfiblets.volumes.sources import as_raycast_volume
-
-    return as_raycast_volume(path)

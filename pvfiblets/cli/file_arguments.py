@@ -158,7 +158,7 @@ def add_density(commands: Any) -> None:
     parser.add_argument("target", metavar="OUT", help="what to write: .nii or .nii.gz; or -")
     grid = parser.add_mutually_exclusive_group(required=True)
     grid.add_argument("--voxel", type=positive, nargs="+", metavar="MM", help="side of the voxels, or three")
-    grid.add_argument("--like", metavar="IMAGE", help="an image whose grid it is: NIfTI, MGH, NRRD, MetaImage or .vti")
+    grid.add_argument("--like", metavar="IMAGE", help="an image whose grid it is (NIfTI, MGH, MIF, NRRD ...)")
     parser.add_argument(
         "--contrast",
         default="count",
@@ -188,7 +188,7 @@ def add_connectome(commands: Any) -> None:
         "mean of their numbers. It holds the labels that LABELS has, rising.",
     )
     matrix.add_argument("source", metavar="IN", help="a tractogram of any format, or -")
-    matrix.add_argument("labels", metavar="LABELS", help="a NIfTI image of whole numbers, 0 for no parcel")
+    matrix.add_argument("labels", metavar="LABELS", help="an image of whole numbers, 0 for no parcel")
     matrix.add_argument("target", metavar="OUT", help="a .csv, .tsv, .txt or .npy file; or -")
     matrix.add_argument("--weights", metavar="NAME|FILE", help="of streamlines, such as SIFT2's")
     matrix.add_argument(

@@ -171,7 +171,7 @@ def fill(
 
 def kind_of(path: str) -> str:
     """Return whether a file is of lines, a volume or a mesh: VTK's formats may be any of them."""
-    from pvfiblets.volumes.sources import SUFFIXES as IMAGES
+    from pvfiblets.images.files import SUFFIXES as IMAGES
 
     lower = path.lower()
     if lower.endswith(IMAGES):

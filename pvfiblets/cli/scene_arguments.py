@@ -142,9 +142,9 @@ def add_serve(commands: Any) -> None:
 
 def _scene(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "paths", metavar="FILE", nargs="+", help="tractograms, images (NIfTI, MGH, NRRD, MetaImage, .vti) and meshes "
-        "(.vtp, .ply, .stl, .obj, .gii, lh.pial) of any format, a surface before its values (.annot, .label.gii); or "
-        "a session that `serve` saved, .json; or -"
+        "paths", metavar="FILE", nargs="+", help="tractograms, images (NIfTI, MGH, MIF, NRRD, MetaImage, .vti) and "
+        "meshes (.vtp, .ply, .stl, .obj, .gii, lh.pial) of any format, a surface before its values (.annot, "
+        ".label.gii); or a session that `serve` saved, .json; or -"
     )  # fmt: skip
     parser.add_argument(
         "--view", choices=VIEWS, help="from where (default: oblique, or as a session says; coronal is from the front)"

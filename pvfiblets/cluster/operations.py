@@ -166,10 +166,10 @@ def profile(source: Path, target: None = None, *, values: str, positions: int = 
     `values` names an array or a computed measure, or is an image, which is sampled at the points.
     """
     del target
-    from pvfiblets.query.density.voxel_grid import SUFFIXES
+    from pvfiblets.images.sources import is_image
     from pvfiblets.query.measures.profile import mean_profile
 
-    image = values.lower().endswith(SUFFIXES)
+    image = is_image(values)
     fiblets = _compressed(source, () if image else (values,))
     given: Any = _sampled(fiblets, values) if image else values
     bundles = fiblets.groups or {"": np.arange(len(fiblets))}
@@ -231,18 +231,11 @@ def _compressed(source: Path, names: tuple[str, ...]) -> FibletSet:
 
 def _sampled(fiblets: FibletSet, image: str) -> Any:
     """Values of an image at all points, in the order in which these are coded."""
-    import nibabel
-
-    from pvfiblets.query.measures.image_samples import sample_image
+    from pvfiblets.images.sources import as_image
     from pvfiblets.query.measures.measures import decoded_by_rank
-    from pvfiblets.support.nifti_space import affine_of
 
-    loaded = nibabel.load(image)
-    affine = affine_of(loaded)
-    if affine is None:
-        raise ValueError(f"{image} has no affine; give an image that says where it lies")
-    volume = np.asanyarray(loaded.dataobj)
-    parts = [sample_image(volume, affine, c.points) for c in decoded_by_rank(fiblets, PIECE, np.float64)]
+    volume = as_image(image)
+    parts = [volume.at(c.points) for c in decoded_by_rank(fiblets, PIECE, np.float64)]
     return np.concatenate(parts) if parts else np.zeros(0)
 
 

@@ -76,7 +76,7 @@ class SetQueries:
 
         Parameters
         ----------
-        labels : nibabel image, path of one, or (array, affine)
+        labels : image
         **options
             ``weights, contrast, radius, statistic, names`` of that function.
 
@@ -174,7 +174,7 @@ class SetQueries:
 
         Parameters
         ----------
-        atlas : nibabel image, path of one, or (array, affine)
+        atlas : image
             Whole numbers, 0 for no parcel.
         names : mapping of int to str, optional
             Of the parcels.

@@ -12,11 +12,11 @@ from pvfiblets.mappers.line_data import COLOURS, RADIUS, STEPS, LineData, segmen
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
-    from pvfiblets.engine.fiblets.data.sampled_volume import VolumeSource
     from pvfiblets.mappers.colouring import Colouring
     from pvfiblets.streamlines import Streamlines
 
 __all__ = ["fiblet_lines", "halo_lines", "near_ray", "shown_points", "shown_streamlines", "thinned", "tube_lines"]
+
 
 def thinned(counts: npt.NDArray[Any], budget: int) -> npt.NDArray[np.int64]:
     """Return which lines to keep so that they have a number of points at most: evenly every second, third ..."""
@@ -90,7 +90,7 @@ def _fiblet_colours(lines: LineData, decoded: Streamlines, colouring: Colouring)
     if colouring.mode == "point_scalar":
         source: Any = colouring.source
         if not isinstance(source, str):
-            colours = colouring.map_values(sampled(source, np.asarray(lines.points, np.float64)))
+            colours = colouring.map_values(source.at(lines.points))
         elif source in decoded.per_point:
             colours = colouring.map_values(decoded.per_point[source])
         else:
@@ -124,26 +124,6 @@ def _point_flags(
     rows = np.arange(int(places.points.sum())) + np.repeat(places.point - starts, places.points)
     flags: npt.NDArray[np.bool_] = (words[rows >> 5] >> (rows & 31).astype(np.uint32) & 1).astype(bool)
     return flags
-
-
-def sampled(volume: VolumeSource, points: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    """Return the values of a volume at points by the rules of `VolumeSource`, ``(n,)`` float64; NaN outside."""
-    at = points @ volume.voxels[:3, :3].T + volume.voxels[:3, 3]
-    sides = np.array(volume.values.shape)
-    within = ((at >= -0.5) & (at <= sides - 0.5)).all(axis=1)
-    at = np.clip(at, 0.0, sides - 1.0)
-    if volume.nearest:
-        rows = np.minimum(np.floor(at + 0.5).astype(np.int64), sides - 1)
-        found = volume.values[tuple(rows.T)].astype(np.float64)
-    else:
-        low = np.minimum(np.floor(at).astype(np.int64), np.maximum(sides - 2, 0))
-        share = at - low
-        found = np.zeros(len(points))
-        for corner in np.ndindex(2, 2, 2):
-            weight = np.prod(np.where(corner, share, 1.0 - share), axis=1)
-            values = volume.values[tuple(np.minimum(low + corner, sides - 1).T)].astype(np.float64)
-            found += np.where(weight > 0.0, weight * values, 0.0)
-    return np.where(within, found, np.nan)
 
 
 # Tubes -----------------------------------------------------------------------------------------------
@@ -236,9 +216,7 @@ def _by_line(lines: LineData, colouring: Colouring) -> npt.NDArray[np.uint8]:
     return colours
 
 
-def _faded(
-    colours: npt.NDArray[Any], lines: LineData, colouring: Colouring, per_point: Any
-) -> npt.NDArray[np.uint8]:
+def _faded(colours: npt.NDArray[Any], lines: LineData, colouring: Colouring, per_point: Any) -> npt.NDArray[np.uint8]:
     """Multiply alpha by the opacities of streamlines or points."""
     share: Any = None
     if colouring.opacities is not None:

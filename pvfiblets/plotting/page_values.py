@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = ["colours", "with_values"]
 
+
 def with_values(fiblets: FibletSet, source: Any, log_scale: bool) -> tuple[FibletSet, str]:
     """Return a set that has some values for its points as codes of what float32 holds, and their name."""
     name, values = (source, None) if isinstance(source, str) else (source.name, _sampled(fiblets, source))
@@ -35,13 +36,7 @@ def with_values(fiblets: FibletSet, source: Any, log_scale: bool) -> tuple[Fible
 
 def _sampled(fiblets: FibletSet, source: Any) -> npt.NDArray[Any]:
     """Values of a volume at points in coded order."""
-    from pvfiblets.query.measures.image_samples import sample_image
-
-    points = fiblets.decompress().points
-    if source.nearest:  # centres of voxels have the voxels' own values
-        voxels = np.rint(points @ source.voxels[:3, :3].T + source.voxels[:3, 3])
-        points = voxels @ source.affine[:3, :3].T + source.affine[:3, 3]
-    return fiblets.in_coded_order(sample_image(source.values, source.affine, points))
+    return fiblets.in_coded_order(source.at(fiblets.decompress().points))
 
 
 def colours(fiblets: FibletSet, name: str) -> npt.NDArray[np.uint8]:

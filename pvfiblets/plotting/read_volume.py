@@ -3,23 +3,22 @@
 from __future__ import annotations
 
 from os import PathLike
-from pathlib import Path
 
 import pyvista as pv
 
-from pvfiblets.plotting.fiblets.volume_sources import SUFFIXES, as_volume
+from pvfiblets.images.sources import as_image
 from pvfiblets.query.density.density_map import image_of
 
 __all__ = ["read_volume"]
 
 
 def read_volume(path: str | PathLike[str]) -> pv.ImageData:
-    """Read a NIfTI or MGH file with its place in space, which ``pv.read`` loses.
+    """Read an image file with its place in space, which ``pv.read`` loses.
 
     Parameters
     ----------
     path : str or PathLike
-        Ends in ``.nii``, ``.nii.gz``, ``.mgh`` or ``.mgz``.
+        Of NIfTI, MGH, MRtrix, NRRD, MetaImage or VTK's ``.vti``.
 
     Returns
     -------
@@ -40,9 +39,5 @@ def read_volume(path: str | PathLike[str]) -> pv.ImageData:
     >>> image = pvfiblets.read_volume("fa.nii.gz")  # doctest: +SKIP
     >>> plotter.add_fiblets("brain.trx", scalars=image)  # doctest: +SKIP
     """
-    place = Path(path).expanduser()
-    if not place.name.lower().endswith(SUFFIXES):
-        raise ValueError(f"{path} is no volume that is read here; give a file that ends in {', '.join(SUFFIXES)}")
-    source = as_volume(place)
-    assert source is not None  # of that suffix
-    return image_of(source.values, source.affine, source.name)
+    image = as_image(path)
+    return image_of(image.single, image.affine, image.name)

@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pvfiblets.errors import FormatError
-from pvfiblets.volumes.image_files import read_image
+from pvfiblets.images.files import read_image
 
 __all__ = ["Fixels", "files_beside", "read_fixels"]
 
@@ -79,7 +79,7 @@ class Fixels:
         path = None if self.folder is None else _file(self.folder, given)
         if path is None or given in ("index", "directions"):
             raise ValueError(f"fixels have no numbers {given!r}; there are: {', '.join(self.names) or 'none'}")
-        values, _, _, _ = read_image(path)
+        values = read_image(path).values
         if values.shape[0] != len(self) or values.size != len(self):
             raise ValueError(f"{path.name} has the shape {values.shape}; give ({len(self)}, 1, 1), a number per fixel")
         return values.reshape(-1).astype(np.float32)
@@ -135,15 +135,16 @@ def read_fixels(path: Path) -> tuple[Fixels, Array, str] | None:
         return None
     own = None if path.is_dir() else _stem(path)
     numbers = None
-    index, affine, _, _ = read_image(beside[0])
+    placed = read_image(beside[0])
+    index, affine = placed.values, placed.affine
     if own not in (None, "index", "directions"):
-        values, _, _, _ = read_image(path)
+        values = read_image(path).values
         if values.ndim != 3 or values.shape[2] != 1 or values.shape[:3] == index.shape[:3]:
             return None
         numbers = values
     if index.ndim != 4 or index.shape[3] != 2 or index.dtype.kind not in "iuf":
         raise FormatError(beside[0], None, f"the shape {index.shape}", "(nx, ny, nz, 2): numbers and firsts of fixels")
-    directions, _, _, _ = read_image(beside[1])
+    directions = read_image(beside[1]).values
     if directions.ndim != 3 or directions.shape[1:] != (3, 1):
         raise FormatError(beside[1], None, f"the shape {directions.shape}", "(n, 3, 1): a direction of each fixel")
     counts, first = (np.ascontiguousarray(index[..., k], np.int64) for k in range(2))

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from pvfiblets.images.sources import as_image, colour_fields
 from pvfiblets.slices.fixels import Fixels, read_fixels
-from pvfiblets.volumes.image_files import SUFFIXES, colour_fields, read_image, values_of_nibabel
 
 __all__ = ["KINDS", "SliceImage", "as_slice_image"]
 
@@ -23,12 +23,6 @@ KINDS = ("scalars", "rgb", "direction", "labels")
 
 SAMPLED = 1_000_000
 """Voxels of which percentiles are taken; of larger images every n-th."""
-
-_EXPECTED = (
-    "the path of one of "
-    + ", ".join(SUFFIXES)
-    + ", an image of nibabel, (array, affine), an array, a pyvista.ImageData, or anything with values and affine"
-)
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,30 +119,15 @@ def as_slice_image(source: Any, name: str | None = None) -> SliceImage:
     """Take an image from any source."""
     if isinstance(source, SliceImage):
         return source
-    labels = colours = False
-    own = "image"
     if isinstance(source, (str, os.PathLike)):
-        path = Path(source).expanduser()
-        found = read_fixels(path)
+        found = read_fixels(Path(source).expanduser())
         if found is not None:
             return _of_fixels(*found, name)
-        values, affine, own, labels = read_image(path)
-    elif hasattr(source, "IsA"):
-        values, affine, own = _of_vtk(source)
-    elif hasattr(source, "dataobj") and hasattr(source, "affine"):
-        values, affine, labels = values_of_nibabel(source)
-    elif hasattr(source, "values") and hasattr(source, "affine"):
-        values, affine, own = np.asarray(source.values), source.affine, str(getattr(source, "name", "image"))
-    elif isinstance(source, tuple) and len(source) == 2 and np.shape(source[1]) == (4, 4):
-        values, affine = np.ma.getdata(np.ma.asanyarray(source[0])), source[1]
-    elif isinstance(source, np.ndarray):
-        values, affine = source, np.eye(4)
-    else:
-        raise TypeError(f"slices cannot be made of a {type(source).__name__}; give {_EXPECTED}")
+    image = as_image((source, np.eye(4)) if isinstance(source, np.ndarray) else source)
+    values, colours = image.values, False
     if values.dtype.names is not None:
         values = colour_fields(values)
         colours = True
-    name = name or own
     if values.ndim > 4:  # NIfTI keeps components of vectors on the fifth axis, with one time before them
         values = values.reshape(*values.shape[:3], -1, order="F")
     if values.ndim == 3:
@@ -156,34 +135,13 @@ def as_slice_image(source: Any, name: str | None = None) -> SliceImage:
     if values.dtype.kind == "b":
         values = values.view(np.uint8)
     colours = colours or (values.dtype == np.uint8 and values.ndim == 4 and values.shape[3] in (3, 4))
-    return SliceImage(values, np.asarray(affine, np.float64), name, labels, bool(colours))
+    return SliceImage(values, image.affine, name or image.name or "image", image.is_labels, bool(colours))
 
 
 def _of_fixels(fixels: Fixels, affine: Array, own: str, name: str | None) -> SliceImage:
     """Return fixels as an image: how many a voxel has, or the greatest of the numbers that they were opened for."""
     values = fixels.of_grid(None if fixels.shown is None else fixels.numbers(fixels.shown))
     return SliceImage(values[..., None], np.asarray(affine, np.float64), name or own, fixels=fixels)
-
-
-def _of_vtk(image: Any) -> tuple[npt.NDArray[Any], Array, str]:
-    """Return the active scalars of an image of VTK, and where they lie."""
-    if not (image.IsA("vtkImageData") and hasattr(image, "active_scalars_info")):
-        raise TypeError(f"slices cannot be made of a {type(image).__name__}; give a pyvista.ImageData")
-    association, name = image.active_scalars_info
-    if name is None:
-        raise ValueError(
-            f"the image has no active scalars among its arrays {image.array_names}; choose by "
-            "image.set_active_scalars(name)"
-        )
-    of_cells = getattr(association, "name", "POINT") == "CELL"
-    data = np.asarray((image.cell_data if of_cells else image.point_data)[name])
-    sides = [max(n - 1, 1) if of_cells else n for n in image.dimensions]
-    place = np.array(image.index_to_physical_matrix, np.float64)
-    first = np.array(image.extent[0::2], np.float64)
-    if of_cells:
-        first += [0.5 if n > 1 else 0.0 for n in image.dimensions]
-    place[:3, 3] += place[:3, :3] @ first
-    return data.reshape(*sides, *data.shape[1:], order="F"), place, str(name)
 
 
 def window_of(values: Array, low: float, high: float) -> tuple[float, float]:

@@ -9,17 +9,16 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.support.nifti_space import affine_of
+from pvfiblets.images.files import SUFFIXES, read_image
+from pvfiblets.images.image import Image
+from pvfiblets.images.sources import as_image, colour_fields, filled, is_image
+from pvfiblets.images.vtk_images import array_of, open_vti, place_of
 from pvfiblets.support.value_reference import value_reference
 
 from .smoothing import smoothed
 from .volume import RaycastVolume
 
-__all__ = ["SUFFIXES", "as_raycast_volume"]
-
-NIBABEL = (".nii", ".nii.gz", ".mgh", ".mgz")
-SUFFIXES = (*NIBABEL, ".mif", ".mif.gz", ".mih", ".nrrd", ".nhdr", ".mhd", ".mha", ".vti")
-"""Of files that say what they hold."""
+__all__ = ["as_raycast_volume"]
 
 _EXPECTED = (
     "a pyvista.ImageData, an (nx, ny, nz) array, an (array, affine) tuple, an image of nibabel, a RaycastVolume or the "
@@ -109,18 +108,17 @@ def as_raycast_volume(
     if isinstance(source, RaycastVolume):
         volume = source
         if any(part is not None for part in given):
-            values = source.numbers
-            if source.missing is not None:
-                values = np.where(source.missing, np.float32(np.nan), values)
             place = _placed(source.affine, *given)
-            volume = RaycastVolume(values, place, name=source.name, colours=source.colours)
+            volume = RaycastVolume(source.numbers, place, name=source.name, colours=source.colours)
     else:
         if is_raw:
             found = _of_raw(Path(source), shape, dtype)
+        elif is_vtk:
+            found = _of_vtk(source if path is None else open_vti(Path(source)), scalars)
         elif path is not None:
-            found = _of_file(Path(source), scalars)
+            found = _of_image(read_image(Path(source)))
         else:
-            found = _of_object(source, scalars)
+            found = _of_object(source)
         values, own, name = found
         values, colours = _apart(values)
         values, colours, place = _thick(values, colours, _placed(own, *given))
@@ -128,19 +126,26 @@ def as_raycast_volume(
     return volume if smooth is None else smoothed(volume, smooth, smooth_unit)
 
 
-def _of_object(source: Any, scalars: Any) -> Found:
+def _of_object(source: Any) -> Found:
     """The volume of something in memory."""
-    if hasattr(source, "IsA"):
-        return _of_vtk(source, scalars)
-    if hasattr(source, "dataobj") and hasattr(source, "affine"):
-        return _of_nibabel(source, "the image", "values")
-    if hasattr(source, "values") and hasattr(source, "affine"):
-        return np.asarray(source.values), source.affine, str(getattr(source, "name", "values"))
-    if isinstance(source, tuple) and len(source) == 2 and _is_pair(*source):
-        return _of_array(source[0]), _floats("affine", source[1], "a (4, 4) matrix from voxels to mm"), "values"
+    if is_image(source) or (isinstance(source, tuple) and len(source) == 2 and _is_pair(*source)):
+        return _of_image(as_image(source, "the volume"))
     if isinstance(source, np.ndarray) or hasattr(source, "__array__") or isinstance(source, (list, tuple)):
-        return _of_array(source), np.eye(4), "values"
+        try:
+            values = filled(source)
+        except ValueError:
+            raise ValueError("the volume's rows are of unlike lengths; give an (nx, ny, nz) array") from None
+        return _of_image(Image(values.shape, np.eye(4), lambda: values, what="the volume"))
     raise TypeError(f"rays cannot be cast through a {type(source).__name__}; give {_EXPECTED}")
+
+
+def _of_image(image: Image) -> Found:
+    """The numbers of an image, or its colours if they have an opacity."""
+    if _is_rgba(image.shape, np.uint8) and _is_rgba(image.shape, image.values.dtype):
+        return image.values, image.affine, image.name or "values"
+    if len(image.shape) == 3 and image.values.dtype.names == ("R", "G", "B", "A"):
+        return colour_fields(image.values), image.affine, image.name or "values"
+    return image.single, image.affine, image.name or "values"
 
 
 def _thick(values: Any, colours: Any, affine: Any) -> tuple[Any, Any, Array]:
@@ -172,87 +177,6 @@ def _is_pair(values: Any, affine: Any) -> bool:
         return whole == [True, False] or np.shape(affine) == (4, 4)
     except ValueError:  # rows of unlike lengths
         return False
-
-
-def _of_array(given: Any) -> npt.NDArray[Any]:
-    if isinstance(given, np.ma.MaskedArray) and np.ma.is_masked(given):
-        given = np.ma.filled(given.astype(np.result_type(given.dtype, np.float32)), np.nan)
-    try:
-        values = np.asarray(given)
-    except ValueError:
-        raise ValueError("the volume's rows are of unlike lengths; give an (nx, ny, nz) array") from None
-    return values if _is_rgba(values.shape, values.dtype) else _three_axes(values, "the volume")
-
-
-def _three_axes(values: npt.NDArray[Any], what: str) -> npt.NDArray[Any]:
-    """An array without axes of one behind the third."""
-    _check_axes(values.shape, what)
-    return values.reshape(values.shape[:3]) if values.ndim > 3 else values
-
-
-def _check_axes(shape: tuple[int, ...], what: str) -> None:
-    if len(shape) < 3 or any(n != 1 for n in shape[3:]):
-        colours = ", as RGB colours have" if len(shape) == 4 and shape[3] in (3, 4) else ""
-        volumes = ": give one of its volumes, such as image[..., 0]" if len(shape) > 3 else ""
-        if colours:
-            volumes += "; RGBA of type uint8 is drawn as it is"
-        raise ValueError(
-            f"{what} has the shape {tuple(shape)}{colours}; three axes (nx, ny, nz) with one number per voxel are "
-            f"needed{volumes}"
-        )
-
-
-def _of_nibabel(image: Any, what: str, name: str) -> Found:
-    """An image of nibabel's, in memory only as far as it must be."""
-    affine = affine_of(image)
-    if affine is None:
-        raise ValueError(f"{what} has no affine; give affine=..., or (array, affine)")
-    _check_axes(image.shape, what)  # before anything is read
-    data = image.dataobj
-    kind = getattr(data, "dtype", np.dtype(np.float32))
-    if kind.names == ("R", "G", "B", "A"):
-        parts = np.asarray(data)
-        return np.stack([parts[name] for name in kind.names], axis=-1).astype(np.uint8), affine, name
-    if kind.names is not None:
-        raise ValueError(
-            f"{what} holds colours, the fields {', '.join(kind.names)} of each voxel; one number each is needed: "
-            "take one of them, or their mean"
-        )
-    scaled = getattr(data, "slope", 1.0) not in (1.0, None) or getattr(data, "inter", 0.0) not in (0.0, None)
-    if scaled and hasattr(data, "get_scaled") and kind.kind != "c":
-        values = data.get_scaled(dtype=np.float32)  # half of what the default, float64, takes
-    else:
-        values = np.asarray(data)
-    return _three_axes(values, what), affine, name
-
-
-def _of_file(path: Path, scalars: Any) -> Found:
-    lower = path.name.lower()
-    name = path.name[: -len(max((s for s in SUFFIXES if lower.endswith(s)), key=len, default="")) or None]
-    if lower.endswith(NIBABEL):
-        from .nibabel_files import opened
-
-        with opened(path) as image:
-            return _of_nibabel(image, path.name, name)
-    if lower.endswith((".mif", ".mif.gz", ".mih")):
-        from .mif import read_mif
-
-        values, affine = read_mif(path)
-        return _three_axes(values, path.name), affine, name
-    if lower.endswith((".nrrd", ".nhdr")):
-        from .nrrd import read_nrrd
-
-        return *read_nrrd(path), name
-    if lower.endswith((".mhd", ".mha")):
-        from .metaimage import read_metaimage
-
-        return *read_metaimage(path), name
-    from vtkmodules.vtkIOXML import vtkXMLImageDataReader
-
-    from .vtk_files import check_sizes, read
-
-    check_sizes(path)
-    return _of_vtk(read(vtkXMLImageDataReader(), path), scalars)
 
 
 def _of_raw(path: Path, shape: Any, dtype: Any) -> Found:
@@ -294,7 +218,7 @@ def _of_vtk(image: Any, scalars: Any) -> Found:
     dims = image.GetDimensions()
     n_points, n_cells = image.GetNumberOfPoints(), image.GetNumberOfCells()
     if scalars is None or isinstance(scalars, str):
-        array, of_cells = _vtk_array(image, scalars)
+        array, of_cells = array_of(image, scalars)
         name = array.GetName() or "values"
         values = vtk_to_numpy(array)
         n = array.GetNumberOfComponents()
@@ -325,39 +249,7 @@ def _of_vtk(image: Any, scalars: Any) -> Found:
         axes = (image.GetXCoordinates(), image.GetYCoordinates(), image.GetZCoordinates())
         x, y, z = (np.array(vtk_to_numpy(one), np.float64) for one in axes)
         return *evenly(values, (x, y, z)), name
-    matrix = image.GetIndexToPhysicalMatrix()
-    place = np.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(4)])
-    place[:3, 3] += place[:3, :3] @ np.array(image.GetExtent()[0::2], np.float64)
-    return values, place, name
-
-
-def _vtk_array(image: Any, name: str | None) -> tuple[Any, bool]:
-    """An array of a VTK image, and whether it is of its cells."""
-    data = (image.GetPointData(), image.GetCellData())
-    if name is None:
-        found = [attributes.GetScalars() for attributes in data]
-        if hasattr(image, "active_scalars_info"):  # PyVista says which of the two is meant
-            association, active = image.active_scalars_info
-            if active is not None:
-                found = [each.GetArray(active) for each in data]
-                if getattr(association, "name", "POINT") == "CELL":
-                    found[0] = None
-        # Filters leave arrays that nobody made active; one is as good as chosen.
-        for i, attributes in enumerate(data):
-            if _nothing(found) and attributes.GetNumberOfArrays() == 1:
-                found[i] = attributes.GetArray(0)
-    else:
-        found = [attributes.GetArray(name) for attributes in data]
-    if _nothing(found):
-        names = [each.GetArrayName(i) for each in data for i in range(each.GetNumberOfArrays())]
-        lacking = "no active scalars" if name is None else f"no array {name!r} of numbers"
-        raise ValueError(f"the image has {lacking} among its arrays {names}; choose one by scalars=...")
-    return (found[0], False) if found[0] is not None else (found[1], True)
-
-
-def _nothing(found: list[Any]) -> bool:
-    """Whether no array was found; == would ask VTK's arrays for each of their numbers."""
-    return all(array is None for array in found)
+    return values, place_of(image), name
 
 
 def _at_points(cells: npt.NDArray[Any], dims: tuple[int, int, int]) -> npt.NDArray[Any]:

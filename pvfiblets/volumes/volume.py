@@ -76,9 +76,7 @@ class RaycastVolume:
         values, offset = _checked_values(self.values)
         affine, inverse = _checked_affine(self.affine)
         values, missing = _finite(values)
-        if self.colours is not None and (
-            self.colours.shape != (*values.shape, 3) or self.colours.dtype != np.uint8
-        ):
+        if self.colours is not None and (self.colours.shape != (*values.shape, 3) or self.colours.dtype != np.uint8):
             raise ValueError(
                 f"the voxels' colours have the shape {self.colours.shape} and the type {self.colours.dtype}; expected "
                 f"{(*values.shape, 3)} and uint8"
@@ -133,8 +131,9 @@ class RaycastVolume:
 
     @property
     def numbers(self) -> npt.NDArray[Any]:
-        """``(nx, ny, nz)`` true numbers: `values`, or a float64 copy plus `offset`."""
-        return self.values.astype(np.float64) + self.offset if self.offset else self.values
+        """``(nx, ny, nz)`` true numbers: `values`, or a copy in float64 plus `offset`, and with NaN where it was."""
+        values = self.values.astype(np.float64) + self.offset if self.offset else self.values
+        return values if self.missing is None else np.where(self.missing, np.float32(np.nan), values)
 
     def value_reference(self, name: Any = None) -> float:  # noqa: ARG002 - of other drawables
         """Return `offset`: the number to subtract from values on the graphics card."""

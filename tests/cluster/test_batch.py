@@ -342,21 +342,6 @@ def test_regions_of_the_command_line(tmp_path):
             parse_region(text)
 
 
-def test_images_are_sampled_linearly():
-    from pvfiblets.query.measures.image_samples import sample_image
-
-    rng = np.random.default_rng(1)
-    affine = np.array([[2.0, 0.3, 0, -5], [-0.3, 2.0, 0.1, 3], [0, 0, 1.5, -2], [0, 0, 0, 1]])
-    shape, slope = (6, 5, 4), rng.normal(size=3)
-    ijk = np.stack(np.meshgrid(*map(np.arange, shape), indexing="ij"), -1)
-    volume = (ijk @ affine[:3, :3].T + affine[:3, 3]) @ slope  # linear in mm: exact everywhere between centres
-    points = rng.uniform(0, np.array(shape) - 1.0, (50, 3)) @ affine[:3, :3].T + affine[:3, 3]
-    np.testing.assert_allclose(sample_image(volume, affine, points), points @ slope, atol=1e-12)
-    corner = affine[:3, 3]
-    np.testing.assert_allclose(sample_image(volume, affine, [corner]), [volume[0, 0, 0]])
-    assert np.isnan(sample_image(volume, affine, [corner - 2.0 * affine[:3, 0]])).all()
-
-
 def test_a_folder_that_a_killed_run_left_is_removed(tmp_path):
     import socket
 

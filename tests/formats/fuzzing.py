@@ -123,11 +123,12 @@ def _volume(path: Path) -> None:
 
 
 def _image(path: Path) -> None:
-    from pvfiblets.volumes.image_files import read_image
+    from pvfiblets.images.files import read_image
 
-    values, affine, *_ = read_image(path)
-    assert values.ndim >= 3
-    assert np.isfinite(affine).all()
+    image = read_image(path)
+    assert image.values.shape == image.shape
+    assert image.values.ndim >= 3
+    assert np.isfinite(image.affine).all()
 
 
 def _labels(path: Path) -> None:

@@ -17,10 +17,10 @@ from pvfiblets import formats
 from pvfiblets.cli.command import main
 from pvfiblets.formats import registry
 from pvfiblets.formats.attachments import write_scalars
+from pvfiblets.images.mif import read_mif
 from pvfiblets.other_libraries import streamlines_of
 from pvfiblets.query.bundles import statistics
 from pvfiblets.streamlines import Streamlines
-from pvfiblets.volumes.mif import read_mif
 
 OFFSETS = np.array([0, 5, 5, 12])
 POINTS = np.random.default_rng(3).normal(0, 20, (12, 3)).astype(np.float32)
@@ -107,7 +107,7 @@ def test_a_mih_header_ends_with_the_file_as_mrtrix_leaves_it(tmp_path):
     (tmp_path / "a.dat").write_bytes(values.tobytes(order="F"))
     lines = ["mrtrix image", "dim: 2,3,4", "vox: 1,1,1", "layout: +0,+1,+2", "datatype: Float32LE", "file: a.dat"]
     (tmp_path / "a.mih").write_text("\n".join(lines) + "\n")
-    np.testing.assert_array_equal(read_mif(tmp_path / "a.mih")[0], values)
+    np.testing.assert_array_equal(read_mif(tmp_path / "a.mih").values, values)
 
 
 def test_points_of_a_vtk_file_are_floats_unless_doubles_are_asked_for(tmp_path):

@@ -246,7 +246,7 @@ def test_a_volume_of_nothing_but_nan_still_draws(plotter, line, colours_in):
         (lambda: nib.Nifti1Image(np.zeros((4, 5, 6, 7), np.float32), np.eye(4)), r"shape \(4, 5, 6, 7\)"),
         (lambda: (np.zeros((3, 3, 3)), np.eye(3)), r"\(4, 4\) matrix"),
         (lambda: pv.ImageData(dimensions=(3, 3, 3)), "no active scalars"),
-        (lambda: image_of(np.ones((3, 3, 3)), rgb=np.zeros((27, 3))), "3 numbers per voxel"),
+        (lambda: image_of(np.ones((3, 3, 3)), rgb=np.zeros((27, 3))), r"shape \(3, 3, 3, 3\), as RGB"),
     ],
 )
 def test_what_is_no_volume_is_refused_in_words(plotter, line, scalars, message):

@@ -169,8 +169,9 @@ def test_a_volume_elsewhere_is_told_with_both_bounds(plotter, three_lines):
 
 
 def test_what_is_no_volume_is_refused(tmp_path):
-    with pytest.raises(ValueError, match=r"a\.vti is no volume that is read here; .*\.nii\.gz"):
-        pf.read_volume(tmp_path / "a.vti")
+    (tmp_path / "a.jpg").touch()
+    with pytest.raises(ValueError, match=r"a\.jpg is no image; give a file that ends in .*\.nii\.gz"):
+        pf.read_volume(tmp_path / "a.jpg")
     with pytest.raises(FileNotFoundError, match=r"none\.nii"):
         pf.read_volume(tmp_path / "none.nii")
 

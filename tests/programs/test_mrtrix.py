@@ -12,8 +12,8 @@ import pytest
 import pvfiblets as pf
 from pvfiblets import formats
 from pvfiblets.cli.command import main
+from pvfiblets.images.sources import as_image
 from pvfiblets.streamlines import Streamlines
-from pvfiblets.volumes.mif import read_mif
 
 from .rows import beside
 
@@ -263,7 +263,8 @@ def test_images(folder, tmp_path, name, strides):
     Here: reads all of them as `mrconvert` places them.
     """
     run("mrconvert", folder / "fa.nii", tmp_path / name, "-strides", strides)
-    values, affine = read_mif(tmp_path / name)
+    image = as_image(tmp_path / name)
+    values, affine = image.values, image.affine
     truth = nib.load(folder / "fa.nii")
     run("mrconvert", tmp_path / name, tmp_path / "back.nii", "-strides", "1,2,3")
     np.testing.assert_array_equal(nib.load(tmp_path / "back.nii").get_fdata(), truth.get_fdata())

@@ -422,11 +422,11 @@ def test_grids_of_one_size_fit_each_other():
         ({"voxel_size": (1.0, 2.0)}, ValueError, "voxel_size is"),
         ({"voxel_size": 1e-13}, ValueError, "too small .* give a larger voxel_size"),
         ({"voxel_size": 0.2}, ValueError, "takes .* GB of the .* give a larger voxel_size"),
-        ({"like": 3}, TypeError, "like is a int; give an image of nibabel"),
+        ({"like": 3}, TypeError, "like is a int; give the path of an image"),
         ({"like": (np.zeros((3, 3)), np.eye(4))}, ValueError, "three axes"),
         ({"like": ((3, 3, 3), np.zeros((4, 4)))}, ValueError, "affine"),
         ({"like": ((3, 0, 3), np.eye(4))}, ValueError, "three whole numbers above 0"),
-        ({"like": "image.png"}, ValueError, "no image that nibabel reads"),
+        ({"like": __file__}, ValueError, "is no image; give a file that ends in .nii"),
         ({"like": "none.nii"}, FileNotFoundError, "none.nii"),
         ({"voxel_size": 90.0, "weights": "none"}, KeyError, "no array per streamline is named 'none'; there are: age"),
         ({"voxel_size": 90.0, "weights": np.ones(3)}, ValueError, r"weights are float64\(3,\); one number for each of"),
@@ -460,7 +460,7 @@ def test_a_line_is_not_joined_across_a_point_that_is_no_number():
 def test_damaged_images_are_told(tmp_path):
     path = tmp_path / "a.nii"
     path.write_bytes(b"no image")
-    with pytest.raises(pf.FormatError, match="a NIfTI or MGH image"):
+    with pytest.raises(pf.FormatError, match="a whole NIfTI or MGH image"):
         pf.density(LINES, like=path)
 
 

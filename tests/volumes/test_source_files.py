@@ -16,10 +16,10 @@ from hypothesis import strategies as st
 from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
 from pvfiblets.errors import FormatError
+from pvfiblets.images.metaimage import read_metaimage
+from pvfiblets.images.nrrd import read_nrrd
 from pvfiblets.plotting.fiblets.volume_sources import as_volume
 from pvfiblets.volumes import RaycastVolume, as_raycast_volume
-from pvfiblets.volumes.metaimage import read_metaimage
-from pvfiblets.volumes.nrrd import read_nrrd
 
 from .small_volume import AFFINE, AXES, ORIGIN, SHAPE, SPACING, VALUES, assert_is_the_volume, image
 
@@ -61,11 +61,11 @@ def test_images_of_nibabel_that_are_no_volumes(tmp_path):
     with pytest.raises(ValueError, match="rgb.nii holds colours, the fields R, G, B of each voxel; one number each"):
         as_raycast_volume(tmp_path / "rgb.nii")
     nib.save(nib.Nifti1Image(np.zeros((3, 4, 5, 6), np.float32), AFFINE), tmp_path / "dwi.nii.gz")
-    with pytest.raises(ValueError, match=r"dwi.nii.gz has the shape \(3, 4, 5, 6\); .* such as image\[..., 0\]"):
+    with pytest.raises(ValueError, match=r"dwi.nii.gz has the shape \(3, 4, 5, 6\); .* as \(image\[..., 0\], affine"):
         as_raycast_volume(tmp_path / "dwi.nii.gz")
     with pytest.raises(ValueError, match="complex64"):
         as_raycast_volume(nib.Nifti1Image(np.zeros(SHAPE, np.complex64), AFFINE))
-    with pytest.raises(ValueError, match="has no affine; give affine=..., or"):
+    with pytest.raises(ValueError, match="has no affine; give "):
         as_raycast_volume(nib.Nifti1Image(VALUES, None))
 
 
@@ -132,7 +132,7 @@ def nrrd(path, values=VALUES, encoding="raw", *, affine=AFFINE, space="right-ant
 def test_nrrd_encodings(tmp_path, encoding, order):
     path = nrrd(tmp_path / "t1.nrrd", VALUES.astype(f"{order}i2"), encoding)
     assert_is_the_volume(as_raycast_volume(path), "t1")
-    assert isinstance(read_nrrd(path)[0], np.memmap) == (encoding == "raw")
+    assert isinstance(read_nrrd(path).values, np.memmap) == (encoding == "raw")
 
 
 @pytest.mark.parametrize(
@@ -173,7 +173,7 @@ def test_nrrd_axes_of_one_entry_go(tmp_path):
     assert_is_the_volume(as_raycast_volume(first))
     four = VALUES[None].repeat(3, axis=0)
     colours = nrrd(tmp_path / "b.nrrd", four, kinds="RGB-color domain domain domain", space_directions=directions)
-    with pytest.raises(FormatError, match="4 axes of the sizes 3 x 3 x 4 x 5 of the kinds RGB-color domain"):
+    with pytest.raises(ValueError, match=r"b.nrrd has the shape \(3, 4, 5, 3\), as RGB colours have; three axes"):
         as_raycast_volume(colours)
     with pytest.raises(FormatError, match="found 2 axes of the sizes 3 x 4"):
         read_nrrd(nrrd(tmp_path / "c.nrrd", VALUES[..., 0], space_directions=words(np.eye(2))))
@@ -239,7 +239,7 @@ def test_metaimages_and_bad_ones(tmp_path):
     with pytest.raises(FileNotFoundError, match=r"its data are in 'a\.raw'"):
         as_raycast_volume(path)
     colours = metaimage(tmp_path / "b.mha", header="ElementNumberOfChannels = 3")
-    with pytest.raises(FormatError, match="3 axes and 3 numbers per voxel"):
+    with pytest.raises(ValueError, match=r"b.mha has the shape \(3, 4, 5, 3\), as RGB colours have; three axes"):
         as_raycast_volume(colours)
     short = metaimage(tmp_path / "c.mha")
     short.write_bytes(short.read_bytes()[:-40])
@@ -263,31 +263,31 @@ def test_metaimages_are_what_vtk_reads(tmp_path, kind, deflated):
     writer.SetFileName(str(tmp_path / "a.mha"))
     writer.SetCompression(deflated)
     writer.Write()
-    got, affine = read_metaimage(tmp_path / "a.mha")
+    got = read_metaimage(tmp_path / "a.mha")
     reader = vtkMetaImageReader()
     reader.SetFileName(str(tmp_path / "a.mha"))
     reader.Update()
     theirs = pv.wrap(reader.GetOutput()).active_scalars.reshape(values.shape, order="F")
-    assert got.dtype == values.dtype == theirs.dtype
-    np.testing.assert_array_equal(got, theirs)
-    np.testing.assert_allclose(affine @ (0, 0, 0, 1), (-1.0, -2.0, 3.0, 1.0))
+    assert got.values.dtype == values.dtype == theirs.dtype
+    np.testing.assert_array_equal(got.values, theirs)
+    np.testing.assert_allclose(got.affine @ (0, 0, 0, 1), (-1.0, -2.0, 3.0, 1.0))
 
 
 def test_metaimages_without_a_place_and_with_text_or_bytes_before_the_data(tmp_path):
     VALUES.tofile(tmp_path / "a.raw")
     head = "NDims = 3\nDimSize = 5 4 3\nElementType = MET_SHORT\n"
     (tmp_path / "a.mhd").write_text(f"{head}ElementDataFile = a.raw\n")
-    np.testing.assert_array_equal(read_metaimage(tmp_path / "a.mhd")[1], np.diag([-1.0, -1.0, 1.0, 1.0]))
+    np.testing.assert_array_equal(read_metaimage(tmp_path / "a.mhd").affine, np.diag([-1.0, -1.0, 1.0, 1.0]))
     (tmp_path / "a.raw").write_bytes(b"header" + VALUES.tobytes())
     for size in (6, -1):
         (tmp_path / "a.mhd").write_text(f"{head}HeaderSize = {size}\nElementDataFile = a.raw\n")
-        np.testing.assert_array_equal(read_metaimage(tmp_path / "a.mhd")[0], VALUES.T)
+        np.testing.assert_array_equal(read_metaimage(tmp_path / "a.mhd").values, VALUES.T)
     text = " ".join(map(str, VALUES.ravel()))
     (tmp_path / "b.mha").write_text(f"{head}BinaryData = False\nElementDataFile = LOCAL\n{text}\n")
-    np.testing.assert_array_equal(read_metaimage(tmp_path / "b.mha")[0], VALUES.T)
+    np.testing.assert_array_equal(read_metaimage(tmp_path / "b.mha").values, VALUES.T)
     (tmp_path / "b.mha").write_text(f"{head}BinaryData = False\nElementDataFile = LOCAL\n{text[:-9]} x\n")
     with pytest.raises(FormatError, match="other than numbers"):
-        read_metaimage(tmp_path / "b.mha")
+        _ = read_metaimage(tmp_path / "b.mha").values
 
 
 @pytest.mark.parametrize(
@@ -308,7 +308,7 @@ def test_what_metaimages_say_is_not_taken_at_their_word(tmp_path, change, messag
     fields["ElementDataFile"] = fields.pop("ElementDataFile")  # always the last
     (tmp_path / "a.mhd").write_text("".join(f"{key} = {text}\n" for key, text in fields.items()))
     with pytest.raises(FormatError, match=message):
-        read_metaimage(tmp_path / "a.mhd")
+        _ = read_metaimage(tmp_path / "a.mhd").values
 
 
 @pytest.mark.few(4)
@@ -351,13 +351,13 @@ def test_any_volume_is_the_same_from_nrrd_and_metaimage(tmp_path_factory, shape,
     rng = np.random.default_rng(seed)
     values = rng.integers(0, 200, shape).astype(kind)
     folder = tmp_path_factory.mktemp("any")
-    got, _ = read_nrrd(nrrd(folder / "a.nrrd", values, encoding))
-    np.testing.assert_array_equal(got, values)
+    got = read_nrrd(nrrd(folder / "a.nrrd", values, encoding))
+    np.testing.assert_array_equal(got.values, values)
     msb, packed = kind[0] == ">", encoding == "gzip"
     short = values.astype(">i2" if msb else "<i2")
-    got, affine = read_metaimage(metaimage(folder / "a.mha", values=short, compressed=packed, msb=msb))
-    np.testing.assert_array_equal(got, values)
-    np.testing.assert_allclose(affine, AFFINE, atol=1e-12)
+    got = read_metaimage(metaimage(folder / "a.mha", values=short, compressed=packed, msb=msb))
+    np.testing.assert_array_equal(got.values, values)
+    np.testing.assert_allclose(got.affine, AFFINE, atol=1e-12)
 
 
 # Bare numbers, and all of them together
@@ -589,7 +589,7 @@ def test_what_is_given_takes_the_place_of_the_sources():
         (VALUES, {"affine": np.zeros((4, 4))}, ValueError, "ends in the row"),
         (VALUES, {"shape": SHAPE}, ValueError, "shape and dtype are of files of bare numbers, such as .raw; leave"),
         (VALUES, {"scalars": "fa"}, ValueError, "scalars='fa' chooses among the arrays of a VTK image; leave it out"),
-        (np.zeros((4, 4, 4, 3)), {}, ValueError, r"\(4, 4, 4, 3\), as RGB colours have; .* such as image\[..., 0\]"),
+        (np.zeros((4, 4, 4, 3)), {}, ValueError, r"\(4, 4, 4, 3\), as RGB colours have; .* as \(image\[..., 0\]"),
         (np.zeros((4, 4)), {}, ValueError, r"the shape \(4, 4\); three axes \(nx, ny, nz\)"),
         ([[1, 2], [3]], {}, ValueError, "rows are of unlike lengths"),
         (5, {}, TypeError, "cannot be cast through a int; give a pyvista.ImageData"),

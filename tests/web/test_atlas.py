@@ -101,7 +101,7 @@ def test_other_regions_stay_and_a_label_is_found_in_the_image(desk):
 
 
 def test_labels_of_formats_that_nibabel_does_not_read_are_asked_too(scene, folder):  # noqa: F811
-    from tests.volumes.test_image_files import mif
+    from tests.images.test_image_files import mif
 
     labels = np.zeros((16, 16, 16), "<i2")
     labels[10:] = 7

@@ -14,7 +14,6 @@ from pvfiblets.engine.fiblets.data.sampled_volume import VolumeSource
 from pvfiblets.errors import FormatError
 from pvfiblets.formats import attachments
 from pvfiblets.streamlines import Streamlines
-from pvfiblets.web.scene.sampling import sampled
 from pvfiblets.web.session import files as session
 from pvfiblets.web.session.history import History
 from pvfiblets.web.session.script import as_script
@@ -130,7 +129,7 @@ def test_samples_are_trilinear_inside_and_nothing_outside():
     affine = np.array([[0.0, 2.0, 0.0, 3.0], [-1.5, 0.0, 0.1, 4.0], [0.0, 0.0, 0.5, -2.0], [0, 0, 0, 1]])
     voxels = rng.uniform((-1, -1, -1), (5, 1, 7), (500, 3))
     points = voxels @ affine[:3, :3].T + affine[:3, 3]
-    found = sampled(VolumeSource(values, affine), points)
+    found = VolumeSource(values, affine).at(points)
     inside = ((voxels >= -0.5) & (voxels <= (4.5, 0.5, 6.5))).all(axis=1)
     assert 50 < inside.sum() < 450
     np.testing.assert_array_equal(np.isnan(found), ~inside)
@@ -138,10 +137,10 @@ def test_samples_are_trilinear_inside_and_nothing_outside():
     np.testing.assert_allclose(found[inside], expected, atol=1e-9)
     labels = rng.integers(0, 9, (5, 1, 7))
     nearest = np.rint(voxels[inside]).astype(int)
-    np.testing.assert_array_equal(sampled(VolumeSource(labels, affine), points)[inside], labels[tuple(nearest.T)])
+    np.testing.assert_array_equal(VolumeSource(labels, affine).at(points)[inside], labels[tuple(nearest.T)])
     values[2, 0, 3] = np.nan
-    assert np.isnan(sampled(VolumeSource(values, affine), (affine @ [2.5, 0, 3, 1])[:3][None])).all()
-    assert np.isfinite(sampled(VolumeSource(values, affine), (affine @ [3, 0, 3, 1])[:3][None])).all()
+    assert np.isnan(VolumeSource(values, affine).at((affine @ [2.5, 0, 3, 1])[:3][None])).all()
+    assert np.isfinite(VolumeSource(values, affine).at((affine @ [3, 0, 3, 1])[:3][None])).all()
 
 
 def test_volumes_of_the_scene_are_choices_and_stay_when_their_layer_goes(scene, lines):

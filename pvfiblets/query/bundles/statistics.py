@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import numpy.typing as npt
 
+from ...images.sources import as_image
 from ...streamlines import Streamlines
 from ...support.ragged import blocks, offsets_from_counts
 from ..density.density_sources import as_source
 from ..density.voxel_grid import grid_about, grid_like
 from ..measures.table import Table, without_groups
 from .bundle_list import Bundles
-from .sampling import as_image
 
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
@@ -42,7 +42,8 @@ def bundle_table(
     groups : mapping of str to array_like, optional
         Streamlines by name; the groups of `data` by default.
     images : mapping of str to image, optional
-        Images to take means of, by name: of nibabel, paths, or ``(array, affine)``. They are sampled at the points.
+        Images to take means of, by name: paths, ``(array, affine)``, of nibabel, or ImageData. They are sampled at the
+        points.
     voxel_size : float, optional
         mm: side of the voxels that volumes are counted in; 1 by default.
     like : image, optional
@@ -65,7 +66,7 @@ def bundle_table(
     IndexError
         If a streamline is out of range.
     TypeError, ValueError
-        If an image or a voxel's size is none, or `weights` is unknown.
+        If an image is none, has several numbers per voxel, or a voxel's size is none, or `weights` is unknown.
     """
     from ..density.volume import Visits
 
@@ -73,10 +74,7 @@ def bundle_table(
         raise ValueError("give either voxel_size= (mm) or like= (an image whose grid is taken)")
     if weights not in ("length", "points"):
         raise ValueError(f"unknown weights {weights!r}; choose 'length' or 'points'")
-    known = {name: as_image(image) for name, image in (images or {}).items()}
-    for name, image in known.items():
-        if image is None:
-            raise TypeError(f"the image {name!r} is none; give one of nibabel or its path, or (array, affine)")
+    known = {name: as_image(image, f"the image {name!r}") for name, image in (images or {}).items()}
     bundles = Bundles(data)
     chosen = {name: bundles.ids(name) for name in bundles.names}
     if groups is not None:
@@ -99,7 +97,7 @@ def bundle_table(
         owner = bundle[a:b][line]
         points += np.bincount(owner, minlength=len(counts))
         visits.add(part.points, line, owner)
-        values = {key: image.at(part.points) for key, image in known.items() if image is not None}
+        values = {key: image.at(part.points) for key, image in known.items()}
         of_points = _half_lengths(part) if weights == "length" else None
         for key, column in (values | part.per_point).items():
             if _single(column):

@@ -20,11 +20,11 @@ import numpy as np
 import numpy.typing as npt
 
 from ...codec.decompress import select_streamlines
+from ...images.sources import as_image, is_image
 from ...streamlines import Streamlines
 from ..measures.band_plot import plot_band
 from ..measures.table import Table, without_groups
 from .resampled import check_count
-from .sampling import as_image
 from .students import student_quantile
 
 if TYPE_CHECKING:
@@ -122,8 +122,8 @@ def tract_profile(
     ids : array_like, slice, Bundle, Cluster or str
         The bundle's streamlines, or the name of a group.
     values : str, image or array_like
-        The name of a per-point array, one number for each point of `data`, or an image to sample at the places: one of
-        nibabel or its path, ``(array, affine)``.
+        The name of a per-point array, one number for each point of `data`, or an image to sample at the places: a
+        path, ``(array, affine)``, of nibabel, or an ImageData.
     n : int, default: 100
         Places along each streamline, its ends included.
     weights : {'core', 'equal'}
@@ -158,7 +158,7 @@ def tract_profile(
     chosen = select_streamlines(len(data), getattr(ids, "ids", ids))
     if len(chosen) * n > MOST:
         raise ValueError(f"{len(chosen):,} streamlines at {n} places take too much memory; give fewer of either")
-    image = as_image(values)
+    image = as_image(values) if is_image(values) else None
     places, found = _along(data, chosen, None if image is not None else values, n)
     if not len(places):
         raise ValueError("there is no streamline with points to average")

@@ -22,12 +22,13 @@ import numpy as np
 import numpy.typing as npt
 
 from ...codec.progress import Progress
+from ...images.sources import as_image
 from ...support.progress_bar import progress_bar
 from ..measures.measures import measure
-from .parcels import read_atlas
 
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
+    from ...images.image import Image
     from ...streamlines import Streamlines
 
 __all__ = ["STATISTICS", "SUFFIXES", "Connectome", "connectome", "end_labels"]
@@ -198,8 +199,8 @@ def connectome(
     ----------
     data : FibletSet, Streamlines, str or PathLike
         Of fiblets only each streamline's last one is decoded, unless `contrast` needs more.
-    labels : nibabel image, path of one, or (array, affine)
-        Whole numbers ``(i, j, k)``, 0 for no parcel, and the ``(4, 4)`` matrix from voxel indices to mm.
+    labels : image
+        Whole numbers ``(i, j, k)``, 0 for no parcel: a path, an image of nibabel, ``(array, affine)`` or an ImageData.
     weights : str or array_like, optional
         ``(n_streamlines,)`` finite numbers of 0 or more, such as SIFT2's, or the name of a per-streamline array.
     contrast : str or array_like, default: 'count'
@@ -236,10 +237,10 @@ def connectome(
         lie within it, there is no such statistic, or weights or numbers do not fit.
     """
     source = _opened(data)
-    volume, affine = read_atlas(labels)
+    atlas = as_image(labels, "the atlas")
     how = _statistic(statistic, counts=isinstance(contrast, str) and contrast == "count")
-    ends = _given_ends(ends, source, (volume, affine), radius, progress)
-    found = np.unique(volume)
+    ends = _given_ends(ends, source, atlas, radius, progress)
+    found = np.unique(atlas.labels)
     known = found[found != 0].astype(np.int64)
     if not len(known):
         raise ValueError("the labels hold no parcel: every voxel is 0")
@@ -263,40 +264,36 @@ def end_labels(data: FibletSet | Streamlines, labels: Any, radius: float = 4.0, 
     """Return the parcel of each end of each streamline."""
     from .connectome_kernels import nearest_labels
 
-    volume, affine = read_atlas(labels)
+    atlas = as_image(labels, "the atlas")
     reach = float(radius)
     if not (np.isfinite(reach) and reach >= 0.0):
         raise ValueError(f"radius is {radius}; give mm, 0 or more")
-    linear = np.ascontiguousarray(affine[:3, :3])
+    linear = np.ascontiguousarray(atlas.affine[:3, :3])
     slack = 0.5 * float(np.abs(linear).sum(axis=1) @ np.abs(linear).sum(axis=1)) ** 0.5  # of a voxel, at most
     offsets, distances = _offsets(linear, reach + slack if reach > 0.0 else 0.0)
     if callable(progress):
         progress("finding ends", 0.0)
     points = np.ascontiguousarray(_end_points(data).reshape(-1, 3))
-    found, voxels, inverse = (
-        np.zeros(len(points), np.int64),
-        np.ascontiguousarray(volume, np.int64),
-        np.linalg.inv(affine),
-    )
+    found, voxels = np.zeros(len(points), np.int64), np.ascontiguousarray(atlas.labels, np.int64)
     with progress_bar(progress is True, total=len(points), desc="looking for parcels", unit="ends") as bar:
         for first in range(0, len(points), TOGETHER):
             if callable(progress):
                 progress("looking for parcels", first / len(points))
             part = slice(first, first + TOGETHER)
             nearest_labels(
-                points[part], voxels, inverse, linear, offsets, distances, slack, reach, found[part]
+                points[part], voxels, atlas.inverse, linear, offsets, distances, slack, reach, found[part]
             )  # fmt: skip
             bar.update(len(points[part]))
     return found.reshape(-1, 2)
 
 
-def _given_ends(given: Any, source: Any, atlas: Any, radius: float, progress: Progress) -> Ints:
+def _given_ends(given: Any, source: Any, atlas: Image, radius: float, progress: Progress) -> Ints:
     if given is None:
         return end_labels(source, atlas, radius, progress=progress)
     ends = np.asarray(given, np.int64)
     if ends.shape != (len(source), 2):
         raise ValueError(f"ends have the shape {ends.shape}; give two labels for each of {len(source):,} streamlines")
-    if not np.isin(ends[ends != 0], atlas[0]).all():
+    if not np.isin(ends[ends != 0], atlas.labels).all():
         raise ValueError("ends hold labels that the volume does not hold; give those of end_labels() for it")
     return ends
 

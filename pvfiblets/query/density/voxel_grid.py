@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -11,10 +10,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ...errors import FormatError
-from ...support.nifti_space import affine_of, code_of
-from ..regions.placement import affine as checked
-from ..regions.placement import invert_affine
+from ...images.affines import affine as checked
+from ...images.affines import invert_affine
+from ...images.sources import as_image
 
 __all__ = ["VoxelGrid", "grid_about", "grid_like"]
 
@@ -22,11 +20,6 @@ Array = npt.NDArray[np.float64]
 
 MOST = 1 << 40
 """Voxels beyond which no machine's memory is asked."""
-SUFFIXES = (".nii", ".nii.gz", ".mgh", ".mgz")
-_EXPECTED = (
-    "an image of nibabel or its path (" + ", ".join(SUFFIXES) + "), a pyvista.ImageData, (array, affine), "
-    "(shape, affine), or something with values and affine"
-)
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,53 +98,10 @@ def grid_like(image: Any) -> VoxelGrid:
     """Return the grid of an image."""
     if isinstance(image, VoxelGrid):
         return image
-    if isinstance(image, (str, os.PathLike)):
-        return grid_like(_loaded(os.fspath(image)))
-    if hasattr(image, "IsA") and image.IsA("vtkImageData"):
-        return _of_vtk(image)
-    if hasattr(image, "affine") and hasattr(image, "dataobj"):
-        affine = affine_of(image)
-        if affine is None:
-            raise ValueError("like is an image without an affine; give (array, affine)")
-        return VoxelGrid(_sides(image.shape), affine, code_of(image))
-    if hasattr(image, "affine") and hasattr(image, "values"):
-        return VoxelGrid(_sides(np.shape(image.values)), image.affine)
-    if isinstance(image, tuple) and len(image) == 2 and np.shape(image[1]) == (4, 4):
-        shape = image[0] if np.ndim(image[0]) == 1 else np.shape(image[0])
-        return VoxelGrid(_sides(shape), image[1])
-    raise TypeError(f"like is a {type(image).__name__}; give {_EXPECTED}")
-
-
-def _sides(shape: Any) -> tuple[int, int, int]:
-    if len(shape) < 3:
-        raise ValueError(f"like has the shape {tuple(shape)}; an image of three axes is needed")
-    return shape[0], shape[1], shape[2]
-
-
-def _loaded(path: str) -> Any:
-    if not path.lower().endswith(SUFFIXES):
-        raise ValueError(f"like is {path!r}, no image that nibabel reads; give {_EXPECTED}")
-    import nibabel
-    from nibabel.filebasedimages import ImageFileError
-    from nibabel.spatialimages import HeaderDataError
-
-    try:
-        return nibabel.load(path)
-    except (ImageFileError, HeaderDataError, EOFError) as error:
-        raise FormatError(path, None, f"what nibabel cannot read ({error})", "a NIfTI or MGH image") from None
-
-
-def _of_vtk(image: Any) -> VoxelGrid:
-    sides = np.array(image.GetDimensions())
-    first = np.array(image.GetExtent()[0::2], np.float64)
-    of_cells = image.GetPointData().GetScalars() is None and image.GetCellData().GetScalars() is not None
-    if hasattr(image, "active_scalars_info"):  # PyVista says which of the two is meant
-        association, name = image.active_scalars_info
-        of_cells = name is not None and getattr(association, "name", "") == "CELL"
-    if of_cells:
-        first += np.where(sides > 1, 0.5, 0.0)
-        sides = np.maximum(sides - 1, 1)
-    matrix = image.GetIndexToPhysicalMatrix()
-    place = np.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(4)])
-    place[:3, 3] += place[:3, :3] @ first
-    return VoxelGrid((int(sides[0]), int(sides[1]), int(sides[2])), place)
+    if isinstance(image, tuple) and len(image) == 2 and np.ndim(image[0]) == 1:  # a shape
+        return VoxelGrid(image[0], image[1])
+    found = as_image(image, "like")
+    if len(found.shape) < 3:
+        raise ValueError(f"like has the shape {found.shape}; an image of three axes is needed")
+    nx, ny, nz = found.shape[:3]
+    return VoxelGrid((nx, ny, nz), found.affine, found.space_code)

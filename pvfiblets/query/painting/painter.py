@@ -14,9 +14,10 @@ import numpy as np
 import numpy.typing as npt
 
 from ...errors import FormatError
+from ...images.files import stem_of
+from ...images.sources import as_image
 from ..bundles.colours import as_colour, distinct_colour, hex_colour
 from ..density.voxel_grid import VoxelGrid, grid_like
-from ..measures.image_samples import three_axes
 from ..regions.labels import Labels
 from ..regions.placement import finite_vector, positive
 
@@ -288,7 +289,9 @@ class RegionPainter:
         import nibabel
 
         target = Path(path).expanduser()
-        table = _table_of(target)
+        if not target.name.lower().endswith((".nii", ".nii.gz")):
+            raise ValueError(f"{target} is no name of a NIfTI file; give .nii or .nii.gz")
+        table = target.with_name(f"{stem_of(target.name)}.tsv")
         image = nibabel.Nifti1Image(self.labels, self.grid.affine)
         image.set_sform(self.grid.affine, self.grid.space_code)
         image.header.set_xyzt_units("mm")
@@ -309,18 +312,14 @@ class RegionPainter:
         FormatError
             If the volume has fractions, or labels below 0 or above 65,535.
         """
-        import nibabel
-
         target = Path(path).expanduser()
-        table = _table_of(target)
-        image = nibabel.load(target)
-        values = three_axes(image.dataobj)
-        found = np.unique(values)
-        if values.ndim != 3 or not ((found >= 0) & (found <= 65535) & (found == np.floor(found))).all():
-            raise FormatError(target, None, f"values of shape {values.shape} from {found.min()} to {found.max()}",
-                              "three axes of whole numbers from 0 to 65,535")  # fmt: skip
+        table = target.with_name(f"{stem_of(target.name)}.tsv")
+        image = as_image(target)
+        found = np.unique(image.labels)
+        if not ((found >= 0) & (found <= 65535)).all():
+            raise FormatError(target, None, f"labels from {found.min()} to {found.max()}", "labels from 0 to 65,535")
         made = cls(image)
-        made.labels[...] = values
+        made.labels[...] = image.labels
         if table.exists():
             with table.open(newline="", encoding="utf-8") as file:
                 for row in csv.DictReader(file, delimiter="\t"):
@@ -405,11 +404,3 @@ class RegionPainter:
         from .fill_kernels import connected
 
         return np.sort(connected(np.ascontiguousarray(open_).ravel(), self.grid.shape, int(self._flat(at[None])[0])))
-
-
-def _table_of(path: Path) -> Path:
-    name = path.name
-    for suffix in (".nii.gz", ".nii"):
-        if name.lower().endswith(suffix):
-            return path.with_name(name[: -len(suffix)] + ".tsv")
-    raise ValueError(f"{path} is no name of a NIfTI file; give .nii or .nii.gz")

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from ..measures.image_samples import three_axes
-from .placement import Bounds, invert_affine
-from .placement import affine as checked
+from ...images.affines import affine as checked
+from ...images.affines import invert_affine
+from ...images.image import three_axes
+from .placement import Bounds
 from .shapes import LABELS, Shape
 
 if TYPE_CHECKING:

@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from .placement import Bounds, affine, invert_affine, positions
+from ...images.affines import affine, invert_affine
+from .placement import Bounds, positions
 
 if TYPE_CHECKING:
     from .shapes import Shape

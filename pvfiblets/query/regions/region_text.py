@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..density.voxel_grid import SUFFIXES
+from ...images.files import SUFFIXES
 
 if TYPE_CHECKING:
     from .region import Region
@@ -28,10 +28,11 @@ def parse_region(text: str) -> Region:
         if not path.lower().endswith(SUFFIXES):
             raise ValueError(f"{text!r} is no region; give {FORMS}")
         labels = [int(number) for number in _numbers(text, said, None)]
-    from ..connectome.parcels import read_atlas
+    from ...images.sources import as_image
     from .labels import Labels
 
-    return Labels(*read_atlas(path), labels)
+    image = as_image(path)
+    return Labels(image.labels, image.affine, labels)
 
 
 def _numbers(text: str, said: str, n: int | None) -> list[float]:

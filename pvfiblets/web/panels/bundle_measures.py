@@ -92,7 +92,7 @@ class MeasureActions(LineActions):
             if layer.kind in ("volume", "image"):
                 data = scene.data(layer).data
                 if getattr(data, "affine", None) is not None and (data.values.ndim == 3 or data.values.shape[3] == 1):
-                    found[layer.name] = (data.values, data.affine)
+                    found[layer.name] = data
         return found
 
     def fold(self, is_open: bool) -> None:

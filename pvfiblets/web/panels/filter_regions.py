@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from pvfiblets.volumes.sources import SUFFIXES as LABELS
+from pvfiblets.images.files import SUFFIXES as LABELS
 from pvfiblets.web.actions import LineActions
 from pvfiblets.web.panels.controls import controls, moved, typed_value
 from pvfiblets.web.panels.describe import typed

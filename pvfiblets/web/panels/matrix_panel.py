@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pvfiblets.images.files import SUFFIXES as VOLUMES
 from pvfiblets.query.connectome.matrix import STATISTICS, SUFFIXES
-from pvfiblets.volumes.sources import SUFFIXES as VOLUMES
 from pvfiblets.web.actions import LineActions
 from pvfiblets.web.panels.charts import short
 from pvfiblets.web.panels.describe import typed

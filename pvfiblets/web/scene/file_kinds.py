@@ -9,11 +9,11 @@ from pvfiblets.codec.shards.manifest import is_set_in_shards
 from pvfiblets.errors import FormatError
 from pvfiblets.formats import vtk_sizes
 from pvfiblets.formats.registry import UnknownFormatError, is_trx_folder, suffix_of, suffixes
+from pvfiblets.images.files import SUFFIXES as VOLUMES
 from pvfiblets.volumes.freesurfer_files import SURFACES as FREESURFER
 from pvfiblets.volumes.freesurfer_files import VALUES as OF_FREESURFER
 from pvfiblets.volumes.gifti_files import SUFFIXES as GIFTI
 from pvfiblets.volumes.gifti_files import VALUES as OF_GIFTI
-from pvfiblets.volumes.sources import SUFFIXES as VOLUMES
 
 __all__ = [
     "GIFTI", "MESHES", "OF_VERTICES", "TABLES", "VALUES", "VOLUMES", "VTK_SUFFIXES", "is_tractogram_folder", "kind_of",

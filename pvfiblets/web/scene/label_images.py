@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 from pvfiblets.errors import FormatError
+from pvfiblets.images.files import stem_of
 from pvfiblets.slices.image import SliceImage, as_slice_image
 from pvfiblets.slices.labels import LabelTable, as_label_table
-from pvfiblets.volumes.image_files import SUFFIXES
 
-__all__ = ["LabelledImage", "facts_of", "read_image", "read_labels", "table_beside", "with_table"]
+__all__ = ["LabelledImage", "facts_of", "read_image", "table_beside", "with_table"]
 
 LARGEST = 4 << 20  # bytes of a table
 BESIDE = (".tsv", ".ctab", ".label", ".lbl")
@@ -39,22 +39,6 @@ def read_image(place: Path) -> LabelledImage:
     return LabelledImage(found.values, found.affine, found.name, found.is_labels, found.is_colours, found.fixels)
 
 
-@dataclass(frozen=True, eq=False)
-class LabelVolume:
-    """Labels ``(nx, ny, nz)`` and their ``(4, 4)`` affine, by the names that images of nibabel have for these."""
-
-    dataobj: Any
-    affine: Any
-
-
-def read_labels(place: Path) -> LabelVolume:
-    """Read a volume of labels of any format, for regions; errors as of :func:`.as_slice_image`."""
-    image = as_slice_image(place)
-    if image.n_volumes != 1:
-        raise ValueError(f"{place.name} has {image.n_volumes} numbers per voxel; labels are one")
-    return LabelVolume(image.values[..., 0], image.affine)
-
-
 def with_table(image: LabelledImage, place: Path) -> LabelledImage:
     """Return an image whose labels have the names and colours of a file."""
     if place.stat().st_size > LARGEST:
@@ -64,15 +48,14 @@ def with_table(image: LabelledImage, place: Path) -> LabelledImage:
 
 def table_beside(image: SliceImage, place: Path) -> Path | None:
     """Return the table that lies beside a file of labels under its name; None if none does, or these are no labels."""
-    name = place.name[: -len(max((one for one in SUFFIXES if place.name.lower().endswith(one)), key=len, default=""))]
-    if image.n_volumes != 1 or not name:
+    if image.n_volumes != 1:
         return None
     if image.values.dtype.kind == "f":
         some = image.values.ravel(order="K")[:: max(1, image.values.size // 100_000)]
         if not (np.isfinite(some) & (some == np.rint(some))).all():
             return None
     for suffix in BESIDE:
-        found = place.with_name(name + suffix)
+        found = place.with_name(stem_of(place.name) + suffix)
         with contextlib.suppress(FormatError, OSError):
             if found.is_file() and found.stat().st_size <= LARGEST:
                 as_label_table(found)

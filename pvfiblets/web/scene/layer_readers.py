@@ -66,16 +66,10 @@ def read_mesh(place: Path) -> Any:
 
 def read_colours(place: Path) -> Any:
     """Return a volume to be sampled along lines, from the same numbers as a script's ``scalars=path`` gives."""
-    from pvfiblets.engine.fiblets.data.sampled_volume import VolumeSource
+    from pvfiblets.images.sources import as_image
     from pvfiblets.plotting.fiblets.volume_sources import as_volume
-    from pvfiblets.volumes import as_raycast_volume
 
-    if (found := as_volume(place)) is not None:
-        return found
-    if place.name.lower().endswith(VTK_SUFFIXES):
-        return as_volume(read_vtk(place))
-    volume = as_raycast_volume(place)
-    return VolumeSource(volume.numbers, volume.affine, name=place.name.partition(".")[0])
+    return as_volume(as_image(read_vtk(place) if place.name.lower().endswith(VTK_SUFFIXES) else place))
 
 
 def volume_facts(volume: Any) -> dict[str, Any]:

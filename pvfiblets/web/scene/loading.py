@@ -17,9 +17,8 @@ from pvfiblets import formats
 from pvfiblets.codec.shards.manifest import MANIFEST
 from pvfiblets.formats.gzipped import check_ratio
 from pvfiblets.formats.registry import UnknownFormatError, is_trx_folder, suffix_of, suffixes
+from pvfiblets.images.sources import as_image
 from pvfiblets.support.file_notes import notes_of
-from pvfiblets.support.nifti_space import affine_of
-from pvfiblets.volumes.sources import NIBABEL
 from pvfiblets.web.scene.file_kinds import (
     MESHES,
     TABLES,
@@ -211,16 +210,7 @@ class Files:
             watch("reading", 1.0)
             return Loaded(kind, source, name, image, facts_of(image))
         if kind == "labels":
-            from pvfiblets.volumes.nibabel_files import opened
-
-            if not name.lower().endswith(NIBABEL):
-                from pvfiblets.web.scene.label_images import read_labels
-
-                return Loaded(kind, source, name, read_labels(place))
-            from pvfiblets.web.scene.label_images import LabelVolume
-
-            with opened(place) as image:  # and read where it is used
-                return Loaded(kind, source, name, LabelVolume(image.dataobj, affine_of(image)))
+            return Loaded(kind, source, name, as_image(place))  # and read where it is used
         if kind == "colours":
             return Loaded(kind, source, name, read_colours(place))
         mesh = read_mesh(place)

@@ -19,8 +19,9 @@ from typing import Any
 from urllib.parse import unquote
 
 from pvfiblets.errors import FormatError
+from pvfiblets.images import metaimage, mif, nrrd
 from pvfiblets.slices import fixels
-from pvfiblets.volumes import gifti_files, metaimage, mif, nrrd
+from pvfiblets.volumes import gifti_files
 
 __all__ = ["check_references"]
 

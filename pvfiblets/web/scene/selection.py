@@ -9,7 +9,6 @@ import numpy as np
 
 from pvfiblets.web.panels.writing import EXPORTS, write
 from pvfiblets.web.scene.originals import original_of
-from pvfiblets.web.scene.sampling import sampled
 from pvfiblets.web.session.document import LINES, Ids, Layer
 from pvfiblets.web.values import number, numbers, plain, shown, truth, whole
 
@@ -214,7 +213,7 @@ def _volume_profile(actor: Any, ids: np.ndarray, volume: Any, n: int) -> dict[st
     from pvfiblets.query.measures.profile import mean_profile
 
     part = actor.fiblets.extract(ids)
-    mean, std = mean_profile(part, np.arange(len(ids)), sampled(volume, part.decompress().points), n)
+    mean, std = mean_profile(part, np.arange(len(ids)), volume.at(part.decompress().points), n)
     position = np.linspace(0.0, 1.0, n)
     return {
         "position": plain(position), "mean": plain(mean), "std": plain(std), "name": volume.name, "count": len(ids),
@@ -224,7 +223,7 @@ def _volume_profile(actor: Any, ids: np.ndarray, volume: Any, n: int) -> dict[st
 def _along(fiblets: Any, ids: np.ndarray, volume: Any) -> tuple[np.ndarray, np.ndarray]:
     """Return a volume's values at the points of streamlines, as ``point_values`` does."""
     lines = fiblets.decompress(ids)
-    return sampled(volume, lines.points), lines.offsets
+    return volume.at(lines.points), lines.offsets
 
 
 def _rows(layer: Layer, actor: Any, ids: np.ndarray) -> list[dict[str, Any]]:

@@ -10,7 +10,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from pvfiblets.mappers.scene import USUAL_DPI
-from pvfiblets.plotting.fiblets.volume_sources import SUFFIXES as SAMPLED
 from pvfiblets.plotting.slices.settings import MEANING
 from pvfiblets.web.scene import layers
 from pvfiblets.web.scene.actors import split_cuts
@@ -31,8 +30,8 @@ __all__ = ["as_script"]
 _LABELS = '''
 def labels_of(path, labels):
     """Return the region of some labels of a volume."""
-    image = as_slice_image(path)
-    return regions.Labels(np.rint(image.values[..., 0]).astype(np.int64), image.affine, labels=labels)
+    image = as_image(path)
+    return regions.Labels(image.labels, image.affine, labels=labels)
 '''
 
 _UNPACKED = '''
@@ -229,11 +228,7 @@ class _Writer(ViewWriter):
         path = str(source.path)
         if path.lower().endswith((".vtk", ".vtp")):
             return Python(f"pv.read({self._file(path)})")
-        if path.lower().endswith(SAMPLED):
-            return Python(self._file(path))
-        self._imports.add("from pvfiblets.volumes import as_raycast_volume")
-        self._lines += [f"volume = as_raycast_volume({self._file(path)})"]
-        return Python("(volume.values, volume.affine)")
+        return Python(self._file(path))
 
     def _whole(self, source: Source, kept: tuple[str, ...]) -> str:
         """Return the name of the fiblets that a selection is a part of; they are made where they are not yet."""
@@ -283,12 +278,12 @@ class _Writer(ViewWriter):
 
     def _parcels(self, path: str) -> str:
         """Return Python of a label volume's numbers and where they lie."""
-        self._imports.add("from pvfiblets.slices.image import as_slice_image")
+        self._imports.add("from pvfiblets.images.sources import as_image")
         name = self._volumes.get(path)
         if name is None:
             name = self._volumes[path] = self._variable("parcels")
-            self._lines += [f"{name} = as_slice_image({self._file(path)})"]
-        return f"({name}.values[..., 0], {name}.affine)"
+            self._lines += [f"{name} = as_image({self._file(path)})"]
+        return name
 
     def _matrix(self) -> None:
         matrix = self._scene.state.matrix
@@ -369,8 +364,5 @@ class _Writer(ViewWriter):
             if shape["kind"] == "mesh":
                 self._mesh(shape["path"])
         else:
-            self._imports |= {
-                "import numpy as np", "from pvfiblets import regions",
-                "from pvfiblets.slices.image import as_slice_image",
-            }  # fmt: skip
+            self._imports |= {"from pvfiblets import regions", "from pvfiblets.images.sources import as_image"}
             self._uses_labels = True

@@ -163,9 +163,7 @@ def make_region(shape: Mapping[str, Any], load: Load) -> Region:
 
 def label_array(image: Any) -> tuple[Any, Any]:
     """Return an image of labels as whole numbers and the matrix that places them."""
-    import numpy as np
-
-    return np.rint(np.asanyarray(image.dataobj)).astype(np.int64), image.affine
+    return image.labels, image.affine
 
 
 def planes_of(shape: Mapping[str, Any], inside: bool) -> list[tuple[list[float], list[float]]] | None:

@@ -111,7 +111,7 @@ class Store:
     def parcels(self, path: str) -> tuple[Any, Any]:
         """Return the labels of a volume, ``(i, j, k)``, and the matrix that places them."""
         volume = self.shape("labels", path)
-        return np.asanyarray(volume.dataobj), volume.affine
+        return volume.labels, volume.affine
 
     def end_labels(
         self, fiblets: Any, path: str, radius: float, progress: Progress | None = None, cancel: Cancel | None = None

@@ -133,7 +133,7 @@ def test_images_are_sampled_as_dipy_does(image):
     rng = np.random.default_rng(4)
     voxels = rng.uniform(0, 1, (200, 3)) * (np.array(image[0].shape) - 1)
     points = voxels @ AFFINE[:3, :3].T + AFFINE[:3, 3]
-    from pvfiblets.query.bundles.sampling import as_image
+    from pvfiblets.images.sources import as_image
 
     found = as_image(image).at(points)
     assert np.allclose(found, values_from_volume(image[0], [points], AFFINE)[0])
@@ -162,7 +162,7 @@ def test_bundles_are_measured(lines, image, tmp_path, compressed):
     seen = len(np.unique(np.floor(fine / 2.0), axis=0))
     assert seen <= table["volume_voxels"][0] <= seen + 3  # corners that are cut between the samples
     assert table["volume_mm3"][0] == 8.0 * table["volume_voxels"][0]
-    from pvfiblets.query.bundles.sampling import as_image
+    from pvfiblets.images.sources import as_image
 
     values = as_image(image).at(np.concatenate(lines[:12]))
     assert table["mean_fa"][0] == pytest.approx(np.nanmean(values), rel=1e-5)

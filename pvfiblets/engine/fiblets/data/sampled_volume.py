@@ -32,6 +32,8 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
+from pvfiblets.images.sampling import sample
+
 from ....support.value_reference import relative, value_reference
 from ...errors import EngineError, GPUMemoryError
 from ...gl.bindings import BLOCKS, SAMPLED
@@ -116,6 +118,10 @@ class VolumeSource:
         object.__setattr__(self, "voxels", voxels)
         if self.nearest is None:
             object.__setattr__(self, "nearest", values.dtype.kind in "bui")
+
+    def at(self, points: npt.ArrayLike) -> Array:
+        """Return the values at points ``(n, 3)`` in mm, ``(n,)`` float64, by the rules of the picture."""
+        return sample(self.values, self.voxels, points, nearest=bool(self.nearest))
 
     @cached_property
     def range(self) -> tuple[float, float]:

@@ -7,7 +7,6 @@ the header is read here. Format: https://teem.sourceforge.net/nrrd/format.html
 from __future__ import annotations
 
 import math
-import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,6 +16,7 @@ import numpy.typing as npt
 
 from pvfiblets.errors import FormatError
 
+from .image import Image
 from .packed_numbers import Packing, data_file, numbers
 
 __all__ = ["header_fields", "read_nrrd"]
@@ -100,18 +100,22 @@ class _Header:
         return found
 
 
-def read_nrrd(path: str | os.PathLike[str], *, components: bool = False) -> tuple[npt.NDArray[Any], Array]:
-    """Read a volume."""
-    header = _header(Path(path))
+def read_nrrd(path: Path) -> Image:
+    """Read an image."""
+    header = _header(path)
     dimension = _whole(header, "dimension", header.need("dimension"))
     sizes = [_whole(header, "sizes", word) for word in header.need("sizes").split()]
     if len(sizes) != dimension or min(sizes, default=0) < 1:
         raise header.error(f"sizes: {header.need('sizes')}", f"{dimension} whole numbers above 0")
-    axes = _spatial_axes(header, sizes, components)
+    axes = _spatial_axes(header, sizes)
     others = [axis for axis in range(dimension) if axis not in axes and sizes[axis] > 1]
     order = [*axes, *others, *_single(axes, others, dimension)]
-    values = _data(header, sizes).reshape(sizes, order="F").transpose(order)
-    return values.reshape([sizes[axis] for axis in (*axes, *others)], order="F"), _affine(header, axes, dimension)
+    shape = tuple(sizes[axis] for axis in (*axes, *others))
+
+    def read() -> npt.NDArray[Any]:
+        return _data(header, sizes).reshape(sizes, order="F").transpose(order).reshape(shape, order="F")
+
+    return Image(shape, _affine(header, axes, dimension), read)
 
 
 def header_fields(path: Path) -> dict[str, str]:
@@ -154,8 +158,8 @@ def _single(axes: list[int], others: list[int], dimension: int) -> list[int]:
     return [axis for axis in range(dimension) if axis not in axes and axis not in others]
 
 
-def _spatial_axes(header: _Header, sizes: list[int], components: bool) -> list[int]:
-    """The three axes of space; others must have one entry each, unless they may be components."""
+def _spatial_axes(header: _Header, sizes: list[int]) -> list[int]:
+    """The three axes of space."""
     directions = header.vectors("space directions")
     kinds = header.get("kinds")
     named = kinds.split() if kinds else ["???"] * len(sizes)
@@ -168,13 +172,9 @@ def _spatial_axes(header: _Header, sizes: list[int], components: bool) -> list[i
     axes = [axis for axis in range(len(sizes)) if spatial[axis]]
     if len(axes) > 3:  # of older files that say nothing of their axes
         axes = [axis for axis in axes if sizes[axis] > 1]
-    others = [axis for axis in range(len(sizes)) if axis not in axes and sizes[axis] > 1]
-    if len(axes) != 3 or (others and not components):
+    if len(axes) != 3:
         kind = f" of the kinds {kinds}" if kinds else ""
-        raise header.error(
-            f"{len(sizes)} axes of the sizes {' x '.join(map(str, sizes))}{kind}",
-            "three axes of space and one number per voxel: save one of its volumes or components",
-        )
+        raise header.error(f"{len(sizes)} axes of the sizes {' x '.join(map(str, sizes))}{kind}", "three axes of space")
     return axes
 
 

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from pvfiblets.errors import FormatError
-from pvfiblets.volumes.image_files import read_image
-from pvfiblets.volumes.mif import read_mif
+from pvfiblets.images.files import read_image
+from pvfiblets.images.mif import read_mif
 
 AFFINE = np.array([[2.0, 0.7, 0.3, -20.0], [-0.4, 1.5, 0.2, 5.0], [0.1, 0.5, 3.0, 9.0], [0.0, 0.0, 0.0, 1.0]])
 
@@ -40,22 +40,22 @@ def test_a_mif_has_its_numbers_by_axes_whatever_their_order_in_memory(tmp_path, 
     values = np.random.default_rng(0).normal(size=(4, 5, 6)).astype("<f4")
     turn = np.linalg.qr(AFFINE[:3, :3])[0]
     transform = np.column_stack([turn, [-3.0, 4.0, 5.0]])
-    found, affine = read_mif(mif(tmp_path / f"a{suffix}", values, layout, transform=transform))
-    np.testing.assert_array_equal(found, values)
-    np.testing.assert_allclose(affine[:3, :3], turn @ np.diag([2.0, 1.5, 3.0]))
-    np.testing.assert_allclose(affine[:3, 3], [-3.0, 4.0, 5.0])
+    found = read_mif(mif(tmp_path / f"a{suffix}", values, layout, transform=transform))
+    np.testing.assert_array_equal(found.values, values)
+    np.testing.assert_allclose(found.affine[:3, :3], turn @ np.diag([2.0, 1.5, 3.0]))
+    np.testing.assert_allclose(found.affine[:3, 3], [-3.0, 4.0, 5.0])
 
 
 def test_a_mif_of_four_axes_bits_and_scaled_numbers(tmp_path):
     rng = np.random.default_rng(1)
     four = rng.integers(-9, 9, size=(3, 4, 5, 2)).astype(">i2")
     made = mif(tmp_path / "a.mif", four, "+1,+2,+3,+0", "Int16BE", vox="1,1,1,nan", extra=["scaling: 5,0.5"])
-    found, affine = read_mif(made)
-    np.testing.assert_array_equal(found, four * 0.5 + 5.0)
-    np.testing.assert_allclose(affine[:3, 3], [-1.0, -1.5, -2.0])  # without a transform, the middle is the origin
+    found = read_mif(made)
+    np.testing.assert_array_equal(found.values, four * 0.5 + 5.0)
+    np.testing.assert_allclose(found.affine[:3, 3], [-1.0, -1.5, -2.0])  # without a transform, the middle is the origin
     bits = rng.integers(0, 2, size=(3, 5, 4)).astype(np.uint8)
     packed = np.packbits(bits.ravel(order="F")).tobytes()
-    np.testing.assert_array_equal(read_mif(mif(tmp_path / "b.mif", bits, "+0,+1,+2", "Bit", data=packed))[0], bits)
+    np.testing.assert_array_equal(read_mif(mif(tmp_path / "b.mif", bits, "+0,+1,+2", "Bit", data=packed)).values, bits)
 
 
 def test_a_mih_names_the_file_of_its_data(tmp_path):
@@ -64,7 +64,7 @@ def test_a_mih_names_the_file_of_its_data(tmp_path):
     (tmp_path / "a.mih").write_text(
         "mrtrix image\ndim: 2,3,4\nvox: 1,1,1\nlayout: +0,+1,+2\ndatatype: UInt16LE\nfile: a b.dat 4\nEND\n"
     )
-    np.testing.assert_array_equal(read_mif(tmp_path / "a.mih")[0], values)
+    np.testing.assert_array_equal(read_mif(tmp_path / "a.mih").values, values)
 
 
 @pytest.mark.parametrize(
@@ -78,7 +78,7 @@ def test_a_damaged_mif_says_what_is_wrong(tmp_path, change, said):
     path = mif(tmp_path / "a.mif", np.zeros((4, 5, 6), "<f4"), "+0,+1,+2")
     path.write_bytes(path.read_bytes().replace(*change))
     with pytest.raises(FormatError, match=said):
-        read_mif(path)
+        _ = read_mif(path).values
 
 
 @pytest.mark.parametrize("kind", [nib.Nifti1Image, nib.Nifti2Image])
@@ -87,10 +87,10 @@ def test_a_nifti_of_four_axes_lies_as_nibabel_says(tmp_path, kind):
     image = kind(values, AFFINE)
     image.header.set_intent("label")
     nib.save(image, tmp_path / "a.nii.gz")
-    found, affine, name, is_labels = read_image(tmp_path / "a.nii.gz")
-    np.testing.assert_array_equal(found, values)
-    np.testing.assert_allclose(affine, nib.load(tmp_path / "a.nii.gz").affine)
-    assert (name, is_labels) == ("a", True)
+    found = read_image(tmp_path / "a.nii.gz")
+    np.testing.assert_array_equal(found.values, values)
+    np.testing.assert_allclose(found.affine, nib.load(tmp_path / "a.nii.gz").affine)
+    assert (found.name, found.is_labels) == ("a", True)
 
 
 def test_an_mgz_lies_as_nibabel_says(tmp_path):
@@ -98,9 +98,9 @@ def test_an_mgz_lies_as_nibabel_says(tmp_path):
     right = AFFINE.copy()
     right[:3, :3] = np.linalg.qr(AFFINE[:3, :3])[0] * [1.0, 2.0, 3.0]
     nib.save(nib.MGHImage(values, right), tmp_path / "aseg.mgz")
-    found, affine, name, _ = read_image(tmp_path / "aseg.mgz")
-    np.testing.assert_array_equal(found, values)
-    np.testing.assert_allclose(affine, nib.load(tmp_path / "aseg.mgz").affine, atol=1e-5)
+    found = read_image(tmp_path / "aseg.mgz")
+    np.testing.assert_array_equal(found.values, values)
+    np.testing.assert_allclose(found.affine, nib.load(tmp_path / "aseg.mgz").affine, atol=1e-5)
 
 
 def test_a_nrrd_and_a_metaimage_with_several_numbers_per_voxel(tmp_path):
@@ -114,21 +114,21 @@ def test_a_nrrd_and_a_metaimage_with_several_numbers_per_voxel(tmp_path):
     (tmp_path / "a.nrrd").write_bytes(head.encode() + raw)
     wanted = np.diag([-2.0, -3.0, 4.0, 1.0])
     wanted[:3, 3] = -10.0, -20.0, 30.0
-    found, affine, _, _ = read_image(tmp_path / "a.nrrd")
-    np.testing.assert_array_equal(found, values)
-    np.testing.assert_allclose(affine, wanted)
+    found = read_image(tmp_path / "a.nrrd")
+    np.testing.assert_array_equal(found.values, values)
+    np.testing.assert_allclose(found.affine, wanted)
     (tmp_path / "a.mha").write_bytes(
         b"ObjectType = Image\nNDims = 3\nDimSize = 2 4 5\nElementSpacing = 2 3 4\nOffset = 10 20 30\n"
         b"ElementNumberOfChannels = 3\nElementType = MET_FLOAT\nElementDataFile = LOCAL\n" + raw
     )
-    found, affine, _, _ = read_image(tmp_path / "a.mha")
-    np.testing.assert_array_equal(found, values)
-    np.testing.assert_allclose(affine, wanted)
+    found = read_image(tmp_path / "a.mha")
+    np.testing.assert_array_equal(found.values, values)
+    np.testing.assert_allclose(found.affine, wanted)
 
 
 def test_another_suffix_is_refused(tmp_path):
     (tmp_path / "a.jpg").touch()
-    with pytest.raises(ValueError, match=r"a\.jpg is no image that is read here"):
+    with pytest.raises(ValueError, match=r"a\.jpg is no image; give a file that ends in"):
         read_image(Path(tmp_path / "a.jpg"))
     with pytest.raises(FileNotFoundError):
         read_image(Path(tmp_path / "b.jpg"))

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import gzip
 import math
-import os
 import re
 import zlib
 from pathlib import Path
@@ -18,6 +17,7 @@ import numpy.typing as npt
 
 from pvfiblets.errors import FormatError
 
+from .image import Image
 from .packed_numbers import data_file, numbers
 
 __all__ = ["named_files", "read_mif"]
@@ -31,18 +31,19 @@ _KIND = re.compile(r"(u?int|float)(8|16|32|64)(le|be)?", re.IGNORECASE)
 Array = npt.NDArray[np.float64]
 
 
-def read_mif(path: str | os.PathLike[str]) -> tuple[npt.NDArray[Any], Array]:
+def read_mif(path: Path) -> Image:
     """Read an image."""
-    path = Path(path)
     fields, files, transform = _header(path)
     shape = _whole_numbers(path, fields, "dim")
     if not 1 <= len(shape) <= MOST_AXES or min(shape) < 1:
         raise FormatError(path, None, f"dim: {fields['dim']}", "one to 16 whole numbers above 0, between commas")
     strides = _layout(path, fields, len(shape))
-    values = _in_order(_data(path, fields, files, shape), shape, strides)
-    while values.ndim < 3:
-        values = values[..., None]
-    return _scaled(path, fields, values), _affine(path, fields, transform, shape)
+    whole = (*shape, 1, 1)[: max(len(shape), 3)]
+
+    def read() -> npt.NDArray[Any]:
+        return _scaled(path, fields, _in_order(_data(path, fields, files, shape), shape, strides).reshape(whole))
+
+    return Image(whole, _affine(path, fields, transform, shape), read)
 
 
 def named_files(path: Path) -> list[str]:

@@ -7,7 +7,6 @@ by axis. ITK, whose format this is, means LPS+ by its coordinates. Format: https
 from __future__ import annotations
 
 import math
-import os
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +15,7 @@ import numpy.typing as npt
 
 from pvfiblets.errors import FormatError
 
+from .image import Image
 from .packed_numbers import Packing, data_file, numbers
 
 __all__ = ["header_fields", "read_metaimage"]
@@ -32,30 +32,27 @@ DIRECTIONS = ("transformmatrix", "orientation", "rotation")
 Array = npt.NDArray[np.float64]
 
 
-def read_metaimage(path: str | os.PathLike[str], *, components: bool = False) -> tuple[npt.NDArray[Any], Array]:
-    """Read a volume."""
-    path = Path(path)
+def read_metaimage(path: Path) -> Image:
+    """Read an image."""
     fields, size = _fields(path)
     dims = _numbers(path, fields, ("dimsize",), None)
     if dims is None:
         raise FormatError(path, None, "no field DimSize", "a MetaImage header with one")
     channels = fields.get("elementnumberofchannels", "1").strip()
-    if components and len(dims) in (3, 4) and channels.isdecimal() and int(channels[:9]) > 0:
-        pass
-    elif len(dims) != 3 or channels != "1":
-        raise FormatError(
-            path, None, f"{len(dims)} axes and {channels} numbers per voxel",
-            "three axes and one number per voxel: save one of its volumes or components",
-        )  # fmt: skip
+    if len(dims) not in (3, 4) or not channels.isdecimal() or not int(channels[:9]):
+        raise FormatError(path, None, f"{len(dims)} axes and {channels} numbers per voxel", "three or four axes")
     if not all(n >= 1 and n == int(n) for n in dims.tolist() if math.isfinite(n)) or not np.isfinite(dims).all():
         n = "three" if len(dims) == 3 else "four"
         raise FormatError(path, None, f"DimSize = {fields['dimsize']}", f"{n} whole numbers above 0")
     shape = [int(n) for n in dims.tolist()]
-    if channels == "1":
-        return _data(path, fields, size, shape).reshape(shape, order="F"), _affine(path, fields, len(shape))
-    stored = [int(channels), *shape]  # numbers of a voxel lie side by side
-    values = _data(path, fields, size, stored).reshape(stored, order="F")
-    return np.moveaxis(values, 0, -1), _affine(path, fields, len(shape))
+    stored = shape if channels == "1" else [int(channels), *shape]  # numbers of a voxel lie side by side
+
+    def read() -> npt.NDArray[Any]:
+        values = _data(path, fields, size, stored).reshape(stored, order="F")
+        return values if stored is shape else np.moveaxis(values, 0, -1)
+
+    whole = (*shape, *stored[: len(stored) - len(shape)])
+    return Image(whole, _affine(path, fields, len(shape)), read)
 
 
 def _data(path: Path, fields: dict[str, str], size: int, shape: list[int]) -> npt.NDArray[Any]:
