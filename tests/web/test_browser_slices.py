@@ -213,7 +213,6 @@ def test_a_handle_of_the_oblique_slice_is_dragged_and_undone_at_once(visit):
     mouse.down()
     mouse.move(*handle(45), steps=3)
     here.wait(lambda: abs(float(tilt()) - 45.0) < 1.5, "the slice to follow")
-    here.page.wait_for_timeout(1100)  # longer than what follows at once is one step
     mouse.move(*handle(60), steps=3)
     mouse.up()
     here.wait(lambda: abs(float(tilt()) - 60.0) < 1.5, "the slice to follow on")
