@@ -8,7 +8,7 @@ from pathlib import Path
 import pyvista as pv
 
 from pvfiblets.plotting.fiblets.volume_sources import SUFFIXES, as_volume
-from pvfiblets.query.density.density_map import image_of
+from pvfiblets.query.density.map_files import image_of
 
 __all__ = ["read_volume"]
 
