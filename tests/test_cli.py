@@ -508,7 +508,7 @@ WRONG = [
     ("verify a.fiblets text.tck", "text.tck, byte 0: found b'hello'"),
     ("table a.trx t.csv --group AF", "a.trx has no group 'AF'; it has: callosum"),
     ("table a.trx nowhere/t.csv", "nowhere/t.csv: there is no folder .*nowhere; make it first"),
-    ("density a.trx d.png --voxel 2", "d.png is no name of a NIfTI file; let it end in .nii or .nii.gz"),
+    ("density a.trx d.png --voxel 2", "d.png is no name of an image; let it end in .nii"),
     ("density a.trx d.nii --voxel 1 2", "--voxel has 2 numbers; give one side in mm, or three"),
     ("density a.trx d.nii --voxel 2 --contrast md", "a.trx has no array 'md' of single numbers; there are: bundle, fa"),
     ("connectome a.trx zeros.nii m.xyz", "m.xyz has no suffix of a matrix; use one of .csv"),

@@ -68,6 +68,17 @@ def test_names_of_arrays_and_images_of_other_formats(folder, tmp_path, capsys):
     np.testing.assert_array_equal(nib.load(target).get_fdata(), pf.density(brain, like=exact).values)
 
 
+@pytest.mark.parametrize("suffix", [".mif", ".vti"])
+def test_files_of_mrtrix_and_vtk_are_written_and_read_again(folder, tmp_path, suffix):
+    target = tmp_path / f"out{suffix}"
+    brain = str(folder / "brain.fiblets")
+    assert main(["density", brain, str(target), "--voxel", "4", "--quiet"]) == 0
+    assert main(["density", brain, str(tmp_path / "again.nii"), "--like", str(target), "--quiet"]) == 0
+    exact, again = pf.density(brain, 4.0), nib.load(tmp_path / "again.nii")
+    np.testing.assert_array_equal(np.asarray(again.dataobj), exact.values)
+    np.testing.assert_allclose(again.affine, exact.affine)
+
+
 def test_what_lies_outside_is_told(folder, tmp_path, capsys):
     small = nib.Nifti1Image(np.zeros((4, 4, 4), np.int16), np.diag([2.0, 2.0, 2.0, 1.0]))
     nib.save(small, tmp_path / "small.nii")
@@ -79,7 +90,10 @@ def test_what_lies_outside_is_told(folder, tmp_path, capsys):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["brain.trx", "out.png", "--voxel", "2"], "out.png is no name of a NIfTI file"),
+        (
+            ["brain.trx", "out.png", "--voxel", "2"],
+            "no name of an image; let it end in .nii",
+        ),
         (["brain.trx", "out.nii", "--voxel", "2", "2"], "--voxel has 2 numbers"),
         (["none.trx", "out.nii", "--voxel", "2"], "none.trx"),
         (["brain.xyz", "out.nii", "--voxel", "2"], "no format has this suffix"),

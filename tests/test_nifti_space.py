@@ -196,6 +196,7 @@ def test_every_use_of_a_file_or_an_image_has_the_rule(tmp_path, use):
         np.testing.assert_allclose(USES[use](path), MIRRORED)
 
 
+@pytest.mark.more
 def test_a_batch_hands_the_choice_to_its_workers(tract, tmp_path):
     labels = image(tmp_path / "template.nii", 4, 1, MIRRORED)
     arguments = ["batch", "connectome", str(tract), "-o", str(tmp_path / "out"), "--labels", str(labels)]

@@ -88,7 +88,7 @@ def _density(parser: argparse.ArgumentParser, positive: Any, angle: Any, count: 
     add("--contrast", default="count", metavar="WHAT", help="count, length, direction, an array, or a file of values")
     add("--weights", metavar="WHAT", help="of streamlines: a file of numbers, or the name of an array")
     add("--ends-only", action="store_true", help="count end points instead")
-    add("--to", default=".nii.gz", metavar="SUFFIX", help=".nii or .nii.gz (default: %(default)s)")
+    add("--to", default=".nii.gz", metavar="SUFFIX", help=".nii, .nii.gz, .mif, .mif.gz or .vti (default: %(default)s)")
 
 
 def _select(parser: argparse.ArgumentParser, positive: Any, angle: Any, count: Any) -> None:  # noqa: ARG001

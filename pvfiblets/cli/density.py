@@ -12,7 +12,8 @@ import numpy as np
 
 from pvfiblets.cli.files import print_json, show_progress
 from pvfiblets.formats.attachments import numbers_or_name as numbers
-from pvfiblets.query.density.density_map import DensityMap, check_target
+from pvfiblets.query.density.density_map import DensityMap
+from pvfiblets.query.density.map_files import check_suffix
 from pvfiblets.query.density.volume import CONTRASTS
 from pvfiblets.query.density.volume import density as add_up
 
@@ -30,7 +31,7 @@ def density(
     json: bool,
 ) -> None:
     """Write a volume of density."""
-    check_target(target)  # before minutes of work, not after
+    check_suffix(target)  # before minutes of work, not after
     if voxel is not None and len(voxel) not in (1, 3):
         raise ValueError(f"--voxel has {len(voxel)} numbers; give one side in mm, or three")
     begin = time.perf_counter()

@@ -155,7 +155,7 @@ def add_density(commands: Any) -> None:
         "the volume to OUT."
     )
     parser.add_argument("source", metavar="IN", help="a tractogram of any format, or -; it is read in parts")
-    parser.add_argument("target", metavar="OUT", help="what to write: .nii or .nii.gz; or -")
+    parser.add_argument("target", metavar="OUT", help="what to write: .nii, .nii.gz, .mif, .mif.gz or .vti; or -")
     grid = parser.add_mutually_exclusive_group(required=True)
     grid.add_argument("--voxel", type=positive, nargs="+", metavar="MM", help="side of the voxels, or three")
     grid.add_argument("--like", metavar="IMAGE", help="an image whose grid it is (NIfTI, MGH, MIF, NRRD ...)")

@@ -289,9 +289,9 @@ class Operation:
                 raise ValueError(f"{self.name} needs {' or '.join(names)}; give {names[0]}=")
         made = {name: options.get(name, value) for name, value in known.items()}
         if self.makes_file and self.name == "density":
-            from pvfiblets.query.density.density_map import check_target
+            from pvfiblets.query.density.map_files import check_suffix
 
-            check_target(f"map{made['to']}")
+            check_suffix(f"map{made['to']}")
         elif self.makes_file:
             registry.module_for(f"made{made['to']}", "write")
         return made

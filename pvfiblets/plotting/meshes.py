@@ -8,22 +8,26 @@ from typing import Any
 
 import pyvista as pv
 
+from pvfiblets.formats.registry import READ_BY_VTK
 from pvfiblets.support.surface_space import as_stored, tkras_chosen
-from pvfiblets.support.vtk_space import FIELD, OURS, Space, space_in_header, space_of_dataset
+from pvfiblets.support.vtk_space import FIELD, OURS, Space, checked, space_in_header, space_of_dataset, unnamed
 from pvfiblets.volumes.freesurfer_files import SURFACES as FREESURFER
 from pvfiblets.volumes.gifti_files import SUFFIXES as GIFTI
 
 __all__ = ["read_mesh", "space_of_file"]
 
+OF_VTK = (".vtk", ".vtp", *READ_BY_VTK)
 _HEAD = 1 << 16  # bytes in which titles and comments are looked for
 
 
-def read_mesh(path: str | PathLike[str], *, tkras: bool | None = None) -> Any:
+def read_mesh(path: str | PathLike[str], *, space: str | None = None, tkras: bool | None = None) -> Any:
     """Read a surface of any format, GIFTI and FreeSurfer's included, in RAS+ mm.
 
     Parameters
     ----------
     path : str or PathLike
+    space : {"RAS", "LPS"}, optional
+        Of coordinates in a file of VTK (``.vtk``, ``.vtp``, ``.vtu`` and others) that names none; RAS by default.
     tkras : bool, optional
         Whether surfaces of FreeSurfer, GIFTI or not, stay in its surface space. By default they are moved to the
         scanner's space, by ``c_ras`` of the file, unless the file says that they are there (its coordinate system is
@@ -39,7 +43,7 @@ def read_mesh(path: str | PathLike[str], *, tkras: bool | None = None) -> Any:
     Raises
     ------
     ValueError
-        If the file holds no points.
+        If the file holds no points, or `space` is unknown.
     """
     place = Path(path).expanduser()
     if place.name.lower().endswith((*GIFTI, *FREESURFER)):
@@ -50,7 +54,8 @@ def read_mesh(path: str | PathLike[str], *, tkras: bool | None = None) -> Any:
     mesh = pv.read(place)
     if isinstance(mesh, pv.DataSet) and not mesh.n_points:
         raise ValueError(f"{path} holds no points: there is nothing to draw; check what wrote it")
-    return _in_ras(mesh, space_of_file(place, mesh))
+    given = unnamed() if space is None else checked(space)
+    return _in_ras(mesh, space_of_file(place, mesh) or (given if place.name.lower().endswith(OF_VTK) else None))
 
 
 def _in_ras(mesh: Any, space: Space | None) -> Any:

@@ -7,7 +7,7 @@ from os import PathLike
 import pyvista as pv
 
 from pvfiblets.images.sources import as_image
-from pvfiblets.query.density.density_map import image_of
+from pvfiblets.query.density.map_files import image_of
 
 __all__ = ["read_volume"]
 

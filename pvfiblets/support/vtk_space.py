@@ -11,6 +11,7 @@ import re
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
@@ -27,7 +28,9 @@ __all__ = [
     "space_of_dataset",
     "space_taken",
     "to_ras",
+    "unnamed",
     "unnamed_as",
+    "unnamed_here",
 ]
 
 Space: TypeAlias = Literal["RAS", "LPS"]
@@ -43,6 +46,7 @@ _NAMES: dict[str, Space] = {
     "LEFT-POSTERIOR-SUPERIOR": "LPS",
 }
 _unnamed: Space | None = None
+_unnamed_here: ContextVar[Space | None] = ContextVar("unnamed_here", default=None)
 _TAG = re.compile(r"SPACE=([\w-]+)", re.IGNORECASE)
 
 
@@ -85,6 +89,21 @@ def unnamed_as(space: str | None) -> Iterator[None]:
         _unnamed = before
 
 
+@contextmanager
+def unnamed_here(space: Space | None) -> Iterator[None]:
+    """Take files that name no space as `space`, in this thread alone; of None, as :func:`unnamed_as` says."""
+    token = _unnamed_here.set(space or _unnamed_here.get())
+    try:
+        yield
+    finally:
+        _unnamed_here.reset(token)
+
+
+def unnamed() -> Space | None:
+    """Return the space chosen for files that name none; None if none was."""
+    return _unnamed_here.get() or _unnamed
+
+
 def checked(space: str) -> Space:
     """Return a space that a caller gives in any case."""
     known = _NAMES.get(str(space).upper())
@@ -97,8 +116,8 @@ def space_taken(named: Space | None, given: Space | None = None) -> tuple[Space,
     """Return the space of a file, from the name in it and what the caller says of files without one, and the reason."""
     if named is not None:
         return named, "named by the file"
-    if (given or _unnamed) is not None:
-        return given or _unnamed or OURS, "given, the file names none"
+    if chosen := given or unnamed():
+        return chosen, "given, the file names none"
     return OURS, "assumed, the file names none; DIPY up to 1.11 wrote LPS: --space LPS"
 
 

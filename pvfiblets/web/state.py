@@ -28,6 +28,7 @@ class Page:
     expert_open: bool = False
     file_search: str = ""
     file_sort: str = "name"
+    open_space: str = "RAS"  # of files of VTK that name none
     uploading: str = ""
     uploaded: float = 0.0  # per cent; below zero: nobody knows
     export_what: str = "selected"
@@ -117,6 +118,7 @@ WRITABLE: dict[str, type] = {
     "expert_open": bool,
     "file_search": str,
     "file_sort": str,
+    "open_space": str,
     "uploading": str,
     "uploaded": float,
     "export_what": str,

@@ -15,6 +15,7 @@ from pvfiblets.errors import FormatError
 from pvfiblets.other_libraries import streamlines_of
 from pvfiblets.plotting.meshes import read_mesh
 from pvfiblets.plotting.region_sources import as_region
+from pvfiblets.support.vtk_space import unnamed_as
 
 
 @pytest.mark.parametrize("suffix", [".tck", ".trk", ".trx", ".fiblets"])
@@ -236,6 +237,18 @@ def test_blocks_are_where_they_or_the_whole_say(named_by, ball, tmp_path):
     for mesh in (found[0], found[2][0]):
         np.testing.assert_allclose(mesh.center, (30, 20, 0), atol=1e-4)
     np.testing.assert_allclose(streamlines_of(found).points, 2 * [[30, 20, 0]], atol=1e-4)
+
+
+@pytest.mark.parametrize("name", ["a.vtk", "a.vtp", "a.vtu"])
+def test_a_mesh_of_vtk_that_names_no_space_is_where_the_caller_says(name, ball, tmp_path):
+    (ball.cast_to_unstructured_grid() if name == "a.vtu" else ball).save(tmp_path / name)
+    np.testing.assert_allclose(read_mesh(tmp_path / name).center, (-RIGHT, -FRONT, 0), atol=1e-4)
+    np.testing.assert_allclose(read_mesh(tmp_path / name, space="lps").center, (RIGHT, FRONT, 0), atol=1e-4)
+    with unnamed_as("LPS"):  # as --space of the commands
+        np.testing.assert_allclose(read_mesh(tmp_path / name).center, (RIGHT, FRONT, 0), atol=1e-4)
+        np.testing.assert_allclose(read_mesh(tmp_path / name, space="RAS").center, (-RIGHT, -FRONT, 0), atol=1e-4)
+    with pytest.raises(ValueError, match="unknown space 'x'; choose 'RAS' or 'LPS'"):
+        read_mesh(tmp_path / name, space="x")
 
 
 def test_a_region_is_where_the_mesh_says(ball):

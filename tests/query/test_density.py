@@ -1,5 +1,6 @@
 """Density maps: against a clip in NumPy that cuts one segment at a time, and examples whose numbers are known."""
 
+import gzip
 import itertools
 
 import nibabel as nib
@@ -379,6 +380,46 @@ def test_images_of_pyvista_lie_where_the_voxels_are():
         assert np.shares_memory(image[contrast], found.values) or contrast == "direction"
 
 
+@pytest.mark.parametrize("contrast", ["count", "length", "direction"])
+@pytest.mark.parametrize("suffix", [".mif", ".mif.gz"])
+def test_a_mif_is_what_its_format_says(tmp_path, suffix, contrast):
+    """Read by the words of MRtrix's page on the format: fields of text, then numbers where ``file`` says."""
+    found = pf.density(LINES, like=(SHAPE, SHEARED), contrast=contrast)
+    found.save(tmp_path / f"a{suffix}")
+    raw = (tmp_path / f"a{suffix}").read_bytes()
+    raw = gzip.decompress(raw) if suffix.endswith(".gz") else raw
+    lines = raw[: raw.index(b"\nEND\n")].decode().split("\n")
+    assert lines[0] == "mrtrix image"
+    fields = dict(line.split(": ") for line in lines[1:] if not line.startswith(("transform", "comments")))
+    shape = tuple(map(int, fields["dim"].split(",")))
+    assert shape == found.values.shape
+    assert fields["layout"] == ",".join(f"+{axis}" for axis in range(len(shape)))
+    kind = {"Int32LE": "<i4", "Float32LE": "<f4"}[fields["datatype"]]
+    assert (kind == "<i4") == (contrast == "count")
+    data = np.frombuffer(raw, kind, offset=int(fields["file"].split()[1])).reshape(shape, order="F")
+    np.testing.assert_allclose(data, found.values, rtol=1e-6)
+    rows = np.array([line.split(": ")[1].split(",") for line in lines if line.startswith("transform")], float)
+    np.testing.assert_allclose(np.linalg.norm(rows[:, :3], axis=0), 1.0)
+    affine = rows * [*np.array(fields["vox"].split(",")[:3], float), 1.0]
+    np.testing.assert_allclose(affine, SHEARED[:3])
+    with pytest.raises(ValueError, match="MIF has no float16; give dtype='float32'"):
+        found.save(tmp_path / f"a{suffix}", dtype=np.float16)
+
+
+@pytest.mark.parametrize("contrast", ["count", "direction"])
+def test_pyvista_reads_a_vti(tmp_path, contrast):
+    straight = SHEARED.copy()
+    straight[:3, :3] = np.linalg.qr(SHEARED[:3, :3])[0] * [2.0, 3.0, 4.0]
+    found = pf.density(LINES, like=(SHAPE, straight), contrast=contrast)
+    found.save(tmp_path / "a.vti")
+    image = pv.read(tmp_path / "a.vti")
+    np.testing.assert_allclose(image.index_to_physical_matrix, straight, atol=1e-12)
+    values = image.active_scalars.reshape(*SHAPE, *found.values.shape[3:], order="F")
+    assert image.active_scalars_name == found.name
+    np.testing.assert_allclose(values, found.values, rtol=1e-6)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.vti"]
+
+
 @pytest.mark.parametrize("suffix", [".nii", ".nii.gz"])
 def test_nibabel_reads_what_is_written(tmp_path, suffix):
     path = tmp_path / f"a{suffix}"
@@ -400,7 +441,7 @@ def test_nibabel_reads_what_is_written(tmp_path, suffix):
     straight = pf.density(LINES, 15.0)
     straight.save(path)
     np.testing.assert_allclose(nib.load(path).get_qform(), straight.affine, atol=1e-5)
-    with pytest.raises(ValueError, match=r"a\.png is no name of a NIfTI file"):
+    with pytest.raises(ValueError, match=r"a\.png is no name of an image"):
         straight.save(tmp_path / "a.png")
 
 

@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+import pyvista as pv
 
 pytestmark = pytest.mark.more
 
@@ -160,6 +161,22 @@ def test_menus_close_files_are_found_and_sentences_are_said_once(revisit):
     here.ready()
     here.wait(lambda: here.state("toast_open") is False, "no sentence that was said before")
     (here.served.root / "bad_lines.trk").unlink()
+
+
+def test_a_file_of_vtk_is_opened_in_the_space_that_is_chosen(revisit):
+    here = revisit("lines.fiblets")
+    pv.lines_from_points(np.array([[20.0, 5, 7], [30, 5, 7], [40, 5, 7]])).save(here.served.root / "dipy.vtk")
+    here.press("o")
+    here.page.wait_for_selector("[data-part=space]")
+    here.page.click("[data-space=LPS]")
+    here.wait(lambda: here.state("open_space") == "LPS", "the choice")
+    here.page.click("[data-entry='dipy.vtk']")
+    here.wait(lambda: here.layers() == 2, "the layer")
+    saved = json.loads(here.page.evaluate("window.trame.trigger('save_session')"))
+    assert saved["layers"][1]["source"] == {"path": "dipy.vtk", "space": "LPS"}
+    here.press("o")
+    here.wait(lambda: here.state("open_space") == "RAS", "the default again")
+    (here.served.root / "dipy.vtk").unlink()
 
 
 def passing(lines, sphere):

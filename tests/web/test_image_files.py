@@ -22,7 +22,7 @@ from pvfiblets.volumes import RaycastVolume
 from pvfiblets.web.scene import layers
 from pvfiblets.web.scene.loading import Files
 from pvfiblets.web.session import files as session
-from pvfiblets.web.session.document import Ids
+from pvfiblets.web.session.document import Ids, Source
 from pvfiblets.web.session.history import History
 from tests.web.desk import Desk, assert_script_draws, scene_of_views
 
@@ -215,7 +215,7 @@ def test_what_is_wrong_with_gifti_is_said(tmp_path):
         with pytest.raises(FormatError, match="GIFTI"):
             read_surface(tmp_path / name)
         with pytest.raises((FormatError, ValueError)):
-            Files(tmp_path).load(type("Named", (), {"demo": None, "path": name})())
+            Files(tmp_path).load(Source(name))
 
 
 @pytest.fixture(scope="module")

@@ -5,14 +5,16 @@ import json
 import threading
 from dataclasses import replace
 
+import numpy as np
 import pytest
+import pyvista as pv
 
 from pvfiblets.web.server.access import LARGEST_SESSION
 from pvfiblets.web.server.scratch import Notes
 from pvfiblets.web.session import files as session
 from pvfiblets.web.session.document import Source
 from pvfiblets.web.session.files import SessionError
-from tests.web.desk import Desk
+from tests.web.desk import Desk, assert_script_draws
 
 
 @pytest.fixture
@@ -44,6 +46,46 @@ def saved(scene):
         scene.remove(other.id)
     scene.forget_unused()
     return data
+
+
+@pytest.mark.parametrize("kind", ["tractogram", "tubes", "mesh"])
+@pytest.mark.parametrize(("suffix", "names"), [(".vtk", False), (".vtp", False), (".vtp", True)])
+async def test_the_dialog_says_the_space_of_files_that_name_none(desk, scene, folder, kind, suffix, names):
+    """A line or a ball at x = 5, y = 7 of the file, which DIPY 1.11 meant as 5 mm to the left and 7 mm to the back."""
+    data = (
+        pv.Sphere(radius=2.0, center=(5, 7, 9)) if kind == "mesh" else pv.Spline([[4, 7, 9], [5, 7, 9], [6, 7, 9.0]], 9)
+    )
+    data.clear_data()
+    if kind == "tubes":
+        data["radius"] = np.full(data.n_points, 0.5)
+    if names:
+        data.field_data["SPACE"] = ["RAS"]
+    data.save(folder / f"one{suffix}")
+    files = desk.files
+    files.browse("")
+    assert next(entry for entry in desk.page.entries if entry["name"] == f"one{suffix}")["spaced"]
+    assert desk.page.open_space == "RAS"
+    desk.page.open_space = "LPS"
+    files.take(f"one{suffix}", False)
+    await desk.done()
+    (layer,) = scene.layers
+    assert (layer.kind, layer.source.space) == (kind, "LPS")
+    sign = 1.0 if names else -1.0  # a name counts for more than the choice
+    bounds = np.array(scene.actor(layer.id).bounds).reshape(3, 2).mean(axis=1)
+    np.testing.assert_allclose(bounds, [5 * sign, 7 * sign, 9], atol=0.2)
+    kept = session.to_dict(scene)
+    assert kept["layers"][0]["source"]["space"] == "LPS"
+    picture = scene.cameras.screenshot()
+    assert_script_draws(scene, folder, picture)
+    scene.remove(layer.id)
+    session.from_dict(scene, kept)
+    assert scene.layers[0].source.space == "LPS"
+    np.testing.assert_array_equal(scene.cameras.screenshot(), picture)
+    files.browse("")  # opened anew, the dialog is at its default
+    assert desk.page.open_space == "RAS"
+    kept["layers"][0]["source"]["space"] = "LAS"
+    with pytest.raises(SessionError, match="space of a source is 'LAS'; choose RAS or LPS"):
+        session.from_dict(scene, kept)
 
 
 async def test_a_session_is_read_beside_the_page_and_the_page_goes_on(desk, scene, threads):

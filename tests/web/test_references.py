@@ -10,6 +10,7 @@ from aiohttp import web
 
 from pvfiblets.errors import FibletsError
 from pvfiblets.web.scene.loading import Files
+from pvfiblets.web.session.document import Source
 from tests.web.desk import Desk
 
 HEADERS = {
@@ -51,7 +52,7 @@ def test_references_out_of_the_root_are_refused_with_one_sentence(home, suffix):
     for named in (f"{outside}/secret.raw", *names, f"{beside}/secret.raw", "aside.raw"):
         (home / f"a{suffix}").write_text(HEADERS[suffix].format(named))
         with pytest.raises(PermissionError) as caught:
-            Files(home).load(type("Named", (), {"demo": None, "path": f"a{suffix}"})())
+            Files(home).load(Source(f"a{suffix}"))
         said.add(str(caught.value))
     assert len(said) == 1
     assert "secret" not in said.pop()

@@ -13,13 +13,14 @@ from pvfiblets.formats.registry import suffixes
 from pvfiblets.support import memory
 from pvfiblets.web.panels.session_actions import SESSION, SessionActions
 from pvfiblets.web.scene.confined import ConfinedError, TakenError
-from pvfiblets.web.scene.file_kinds import MESHES, OF_VERTICES, TABLES, VALUES, VOLUMES
+from pvfiblets.web.scene.file_kinds import MESHES, OF_VERTICES, SPACED, TABLES, VALUES, VOLUMES
 from pvfiblets.web.scene.loading import Cancelled
 from pvfiblets.web.server.options import MEBIBYTE
 from pvfiblets.web.server.rpc_allowlist import EXPECTED, sentence
 from pvfiblets.web.session.document import LINES
 
 if TYPE_CHECKING:
+    from pvfiblets.support.vtk_space import Space
     from pvfiblets.web.session.document import Source
 
 PIECE = MEBIBYTE  # bytes of an upload at a time
@@ -80,7 +81,7 @@ class FileActions(SessionActions):
         self._app.refresh()
         return True
 
-    async def open(self, path: str, kind: str | None = None) -> bool:
+    async def open(self, path: str, kind: str | None = None, space: Space | None = None) -> bool:
         """Open a file beside everything else; return whether it was, rather than cancelled.
 
         A file of values colours the chosen tractogram, or the chosen mesh.
@@ -91,7 +92,7 @@ class FileActions(SessionActions):
             return await self._attach(path)
         try:
             loaded = await self.beside(
-                name, lambda progress, cancel: app.scene.load(path, kind, progress, cancel), "opening"
+                name, lambda progress, cancel: app.scene.load(path, kind, progress, cancel, space), "opening"
             )
             layer = memory.within(lambda: app.scene.add(loaded), reserve=0)
         except Cancelled:
@@ -141,9 +142,10 @@ class FileActions(SessionActions):
         app.page.file_search = ""
         app.page.several = not self._for
         if app.page.dialog != "open" or self._for:
-            app.page.marked = []
+            app.page.marked, app.page.open_space = [], "RAS"
         app.page.entries = [
             {"name": entry.name, "path": entry.path, "folder": entry.folder, "icon": _icon(entry),
+             "spaced": entry.name.lower().endswith(SPACED),
              "bytes": entry.size, "time": entry.time, "detail": "" if entry.folder else _size(entry.size)}
             for entry in entries
             if entry.folder or entry.name.lower().endswith(tuple(known))
@@ -172,7 +174,11 @@ class FileActions(SessionActions):
         elif path.lower().endswith(SESSION):
             self.open_session(path)
         else:
-            app.later(self.open(path))
+            app.later(self.open(path, space=self._space_chosen()))
+
+    def _space_chosen(self) -> Space | None:
+        """Return the space that the dialog says files of VTK have which name none; None where it is the default."""
+        return "LPS" if self._app.page.open_space == "LPS" else None
 
     def mark(self, path: str) -> None:
         """Choose a file in the file browser beside others, or no longer."""
@@ -194,12 +200,13 @@ class FileActions(SessionActions):
             return
         if sessions := [path for path in marked if path.lower().endswith(SESSION)]:
             raise ValueError(f"{Path(sessions[0]).name} is a session, which takes the place of all; open it alone")
-        app.later(self._open_marked(sorted(marked, key=lambda path: path.lower().endswith(VALUES))))
+        ordered = sorted(marked, key=lambda path: path.lower().endswith(VALUES))
+        app.later(self._open_marked(ordered, self._space_chosen()))
 
-    async def _open_marked(self, paths: list[str]) -> None:
+    async def _open_marked(self, paths: list[str], space: Space | None) -> None:
         for path in paths:
             try:
-                await self.open(path)
+                await self.open(path, space=space)
             except EXPECTED as error:  # the others are opened all the same
                 self._app.complain(sentence(error))
 
@@ -211,6 +218,7 @@ class FileActions(SessionActions):
         known = (*suffixes(), *VOLUMES, *MESHES, *VALUES)
         name = request.query.get("name", "")
         limit, size = app.options.upload, 0
+        space = self._space_chosen() if app.page.dialog == "open" else None  # not of files that are dropped on the page
         try:
             target = app.confined.uploaded(name, tuple(known))
             with contextlib.ExitStack() as stack:
@@ -236,14 +244,14 @@ class FileActions(SessionActions):
         except OSError as error:
             app.complain(f"{name} could not be stored: {error.strerror}")
             raise web.HTTPInsufficientStorage from error
-        app.later(self._open_upload(target, held))
+        app.later(self._open_upload(target, held, space))
         return web.Response(text="stored")
 
-    async def _open_upload(self, target: Path, held: contextlib.ExitStack) -> None:
+    async def _open_upload(self, target: Path, held: contextlib.ExitStack, space: Space | None) -> None:
         """Open what was uploaded; what cannot be opened, or ends this process, is not kept."""
         with held:
             try:
-                await self.open(self._app.confined.relative(target))
+                await self.open(self._app.confined.relative(target), space=space)
             except Exception:
                 target.unlink(missing_ok=True)
                 raise

@@ -16,8 +16,8 @@ from pvfiblets.volumes.gifti_files import SUFFIXES as GIFTI
 from pvfiblets.volumes.gifti_files import VALUES as OF_GIFTI
 
 __all__ = [
-    "GIFTI", "MESHES", "OF_VERTICES", "TABLES", "VALUES", "VOLUMES", "VTK_SUFFIXES", "is_tractogram_folder", "kind_of",
-    "read_vtk",
+    "GIFTI", "MESHES", "OF_VERTICES", "SPACED", "TABLES", "VALUES", "VOLUMES", "VTK_SUFFIXES", "is_tractogram_folder",
+    "kind_of", "read_vtk",
 ]  # fmt: skip
 
 MESHES = (".ply", ".stl", ".obj", ".vtu", ".vtp", ".vtk", ".off", ".glb", ".gltf", *GIFTI, *FREESURFER)
@@ -34,6 +34,9 @@ TABLES = (".txt", ".ctab", ".label", ".lbl", ".tsv", ".label.gii", ".label.gii.g
 
 VTK_SUFFIXES = (".vtk", ".vtp")
 """Suffixes of VTK's files that hold lines, surfaces or volumes."""
+
+SPACED = (*VTK_SUFFIXES, ".fib", ".vtu")
+"""Suffixes of files that need not name the space of their coordinates: RAS+ or LPS+."""
 
 _RADII = ("radius", "Radius", "MaximumInscribedSphereRadius")
 

@@ -19,8 +19,10 @@ from pvfiblets.formats.gzipped import check_ratio
 from pvfiblets.formats.registry import UnknownFormatError, is_trx_folder, suffix_of, suffixes
 from pvfiblets.images.sources import as_image
 from pvfiblets.support.file_notes import notes_of
+from pvfiblets.support.vtk_space import unnamed_here
 from pvfiblets.web.scene.file_kinds import (
     MESHES,
+    SPACED,
     TABLES,
     VALUES,
     VOLUMES,
@@ -167,7 +169,8 @@ class Files:
         self, source: Source, kind: str | None = None, progress: Progress | None = None, cancel: Cancel | None = None
     ) -> Loaded:
         """Read, and where it must be, compress a source; it may take minutes."""
-        loaded = self._load(source, kind, progress, cancel)
+        with unnamed_here(source.space):
+            loaded = self._load(source, kind, progress, cancel)
         texts = () if source.path is None else notes_of(self.resolve(source.path))
         return replace(loaded, facts=loaded.facts | {"notes": list(texts)}) if texts else loaded
 
@@ -180,8 +183,8 @@ class Files:
         asked, kind = kind, kind_of(place) if kind is None else kind
         if asked is None and kind == "volume" and (fixels := read_fixels(place)) is not None:
             return Loaded("image", Source(self.name(place)), place.name, *fixels)
-        source = Source(self.name(place))
         name = place.name
+        source = Source(self.name(place), space=source.space if name.lower().endswith(SPACED) else None)
         if kind in (*LINES, "tubes"):
             check_ratio(place)
         if kind in LINES:

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from pvfiblets.formats.attachments import name_of
+from pvfiblets.support.vtk_space import Space
 from pvfiblets.web.scene import layers
 from pvfiblets.web.scene.actors import (
     add_actor,
@@ -260,15 +261,20 @@ class Scene:
     # Layers -------------------------------------------------------------------------------------
 
     def load(
-        self, path: str | Path, kind: str | None = None, progress: Progress | None = None, cancel: Cancel | None = None
-    ) -> Loaded:
-        """Read a file, and compress it if need be, for :meth:`add`; may run in a thread of its own."""
+        self, path: str | Path, kind: str | None = None, progress: Progress | None = None, cancel: Cancel | None = None,
+        space: Space | None = None,
+    ) -> Loaded:  # fmt: skip
+        """Read a file, and compress it if need be, for :meth:`add`; may run in a thread of its own.
+
+        A file of VTK that names no space has coordinates of `space`.
+        """
         if kind == "selection" or (kind is not None and kind not in layers.KINDS):
             raise ValueError(
                 f"kind is {kind!r}; choose one of {', '.join(k for k in layers.KINDS if k != 'selection')}"
             )
         place = self.files.resolve(path)
-        return self.images.with_names(self.files.load(Source(self.files.name(place)), kind, progress, cancel))
+        source = Source(self.files.name(place), space=space)
+        return self.images.with_names(self.files.load(source, kind, progress, cancel))
 
     def add(self, loaded: Loaded, *, name: str | None = None) -> Layer:
         """Add a layer of what :meth:`load` returned."""

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from pvfiblets.support.vtk_space import Space
 from pvfiblets.web.session.painting import Painting
 from pvfiblets.web.session.runs import numbers_in, pack, runs_of
 from pvfiblets.web.values import shown
@@ -118,6 +119,8 @@ class Source:
     values : tuple of str
         Files with a number for each of its points or streamlines; these have the files' names. Of an image, the table
         of its labels.
+    space : {"RAS", "LPS"} or None
+        Of its coordinates, if it is a file of VTK that names none.
     """
 
     path: str | None = None
@@ -125,11 +128,12 @@ class Source:
     size: int = 0
     ids: Ids | None = None
     values: tuple[str, ...] = ()
+    space: Space | None = None
 
     @property
     def bare(self) -> Source:
         """The same, whole and with no values but its own."""
-        return Source(self.path, self.demo, self.size)
+        return Source(self.path, self.demo, self.size, space=self.space)
 
 
 def as_volume_choice(source: Source) -> dict[str, Any]:

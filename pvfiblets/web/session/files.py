@@ -209,6 +209,8 @@ def _layer_to_dict(layer: Layer, path_of: Any, shape_of: Any) -> dict[str, Any]:
 
 def _place_of(source: Source, path_of: Any) -> dict[str, Any]:
     place = {"path": path_of(source.path)} if source.path is not None else {"demo": source.demo, "size": source.size}
+    if source.space is not None:
+        place["space"] = source.space
     return {**place, "values": [path_of(path) for path in source.values]} if source.values else place
 
 

@@ -134,7 +134,7 @@ class _Reading:
 
     def source(self, value: Any, kind: str | None = None) -> Source:
         """Return a source, for a layer of some kind; the file is read where ids must be among its streamlines."""
-        ids = mapping(value, "source", (), ("path", "demo", "size", "ids", "values")).get("ids")
+        ids = mapping(value, "source", (), ("path", "demo", "size", "ids", "values", "space")).get("ids")
         if kind is not None and (kind == "selection") != (ids is not None):
             raise ValueError(f"a layer of kind {kind!r} has {'no ' if ids is None else ''}ids in its source")
         values = value.get("values", [])
@@ -143,7 +143,10 @@ class _Reading:
         if (value.get("path") is None) == (value.get("demo") is None):
             raise ValueError("a source has either a path or a demo")
         if value.get("path") is not None:
-            found = Source(self.paths(value["path"]))
+            space = value.get("space")
+            if space not in (None, "RAS", "LPS"):
+                raise ValueError(f"space of a source is {shown(space)}; choose RAS or LPS")
+            found = Source(self.paths(value["path"]), space=space)
         elif value["demo"] in ("tracts", "head"):
             most = 100_000 if value["demo"] == "tracts" else 256
             found = Source(demo=value["demo"], size=whole(value.get("size"), "size of a demo", 2, most))

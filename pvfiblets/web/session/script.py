@@ -190,7 +190,7 @@ class _Writer(ViewWriter):
         loaded = self._scene.data(layer)
         if source.values and layer.kind == "mesh":
             self._imports.add("from pvfiblets.plotting.gifti import with_vertex_values")
-            mesh = self._mesh(str(source.path))
+            mesh = self._mesh(str(source.path), source.space)
             for one in source.values:
                 mesh = f"with_vertex_values({mesh}, {self._file(one)})"
             return mesh
@@ -207,17 +207,20 @@ class _Writer(ViewWriter):
         assert source.path is not None
         path = self._file(source.path)
         if layer.kind == "mesh":
-            return self._mesh(source.path)
+            return self._mesh(source.path, source.space)
+        if layer.kind in (*LINES, "tubes") and source.space is not None:
+            self._imports.add("import pvfiblets")
+            path = f"pvfiblets.read({path}, space={source.space!r})"
         if layer.kind == "volume" and source.path.lower().endswith((".vtk", ".vtp")):
             return f"pv.read({path})"
         if layer.kind in LINES and loaded.kept:
             return f"{path}, per_point={list(loaded.kept)}"
         return path
 
-    def _mesh(self, path: str) -> str:
+    def _mesh(self, path: str, space: str | None = None) -> str:
         """Return Python that reads a surface."""
         self._imports.add("from pvfiblets.plotting.meshes import read_mesh")
-        return mesh_code(path, self._file)
+        return mesh_code(path, self._file) if space is None else f"read_mesh({self._file(path)}, space={space!r})"
 
     def _colours(self, source: Source) -> Python:
         """Return Python of a volume that colours lines, as :meth:`.Files.load` takes it."""
@@ -247,7 +250,8 @@ class _Writer(ViewWriter):
             elif str(source.path).lower().endswith(".fiblets"):
                 made = f"pvfiblets.FibletSet.open({self._file(str(source.path))})"
             else:
-                made = f"pvfiblets.compress(pvfiblets.read({self._file(str(source.path))}){keep})"
+                space = f", space={source.space!r}" if source.space is not None else ""
+                made = f"pvfiblets.compress(pvfiblets.read({self._file(str(source.path))}{space}){keep})"
             self._lines += [f"{name} = {made}"]
             if source.values:
                 self._imports.add("from pvfiblets.plotting.fiblets.sources import with_values_of")
