@@ -22,6 +22,7 @@ MODULES = {
     "codec": "pvfiblets.report.studies.codec.study",
     "decode": "pvfiblets.report.studies.decode.study",
     "tractograms": "pvfiblets.report.studies.codec.tractograms",
+    "measures": "pvfiblets.report.studies.codec.measures",
     "pixels": "pvfiblets.report.studies.codec.pixels",
     "culling": "pvfiblets.report.studies.culling.study",
     "tubes": "pvfiblets.report.studies.tubes.study",

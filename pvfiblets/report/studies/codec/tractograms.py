@@ -16,7 +16,7 @@ from .data_sets import LENGTH, QUICK_STEPS, SMALL, STEPS, DataSet, files_of
 from .errors_and_times import Turns, median_step
 from .study import DEFAULT, Variant, measured, one_thread, variants
 
-__all__ = ["METHODS", "STUDY", "TractogramsStudy", "trackings"]
+__all__ = ["METHODS", "STUDY", "TractogramsStudy", "trackings", "whole_files"]
 
 METHODS = ("fiblets", "QFib", "paper's fiblets")
 BITS = "8 bits"  # of QFib, as in the paper
@@ -64,7 +64,7 @@ class TractogramsStudy:
             if variant.name in METHODS and variant.setting in (DEFAULT, BITS, "")
         ]
         with one_thread():
-            for data in chain(trackings(options), _files(options, left_out)):
+            for data in chain(trackings(options), whole_files(options, left_out)):
                 if not options.budget.allows():
                     left_out.append(LeftOut(data.name, "the time given was used up"))
                     continue
@@ -82,7 +82,7 @@ def trackings(options: Options) -> Iterator[DataSet]:
             yield DataSet(f"{algorithm}-like, {step:g} mm", algorithm, made)
 
 
-def _files(options: Options, left_out: list[LeftOut]) -> Iterator[DataSet]:
+def whole_files(options: Options, left_out: list[LeftOut]) -> Iterator[DataSet]:
     """Read whole files, the largest first."""
     from pvfiblets import formats
 
