@@ -235,16 +235,20 @@ def rest(stream, streamer):
 
 @pytest.fixture
 def refined(plotter, monkeypatch):
-    """A plotter with fiblets whose default is that of users, and a list that grows with its frames."""
+    """A plotter with fiblets whose samples are drawn one by one, and a list that grows with its frames."""
     monkeypatch.delenv("PVFIBLETS_ANTIALIAS")
     plotter.add_fiblets([[(0, 0, 0), (9, 4, 0)], [(0, 5, 0), (9, 1, 2)]], color="white", lighting=False)
+    plotter.picture.antialias_seconds = 1e6
     frames = []
     plotter.render_window.AddObserver("EndEvent", lambda *_: frames.append(1))
     return plotter, frames
 
 
-def test_at_rest_the_refined_picture_is_sent_and_nothing_after_it(refined):
+# The last of those one by one has whole thin lines: depths are theirs.
+@pytest.mark.parametrize(("limit", "drawn"), [(1e6, 18), (None, 2)])
+def test_at_rest_the_refined_picture_is_sent_and_nothing_after_it(refined, limit, drawn):
     plotter, frames = refined
+    plotter.picture.antialias_seconds = limit
     stream, streamer = PictureStream(plotter, "view"), Streamer()
     sent = []
     streamer.push_content = lambda name, meta, content: (sent.append(content), streamer.sizes.append(meta))
@@ -253,7 +257,7 @@ def test_at_rest_the_refined_picture_is_sent_and_nothing_after_it(refined):
     rest(stream, streamer)
     assert stream.sent == 2
     assert stream.frames == 1
-    assert len(frames) == 18  # of which the last has whole thin lines: depths are theirs
+    assert len(frames) == drawn
     first, last = (np.asarray(Image.open(io.BytesIO(content)).convert("L")).astype(int) for content in sent)
     assert plotter.picture.samples == 16
     assert (first != last).any()
