@@ -2,6 +2,7 @@
 
 import asyncio
 import contextlib
+import inspect
 import sys
 from pathlib import Path
 
@@ -95,7 +96,8 @@ def run(coroutine):
 
 
 async def until(condition):
-    """Let other tasks run until a condition holds; only a hang reaches the bound."""
+    """Let other tasks run until a condition, which may be a coroutine's, holds; only a hang reaches the bound."""
     async with asyncio.timeout(120):
-        while not condition():
+        while not (found := await held if inspect.isawaitable(held := condition()) else held):
             await asyncio.sleep(0.01)
+    return found
