@@ -94,7 +94,7 @@ def test_a_server_sends_the_finished_picture_once(scene, monkeypatch):
         scene.camera.Azimuth(3.0)
         scene.render()
         assert sent == [1]
-        async with asyncio.timeout(20):
+        async with asyncio.timeout(120):
             while len(sent) < 2:
                 await asyncio.sleep(0.01)
         assert scene.picture._pacer._call is None  # nothing more is to come

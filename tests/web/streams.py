@@ -37,7 +37,7 @@ def doing(stream):
 
 async def rests(stream):
     """Wait until nothing more comes of a stream: it waits for something to happen, and nothing has."""
-    async with asyncio.timeout(60):
+    async with asyncio.timeout(120):
         while stream._wanted.is_set() or doing(stream) != ["_run", "wait"]:
             await asyncio.sleep(0.002)
 
@@ -55,7 +55,7 @@ def drag(stream, streamer, moves=6):
         for k in range(moves):
             sent = len(streamer.sizes)
             stream.on_interaction("", event("MouseMove", 40 + 4 * k))
-            async with asyncio.timeout(30):
+            async with asyncio.timeout(120):
                 while len(streamer.sizes) == sent:
                     await asyncio.sleep(0.002)
         stream.on_interaction("", event("LeftButtonRelease", 40 + 4 * moves))

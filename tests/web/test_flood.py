@@ -346,11 +346,11 @@ async def sent_until_closed(reader, writer, pieces):
                 break
             writer.write(piece)
             sent += len(piece)
-            await asyncio.wait_for(asyncio.shield(writer.drain()), 5)
+            await asyncio.wait_for(asyncio.shield(writer.drain()), 60)
             await asyncio.sleep(0)
     except (ConnectionError, TimeoutError):
         pass
-    await asyncio.wait_for(closed, 10)
+    await asyncio.wait_for(closed, 60)
     writer.close()
     return sent
 
@@ -479,7 +479,7 @@ async def test_a_flood_of_calls_lets_others_through(tmp_path):
                 await asyncio.sleep(0.05)
             await flooding
         assert waits
-        assert max(waits) < 5.0
+        assert max(waits) < 15.0
 
 
 @pytest.mark.few(2)

@@ -83,7 +83,7 @@ def test_a_view_that_somebody_else_draws_is_left_out_until_it_is_asked_for():
         stream.set_streamer(SimpleNamespace(push_content=lambda _name, _meta, content: sent.append(content)))
         known = len(sent)
         stream.request()
-        async with asyncio.timeout(30):
+        async with asyncio.timeout(120):
             while len(sent) == known:
                 await asyncio.sleep(0.01)
 
@@ -128,7 +128,7 @@ def test_a_picture_that_is_waited_for_comes_coarse_and_then_whole(plotter):
     async def run():
         stream.set_streamer(streamer)
         stream.hasten()
-        async with asyncio.timeout(30):
+        async with asyncio.timeout(120):
             while not streamer.sizes or streamer.sizes[-1] != (200, 120):
                 await asyncio.sleep(0.01)
         await stream.close()
@@ -390,12 +390,12 @@ def test_a_stream_is_closed_at_the_very_moment_of_an_event(plotter, monkeypatch)
     async def run():
         stream.set_streamer(Streamer())
         stream.request()
-        async with asyncio.timeout(60):
+        async with asyncio.timeout(120):
             while doing(stream)[-3:] != ["_refine", "_wanted_within", "wait"]:
                 await asyncio.sleep(0.002)
         stream.request()
         await asyncio.sleep(0)  # the event has come, and who waits for it has not been told
-        async with asyncio.timeout(20):
+        async with asyncio.timeout(120):
             await stream.close()
         assert stream._task.done()
 

@@ -79,7 +79,7 @@ def message(content, total=None):
     return b"id__" + bytes(4) + (len(content) if total is None else total).to_bytes(4, "little") + content
 
 
-async def raw(gate, text, *, seconds=5.0):
+async def raw(gate, text, *, seconds=60.0):
     """Send bytes as they are, and return all that comes back until the connection is closed."""
     reader, writer = await asyncio.open_connection("127.0.0.1", gate.port)
     try:
@@ -92,7 +92,7 @@ async def raw(gate, text, *, seconds=5.0):
 
 
 def run(coroutine):
-    return asyncio.run(asyncio.wait_for(coroutine, 60))
+    return asyncio.run(asyncio.wait_for(coroutine, 250))
 
 
 async def until(condition):
