@@ -518,7 +518,7 @@ WRONG = [
     ("serve missing.tck --port 0", "missing.tck: No such file"),
     ("serve a.trx --port 99999999", "--port 99999999: a port is from 0 to 65535"),
     ("serve --root nowhere", "nowhere: not a folder; --root names the one"),
-    ("report --only nothing -o out", "no study 'nothing'; choose among codec"),
+    ("report --only nothing -o out", "no study 'nothing'; choose among antialias"),
     ("report -o a.trx", "a.trx: it is a file; name a folder"),
     ("demo --output a.trx", "a.trx: it is a file; name a folder"),
 ]  # fmt: skip

@@ -12,7 +12,7 @@ import warnings
 from collections.abc import Callable, Mapping
 from typing import Any, cast
 
-from vtkmodules.vtkRenderingCore import VTK_PBR, vtkActor
+from vtkmodules.vtkRenderingCore import vtkActor
 
 from pvfiblets.mappers import resolve
 from pvfiblets.mappers.depth_peeling import with_layers
@@ -204,7 +204,7 @@ def _follow_actor(mapper: Any) -> Callable[[Any, str], None]:
 
 
 def _keep_surface(actor_property: Any, event: str) -> None:
-    """Undo wireframe, points, edges, culled front faces and physical shading: what is drawn is no surface of VTK's."""
+    """Undo wireframe, points, edges and culling of front faces, in which VTK would not fill the covering triangle."""
     undone = []
     if actor_property.GetRepresentation() != VTK_SURFACE:
         actor_property.SetRepresentationToSurface()
@@ -215,9 +215,6 @@ def _keep_surface(actor_property: Any, event: str) -> None:
     if actor_property.GetFrontfaceCulling():
         actor_property.SetFrontfaceCulling(False)
         undone.append("culling")
-    if actor_property.GetInterpolation() == VTK_PBR:
-        actor_property.SetInterpolationToGouraud()
-        undone.append("interpolation")
     if undone and event:  # not what a theme or a property brings with it
         warnings.warn(
             f"prop.{' and prop.'.join(undone)} changes nothing here: what is drawn has no facets",

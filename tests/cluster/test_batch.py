@@ -224,7 +224,9 @@ def test_a_killed_workers_files_are_done_by_others(client, cohort, tmp_path):
     killed = []
 
     def kill():
+        deadline = time.monotonic() + 120
         while len(list((tmp_path / "out").glob("sub-*/*.fiblets"))) < 3:  # not in folders that come and go
+            assert time.monotonic() < deadline
             time.sleep(0.01)
         pid = min(client.run(os.getpid, on_error="ignore").values())
         os.kill(pid, signal.SIGKILL)

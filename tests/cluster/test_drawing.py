@@ -3,7 +3,7 @@
 import os
 import pickle
 import signal
-import time
+from contextlib import contextmanager
 
 import numpy as np
 import pytest
@@ -154,20 +154,38 @@ def test_a_worker_that_dies_is_made_up_for(make, whole, brain, client):
     assert_alike(read(parts.render(VIEW)), read(whole.render(VIEW)))
 
 
+@contextmanager
+def busy(client, workers):
+    """Have workers that do nothing else meanwhile."""
+    from distributed import Event
+
+    def hold(begun, end):
+        begun.set()
+        end.wait(120)
+
+    end, begun = Event(client=client), {worker: Event(client=client) for worker in workers}
+    held = [client.submit(hold, one, end, pure=False, priority=100, workers=[at]) for at, one in begun.items()]
+    assert all(one.wait(120) for one in begun.values())
+    try:
+        yield
+    finally:
+        end.set()
+        client.gather(held)
+
+
 def test_a_late_part_leaves_the_picture_incomplete_and_the_next_goes_on(make, whole, brain, client):
     parts = make(brain, count=2)
     parts.render(VIEW)
     # dask has whoever is free draw what is late: both are busy.
-    blocked = [client.submit(time.sleep, 1.5, pure=False, priority=100, workers=[one]) for one in parts._workers()]
-    parts.patience = 0.2
-    seen = [read(parts.render(CLOSE)).drawn.sum()]
-    assert parts.unfinished
-    assert parts.share < 1.0
+    with busy(client, parts._workers()):
+        parts.patience = 0.2
+        seen = [read(parts.render(CLOSE)).drawn.sum()]
+        assert parts.unfinished
+        assert parts.share < 1.0
     while parts.unfinished:
         seen.append(read(parts.render(CLOSE)).drawn.sum())
     assert (np.diff(seen) >= 0).all()
     assert_alike(read(parts.render(CLOSE)), read(whole.render(CLOSE)))
-    client.gather(blocked)
 
 
 def test_a_changed_file_is_told(gl, client, brain, tmp_path):
@@ -182,14 +200,13 @@ def test_a_changed_file_is_told(gl, client, brain, tmp_path):
 
 def test_workers_that_all_go_away_are_told(make, brain, client, monkeypatch):
     parts = make(brain)
-    blocked = [client.submit(time.sleep, 1.5, pure=False, priority=100, workers=[one]) for one in parts._workers()]
     monkeypatch.setattr(cluster_renderer, "GRACE", 0.0)
     monkeypatch.setattr(cluster_renderer, "TICK", 0.01)
-    parts._ask(VIEW, FibletStyle())
-    monkeypatch.setattr(parts, "_there", list)
-    with pytest.raises(EngineError, match="no workers; start some, or leave the cluster out"):
-        parts.render(VIEW)
-    client.gather(blocked)
+    with busy(client, parts._workers()):
+        parts._ask(VIEW, FibletStyle())
+        monkeypatch.setattr(parts, "_there", list)
+        with pytest.raises(EngineError, match="no workers; start some, or leave the cluster out"):
+            parts.render(VIEW)
 
 
 def test_no_cluster_and_no_workers_are_told(gl, brain, monkeypatch):

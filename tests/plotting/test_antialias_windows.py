@@ -6,12 +6,13 @@ import asyncio
 import os
 import subprocess
 import sys
-import time
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from pvfiblets.antialias import VARIABLE
+from pvfiblets.plotting.antialias_pacing import REST
 from tests.display import display
 
 from .refined_scene import Renders, drawn, grabbed, real_default, shot  # noqa: F401 - a fixture
@@ -23,10 +24,17 @@ def scene():
         yield plotter
 
 
-def test_a_window_draws_sample_after_sample_until_it_is_finished(scene, monkeypatch):
+@pytest.fixture
+def clock(monkeypatch):
+    """Return a list with the seconds that windows have for the time; tests move them on."""
+    now = [1000.0]
+    monkeypatch.setattr("pvfiblets.plotting.antialias_pacing.time", SimpleNamespace(monotonic=lambda: now[0]))
+    return now
+
+
+def test_a_window_draws_sample_after_sample_until_it_is_finished(scene, clock, monkeypatch):
     """As on a screen: after each frame a timer is asked for, whose event draws the next sample."""
     monkeypatch.setattr("pvfiblets.plotting.antialias_pacing.Pacer.seen", True)
-    monkeypatch.setattr("pvfiblets.plotting.antialias_pacing.REST", 0.05)
     interactor, asked = scene.iren.interactor, []
     interactor.AddObserver("CreateTimerEvent", lambda *_: asked.append(1))
     renders = Renders(scene)
@@ -38,21 +46,21 @@ def test_a_window_draws_sample_after_sample_until_it_is_finished(scene, monkeypa
     plain = grabbed(scene)
     interactor.InvokeEvent("TimerEvent")  # too early: somebody else's
     assert renders.since() == 0
-    time.sleep(0.06)
+    clock[0] += REST
     for count in range(1, 17):
         interactor.InvokeEvent("TimerEvent")
         assert (renders.since(), scene.picture.samples) == (1, count)
         assert np.array_equal(grabbed(scene), plain) == (count < 8)
-        time.sleep(0.002)
+        clock[0] += 0.002
     for _ in range(3):
         interactor.InvokeEvent("TimerEvent")
-        time.sleep(0.06)
+        clock[0] += 2 * REST
     assert renders.since() == 0
     finished = grabbed(scene)
     assert np.array_equal(shot(scene), finished)
 
 
-def test_while_the_camera_moves_pictures_are_plain_and_no_timer_is_asked_for(scene, monkeypatch):
+def test_while_the_camera_moves_pictures_are_plain_and_no_timer_is_asked_for(scene, clock, monkeypatch):
     monkeypatch.setattr("pvfiblets.plotting.antialias_pacing.Pacer.seen", True)
     scene.enable_trackball_style()
     interactor, renders = scene.iren.interactor, Renders(scene)
@@ -68,7 +76,7 @@ def test_while_the_camera_moves_pictures_are_plain_and_no_timer_is_asked_for(sce
     interactor.LeftButtonReleaseEvent()
     assert scene.picture._pacer._due > 0.0
     assert renders.since() == 1
-    time.sleep(0.2)
+    clock[0] += REST
     interactor.InvokeEvent("TimerEvent")
     assert (renders.since(), scene.picture.samples) == (1, 1)
     assert scene.picture.refine()
@@ -86,10 +94,10 @@ def test_a_server_sends_the_finished_picture_once(scene, monkeypatch):
         scene.camera.Azimuth(3.0)
         scene.render()
         assert sent == [1]
-        async with asyncio.timeout(20):
+        async with asyncio.timeout(120):
             while len(sent) < 2:
                 await asyncio.sleep(0.01)
-        await asyncio.sleep(0.1)
+        assert scene.picture._pacer._call is None  # nothing more is to come
 
     asyncio.run(look())
     assert sent == [1, 16]
@@ -105,17 +113,12 @@ plotter.add_fiblets([[(0, 0, 0), (9, 4, 0)], [(0, 5, 0), (9, 1, 2)]], color="whi
 frames = []
 plotter.render_window.AddObserver("EndEvent", lambda *_: frames.append(plotter.picture.samples))
 plotter.show(interactive_update=True, auto_close=False)
-def wait(seconds):
-    end = time.monotonic() + seconds
-    while time.monotonic() < end:
+def until_finished():
+    end = time.monotonic() + 60.0
+    while (plotter.picture.samples < 16 or plotter.picture._pacer._due) and time.monotonic() < end:
         plotter.iren.process_events()
         time.sleep(0.002)
-def until_finished():
-    end = time.monotonic() + 20.0
-    while plotter.picture.samples < 16 and time.monotonic() < end:
-        wait(0.01)
-    wait(0.5)
-until_finished()  # VTK draws once more when the window appears
+until_finished()
 frames.clear()
 plotter.iren.interactor.SetEventInformation(90, 70)
 plotter.iren.interactor.MouseWheelForwardEvent()

@@ -2,7 +2,7 @@
 
 import asyncio
 
-from pvfiblets.web.view.stream import REST, PictureStream
+from pvfiblets.web.view.stream import PictureStream
 
 
 def slow_stream(plotter, seconds=1.0, **settings):
@@ -26,6 +26,22 @@ class Streamer:
         self.qualities.append(meta["quality"])
 
 
+def doing(stream):
+    """Return the names of the coroutines in which a stream is, the outermost first."""
+    names, coroutine = [], stream._task.get_coro()
+    while hasattr(coroutine, "cr_code"):
+        names.append(coroutine.cr_code.co_name)
+        coroutine = coroutine.cr_await
+    return names
+
+
+async def rests(stream):
+    """Wait until nothing more comes of a stream: it waits for something to happen, and nothing has."""
+    async with asyncio.timeout(120):
+        while stream._wanted.is_set() or doing(stream) != ["_run", "wait"]:
+            await asyncio.sleep(0.002)
+
+
 def drag(stream, streamer, moves=6):
     """Drag over the picture, a frame a move, let go and wait until nothing more comes."""
 
@@ -39,14 +55,11 @@ def drag(stream, streamer, moves=6):
         for k in range(moves):
             sent = len(streamer.sizes)
             stream.on_interaction("", event("MouseMove", 40 + 4 * k))
-            async with asyncio.timeout(30):
+            async with asyncio.timeout(120):
                 while len(streamer.sizes) == sent:
                     await asyncio.sleep(0.002)
         stream.on_interaction("", event("LeftButtonRelease", 40 + 4 * moves))
-        async with asyncio.timeout(30):
-            while streamer.sizes[-1] != (200, 120) or streamer.qualities[-1] != stream.still_quality:
-                await asyncio.sleep(0.01)
-        await asyncio.sleep(2 * REST)
+        await rests(stream)
         await stream.close()
 
     asyncio.run(run())

@@ -17,7 +17,7 @@ from pvfiblets.web.server import relay
 from pvfiblets.web.server.access import LARGEST_MESSAGE
 from pvfiblets.web.server.connections import Connections, room
 from pvfiblets.web.server.log_limiter import LogLimiter, printable
-from tests.web.visitors import TOKEN, Browser, gate, message, raw
+from tests.web.visitors import TOKEN, Browser, gate, message, raw, until
 
 
 @contextlib.asynccontextmanager
@@ -36,11 +36,10 @@ async def many(server, count, text=b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nX-Slow
         await asyncio.gather(*(writer.wait_closed() for writer in writers), return_exceptions=True)
 
 
-async def answered(browser, path="/", seconds=2.0):
-    begun = time.monotonic()
-    status, _ = await browser.get(path)
-    assert time.monotonic() - begun < seconds
-    return status
+async def answered(browser, path="/"):
+    """Return the status of an answer that comes before anybody else is given up."""
+    async with asyncio.timeout(15.0):
+        return (await browser.get(path))[0]
 
 
 @pytest.mark.few(1)
@@ -73,17 +72,13 @@ async def test_connections_that_are_all_at_work_leave_a_short_answer_for_others(
 
 async def test_a_request_that_does_not_come_whole_is_given_up(tmp_path):
     async def give_up(server, text):
-        begun = time.monotonic()
         reader, writer = await asyncio.open_connection("127.0.0.1", server.port)
         writer.write(text)
-        for _ in range(4):  # a few bytes now and then gain no time
-            await asyncio.sleep(0.1)
-            with contextlib.suppress(ConnectionError):
-                writer.write(b"a")
+        answer = asyncio.ensure_future(reader.read())
+        while not (await asyncio.wait([answer], timeout=0.1))[0]:  # a few bytes now and then gain no time
+            writer.write(b"a")
         with contextlib.suppress(ConnectionError):
-            answer = await asyncio.wait_for(reader.read(), 5.0)
-            assert b" 200 " not in answer
-        assert time.monotonic() - begun < 4.0
+            assert b" 200 " not in answer.result()
         writer.close()
         with contextlib.suppress(ConnectionError):
             await writer.wait_closed()
@@ -100,23 +95,24 @@ async def test_a_request_that_does_not_come_whole_is_given_up(tmp_path):
 
 
 async def test_an_upload_that_stops_is_given_up_and_a_slow_one_is_not(tmp_path):
-    async def upload(server, browser, length):
+    async def upload(server, browser, *pieces):
         reader, writer = await asyncio.open_connection("127.0.0.1", server.port)
         writer.write(
             f"POST /upload?name=a.trk HTTP/1.1\r\nHost: 127.0.0.1:{server.port}\r\nOrigin: {browser.base}\r\n"
-            f"Cookie: {browser.cookies()}\r\nContent-Length: {length}\r\n\r\n".encode()
+            f"Cookie: {browser.cookies()}\r\nContent-Length: 60000\r\n\r\n".encode()
         )
-        for _ in range(5):
-            writer.write(b"x" * 500)  # two and a half kB a second
-            await asyncio.sleep(0.2)
-        answer = await asyncio.wait_for(reader.readline(), 5.0)
+        for size in pieces:
+            writer.write(bytes(size))
+            await asyncio.sleep(0.1)  # the pace of a slow network
+        answer = await reader.readline()
         writer.close()
         await writer.wait_closed()
         return answer
 
     async with gate(tmp_path, patience=0.5) as server, Browser(server) as browser:
         await browser.enter()
-        done, stopped = await asyncio.gather(upload(server, browser, 2500), upload(server, browser, 60_000))
+        slow = [5000] * 12  # in all longer than an upload may stop, and each of its pieces gains it seconds
+        done, stopped = await asyncio.gather(upload(server, browser, *slow), upload(server, browser, 500))
         assert b" 200 " in done
         assert b" 408 " in stopped
         assert await browser.pid()
@@ -143,12 +139,11 @@ async def test_requests_count_by_the_address_that_a_known_proxy_names(tmp_path, 
                 )
             assert (await browser.get("/index.html", headers=one))[0] == 429
             assert (await browser.get("/index.html", headers={"X-Forwarded-For": "10.0.0.2"}))[0] == 200
-        for _ in range(50):
-            status, _ = await browser.get("/index.html", headers=one)
-            if status == 200:
-                break
-            await asyncio.sleep(0.02)
-        assert status == 200
+
+        async def let_in():
+            return (await browser.get("/index.html", headers=one))[0] == 200
+
+        await until(let_in)
     assert "from 10.0.0.1: too many requests" in caplog.text
 
 
@@ -198,14 +193,13 @@ async def test_running_out_of_file_descriptors_is_a_few_lines_and_passes(tmp_pat
             os.close(free)
             resource.setrlimit(resource.RLIMIT_NOFILE, (free + 10, limits[1]))
             await asyncio.to_thread(crowd.stdout.readline)
-            await asyncio.sleep(1.5)  # the event loop tries again every second
+            # The event loop tries again every second.
+            await until(lambda: caplog.text.count("out of system resource") >= 2)
         finally:
             resource.setrlimit(resource.RLIMIT_NOFILE, limits)
             assert len(server.connections) < 30
             crowd.communicate()
-        await asyncio.sleep(1.1)
         assert await answered(browser) == 401
-    assert "out of system resource" in caplog.text
     assert len(caplog.records) < 30
 
 
@@ -301,14 +295,13 @@ async def test_whoever_waits_for_a_session_keeps_it_and_the_limit_holds(tmp_path
         assert await other.begin() == "ask again"
         assert (await other.get("/"))[0] == 503
         async with one.socket() as socket:
-            await asyncio.sleep(0.8)  # longer than the time-out, but connected
+            (session,) = server.launcher.sessions.values()
+            await until(lambda: session.connections)
+            session.seen -= 10.0  # longer ago than the time-out, but connected
+            await server.launcher.end_idle()
             await socket.send_bytes(message(b"here"))
             assert (await socket.receive_bytes()) == message(b"here")
-        for _ in range(100):
-            if not server.launcher.sessions:
-                break
-            await asyncio.sleep(0.05)
-        assert not server.launcher.sessions  # and the documented time later it ends
+        await until(lambda: not server.launcher.sessions)  # the documented time later it ends
         assert await other.begin() == "ready"
 
 
@@ -353,11 +346,11 @@ async def sent_until_closed(reader, writer, pieces):
                 break
             writer.write(piece)
             sent += len(piece)
-            await asyncio.wait_for(asyncio.shield(writer.drain()), 5)
+            await asyncio.wait_for(asyncio.shield(writer.drain()), 60)
             await asyncio.sleep(0)
     except (ConnectionError, TimeoutError):
         pass
-    await asyncio.wait_for(closed, 10)
+    await asyncio.wait_for(closed, 60)
     writer.close()
     return sent
 
@@ -397,11 +390,7 @@ async def test_a_reader_that_never_reads_takes_no_memory_and_is_given_up(tmp_pat
         reader, writer = await asyncio.open_connection("127.0.0.1", server.port, limit=1024)
         writer.write(head(browser, "GET /endless HTTP/1.1"))
         started = time.monotonic()
-        while time.monotonic() - started < 15:
-            await asyncio.sleep(0.1)
-            if reader.at_eof() or "did not read" in caplog.text:
-                break
-        assert "did not read" in caplog.text
+        await until(lambda: "did not read" in caplog.text)
         assert time.monotonic() - started > 0.5
         if before is not None:
             assert resident() - before < 64 * MIB
@@ -411,7 +400,7 @@ async def test_a_reader_that_never_reads_takes_no_memory_and_is_given_up(tmp_pat
         size = 0
         async for piece in answer.content.iter_chunked(MIB):
             size += len(piece)
-            await asyncio.sleep(0.1)
+            await asyncio.sleep(0.1)  # the pace of a slow network
         assert size == 10 * MIB
 
 
@@ -490,7 +479,7 @@ async def test_a_flood_of_calls_lets_others_through(tmp_path):
                 await asyncio.sleep(0.05)
             await flooding
         assert waits
-        assert max(waits) < 5.0
+        assert max(waits) < 15.0
 
 
 @pytest.mark.few(2)

@@ -26,7 +26,9 @@ plotter.view_xy()
 
 # A page in a browser, in a process of its own: Playwright and the notebook's client each want their own event loop.
 LOOK = """
-import sys
+import io, sys, time
+import numpy as np
+from PIL import Image
 from playwright.sync_api import sync_playwright
 address, path, chromium, flags = sys.argv[1], sys.argv[2], sys.argv[3], sys.argv[4:]
 with sync_playwright() as driver:
@@ -34,8 +36,12 @@ with sync_playwright() as driver:
     page = browser.new_page(viewport={"width": 500, "height": 400})
     page.goto(address)
     page.wait_for_selector("img[src^=blob], canvas", timeout=60000)
-    page.wait_for_timeout(3000)
-    page.screenshot(path=path)
+    end = time.monotonic() + 120.0
+    while True:
+        pixels = np.asarray(Image.open(io.BytesIO(page.screenshot(path=path))).convert("RGB")).astype(int)
+        if ((pixels[..., 0] > 150) & (pixels[..., 1:].max(axis=2) < 90)).sum() > 500 or time.monotonic() > end:
+            break
+        page.wait_for_timeout(50)
     browser.close()
 """
 

@@ -15,6 +15,7 @@ from pvfiblets.web.session import files as session
 from pvfiblets.web.session.document import Source
 from pvfiblets.web.session.files import SessionError
 from tests.web.desk import Desk, assert_script_draws
+from tests.web.visitors import until
 
 
 @pytest.fixture
@@ -148,8 +149,7 @@ def test_what_a_process_keeps_is_restored_by_the_next_after_its_first_files(desk
 
     async def dies():
         desk.files.keep_soon()
-        while not (tmp_path / "session.json").exists():
-            await asyncio.sleep(0.001)
+        await until((tmp_path / "session.json").exists)
 
     async def next_one():
         desk.options = replace(desk.options, files=["ball.ply"])

@@ -1,6 +1,5 @@
 """The front server, by real HTTP and WebSocket clients; the sessions behind it draw nothing (stub_worker.py)."""
 
-import asyncio
 import io
 import json
 import os
@@ -8,14 +7,13 @@ import signal
 import socket
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import aiohttp
 import pytest
 
 from pvfiblets.web.server.access import LARGEST_MESSAGE
-from tests.web.visitors import TOKEN, Browser, gate, message, raw
+from tests.web.visitors import TOKEN, Browser, gate, message, raw, until
 
 
 def alive(pid):
@@ -26,11 +24,8 @@ def alive(pid):
     return Path(f"/proc/{pid}/stat").read_text().split()[2] != "Z" if Path("/proc").is_dir() else True
 
 
-async def gone(pid, seconds=10.0):
-    end = time.monotonic() + seconds
-    while alive(pid):
-        assert time.monotonic() < end, f"process {pid} is still there"
-        await asyncio.sleep(0.05)
+async def gone(pid):
+    await until(lambda: not alive(pid))
 
 
 async def test_the_state_of_a_session_is_told_to_its_browser_alone(tmp_path):
@@ -221,13 +216,12 @@ async def test_a_failing_session_touches_no_other_and_says_so(tmp_path):
             assert (await lost.receive()).type in (aiohttp.WSMsgType.CLOSE, aiohttp.WSMsgType.CLOSED)
             await socket.send_bytes(message(b"still here"))
             assert (await socket.receive_bytes()) == message(b"still here")
-        for _ in range(100):
+
+        async def told():
             status, text = await one.get("/")
-            if status == 410:
-                break
-            await asyncio.sleep(0.05)
-        assert status == 410
-        assert "ended unexpectedly" in text
+            return text if status == 410 else None
+
+        assert "ended unexpectedly" in await until(told)
         assert (await other.pid()) == kept
         await one.post("/new")
         assert (await one.enter()) not in (pid, kept)
@@ -240,8 +234,7 @@ async def died(browser, server, state):
     if state is not None:
         (session.folder / "session.json").write_text(state)
     os.kill(pid, signal.SIGKILL)
-    while not session.ended:
-        await asyncio.sleep(0.02)
+    await until(lambda: session.ended)
     return json.loads((await browser.get("/status"))[1])
 
 
@@ -254,9 +247,11 @@ async def test_the_last_state_of_a_dead_session_is_restored_to_its_browser_alone
         assert "Restore" in text
         await one.post("/new?restore=1")
         assert (await one.enter()) not in (first, kept)
-        while not json.loads((await one.get("/told"))[1]):
-            await asyncio.sleep(0.02)
-        assert json.loads((await one.get("/told"))[1]) == [{"restore": True}]
+
+        async def told():
+            return json.loads((await one.get("/told"))[1])
+
+        assert await until(told) == [{"restore": True}]
         assert (await one.get("/kept"))[1] == "mine"
         await other.post("/new?restore=1")  # its own, which is whole, ends
         await other.enter()
@@ -320,7 +315,7 @@ async def test_sessions_without_a_browser_end_and_others_wait(tmp_path):
             async with left.socket():
                 await pass_time(1000.0)
                 assert alive(pid)  # connected
-            await asyncio.sleep(0.1)
+            await until(lambda: sum(one.connections for one in server.launcher.sessions.values()) == 1)
             await pass_time(800.0)
             assert (await left.pid()) == pid  # a reload within the time finds it
             await pass_time(800.0)
@@ -344,13 +339,21 @@ async def test_nobody_speaks_to_a_session_past_the_gate(tmp_path):
 
 
 IDLE = """
+import asyncio
 import sys
 import trame.app
 from pvfiblets.web.worker import listen
 
 sys.argv = ["worker", "--timeout", "1"]  # as if trame's own clock were set to a second instead of 300
 server = trame.app.get_server()
-server.controller.on_server_ready.add(lambda **_: print(server.port, flush=True))
+
+
+def ready(**_):
+    print(server.port, flush=True)
+    asyncio.get_running_loop().call_later(1.5, lambda: print("later", flush=True))  # than its clock's
+
+
+server.controller.on_server_ready.add(ready)
 listen(server)
 print("stopped", flush=True)
 """
@@ -362,8 +365,8 @@ def test_a_session_has_no_clock_of_its_own():
     )
     try:
         port = int(process.stdout.readline())
-        time.sleep(1.8)
-        with socket.create_connection(("127.0.0.1", port), timeout=2.0):
+        assert process.stdout.readline() == "later\n"
+        with socket.create_connection(("127.0.0.1", port), timeout=60.0):
             pass
         assert process.poll() is None
     finally:

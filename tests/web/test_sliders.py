@@ -11,6 +11,7 @@ from pvfiblets.web.panels.describe import typed
 from pvfiblets.web.panels.filter_regions import condition, flat
 from pvfiblets.web.panels.sliders import SlideActions
 from tests.web.desk import Desk
+from tests.web.visitors import until
 
 
 @pytest.fixture
@@ -30,7 +31,7 @@ def drag(desk, *moves, release=True):
         if release:
             desk.sliders.release()
         else:
-            await asyncio.sleep(2.0 * sliders.SETTLED)
+            await until(lambda: desk.page.held == {})
 
     before = desk.refreshed
     asyncio.run(test())

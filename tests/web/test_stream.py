@@ -19,9 +19,9 @@ from pvfiblets.synthetic import brain_streamlines
 from pvfiblets.web.view import stream as stream_module
 from pvfiblets.web.view.encoding import encode
 from pvfiblets.web.view.pace import BUDGET, LEVELS, Pace
-from pvfiblets.web.view.stream import REST, PictureStream
+from pvfiblets.web.view.stream import PictureStream
 
-from .streams import Streamer, drag, slow_stream
+from .streams import Streamer, doing, drag, rests, slow_stream
 
 
 def test_a_session_is_warm_before_anybody_looks(plotter):
@@ -83,7 +83,7 @@ def test_a_view_that_somebody_else_draws_is_left_out_until_it_is_asked_for():
         stream.set_streamer(SimpleNamespace(push_content=lambda _name, _meta, content: sent.append(content)))
         known = len(sent)
         stream.request()
-        async with asyncio.timeout(30):
+        async with asyncio.timeout(120):
             while len(sent) == known:
                 await asyncio.sleep(0.01)
 
@@ -128,7 +128,7 @@ def test_a_picture_that_is_waited_for_comes_coarse_and_then_whole(plotter):
     async def run():
         stream.set_streamer(streamer)
         stream.hasten()
-        async with asyncio.timeout(30):
+        async with asyncio.timeout(120):
             while not streamer.sizes or streamer.sizes[-1] != (200, 120):
                 await asyncio.sleep(0.01)
         await stream.close()
@@ -216,18 +216,12 @@ def test_fewer_pixels_zoom_as_far_as_fingers_do(plotter):
 
 
 def rest(stream, streamer):
-    """Ask for one picture, and wait as long as a finished one takes."""
+    """Ask for one picture, and wait until it is finished."""
 
     async def run():
         stream.set_streamer(streamer)
         stream.request()
-        async with asyncio.timeout(30):
-            while not streamer.sizes:
-                await asyncio.sleep(0.002)
-            await asyncio.sleep(2 * REST)
-            while stream._plotter.picture._unfinished()[0]:
-                await asyncio.sleep(0.01)
-        await asyncio.sleep(2 * REST)
+        await rests(stream)
         await stream.close()
 
     asyncio.run(run())
@@ -391,20 +385,21 @@ def test_haste_ends_at_rest(plotter):
     np.testing.assert_array_equal(stream._draw(), whole)
 
 
-def test_a_stream_is_closed_at_the_very_moment_of_an_event(plotter):
+def test_a_stream_is_closed_at_the_very_moment_of_an_event(plotter, monkeypatch):
     """What waits for the event swallows the cancelling, once."""
+    monkeypatch.setattr(stream_module, "REST", 60.0)
     plotter.add_mesh(pv.Sphere())
     stream = PictureStream(plotter, "view")
 
     async def run():
         stream.set_streamer(Streamer())
         stream.request()
-        while not stream.sent:
-            await asyncio.sleep(0.002)
-        await asyncio.sleep(0.5 * REST)  # it waits for the time to refine
+        async with asyncio.timeout(120):
+            while doing(stream)[-3:] != ["_refine", "_wanted_within", "wait"]:
+                await asyncio.sleep(0.002)
         stream.request()
         await asyncio.sleep(0)  # the event has come, and who waits for it has not been told
-        async with asyncio.timeout(20):
+        async with asyncio.timeout(120):
             await stream.close()
         assert stream._task.done()
 
@@ -448,10 +443,7 @@ def pictures_of(stream, streamer):
     async def run():
         stream.set_streamer(streamer)
         stream.hasten()
-        async with asyncio.timeout(60):
-            while not sent or streamer.sizes[-1] != (200, 120):
-                await asyncio.sleep(0.002)
-        await asyncio.sleep(2 * REST)
+        await rests(stream)
         await stream.close()
 
     asyncio.run(run())

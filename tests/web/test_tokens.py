@@ -117,7 +117,7 @@ def serving(tmp_path, *arguments, **environment):
 
 def stopped(process):
     process.send_signal(signal.SIGTERM)
-    out, err = process.communicate(timeout=20)
+    out, err = process.communicate(timeout=120)
     assert process.returncode == 0, err
     return out + err
 

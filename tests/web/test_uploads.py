@@ -35,8 +35,8 @@ async def post(browser, name, body):
     return await browser.post(f"/upload?name={quote(name, safe='')}", data=body)
 
 
-async def aborted(browser, name):
-    """Send a part of an upload, and hang up."""
+async def aborted(browser, name, begun):
+    """Send a part of an upload, and hang up when it has begun."""
     head = (
         f"POST /upload?name={name} HTTP/1.1\r\nHost: 127.0.0.1:{browser.gate.port}\r\nOrigin: {browser.base}\r\n"
         f"Cookie: {browser.cookies()}\r\nContent-Length: 3000000\r\n\r\n"
@@ -44,7 +44,7 @@ async def aborted(browser, name):
     _, writer = await asyncio.open_connection("127.0.0.1", browser.gate.port)
     writer.write(head.encode() + bytes(1_500_000))
     await writer.drain()
-    await asyncio.sleep(0.3)
+    await until(begun)
     writer.transport.abort()
 
 
@@ -72,7 +72,7 @@ def test_uploads_by_a_real_session(tmp_path):
                     status, text = await post(browser, name, good)
                     assert (status, "\n" in text, str(root) in text) == (400, False, False), (name, text)
                 assert names() == []
-                await aborted(browser, "half.ply")
+                await aborted(browser, "half.ply", names)
                 await until(lambda: names() == [])
                 assert (await post(browser, "good.ply", good))[0] == 200
                 status, text = await post(browser, "good.ply", b"other")
@@ -288,8 +288,7 @@ async def test_what_a_worker_says_is_limited_and_cannot_move_the_cursor(tmp_path
     caplog.set_level("INFO", "pvfiblets.web")
     async with gate(tmp_path) as server, Browser(server) as browser:
         await browser.enter()
-        await browser.get("/noise")
-        await asyncio.sleep(0.2)
+        await browser.get("/noise")  # answered when all was said; the rest of it is read at the end
     lines = [record.getMessage() for record in caplog.records if "| " in record.getMessage()]
     assert 100 < len(lines) <= 201
     assert all(len(line) < 1200 for line in lines)

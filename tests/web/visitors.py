@@ -2,6 +2,7 @@
 
 import asyncio
 import contextlib
+import inspect
 import sys
 from pathlib import Path
 
@@ -78,7 +79,7 @@ def message(content, total=None):
     return b"id__" + bytes(4) + (len(content) if total is None else total).to_bytes(4, "little") + content
 
 
-async def raw(gate, text, *, seconds=5.0):
+async def raw(gate, text, *, seconds=60.0):
     """Send bytes as they are, and return all that comes back until the connection is closed."""
     reader, writer = await asyncio.open_connection("127.0.0.1", gate.port)
     try:
@@ -91,11 +92,12 @@ async def raw(gate, text, *, seconds=5.0):
 
 
 def run(coroutine):
-    return asyncio.run(asyncio.wait_for(coroutine, 60))
+    return asyncio.run(asyncio.wait_for(coroutine, 250))
 
 
 async def until(condition):
-    """Let other tasks run until a condition holds; only a hang reaches the bound."""
+    """Let other tasks run until a condition, which may be a coroutine's, holds; only a hang reaches the bound."""
     async with asyncio.timeout(120):
-        while not condition():
+        while not (found := await held if inspect.isawaitable(held := condition()) else held):
             await asyncio.sleep(0.01)
+    return found
