@@ -23,7 +23,8 @@ from ...codec.decompress import select_streamlines
 from ...images.sources import as_image, is_image
 from ...streamlines import Streamlines
 from ..measures.band_plot import plot_band
-from ..measures.table import Table, without_groups
+from ..measures.chunks import without_groups
+from ..measures.table import Table
 from .resampled import check_count
 from .students import student_quantile
 

@@ -40,6 +40,7 @@ from ...codec.parameters import DEFAULT_PROMISE_STEPS, median_step
 from ...codec.point_values import PointValues
 from ...streamlines import Streamlines
 from ..regions.region import Region
+from .chunks import CHUNK
 
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
@@ -60,7 +61,6 @@ Kind = Literal["streamline", "point"]
 Floats = npt.NDArray[np.float64]
 CURVATURE = "_curvature"
 """Attribute of a set, no field of it: a set that is made of another has other points."""
-CHUNK = 1 << 21  # points decoded together: 50 MB
 SLACK = 0.99  # of a promise: it is a tenth of a step but for rounding
 UNCERTAIN = 0.05  # of the streamlines may be too short for their curvature: every set has some
 
