@@ -98,7 +98,7 @@ def bundle_table(
         owner = bundle[a:b][line]
         points += np.bincount(owner, minlength=len(counts))
         visits.add(part.points, line, owner)
-        values = {key: image.at(part.points) for key, image in known.items()}
+        values = {key: image.at(part.points, nearest=image.is_labels) for key, image in known.items()}
         of_points = half_lengths(part) if weights == "length" else None
         for key, column in (values | part.per_point).items():
             if _single(column):
