@@ -164,7 +164,7 @@ def add_density(commands: Any) -> None:
         default="count",
         metavar="WHAT",
         help="count: streamlines that visit a voxel; length: mm in it; direction: mean |x|, |y|, |z| of the tangent; "
-        "or the mean of values: the name of an array, or a file with a number per streamline or point (default: count)",
+        "or the mean of values: an array, a file with a number per streamline or point, or an image (default: count)",
     )
     parser.add_argument(
         "--weights",
@@ -191,8 +191,8 @@ def add_connectome(commands: Any) -> None:
     matrix.add_argument("target", metavar="OUT", help="a .csv, .tsv, .txt or .npy file; or -")
     matrix.add_argument("--weights", metavar="NAME|FILE", help="of streamlines, such as SIFT2's")
     matrix.add_argument(
-        "--contrast", default="count", metavar="NAME|FILE",
-        help="'count' (default), 'length', or numbers by the name of an array or a file",
+        "--contrast", default="count", metavar="NAME|FILE|IMAGE",
+        help="'count' (default), 'length', or numbers: an array, a file of values, or the mean of an image along each",
     )  # fmt: skip
     matrix.add_argument(
         "--radius", type=float, default=4.0, metavar="MM",

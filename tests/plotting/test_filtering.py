@@ -327,7 +327,7 @@ def test_images_filter_points_as_they_colour_them(shown, tract, tmp_path, form):
         "pair": (GRAINS, PLACE), "nii.gz": path, "nibabel": nib.load(path), "ImageData": pvfiblets.read_volume(path),
     }[form]  # fmt: skip
     name = actor.criterion(image, (0.4, 0.8))
-    assert name == {"nii.gz": "fa", "ImageData": "fa 1"}.get(form, "image 1")
+    assert name == {"nii.gz": "fa", "ImageData": "fa 1"}.get(form, "values 1")
     points = tract.decompress(dtype=np.float64).points
     voxels = ((points - PLACE[:3, 3]) / 15.0).T
     values = map_coordinates(GRAINS.astype(float), voxels, order=1, mode="nearest")

@@ -178,7 +178,7 @@ def _measured(fiblets: FibletSet, what: str | Distance | npt.ArrayLike, original
         image = as_image(what)
         dtype = np.promote_types(image.single.dtype, np.float32)  # of times, float32 keeps minutes
         values = _per_point(fiblets, lambda _, chunk: image.at(chunk.points), dtype)
-        return Values("point", values, image.name or "image")
+        return Values("point", values, image.name or "values")
     if not isinstance(what, str):
         return _own(fiblets, what)
     rows = fiblets.per_streamline.get(what)

@@ -16,7 +16,7 @@ from .chunks import chunks_of, without_groups
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
 
-__all__ = ["PointWeights", "Statistic", "along", "check_weights", "half_lengths", "sample"]
+__all__ = ["PointWeights", "Statistic", "along", "check_weights", "half_lengths", "means_along", "sample"]
 
 Floats = npt.NDArray[np.float64]
 PointWeights = Literal["length", "points"]
@@ -108,6 +108,17 @@ def along(values: Floats, lines: Streamlines, statistic: Statistic, weights: Poi
     else:
         found[some] = rows[(first if statistic == "min" else first + counts - 1)[some]]
     return found
+
+
+def means_along(fiblets: FibletSet, coded: Floats) -> Floats:
+    """Return the mean along each streamline of values of points in the order in which these are coded."""
+    values, point = np.empty(fiblets.n_points), 0
+    values[fiblets.in_coded_order(np.arange(fiblets.n_points))] = coded
+    parts = [np.zeros(0)]
+    for chunk in chunks_of(without_groups(fiblets)):
+        parts.append(along(values[point : point + chunk.n_points], chunk, "mean", "length"))
+        point += chunk.n_points
+    return np.concatenate(parts)
 
 
 def half_lengths(lines: Streamlines) -> Floats:
