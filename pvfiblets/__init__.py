@@ -33,6 +33,7 @@ _HOME = {
     "read": "formats",
     "read_volume": "plotting.read_volume",
     "recognise": "query.bundles.recognise",
+    "sample": "query.measures.samples",
     "similar": "query.bundles.similar",
     "table": "query.measures.table",
     "write": "formats",
@@ -65,6 +66,7 @@ if TYPE_CHECKING:
     from .query.connectome.parcels import end_parcels as end_parcels
     from .query.density.density_map import DensityMap
     from .query.density.volume import density as density
+    from .query.measures.samples import sample as sample
     from .query.measures.table import table as table
     from .streamlines import Streamlines
     from .support.nifti_space import nifti_space as nifti_space

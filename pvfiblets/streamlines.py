@@ -133,11 +133,17 @@ class Streamlines:
         """Both's streamlines, one behind the other, as `concatenate` joins them."""
         return Streamlines.concatenate([self, other]) if isinstance(other, Streamlines) else NotImplemented
 
-    def table(self, ids: Any = None) -> Table:
+    def table(self, ids: Any = None, **options: Any) -> Table:
         """Return a row for each streamline, or for those that `ids` names; see :func:`pvfiblets.table`."""
         from pvfiblets import table
 
-        return table(self, ids)
+        return table(self, ids, **options)
+
+    def sample(self, image: Any, statistic: Any = None, **options: Any) -> NDArray[np.float64]:
+        """Return the values of an image at the points, or a statistic of them; see :func:`pvfiblets.sample`."""
+        from pvfiblets import sample
+
+        return sample(self, image, statistic, **options)
 
     def clusters(self, threshold: float = 10.0, **options: Any) -> Clusters:
         """Put streamlines that run alike into clusters; see :func:`pvfiblets.clusters`."""

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import pvfiblets
-from pvfiblets import Streamlines
+from pvfiblets import Streamlines, formats
 from pvfiblets.cli.command import main
 
 
@@ -144,6 +144,59 @@ def test_a_row_for_each_bundle(folder, tmp_path, capsys):
     assert [row["bundle"] for row in rows(capsys.readouterr().out)] == ["low"]
 
 
+PLANE = np.array([1.0, -2.0, 0.5])  # the image is this slope, which is linear between voxels, too
+
+
+@pytest.mark.parametrize("file", ["brain.trx", "brain.fiblets"])
+def test_a_row_for_each_streamline_has_means_of_images(folder, capsys, file):
+    assert main(["table", str(folder / file), "--image", str(folder / "plane.nii.gz"), "--group", "low"]) == 0
+    found = rows(capsys.readouterr().out)
+    for row, line in zip(found, pvfiblets.read(folder / file)[:20], strict=True):
+        steps = np.linalg.norm(np.diff(line.astype(float), axis=0), axis=1)
+        wanted = np.average(line @ PLANE, weights=np.convolve(steps, [0.5, 0.5]))
+        assert float(row["mean_plane"]) == pytest.approx(wanted, abs=1e-3)
+
+
+@pytest.mark.parametrize("file", ["brain.trx", "brain.fiblets"])
+@pytest.mark.parametrize("target", ["a.tsf", "a.npy", "a.csv", "a.txt", "a.trx", "a.fiblets"])
+def test_values_of_an_image_are_written_in_every_form(folder, tmp_path, file, target):
+    lines, path = pvfiblets.read(folder / file), tmp_path / target
+    assert main(["sample", str(folder / file), str(folder / "plane.nii.gz"), str(path)]) == 0
+    tractogram = path.suffix in (".trx", ".fiblets")
+    found = pvfiblets.read(path) if tractogram else lines[:]
+    if not tractogram:
+        assert formats.attach(found, path, "plane") == "per_point"
+    assert np.ravel(found.per_point["plane"]) == pytest.approx(found.points @ PLANE, abs=0.5 if tractogram else 1e-3)
+    assert set(lines.per_point) <= set(found.per_point)
+    if path.suffix == ".tsf":
+        return
+    assert main(["sample", str(folder / file), str(folder / "plane.nii.gz"), str(path), "--statistic", "max"]) == 0
+    found = pvfiblets.read(path) if tractogram else lines[:]
+    if not tractogram:
+        assert formats.attach(found, path, "plane") == "per_streamline"
+    wanted = [(line @ PLANE).max() for line in found]
+    assert np.ravel(found.per_streamline["plane"]) == pytest.approx(wanted, abs=0.5 if tractogram else 1e-3)
+
+
+@pytest.mark.filterwarnings("always")
+def test_points_without_a_value_are_0_in_a_tsf_and_told_of(folder, tmp_path, capsys):
+    small = nibabel.Nifti1Image(np.ones((2, 3, 4), np.float32), np.diag([3.0, 3.0, 3.0, 1.0]))
+    nibabel.save(small, tmp_path / "b0.nii")
+    lines = pvfiblets.read(folder / "arc.trk")
+    values = pvfiblets.sample(lines, tmp_path / "b0.nii")
+    assert main(["sample", str(folder / "arc.trk"), str(tmp_path / "b0.nii"), str(tmp_path / "a.tsf")]) == 0
+    assert f"{np.isnan(values).sum()} of {len(values)} points have no value in" in capsys.readouterr().err
+    formats.attach(lines, tmp_path / "a.tsf")
+    np.testing.assert_allclose(lines.per_point["a"], np.nan_to_num(values), rtol=1e-6)
+
+
+def test_samples_go_through_pipes(folder, capfdbinary, monkeypatch):
+    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO((folder / "arc.trk").read_bytes())))
+    assert main(["sample", "-", str(folder / "plane.nii.gz"), "-", "--statistic", "min"]) == 0
+    found = np.loadtxt(io.BytesIO(capfdbinary.readouterr().out))
+    assert found == pytest.approx([(line @ PLANE).min() for line in pvfiblets.read(folder / "arc.trk")], abs=1e-3)
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
@@ -154,7 +207,11 @@ def test_a_row_for_each_bundle(folder, tmp_path, capsys):
         (["profile", "brain.trx", "--values", "fa", "-o", "nowhere/out.csv"], "no such folder"),
         (["profile", "brain.trx", "--values", "fa", "--confidence", "1.5"], "1.5"),
         (["profile", "brain.trx", "--values", "fa", "--positions", "1"], "2 or more"),
-        (["table", "brain.trx", "--image", "plane.nii.gz"], "add --by bundle"),
+        (["table", "brain.trx", "--image", "brain.trx"], "brain.trx is no image; give a file that ends in .nii"),
+        (["sample", "brain.trx", "none.nii", "a.txt"], "none.nii"),
+        (["sample", "brain.trx", "arc.trk", "a.txt"], "arc.trk is no image; give a file that ends in .nii"),
+        (["sample", "brain.trx", "plane.nii.gz", "a.tsf", "--statistic", "mean"], "a.tsf: a .tsf file has a value per"),
+        (["sample", "brain.trx", "plane.nii.gz", "a.png"], "a.png"),
         (["table", "brain.trx", "--group", "low", "--group", "low"], "--group is given 2 times"),
         (["table", "brain.trx", "--by", "bundle", "--image", "a=brain.trx"], "brain.trx is no image"),
         (["table", "brain.trx", "--by", "bundle", "--image", "plane.nii.gz", "--image", "plane=x.nii"], "'plane'"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any, Literal, TypeAlias
+from typing import Any
 
 import numpy as np
 
@@ -15,12 +15,11 @@ from pvfiblets.formats import registry
 from pvfiblets.images.files import SUFFIXES
 from pvfiblets.images.sources import is_image
 from pvfiblets.query.bundles.tract_profile import TractProfile, Weights, profile_table, tract_profile
+from pvfiblets.query.measures.samples import PointWeights
 from pvfiblets.query.measures.table import Table, check_parquet
 from pvfiblets.support.progress_bar import progress_bar
 
 __all__ = ["bundle_rows", "profile", "table"]
-
-PointWeights: TypeAlias = Literal["length", "points"]
 
 TABLES = (".csv", ".tsv", ".parquet", ".pq")
 PLOTS = (".png", ".svg", ".pdf")
@@ -58,20 +57,27 @@ def table(source: str, target: str, *, by: str, group: list[str], image: list[st
     if by == "bundle":
         bundle_rows(source, group, image, weights).save(target)
         return
-    if image:
-        raise ValueError("--image is for a row by bundle; add --by bundle")
+    images = _named_images(image)
     if len(group) > 1:
         raise ValueError(f"--group is given {len(group)} times; give it once, or add --by bundle")
     data = open_lines(source)
     if unknown := [name for name in group if name not in data.groups]:
         raise ValueError(f"{source} has no group {unknown[0]!r}; it has: {', '.join(data.groups) or 'none'}")
-    data.table(data.groups[group[0]] if group else None).save(target)
+    data.table(data.groups[group[0]] if group else None, images=images, weights=weights).save(target)
 
 
 def bundle_rows(source: str, groups: Sequence[str], images: Sequence[str], weights: PointWeights) -> Table:
     """Return a row for each group of a file, or one for all of it where it has none."""
     from pvfiblets.query.bundles.statistics import bundle_table
 
+    known = _named_images(images)
+    bundles = list(_bundles([source], groups))
+    chosen = {name: ids for _, ids, name in bundles}
+    return bundle_table(bundles[0][0], chosen, images=known, weights=weights)
+
+
+def _named_images(images: Sequence[str]) -> dict[str, str]:
+    """Return the paths of images by name."""
     known: dict[str, str] = {}
     for given in images:
         name, by, path = given.partition("=")
@@ -82,9 +88,7 @@ def bundle_rows(source: str, groups: Sequence[str], images: Sequence[str], weigh
         if not is_image(path):
             raise ValueError(f"{path} is no image; give a file that ends in {', '.join(SUFFIXES)}")
         known[name] = path
-    bundles = list(_bundles([source], groups))
-    chosen = {name: ids for _, ids, name in bundles}
-    return bundle_table(bundles[0][0], chosen, images=known, weights=weights)
+    return known
 
 
 def _bundles(sources: Sequence[str], groups: Sequence[str]) -> Iterator[tuple[Any, Any, str]]:

@@ -94,6 +94,7 @@ def make_parser() -> argparse.ArgumentParser:
     files.add_connectome(commands)
     files.add_table(commands)
     files.add_profile(commands)
+    files.add_sample(commands)
     batch = commands.add_parser("batch", help="do one of these to each file of a cohort, on all cores or on a cluster")
     add_batch_options(batch, positive, angle, count)
     scenes.add_screenshot(commands)

@@ -164,7 +164,7 @@ def add_density(commands: Any) -> None:
         default="count",
         metavar="WHAT",
         help="count: streamlines that visit a voxel; length: mm in it; direction: mean |x|, |y|, |z| of the tangent; "
-        "or the mean of values: the name of an array, or a file with a number per streamline or point (default: count)",
+        "or the mean of values: an array, a file with a number per streamline or point, or an image (default: count)",
     )
     parser.add_argument(
         "--weights",
@@ -192,8 +192,8 @@ def add_connectome(commands: Any) -> None:
     matrix.add_argument("target", metavar="OUT", help="a .csv, .tsv, .txt or .npy file; or -")
     matrix.add_argument("--weights", metavar="NAME|FILE", help="of streamlines, such as SIFT2's")
     matrix.add_argument(
-        "--contrast", default="count", metavar="NAME|FILE",
-        help="'count' (default), 'length', or numbers by the name of an array or a file",
+        "--contrast", default="count", metavar="NAME|FILE|IMAGE",
+        help="'count' (default), 'length', or numbers: an array, a file of values, or the mean of an image along each",
     )  # fmt: skip
     matrix.add_argument(
         "--radius", type=float, default=4.0, metavar="MM",
@@ -217,8 +217,8 @@ def add_table(commands: Any) -> None:
         "table",
         help="write a row for each streamline, or each bundle: length, ends, groups, values",
         description="Write a table, a row for each streamline of IN: points, length, curvature, ends (mm), groups, "
-        "per-streamline values, and means of per-point values. With --by bundle, a row for each group: count, lengths, "
-        "volume, and means of values and of images.",
+        "per-streamline values, and means of per-point values and of images. With --by bundle, a row for each group: "
+        "count, lengths, volume, and the same means.",
     )
     table.add_argument("source", metavar="IN", help="a tractogram of any format, or -")
     table.add_argument(
@@ -230,10 +230,10 @@ def add_table(commands: Any) -> None:
         "--group", action="append", default=[], metavar="NAME", help="only this group; may repeat by bundle"
     )
     table.add_argument("--image", action="append", default=[], metavar="[NAME=]IMAGE",
-                       help="by bundle: an image whose mean along the streamlines is told; may repeat")  # fmt: skip
+                       help="an image whose mean along each streamline or bundle is a column; may repeat")  # fmt: skip
     table.add_argument("--weights", choices=("length", "points"), default="length",
-                       help="by bundle: whether points count by the length they stand for in means, as in tcksample "
-                       "-stat_tck mean, or all the same (default: %(default)s)")  # fmt: skip
+                       help="whether points count by the length they stand for in means, as in tcksample -stat_tck "
+                       "mean, or all the same (default: %(default)s)")  # fmt: skip
     add_format_option(table, reads=["source"])
     add_image_options(table)
     add_memory_option(table)
@@ -266,6 +266,30 @@ def add_profile(commands: Any) -> None:
     add_image_options(parser)
     add_memory_option(parser)
     parser.set_defaults(run="pvfiblets.cli.bundles:profile")
+
+
+def add_sample(commands: Any) -> None:
+    """``sample``."""
+    parser = commands.add_parser(
+        "sample",
+        help="take the values of an image along streamlines, at each point or as a statistic of each streamline",
+        description="Take the values of IMAGE at the points of IN, linear between the centres of voxels, and write "
+        "them to OUT, one for each point. With --statistic, one for each streamline. Points outside of the image have "
+        "no value and count in no statistic (tcksample takes 0 there).",
+    )
+    parser.add_argument("source", metavar="IN", help="a tractogram of any format, or -")
+    parser.add_argument("image", metavar="IMAGE", help="an image with one number per voxel (NIfTI, MGH, MIF, NRRD ...)")
+    parser.add_argument("target", metavar="OUT", help="a .tsf, .txt, .csv or .npy file of numbers, one a row; a "
+                        "tractogram to write IN with them to; or -")  # fmt: skip
+    parser.add_argument("--statistic", choices=("mean", "median", "min", "max"), help="of each streamline")
+    parser.add_argument("--weights", choices=("length", "points"), default="length",
+                        help="whether points count by the length they stand for in a mean, as in tcksample -stat_tck "
+                        "mean, or all the same (default: %(default)s)")  # fmt: skip
+    parser.add_argument("--nearest", action="store_true", help="take the nearest voxel's value, as labels need it")
+    parser.add_argument("--name", help="of the array in a tractogram (default: IMAGE without its suffix)")
+    add_format_option(parser, reads=["source"], writes="target", usual="txt")
+    add_memory_option(parser)
+    parser.set_defaults(run="pvfiblets.cli.samples:sample")
 
 
 def json_option(parser: argparse.ArgumentParser) -> None:

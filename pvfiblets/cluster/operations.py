@@ -235,7 +235,7 @@ def _sampled(fiblets: FibletSet, image: str) -> Any:
     from pvfiblets.query.measures.measures import decoded_by_rank
 
     volume = as_image(image)
-    parts = [volume.at(c.points) for c in decoded_by_rank(fiblets, PIECE, np.float64)]
+    parts = [volume.at(c.points, nearest=volume.is_labels) for c in decoded_by_rank(fiblets, PIECE, np.float64)]
     return np.concatenate(parts) if parts else np.zeros(0)
 
 

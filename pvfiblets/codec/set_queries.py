@@ -152,13 +152,35 @@ class SetQueries:
 
         return similar(self, like, distance, **options)
 
-    def table(self: Any, ids: npt.ArrayLike | slice | None = None) -> Table:
+    def sample(self: Any, image: Any, statistic: Any = None, **options: Any) -> npt.NDArray[np.float64]:
+        """Return the values of an image at the points, or a statistic of them; see :func:`pvfiblets.sample`.
+
+        Parameters
+        ----------
+        image : image
+        statistic : {'mean', 'median', 'min', 'max'}, optional
+            Of each streamline.
+        **options
+            ``weights, nearest`` of that function.
+
+        Returns
+        -------
+        numpy.ndarray
+            ``(n_points,)`` in the order of the streamlines, or ``(n_streamlines,)``.
+        """
+        from .. import sample
+
+        return sample(self, image, statistic, **options)
+
+    def table(self: Any, ids: npt.ArrayLike | slice | None = None, **options: Any) -> Table:
         """Return a row for each streamline; see :func:`pvfiblets.table`.
 
         Parameters
         ----------
         ids : array_like or slice, optional
             Which; all by default.
+        **options
+            ``images, weights`` of that function.
 
         Returns
         -------
@@ -167,7 +189,7 @@ class SetQueries:
         """
         from .. import table
 
-        return table(self, ids)
+        return table(self, ids, **options)
 
     def end_parcels(self: Any, atlas: Any, names: Mapping[int, str] | None = None) -> npt.NDArray[np.str_]:
         """Name the two parcels in which each streamline ends; see :func:`pvfiblets.end_parcels`.

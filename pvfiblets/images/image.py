@@ -83,6 +83,8 @@ class Image:
             )
         return whole.astype(np.int64)
 
-    def at(self, points: npt.ArrayLike, *, nearest: bool = False) -> Array:
-        """Return the values at points ``(n, 3)`` in mm, ``(n,)``; NaN outside."""
-        return sample(self.single, self.inverse, points, nearest=nearest)
+    def at(self, points: npt.ArrayLike, *, nearest: bool | None = None) -> Array:
+        """Return the values at points ``(n, 3)`` in mm, ``(n,)``; NaN outside. By default whole numbers are nearest."""
+        values = self.single
+        is_nearest = values.dtype.kind in "bui" if nearest is None else nearest
+        return sample(values, self.inverse, points, nearest=is_nearest)

@@ -28,7 +28,7 @@ def is_image(given: Any) -> bool:
     if isinstance(given, (str, os.PathLike)):
         return os.fspath(given).lower().endswith(SUFFIXES)
     if isinstance(given, tuple):
-        return len(given) == 2 and _n_axes(given[0]) >= 3 and _n_axes(given[1]) == 2
+        return len(given) == 2 and _n_axes(given[0]) >= 3 and _n_axes(given[1]) < 3
     if hasattr(given, "IsA"):
         return bool(given.IsA("vtkImageData"))
     return hasattr(given, "affine") and (hasattr(given, "dataobj") or hasattr(given, "values"))

@@ -145,7 +145,12 @@ def _of_image(image: Image) -> Found:
         return image.values, image.affine, image.name or "values"
     if len(image.shape) == 3 and image.values.dtype.names == ("R", "G", "B", "A"):
         return colour_fields(image.values), image.affine, image.name or "values"
-    return image.single, image.affine, image.name or "values"
+    try:
+        return image.single, image.affine, image.name or "values"
+    except ValueError as error:
+        if len(image.shape) == 4 and image.shape[3] == 4:
+            raise ValueError(f"{error}; RGBA of type uint8 is drawn as it is") from None
+        raise
 
 
 def _thick(values: Any, colours: Any, affine: Any) -> tuple[Any, Any, Array]:

@@ -159,7 +159,7 @@ def test_a_volume_colours_the_same_by_image_and_by_path(saved, plotter, three_li
 def test_a_volume_elsewhere_is_told_with_both_bounds(plotter, three_lines):
     far = pv.ImageData(dimensions=(4, 4, 4), origin=(100, 0, 0))
     far["fa"] = np.arange(64.0)
-    told = r"no streamline meets the volume 'fa'.* x 99\.5 to 103\.5, .* x -10 to 10, .*read_volume"
+    told = r"no streamline meets the image 'fa'.* x 99\.5 to 103\.5, .* x -10 to 10, .*read_volume"
     with pytest.warns(UserWarning, match=told):
         actor = plotter.add_fiblets(three_lines, scalars=far)
     near = far.copy()

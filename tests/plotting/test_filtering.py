@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import nibabel as nib
 import numpy as np
 import pytest
 import pyvista as pv
+from scipy.ndimage import map_coordinates
 
-import pvfiblets.plotting  # noqa: F401 - registers the components
+import pvfiblets.plotting
 from pvfiblets import Streamlines, compress, regions
 from pvfiblets.synthetic import brain_streamlines
 
@@ -251,7 +253,7 @@ def test_label_images_of_cells_lie_where_their_voxels_are(shown):
     image = pv.ImageData(dimensions=(5, 4, 3), spacing=(30.0, 30.0, 40.0), origin=(-60.0, -40.0, -40.0))
     image.cell_data["labels"] = np.arange(24) % 3 == 1
     centres = image.cell_centers()
-    with pytest.raises(ValueError, match="one number each"):
+    with pytest.raises(ValueError, match="no active scalars among its arrays"):
         actor.include(pv.ImageData(dimensions=(3, 3, 3)))
     actor.include(image, name="cells")
     found = actor.conditions["cells"].region.contains(np.asarray(centres.points) + (14.0, -14.0, 19.0))
@@ -302,3 +304,70 @@ def test_a_mask_is_a_condition_and_joins_with_others(actor):
     other = regions.LiveRegions(actor.fiblets.extract(slice(0, 5)), regions.RegionPainter(((10, 10, 3), np.eye(4))))
     with pytest.raises(ValueError, match="other fiblets"):
         actor.include_painted(other, include="A")
+
+
+SIDES = (12, 14, 12)
+PLACE = np.diag([15.0, 15.0, 15.0, 1.0])
+PLACE[:3, 3] = -70.0, -100.0, -60.0
+GRAINS = np.random.default_rng(8).random(SIDES).astype(np.float32)
+
+
+def points_shown(actor):
+    """Bits of the points that a filter leaves."""
+    words = actor.mapper.filtering.points
+    return np.unpackbits(words.view(np.uint8), bitorder="little")[: actor.fiblets.n_points].astype(bool)
+
+
+@pytest.mark.parametrize("form", ["pair", "nii.gz", "nibabel", "ImageData"])
+def test_images_filter_points_as_they_colour_them(shown, tract, tmp_path, form):
+    _, actor = shown
+    path = tmp_path / "fa.nii.gz"
+    nib.save(nib.Nifti1Image(GRAINS, PLACE), path)
+    image = {
+        "pair": (GRAINS, PLACE), "nii.gz": path, "nibabel": nib.load(path), "ImageData": pvfiblets.read_volume(path),
+    }[form]  # fmt: skip
+    name = actor.criterion(image, (0.4, 0.8))
+    assert name == {"nii.gz": "fa", "ImageData": "fa 1"}.get(form, "values 1")
+    points = tract.decompress(dtype=np.float64).points
+    voxels = ((points - PLACE[:3, 3]) / 15.0).T
+    values = map_coordinates(GRAINS.astype(float), voxels, order=1, mode="nearest")
+    inside = ((voxels >= -0.5) & (voxels <= np.array(SIDES)[:, None] - 0.5)).all(axis=0)
+    sure = inside & (abs(values - 0.4) > 1e-4) & (abs(values - 0.8) > 1e-4)
+    wanted = (values >= 0.4) & (values <= 0.8) & inside
+    np.testing.assert_array_equal(points_shown(actor)[sure | ~inside], wanted[sure | ~inside])
+    assert 0 < wanted.sum() < inside.sum()
+    assert actor.criterion(image, (0.0, 1.0)) == name  # another range of the same
+    np.testing.assert_array_equal(points_shown(actor), inside)
+    actor.criterion(image, (0.4, 0.8), keep_nan=True)
+    assert points_shown(actor)[~inside].all()
+    actor.scalars = name  # the name of a criterion colours
+    assert actor.mapper.colouring.mode == "point_scalar"
+    assert list(actor.criteria) == [name]
+
+
+def test_labels_filter_by_the_nearest_voxel(shown, tract):
+    _, actor = shown
+    labels = (GRAINS * 5).astype(np.int16)
+    actor.criterion((labels, PLACE), (2, 2))
+    points = tract.decompress(dtype=np.float64).points
+    voxels = np.floor((points - PLACE[:3, 3]) / 15.0 + 0.5).astype(int)
+    inside = ((voxels >= 0) & (voxels < SIDES)).all(axis=1)
+    wanted = np.zeros(len(points), bool)
+    wanted[inside] = labels[tuple(voxels[inside].T)] == 2
+    assert (points_shown(actor) == wanted).mean() > 0.9999
+
+
+def test_what_is_no_image_is_refused_in_words(shown):
+    _, actor = shown
+    for image, told in (
+        ((GRAINS, np.eye(3)), r"the affine of the image is .*; give a finite \(4, 4\) matrix"),
+        ((np.zeros((3, 3, 3, 2)), PLACE), r"the image has the shape \(3, 3, 3, 2\); three axes"),
+        ((GRAINS, "here"), r"the affine of the image is here; give a finite \(4, 4\) matrix"),
+        ([[1.0, 2.0], [3.0]], "one number for each of the 400 streamlines"),
+    ):
+        with pytest.raises(ValueError, match=told):
+            actor.criterion(image, (0, 1))
+    with pytest.raises(FileNotFoundError, match=r"nothing\.nii"):
+        actor.criterion("/nowhere/nothing.nii", (0, 1))
+    with pytest.warns(UserWarning, match="no streamline meets the image 'image', so that nothing is shown: it lies in"):
+        actor.criterion((GRAINS, np.diag([1.0, 1.0, 1.0, 1.0]) + np.outer([1e4, 1e4, 1e4, 0.0], [0, 0, 0, 1])), (0, 1))

@@ -202,3 +202,21 @@ def test_the_command_writes_every_kind_of_matrix(streamlines, atlas, tmp_path, c
         np.testing.assert_allclose(found, expected)
     assert main([*command[:3], str(tmp_path / "matrix.png")]) == 1
     assert "use one of .csv, .tsv, .txt, .npy" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("coding", ["exact", "coded", "plain"])
+def test_numbers_of_points_and_images_are_means_along_streamlines(streamlines, atlas, coding):
+    lines = Streamlines(streamlines.points, streamlines.offsets, {"x": streamlines.points[:, 0].astype(float)})
+    options = {"exact": True} if coding == "exact" else {"max_error": 1e-3, "max_value_error": 1e-3}
+    data = lines if coding == "plain" else compress(lines, per_point=["x"], **options)
+    wanted = []
+    for line in lines:  # as tcksample -stat_tck mean
+        steps = np.linalg.norm(np.diff(line.astype(float), axis=0), axis=1)
+        weights = np.convolve(steps, [0.5, 0.5]) if len(line) > 1 else np.ones(len(line))
+        wanted.append(np.average(line[:, 0], weights=weights) if len(line) else np.nan)
+    grid = np.broadcast_to(np.arange(200.0)[:, None, None] - 100.0, (200, 200, 200))
+    image = (grid, np.array([[1.0, 0, 0, -100], [0, 1, 0, -100], [0, 0, 1, -100], [0, 0, 0, 1]]))
+    for contrast in ("x", image):
+        found = connectome(data, atlas, contrast=contrast)
+        expected = by_hand(found.ends, found.labels, np.array(wanted), np.ones(len(lines)), "mean")
+        np.testing.assert_allclose(found.matrix, expected, atol=5e-3)

@@ -498,6 +498,15 @@ def test_a_line_is_not_joined_across_a_point_that_is_no_number():
     np.testing.assert_array_equal(found.values, wanted.values)
 
 
+def test_an_image_has_its_mean_in_voxels_as_an_array_of_its_values_has():
+    image = (np.random.default_rng(6).random((9, 9, 9)), np.diag([9.0, 9.0, 9.0, 1.0]))
+    values = pf.sample(LINES, image)
+    assert np.isnan(values).any()
+    wanted = pf.density(LINES, 14.0, contrast=values)
+    for source in (LINES, pf.compress(LINES, exact=True)):
+        np.testing.assert_allclose(pf.density(source, 14.0, contrast=image).values, wanted.values, atol=1e-5)
+
+
 def test_damaged_images_are_told(tmp_path):
     path = tmp_path / "a.nii"
     path.write_bytes(b"no image")

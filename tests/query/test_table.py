@@ -39,8 +39,13 @@ def test_rows_are_numpys(lines, coded):
     apart = [np.linalg.norm(s[-1] - s[0]) if len(s) else np.nan for s in each]
     np.testing.assert_allclose(found["end_distance"], apart, **near)
     fa = np.asarray(lines.per_point["fa"])
+    steps = [np.linalg.norm(np.diff(each[k], axis=0), axis=1) for k in (0, 3)]
+    lengths = [np.convolve(step, [0.5, 0.5]) for step in steps]  # half of the segments beside each point
+    some = np.isfinite(fa[:10])
+    weighed = [np.average(fa[:10][some], weights=lengths[0][some]), np.average(fa[11:], weights=lengths[1])]
+    np.testing.assert_allclose(found["mean_fa"], [weighed[0], np.nan, fa[10], weighed[1]], **near)
     means = [np.nanmean(fa[:10]), np.nan, fa[10], fa[11:].mean()]
-    np.testing.assert_allclose(found["mean_fa"], means, **near)
+    np.testing.assert_allclose(data.table(weights="points")["mean_fa"], means, **near)
     assert {"mean_rgb[0]", "mean_rgb[1]", "mean_rgb[2]"} <= set(found)
     assert found["groups"].tolist() == ["left", "", "", "left;long"]
     assert found["name"].tolist() == ["a", "b", "c, d", "e"]
@@ -49,6 +54,9 @@ def test_rows_are_numpys(lines, coded):
     some = data.table([3, 0, 3])
     assert some["streamline"].tolist() == [3, 0]
     assert some["length"].tolist() == found["length"][[3, 0]].tolist()
+    image = (np.random.default_rng(2).random((9, 9, 9)), np.diag([2.0, 2, 2, 1]))
+    t1 = data.table([3, 0], images={"t1": image})["mean_t1"]
+    np.testing.assert_array_equal(t1, data.sample(image, "mean")[[3, 0]])
     assert data.table([]).n_rows == 0
     assert set(data.table([])) == set(found)
 

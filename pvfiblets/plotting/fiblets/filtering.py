@@ -6,12 +6,15 @@ and nothing is compressed or copied anew.
 
 from __future__ import annotations
 
+import operator
+import os
 from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from pvfiblets.images.sources import as_image, is_image
 from pvfiblets.plotting.clipping import Clipping, without
 from pvfiblets.plotting.fiblets.filter_state import (
     Choices,
@@ -23,6 +26,7 @@ from pvfiblets.plotting.fiblets.filter_state import (
     unique_name,
 )
 from pvfiblets.plotting.fiblets.painted import follow_painted
+from pvfiblets.plotting.fiblets.scalars import warn_if_apart
 from pvfiblets.plotting.region_sources import as_region
 from pvfiblets.query.bundles.bundle_list import Bundles, hidden_groups
 from pvfiblets.query.selection.predicates import select
@@ -61,13 +65,14 @@ class Filtering(Clipping):
 
         Parameters
         ----------
-        what : str, array or Distance
+        what : str, array, Distance or image
             ``"length"``, ``"n_points"``, ``"mean_curvature"``, ``"end_distance"`` or any number
             per streamline: streamlines are shown or not. ``"curvature"``, ``"arc_length"`` or any
             number per point: of a streamline those segments are shown both points of which are in
             range. An array with one number per streamline, or per point; or
-            :class:`pvfiblets.regions.Distance` to a region or a point (mm). The name of a
-            criterion that there is changes that one's range.
+            :class:`pvfiblets.regions.Distance` to a region or a point (mm); or an image, whose
+            values at the points count: a path, ``(array, affine)``, an image of nibabel or an
+            ImageData. The name of a criterion that there is changes that one's range.
         range : (float, float)
             Least and greatest value that is shown; infinite ends, and None, are open.
         keep_nan : bool, default: False
@@ -90,7 +95,7 @@ class Filtering(Clipping):
         """
         low, high = checked_range(range)
         known = self._choices.criteria
-        if name is None and not isinstance(what, str):
+        if name is None and (not isinstance(what, str) or is_image(what)):
             name = next((known_as for known_as, c in known.items() if _same(c.what, what)), None)
         if isinstance(what, str) and what in known and name in (None, what):
             values, name, what = known[what].values, what, known[what].what
@@ -100,8 +105,12 @@ class Filtering(Clipping):
             from pvfiblets.query.measures.measures import measure
 
             values = measure(self._data, what)
+            if is_image(what) and not keep_nan and np.isnan(values.array()).all():
+                warn_if_apart(self._data, as_image(what), "nothing is shown", stacklevel=3)
         if name is None:
-            name = values.name if isinstance(what, str) else unique_name(known, values.name)
+            by_name = isinstance(what, str) and not is_image(what)
+            is_new_file = isinstance(what, (str, os.PathLike)) and values.name not in known
+            name = values.name if by_name or is_new_file else unique_name(known, values.name)
         criterion = Criterion(name, what, values, (low, high), bool(keep_nan))
         self._choose(criteria={**known, name: criterion})
         return name
@@ -375,10 +384,13 @@ class Filtering(Clipping):
 
 
 def _same(a: Any, b: Any) -> bool:
-    """Whether two criteria are of the same values: arrays by identity, distances by what they are to."""
+    """Whether two criteria are of the same values: arrays by identity, distances by what they are to, files by path."""
     from pvfiblets.query.measures.measures import Distance
 
-    return a is b or (isinstance(a, Distance) and isinstance(b, Distance) and a == b)
+    if isinstance(a, tuple) and isinstance(b, tuple):  # an array and its affine
+        return len(a) == len(b) and all(map(operator.is_, a, b))
+    kinds = (Distance, str, os.PathLike)
+    return a is b or (isinstance(a, kinds) and isinstance(b, kinds) and a == b)
 
 
 def _subset(count: int, amount: float | None, seed: int, every: int | None) -> np.ndarray | None:

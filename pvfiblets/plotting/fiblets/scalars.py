@@ -15,6 +15,7 @@ import numpy as np
 
 from pvfiblets.codec.point_arrays import colour_columns
 from pvfiblets.engine.fiblets.data.sampled_volume import VolumeSource
+from pvfiblets.images.sources import as_image
 from pvfiblets.mappers.colouring import Mode
 from pvfiblets.query.bundles.bundle_list import group_colours, hidden_groups
 from pvfiblets.query.bundles.colours import distinct_colours
@@ -24,6 +25,7 @@ from pvfiblets.query.selection.endpoints import anchor_points, end_points
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.codec.point_values import PointValues
+    from pvfiblets.images.image import Image
     from pvfiblets.streamlines import Streamlines
 
 ORIENTATION = "orientation"
@@ -149,7 +151,7 @@ def find_scalars(
     if scalars is None:
         return Scalars(ORIENTATION, "orientation")
     if isinstance(scalars, VolumeSource):
-        _warn_if_apart(fiblets, scalars)
+        warn_if_apart(fiblets, as_image(scalars), "all have nan_color", stacklevel=5)
         low, high = scalars.range
         return Scalars(
             scalars.name, "point_scalar", None, (low, high), positive=scalars.least_positive, volume=scalars
@@ -381,12 +383,12 @@ def _longest(fiblets: FibletSet) -> float:
     return float(fiblets.decompress(most).lengths().max())
 
 
-def _warn_if_apart(fiblets: FibletSet, volume: VolumeSource) -> None:
-    """Warn where no point lies in a volume, of which a picture without its colours would be all there is to see."""
-    sides = np.array(volume.values.shape)
+def warn_if_apart(fiblets: FibletSet, image: Image, effect: str, *, stacklevel: int) -> None:
+    """Warn where no point lies in an image, and say what a picture shows then."""
+    sides = np.array(image.shape[:3])
 
     def meets(points: np.ndarray) -> bool:
-        at = points.astype(np.float64) @ volume.voxels[:3, :3].T + volume.voxels[:3, 3]
+        at = points.astype(np.float64) @ image.inverse[:3, :3].T + image.inverse[:3, 3]
         return bool(((at >= -0.5) & (at <= sides - 0.5)).all(axis=1).any())
 
     # Anchors are points that need no decoding, and nearly always one of some lies inside.
@@ -396,14 +398,14 @@ def _warn_if_apart(fiblets: FibletSet, volume: VolumeSource) -> None:
     if any(meets(chunk.points) for chunk in fiblets.iter_chunks()):
         return
     corners = np.stack(np.meshgrid(*[(-0.5, side - 0.5) for side in sides]), axis=-1).reshape(-1, 3)
-    places = corners @ volume.affine[:3, :3].T + volume.affine[:3, 3]
+    places = corners @ image.affine[:3, :3].T + image.affine[:3, 3]
     theirs = np.stack([places.min(axis=0), places.max(axis=0)], axis=1).ravel()
     warnings.warn(
-        f"no streamline meets the volume {volume.name!r}, so that all have nan_color: it lies in {_told(theirs)} mm, "
+        f"no streamline meets the image {image.name or 'image'!r}, so that {effect}: it lies in {_told(theirs)} mm, "
         f"the streamlines in {_told(fiblets.bounds)} mm. pv.read() loses where a NIfTI file lies: give its path, or "
         "pvfiblets.read_volume(path)",
         UserWarning,
-        stacklevel=5,
+        stacklevel=stacklevel,
     )
 
 

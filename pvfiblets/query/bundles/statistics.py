@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -13,7 +13,9 @@ from ...streamlines import Streamlines
 from ...support.ragged import blocks, offsets_from_counts
 from ..density.density_sources import as_source
 from ..density.voxel_grid import grid_about, grid_like
-from ..measures.table import Table, without_groups
+from ..measures.chunks import without_groups
+from ..measures.samples import PointWeights, check_weights, half_lengths
+from ..measures.table import Table
 from .bundle_list import Bundles
 
 if TYPE_CHECKING:
@@ -32,7 +34,7 @@ def bundle_table(
     images: Mapping[str, Any] | None = None,
     voxel_size: float | None = None,
     like: Any = None,
-    weights: Literal["length", "points"] = "length",
+    weights: PointWeights = "length",
 ) -> Table:
     """Measure bundles.
 
@@ -72,8 +74,7 @@ def bundle_table(
 
     if voxel_size is not None and like is not None:
         raise ValueError("give either voxel_size= (mm) or like= (an image whose grid is taken)")
-    if weights not in ("length", "points"):
-        raise ValueError(f"unknown weights {weights!r}; choose 'length' or 'points'")
+    check_weights(weights)
     known = {name: as_image(image, f"the image {name!r}") for name, image in (images or {}).items()}
     bundles = Bundles(data)
     chosen = {name: bundles.ids(name) for name in bundles.names}
@@ -97,8 +98,8 @@ def bundle_table(
         owner = bundle[a:b][line]
         points += np.bincount(owner, minlength=len(counts))
         visits.add(part.points, line, owner)
-        values = {key: image.at(part.points) for key, image in known.items()}
-        of_points = _half_lengths(part) if weights == "length" else None
+        values = {key: image.at(part.points, nearest=image.is_labels) for key, image in known.items()}
+        of_points = half_lengths(part) if weights == "length" else None
         for key, column in (values | part.per_point).items():
             if _single(column):
                 sums.setdefault(key, _Sums(len(counts))).add(column, owner, of_points)
@@ -123,13 +124,6 @@ def bundle_table(
 
 def _single(rows: Any) -> bool:
     return rows.dtype.kind in "biuf" and (rows.ndim == 1 or rows.shape[1:] == (1,))
-
-
-def _half_lengths(lines: Streamlines) -> npt.NDArray[np.float64]:
-    """Return half the length (mm) of the segments beside each point."""
-    steps = np.linalg.norm(np.diff(lines.points.astype(np.float64), axis=0), axis=1)
-    steps[np.setdiff1d(lines.offsets[1:-1], [0, len(lines.points)]) - 1] = 0.0  # between streamlines
-    return (np.r_[0.0, steps] + np.r_[steps, 0.0])[: len(lines.points)] / 2
 
 
 class _Sums:

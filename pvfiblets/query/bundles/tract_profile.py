@@ -23,7 +23,8 @@ from ...codec.decompress import select_streamlines
 from ...images.sources import as_image, is_image
 from ...streamlines import Streamlines
 from ..measures.band_plot import plot_band
-from ..measures.table import Table, without_groups
+from ..measures.chunks import without_groups
+from ..measures.table import Table
 from .resampled import check_count
 from .students import student_quantile
 
@@ -163,7 +164,7 @@ def tract_profile(
     if not len(places):
         raise ValueError("there is no streamline with points to average")
     if image is not None:
-        found = image.at(places.reshape(-1, 3)).reshape(len(places), n)
+        found = image.at(places.reshape(-1, 3), nearest=image.is_labels).reshape(len(places), n)
     like = places[0] if orient_by is None else _line(orient_by, n)
     turn = np.linalg.norm(places[:, ::-1] - like, axis=2).mean(axis=1) < np.linalg.norm(places - like, axis=2).mean(
         axis=1

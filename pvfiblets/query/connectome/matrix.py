@@ -22,7 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...codec.progress import Progress
-from ...images.sources import as_image
+from ...images.sources import as_image, is_image
 from ...support.progress_bar import progress_bar
 from ..measures.measures import measure
 
@@ -186,7 +186,7 @@ def connectome(
     labels: Any,
     *,
     weights: str | npt.ArrayLike | None = None,
-    contrast: str | npt.ArrayLike = "count",
+    contrast: Any = "count",
     radius: float = 4.0,
     statistic: str | None = None,
     names: Mapping[int, str] | None = None,
@@ -203,10 +203,11 @@ def connectome(
         Whole numbers ``(i, j, k)``, 0 for no parcel: a path, an image of nibabel, ``(array, affine)`` or an ImageData.
     weights : str or array_like, optional
         ``(n_streamlines,)`` finite numbers of 0 or more, such as SIFT2's, or the name of a per-streamline array.
-    contrast : str or array_like, default: 'count'
+    contrast : str, array_like or image, default: 'count'
         ``'count'``: each streamline counts 1, times its weight. Else a number for each streamline: ``'length'`` (mm),
-        another of :func:`.query.measures.measure` or a stored array by its name (of one per point its mean along
-        the streamline), or ``(n_streamlines,)`` numbers. Streamlines whose number is NaN are left out.
+        another of :func:`.query.measures.measure` or a stored array by its name, an image, or ``(n_streamlines,)``
+        numbers. Of an image, or an array with numbers per point, it is the mean along the streamline, as
+        :func:`pvfiblets.sample` has it. Streamlines whose number is NaN are left out.
     radius : float, default: 4.0
         mm about an end in which its parcel is looked for; 0: the voxel in which it lies.
     statistic : {'sum', 'mean', 'min', 'max'}, optional
@@ -336,7 +337,10 @@ def _end_points(data: Any) -> Floats:
 def _numbers(data: Any, given: Any, n: int, name: str) -> Floats:
     """Return a number for each streamline."""
     from ...streamlines import Streamlines
+    from ..measures.samples import means_along, sample
 
+    if is_image(given) and not (isinstance(given, str) and given in {**data.per_streamline, **data.per_point}):
+        return sample(data, given, "mean")
     if not isinstance(given, str):
         values = np.asarray(given, np.float64)
         if values.shape != (n,):
@@ -351,13 +355,8 @@ def _numbers(data: Any, given: Any, n: int, name: str) -> Floats:
                 return np.asarray(columns[key], np.float64)
         raise KeyError(f"there are no values {given!r}; there are {', '.join(columns)}")
     found = measure(data, given)
-    values = np.asarray(found.values, np.float64)
-    if found.kind == "streamline":
-        return values
-    counts = np.diff(data.offsets())
-    sums = np.add.reduceat(np.append(values, 0.0), np.minimum(data.offsets()[:-1], len(values)))
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return np.where(counts > 0, sums / counts, np.nan)
+    values = np.asarray(found.array(), np.float64)
+    return values if found.kind == "streamline" else means_along(data, values)
 
 
 def _statistic(given: str | None, *, counts: bool) -> str:

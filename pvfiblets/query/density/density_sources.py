@@ -18,6 +18,8 @@ from ...codec.fibletset import FibletSet
 from ...codec.files.stored_parts import stored_parts
 from ...codec.point_values import PointValues
 from ...codec.progress import Progress, shown
+from ...images.image import Image
+from ...images.sources import as_image, is_image
 from ...invalid_points import CUT, NONFINITE, valid_points
 from ...streamlines import Streamlines
 from ...support.summary import warn_of_losses
@@ -191,8 +193,9 @@ class _Plain:
                 f"contrast is a {type(wanted).__name__}, which is for compressed sets; compress {place} first"
             )
         self._chunks, self._place, self._known = chunks, place, known
-        self._weights, self._wanted = weights, wanted
-        self.name = wanted if isinstance(wanted, str) else "values"
+        self._weights, self._wanted = weights, as_image(wanted) if is_image(wanted) else wanted
+        named = self._wanted.name if isinstance(self._wanted, Image) else wanted
+        self.name = named if isinstance(named, str) and named else "values"
         self.unit = ""
         self.per_point = False
         self._progress: Progress = False
@@ -225,7 +228,7 @@ class _Plain:
         weights, wanted = self._weights, self._wanted
         if weights is not None and not isinstance(weights, str):
             weights = _weights(weights, {}, self._survey[2])
-        if wanted is not None and not isinstance(wanted, str):
+        if wanted is not None and not isinstance(wanted, (str, Image)):
             wanted = np.asarray(wanted)
             self.per_point = _is_per_point(wanted, *self._survey[2:])
         line = point = 0
@@ -237,7 +240,9 @@ class _Plain:
             elif weights is not None:
                 own = weights[lines]
             values = np.empty(0)
-            if isinstance(wanted, str):
+            if isinstance(wanted, Image):
+                self.per_point, values = True, wanted.at(chunk.points)
+            elif isinstance(wanted, str):
                 self.per_point, values = self._named(chunk, wanted)
             elif wanted is not None:
                 values = np.array(wanted[points if self.per_point else lines], np.float64)

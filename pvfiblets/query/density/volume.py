@@ -74,7 +74,8 @@ def density(
         ``'count'``, the streamlines that visit a voxel, each once: with a point in it, or some length; ``'length'``,
         mm; ``'direction'``, three numbers: the mean magnitudes of x, y and z of the tangent. An array, one number for
         each streamline or each point, gives its mean in the voxel, as does what :func:`.query.measures.measure` takes
-        for compressed sets, such as the name of a stored array; ``'length'`` is never the measure here.
+        for compressed sets, such as the name of a stored array; ``'length'`` is never the measure here. So does an
+        image, whose values at the points count where there are any.
     ends_only : bool, default: False
         Count end points instead: a streamline has two, of a single point one; means are over end points.
     progress : bool or callable, default: False

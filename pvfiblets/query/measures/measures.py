@@ -12,6 +12,7 @@ name                  a value per  unit  what it is, of the decoded points
 ``'coding_error'``    point        mm    distance to the point it was coded from, which must be given
 a stored array        either             as it is stored, under the name that it has
 :class:`Distance`     either       mm    distance to a region or position, or a streamline's least one
+an image              point              its value there, as it colours: whole numbers of the nearest voxel
 ====================  ===========  ====  =======================================================================
 
 Curvature does not depend on how a set is stored. A tenth of a step, which coding may move points by, would turn each
@@ -38,8 +39,10 @@ import numpy.typing as npt
 from ...codec.files.stored_parts import stored_parts
 from ...codec.parameters import DEFAULT_PROMISE_STEPS, median_step
 from ...codec.point_values import PointValues
+from ...images.sources import as_image, is_image
 from ...streamlines import Streamlines
 from ..regions.region import Region
+from .chunks import CHUNK
 
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
@@ -60,7 +63,6 @@ Kind = Literal["streamline", "point"]
 Floats = npt.NDArray[np.float64]
 CURVATURE = "_curvature"
 """Attribute of a set, no field of it: a set that is made of another has other points."""
-CHUNK = 1 << 21  # points decoded together: 50 MB
 SLACK = 0.99  # of a promise: it is a tenth of a step but for rounding
 UNCERTAIN = 0.05  # of the streamlines may be too short for their curvature: every set has some
 
@@ -171,6 +173,12 @@ def measure(
 def _measured(fiblets: FibletSet, what: str | Distance | npt.ArrayLike, original: Streamlines | None) -> Values:
     if isinstance(what, Distance):
         return _distance(fiblets, what)
+    stored = isinstance(what, str) and (what in fiblets.per_streamline or what in fiblets.per_point)
+    if not stored and is_image(what):
+        image = as_image(what)
+        dtype = np.promote_types(image.single.dtype, np.float32)  # of times, float32 keeps minutes
+        values = _per_point(fiblets, lambda _, chunk: image.at(chunk.points), dtype)
+        return Values("point", values, image.name or "values")
     if not isinstance(what, str):
         return _own(fiblets, what)
     rows = fiblets.per_streamline.get(what)
@@ -191,7 +199,10 @@ def _is_left_out(fiblets: FibletSet, name: str) -> bool:
 
 
 def _own(fiblets: FibletSet, given: npt.ArrayLike) -> Values:
-    rows = np.asarray(given)
+    try:
+        rows = np.asarray(given)
+    except ValueError:  # of rows of unlike lengths
+        rows = np.asarray(given, object)
     if rows.shape == (fiblets.n_streamlines,) and rows.dtype.kind in "biuf":
         return Values("streamline", rows.astype(np.float64), "values")
     if rows.shape == (fiblets.n_points,) and rows.dtype.kind in "biuf":
@@ -236,8 +247,10 @@ def _coded_chunks(fiblets: FibletSet) -> Iterator[tuple[int, int, Streamlines]]:
         rank, point = rank + len(chunk), point + chunk.n_points
 
 
-def _per_point(fiblets: FibletSet, make: Callable[[int, Streamlines], Any]) -> npt.NDArray[np.float32]:
-    out = np.empty(fiblets.n_points, np.float32)
+def _per_point(
+    fiblets: FibletSet, make: Callable[[int, Streamlines], Any], kept: npt.DTypeLike = np.float32
+) -> npt.NDArray[Any]:
+    out = np.empty(fiblets.n_points, kept)
     for rank, point, chunk in _coded_chunks(fiblets):
         out[point : point + chunk.n_points] = make(rank, chunk)
     return out

@@ -6,9 +6,8 @@ import csv
 import html
 import math
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import replace
 from io import TextIOWrapper
 from os import PathLike
 from pathlib import Path
@@ -17,14 +16,18 @@ from typing import TYPE_CHECKING, Any, TextIO
 import numpy as np
 import numpy.typing as npt
 
+from ...images.image import Image
+from ...images.sources import as_image
 from ...streamlines import Streamlines
 from ...support.whole_files import replacing
-from .measures import CHUNK, Curvatures
+from .chunks import chunks_of, without_groups
+from .measures import Curvatures
+from .samples import PointWeights, along, check_weights
 
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
 
-__all__ = ["Table", "check_parquet", "table", "without_groups"]
+__all__ = ["Table", "check_parquet", "table"]
 
 PARQUET = (".parquet", ".pq")
 _SHOWN = 10  # rows in a notebook
@@ -124,7 +127,13 @@ def check_parquet(path: str | PathLike[str]) -> None:
         ) from error
 
 
-def table(data: FibletSet | Streamlines, ids: npt.ArrayLike | slice | None = None) -> Table:
+def table(
+    data: FibletSet | Streamlines,
+    ids: npt.ArrayLike | slice | None = None,
+    *,
+    images: Mapping[str, Any] | None = None,
+    weights: PointWeights = "length",
+) -> Table:
     """Return what is known of each streamline.
 
     Parameters
@@ -132,6 +141,11 @@ def table(data: FibletSet | Streamlines, ids: npt.ArrayLike | slice | None = Non
     data : FibletSet or Streamlines
     ids : array_like or slice, optional
         Streamlines, as for :meth:`.FibletSet.decompress`; all by default. One that is named again has one row.
+    images : mapping of str to image, optional
+        Images whose mean along each streamline is a column ``mean_NAME``: paths, ``(array, affine)``, of nibabel, or
+        ImageData.
+    weights : {'length', 'points'}
+        What counts in means along streamlines; see :func:`pvfiblets.sample`.
 
     Returns
     -------
@@ -140,16 +154,20 @@ def table(data: FibletSet | Streamlines, ids: npt.ArrayLike | slice | None = Non
         (1/mm) as `pvfiblets.query.measures.measures` has them; ``start_x`` to ``end_z``, its first and last point
         (mm; NaN
         without points); ``groups``, the names of those that it is in, with a semicolon between, if there are any
-        groups; every per-streamline array; and the mean along the streamline of every per-point array,
+        groups; every per-streamline array; and the mean along the streamline of every per-point array and image,
         ``mean_NAME``, NaN where no point has a value. Arrays of several columns are ``NAME[0]``, ``NAME[1]`` and so on.
 
     Raises
     ------
     IndexError
         If a number is out of range or a mask has the wrong length.
+    TypeError, ValueError
+        If an image is none or has several numbers per voxel, or `weights` is unknown.
     """
     from ...codec.decompress import select_streamlines
 
+    check_weights(weights)
+    known = {name: as_image(image, f"the image {name!r}") for name, image in (images or {}).items()}
     curvatures, numbers = Curvatures(data), np.arange(len(data))
     if ids is not None:
         chosen = select_streamlines(len(data), ids)
@@ -157,39 +175,24 @@ def table(data: FibletSet | Streamlines, ids: npt.ArrayLike | slice | None = Non
         data = data[numbers]
     bare = without_groups(data)
     with curvatures:
-        parts = [_measured(chunk, curvatures) for chunk in _chunks(bare)] or [_measured(_decoded(bare), curvatures)]
+        parts = [_measured(chunk, curvatures, known, weights) for chunk in chunks_of(bare)]
+        parts = parts or [_measured(_decoded(bare), curvatures, known, weights)]
     found = Table(streamline=numbers, **{name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
     if data.groups:
         found["groups"] = _groups(data)
     for name, rows in data.per_streamline.items():
         found |= _columns(name, np.asarray(rows).reshape(len(data), *_width(rows)))
-    along = [name for name in found if name.startswith(_MEAN) and name != "mean_curvature"]
-    return Table(found | {name: found.pop(name) for name in along})
-
-
-def without_groups(data: FibletSet | Streamlines) -> Any:
-    """Return the same streamlines in no groups, of which every part would look through all."""
-    if not isinstance(data, Streamlines):
-        return replace(data, groups={}, per_group={})
-    return Streamlines(
-        data.points, data.offsets, data.per_point, data.per_streamline, affine=data.affine, space=data.space
-    )
+    means = [name for name in found if name.startswith(_MEAN) and name != "mean_curvature"]
+    return Table(found | {name: found.pop(name) for name in means})
 
 
 def _decoded(data: FibletSet | Streamlines) -> Streamlines:
     return data if isinstance(data, Streamlines) else data.decompress()
 
 
-def _chunks(data: FibletSet | Streamlines) -> Iterator[Streamlines]:
-    """Consecutive streamlines; points of float64 at most a chunk at a time."""
-    if isinstance(data, Streamlines):
-        for start, stop in data.blocks(CHUNK):
-            yield data[start:stop]
-    else:
-        yield from data.iter_chunks(CHUNK)
-
-
-def _measured(chunk: Streamlines, curvatures: Curvatures) -> dict[str, npt.NDArray[Any]]:
+def _measured(
+    chunk: Streamlines, curvatures: Curvatures, images: Mapping[str, Image], weights: PointWeights
+) -> dict[str, npt.NDArray[Any]]:
     """All columns that come from points."""
     points = np.asarray(chunk.points, np.float64)
     there, curvature = np.flatnonzero(chunk.counts), np.full(len(chunk), np.nan)
@@ -205,18 +208,12 @@ def _measured(chunk: Streamlines, curvatures: Curvatures) -> dict[str, npt.NDArr
     }
     for place, corner in enumerate(("start", "end")):
         found |= {f"{corner}_{axis}": ends[:, place, i] for i, axis in enumerate("xyz")}
-    for name, values in chunk.per_point.items():
+    sampled = {name: image.at(points, nearest=image.is_labels) for name, image in images.items()}
+    for name, values in (chunk.per_point | sampled).items():
         rows = np.asarray(values, np.float64).reshape(len(points), *_width(values))
-        found |= _columns(_MEAN + name, np.stack([_means(column, chunk) for column in rows.T], axis=1))
+        means = [along(column, chunk, "mean", weights) for column in rows.T]
+        found |= _columns(_MEAN + name, np.stack(means, axis=1))
     return found
-
-
-def _means(values: npt.NDArray[np.float64], chunk: Streamlines) -> npt.NDArray[np.float64]:
-    """Mean of the values of each streamline's points that have one, ``(n,)``."""
-    owner, known = np.repeat(np.arange(len(chunk)), chunk.counts), np.isfinite(values)
-    counts = np.bincount(owner[known], minlength=len(chunk))
-    sums = np.bincount(owner[known], values[known], minlength=len(chunk))
-    return np.where(counts > 0, sums / np.maximum(counts, 1), np.nan)
 
 
 def _width(rows: Any) -> tuple[int]:
