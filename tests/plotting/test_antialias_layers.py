@@ -217,6 +217,15 @@ def test_samples_lie_where_those_one_after_the_other_do():
     assert np.abs(found).max() <= 0.5  # or culling would have to look beyond the picture
 
 
+@pytest.fixture
+def interruptible():
+    """Have Ctrl-C do what it usually does, in a process of the background, too."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("interruptible")
 @pytest.mark.parametrize("at_once", [True, False])
 def test_an_interrupt_leaves_the_picture_so_far_and_the_next_one_goes_on(scene, at_once, monkeypatch):
     plotter, _ = scene
