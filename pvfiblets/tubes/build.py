@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..images.sources import as_image, is_image
 from ..lines import Lines, flat, gather, joined, numbers_or_colours, refuse_words
 from .spline_tubes import Doubles, NodeValues, SplineTubes, chord_lengths
 from .tangents import METHODS, Steps, derivatives
@@ -42,20 +43,21 @@ def as_spline_tubes(
         Segments, and line cells when all have two points, are smooth where one follows the other and no third meets
         them; in whichever order they are listed. Lines of one point become spheres, lines without
         points tubes without segments. SplineTubes are returned as they are.
-    radius : float, str or array_like, optional
+    radius : float, str, array_like or image, optional
         Radius in mm: one for all, the name of a point or line array of the source, ``(n_points,)`` numbers or
-        ``(n_lines,)`` numbers. By default the point data named in `RADIUS_NAMES`, else 0.5 % of the diagonal of the
-        points' bounds (1 mm where all points are at one place).
+        ``(n_lines,)`` numbers, or an image that has it at the points. By default the point data named in
+        `RADIUS_NAMES`, else 0.5 % of the diagonal of the points' bounds (1 mm where all points are at one place).
     tangents : str or array_like, optional
         ``(n_points, 3)`` derivatives of the position, or the name of such point data. Points that several lines use
         then stay one node. By default they are computed for each line by itself, so that such points become a node
         for each line.
     radius_slopes : float, str or array_like, optional
         ``(n_points,)`` derivatives of the radius. Computed by default.
-    scalars : str or array_like, optional
-        What to keep for colours: the name of point or line data, ``(n_points,)`` numbers, ``(n_points, 3)`` or
-        ``(n_points, 4)`` colours (uint8, or floats 0..1 with `rgb`), or one row for each line. Point values end up in
-        ``values`` under their name, or ``"scalars"``; line values in ``tube_values``. ``"radius"`` needs no array.
+    scalars : str, array_like or image, optional
+        What to keep for colours: the name of point or line data, ``(n_points,)`` numbers, an image that has them,
+        ``(n_points, 3)`` or ``(n_points, 4)`` colours (uint8, or floats 0..1 with `rgb`), or one row for each line.
+        Point values end up in ``values`` under their name, or ``"scalars"``; line values in ``tube_values``.
+        ``"radius"`` needs no array.
     scalar_slopes : str or array_like, optional
         Derivatives of `scalars`, in the same shape (of colours: of 0..1). Computed by default.
     rgb : bool, optional
@@ -189,7 +191,10 @@ class _Builder:
             extent = np.ptp(self.places, axis=0) if len(self.places) else np.zeros(3)
             radius = RADIUS_SHARE * float(chord_lengths(extent[None])[0]) or 1.0
         rows = self._per_row(radius, "radius", (), "radius in mm")
-        self._check(rows, "radius", "finite numbers in mm, 0 or more", least=0.0)
+        expected = "finite numbers in mm, 0 or more"
+        if is_image(radius):
+            expected += ": the point lies outside of the image or at a voxel without one; give an array of radii"
+        self._check(rows, "radius", expected, least=0.0)
         return rows, radius if isinstance(radius, str) else None
 
     def _scalars(self, scalars: Any, slopes: Any, rgb: bool | None, radius_name: str | None) -> tuple[
@@ -278,6 +283,8 @@ class _Builder:
         """Return the array given, by itself or by name, and whether it has a row for each line, not each point."""
         lines = self.lines
         n_points, n_lines = len(lines.points), lines.n_rows
+        if is_image(given) and not (isinstance(given, str) and self._known(given)):
+            return as_image(given).at(lines.points), False
         if isinstance(given, str):
             if given in lines.point_data:
                 return flat(lines.point_data[given], f"{what} {given!r}", words=words), False

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import nibabel as nib
 import numpy as np
 import pytest
 import pyvista as pv
+from scipy.ndimage import map_coordinates
 
+import pvfiblets as pf
 from pvfiblets import compress, write
 from pvfiblets.halos import HaloLines, HaloPoints
 
@@ -330,3 +333,60 @@ def test_lines_and_points_come_from_every_kind_of_source(plotter, three_lines, t
         (HaloPoints(lines[0]), 3), (tmp_path / "cloud.ply", 9),
     ):  # fmt: skip
         assert plotter.add_halo_points(source).points.n_points == n_points
+
+
+SIDES = (7, 6, 7)
+PLACE = np.array([[4.0, 0.5, 0.0, -14.0], [0.0, 4.0, 0.3, -9.0], [0.2, 0.0, 4.0, -12.0], [0.0, 0.0, 0.0, 1.0]])
+GRAINS = np.random.default_rng(8).random(SIDES).astype(np.float32)
+
+
+def grains_at(points):
+    """Values of the image as SciPy has them, NaN outside."""
+    voxels = (np.asarray(points, float) - PLACE[:3, 3]) @ np.linalg.inv(PLACE[:3, :3]).T
+    inside = ((voxels >= -0.5) & (voxels <= np.array(SIDES) - 0.5)).all(axis=1)
+    return np.where(inside, map_coordinates(GRAINS.astype(float), voxels.T, order=1, mode="nearest"), np.nan)
+
+
+def forms_of(path):
+    """The image in every form."""
+    nib.save(nib.Nifti1Image(GRAINS, PLACE), path)
+    return [(GRAINS, PLACE), path, str(path), nib.load(path)]
+
+
+def test_images_colour_and_filter_lines(stage, tmp_path):
+    rows = [BAR + (0, 0, z) for z in (-8.0, 0.0, 8.0)]
+    values = grains_at(np.concatenate(rows))
+    assert 5 < np.isnan(values).sum() < 40
+    for image in forms_of(tmp_path / "fa.nii.gz"):
+        name = "fa" if isinstance(image, (str, type(tmp_path))) else "volume"
+        actor = add(stage, rows, filter_by=image, threshold=0.5, scalars=image, color=None, cmap="plasma")
+        assert actor.filter_by == actor.scalars == name
+        np.testing.assert_allclose(actor.lines.values[name], values, atol=1e-5)
+        drawn = shot(stage)
+        stage.remove_actor(actor)
+        own = add(stage, rows, filter_by=values, threshold=0.5, scalars=values, color=None, cmap="plasma")
+        np.testing.assert_array_equal(drawn, shot(stage))
+        own.scalars = own.filter_by = None
+        own.scalars, own.filter_by = image, image  # and later
+        own.threshold = 0.5
+        assert own.filter_by == name
+        np.testing.assert_allclose(own.lines.values[name], values, atol=1e-5)
+        stage.remove_actor(own)
+    points = stage.add_halo_points(BAR, scalars=(GRAINS, PLACE), filter_by=(GRAINS, PLACE), threshold=0.4, **OF_POINTS)
+    np.testing.assert_allclose(points.points.values["volume"], grains_at(BAR), atol=1e-5)
+    held = {"volume": np.arange(31.0)}  # an array of that name stays what it is
+    named = add(stage, pf.Streamlines.from_list([BAR], per_point=held), scalars="volume", filter_by=(GRAINS, PLACE))
+    np.testing.assert_array_equal(named.lines.values["volume"], np.arange(31.0))
+    np.testing.assert_allclose(named.lines.values["volume 1"], grains_at(BAR), atol=1e-5)
+
+
+@pytest.mark.parametrize("what", ["scalars", "filter_by"])
+def test_what_is_no_image_is_refused_in_words(stage, what):
+    for image, error, told in (
+        ((GRAINS, np.eye(3)), ValueError, r"the affine of the image is .*; give a finite \(4, 4\) matrix"),
+        ((np.zeros((3, 3, 3, 2)), PLACE), ValueError, r"the image has the shape \(3, 3, 3, 2\); three axes"),
+        ("/nowhere/fa.mif", FileNotFoundError, "fa.mif"),
+    ):
+        with pytest.raises(error, match=told):
+            add(stage, **{what: image})
+    assert not stage.actors

@@ -9,6 +9,7 @@ import nibabel as nib
 import numpy as np
 import pytest
 import pyvista as pv
+from scipy.ndimage import map_coordinates
 
 import pvfiblets as pf
 from pvfiblets.codec.compress import compress
@@ -394,3 +395,48 @@ def test_data_of_other_libraries_go_by_their_names(plotter, tractogram, add, kin
     np.testing.assert_allclose(values_of(actor), wanted, atol=1e-6)
     per_line = getattr(plotter, add)(source, scalars="w", cmap="gray", show_scalar_bar=False)
     assert per_line.clim == (0.0, 2.0)
+
+
+SIDES = (10, 5, 8)
+PLACE = np.array([[4.0, 0.5, 0.0, -18.0], [0.0, 4.0, 0.3, -9.0], [0.2, 0.0, 4.0, -14.0], [0.0, 0.0, 0.0, 1.0]])
+GRAINS = np.random.default_rng(8).random(SIDES).astype(np.float32) + 0.5
+
+
+def grains_at(points):
+    """Values of the image as SciPy has them."""
+    voxels = (np.asarray(points, float) - PLACE[:3, 3]) @ np.linalg.inv(PLACE[:3, :3]).T
+    return map_coordinates(GRAINS.astype(float), voxels.T, order=1, mode="nearest")
+
+
+def test_images_colour_and_widen_tubes(plotter, bars, tmp_path):
+    values = grains_at(np.concatenate(bars))
+    nib.save(nib.Nifti1Image(GRAINS, PLACE), tmp_path / "fa.nii.gz")
+    for image in ((GRAINS, PLACE), tmp_path / "fa.nii.gz", nib.Nifti1Image(GRAINS, PLACE)):
+        name = "fa" if isinstance(image, type(tmp_path)) else "volume"
+        actor = plotter.add_spline_tubes(bars, scalars=image, radius=image, show_scalar_bar=False)
+        own = plotter.add_spline_tubes(bars, scalars=values, radius=values, show_scalar_bar=False)
+        assert actor.scalars == name
+        for found, wanted in ((actor.tubes.values[name], own.tubes.values["Data"]), (actor.tubes, own.tubes)):
+            for field in ("values", "slopes") if found is actor.tubes.values[name] else ("radius", "radius_slopes"):
+                np.testing.assert_allclose(getattr(found, field), getattr(wanted, field), atol=1e-5)
+        own.scalars = image  # and later
+        assert own.scalars == name
+        np.testing.assert_allclose(own.tubes.values[name].values, values, atol=1e-5)
+    fork = pv.PolyData(np.array([[0, 0, 0], [5, 0, 0], [9, 3, 0], [9, -3, 0.0]]), lines=[3, 0, 1, 2, 2, 1, 3])
+    shared = plotter.add_spline_tubes(fork, radius=(GRAINS, PLACE))
+    wanted = np.sort(grains_at(fork.points))
+    np.testing.assert_allclose(np.unique(shared.tubes.radius.round(6)), wanted, atol=1e-5)
+
+
+def test_what_images_cannot_say_of_tubes_is_told(plotter, bars):
+    half = (GRAINS[:5], PLACE)
+    with pytest.raises(ValueError, match=r"radius 3 \(line 0\) is nan, expected finite numbers .* outside of the"):
+        plotter.add_spline_tubes(bars, radius=half)
+    for what in ("radius", "scalars"):
+        with pytest.raises(ValueError, match=r"the affine of the image is .*; give a finite \(4, 4\) matrix"):
+            plotter.add_spline_tubes(bars, **{what: (GRAINS, np.eye(3))})
+        with pytest.raises(FileNotFoundError, match="none.mif"):
+            plotter.add_spline_tubes(bars, **{what: "/nowhere/none.mif"})
+    assert not plotter.actors
+    actor = plotter.add_spline_tubes(bars, scalars=half, radius=1.0, nan_color="magenta", lighting=False)
+    assert np.isnan(actor.tubes.values["volume"].values).sum() > 3

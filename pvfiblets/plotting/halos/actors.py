@@ -156,8 +156,8 @@ class HaloActor(HaloSettings, LineOpacities, Coloured, pv.Actor):
     def filter_by(self) -> str | None:
         """By which numbers ``threshold`` filters; ``None`` shows all, and forgets the threshold.
 
-        Set it to a name, as for ``scalars``, or to an array of a number per point (``"filter"`` is
-        then their name), or per line. Where there is no number (NaN), nothing shows.
+        Set it to a name, as for ``scalars``, to an array of a number per point (``"filter"`` is
+        then their name), or per line, or to an image. Where there is no number (NaN), nothing shows.
         """
         return self._looks.filter_by
 

@@ -75,16 +75,16 @@ class HaloLinesComponent(Printing, ActorRegistry["HaloLineActor"]):
         ----------
         source : PolyData, Streamlines, FibletSet, array, list of arrays, (points, segments), HaloLines or path
             Lines in mm. One ``(n, 3)`` array is one line.
-        scalars : str or array, optional
+        scalars : str, array or image, optional
             What colours the lines, not their halos: the name of data of ``source``, the active scalars of a data set
             of VTK's by default unless there is a ``color``;
             ``"orientation"`` (the absolute value of the direction as red, green, blue),
             ``"arc_length"``, ``"length"``; an array with one number or one colour (3 or 4 columns;
-            floats with ``rgb``) per point or per line; or a file of numbers: ``.tsf``, ``.npy``,
-            ``.txt``, ``.csv``.
-        filter_by : str or array, optional
+            floats with ``rgb``) per point or per line; a file of numbers: ``.tsf``, ``.npy``,
+            ``.txt``, ``.csv``; or an image, whose values at the points count.
+        filter_by : str, array or image, optional
             What ``threshold`` filters by: the name of numbers per point or line, ``"arc_length"``,
-            ``"length"``, or an array. Where there is no number (NaN), nothing shows.
+            ``"length"``, an array, or an image. Where there is no number (NaN), nothing shows.
         rgb : bool, optional
             Whether ``scalars`` of three or four columns are colours, or vectors to be mapped by their magnitude. By
             default those of uint8 are, and those whose name ends in ``"_rgb"`` or ``"_rgba"``.
@@ -187,12 +187,12 @@ class HaloPointsComponent(Printing, ActorRegistry["HaloPointActor"]):
         ----------
         source : DataSet, array, Streamlines, HaloPoints or path
             Points in mm: those of any dataset, or an ``(n, 3)`` array.
-        scalars : str or array, optional
+        scalars : str, array or image, optional
             What colours the points, not their halos: the name of point data of ``source``, the active scalars of a
             data set of VTK's by default unless there is a ``color``; or an array with one number or one colour (3 or 4
-            columns; floats with ``rgb``) per point.
-        filter_by : str or array, optional
-            What ``threshold`` filters by: the name of numbers at points, or an array. Points without
+            columns; floats with ``rgb``) per point; or an image.
+        filter_by : str, array or image, optional
+            What ``threshold`` filters by: the name of numbers at points, an array, or an image. Points without
             a number (NaN) do not show.
         cmap, clim, n_colors, log_scale, nan_color, below_color, above_color, flip_scalars, rgb
             As for lines (``plotter.add_halo_lines``).

@@ -12,7 +12,9 @@ import numpy as np
 from pvfiblets.formats.attachments import is_values_file
 from pvfiblets.halos import HaloLines, HaloPoints
 from pvfiblets.halos.build import FILTER, SCALARS, as_halo_lines, as_halo_points
+from pvfiblets.images.sources import as_image, is_image
 from pvfiblets.lines import told_lines, with_values
+from pvfiblets.plotting.fiblets.filter_state import unique_name
 from pvfiblets.plotting.fiblets.scalars import ORIENTATION, UNNAMED, Scalars, are_colours, of_streamlines
 from pvfiblets.plotting.same_names import Preference, with_preference
 
@@ -61,7 +63,7 @@ def as_lines(
         source, scalars = with_values(source, scalars)
     if is_values_file(filter_by, source):
         source, filter_by = with_values(source, filter_by)
-    stored, filters = (None if _computed(source, what) else what for what in (scalars, filter_by))
+    stored, filters = (None if _later(source, what) else what for what in (scalars, filter_by))
     try:
         lines, line_values = as_halo_lines(source, scalars=stored, rgb=rgb, filter_by=filters)
     except ValueError as error:
@@ -77,11 +79,14 @@ def as_points(source: Any, *, scalars: Any = None, rgb: bool | None = None, filt
     if isinstance(source, HaloPoints):
         return filtered(coloured(Held(source), scalars, rgb=rgb), filter_by)
     source = read_points(source)
+    stored, filters = (None if _is_image(source, what) else what for what in (scalars, filter_by))
     try:
-        points = as_halo_points(source, scalars=scalars, rgb=rgb, filter_by=filter_by)
+        points = as_halo_points(source, scalars=stored, rgb=rgb, filter_by=filters)
     except ValueError as error:
-        raise _unknown(source, (scalars, filter_by), error) from None
-    return _named(Held(points, scalars, _filter_name(filter_by)))
+        raise _unknown(source, (stored, filters), error) from None
+    held = _named(Held(points, stored, _filter_name(filters)))
+    held = held if stored is scalars else coloured(held, scalars)
+    return held if filters is filter_by else filtered(held, filter_by)
 
 
 def read_points(source: Any) -> Any:
@@ -95,6 +100,7 @@ def read_points(source: Any) -> Any:
 
 def coloured(held: Held, scalars: Any, *, rgb: bool | None = None) -> Held:
     """Have something else colour what is held; numbers at points are stored with it."""
+    held, scalars = _sampled(held, scalars)
     drawn = held.drawn
     if scalars is None or isinstance(scalars, str):
         if isinstance(scalars, str) and scalars == ARC_LENGTH and isinstance(drawn, HaloLines):
@@ -110,6 +116,7 @@ def coloured(held: Held, scalars: Any, *, rgb: bool | None = None) -> Held:
 
 def filtered(held: Held, filter_by: Any) -> Held:
     """Have something else filter what is held; its numbers are stored with it, a row for each point."""
+    held, filter_by = _sampled(held, filter_by)
     drawn = held.drawn
     if filter_by is None:
         return replace(held, filter_by=None)
@@ -225,9 +232,26 @@ def _read_lines(source: Any) -> Any:
     return open_lines(source)
 
 
-def _computed(source: Any, what: Any) -> bool:
-    """Whether that is a name of numbers that are computed of lines; data of that name goes before them."""
-    return isinstance(what, str) and what in BUILT_IN and not _has(source, what)
+def _later(source: Any, what: Any) -> bool:
+    """Whether numbers are computed of lines once these are there: by a name that no data has, or of an image."""
+    return _is_image(source, what) or (isinstance(what, str) and what in BUILT_IN and not _has(source, what))
+
+
+def _is_image(source: Any, what: Any) -> bool:
+    return is_image(what) and not (isinstance(what, str) and _has(source, what))
+
+
+def _sampled(held: Held, what: Any) -> tuple[Held, Any]:
+    """Store the values of an image at the points, and return their name; anything else is returned as it is."""
+    drawn = held.drawn
+    if not is_image(what) or (isinstance(what, str) and (what in drawn.values or what in held.line_values)):
+        return held, what
+    image = as_image(what)
+    values, name = image.at(drawn.points), image.name or "volume"
+    there = drawn.values.get(name)
+    if there is not None and not np.array_equal(there, values, equal_nan=there.dtype.kind == "f"):
+        name = unique_name(drawn.values, name)
+    return replace(held, drawn=replace(drawn, values={**drawn.values, name: values})), name
 
 
 def _has(source: Any, name: str) -> bool:

@@ -78,16 +78,17 @@ class SplineTubesComponent(ActorRegistry["TubeActor"]):
         source : PolyData, Streamlines, array, list of arrays, (points, segments), SplineTubes, FibletSet or path
             Lines whose points are the nodes of splines, in mm. One ``(n, 3)`` array is one tube; a
             line of one point is a ball.
-        radius : float, str or array, optional
-            Radius in mm: one for all, the name of data of ``source``, or a number per point or
-            per line. By default the point data ``"radius"`` if there is such, else half a percent
-            of the diagonal of the bounds.
-        scalars : str or array, optional
+        radius : float, str, array or image, optional
+            Radius in mm: one for all, the name of data of ``source``, a number per point or
+            per line, or an image that has it at the points. By default the point data
+            ``"radius"`` if there is such, else half a percent of the diagonal of the bounds.
+        scalars : str, array or image, optional
             What colours the tubes: the name of data of ``source``, the active scalars of a data set of VTK's by
             default unless there is a ``color``; ``"radius"``, ``"arc_length"``,
             ``"length"``, or ``"orientation"`` (the absolute value of the direction as red, green,
             blue); an array with one number or one colour (3 or 4 columns; floats with ``rgb``)
-            per point or per line; or a file of numbers: ``.tsf``, ``.npy``, ``.txt``, ``.csv``.
+            per point or per line; a file of numbers: ``.tsf``, ``.npy``, ``.txt``, ``.csv``; or an
+            image, whose values at the points count.
         preference : {'point', 'cell'}, default: 'point'
             Which array a name means that both points and lines (cells) have, here and in criteria; the other is
             called ``"NAME (line)"`` or ``"NAME (point)"``.

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from pvfiblets.formats.attachments import is_values_file
+from pvfiblets.images.sources import as_image, is_image
 from pvfiblets.lines import are_words, refuse_words, rows_of, told_lines, with_values
 from pvfiblets.plotting.fiblets.scalars import ORIENTATION, UNNAMED, Scalars, are_colours, magnitudes, of_streamlines
 from pvfiblets.plotting.same_names import Preference, with_preference
@@ -33,7 +34,11 @@ def as_tubes(
     source = with_preference(_read(source), preference)
     if is_values_file(scalars, source):
         source, scalars = with_values(source, scalars)
-    if isinstance(scalars, str) and not _has(source, scalars):
+    named = UNNAMED
+    if is_image(scalars) and not (isinstance(scalars, str) and _has(source, scalars)):
+        scalars = as_image(scalars)
+        named = scalars.name or "volume"
+    elif isinstance(scalars, str) and not _has(source, scalars):
         if scalars not in BUILT_IN:
             raise KeyError(_missing(scalars, **dict(zip(("per point", "per line"), _names(source), strict=True))))
         if shape.pop("scalar_slopes", None) is not None:
@@ -43,7 +48,7 @@ def as_tubes(
     if scalars is None or isinstance(scalars, str):
         return tubes, scalars
     if _GIVEN in tubes.values:
-        return replace(tubes, values={UNNAMED: tubes.values[_GIVEN]}), UNNAMED
+        return replace(tubes, values={named: tubes.values[_GIVEN]}), named
     rest = {name: values for name, values in tubes.tube_values.items() if name != _GIVEN}
     return replace(tubes, tube_values={**rest, UNNAMED: tubes.tube_values[_GIVEN]}), UNNAMED
 
@@ -65,6 +70,9 @@ def with_node_values(tubes: SplineTubes, scalars: Any, *, rgb: bool | None = Non
     -----
     The slope at a node is the mean of those of the segments that meet there.
     """
+    if is_image(scalars) and not (isinstance(scalars, str) and scalars in {**tubes.values, **tubes.tube_values}):
+        image = as_image(scalars)
+        return _with_rows(tubes, image.name or "volume", image.at(tubes.points))
     if scalars is None or isinstance(scalars, str):
         return tubes, scalars
     given = rows_of(scalars, (tubes.n_nodes, tubes.n_tubes))
@@ -82,8 +90,11 @@ def with_node_values(tubes: SplineTubes, scalars: Any, *, rgb: bool | None = Non
         given = given[:, 0]
     if given.ndim == 2:
         given = _rgba(given) if are_colours(given, rgb) else magnitudes(given)
-    rows = given.astype(np.float64)
-    return replace(tubes, values={**tubes.values, UNNAMED: NodeValues(rows, _slopes(tubes, rows))}), UNNAMED
+    return _with_rows(tubes, UNNAMED, given.astype(np.float64))
+
+
+def _with_rows(tubes: SplineTubes, name: str, rows: np.ndarray) -> tuple[SplineTubes, str]:
+    return replace(tubes, values={**tubes.values, name: NodeValues(rows, _slopes(tubes, rows))}), name
 
 
 def find_tube_scalars(tubes: SplineTubes, scalars: Any) -> Scalars:
