@@ -136,15 +136,15 @@ def select(
         fiblets = _opened(source)
         chosen = fiblets.select(wanted)
         fiblets.extract(chosen).save(target)
-        n, kept = len(chosen), int(chosen.sum())
+        counts = [len(chosen), int(chosen.sum()), 0]
     else:
         from pvfiblets.formats.spool import gathered
 
-        counts = [0, 0]
+        counts = [0, 0, 0]
         with gathered(_chosen(source, wanted, counts), target.parent) as streamlines:
             formats.write(target, streamlines)
-        n, kept = counts
-    return {"streamlines": n, "selected": kept, "share": kept / n if n else 0.0}
+    n, kept, dropped = counts
+    return {"streamlines": n, "selected": kept, "share": kept / n if n else 0.0, "dropped": dropped}
 
 
 def _chosen(source: Path, wanted: Any, counts: list[int]) -> Iterator[Streamlines]:
@@ -157,6 +157,7 @@ def _chosen(source: Path, wanted: Any, counts: list[int]) -> Iterator[Streamline
         keep = compress(bare, exact=True, per_point=()).select(wanted)
         counts[0] += len(keep)
         counts[1] += int(keep.sum())
+        counts[2] += sum(chunk.dropped.values())
         yield chunk[np.flatnonzero(keep)]
 
 

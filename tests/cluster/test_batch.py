@@ -8,6 +8,7 @@ import subprocess
 import sys
 import threading
 import time
+import warnings
 from pathlib import Path
 
 import nibabel as nib
@@ -139,6 +140,21 @@ def test_profiles_of_bundles_by_arrays_and_by_images(client, cohort, tmp_path):
 
 
 AFFINE_X = np.array([[2.0, 0, 0, -4], [0, 2.0, 0, -2], [0, 0, 2.0, -2], [0, 0, 0, 1]])
+
+
+@pytest.mark.parametrize("suffix", [".trx", ".trk", ".vtp", ".tck"])
+def test_selections_of_lines_with_gaps_are_their_pieces(tmp_path, suffix):
+    gap = np.array([[0, 0, 0], [1, 0, 0], [np.nan, 0, 0], [3, 0, 0], [4, 0, 0]], np.float32)
+    inside, outside = np.full((3, 3), [[50.0, 0, 0]], np.float32), np.full((3, 3), [[90.0, 0, 0]], np.float32)
+    inside[:, 1], outside[:, 1] = [0, 1, 2], [0, 1, 2]
+    source, target = tmp_path / f"a{suffix}", tmp_path / f"b{suffix}"
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        pf.write(source, pf.Streamlines.from_list([gap, outside, inside, outside]))
+        found = operations.select(source, target, passes=["box:40,60,-9,9,-9,9"])
+    assert (found["streamlines"], found["selected"]) == (5, 1)
+    np.testing.assert_allclose(pf.read(target).points, inside, atol=1e-5)
+    assert found["dropped"] >= (suffix != ".tck")
 
 
 @pytest.mark.parametrize("compressed", [False, True])
