@@ -53,8 +53,8 @@ def add_options(parser: Any) -> None:
     parser.add_argument("--exclude", metavar="WORD", help="no streamlines that do; words as of --include", **words)
     parser.add_argument(
         "--criterion", metavar=("NAME", "VALUE"),
-        help="only streamlines, or parts of them, whose length, curvature, ... or array is between two numbers; of "
-        "these, - is open",
+        help="only streamlines, or parts of them, whose length, curvature, ..., array, or value of an image is between "
+        "two numbers; of these, - is open",
         **words,
     )  # fmt: skip
     parser.add_argument("--groups", nargs="+", metavar="NAME", help="only streamlines in these groups")

@@ -65,9 +65,7 @@ class Image:
                 "is needed: take one of them, or their mean"
             )
         if values.dtype.kind not in "biuf":
-            raise ValueError(
-                f"{self.what} holds {values.dtype}; real numbers are needed, such as abs() of complex ones"
-            )
+            raise ValueError(f"{self.what} is of type {values.dtype}; give real numbers, such as abs() of complex ones")
         return three_axes(values)
 
     @cached_property
