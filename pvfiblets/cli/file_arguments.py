@@ -231,9 +231,7 @@ def add_table(commands: Any) -> None:
     )
     table.add_argument("--image", action="append", default=[], metavar="[NAME=]IMAGE",
                        help="an image whose mean along each streamline or bundle is a column; may repeat")  # fmt: skip
-    table.add_argument("--weights", choices=("length", "points"), default="length",
-                       help="whether points count by the length they stand for in means, as in tcksample -stat_tck "
-                       "mean, or all the same (default: %(default)s)")  # fmt: skip
+    _add_point_weights(table)
     add_format_option(table, reads=["source"])
     add_image_options(table)
     add_memory_option(table)
@@ -268,6 +266,12 @@ def add_profile(commands: Any) -> None:
     parser.set_defaults(run="pvfiblets.cli.bundles:profile")
 
 
+def _add_point_weights(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--weights", choices=("length", "points"), default="length",
+                        help="whether points count by the length they stand for in means, as in tcksample -stat_tck "
+                        "mean, or all the same (default: %(default)s)")  # fmt: skip
+
+
 def add_sample(commands: Any) -> None:
     """``sample``."""
     parser = commands.add_parser(
@@ -282,9 +286,7 @@ def add_sample(commands: Any) -> None:
     parser.add_argument("target", metavar="OUT", help="a .tsf, .txt, .csv or .npy file of numbers, one a row; a "
                         "tractogram to write IN with them to; or -")  # fmt: skip
     parser.add_argument("--statistic", choices=("mean", "median", "min", "max"), help="of each streamline")
-    parser.add_argument("--weights", choices=("length", "points"), default="length",
-                        help="whether points count by the length they stand for in a mean, as in tcksample -stat_tck "
-                        "mean, or all the same (default: %(default)s)")  # fmt: skip
+    _add_point_weights(parser)
     parser.add_argument("--nearest", action="store_true", help="take the nearest voxel's value, as labels need it")
     parser.add_argument("--name", help="of the array in a tractogram (default: IMAGE without its suffix)")
     add_format_option(parser, reads=["source"], writes="target", usual="txt")

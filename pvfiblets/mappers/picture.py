@@ -161,7 +161,7 @@ class Picture:
         renderer, refinement = self.renderer, self._refinement
         assert refinement is not None
         state = self._state(renderer)
-        lines = self._layered_lines(renderer) if refinement.untaken and not self._lacks_memory else None
+        lines = self._lines_at_once(renderer)
         if self._job is not None and (lines is None or self._job.state != state):
             self._drop_job()
         if lines is None:
@@ -183,8 +183,7 @@ class Picture:
 
     def draws_at_once(self) -> bool:
         """Whether the samples that the picture wants next are drawn at once."""
-        wanted = self._refinement is not None and self._refinement.untaken and not self._lacks_memory
-        return wanted and self._layered_lines(self.renderer) is not None
+        return self._lines_at_once(self.renderer) is not None
 
     def _drop_job(self) -> None:
         job, self._job = self._job, None
@@ -362,8 +361,11 @@ class Picture:
         if self._smoothing is not None:
             self._smoothing.begin(sample=self._refinement is not None and not self._refinement.plain)
 
-    def _layered_lines(self, renderer: Any) -> Any:
-        """Return the mapper whose samples can be drawn at once; None where they are drawn one after the other."""
+    def _lines_at_once(self, renderer: Any) -> Any:
+        """Return the mapper whose samples are drawn at once next; None where they are drawn one after the other."""
+        refinement = self._refinement
+        if refinement is None or not refinement.untaken or self._lacks_memory:
+            return None
         if self._smoothing is None or self._depth_of_field is not None or renderer.GetPass() is not None:
             return None
         lines = self._smoothing.only_lines() if _starts_empty(renderer) else None

@@ -71,7 +71,7 @@ def shown(plotter, monkeypatch, *, singly=False):
     """Return a screenshot and the frames that it took, drawn anew."""
     with monkeypatch.context() as patch:
         if singly:
-            patch.setattr(Picture, "_layered_lines", lambda *_: None)
+            patch.setattr(Picture, "_lines_at_once", lambda *_: None)
         plotter.renderer.Modified()
         plotter.picture.antialias = "off"
         plotter.picture.antialias = "refined"
@@ -234,7 +234,7 @@ def test_an_interrupt_leaves_the_picture_so_far_and_the_next_one_goes_on(scene, 
     plain = shown_plain(plotter)
     monkeypatch.setattr(sample_layers, "MOST_TEXELS", 16 * SIZE[0] * SIZE[1] // 4)
     if not at_once:
-        monkeypatch.setattr(Picture, "_layered_lines", lambda *_: None)
+        monkeypatch.setattr(Picture, "_lines_at_once", lambda *_: None)
     reach, count = Finishing.reach, 2
 
     def interrupted(self, done):

@@ -162,15 +162,20 @@ def _texels(source: VolumeSource) -> tuple[npt.NDArray[Any], str, float, float]:
         if values.dtype == np.float16:
             return values, "f2", 0.0, 1.0
         with np.errstate(over="ignore"):  # beyond float32's range lies infinity
-            return relative(values, source.reference).astype("<f4"), "f4", 0.0, 1.0
+            return _less(values, source.reference), "f4", 0.0, 1.0
     if values.dtype.kind == "b":
         return values.view(np.uint8), "nu1", 0.0, 255.0
     low, high = int(values.min()), int(values.max())
     if high - low > 65535:
-        return relative(values, source.reference).astype("<f4"), "f4", 0.0, 1.0
+        return _less(values, source.reference), "f4", 0.0, 1.0
     small, dtype, scale = (np.uint8, "nu1", 255.0) if high - low < 256 else (np.uint16, "nu2", 65535.0)
     # Differences wrap around in the array's own type and come out right in the smaller one.
     return (values - values.dtype.type(low)).astype(small), dtype, low - source.reference, scale
+
+
+def _less(values: npt.NDArray[Any], reference: float) -> npt.NDArray[np.float32]:
+    """Return values less a reference as float32; most need none, and no copy as float64."""
+    return (relative(values, reference) if reference else values).astype("<f4")
 
 
 class VolumeTexture:
