@@ -71,10 +71,9 @@ class ShardParts:
     def is_here(self, number: int) -> bool:
         """Whether a part can be had at once; if not, it is being fetched from now on, if not too many others are."""
         shard = self._places[number][0]
-        fetching = self._fetching.get(shard)
-        if fetching is not None and fetching.done():
-            del self._fetching[shard]
-            fetching.result()
+        # All of them: one may be here, be drawn and not be asked for again before its thread has ended.
+        for fetched in [one for one, future in self._fetching.items() if future.done()]:
+            self._fetching.pop(fetched).result()
         if self._set.shards.is_here(shard):
             return True
         if shard not in self._fetching and len(self._fetching) < FETCHED_AT_ONCE:

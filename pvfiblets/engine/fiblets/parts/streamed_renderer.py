@@ -123,6 +123,7 @@ class StreamedRenderer(NearestOnly):
         self._in_view: list[int] = []
         self._fetched = 0
         self._filtered: dict[int, bool] = {}
+        self._thinned = False
         self._waiting = False
         self._gatherer: Gatherer | None = None
         self._pictures = self._keep(PartPictures(ctx, self._gl, self._programs), "parts' pictures")
@@ -147,9 +148,10 @@ class StreamedRenderer(NearestOnly):
             if until is not None and self._clock() >= until:
                 break
         if waiting:
-            # Its streamlines are some of those that are there already, of which they change no pixel.
-            self._add(THINNED, len(self._parts), view, style, outside)
-            self._begun = None  # what comes next begins without the even share
+            # Where its streamlines come again with their parts, these are taken: they have the lower order.
+            if not self._thinned:
+                self._add(THINNED, len(self._parts), view, style, outside)
+            self._thinned = True
         self.share = 1.0 - len(self._left) / max(len(self._in_view), 1)
         self._waiting = waiting and not self.hurried
         return self._pictures.picture
@@ -174,7 +176,7 @@ class StreamedRenderer(NearestOnly):
         self._in_view = [n for n in numbers if in_view(view, style, self._box(n)) and not self._is_filtered(n)]
         self._left = sorted(self._in_view, key=lambda number: number not in self._there)
         self._pictures.begin(view.size, style.relief, style.edges)
-        self._begun = view, style
+        self._begun, self._thinned = (view, style), False
 
     def _is_filtered(self, number: int) -> bool:
         """Whether the filter keeps no streamline of a part, which then need not come."""
