@@ -224,7 +224,7 @@ class Refinement:
             slot.effects[self._name] = Accumulation, Accumulation(ctx)
         sums: Accumulation = slot.effects[self._name][1]
         if self._frame is _Frame.PLAIN:
-            sums.keep(colour, viewport)
+            sums.keep(colour, viewport, alike=alike)
             return
         if self._frame is not _Frame.MEAN:
             if not (self._painted if self._name == _TILE or self._shares is not None else self._taken):

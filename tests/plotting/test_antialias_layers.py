@@ -98,6 +98,10 @@ def test_the_picture_is_that_of_samples_one_after_the_other(scene, change, parts
     assert frames == 1
     mean, frames = shown(plotter, monkeypatch, singly=True)
     assert frames >= 15
+    assert np.sqrt((off_by(at_once, mean) ** 2.0).mean()) < 3.0, "lines beyond those of the layers are left out"
+    with monkeypatch.context() as patch:
+        patch.setattr(sample_layers, "LAYERS", sample_layers.SAMPLES)
+        at_once = shown(plotter, monkeypatch)[0]
     apart = off_by(at_once, mean)
     assert apart.size > 5000
     assert (apart > 1).mean() <= 0.02  # where points within a sample are left out

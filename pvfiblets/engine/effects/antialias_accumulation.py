@@ -50,10 +50,10 @@ class Accumulation(PicturePasses):
         """Draw the mean into a part of an attachment; all samples of a pixel get the same."""
         self._show("sums", 1.0 / self.samples, target, viewport)
 
-    def keep(self, colour: Attachment, viewport: Viewport) -> None:
+    def keep(self, colour: Attachment, viewport: Viewport, *, alike: bool = False) -> None:
         """Remember a part of an attachment as it is now, until `forget_kept`."""
         self._texture("kept", viewport[2:], 4, "f4" if colour.floats else "f1")
-        self._copy(colour, viewport, viewport[2:], "kept", mixed=False)
+        self._copy(colour, viewport, viewport[2:], "kept", mixed=False, alike=alike)
 
     def show_kept(self, target: Attachment, viewport: Viewport) -> None:
         """Draw what is remembered into a part of an attachment of the same size."""
@@ -80,8 +80,8 @@ class Accumulation(PicturePasses):
         shares: moderngl.Texture | None = None,
         alike: bool = False,
     ) -> None:
-        features = [*(["PICTURE_SAMPLES"] if colour.samples else []), *([] if shares is None else ["PICTURE_SHARES"])]
-        uniforms = {"samples": 1 if alike else colour.samples, "origin": viewport[:2], "corner": (0, 0)}
+        features = [*colour.features(alike=alike), *([] if shares is None else ["PICTURE_SHARES"])]
+        uniforms = {"samples": colour.samples, "origin": viewport[:2], "corner": (0, 0)}
         textures = {"drawn": self._outside(colour, 4)} | ({} if shares is None else {"shares": shares})
         with self._plain_state():
             if mixed:

@@ -74,9 +74,9 @@ class Coverage(PicturePasses):
         begin = left // TILE, low // TILE
         tiles = -(-right // TILE) - begin[0], -(-top // TILE) - begin[1]
         self._texture("tiles", (-(-width // TILE), -(-height // TILE)), 1, "f1")
-        features = ["PICTURE_SAMPLES"] if colour.samples else []
+        features = colour.features(alike=alike)
         squares = {"start": (1, 1), "size": size, "border": 1}
-        uniforms = squares | {"samples": 1 if alike else colour.samples, "origin": (x, y)}
+        uniforms = squares | {"samples": colour.samples, "origin": (x, y)}
         tiled = {"tiles": self._textures["tiles"]}
         outside = tiled | {"drawn": self._outside(colour, 4), "depths": self._outside(depth, 1)}
         with self._plain_state():

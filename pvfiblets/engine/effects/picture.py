@@ -84,7 +84,7 @@ class PictureEffects(PicturePasses):
             self._texture(name, size, components, dtype)
         if depth is None:
             self._forget_depths()
-        features = (["PICTURE_SAMPLES"] if colour.samples else []) + (["PICTURE_DEPTH"] if depth else [])
+        features = colour.features() + (["PICTURE_DEPTH"] if depth else [])
         outside = {"drawn": self._outside(colour, 4)} | ({"depths": self._outside(depth, 1)} if depth else {})
         uniforms = {"samples": colour.samples, "origin": (x, y), "corner": corner}
         with self._plain_state():

@@ -37,6 +37,10 @@ class Attachment:
     samples: int
     floats: bool = False
 
+    def features(self, *, alike: bool = False) -> list[str]:
+        """Return features of shaders that read it; `alike`: all samples of a pixel are the same."""
+        return [*(["PICTURE_SAMPLES"] if self.samples else []), *(["PICTURE_ALIKE"] if alike else [])]
+
 
 class PicturePasses:
     """Programs, textures and framebuffers of passes over a picture.

@@ -34,8 +34,11 @@ __all__ = ["LAYERS", "SAMPLES", "SampleLayers"]
 
 SIDE = 4
 SAMPLES = SIDE * SIDE
-LAYERS = 6
-"""Lines that a pixel may show; the samples of more count to the last of them."""
+LAYERS = 4
+"""Lines that a pixel may show; samples of others count in proportion to these. Each is lit in a frame of its own."""
+
+WHOLE = 2**16
+"""Share of a layer that is alone in a pixel."""
 
 MOST_TEXELS = 2**23
 """Samples that are drawn at a time: 24 bytes each."""
@@ -55,7 +58,7 @@ class SampleLayers:
     Attributes
     ----------
     layers : list of GBuffer
-        Their ``owner`` is the number of samples, 0 where the layer has no part in a pixel.
+        Their ``owner`` is the layer's share of a pixel, in parts of `WHOLE`; 0 where it has none.
     """
 
     def __init__(self, ctx: moderngl.Context, gl: GLExtras, programs: Programs) -> None:
@@ -138,7 +141,7 @@ class SampleLayers:
         for number in range(LAYERS):
             if number == len(self._targets):
                 self._targets.append(self._made(size))
-            program["layer"], program["last"] = number, int(number == LAYERS - 1)
+            program["layer"], program["layers"] = number, LAYERS
             target = self._targets[number].framebuffer
             target.use()
             target.viewport = (*corner, *entries.size)
@@ -150,7 +153,7 @@ class SampleLayers:
     def _made(self, size: tuple[int, int]) -> PictureTarget:
         target = PictureTarget(self._ctx, size, None, edges=False)
         # Around what is drawn, all samples of a pixel show nothing.
-        for attachment, value in enumerate((EMPTY, 0 if self._targets else SAMPLES)):
+        for attachment, value in enumerate((EMPTY, 0 if self._targets else WHOLE)):
             self._gl.clear_integers(target.framebuffer, (value,), attachment)
         return target
 

@@ -134,6 +134,7 @@ FEATURES: dict[str, str] = {
     "VOLUME_JITTER": "rays that start at places of their own",
     "SURFACE_NORMALS": "occlusion in screen space of surfaces, whose normals are known",
     "TUBE_DISCARD": "the silhouettes of spline tubes alone, for measuring them",
+    "PICTURE_ALIKE": "a pixel's samples are all the same",
     "PICTURE_SHARES": "a picture that shows a part of each pixel",
     "PICTURE_SAMPLES": "a picture of several samples a pixel",
     "PICTURE_DEPTH": "the depths of a picture, beside its colours",

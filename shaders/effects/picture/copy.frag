@@ -2,10 +2,10 @@
 //
 //   drawn      colour attachment of VTK's framebuffer
 //   depths     its depth attachment
-//   samples    per pixel, of both                     (FEATURE_PICTURE_SAMPLES)
+//   samples    per pixel, of both                     (FEATURE_PICTURE_SAMPLES); FEATURE_PICTURE_ALIKE: the first is all of them
 //   origin     pixel of the attachments that becomes the target's pixel corner
 //   corner     pixel of the target
-//   shares     16ths of each pixel of the target that it shows    (FEATURE_PICTURE_SHARES)
+//   shares     65536ths of each pixel of the target that it shows    (FEATURE_PICTURE_SHARES)
 //
 // Colours are the mean of a pixel's samples, as VTK's own resolve makes them: of colours ^ 2.2, which are proportional to
 // light. Of the depths the nearest counts: a pixel at the edge of something belongs to what is in front, or an edge in
@@ -36,10 +36,10 @@ void main()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy) - corner + origin;
 #if FEATURE_PICTURE_SHARES
-    float share = float(texelFetch(shares, ivec2(gl_FragCoord.xy), 0).x) / 16.0;
+    float share = float(texelFetch(shares, ivec2(gl_FragCoord.xy), 0).x) / 65536.0;
     if (share == 0.0) discard;
 #endif
-#if FEATURE_PICTURE_SAMPLES
+#if FEATURE_PICTURE_SAMPLES && !FEATURE_PICTURE_ALIKE
     vec4 sum = vec4(0.0);
     for (int i = 0; i < samples; ++i) sum += pow(texelFetch(drawn, pixel, i), LIGHT);
     colour = pow(sum / float(samples), 1.0 / LIGHT);

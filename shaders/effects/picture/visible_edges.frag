@@ -46,7 +46,7 @@ void main() {
     uint key = inside ? texelFetch(keys, pixel, 0).r : 0xFFFFFFFFu;
     if (key == 0xFFFFFFFFu && first == 0) discard;
     if (!inside) return;
-#if FEATURE_PICTURE_SAMPLES
+#if FEATURE_PICTURE_SAMPLES && !FEATURE_PICTURE_ALIKE
     float depth = 1.0;
     for (int i = 0; i < samples; ++i) depth = min(depth, texelFetch(depths, pixel + origin, i).r);
     vec4 colour = texelFetch(drawn, pixel + origin, 0);
