@@ -6,6 +6,7 @@ the picture is complete, it is smoothed.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from pvfiblets.engine.effects.antialias_coverage import Coverage, SmoothedLines
@@ -30,8 +31,8 @@ class EdgeSmoothing:
         Whether the picture is one of many whose mean is shown (`antialias_refinement.py`). Its edges are not smoothed,
         and lines take those pixels whose middles they cover: none is widened to a pixel, and OpenGL's rule
         for thin lines, which makes slanted ones thinner, does not count.
-    layer : GBuffer or None
-        What the only lines show in the frame instead of their picture: a layer of their samples.
+    layer : callable or None
+        Returns what a mapper shows in the frame instead of its picture: its part of a layer of samples.
     widened : bool
         Whether any is drawn otherwise in the picture of one sample: mappers say so.
     """
@@ -41,7 +42,7 @@ class EdgeSmoothing:
         self._address: str = renderer.GetAddressAsString("")
         self._noted: dict[str, SmoothedLines] = {}
         self.sample = self.widened = False
-        self.layer: Any = None
+        self.layer: Callable[[Any], Any] | None = None
         smoothers[self._address] = self
 
     def begin(self, *, sample: bool = False) -> None:
@@ -71,10 +72,10 @@ class EdgeSmoothing:
         """Whether anything is shown that may cover some samples of a pixel and not the others: no drawable does."""
         return not all(_is_ours(prop) for prop in self._shown())
 
-    def only_lines(self) -> Any:
-        """Return the mapper of the only thing that is shown, if that is one of lines; else None."""
+    def only_lines(self) -> list[Any]:
+        """Return the mappers of all that is shown, if these are the engine's; else none."""
         shown = self._shown()
-        return shown[0].GetMapper() if len(shown) == 1 and _is_ours(shown[0]) else None
+        return [prop.GetMapper() for prop in shown] if all(map(_is_ours, shown)) else []
 
     def _shown(self) -> list[Any]:
         """Return what is visible but for what lies over the picture."""

@@ -13,8 +13,8 @@ The last frame is of the camera as it is: the last sample, or a frame of the mea
 thinner in samples. So G-buffers and depths are
 in the end those of the picture without refinement. Until then `pvfiblets.mappers.shifted_cameras` knows better.
 
-A picture of nothing but one set of lines that is to be finished at once (`Picture.finishing`) gets all samples in one
-frame, as layers of the lines that they show (`pvfiblets.engine.fiblets.sample_layers`).
+A picture of nothing but lines that is to be finished at once (`Picture.finishing`) gets all samples in one frame,
+as layers of the lines that they show (`pvfiblets.engine.fiblets.sample_layers`).
 
 A picture that ``vtkWindowToImageFilter`` puts together of tiles gets all samples of a tile in the tile's one frame.
 """
@@ -166,7 +166,7 @@ class Refinement:
         """Yield the layers of all samples (`pvfiblets.engine.fiblets.sample_layers`), each to be drawn as it is."""
         try:
             for layer in layers:
-                self._shares = layer.owner
+                self._shares = layer.shares
                 yield layer
             self._frame, self._taken = _Frame.MEAN, len(self.positions)
         finally:

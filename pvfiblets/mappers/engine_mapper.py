@@ -262,8 +262,9 @@ class EngineMapper(Attached, Readable, Connected, Questions, vtkOpenGLPolyDataMa
                 from pvfiblets.mappers.streaming import pace
 
                 pace(engine, renderer)
-            buffer = None if smoother is None else smoother.layer
-            if buffer is None:
+            if smoother is not None and smoother.layer is not None:
+                buffer = smoother.layer(self)
+            else:
                 outside = None
                 if engine.needs_outside(view, style):
                     outside = self._outside(context, slot, renderer, viewport)

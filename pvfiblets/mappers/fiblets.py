@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Generator, Iterator, Mapping
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -259,17 +259,21 @@ class FibletMapper(CutMapper[EngineOptions]):
         frame = frame_of(renderer, self.actor, (*renderer.GetOrigin(), *renderer.GetSize()))
         return frame, *self._wanted(renderer, frame, True)
 
-    def sample_layers(self, renderer: vtkRenderer) -> Generator[Any, None, None]:
+    def sample_layers(self, renderer: vtkRenderer, lines: Sequence[FibletMapper]) -> Generator[Any, None, None]:
         """Yield what the engine does (`pvfiblets.engine.fiblets.sample_layers`) for samples of what a renderer shows.
 
         Others may draw in between.
+
+        Parameters
+        ----------
+        renderer : vtkRenderer
+        lines : sequence of FibletMapper
+            All that it shows, this first.
         """
         context = self._context_in(renderer)
         assert context is not None
-        frame, view, style = self._sampled(renderer)
-        rectangle = frame.pixel_rectangle(self._drawn.bounds, self._drawn.promise, style.half_width + 1.0)
         engine = self._engine(context, context.slot(self))
-        steps = engine.sample_layers(view, style, rectangle)
+        steps = engine.sample_layers([one.sampled_lines(renderer, context) for one in lines])
         try:
             while context.alive:
                 with context.foreign():
@@ -283,6 +287,12 @@ class FibletMapper(CutMapper[EngineOptions]):
                 with context.foreign():
                     steps.close()
                     engine.drop_samples()
+
+    def sampled_lines(self, renderer: vtkRenderer, context: WindowContext) -> Any:
+        """Return what the engine takes of this set (`pvfiblets.engine.fiblets.sample_layers.SampledLines`)."""
+        frame, view, style = self._sampled(renderer)
+        rectangle = frame.pixel_rectangle(self._drawn.bounds, self._drawn.promise, style.half_width + 1.0)
+        return self._engine(context, context.slot(self)).sampled(view, style, rectangle)
 
     def _context_in(self, renderer: vtkRenderer) -> WindowContext | None:
         """Return the context in which a renderer's window shows it; None before the first frame."""

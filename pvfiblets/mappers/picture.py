@@ -53,6 +53,7 @@ class _Job:
     """Samples that are drawn at once, part by part, between the frames of a resting picture."""
 
     state: Hashable
+    lines: list[Any]                    # mappers, in the order in which they are drawn
     steps: Generator[Any, None, None]   # shares of the work that is done, then layers
     share: float = 0.0
 
@@ -162,12 +163,12 @@ class Picture:
         assert refinement is not None
         state = self._state(renderer)
         lines = self._lines_at_once(renderer)
-        if self._job is not None and (lines is None or self._job.state != state):
+        if self._job is not None and not (lines and self._job.state == state):
             self._drop_job()
-        if lines is None:
+        if not lines:
             return False
         if self._job is None:
-            self._job = _Job(state, lines.sample_layers(renderer))
+            self._job = _Job(state, lines, lines[0].sample_layers(renderer, lines))
         job = self._job
         if job.share < 1.0:
             renderer.GetRenderWindow().MakeCurrent()
@@ -183,7 +184,7 @@ class Picture:
 
     def draws_at_once(self) -> bool:
         """Whether the samples that the picture wants next are drawn at once."""
-        return self._lines_at_once(self.renderer) is not None
+        return bool(self._lines_at_once(self.renderer))
 
     def _drop_job(self) -> None:
         job, self._job = self._job, None
@@ -361,15 +362,15 @@ class Picture:
         if self._smoothing is not None:
             self._smoothing.begin(sample=self._refinement is not None and not self._refinement.plain)
 
-    def _lines_at_once(self, renderer: Any) -> Any:
-        """Return the mapper whose samples are drawn at once next; None where they are drawn one after the other."""
+    def _lines_at_once(self, renderer: Any) -> list[Any]:
+        """Return the mappers whose samples are drawn at once next; none where they are drawn one after the other."""
         refinement = self._refinement
         if refinement is None or not refinement.untaken or self._lacks_memory:
-            return None
+            return []
         if self._smoothing is None or self._depth_of_field is not None or renderer.GetPass() is not None:
-            return None
-        lines = self._smoothing.only_lines() if _starts_empty(renderer) else None
-        return lines if lines is not None and lines.layers_samples(renderer) else None
+            return []
+        lines = self._smoothing.only_lines() if _starts_empty(renderer) else []
+        return lines if all(one.layers_samples(renderer) for one in lines) else []
 
     def _draw_layers(self, renderer: Any) -> None:
         """Add up the layers of all samples, each in a frame inside of the one that the renderer is about to draw."""
@@ -377,8 +378,10 @@ class Picture:
         assert self._job is not None
         self._insert()
         frames = self._refinement.layer_frames(self._job.steps)
+        numbers = {mapper.GetAddressAsString(""): number for number, mapper in enumerate(self._job.lines)}
         try:
-            for self._smoothing.layer in frames:
+            for layer in frames:
+                self._smoothing.layer = lambda mapper, of=layer.of: of(numbers[mapper.GetAddressAsString("")])
                 self._draw_inside(renderer)
         except EngineError:
             self._lacks_memory = True

@@ -242,7 +242,7 @@ CHANGED = {
             effects/picture/line_tiles.vert, effects/picture/mean.frag, effects/picture/visible_edges.frag,
             screen/triangle.vert
         """,
-        features="EDGES, PICTURE_SAMPLES, WIDE_LINES",
+        features="EDGES, PICTURE_ALIKE, PICTURE_SAMPLES, WIDE_LINES",
         buffers="coverage, refinement",
         modules="engine.effects.antialias_coverage, mappers.antialias_coverage, plotting.picture_component",
     ),
@@ -251,7 +251,7 @@ CHANGED = {
             effects/picture/antialias_coverage.frag, effects/picture/line_tiles.frag, effects/picture/line_tiles.vert,
             effects/picture/visible_edges.frag, screen/triangle.vert
         """,
-        features="EDGES, PICTURE_SAMPLES",
+        features="EDGES, PICTURE_ALIKE, PICTURE_SAMPLES",
         buffers="coverage",
         modules="engine.effects.antialias_coverage, mappers.antialias_coverage, plotting.picture_component",
     ),

@@ -52,6 +52,14 @@ def hide(_plotter, actor):
     actor.subset(every=3)
 
 
+def add_sets(plotter, actor):
+    """Add lines that run among those of the others, some that stand aside, and some that are hidden."""
+    for color, shift, size, visible in [("white", 0, 1.0, True), ("red", 70, 0.3, True), ("green", 0, 1.0, False)]:
+        lines = [shift + size * line + 0.3 for line in actor.fiblets.decompress()]
+        added = plotter.add_fiblets(lines, color=color, lighting=False, opacity=1.0, line_width=1.6)
+        added.visibility = visible
+
+
 def look_close(plotter, actor):
     actor.line_width = 0.7
     plotter.enable_parallel_projection()
@@ -87,7 +95,8 @@ def off_by(one, other):
 
 
 @pytest.mark.parametrize(
-    ("change", "parts"), [(nothing, 1), (cut, 1), (cut, 12), (hide, 1), (look_close, 1), (write, 1)]
+    ("change", "parts"),
+    [(nothing, 1), (cut, 1), (cut, 12), (hide, 1), (look_close, 1), (write, 1), (add_sets, 1), (add_sets, 5)],
 )
 def test_the_picture_is_that_of_samples_one_after_the_other(scene, change, parts, monkeypatch):
     monkeypatch.setattr(sample_layers, "MOST_TEXELS", 16 * SIZE[0] * SIZE[1] // parts)
@@ -138,8 +147,8 @@ def add_mesh(plotter, _actor):
     plotter.add_mesh(pv.Sphere(radius=30.0))
 
 
-def add_lines(plotter, _actor):
-    plotter.add_fiblets([[(0.0, 0.0, -50.0), (0.0, 0.0, 50.0)]], color="white")
+def add_tubes(plotter, _actor):
+    plotter.add_spline_tubes([[(0.0, 0.0, -50.0), (0.0, 0.0, 50.0)]])
 
 
 def thicken(_plotter, actor):
@@ -158,7 +167,7 @@ def occlude(_plotter, actor):
     actor.ambient_occlusion = True
 
 
-@pytest.mark.parametrize("change", [add_mesh, add_lines, thicken, fade, keep_outside, occlude])
+@pytest.mark.parametrize("change", [add_mesh, add_tubes, thicken, fade, keep_outside, occlude])
 def test_other_pictures_have_one_sample_after_the_other(scene, change, monkeypatch):
     plotter, actor = scene
     change(plotter, actor)

@@ -39,7 +39,7 @@ class Attachment:
 
     def features(self, *, alike: bool = False) -> list[str]:
         """Return features of shaders that read it; `alike`: all samples of a pixel are the same."""
-        return [*(["PICTURE_SAMPLES"] if self.samples else []), *(["PICTURE_ALIKE"] if alike else [])]
+        return ["PICTURE_SAMPLES", *(["PICTURE_ALIKE"] if alike else [])] if self.samples else []
 
 
 class PicturePasses:

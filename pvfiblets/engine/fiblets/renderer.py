@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator
+from collections.abc import Generator, Iterator, Sequence
 from contextlib import nullcontext
-from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -42,7 +41,7 @@ if TYPE_CHECKING:
     from ...query.selection.point_flags import Sampling
     from .data.sampled_volume import VolumeSource
     from .region_query import RegionQuery
-    from .sample_layers import SampleLayers
+    from .sample_layers import Layer, SampledLines, SampleLayers
 
 __all__ = ["FibletRenderer"]
 
@@ -268,12 +267,8 @@ class FibletRenderer(LinesBehind):
         plain = style.radius is None and style.relief is None and view.region is None
         return plain and isinstance(self._pipeline, ComputePipeline)
 
-    def sample_layers(
-        self, view: View, style: FibletStyle, rectangle: tuple[int, int, int, int]
-    ) -> Iterator[float | GBuffer]:
-        """Draw sixteen samples of every pixel, as layers of the lines that they show (:mod:`.sample_layers`).
-
-        The picture of :meth:`render` stays as it is.
+    def sampled(self, view: View, style: FibletStyle, rectangle: tuple[int, int, int, int]) -> SampledLines:
+        """Return what :meth:`sample_layers` draws of this set.
 
         Parameters
         ----------
@@ -282,25 +277,40 @@ class FibletRenderer(LinesBehind):
             Of which, with the view, :meth:`layers_samples` is true.
         rectangle : tuple of 4 ints
             x, y, width, height of the part of the picture in which anything can be.
+        """
+        from .sample_layers import SampledLines
+
+        self._check_alive()
+        assert isinstance(self._pipeline, ComputePipeline)
+        return SampledLines(view, style, rectangle, self._fiblets.n_fiblets, self._request, self._pipeline)
+
+    def sample_layers(self, lines: Sequence[SampledLines]) -> Iterator[float | Layer]:
+        """Draw sixteen samples of every pixel, as layers of the lines that they show (:mod:`.sample_layers`).
+
+        The picture of :meth:`render` stays as it is.
+
+        Parameters
+        ----------
+        lines : sequence of SampledLines
+            Of this set, and of others of the same picture and context, in the order in which they are drawn.
 
         Yields
         ------
-        float or GBuffer
-            The share of the work that is done, at times; then the layers. These are the renderer's own, until
-            :meth:`drop_samples`; ``owner`` is the number of samples that show a layer.
+        float or Layer
+            The share of the work that is done, at times; then the layers. These are this renderer's, until
+            :meth:`drop_samples`.
 
         Raises
         ------
         EngineError
-            After :meth:`release`, or if memory does not suffice.
+            After :meth:`release`, if memory does not suffice, or sets have more fiblets than can be told apart.
         """
         from .sample_layers import SampleLayers
 
         self._check_alive()
-        assert isinstance(self._pipeline, ComputePipeline)
         if self._samples is None:
             self._samples = self._keep(SampleLayers(self._ctx, self._gl, self._programs), "samples")
-        yield from self._samples.draw(view, replace(style, edges=False), rectangle, self._request, self._pipeline)
+        yield from self._samples.draw(lines)
         yield from self._samples.layers
 
     def drop_samples(self) -> None:

@@ -2,16 +2,18 @@
 
 Fiblets are decoded once for all samples of a pixel, which lie side by side in a picture four times as wide and high
 (``FEATURE_SUBSAMPLES``): each has a depth test of its own. The samples of a pixel that show the same fiblet are lit
-once: layer k holds each pixel's fiblet with the k-th most samples, and how many these are.
+once: layer k holds each pixel's fiblet with the k-th most samples, and their share of the pixel. Several sets are drawn
+one after the other into the same samples.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import replace
-from typing import TYPE_CHECKING
+from copy import copy
+from dataclasses import dataclass, replace
+from functools import partial
 
 import moderngl
 import numpy as np
@@ -23,14 +25,11 @@ from ..gl.moderngl_extras import GLExtras
 from ..gl.queries import Query
 from ..gl.shaders import Programs
 from ..view import View
-from .parts.part_pictures import PictureTarget
+from .parts.part_pictures import PictureTarget, textures_of
 from .pipelines import ComputePipeline, DrawRequest
 from .style import FibletStyle
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-__all__ = ["LAYERS", "SAMPLES", "SampleLayers"]
+__all__ = ["LAYERS", "SAMPLES", "Layer", "SampleLayers", "SampledLines"]
 
 SIDE = 4
 SAMPLES = SIDE * SIDE
@@ -41,9 +40,99 @@ WHOLE = 2**16
 """Share of a layer that is alone in a pixel."""
 
 MOST_TEXELS = 2**23
-"""Samples that are drawn at a time: 24 bytes each."""
+"""Samples that are kept at a time: 24 bytes each, of several sets twice."""
+
+MOST_SETS = 2**15
 
 Rectangle = tuple[int, int, int, int]
+
+
+@dataclass(frozen=True)
+class SampledLines:
+    """A set's lines as a picture shows them.
+
+    Attributes
+    ----------
+    view : View
+    style : FibletStyle
+    rectangle : tuple of 4 ints
+        x, y, width, height of the part of the picture in which any of them can be.
+    n_fiblets : int
+    request : callable
+        Says what is to be drawn for a view and a style into a picture.
+    pipeline : ComputePipeline
+        Draws it.
+    """
+
+    view: View
+    style: FibletStyle
+    rectangle: Rectangle
+    n_fiblets: int
+    request: Callable[[View, FibletStyle, GBuffer], DrawRequest]
+    pipeline: ComputePipeline
+
+
+@dataclass(frozen=True)
+class Layer:
+    """A line of each pixel.
+
+    Attributes
+    ----------
+    shares : moderngl.Texture
+        Of each pixel, in parts of `WHOLE`, in 17 bits; 0 where the layer has none.
+    of : callable
+        Returns the picture of what it shows of a set, by number. It holds until that of another set is asked for.
+    """
+
+    shares: moderngl.Texture
+    of: Callable[[int], GBuffer]
+
+
+class _Buffers:
+    """A picture of samples, made anew for another size."""
+
+    def __init__(self, ctx: moderngl.Context) -> None:
+        self._ctx = ctx
+        self._made: GBuffer | None = None
+
+    def of(self, size: tuple[int, int]) -> GBuffer:
+        """Return one for pixels of a size."""
+        if self._made is None or self._made.size != _times(SIDE, size):
+            self.release()
+            self._made = GBuffer(self._ctx, _times(SIDE, size))
+        return self._made
+
+    def release(self) -> None:
+        """Give it back; twice is harmless."""
+        if self._made is not None:
+            self._made.release()
+            self._made = None
+
+
+class _Together:
+    """Samples of several sets in one picture, and what draws into it."""
+
+    def __init__(self, ctx: moderngl.Context, gl: GLExtras, size: tuple[int, int]) -> None:
+        self._gl = gl
+        with ExitStack() as held:
+            self.picture = GBuffer(ctx, size)
+            held.callback(self.picture.release)
+            try:
+                depths = ctx.depth_renderbuffer(size)
+                held.callback(depths.release)
+                self.framebuffer = ctx.framebuffer(list(textures_of(self.picture).values()), depths)
+                held.callback(self.framebuffer.release)
+                self._depths = ctx.framebuffer(depth_attachment=depths)
+                held.callback(self._depths.release)
+            except moderngl.Error as error:
+                raise EngineError(f"no memory for samples of {size[0]} x {size[1]} pixels") from error
+            self.release = held.pop_all().close
+
+    def clear(self) -> None:
+        """Begin with nothing."""
+        self._depths.clear(depth=1.0)
+        for attachment in (0, 1):
+            self._gl.clear_integers(self.framebuffer, (EMPTY,), attachment)
 
 
 class SampleLayers:
@@ -55,10 +144,6 @@ class SampleLayers:
     gl : GLExtras
     programs : Programs
 
-    Attributes
-    ----------
-    layers : list of GBuffer
-        Their ``owner`` is the layer's share of a pixel, in parts of `WHOLE`; 0 where it has none.
     """
 
     def __init__(self, ctx: moderngl.Context, gl: GLExtras, programs: Programs) -> None:
@@ -66,41 +151,78 @@ class SampleLayers:
         self._gl = gl
         self._programs = programs
         self._targets: list[PictureTarget] = []
+        self._sets = 1
+        self._depths: tuple[moderngl.Texture, moderngl.Framebuffer] | None = None
         self._shown = Query(gl, "samples")
 
     @property
-    def layers(self) -> Sequence[GBuffer]:
-        """The pictures of the layers."""
-        return [target.picture for target in self._targets]
+    def layers(self) -> list[Layer]:
+        """What has been drawn."""
+        return [Layer(target.picture.owner, partial(self._of_set, target.picture)) for target in self._targets]
 
-    def draw(
-        self,
-        view: View,
-        style: FibletStyle,
-        rectangle: Rectangle,
-        request: Callable[[View, FibletStyle, GBuffer], DrawRequest],
-        pipeline: ComputePipeline,
-    ) -> Iterator[float]:
-        """Draw anew, part by part; yield the share of the work that is done after each."""
+    def draw(self, lines: Sequence[SampledLines]) -> Iterator[float]:
+        """Draw anew, part by part; yield the share of the work that is done after each.
+
+        Raises
+        ------
+        EngineError
+            If memory does not suffice, or sets have more fiblets than can be told apart.
+        """
         self._drop_layers()
-        size, tiles = _tiles(rectangle)
-        sub = replace(style, line_width=SIDE * style.line_width, exact=True, tolerance=SIDE * style.tolerance)
+        self._sets = len(lines)
+        if len(lines) > MOST_SETS or max(one.n_fiblets for one in lines) * len(lines) >= EMPTY:
+            raise EngineError(f"{len(lines)} sets are more than samples at once can tell apart; hide some")
+        whole = lines[0].view.size
+        size, corners = _parts(_union([one.rectangle for one in lines]), MOST_TEXELS // min(len(lines), 2))
         with ExitStack() as held:
-            samples = GBuffer(self._ctx, (SIDE * size[0], SIDE * size[1]))
-            held.callback(samples.release)
+            drawn = _Buffers(self._ctx)
+            held.callback(drawn.release)
             entries, listed = _target(self._ctx, size, 4)
             held.callback(entries.release)
             held.callback(listed.release)
+            kept = _Together(self._ctx, self._gl, _times(SIDE, size)) if len(lines) > 1 else None
+            if kept is not None:
+                held.callback(kept.release)
             undo = held.enter_context(ExitStack())
             undo.callback(self._drop_layers)
-            for done, corner in enumerate(tiles, start=1):
-                wanted = request(_part(view, corner, size), sub, samples)
-                with self._marks_kept(pipeline):
-                    pipeline.draw(replace(wanted, occlusion=None, samples=("SUBSAMPLES",)))
+            steps = len(corners) * len(lines)
+            for part, corner in enumerate(corners):
+                self._ctx.scissor = None
+                if kept is not None:
+                    kept.clear()
+                for number, one in enumerate(lines):
+                    if kept is None:
+                        self._draw_set(one, corner, drawn.of(size))
+                    elif (place := _common(one.rectangle, (*corner, *size))) is not None:
+                        self._draw_set(one, place[:2], drawn.of(place[2:]))
+                        begin = place[0] - corner[0], place[1] - corner[1]
+                        self._merge(drawn.of(place[2:]), kept, _times(SIDE, begin), number)
+                    if number + 1 < len(lines):
+                        yield (part * len(lines) + number + 1) / steps
                 with self._gl.framebuffers_kept():
-                    self._sort(view.size, samples, entries, listed, corner)
-                yield done / len(tiles)
+                    self._sort(whole, drawn.of(size) if kept is None else kept.picture, entries, listed, corner)
+                yield (part + 1) / len(corners)
             undo.pop_all()
+
+    def _draw_set(self, lines: SampledLines, corner: tuple[int, int], drawn: GBuffer) -> None:
+        style, width = lines.style, SIDE * lines.style.line_width
+        sub = replace(style, line_width=width, edges=False, exact=True, tolerance=SIDE * style.tolerance)
+        wanted = lines.request(_part(lines.view, corner, drawn.size), sub, drawn)
+        with self._marks_kept(lines.pipeline):
+            lines.pipeline.draw(replace(wanted, occlusion=None, samples=("SUBSAMPLES",)))
+
+    def _merge(self, drawn: GBuffer, kept: _Together, corner: tuple[int, int], number: int) -> None:
+        """Put a set's samples to those of the sets before, where they are nearer."""
+        program, array = self._programs.screen("fiblets/samples/merge.frag", [])
+        _use(program, {f"drawn_{name}": getattr(drawn, name) for name in ("depth", "owner", "ids", "position")})
+        program["corner"], program["set"], program["sets"] = corner, number, self._sets
+        self._ctx.scissor = None
+        self._ctx.enable_only(moderngl.DEPTH_TEST)
+        self._ctx.depth_func = "<="
+        with self._gl.framebuffers_kept():
+            kept.framebuffer.use()
+            kept.framebuffer.viewport = (*corner, *drawn.size)
+            array.render(moderngl.TRIANGLES, vertices=3)
 
     @contextmanager
     def _marks_kept(self, pipeline: ComputePipeline) -> Iterator[None]:
@@ -131,13 +253,13 @@ class SampleLayers:
         self._ctx.enable_only(moderngl.NOTHING)
         self._ctx.scissor = None
         program, array = self._programs.screen("fiblets/samples/entries.frag", [])
-        _use(program, {"owner": samples.owner, "drawn_ids": samples.ids})
+        _use(program, {"drawn_owner": samples.owner, "drawn_ids": samples.ids})
         listed.use()
         array.render(moderngl.TRIANGLES, vertices=3)
         program, array = self._programs.screen("fiblets/samples/layer.frag", [])
-        drawn = {"drawn_depth": samples.depth, "drawn_ids": samples.ids, "drawn_position": samples.position}
+        drawn = {f"drawn_{name}": getattr(samples, name) for name in ("depth", "owner", "ids", "position")}
         _use(program, {"entries": entries, **drawn})
-        program["corner"] = corner
+        program["corner"], program["sets"] = corner, self._sets
         for number in range(LAYERS):
             if number == len(self._targets):
                 self._targets.append(self._made(size))
@@ -150,6 +272,24 @@ class SampleLayers:
             if not self._shown.value():
                 break
 
+    def _of_set(self, layer: GBuffer, number: int) -> GBuffer:
+        """Return what a layer shows of a set: all of it if there is no other."""
+        if self._sets == 1:
+            return layer
+        if self._depths is None:
+            self._depths = _target(self._ctx, layer.size, 1)
+        of_set = copy(layer)
+        of_set.depth, framebuffer = self._depths
+        program, array = self._programs.screen("fiblets/samples/of_set.frag", [])
+        _use(program, {"drawn_depth": layer.depth, "shares": layer.owner})
+        program["set"] = number
+        self._ctx.scissor = None
+        self._ctx.enable_only(moderngl.NOTHING)
+        with self._gl.framebuffers_kept():
+            framebuffer.use()
+            array.render(moderngl.TRIANGLES, vertices=3)
+        return of_set
+
     def _made(self, size: tuple[int, int]) -> PictureTarget:
         target = PictureTarget(self._ctx, size, None, edges=False)
         # Around what is drawn, all samples of a pixel show nothing.
@@ -160,7 +300,8 @@ class SampleLayers:
     @property
     def nbytes(self) -> int:
         """Bytes of GPU memory."""
-        return sum(layer.nbytes for layer in self.layers)
+        depths = 0 if self._depths is None else 4 * self._depths[0].size[0] * self._depths[0].size[1]
+        return sum(target.picture.nbytes for target in self._targets) + depths
 
     def release(self) -> None:
         """Give everything on the GPU back; twice is harmless."""
@@ -170,6 +311,9 @@ class SampleLayers:
     def _drop_layers(self) -> None:
         while self._targets:
             self._targets.pop().release()
+        for texture in self._depths or ():
+            texture.release()
+        self._depths = None
 
 
 def _use(program: moderngl.Program, textures: dict[str, moderngl.Texture]) -> None:
@@ -190,10 +334,27 @@ def _target(
         raise EngineError(f"no memory for {SAMPLES} samples of {size[0]} x {size[1]} pixels") from error
 
 
-def _tiles(rectangle: Rectangle) -> tuple[tuple[int, int], list[tuple[int, int]]]:
+def _union(rectangles: Iterable[Rectangle]) -> Rectangle:
+    """Return the least rectangle that holds all."""
+    left, low, right, top = zip(*((x, y, x + width, y + height) for x, y, width, height in rectangles), strict=True)
+    return min(left), min(low), max(right) - min(left), max(top) - min(low)
+
+
+def _common(one: Rectangle, other: Rectangle) -> Rectangle | None:
+    """Return what two rectangles share."""
+    x, y = (max(one[axis], other[axis]) for axis in (0, 1))
+    width, height = (min(r[axis] + r[axis + 2] for r in (one, other)) - low for axis, low in enumerate((x, y)))
+    return (x, y, width, height) if width > 0 and height > 0 else None
+
+
+def _times(factor: int, pair: tuple[int, int]) -> tuple[int, int]:
+    return factor * pair[0], factor * pair[1]
+
+
+def _parts(rectangle: Rectangle, most: int) -> tuple[tuple[int, int], list[tuple[int, int]]]:
     """Return the size of parts that hold a rectangle, and where each begins."""
     x, y, width, height = rectangle
-    parts = math.ceil(SAMPLES * width * height / MOST_TEXELS)
+    parts = math.ceil(SAMPLES * width * height / most)
     rows = min(math.ceil(math.sqrt(parts * height / width)), height)
     columns = min(math.ceil(parts / rows), width)
     size = -(-width // columns), -(-height // rows)
@@ -201,12 +362,10 @@ def _tiles(rectangle: Rectangle) -> tuple[tuple[int, int], list[tuple[int, int]]
 
 
 def _part(view: View, corner: tuple[int, int], size: tuple[int, int]) -> View:
-    """Return the view of a part of a picture, whose samples are its pixels."""
+    """Return the view of a part of a picture, whose samples are its pixels: so many, from a pixel of the picture."""
     matrix = np.eye(4)
     for axis in (0, 1):
-        scale = view.size[axis] / size[axis]
+        scale = SIDE * view.size[axis] / size[axis]
         matrix[axis, axis] = scale
         matrix[axis, 3] = scale * (1.0 - 2.0 * corner[axis] / view.size[axis]) - 1.0
-    return replace(
-        view, size=(SIDE * size[0], SIDE * size[1]), model_view_projection=matrix @ view.model_view_projection
-    )
+    return replace(view, size=size, model_view_projection=matrix @ view.model_view_projection)

@@ -5,7 +5,7 @@
 //   samples    per pixel, of both                     (FEATURE_PICTURE_SAMPLES); FEATURE_PICTURE_ALIKE: the first is all of them
 //   origin     pixel of the attachments that becomes the target's pixel corner
 //   corner     pixel of the target
-//   shares     65536ths of each pixel of the target that it shows    (FEATURE_PICTURE_SHARES)
+//   shares     65536ths of each pixel of the target that it shows, in 17 bits    (FEATURE_PICTURE_SHARES)
 //
 // Colours are the mean of a pixel's samples, as VTK's own resolve makes them: of colours ^ 2.2, which are proportional to
 // light. Of the depths the nearest counts: a pixel at the edge of something belongs to what is in front, or an edge in
@@ -36,7 +36,7 @@ void main()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy) - corner + origin;
 #if FEATURE_PICTURE_SHARES
-    float share = float(texelFetch(shares, ivec2(gl_FragCoord.xy), 0).x) / 65536.0;
+    float share = float(texelFetch(shares, ivec2(gl_FragCoord.xy), 0).x & 0x1FFFFu) / 65536.0;
     if (share == 0.0) discard;
 #endif
 #if FEATURE_PICTURE_SAMPLES && !FEATURE_PICTURE_ALIKE

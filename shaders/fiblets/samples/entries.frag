@@ -2,13 +2,13 @@
 //
 // Samples of a fiblet that bends within the pixel count as lines of their own, by the tangents that their light depends on.
 //
-//   owner     fiblets by sample (FEATURE_SUBSAMPLES), 4 x 4 texels a pixel; that of no fiblet is one of them
-//   drawn_ids streamlines and tangents
-//   entries   16 bytes, from the lowest, those with most samples first: 16 (samples - 1) + the sample's number
+//   drawn_owner   fiblets by sample (FEATURE_SUBSAMPLES), 4 x 4 texels a pixel; that of no fiblet is one of them
+//   drawn_ids     streamlines and tangents
+//   entries       16 bytes, from the lowest, those with most samples first: 16 (samples - 1) + the sample's number
 
 #version 430
 
-uniform usampler2D owner;
+uniform usampler2D drawn_owner;
 uniform usampler2D drawn_ids;
 out uvec4 entries;
 
@@ -24,7 +24,7 @@ void main() {
     uint owners[16], tangents[16];
     uint differing = 0u;
     for (int i = 0; i < 16; ++i) {
-        owners[i] = texelFetch(owner, at + ivec2(i & 3, i >> 2), 0).x;
+        owners[i] = texelFetch(drawn_owner, at + ivec2(i & 3, i >> 2), 0).x;
         tangents[i] = owners[i] == 0xFFFFFFFFu ? 0u : texelFetch(drawn_ids, at + ivec2(i & 3, i >> 2), 0).y;
         differing |= (owners[i] ^ owners[0]) | (alike(tangents[i], tangents[0]) ? 0u : 1u);
     }

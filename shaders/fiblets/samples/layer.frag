@@ -1,18 +1,21 @@
 // One layer of the lines that pixels' samples show (fiblets/samples/entries.frag): the k-th of each pixel, as a G-buffer, and in
-// place of the owner the share of the pixel that shows it, in 65536ths. Where samples show more lines than there may be layers,
+// place of the owner the share of the pixel that shows it, in 65536ths, and above its 17 bits the line's set. Where samples show more lines than there may be layers,
 // those that are left out count in proportion to the lines that are not.
 //
 //   entries, drawn_depth, drawn_ids, drawn_position   of the samples of a part of the picture
+//   drawn_owner, sets                                 of several sets: which of them is told by the remainder
 //   corner                                            pixel of the picture where that part begins
 
 #version 430
 
 uniform usampler2D entries;
 uniform usampler2D drawn_depth;
+uniform usampler2D drawn_owner;
 uniform usampler2D drawn_ids;
 uniform sampler2D drawn_position;
 uniform int layer;
 uniform int layers;     // that there may be
+uniform uint sets;
 uniform ivec2 corner;
 
 layout(location = 0) out uint depth;
@@ -33,7 +36,7 @@ void main() {
     uint entry = entry_of(words, layer), number = entry & 15u;
     ivec2 at = 4 * pixel + ivec2(number & 3u, number >> 2u);
     depth = texelFetch(drawn_depth, at, 0).x;
-    share = ((entry >> 4u) + 1u) * 65536u / listed;
+    share = ((entry >> 4u) + 1u) * 65536u / listed | (texelFetch(drawn_owner, at, 0).x % sets) << 17u;
     ids = texelFetch(drawn_ids, at, 0).xy;
     position = texelFetch(drawn_position, at, 0).xy;
 }
