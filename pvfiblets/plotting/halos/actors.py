@@ -12,11 +12,12 @@ import pyvista as pv
 from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.halos import HaloMapper, HaloOptions
-from pvfiblets.plotting.coloured import Coloured, PlottedLines, added_up
+from pvfiblets.plotting.coloured import added_up
 from pvfiblets.plotting.halos.scalars import Held, coloured, filtered, find_scalars
 from pvfiblets.plotting.halos.settings import LOOKS, HaloLineSettings, HaloPointSettings, HaloSettings
 from pvfiblets.plotting.halos.style import LookSettings, Spacing
-from pvfiblets.plotting.line_opacities import LineOpacities
+from pvfiblets.plotting.line_opacities import LineActor
+from pvfiblets.plotting.mapper_words import PlottedLines
 from pvfiblets.plotting.setting_places import OPTIONS
 from pvfiblets.plotting.settings import Given
 from pvfiblets.streamlines import Streamlines
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 BACKGROUND = "background"
 
 
-class PlottedHalos(PlottedLines, HaloMapper):
+class PlottedHalos(PlottedLines[HaloOptions], HaloMapper):
     """A mapper of lines or points with halos, with scalar bars.
 
     Parameters
@@ -39,7 +40,7 @@ class PlottedHalos(PlottedLines, HaloMapper):
     """
 
 
-class HaloActor(HaloSettings, LineOpacities, Coloured, pv.Actor):
+class HaloActor(HaloSettings, LineActor):
     """What actors of lines and of points with halos have in common.
 
     Parameters
@@ -54,6 +55,7 @@ class HaloActor(HaloSettings, LineOpacities, Coloured, pv.Actor):
         Gives what is not given.
     """
 
+    _mapper: PlottedHalos
     _KIND: ClassVar[type]
 
     _WIDTH = "widths of halos are in mm; see actor.line_width of lines, actor.point_size of points"
@@ -66,20 +68,17 @@ class HaloActor(HaloSettings, LineOpacities, Coloured, pv.Actor):
         name: str | None = None,
         theme: Any = None,
     ) -> None:
-        theme = pv.global_theme if theme is None else theme
         given = Given(type(self), settings)
         self._held = replace(held, drawn=self._checked(held.drawn))
         self._looks = LookSettings(filter_by=held.filter_by, **given.at(LOOKS))
         self._spacing = Spacing(held.drawn)
         self._light_on_dark = given["light_on_dark"]
         self._halo_choice = _halo_choice(given["halo_color"])
-        self._init_colours(held.scalars, given, theme)
-        self._own_color = self._settings.color is not None
-        self._settings.color = pv.Color(self._settings.color, default_color=self._ink)
         look = self._looks.look(held.drawn, self._spacing)
         mapper = PlottedHalos(held.drawn, look, options=HaloOptions(**given.at(OPTIONS)))
-        super().__init__(prop=pv.Property(theme=theme), name=name)
-        self._finish(mapper, given)
+        super().__init__(mapper, held.scalars, given, name=name, theme=theme)
+        self._own_color = self._settings.color is not None
+        self._settings.color = pv.Color(self._settings.color, default_color=self._ink)
         self._colour_halos()
         self._recolour()
         self.opacity = given["opacity"]
@@ -221,12 +220,8 @@ class HaloActor(HaloSettings, LineOpacities, Coloured, pv.Actor):
     def _paper(self) -> str:
         return "black" if self._light_on_dark else "white"
 
-    @property
-    def _lines_drawn(self) -> Any:
-        return self._held.drawn
-
-    def _line_values(self) -> Mapping[str, Any]:
-        return self._held.line_values
+    def _opaque_lines(self) -> tuple[Any, Mapping[str, Any]]:
+        return self._held.drawn, self._held.line_values
 
     @property
     def _drawn(self) -> Held:
@@ -332,7 +327,7 @@ class HaloLineActor(HaloLineSettings, HaloActor):
             Line, and place along it: the index of the point before plus the fraction of the segment.
             ``None`` where no line of this actor is within two pixels; halos are none.
         """
-        return self._mapper.pick_at(x, y)
+        return cast("tuple[int, float] | None", self._mapper.pick_at(x, y))
 
     @property
     def _counted(self) -> str:
@@ -385,7 +380,7 @@ class HaloPointActor(HaloPointSettings, HaloActor):
         int or None
             ``None`` where no point of this actor is within two pixels; halos are none.
         """
-        return self._mapper.pick_at(x, y)
+        return cast("int | None", self._mapper.pick_at(x, y))
 
     @property
     def _counted(self) -> str:

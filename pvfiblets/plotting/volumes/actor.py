@@ -9,22 +9,21 @@ from functools import reduce
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pyvista as pv
 
 from pvfiblets.mappers.volumes import VolumeMapper
 from pvfiblets.plotting.clipping import Clipping
-from pvfiblets.plotting.coloured import Plotted, added_up
+from pvfiblets.plotting.coloured import added_up
 from pvfiblets.plotting.fiblets.scalars import Scalars
 from pvfiblets.plotting.linked_property import is_own_write, own_writes
-from pvfiblets.plotting.mapper_words import VolumeWords
+from pvfiblets.plotting.mapper_words import PlottedVolume
 from pvfiblets.plotting.settings import Given
-from pvfiblets.plotting.shading import SurfaceShading
 from pvfiblets.plotting.volumes.casting import SURFACE, RaySettings
 from pvfiblets.plotting.volumes.opacity import is_number
 from pvfiblets.plotting.volumes.property_words import PropertyWords
 from pvfiblets.plotting.volumes.settings import VolumeSettings
 from pvfiblets.volumes import RaycastVolume, smoothed
 from pvfiblets.volumes.interactive_quality import InteractiveQuality
+from pvfiblets.volumes.raycast_options import RaycastOptions
 
 if TYPE_CHECKING:
     from pvfiblets.mappers import RayHit
@@ -36,7 +35,7 @@ OF_SURFACES = ("ambient_occlusion", "ray_occlusion")
 """Light and peaks have nothing that could stand over anything: they keep these for when a surface shows again."""
 
 
-class PlottedRaycast(VolumeWords, Plotted, VolumeMapper):
+class PlottedRaycast(PlottedVolume, VolumeMapper):
     """A mapper of a volume that rays are cast through, with scalar bars.
 
     Parameters
@@ -48,7 +47,7 @@ class PlottedRaycast(VolumeWords, Plotted, VolumeMapper):
     """
 
 
-class VolumeActor(RaySettings, SurfaceShading, Clipping, pv.Actor):
+class VolumeActor(Clipping, RaySettings):
     """A volume that rays are cast through: surfaces, light, or peaks.
 
     Everything of :class:`pyvista.Actor` works (``visibility``, ``position``, ``user_matrix``,
@@ -91,20 +90,16 @@ class VolumeActor(RaySettings, SurfaceShading, Clipping, pv.Actor):
         self._given = given
         chosen = Given(VolumeSettings, settings)
         coarser = InteractiveQuality.of_quality(chosen["interactive_quality"])
-        theme = pv.global_theme if theme is None else theme
         self._source, self._smooth = _checked(volume), chosen["smooth"]
         self._volume = _smoothed(volume, self._smooth)
-        self._lit = theme.lighting if chosen["lighting"] is None else chosen["lighting"]
-        self._init_colours(None, chosen, theme)
-        self._init_shading()
         self._of_surfaces: dict[str, Any] = {}
         self._clips: dict[str, Region] = {}
         self._see_through = 1.0
+        mapper = PlottedRaycast(self._volume, RaycastOptions(SURFACE, (0.0,)))
+        super().__init__(mapper, None, chosen, name=name, theme=theme)
+        self._lit = self._theme.lighting if chosen["lighting"] is None else chosen["lighting"]
         self._scalars = _scalars(self._volume)
-        made, colouring = self._init_rays(chosen)
-        mapper = PlottedRaycast(self._volume, made, colouring=colouring)
-        super().__init__(prop=pv.Property(theme=theme), name=name)
-        self._finish(mapper, chosen)
+        mapper.show(*self._init_rays(chosen))
         self._quality, mapper.coarser = chosen["interactive_quality"], coarser
         mapper.shaded = bool(chosen["shade"])
         self._look()

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyvista as pv
 
-from pvfiblets.plotting.coloured import Coloured
+from pvfiblets.plotting.coloured import ColouredActor
 from pvfiblets.plotting.colours import make_colouring, update_table
 from pvfiblets.plotting.linked_property import own_writes
 from pvfiblets.plotting.volumes.opacity import (
@@ -37,7 +37,7 @@ __all__ = ["SURFACE", "RaySettings"]
 SURFACE, LIGHT = "isosurface", "composite"
 
 
-class RaySettings(VolumeSettings, Coloured):
+class RaySettings(VolumeSettings, ColouredActor):
     """The part of :class:`~pvfiblets.plotting.volumes.actor.VolumeActor` that says what a ray shows.
 
     Every setting may be changed at any time; a value that is refused leaves all as it was. The actor
@@ -156,11 +156,11 @@ class RaySettings(VolumeSettings, Coloured):
         self._keep_table()
         with own_writes():
             made = self._made_anew(wanted)
-        self._note_table()
+        self._linked_table.note()
         return made
 
     def _keep_table(self) -> bool:
-        found = self._table_settings() if self._touched else {}
+        found = self._linked_table.settings()
         if "cmap" in found and isinstance(found["cmap"], pv.LookupTable):
             values = np.asarray(found["cmap"].values, np.float64)
             if not np.array_equal(values[:, 3], self._alpha_written):
@@ -184,7 +184,7 @@ class RaySettings(VolumeSettings, Coloured):
         if mode != SURFACE:
             _widen(self._table, max(int(settings.n_colors), 2))
         self._check_colours(mode)
-        alpha = self._opacities()
+        alpha = self._table_opacities()
         if settings.color is not None:
             self._table.values[:, :3] = pv.Color(settings.color).int_rgb
         clim = tuple(self._table.scalar_range)
@@ -221,7 +221,7 @@ class RaySettings(VolumeSettings, Coloured):
             return held
         return Transfer(table, clim, unit)
 
-    def _opacities(self) -> np.ndarray:
+    def _table_opacities(self) -> np.ndarray:
         """Return an opacity for each entry of the table: of a table of the user's own, where it has any, its own."""
         cmap = self._settings.cmap
         if isinstance(cmap, pv.LookupTable) and isinstance(self.opacity, str) and self.opacity == "linear":
