@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import pyvista as pv
 
@@ -37,6 +37,7 @@ class ColouredActor(Settings, pv.Actor):
     _DATA: ClassVar[str]
 
     _mapper: EngineMapper[Any]
+    prop: Any
     scalars: Any
     color: Any
 
@@ -83,7 +84,7 @@ class ColouredActor(Settings, pv.Actor):
         """Return the numbers or colours that a choice means for what is drawn; ``None`` for one colour."""
         raise NotImplementedError
 
-    def _be_like(self, other: Any, deep: bool) -> None:
+    def _be_like(self, other: Self, deep: bool) -> None:
         """Take over place, property and all settings that an actor is not made with."""
         self.prop = other.prop.copy() if deep else other.prop
         for name in ("position", "scale", "origin", "orientation", "user_matrix", "visibility", "pickable"):

@@ -16,13 +16,14 @@ from pvfiblets.mappers.fiblets import FibletMapper
 from pvfiblets.mappers.line_light import LegendColours, LineLight
 from pvfiblets.mappers.line_tubes import Tubes, TubeShading
 from pvfiblets.mappers.shading import Ink
-from pvfiblets.plotting.coloured import ColouredActor, added_up
+from pvfiblets.plotting.coloured import added_up
 from pvfiblets.plotting.colours import limits
-from pvfiblets.plotting.fiblets.filtering import Filtering
+from pvfiblets.plotting.fiblets.filter_state import Choices
 from pvfiblets.plotting.fiblets.looks import PLAIN, look_of, settings_of
 from pvfiblets.plotting.fiblets.opacities import Opacities, find_opacities
+from pvfiblets.plotting.fiblets.pick_result import Picked, checked_box, everything, visible
 from pvfiblets.plotting.fiblets.scalars import Scalars, find_scalars, mean_direction, refuse_numbers
-from pvfiblets.plotting.fiblets.selection import Selecting
+from pvfiblets.plotting.fiblets.selection import SelectableActor
 from pvfiblets.plotting.fiblets.settings import ALL, STYLES, THINNEST, TONES, WIDEST, FibletSettings
 from pvfiblets.plotting.fiblets.sources import as_fiblets, with_point_values
 from pvfiblets.plotting.linked_property import own_writes
@@ -58,7 +59,7 @@ class PlottedMapper(PlottedLines[EngineOptions], FibletMapper):
     """
 
 
-class FibletActor(FibletSettings, Filtering, Selecting, ColouredActor):
+class FibletActor(FibletSettings, SelectableActor):
     """Streamlines drawn from their compressed form.
 
     Everything of :class:`pyvista.Actor` works (``visibility``, ``position``, ``user_matrix``,
@@ -98,8 +99,7 @@ class FibletActor(FibletSettings, Filtering, Selecting, ColouredActor):
         self._style = STYLES[0]
         self._tone = TONES[0]
         self._transparency: str | int | None = None  # until it is told
-        self._init_filtering()
-        self._init_selection()
+        self._choices = Choices()
         mapper = PlottedMapper(fiblets, options=EngineOptions(**given.at(OPTIONS)), progress=progress)
         super().__init__(mapper, scalars, given, name=name, theme=theme)
         self.line_width = self._theme.line_width if given["line_width"] is None else given["line_width"]
@@ -126,11 +126,12 @@ class FibletActor(FibletSettings, Filtering, Selecting, ColouredActor):
     @fiblets.setter
     def fiblets(self, fiblets: FibletSet) -> None:
         scalars = self._find(fiblets, self._choice)
-        choices = self._choices_for(fiblets)
+        choices = self._choices.made_for(fiblets, self._fiblets)
         self._mapper.filtering = None  # its bits are of the fiblets before
         self._draw(fiblets)
         self._show(scalars)
-        self._rechoose(choices)
+        self._choices = choices
+        self._choose()
 
     def update(self, source: Any, **options: Any) -> None:
         """Draw other streamlines from the next render on, as they move or grow; settings stay.
@@ -165,8 +166,6 @@ class FibletActor(FibletSettings, Filtering, Selecting, ColouredActor):
         """
         twin = FibletActor(self._fiblets, scalars=self._choice, settings=self._kept(), theme=self._theme)
         twin._be_like(self, deep)
-        twin._choose_as(self)
-        twin._select_like(self)
         return twin
 
     def explain(self) -> dict[str, Any]:
@@ -198,7 +197,8 @@ class FibletActor(FibletSettings, Filtering, Selecting, ColouredActor):
             "share": self.share,
             "look": self.look,
             "colours": self._explain_colours(),
-            **self._explain_choices(),
+            **self._choices.explain(self._fiblets),
+            "clips": list(self._clips),
         }
 
     def pick_at(self, x: int, y: int) -> tuple[int, float] | None:
@@ -215,6 +215,66 @@ class FibletActor(FibletSettings, Filtering, Selecting, ColouredActor):
             ``None`` where no streamline of this actor was drawn.
         """
         return self._mapper.pick_at(x, y)
+
+    def pick_box(self, box: Any, *, through: bool = False, renderer: Any = None) -> Picked | None:
+        """Return the streamlines in a rectangle of the window.
+
+        Parameters
+        ----------
+        box : (float, float, float, float)
+            Two opposite corners ``(x0, y0, x1, y1)``: pixels, counted from the lower left corner of
+            the window; those on the edges belong to it.
+        through : bool, default: False
+            Hidden ones too. Else only those that are seen: the ids are those of the picture.
+        renderer : pyvista.Renderer, optional
+            The subplot to look into; the one drawn last by default.
+
+        Returns
+        -------
+        Picked or None
+            ``None`` if there are none, or nothing has been drawn yet.
+
+        Raises
+        ------
+        ValueError
+            If ``box`` is not four finite numbers.
+        """
+        return self._pick(checked_box(box), through, 0.0, renderer)
+
+    def pick_polygon(
+        self, points: Any, *, through: bool = False, tolerance: float = 0.0, renderer: Any = None
+    ) -> Picked | None:
+        """Return the streamlines in a polygon in the window.
+
+        Parameters
+        ----------
+        points : array_like
+            ``(k, 2)`` corners, pixels counted from the lower left corner of the window. It closes
+            itself; inside is by the even-odd rule. One corner is a point, two are a line.
+        through : bool, default: False
+            Hidden ones too.
+        tolerance : float, default: 0.0
+            Pixels that a streamline may be away.
+        renderer : pyvista.Renderer, optional
+            The subplot to look into; the one drawn last by default.
+
+        Returns
+        -------
+        Picked or None
+            ``None`` if there are none, or nothing has been drawn yet.
+
+        Raises
+        ------
+        ValueError
+            If the corners are not finite pairs of numbers.
+        """
+        return self._pick(points, through, tolerance, renderer)
+
+    def _pick(self, points: Any, through: bool, tolerance: float, renderer: Any) -> Picked | None:
+        from pvfiblets.query.selection.screen import checked_polygon
+
+        find = everything if through else visible
+        return find(self, checked_polygon(points), tolerance=tolerance, renderer=renderer)
 
     # Colours ------------------------------------------------------------------------------------
 

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import operator
 from collections.abc import Mapping
 from dataclasses import replace
-from functools import reduce
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pvfiblets.mappers.volumes import VolumeMapper
-from pvfiblets.plotting.clipping import Clipping
 from pvfiblets.plotting.coloured import added_up
 from pvfiblets.plotting.fiblets.scalars import Scalars
 from pvfiblets.plotting.linked_property import is_own_write, own_writes
@@ -27,7 +24,6 @@ from pvfiblets.volumes.raycast_options import RaycastOptions
 
 if TYPE_CHECKING:
     from pvfiblets.mappers import RayHit
-    from pvfiblets.regions import Region
 
 __all__ = ["VolumeActor"]
 
@@ -47,7 +43,7 @@ class PlottedRaycast(PlottedVolume, VolumeMapper):
     """
 
 
-class VolumeActor(Clipping, RaySettings):
+class VolumeActor(RaySettings):
     """A volume that rays are cast through: surfaces, light, or peaks.
 
     Everything of :class:`pyvista.Actor` works (``visibility``, ``position``, ``user_matrix``,
@@ -93,7 +89,6 @@ class VolumeActor(Clipping, RaySettings):
         self._source, self._smooth = _checked(volume), chosen["smooth"]
         self._volume = _smoothed(volume, self._smooth)
         self._of_surfaces: dict[str, Any] = {}
-        self._clips: dict[str, Region] = {}
         self._see_through = 1.0
         mapper = PlottedRaycast(self._volume, RaycastOptions(SURFACE, (0.0,)))
         super().__init__(mapper, None, chosen, name=name, theme=theme)
@@ -244,18 +239,9 @@ class VolumeActor(Clipping, RaySettings):
         """
         twin = VolumeActor(self._source, settings=self._kept(), given=self._given, theme=self._theme)
         twin._be_like(self, deep)
-        twin._cut(self._clips)
         return twin
 
     # Inside -------------------------------------------------------------------------------------
-
-    @property
-    def _cuts(self) -> Mapping[str, Region]:
-        return self._clips
-
-    def _cut(self, clips: dict[str, Region]) -> None:
-        self._mapper.region = reduce(operator.and_, clips.values()) if clips else None
-        self._clips = dict(clips)
 
     @property
     def _drawn(self) -> RaycastVolume:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyvista as pv
 
-from pvfiblets.plotting.coloured import ColouredActor
+from pvfiblets.plotting.clipping import ClippedActor
 from pvfiblets.plotting.colours import make_colouring, update_table
 from pvfiblets.plotting.linked_property import own_writes
 from pvfiblets.plotting.volumes.opacity import (
@@ -37,7 +37,7 @@ __all__ = ["SURFACE", "RaySettings"]
 SURFACE, LIGHT = "isosurface", "composite"
 
 
-class RaySettings(VolumeSettings, ColouredActor):
+class RaySettings(VolumeSettings, ClippedActor):
     """The part of :class:`~pvfiblets.plotting.volumes.actor.VolumeActor` that says what a ray shows.
 
     Every setting may be changed at any time; a value that is refused leaves all as it was. The actor
