@@ -40,6 +40,7 @@ class ColouredActor(Settings, pv.Actor):
     prop: Any
     scalars: Any
     color: Any
+    opacity: Any
 
     def __init__(self, mapper: EngineMapper[Any], choice: Any, given: Given, *, name: str | None, theme: Any) -> None:
         self._theme = pv.global_theme if theme is None else theme

@@ -14,7 +14,7 @@ from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.halos import HaloMapper, HaloOptions
 from pvfiblets.plotting.coloured import added_up
 from pvfiblets.plotting.halos.scalars import Held, coloured, filtered, find_scalars
-from pvfiblets.plotting.halos.settings import LOOKS, HaloLineSettings, HaloPointSettings, HaloSettings
+from pvfiblets.plotting.halos.settings import LOOKS, HaloLineSettings, HaloPointSettings
 from pvfiblets.plotting.halos.style import LookSettings, Spacing
 from pvfiblets.plotting.line_opacities import LineActor
 from pvfiblets.plotting.mapper_words import PlottedLines
@@ -40,7 +40,7 @@ class PlottedHalos(PlottedLines[HaloOptions], HaloMapper):
     """
 
 
-class HaloActor(HaloSettings, LineActor):
+class HaloActor(LineActor):
     """What actors of lines and of points with halos have in common.
 
     Parameters
@@ -86,7 +86,9 @@ class HaloActor(HaloSettings, LineActor):
 
     def __repr__(self) -> str:
         colours = "one colour" if self._scalars is None else self._scalars.name
-        return f"<{type(self).__name__} {self.name!r}: {self._counted}, coloured by {colours}>"
+        drawn = self._held.drawn
+        lines = f"{drawn.n_lines} lines of " if isinstance(drawn, HaloLines) else ""
+        return f"<{type(self).__name__} {self.name!r}: {lines}{drawn.n_points} points, coloured by {colours}>"
 
     # Colours ------------------------------------------------------------------------------------
 
@@ -200,17 +202,12 @@ class HaloActor(HaloSettings, LineActor):
         total = added_up(report)
         del total["fiblets"]
         latest = report["windows"][-1] if report["windows"] else {}
-        return {**total, **self._totals, "culling": latest.get("culling")}
+        drawn = self._held.drawn
+        if isinstance(drawn, HaloLines):
+            total |= {"lines_total": drawn.n_lines, "segments_total": drawn.n_segments}
+        return {**total, "points_total": drawn.n_points, "culling": latest.get("culling")}
 
     # Inside -------------------------------------------------------------------------------------
-
-    @property
-    def _counted(self) -> str:
-        raise NotImplementedError
-
-    @property
-    def _totals(self) -> dict[str, int]:
-        raise NotImplementedError
 
     @property
     def _ink(self) -> str:
@@ -282,7 +279,7 @@ class HaloActor(HaloSettings, LineActor):
         self._show(found)
 
     def _colour_halos(self) -> None:
-        color = self.halo_color
+        color = self._read_halo_color()
         self._mapper.halo_color = color.float_rgb if isinstance(color, pv.Color) else None
 
 
@@ -329,17 +326,6 @@ class HaloLineActor(HaloLineSettings, HaloActor):
         """
         return cast("tuple[int, float] | None", self._mapper.pick_at(x, y))
 
-    @property
-    def _counted(self) -> str:
-        return f"{self.lines.n_lines} lines of {self.lines.n_points} points"
-
-    @property
-    def _totals(self) -> dict[str, int]:
-        lines = self.lines
-        return {
-            "lines_total": lines.n_lines, "segments_total": lines.n_segments, "points_total": lines.n_points,
-        }  # fmt: skip
-
 
 class HaloPointActor(HaloPointSettings, HaloActor):
     """Points with depth-dependent halos: discs that face the viewer, in cones that lead away from him.
@@ -381,15 +367,6 @@ class HaloPointActor(HaloPointSettings, HaloActor):
             ``None`` where no point of this actor is within two pixels; halos are none.
         """
         return cast("int | None", self._mapper.pick_at(x, y))
-
-    @property
-    def _counted(self) -> str:
-        return f"{self.points.n_points} points"
-
-    @property
-    def _totals(self) -> dict[str, int]:
-        return {"points_total": self.points.n_points}
-
 
 
 def _halo_choice(color: Any) -> Any:
