@@ -40,6 +40,8 @@ class ColouredActor(Settings, pv.Actor):
     prop: Any
     scalars: Any
     color: Any
+    cmap: Any
+    clim: Any
     opacity: Any
 
     def __init__(self, mapper: EngineMapper[Any], choice: Any, given: Given, *, name: str | None, theme: Any) -> None:

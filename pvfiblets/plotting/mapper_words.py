@@ -11,28 +11,25 @@ from typing import Any, cast
 import pyvista as pv
 
 from pvfiblets.mappers.engine_mapper import AnyOptions, EngineMapper
-from pvfiblets.mappers.engine_options import Options
 from pvfiblets.plotting.coloured import ColouredActor
 from pvfiblets.plotting.colours import shared_limits
 from pvfiblets.plotting.settings import NoSetting
-from pvfiblets.plotting.volumes.blending import BLENDING, mode_of_blending
 
-__all__ = ["PlottedLines", "PlottedVolume"]
+__all__ = ["NONE", "Plotted", "PlottedLines"]
 
-_NONE = "this mapper has no {name}: "
+NONE = "this mapper has no {name}: "
 
 
 class Plotted(EngineMapper[AnyOptions]):
     """Mapper that shows PyVista's scalar bars the actor's own look-up table."""
 
-    copy = NoSetting(_NONE + "actor.copy() makes an actor with a mapper of its own")
-    interpolate_before_map = NoSetting(_NONE + "values are interpolated before they are mapped, always")
-    emissive = NoSetting(_NONE + "it is of points drawn as gaussians")
+    copy = NoSetting(NONE + "actor.copy() makes an actor with a mapper of its own")
+    interpolate_before_map = NoSetting(NONE + "values are interpolated before they are mapped, always")
+    emissive = NoSetting(NONE + "it is of points drawn as gaussians")
 
     @property
-    def _owner(self) -> Any:
-        """The actor, a `ColouredActor`."""
-        return self.actor
+    def _owner(self) -> ColouredActor:
+        return cast("ColouredActor", self.actor)
 
     @property
     def lookup_table(self) -> pv.LookupTable:
@@ -95,13 +92,13 @@ class Plotted(EngineMapper[AnyOptions]):
 class PlottedLines(Plotted[AnyOptions]):
     """Mapper of lines or points that gives PyVista's scripts its data."""
 
-    as_rgba = NoSetting(_NONE + "give colours of points or lines as actor.scalars")
-    clear_active_scalars = NoSetting(_NONE + "set actor.scalars = None")
-    cmap = NoSetting(_NONE + "set actor.cmap")
-    scalar_map_mode = NoSetting(_NONE + "actor.scalars may be of points or of lines")
-    set_active_scalars = NoSetting(_NONE + "set actor.scalars to the name")
-    set_custom_opacity = NoSetting(_NONE + "set actor.opacity_by")
-    set_scalars = NoSetting(_NONE + "set actor.scalars, and actor.cmap, clim and n_colors")
+    as_rgba = NoSetting(NONE + "give colours of points or lines as actor.scalars")
+    clear_active_scalars = NoSetting(NONE + "set actor.scalars = None")
+    cmap = NoSetting(NONE + "set actor.cmap")
+    scalar_map_mode = NoSetting(NONE + "actor.scalars may be of points or of lines")
+    set_active_scalars = NoSetting(NONE + "set actor.scalars to the name")
+    set_custom_opacity = NoSetting(NONE + "set actor.opacity_by")
+    set_scalars = NoSetting(NONE + "set actor.scalars, and actor.cmap, clim and n_colors")
 
     @property
     def array_name(self) -> str:
@@ -151,20 +148,3 @@ class PlottedLines(Plotted[AnyOptions]):
 
     def _wrapped(self, data: Any) -> Any:
         return pv.wrap(data)
-
-
-class PlottedVolume(Plotted[Options]):
-    """Mapper of a volume."""
-
-    dataset = NoSetting(_NONE + "actor.volume holds values and place; actor.update(image) draws others")
-    scalar_map_mode = NoSetting(_NONE + "as_raycast_volume(image, scalars=...) chooses the array")
-
-    @property
-    def blend_mode(self) -> str:
-        """The actor's mode by ``add_volume``'s words, or its own where these have none."""
-        mode = self._owner.mode
-        return next((theirs for theirs, ours in BLENDING.items() if ours == mode), mode)
-
-    @blend_mode.setter
-    def blend_mode(self, word: str) -> None:
-        self._owner.mode = mode_of_blending(word)

@@ -9,14 +9,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyvista as pv
 
+from pvfiblets.mappers.engine_options import Options
 from pvfiblets.mappers.volumes import VolumeMapper
 from pvfiblets.plotting.clipping import ClippedActor
 from pvfiblets.plotting.coloured import added_up
 from pvfiblets.plotting.colours import make_colouring, update_table
 from pvfiblets.plotting.fiblets.scalars import Scalars
 from pvfiblets.plotting.linked_property import is_own_write, own_writes
-from pvfiblets.plotting.mapper_words import PlottedVolume
-from pvfiblets.plotting.settings import Given
+from pvfiblets.plotting.mapper_words import NONE, Plotted
+from pvfiblets.plotting.settings import Given, NoSetting
+from pvfiblets.plotting.volumes.blending import BLENDING, mode_of_blending
 from pvfiblets.plotting.volumes.opacity import (
     along_logarithm,
     from_logarithm,
@@ -44,7 +46,7 @@ OF_SURFACES = ("ambient_occlusion", "ray_occlusion")
 """Light and peaks have nothing that could stand over anything: they keep these for when a surface shows again."""
 
 
-class PlottedRaycast(PlottedVolume, VolumeMapper):
+class PlottedRaycast(Plotted[Options], VolumeMapper):
     """A mapper of a volume that rays are cast through, with scalar bars.
 
     Parameters
@@ -54,6 +56,19 @@ class PlottedRaycast(PlottedVolume, VolumeMapper):
     casting : RaycastOptions
         How.
     """
+
+    dataset = NoSetting(NONE + "actor.volume holds values and place; actor.update(image) draws others")
+    scalar_map_mode = NoSetting(NONE + "as_raycast_volume(image, scalars=...) chooses the array")
+
+    @property
+    def blend_mode(self) -> str:
+        """The actor's mode by ``add_volume``'s words, or its own where these have none."""
+        mode = self._owner.mode
+        return next((theirs for theirs, ours in BLENDING.items() if ours == mode), mode)
+
+    @blend_mode.setter
+    def blend_mode(self, word: str) -> None:
+        self._owner.mode = mode_of_blending(word)
 
 
 class VolumeActor(VolumeSettings, ClippedActor):
