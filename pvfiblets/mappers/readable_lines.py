@@ -9,6 +9,7 @@ with the colours that the picture has. `readable` does so for all mappers of a w
 from __future__ import annotations
 
 import warnings
+import weakref
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING, Any, cast
@@ -112,15 +113,14 @@ class LineReading:
         known = self._watched.get(address)
         if known is None or known.Get() is None:
             self._watched[address] = weak(renderer)
-            renderer.AddObserver("StartEvent", self._started)
+            this = weakref.WeakMethod(self._follow_selection)  # or the renderer would keep the data of a mapper gone
 
-    def _started(self, renderer: vtkRenderer, _event: str) -> None:
-        if self._weak.Get() is None:
-            self._last = self._selected_from = None
-            return
-        selector = renderer.GetSelector()
-        if selector is not None or self._connection.is_readable:
-            self._follow_selection(selector)
+            def started(begun: vtkRenderer, _event: str) -> None:
+                follow = this()
+                if follow is not None:
+                    follow(begun.GetSelector())
+
+            renderer.AddObserver("StartEvent", started)
 
     def _follow_selection(self, selector: Any) -> None:
         """Be real lines while VTK selects cells or points, and be drawn by the engine in every other picture."""
