@@ -8,28 +8,29 @@ camera, viewport and pass of that very moment, and hands the program its uniform
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any, ClassVar, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 from vtkmodules.util.misc import calldata_type
 from vtkmodules.util.vtkConstants import VTK_OBJECT
-from vtkmodules.vtkRenderingCore import vtkRenderer
+from vtkmodules.vtkCommonCore import vtkOutputWindow
+from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLPolyDataMapper
 
 from pvfiblets.engine.view import MAX_CLIP_PLANES, Style, View
 from pvfiblets.mappers.active_renderer import ActiveRenderer
-from pvfiblets.mappers.attached import Attached
+from pvfiblets.mappers.actor_link import ActorLink
 from pvfiblets.mappers.colouring import Colouring
-from pvfiblets.mappers.connected import Connected
-from pvfiblets.mappers.depth_peeling import layers_of
+from pvfiblets.mappers.connection import Connection
+from pvfiblets.mappers.depth_peeling import layers_of, with_layers
 from pvfiblets.mappers.engine_options import Options
-from pvfiblets.mappers.introspection import Questions
 from pvfiblets.mappers.line_tubes import thickened, thickness_of
 from pvfiblets.mappers.picking import Drawn
 from pvfiblets.mappers.proxy import proxy_polydata
-from pvfiblets.mappers.readable_lines import Readable
+from pvfiblets.mappers.readable_lines import LineReading, readable_mapper
 from pvfiblets.mappers.scene import (
     Frame,
     actors_in,
@@ -40,6 +41,7 @@ from pvfiblets.mappers.scene import (
     others_before,
     pixel_scale,
     smoothers,
+    to_array,
     world_planes,
 )
 from pvfiblets.mappers.shader_effects import Draw, MapperEffect, prepare_effects, set_effect_uniforms, styled
@@ -55,6 +57,12 @@ from pvfiblets.mappers.windows import (
     weak,
 )
 
+if TYPE_CHECKING:
+    from vtkmodules.vtkCommonDataModel import vtkPolyData
+
+    from pvfiblets.mappers.line_data import LineData
+    from pvfiblets.mappers.vtk_input import VtkInput
+
 _ONE_ACTOR = "give each actor a mapper of its own (mapper.ShallowCopy(other) shares the data)"
 
 SMOOTHED_BESIDE = 3.0
@@ -63,7 +71,7 @@ SMOOTHED_BESIDE = 3.0
 AnyOptions = TypeVar("AnyOptions", bound=Options)
 
 
-class EngineMapper(Attached, Readable, Connected, Questions, vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
+class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
     """Mapper that draws through VTK's own lights, passes and selection what an engine puts into a G-buffer.
 
     ``actor.SetMapper(mapper)`` gives it to an actor, or `attach`. One mapper serves one actor, in any number of
@@ -95,6 +103,9 @@ class EngineMapper(Attached, Readable, Connected, Questions, vtkOpenGLPolyDataMa
 
     _NAME: ClassVar[str]
 
+    # What a shallow copy takes over beside what is drawn.
+    COPIED: ClassVar[tuple[str, ...]] = ("_options", "_factory", "_made_with", "_colouring", "_follows", "_effects")
+
     # Whether the engine knows where the edges run of what each pixel shows.
     _HAS_EDGES: ClassVar[bool] = False
 
@@ -110,17 +121,20 @@ class EngineMapper(Attached, Readable, Connected, Questions, vtkOpenGLPolyDataMa
         self._factory = renderer_factory
         self._options = options
         self._made_with = made_with
-        self._init_actor()
+        self._link = ActorLink(self)
+        self._connection = Connection(self)
+        self.reading = LineReading(self, self._connection, self._link)
         self._active = ActiveRenderer()
         self._effects: dict[str, MapperEffect] = {}
         self._cuts_in: dict[str, Any] = {}
         self._error: BaseException | None = None
         self._follows = colouring is None
         self._colouring = Colouring("solid") if colouring is None else colouring
-        self._init_readable()
-        self._init_input()
+        self._told = ""
+        self._component = -1
         self.SetScalarVisibility(self._follows)
         self._put(drawn)
+        self._install()
         for event, observer in _OBSERVERS.items():
             self.AddObserver(event, observer)
 
@@ -136,8 +150,8 @@ class EngineMapper(Attached, Readable, Connected, Questions, vtkOpenGLPolyDataMa
         wanted = self._colouring if colouring is None else colouring
         if drawn is not None:
             wanted.check_count(drawn.n_streamlines)
-            if self._input is not None and not self._input.executing:
-                self._input = None
+            if self._connection.input is not None and not self._connection.input.executing:
+                self._connection.input = None
         self._drawn, self._colouring = drawn, wanted
         if colouring is not None:
             self._install()
@@ -158,12 +172,7 @@ class EngineMapper(Attached, Readable, Connected, Questions, vtkOpenGLPolyDataMa
         self._layers = layers_of(self._effects.values())
         self._thickness = thickness_of(self._effects.values())
         bounds = None if self._drawn is None or self._empty else self._extent
-        self._proxy = proxy_polydata(bounds, self._layers)
-        if self._input is None:
-            if self._drawn is not None:
-                self._connect(self._proxy)
-        elif not self._input.executing:
-            self._input.Modified()
+        self._connection.show(proxy_polydata(bounds, self._layers), connect=self._drawn is not None)
 
     @property
     def options(self) -> AnyOptions:
@@ -173,7 +182,7 @@ class EngineMapper(Attached, Readable, Connected, Questions, vtkOpenGLPolyDataMa
     @options.setter
     def options(self, options: AnyOptions) -> None:
         self._options = options
-        self._actor_modified()
+        self._link.modified()
 
     @property
     def colouring(self) -> Colouring:
@@ -186,7 +195,7 @@ class EngineMapper(Attached, Readable, Connected, Questions, vtkOpenGLPolyDataMa
             colouring.check_count(self._drawn.n_streamlines)
         self._colouring, self._follows = colouring, False
         self._install()
-        self._actor_modified()
+        self._link.modified()
 
     @property
     def effects(self) -> Mapping[str, MapperEffect]:
@@ -203,7 +212,50 @@ class EngineMapper(Attached, Readable, Connected, Questions, vtkOpenGLPolyDataMa
         if (layers_of(self._effects.values()), thickness_of(self._effects.values())) != made_for:
             self._set_proxy()
         self._install()
-        self._actor_modified()
+        self._link.modified()
+
+    # The actor
+
+    @property
+    def actor(self) -> vtkActor | None:
+        """The actor that has this mapper, if it still exists; None until it is attached or first drawn."""
+        return self._link.actor
+
+    def attach(self, actor: vtkActor) -> None:
+        """Make this the mapper of an actor and add the shader pieces to it.
+
+        ``actor.SetMapper(mapper)`` does the same, once VTK draws the actor.
+
+        Parameters
+        ----------
+        actor : vtkActor
+            Shader replacements of others stay. Its representation stays at surface whatever a key or a
+            menu sets for all actors: lines have no wireframe and no edges, and all that shows is a front.
+        """
+        self._link.attach(actor)
+
+    def detach(self) -> None:
+        """Take the shader pieces out of the actor; it then needs another mapper."""
+        self._link.detach()
+
+    @property
+    def features(self) -> frozenset[str]:
+        """Pieces of the resolve shader in use."""
+        effects = frozenset().union(*(effect.features for effect in self._effects.values()))
+        return with_layers(frozenset({"gbuffer", "normal"} | self._colouring.features | effects))
+
+    @property
+    def _translucent(self) -> bool:
+        """Whether VTK must draw it in its translucent pass, whatever the actor's opacity is."""
+        effects = self._effects.values()
+        return self._colouring.translucent() or any(getattr(effect, "translucent", False) for effect in effects)
+
+    def _install(self) -> None:
+        """Bring the actor's shader pieces and its translucency up to date."""
+        self._link.show(self.features, self._translucent)
+
+    def _property_color(self) -> tuple[float, float, float]:
+        return (1.0, 1.0, 1.0) if self.actor is None else self.actor.GetProperty().GetDiffuseColor()
 
     # Drawing
 
@@ -225,13 +277,25 @@ class EngineMapper(Attached, Readable, Connected, Questions, vtkOpenGLPolyDataMa
             self._draw(program)
         except Exception as error:  # noqa: BLE001  VTK would swallow it; see raise_pending
             program.SetUniform2i("fibletSize", (0, 0))
-            if self._found:
+            if self._link.found:
                 self._tell(error)
             else:
                 self._error = error
-        if unraised is not None and not self._found:
+        if unraised is not None and not self._link.found:
             # Nobody asked for the last one: VTK prints what an observer raises.
             raise unraised
+
+    def _tell(self, error: BaseException) -> None:
+        """Keep an error for `raise_pending`, and say it as VTK says its own."""
+        self._error = error
+        text = f"{self._NAME}: {error}"
+        if text == self._told:
+            return  # it would be the same in every frame
+        self._told = text
+        if self.HasObserver("ErrorEvent"):
+            self.InvokeEvent("ErrorEvent", text)
+        else:
+            vtkOutputWindow.GetInstance().DisplayErrorText(f"ERROR: {text}\n")
 
     def _draw(self, program: Any) -> None:
         actor = self.actor
@@ -241,8 +305,8 @@ class EngineMapper(Attached, Readable, Connected, Questions, vtkOpenGLPolyDataMa
                 "is not found out from SetMapper"
             )
         renderer = self._active.find(actor)
-        self._watch(renderer)
-        self._check_alone(renderer)
+        self.reading.watch(renderer)
+        self._link.check_alone(renderer)
         context = context_of(renderer.GetRenderWindow())
         viewport = gl_viewport(context.window)
         if min(viewport[2:]) < 1:  # a tile of an enlarged picture in which the renderer has no part
@@ -337,7 +401,7 @@ class EngineMapper(Attached, Readable, Connected, Questions, vtkOpenGLPolyDataMa
             self._cuts_in.pop(address, None)
         else:
             self._cuts_in[address] = wanted
-        self._actor_modified()
+        self._link.modified()
 
     def _cuts(self, renderer: vtkRenderer | None = None) -> tuple[Any, Any]:
         """Return what cuts in world mm, in a renderer or in all: planes, and the region that is not planes."""
@@ -390,6 +454,197 @@ class EngineMapper(Attached, Readable, Connected, Questions, vtkOpenGLPolyDataMa
         """Whether a pixel shows more than the nearest of what is drawn."""
         return self._layers > 1 or any(getattr(effect, "translucent", False) for effect in self._effects.values())
 
+    # VTK's pipeline
+
+    def _begin(self) -> None:
+        """Find the actor that VTK is about to draw, and follow what has been set since the last draw."""
+        self._link.find()
+        if self._connection.input is not None and not self.is_readable:
+            self._connection.input.follow()
+        self._link.drop_vertex_stages()
+
+    def _input_state(self, data: Any) -> tuple[Any, ...]:
+        """Return what a picture of some data depends on beside them."""
+        if not self._follows:
+            return ()
+        from pvfiblets.mappers.vtk_scalars import state_of
+
+        return self._property_color(), *state_of(self, data)
+
+    def _made_of(self, data: Any) -> tuple[Any, Colouring]:
+        """Return what to draw of the data that were connected, and its colours."""
+        raise NotImplementedError
+
+    def _user_input(self) -> VtkInput | None:
+        """Return the filter behind which a user's data are, unless VTK reads real lines."""
+        return None if self.is_readable else self._connection.input
+
+    def GetInputConnection(self, port: int, index: int) -> Any:  # noqa: N802 - VTK's name
+        """Return what was connected."""
+        found = self._user_input()
+        return super().GetInputConnection(port, index) if found is None else found.GetInputConnection(port, index)
+
+    def GetInputAlgorithm(self, port: int = 0, index: int = 0) -> Any:  # noqa: N802 - VTK's name
+        """Return the algorithm that was connected."""
+        connection = self.GetInputConnection(port, index)
+        return None if connection is None else connection.GetProducer()
+
+    def GetInputDataObject(self, port: int, index: int) -> Any:  # noqa: N802 - VTK's name
+        """Return the data that were connected."""
+        found = self._user_input()
+        return super().GetInputDataObject(port, index) if found is None else found.GetInputDataObject(port, index)
+
+    def GetInput(self) -> Any:  # noqa: N802 - VTK's name
+        """Return the data that were connected."""
+        found = self._user_input()
+        return super().GetInput() if found is None else found.GetInputDataObject(0, 0)
+
+    def GetDataSetInput(self) -> Any:  # noqa: N802 - VTK's name
+        """Return the lines that are shown as PolyData; while VTK reads or selects, the very data that it looks at."""
+        if self.is_readable or self._connection.input is not None:
+            return self.GetInputDataObject(0, 0)
+        return self.reading.data(budget=None)
+
+    def GetInputAsDataSet(self) -> Any:  # noqa: N802 - VTK's name
+        """Return the same, by the older name."""
+        return self.GetDataSetInput()
+
+    def SetArrayComponent(self, component: int) -> None:  # noqa: N802 - VTK's name
+        """Colour by that component of vectors; -1 leaves it to the look-up table."""
+        self._component = component
+        super().SetArrayComponent(component)
+
+    def GetArrayComponent(self) -> int:  # noqa: N802 - VTK's name
+        """Return what was set: VTK itself sets 0 where it finds no such array in what it draws."""
+        return self._component
+
+    def ColorByArrayComponent(self, array: str | int, component: int) -> None:  # noqa: N802 - VTK's name
+        """Colour by a component of an array."""
+        self._component = component
+        super().ColorByArrayComponent(array, component)
+
+    def ShallowCopy(self, other: Any) -> None:  # noqa: N802 - VTK's name
+        """Become like another mapper: its input, its settings of ``vtkMapper`` and, of one of these, all others.
+
+        Compressed and other data are shared, not copied. Each mapper serves an actor of its own.
+        """
+        super().ShallowCopy(other)
+        self._component = other.GetArrayComponent()
+        if not isinstance(other, type(self)):
+            return
+        for name in self.COPIED:
+            value = getattr(other, name)
+            setattr(self, name, dict(value) if isinstance(value, dict) else value)
+        drawn, connected = other._drawn, other._connection.input  # noqa: SLF001  its own kind
+        if connected is None:
+            self._put(drawn)
+        elif drawn is not None and self._connection.input is not None:
+            self._connection.input.be_like(connected)
+        self._install()
+
+    def GetClassName(self) -> str:  # noqa: N802 - VTK's name
+        """Return VTK's own class, or what views in browsers know mappers of this package by."""
+        if "trame_vtk.modules.vtk.serializers.registry" not in sys.modules:
+            return str(super().GetClassName())
+        from pvfiblets.mappers.browser_views import class_name
+
+        return class_name(readable_mapper)
+
+    # Real lines, for VTK's code that reads data (`pvfiblets.mappers.readable_lines`)
+
+    @property
+    def is_readable(self) -> bool:
+        """Whether VTK's data are the real lines at this moment."""
+        return self._connection.is_readable
+
+    def _readable_points(self) -> int | None:
+        """Return how many points the real lines have; None where there are none, as of volumes."""
+        return None
+
+    def _selects_lines(self) -> bool:
+        """Whether VTK's selection is to find lines, not the actor: of what is no wider than they are."""
+        return False
+
+    def _readable_data(self, budget: int, *, colours: bool, segments: bool) -> vtkPolyData:
+        """Return the real lines, with no more points than that."""
+        raise NotImplementedError
+
+    def _readable_near(self, ray: Any, budget: int) -> vtkPolyData | None:  # noqa: ARG002 - of fiblets
+        """Return the lines near to a picker's ray; None for all, which are few enough."""
+        return None
+
+    def _wrapped(self, data: vtkPolyData) -> vtkPolyData:
+        """Return data as users of the mapper know such."""
+        return data
+
+    def _within_cuts(self, lines: LineData) -> LineData:
+        """Return lines without what clipping planes and regions cut away."""
+        planes, region = self._cuts()
+        if region is None and not len(planes):
+            return lines
+        model = np.eye(4) if self.actor is None else to_array(self.actor.GetMatrix())
+        region = None if region is None else region.moved(np.linalg.inv(model))
+        planes = planes @ model
+
+        def contains(points: Any) -> Any:
+            inside = (points @ planes[:, :3].T + planes[:, 3] >= 0.0).all(axis=1)
+            return inside if region is None else inside & region.contains(points)
+
+        return lines.inside(contains)
+
+    # What it drew
+
+    @property
+    def _address(self) -> str:
+        """What windows know the mapper by."""
+        return self.GetAddressAsString("")
+
+    @property
+    def pipeline_in_use(self) -> str | None:
+        """Name of the pipeline that drew the last picture; None before the first."""
+        return next((getattr(renderer, "pipeline", None) for renderer in self._renderers()), None)
+
+    @property
+    def share(self) -> float | None:
+        """Least share of the streamlines that a window draws: 1.0 but for ``fit='sample'``; None before the first."""
+        return min((getattr(renderer, "share", 1.0) for renderer in self._renderers()), default=None)
+
+    def _renderers(self) -> list[Any]:
+        """Return the engine's renderers of all windows."""
+        slots = [context.slots[self._address] for context in contexts_with(self)]
+        return [slot.renderer for slot in slots if slot.renderer is not None]
+
+    def explain(self) -> dict[str, Any]:
+        """Return what is active: the engine's passes, features and buffers, and the resolve's.
+
+        Returns
+        -------
+        dict
+            Keys of the engine's ``explain`` per window in ``windows``; ``features``: pieces of the resolve
+            shader; ``textures``: name and bytes of the mapper's own textures and those of its effects.
+        """
+        windows, textures = [], []
+        for context in contexts_with(self):
+            slot = context.slots[self._address]
+            if slot.renderer is not None and context.alive:
+                context.window.MakeCurrent()
+                with context.foreign():
+                    windows.append(slot.renderer.explain())
+                    for share, thinned in slot.thinned.items():
+                        size = 0 if thinned is None else sum(one["bytes"] for one in thinned.explain()["buffers"])
+                        windows[-1]["buffers"].append({"name": f"{share:.3g} of the streamlines", "bytes": size})
+                    for _, kept in slot.effects.values():
+                        if hasattr(kept, "explain"):
+                            costs = kept.explain()
+                            windows[-1]["passes"] += costs["passes"]
+                            windows[-1]["features"] = sorted({*windows[-1]["features"], *costs.get("features", ())})
+                            textures += costs["buffers"]
+            textures += [
+                {"name": name, "bytes": texture.width * texture.height * texture.components}
+                for name, texture in slot.textures.items()
+            ]
+        return {"features": sorted(self.features), "textures": textures, "windows": windows}
+
     # Memory
 
     def release(self, window: Any = None) -> None:
@@ -425,7 +680,7 @@ class CutMapper(EngineMapper[AnyOptions]):
     @region.setter
     def region(self, region: Any) -> None:
         self._region = region
-        self._actor_modified()
+        self._link.modified()
 
     def _cuts(self, renderer: vtkRenderer | None = None) -> tuple[Any, Any]:
         """Return planes, VTK's own and what of the region is planes as far as there is room, and the rest of it."""
@@ -449,11 +704,10 @@ def _update_shader(mapper: EngineMapper[Any], _event: str, program: Any) -> None
 def _begin(mapper: EngineMapper[Any], _event: str) -> None:
     make_current_again(mapper)
     mapper._begin()  # noqa: SLF001
-    mapper._drop_vertex_stages()  # noqa: SLF001
 
 
 def _connections_changed(mapper: EngineMapper[Any], _event: str) -> None:
-    mapper._connections_changed()  # noqa: SLF001
+    mapper._connection.changed()  # noqa: SLF001
 
 
 _OBSERVERS = {"UpdateShaderEvent": _update_shader, "StartEvent": _begin, "ModifiedEvent": _connections_changed}

@@ -114,7 +114,7 @@ class FibletMapper(CutMapper[EngineOptions]):
         if not (math.isfinite(pixels) and pixels > 0.0):
             raise ValueError(f"line_width is {pixels}; give a finite number of pixels above 0")
         self._line_width = float(pixels)
-        self._actor_modified()
+        self._link.modified()
 
     @property
     def detail(self) -> float:
@@ -126,7 +126,7 @@ class FibletMapper(CutMapper[EngineOptions]):
         if not (math.isfinite(pixels) and pixels >= 0.0):
             raise ValueError(f"detail is {pixels}; give a finite number of pixels, 0 or more")
         self._detail = float(pixels)
-        self._actor_modified()
+        self._link.modified()
 
     def _style(self, renderer: vtkRenderer, pixel_scale: float) -> FibletStyle:
         return FibletStyle(
@@ -151,7 +151,7 @@ class FibletMapper(CutMapper[EngineOptions]):
     @filtering.setter
     def filtering(self, wanted: Any) -> None:
         self._filtering = wanted
-        self._actor_modified()
+        self._link.modified()
 
     def _made_of(self, data: Any) -> tuple[Any, Colouring]:
         from pvfiblets.mappers.vtk_lines import fiblets_of, geometry_of, painted_fiblets
@@ -181,18 +181,21 @@ class FibletMapper(CutMapper[EngineOptions]):
 
     def _readable_ids(self, ids: Any, *, colours: bool, segments: bool) -> Any:
         from pvfiblets.mappers.drawn_lines import fiblet_lines
+        from pvfiblets.mappers.line_data import RADIUS, tube_surface
 
         lines = fiblet_lines(self._drawn, self._colouring if colours else None, self._filtering, ids)
-        return self._readable_form(self._within_cuts(lines), self._thickness, segments)
+        lines = self._within_cuts(lines)
+        if self._thickness <= 0.0 or segments:
+            return lines.to_polydata(segments=segments)
+        return tube_surface(lines.with_columns(**{RADIUS: np.full(len(lines.points), self._thickness)}))
 
-    def readable_near(self, ray: Any, budget: int) -> Any:
-        """Return lines for a picker: all of them, or if these are too many those near to its ray."""
+    def _readable_near(self, ray: Any, budget: int) -> Any:
         if (self._readable_points() or 0) <= budget:
-            return self.readable_data(budget=budget)
+            return None
         from pvfiblets.mappers.drawn_lines import near_ray
 
         ids = near_ray(self._drawn, self._filtering, ray, budget // (SIDES if self._thickness > 0.0 else 1))
-        return self._wrapped(self._readable_ids(ids, colours=False, segments=False))
+        return self._readable_ids(ids, colours=False, segments=False)
 
     def _engine(self, context: WindowContext, slot: Slot) -> Any:
         before = slot.renderer

@@ -182,7 +182,7 @@ class HaloMapper(EngineMapper[HaloOptions]):
         except ValueError:
             self._look = before
             raise
-        self._actor_modified()
+        self._link.modified()
 
     @property
     def look(self) -> HaloStyle:
@@ -196,7 +196,7 @@ class HaloMapper(EngineMapper[HaloOptions]):
         self._look, self._measured = look, False
         if wider:
             self._set_proxy()
-        self._actor_modified()
+        self._link.modified()
 
     @property
     def halo_color(self) -> Colour | None:

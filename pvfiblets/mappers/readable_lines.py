@@ -1,4 +1,4 @@
-"""`Readable`: real lines as a mapper's VTK data for as long as VTK's own code reads them.
+"""`LineReading`: real lines as a mapper's VTK data for as long as VTK's own code reads them.
 
 VTK is connected to a few triangles that the engine's picture is drawn by. What reads VTK's data instead of drawing
 would see these: exporters, pickers that intersect geometry, hardware selection of cells and points, views that draw in
@@ -8,213 +8,129 @@ with the colours that the picture has. `readable` does so for all mappers of a w
 
 from __future__ import annotations
 
-import sys
 import warnings
-from collections.abc import Callable, Iterator
+import weakref
+from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
-from typing import Any
+from typing import TYPE_CHECKING, Any, cast
 
-import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkPolyData
-from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLPolyDataMapper
 
-from pvfiblets.mappers import resolve
 from pvfiblets.mappers.scene import actors_in, items_of, to_array, world_planes
 from pvfiblets.mappers.windows import contexts_with, weak
 
-__all__ = ["MOST_POINTS", "Readable", "readable"]
+if TYPE_CHECKING:
+    from vtkmodules.vtkRenderingCore import vtkRenderer
 
-_BASE: Any = vtkOpenGLPolyDataMapper
+    from pvfiblets.mappers.actor_link import ActorLink
+    from pvfiblets.mappers.connection import Connection
+    from pvfiblets.mappers.engine_mapper import EngineMapper
+
+__all__ = ["MOST_POINTS", "LineReading", "readable", "reading_of"]
 
 MOST_POINTS = 2_000_000
 """Points that exporters and pickers are given at most: some 60 MB, of which a .gltf or .obj file takes 100 MB."""
 
 _CELLS = 1  # vtkDataObject.FIELD_ASSOCIATION_CELLS; 0 are points
 
-_SETTINGS = ("ScalarVisibility", "ColorMode", "ScalarMode", "InterpolateScalarsBeforeMapping")
 
+class LineReading:
+    """Real lines as VTK's data of one mapper, which is not kept alive, for a while."""
 
-class Readable:
-    """The part of `pvfiblets.mappers.engine_mapper.EngineMapper` that VTK's code can read.
+    drawn = ""
+    """What VTK draws the lines for: ``"selection"``, ``"export"``, or nothing."""
 
-    A mapper says by ``_readable_points`` how many points its lines have, and by ``_readable_lines`` which they are.
-    """
-
-    _drawn: Any
-    _input: Any
-    _port: Any
-    _proxy: Any
-    _connecting: bool
-    _effects: Any
-    actor: Any
-
-    def _init_readable(self) -> None:
-        self._before_reading: Any = None  # settings of vtkMapper that come back
-        self._drawn_by_vtk = ""  # what for: "selection" or "export"
-        self._read_last: tuple[Any, Any] | None = None
-        self._selected_from: Any = None
+    def __init__(self, mapper: EngineMapper[Any], connection: Connection, link: ActorLink) -> None:
+        self._weak = weak(mapper)
+        self._connection, self._link = connection, link
+        self._last: tuple[tuple[Any, ...], vtkPolyData] | None = None
+        self._selected_from: vtkPolyData | None = None
         self._watched: dict[str, Any] = {}
 
     @property
-    def is_readable(self) -> bool:
-        """Whether VTK's data are the real lines at this moment."""
-        return self._before_reading is not None
+    def mapper(self) -> EngineMapper[Any]:
+        """Whose lines they are."""
+        return cast("EngineMapper[Any]", self._weak.Get())
 
-    def _readable_points(self) -> int | None:
-        """Return how many points the real lines have; None where there are none, as of volumes."""
-        return None
+    @property
+    def points(self) -> int | None:
+        """How many points the lines have; None where there are none, as of volumes."""
+        mapper = self.mapper
+        if mapper._drawn is None and self._connection.input is not None:  # noqa: SLF001
+            self._connection.input.Update()
+        return None if mapper._drawn is None else mapper._readable_points()  # noqa: SLF001
 
-    def _points_to_read(self) -> int | None:
-        """Return the same of what is connected as well, which VTK may not have asked for yet."""
-        if self._drawn is None and self._input is not None:
-            self._input.Update()
-        return None if self._drawn is None else self._readable_points()
+    def begin(self, data: vtkPolyData, *, drawn: str = "") -> None:
+        """Make some PolyData VTK's data, which VTK draws if it is said what for."""
+        self._connection.begin_reading(data)
+        if drawn and not self.drawn:
+            self.drawn = drawn
+            self._link.take_out()
 
-    def _selects_lines(self) -> bool:
-        """Whether VTK's selection is to find lines, not the actor: of what is no wider than they are."""
-        return False
+    def end(self) -> None:
+        """Undo `begin`; twice is harmless."""
+        self._connection.end_reading()
+        exported, drawn, self.drawn = self.drawn == "export", self.drawn, ""
+        if drawn:
+            self._link.install()
+        if exported:  # by an exporter that rendered
+            self._link.modified()
 
-    def _readable_data(self, budget: int, *, colours: bool, segments: bool) -> vtkPolyData:
-        """Return the real lines, with no more points than that."""
-        raise NotImplementedError
+    def data(self, *, colours: bool = False, segments: bool = False, budget: int | None = MOST_POINTS) -> vtkPolyData:
+        """Return the lines that are shown, made anew only when something else is shown.
 
-    def begin_reading(self, data: vtkPolyData, *, drawn: str = "") -> None:
-        """Make some PolyData VTK's data.
-
-        Parameters
-        ----------
-        data : vtkPolyData
-            With RGBA as active scalars, or in the colour of the actor's property.
-        drawn : {'', 'selection', 'export'}
-            What VTK is to draw them for, too.
+        ``colours``: with RGBA as active scalars of the points. ``segments``: a cell for each segment, not each line.
+        Streamlines are left out evenly beyond ``budget`` points; None is without limit. Cell data ``'streamline'`` are
+        the numbers of streamlines, tubes or points.
         """
-        if self._before_reading is None:
-            self._before_reading = {name: getattr(_BASE, f"Get{name}")(self) for name in _SETTINGS}
-        self._connecting = True
-        try:
-            coloured = data.GetPointData().GetScalars() is not None
-            wanted = (int(coloured), 2, 1, 0)  # direct scalars, of points
-            for name, value in zip(_SETTINGS, wanted, strict=True):
-                getattr(_BASE, f"Set{name}")(self, value)
-            _BASE.SetInputData(self, data)
-        finally:
-            self._connecting = False
-        self._port = _BASE.GetInputConnection(self, 0, 0)
-        if drawn and not self._drawn_by_vtk:
-            self._drawn_by_vtk = drawn
-            self._take_out()
-
-    def end_reading(self) -> None:
-        """Undo `begin_reading`; twice is harmless."""
-        before, self._before_reading = self._before_reading, None
-        if before is None:
-            return
-        self._connecting = True
-        try:
-            for name, value in before.items():
-                getattr(_BASE, f"Set{name}")(self, value)
-            if self._input is None:
-                _BASE.SetInputData(self, self._proxy)
-            else:
-                _BASE.SetInputConnection(self, self._input.GetOutputPort())
-        finally:
-            self._connecting = False
-        self._port = _BASE.GetInputConnection(self, 0, 0)
-        if self._drawn_by_vtk:
-            exported, self._drawn_by_vtk = self._drawn_by_vtk == "export", ""
-            self._install()
-            if exported:  # by an exporter that rendered
-                self._actor_modified()
-
-    def _take_out(self) -> None:
-        """Take the shader pieces out of the actor, so that VTK draws its data in its own way."""
-        shaders = self._shader_property.Get()
-        if shaders is not None:
-            resolve.uninstall(shaders, self._installed)
-        self._installed = ()
-
-    def readable_data(
-        self, *, colours: bool = False, segments: bool = False, budget: int | None = MOST_POINTS
-    ) -> vtkPolyData:
-        """Return the lines that are shown as PolyData; made anew only when something else is shown.
-
-        Parameters
-        ----------
-        colours : bool
-            Whether with RGBA as the points' active scalars.
-        segments : bool
-            Whether each segment is a cell, instead of each line.
-        budget : int, optional
-            Points at most; beyond, streamlines are left out evenly. None for all.
-
-        Returns
-        -------
-        vtkPolyData
-            Lines, surfaces of tubes, or vertices, in data coordinates, with the number of the streamline, tube or
-            point as cell data ``'streamline'``.
-        """
-        count = self._points_to_read()
+        mapper, count = self.mapper, self.points
         if count is None:
             return vtkPolyData()
         budget = count if budget is None else budget
-        key = (self._readable_state(colours), segments, min(budget, count))
-        if self._read_last is None or not _same(self._read_last[0], key):
-            self._read_last = key, self._wrapped(self._readable_data(budget, colours=colours, segments=segments))
-        found: vtkPolyData = self._read_last[1]
-        return found
+        key = (self._state(colours), segments, min(budget, count))
+        if self._last is None or not _same(self._last[0], key):
+            lines = mapper._readable_data(budget, colours=colours, segments=segments)  # noqa: SLF001
+            self._last = key, mapper._wrapped(lines)  # noqa: SLF001
+        return self._last[1]
 
-    def _wrapped(self, data: vtkPolyData) -> vtkPolyData:
-        """Return data as users of the mapper know such."""
-        return data
+    def near(self, ray: Any, budget: int) -> vtkPolyData:
+        """Return lines for a picker: all of them, or if these are too many those near to its ray."""
+        found = self.mapper._readable_near(ray, budget)  # noqa: SLF001
+        return self.data(budget=budget) if found is None else self.mapper._wrapped(found)  # noqa: SLF001
 
-    def _readable_state(self, colours: bool) -> tuple[Any, ...]:
-        cuts = world_planes(self).tobytes(), getattr(self, "_region", None)
-        placed = b"" if self.actor is None else to_array(self.actor.GetMatrix()).tobytes()
+    def _state(self, colours: bool) -> tuple[Any, ...]:
+        mapper, actor = self.mapper, self._link.actor
+        cuts = world_planes(mapper).tobytes(), getattr(mapper, "_region", None)
+        placed = b"" if actor is None else to_array(actor.GetMatrix()).tobytes()
         return (
-            self._drawn, self._colouring if colours else None, getattr(self, "_filtering", None),
-            getattr(self, "_look", None), *cuts, placed, self._thickness,
+            mapper._drawn, mapper.colouring if colours else None, getattr(mapper, "_filtering", None),  # noqa: SLF001
+            getattr(mapper, "_look", None), *cuts, placed, mapper._thickness,  # noqa: SLF001
         )  # fmt: skip
 
-    @staticmethod
-    def _readable_form(lines: Any, radius: float, segments: bool) -> vtkPolyData:
-        """Return lines as PolyData, with a radius above 0 as tubes."""
-        if radius <= 0.0 or segments:
-            return lines.to_polydata(segments=segments)
-        from pvfiblets.mappers.line_data import RADIUS, tube_surface
-
-        return tube_surface(lines.with_columns(**{RADIUS: np.full(len(lines.points), radius)}))
-
-    def _within_cuts(self, lines: Any) -> Any:
-        """Return lines without what clipping planes and regions cut away."""
-        planes, region = self._cuts()
-        if region is None and not len(planes):
-            return lines
-        model = np.eye(4) if self.actor is None else to_array(self.actor.GetMatrix())
-        region = None if region is None else region.moved(np.linalg.inv(model))
-        planes = planes @ model
-
-        def contains(points: Any) -> Any:
-            inside = (points @ planes[:, :3].T + planes[:, 3] >= 0.0).all(axis=1)
-            return inside if region is None else inside & region.contains(points)
-
-        return lines.inside(contains)
-
-    def _watch(self, renderer: Any) -> None:
+    def watch(self, renderer: vtkRenderer) -> None:
         """Be told when a renderer begins a picture, which may be one of VTK's selection."""
         address = renderer.GetAddressAsString("")
         known = self._watched.get(address)
         if known is None or known.Get() is None:
             self._watched[address] = weak(renderer)
-            renderer.AddObserver("StartEvent", _follow(self))
+            this = weakref.WeakMethod(self._follow_selection)  # or the renderer would keep the data of a mapper gone
+
+            def started(begun: vtkRenderer, _event: str) -> None:
+                follow = this()
+                if follow is not None:
+                    follow(begun.GetSelector())
+
+            renderer.AddObserver("StartEvent", started)
 
     def _follow_selection(self, selector: Any) -> None:
         """Be real lines while VTK selects cells or points, and be drawn by the engine in every other picture."""
-        if self._drawn_by_vtk == "export":
+        mapper = self.mapper
+        if self.drawn == "export":
             return
         if selector is None or selector.GetActorPassOnly() or selector.GetFieldAssociation() > _CELLS:
-            self.end_reading()
-        elif self._drawn_by_vtk != "selection" and self._drawn is not None and self._selects_lines():
-            count = self._readable_points()
+            self.end()
+        elif self.drawn != "selection" and mapper._drawn is not None and mapper._selects_lines():  # noqa: SLF001
+            count = self.points
             if count is not None and count > MOST_POINTS:
                 warnings.warn(
                     f"VTK's selection of cells and points says which actor it is, but not which streamline: {count:,} "
@@ -224,57 +140,16 @@ class Readable:
                     stacklevel=2,
                 )
             elif count:
-                self.end_reading()
-                self._selected_from = self.readable_data(segments=True)  # pickers keep its address
-                self.begin_reading(self._selected_from, drawn="selection")
-                _clear_errors(self, selector)
-
-    def readable_near(self, ray: Any, budget: int) -> vtkPolyData:  # noqa: ARG002 - of fiblets
-        """Return lines for a picker: all of them, or if these are too many those near to its ray."""
-        return self.readable_data(budget=budget)
-
-    def GetDataSetInput(self) -> Any:  # noqa: N802 - VTK's name
-        """Return the lines that are shown as PolyData; while VTK reads or selects, the very data that it looks at."""
-        if self.is_readable:
-            return _BASE.GetInputDataObject(self, 0, 0)
-        if self._input is not None:
-            return self._input.GetInputDataObject(0, 0)
-        return self.readable_data(budget=None)
-
-    def GetInputAsDataSet(self) -> Any:  # noqa: N802 - VTK's name
-        """Return the same, by the older name."""
-        return self.GetDataSetInput()
-
-    def GetClassName(self) -> str:  # noqa: N802 - VTK's name
-        """Return VTK's own class, or what views in browsers know mappers of this package by."""
-        if "trame_vtk.modules.vtk.serializers.registry" not in sys.modules:
-            return str(_BASE.GetClassName(self))
-        from pvfiblets.mappers.browser_views import class_name
-
-        return class_name(readable_mapper)
-
-    # Of the other parts
-
-    _shader_property: Any
-    _installed: tuple[Any, ...]
-    _colouring: Any
-    _thickness: float
-    _cuts: Callable[[], tuple[Any, Any]]
-    _install: Callable[[], None]
-    _actor_modified: Callable[[], None]
+                self.end()
+                self._selected_from = self.data(segments=True)  # pickers keep its address
+                self.begin(self._selected_from, drawn="selection")
+                _clear_errors(mapper, selector)
 
 
-def _follow(mapper: Any) -> Callable[[Any, str], None]:
-    """Return an observer of a renderer that does not keep the mapper alive."""
-    follower = weak(mapper)
-
-    def started(renderer: Any, _event: str) -> None:
-        found: Any = follower.Get()
-        selector = renderer.GetSelector()
-        if found is not None and (selector is not None or found.is_readable):
-            found._follow_selection(selector)  # noqa: SLF001 - this module's own
-
-    return started
+def reading_of(mapper: Any) -> LineReading | None:
+    """Return the lines of a mapper of this package; None for another mapper."""
+    found = getattr(mapper, "reading", None)
+    return found if isinstance(found, LineReading) else None
 
 
 def _clear_errors(mapper: Any, selector: Any) -> None:
@@ -330,34 +205,36 @@ def readable(window: Any, *, most: int = MOST_POINTS) -> Iterator[None]:
     >>> with readable(plotter.render_window):                                                    # doctest: +SKIP
     ...     exporter.Write()
     """
-    actors = [actor for actor in _actors_of(window) if isinstance(actor.GetMapper(), Readable)]
-    mappers = [(actor, actor.GetMapper()) for actor in actors if not actor.GetMapper().is_readable]
-    counts = [mapper._points_to_read() for _, mapper in mappers]  # noqa: SLF001 - this module's own
+    found = [reading_of(actor.GetMapper()) for actor in _actors_of(window)]
+    readings = [reading for reading in found if reading is not None and not reading.mapper.is_readable]
+    counts = [reading.points for reading in readings]
     total = sum(count or 0 for count in counts)
     with ExitStack() as undo:
-        for (_, mapper), count in zip(mappers, counts, strict=True):
+        for reading, count in zip(readings, counts, strict=True):
             share = count if total <= most else int((count or 0) * (most / total))
-            undo.callback(mapper.end_reading)
-            data = vtkPolyData() if count is None else mapper._readable_data(share, colours=True, segments=False)  # noqa: SLF001
-            mapper.begin_reading(data, drawn="export")
-        _tell([(a, m) for (a, m), count in zip(mappers, counts, strict=True) if count is None], total, most, mappers)
+            undo.callback(reading.end)
+            data = vtkPolyData()
+            if share is not None:
+                data = reading.mapper._readable_data(share, colours=True, segments=False)  # noqa: SLF001
+            reading.begin(data, drawn="export")
+        _tell(readings, counts, total, most)
         yield
 
 
 @contextmanager
-def readable_mapper(mapper: Any) -> Iterator[None]:
+def readable_mapper(mapper: EngineMapper[Any]) -> Iterator[None]:
     """Let VTK's code read what one mapper shows, as often as it likes."""
-    data = mapper.readable_data(colours=True)
-    count = mapper._points_to_read()  # noqa: SLF001 - this module's own
-    _tell([(mapper.actor, mapper)] if count is None else [], count or 0, MOST_POINTS, [(mapper.actor, mapper)])
-    mapper.begin_reading(data)
+    reading = mapper.reading
+    data, count = reading.data(colours=True), reading.points
+    _tell([reading], [count], count or 0, MOST_POINTS)
+    reading.begin(data)
     try:
         yield
     finally:
-        mapper.end_reading()
+        reading.end()
 
 
-def _tell(without: list[Any], total: int, most: int, mappers: list[Any]) -> None:
+def _tell(readings: list[LineReading], counts: list[int | None], total: int, most: int) -> None:
     """Warn of what is not as in the picture."""
     depth = 5
     if total > most:
@@ -367,8 +244,9 @@ def _tell(without: list[Any], total: int, most: int, mappers: list[Any]) -> None
             UserWarning,
             stacklevel=depth,
         )
-    shown = [actor for actor, mapper in without if mapper._drawn is not None]  # noqa: SLF001
-    named = [repr(getattr(actor, "name", actor.GetClassName())) for actor in shown]
+    without = [reading.mapper for reading, count in zip(readings, counts, strict=True) if count is None]
+    actors: list[Any] = [mapper.actor for mapper in without if mapper._drawn is not None]  # noqa: SLF001
+    named = [repr(getattr(actor, "name", actor.GetClassName())) for actor in actors]
     if named:
         warnings.warn(
             f"the export lacks what rays are cast through ({', '.join(named)}): it has no lines; export surfaces of "
@@ -376,7 +254,7 @@ def _tell(without: list[Any], total: int, most: int, mappers: list[Any]) -> None
             UserWarning,
             stacklevel=depth,
         )
-    if any(mapper._colouring.mode == "pixel_count" for _, mapper in mappers):  # noqa: SLF001
+    if any(reading.mapper.colouring.mode == "pixel_count" for reading in readings):
         warnings.warn(
             "the number of lines in a pixel depends on the view: the export has colours of orientation instead",
             UserWarning,

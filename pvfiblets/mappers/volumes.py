@@ -163,7 +163,7 @@ class VolumeMapper(CutMapper[Options]):
     def set_volume(self, volume: RaycastVolume) -> None:
         """Draw another volume from the next frame on."""
         self._put(volume)
-        self._actor_modified()
+        self._link.modified()
 
     @property
     def casting(self) -> RaycastOptions:
@@ -175,8 +175,8 @@ class VolumeMapper(CutMapper[Options]):
         same, follows = casting.coloured == self._casting.coloured, self._follows
         self.show(casting, self._colouring if same else None)
         self._follows = follows
-        if follows and self._input is not None:
-            self._input.Modified()
+        if follows and self._connection.input is not None:
+            self._connection.input.Modified()
 
     def show(self, casting: RaycastOptions, colouring: Colouring | None = None) -> None:
         """Change both from the next frame on.

@@ -41,14 +41,14 @@ class VtkInput(VTKPythonAlgorithmBase):
             return 1
         self.executing = True
         try:
-            mapper._find_actor()  # noqa: SLF001  its other half
+            mapper._link.find()  # noqa: SLF001  its other half
             self._take(mapper, self.GetInputData(inputs, 0, 0))
         except Exception as error:  # noqa: BLE001  VTK would swallow it
             mapper._put(None)  # noqa: SLF001
             mapper._tell(error)  # noqa: SLF001
         finally:
             self.executing = False
-        vtkPolyData.GetData(outputs).ShallowCopy(mapper._proxy)  # noqa: SLF001
+        vtkPolyData.GetData(outputs).ShallowCopy(mapper._connection.proxy)  # noqa: SLF001
         return 1
 
     def _take(self, mapper: Any, data: Any) -> None:

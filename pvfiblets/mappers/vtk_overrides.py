@@ -13,9 +13,9 @@ from contextlib import nullcontext
 from typing import Any
 
 import numpy as np
-from vtkmodules.vtkRenderingCore import vtkCellPicker, vtkPicker, vtkPointPicker
+from vtkmodules.vtkRenderingCore import vtkActor, vtkCellPicker, vtkPicker, vtkPointPicker
 
-from pvfiblets.mappers.readable_lines import MOST_POINTS, Readable, readable
+from pvfiblets.mappers.readable_lines import MOST_POINTS, LineReading, readable, reading_of
 from pvfiblets.mappers.scene import actors_in, items_of, to_array
 
 __all__ = ["EXPORTERS", "follow", "override"]
@@ -52,28 +52,28 @@ def follow(picker: Any) -> Any:
     return picker
 
 
-def _mappers(picker: Any) -> list[Readable]:
+def _readings(picker: Any) -> list[LineReading]:
     renderer = picker.GetRenderer()
     if renderer is None:
         return []
     found = [actor for prop in items_of(renderer.GetViewProps()) for actor in actors_in(prop)]
-    shown = [actor.GetMapper() for actor in found if actor.GetVisibility() and actor.GetPickable()]
-    return [mapper for mapper in shown if isinstance(mapper, Readable)]
+    shown = [reading_of(actor.GetMapper()) for actor in found if actor.GetVisibility() and actor.GetPickable()]
+    return [reading for reading in shown if reading is not None]
 
 
 def _begin(picker: Any, _event: str) -> None:
     looked_at = []
-    for mapper in _mappers(picker):
-        if mapper._drawn_by_vtk == "selection":  # noqa: SLF001 - until the next picture
-            mapper.end_reading()
-        if not mapper.is_readable and mapper._points_to_read() is not None:  # noqa: SLF001
-            looked_at.append(mapper.readable_near(_ray(picker, mapper), MOST_POINTS))
-            mapper.begin_reading(looked_at[-1])
+    for reading in _readings(picker):
+        if reading.drawn == "selection":  # until the next picture
+            reading.end()
+        if not reading.mapper.is_readable and reading.points is not None:
+            looked_at.append(reading.near(_ray(picker, reading.mapper.actor), MOST_POINTS))
+            reading.begin(looked_at[-1])
     picker.looked_at = looked_at  # of what its GetDataSet() returns it keeps an address only
 
 
-def _ray(picker: Any, mapper: Any) -> tuple[Any, float]:
-    """Return the ends of a pick's ray and its tolerance at the far one, mm of a mapper's data."""
+def _ray(picker: Any, actor: vtkActor | None) -> tuple[Any, float]:
+    """Return the ends of a pick's ray and its tolerance at the far one, mm of an actor's data."""
     renderer, (x, y, _) = picker.GetRenderer(), picker.GetSelectionPoint()
     width, height = renderer.GetRenderWindow().GetSize()
     tolerance = picker.GetTolerance() * float(np.hypot(width, height)) + 1.0
@@ -83,14 +83,14 @@ def _ray(picker: Any, mapper: Any) -> tuple[Any, float]:
         renderer.DisplayToWorld()
         *world, w = renderer.GetWorldPoint()
         ends.append([*(np.array(world) / w), 1.0])
-    matrix = np.eye(4) if mapper.actor is None else to_array(mapper.actor.GetMatrix())
+    matrix = np.eye(4) if actor is None else to_array(actor.GetMatrix())
     start, stop, beside = (np.array(ends) @ np.linalg.inv(matrix).T)[:, :3]
     return np.array([start, stop]), float(np.linalg.norm(beside - stop))
 
 
 def _end(picker: Any, _event: str) -> None:
-    for mapper in _mappers(picker):
-        mapper.end_reading()
+    for reading in _readings(picker):
+        reading.end()
 
 
 class _Picker(vtkPicker):

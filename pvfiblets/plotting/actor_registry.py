@@ -117,7 +117,7 @@ class _Bar:
 
 
 class ActorRegistry(Generic[A]):
-    """The part of a component that makes and keeps actors of one kind; the base of all components that add actors.
+    """Base of the components that add actors: makes and keeps actors of one kind.
 
     A subclass says what can be set, in `_SETTINGS`, and makes actors, in ``_make``. Arguments and doc of its ``add``
     are put together of these (`pvfiblets.plotting.call_signature`).

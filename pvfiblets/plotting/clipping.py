@@ -1,22 +1,29 @@
-"""Cuts of an actor by regions of space, which add up: the part that actors of fiblets and of volumes share."""
+"""Cuts by regions of space, which add up: of actors of fiblets and of volumes."""
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Mapping
+from functools import reduce
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
+from pvfiblets.plotting.coloured import ColouredActor
 from pvfiblets.plotting.fiblets.filter_state import unique_name
 from pvfiblets.plotting.region_sources import as_region, slab
 
 if TYPE_CHECKING:
+    from pvfiblets.mappers.engine_mapper import CutMapper
     from pvfiblets.regions import Region
 
-__all__ = ["Clipping", "without"]
+__all__ = ["ClippedActor", "without"]
 
 
-class Clipping:
-    """The part of an actor that cuts it; the actor says where cuts are kept, by ``_cuts`` and ``_cut``."""
+class ClippedActor(ColouredActor):
+    """Actor that regions of space can cut."""
+
+    _mapper: CutMapper[Any]
+    _clips: Mapping[str, Region] = MappingProxyType({})
 
     def clip(self, what: Any, inside: bool = True, *, name: str | None = None) -> str:
         """Cut: show only what lies within a region, or without.
@@ -48,8 +55,8 @@ class Clipping:
 
         region = as_region(what)
         check_region(region)
-        name = unique_name(self._cuts, "clip") if name is None else name
-        self._cut({**self._cuts, name: region if inside else ~region})
+        name = unique_name(self._clips, "clip") if name is None else name
+        self._cut({**self._clips, name: region if inside else ~region})
         return name
 
     def clip_slab(self, normal: Any, origin: Any, thickness: float, *, name: str | None = None) -> str:
@@ -75,21 +82,21 @@ class Clipping:
 
     def unclip(self, name: str | None = None) -> None:
         """Take a cut back by its `name`, or all of them."""
-        self._cut(without(self._cuts, name, "cut"))
+        self._cut(without(self._clips, name, "cut"))
 
     @property
     def clips(self) -> Mapping[str, Region]:
         """Cuts by name, in the order in which they were made."""
-        return MappingProxyType(dict(self._cuts))
+        return MappingProxyType(dict(self._clips))
 
-    @property
-    def _cuts(self) -> Mapping[str, Region]:
-        """All cuts, by name."""
-        raise NotImplementedError
-
-    def _cut(self, clips: dict[str, Region]) -> None:
+    def _cut(self, clips: Mapping[str, Region]) -> None:
         """Cut by these, and no others."""
-        raise NotImplementedError
+        self._mapper.region = reduce(operator.and_, clips.values()) if clips else None
+        self._clips = clips
+
+    def _be_like(self, other: Self, deep: bool) -> None:
+        super()._be_like(other, deep)
+        self._cut(other._clips)
 
 
 def without(known: Mapping[str, Any], name: str | None, kind: str) -> dict[str, Any]:

@@ -3,28 +3,31 @@
 from __future__ import annotations
 
 import warnings
-from typing import TYPE_CHECKING, Any, ClassVar, cast
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import pyvista as pv
 
-from pvfiblets.plotting.colours import ColourSettings, make_colouring, shared_limits, update_table
-from pvfiblets.plotting.linked_property import LinkedProperty, own_writes
+from pvfiblets.plotting.colours import ColourSettings, make_colouring, update_table
+from pvfiblets.plotting.fiblets.opacities import Opacities, apply_transfer
+from pvfiblets.plotting.linked_property import LinkedProperty, is_own_write, own_writes
 from pvfiblets.plotting.linked_table import LinkedTable
-from pvfiblets.plotting.mapper_words import LinesWords
 from pvfiblets.plotting.setting_places import COLOURS, PROPERTY
 from pvfiblets.plotting.settings import Given, Setting, Settings
+from pvfiblets.plotting.shading import Shades
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from pvfiblets.mappers.colouring import Colouring
+    from pvfiblets.mappers.engine_mapper import EngineMapper
     from pvfiblets.plotting.fiblets.scalars import Scalars
 
 
-class Coloured(Settings, LinkedProperty, LinkedTable):
-    """The part of actors that has colours; see :class:`~pvfiblets.plotting.fiblets.actor.FibletActor`.
+class ColouredActor(Settings, pv.Actor):
+    """Base of all actors: colours by PyVista's rules, opacities, effects, place and life.
 
-    What an actor draws, and what ``scalars`` mean for that, is its own: it brings ``scalars`` and
-    overrides the two members that raise here.
+    What an actor draws, and what a ``choice`` of scalars means for that, is its own.
     """
 
     # What to say of the property's line width, where it is not drawn.
@@ -33,23 +36,39 @@ class Coloured(Settings, LinkedProperty, LinkedTable):
     # The property that holds what is drawn.
     _DATA: ClassVar[str]
 
-    _mapper: Any
+    _mapper: EngineMapper[Any]
     prop: Any
     scalars: Any
     color: Any
+    cmap: Any
+    clim: Any
+    opacity: Any
 
-    def _init_colours(self, choice: Any, given: Given, theme: Any) -> None:
-        self._theme = theme
+    def __init__(self, mapper: EngineMapper[Any], choice: Any, given: Given, *, name: str | None, theme: Any) -> None:
+        self._theme = pv.global_theme if theme is None else theme
         color = given["color"]
         self._settings = ColourSettings(None if color is None else pv.Color(color), **given.at(COLOURS))
         self._choice = choice
         self._scalars: Scalars | None = None
         self._table = pv.LookupTable()
-        self._watch_table()
+        self._linked_table = LinkedTable(self._table, self._table_touched)
+        self._linked_property = LinkedProperty()
+        self._opacity_by: Any = None
+        self._opacities = Opacities()
+        self._shades = Shades(mapper)
         self._hidden = False  # scalars, by the mapper's scalar_visibility
         self._bar_changed: Callable[[Any], None] | None = None
-        self._property_color: tuple[float, ...] | None = None
-        self._property_width: float | None = None
+        super().__init__(prop=pv.Property(theme=self._theme), name=name)
+        self._mapper = mapper  # VTK keeps the C++ half only
+        mapper.attach(self)
+        self._property_color = self.prop.GetDiffuseColor()  # GetColor() is mixed with that of highlights
+        self._property_width = self.prop.GetLineWidth()
+        with own_writes():
+            for key, value in given.items():
+                one = self.DECLARED[key]
+                if one.where is PROPERTY and isinstance(one, Setting):
+                    setattr(self, key, getattr(self._theme, one.field) if value is None else value)
+        self._take_property()
 
     @property
     def _drawn(self) -> Any:
@@ -68,29 +87,12 @@ class Coloured(Settings, LinkedProperty, LinkedTable):
         """Return the numbers or colours that a choice means for what is drawn; ``None`` for one colour."""
         raise NotImplementedError
 
-    def _finish(self, mapper: Any, given: Given) -> None:
-        """Attach the mapper to an actor that VTK has made, and set what needs both."""
-        self._mapper = mapper  # VTK keeps the C++ half only
-        mapper.attach(self)
-        self._property_color = self.prop.GetDiffuseColor()  # GetColor() is mixed with that of highlights
-        self._property_width = self.prop.GetLineWidth()
-        with own_writes():
-            for name, value in given.items():
-                one = self.DECLARED[name]
-                if one.where is PROPERTY and isinstance(one, Setting):
-                    setattr(self, name, getattr(self._theme, one.field) if value is None else value)
-        self._take_property()
-
-    def _be_like(self, other: Any, deep: bool) -> None:
+    def _be_like(self, other: Self, deep: bool) -> None:
         """Take over place, property and all settings that an actor is not made with."""
         self.prop = other.prop.copy() if deep else other.prop
         for name in ("position", "scale", "origin", "orientation", "user_matrix", "visibility", "pickable"):
             setattr(self, name, getattr(other, name))
         self._take_from(other)
-
-    def copy(self, deep: bool = True) -> Any:
-        """Return another actor like this one."""
-        raise NotImplementedError
 
     def __copy__(self) -> Any:
         return self.copy(deep=False)
@@ -200,8 +202,9 @@ class Coloured(Settings, LinkedProperty, LinkedTable):
         if scalars is not None and scalars.mapped:
             with own_writes():
                 update_table(self._table, self._settings, scalars, self._theme, self._drawn)
-                self._fade_table(self._table)
-            self._note_table()
+                if self._opacities.transfer is not None:
+                    apply_transfer(self._table, self._opacities.transfer)
+            self._linked_table.note()
         self._mapper.colouring = self._faded(make_colouring(self._settings, scalars, self._table, self._theme))
         self._scalars = scalars
         colour = pv.Color(self._settings.color, default_color=self._theme.color)
@@ -217,7 +220,7 @@ class Coloured(Settings, LinkedProperty, LinkedTable):
 
     def _keep_table(self) -> bool:
         """Have what was written to the look-up table as settings; say whether there was something."""
-        found = self._table_settings() if self._touched else {}
+        found = self._linked_table.settings()
         for name, value in found.items():
             setattr(self._settings, name, value)
         return bool(found)
@@ -239,12 +242,54 @@ class Coloured(Settings, LinkedProperty, LinkedTable):
             self._recolour()
             self._bar()
 
-    def _fade_table(self, table: pv.LookupTable) -> None:
-        """Give a look-up table its opacities, if it has any of its own."""
+    # Opacities and effects ----------------------------------------------------------------------
 
-    def _faded(self, colouring: Any) -> Any:
-        """Return a colouring with opacities of its own, if there are any."""
-        return colouring
+    def _read_opacity(self) -> Any:
+        return float(self.prop.opacity)
+
+    def _read_opacity_by(self) -> Any:
+        return self._opacity_by
+
+    def _fade_by(self, choice: Any, found: Opacities, instead: str) -> None:
+        """Have opacities beside the property's; refused ones leave all as it was."""
+        if found.transfer is not None and (self._scalars is None or not self._scalars.mapped):
+            raise ValueError(
+                f"opacity {choice!r} follows the numbers of a colour map, but there are none; give scalars, or one "
+                f"opacity per {instead}"
+            )
+        before = self._opacity_by, self._opacities
+        self._opacity_by, self._opacities = choice, found
+        try:
+            self._show(self._scalars)
+        except Exception:
+            self._opacity_by, self._opacities = before
+            self._show(self._scalars)
+            raise
+
+    def _faded(self, colouring: Colouring) -> Colouring:
+        """Return a colouring with the actor's opacities, if there are any."""
+        streamlines, points = self._opacities.streamlines, self._opacities.points
+        if streamlines is None and points is None:
+            return colouring
+        return replace(colouring, opacities=streamlines, opacity_source=points)
+
+    def _shade(self, name: str, kind: type, wanted: Any) -> None:
+        """Set one effect; a refused value leaves all as it was."""
+        self._shades.change(name, kind, wanted)
+
+    # The property -------------------------------------------------------------------------------
+
+    def SetProperty(self, prop: Any) -> None:  # noqa: N802 - VTK's name
+        """Have another property, and take over what it says."""
+        super().SetProperty(prop)
+        self._linked_property.watch(prop, self._take_property)
+        self._take_property()
+
+    def _take_property(self) -> None:
+        """Take over what a user has changed of the property, now that the actor is whole."""
+        if not is_own_write() and hasattr(self, "_mapper"):
+            with own_writes():
+                self._property_changed()
 
     def _property_changed(self) -> None:
         """Take over another colour of the property; scalars that were chosen go before it."""
@@ -260,113 +305,6 @@ class Coloured(Settings, LinkedProperty, LinkedTable):
                 self._show(None)
             elif self._choice is None:
                 self.color = color
-
-
-class Plotted:
-    """The part of a mapper that shows PyVista's scalar bars the actor's own look-up table."""
-
-    @property
-    def lookup_table(self) -> pv.LookupTable:
-        """The table that colours both the picture and the scalar bar."""
-        return self._shown_by().lookup_table
-
-    @lookup_table.setter
-    def lookup_table(self, table: pv.LookupTable) -> None:
-        actor = cast("Any", self._shown_by())
-        clim = actor.clim  # as a mapper's own, which its table takes on
-        actor.cmap = table
-        actor.clim = clim
-
-    def SetLookupTable(self, table: Any) -> None:  # noqa: N802 - VTK's name
-        """Colour by another look-up table, whose range becomes the mapper's."""
-        if not isinstance(table, pv.LookupTable):
-            copy = pv.LookupTable()
-            copy.DeepCopy(table)
-            table = copy
-        self.lookup_table = table
-
-    def GetLookupTable(self) -> pv.LookupTable:  # noqa: N802 - VTK's name
-        """Return the actor's look-up table."""
-        return self.lookup_table
-
-    def SetScalarRange(self, *limits: Any) -> None:  # noqa: N802 - VTK's name
-        """Set the values of the first and last colour, two numbers or a pair."""
-        self.scalar_range = limits[0] if len(limits) == 1 else limits
-
-    def GetScalarRange(self) -> tuple[float, float]:  # noqa: N802 - VTK's name
-        """Return the values of the first and last colour."""
-        return self.scalar_range
-
-    @property
-    def scalar_range(self) -> tuple[float, float]:
-        """Values of the first and last colour; bars that several actors share set it."""
-        return cast("Any", self._shown_by()).clim
-
-    @scalar_range.setter
-    def scalar_range(self, clim: tuple[float, float]) -> None:
-        actor = cast("Any", self._shown_by())
-        actor.clim = shared_limits(clim, actor._settings, actor._scalars)  # noqa: SLF001
-        if actor._scalars is None and not actor._hidden:  # noqa: SLF001
-            warnings.warn(
-                f"the range {tuple(clim)} changes nothing yet: the actor has one colour and no scalars",
-                UserWarning,
-                stacklevel=3,
-            )
-
-    def _shown_by(self) -> Coloured:
-        return cast("Coloured", cast("Any", self).actor)
-
-    def _begin(self) -> None:
-        actor: Any = cast("Any", self).actor
-        if isinstance(actor, Coloured):
-            try:
-                actor.take_table()
-            except Exception as error:  # noqa: BLE001  VTK would swallow it; see raise_pending
-                cast("Any", self)._error = error  # noqa: SLF001  its other half
-        super()._begin()  # type: ignore[misc]  # of the mapper
-
-
-class PlottedLines(LinesWords, Plotted):
-    """The part of a mapper of lines or points that gives PyVista's scripts its data."""
-
-    @property
-    def dataset(self) -> pv.PolyData:
-        """What is drawn as PyVista's own lines or points, made anew each time: of a large set ask for a part."""
-        if cast("Any", self).is_readable:
-            return cast("pv.PolyData", pv.wrap(cast("Any", self).GetDataSetInput()))
-        return self._shown_by()._as_polydata()  # noqa: SLF001
-
-    @dataset.setter
-    def dataset(self, source: Any) -> None:
-        self._shown_by()._draw_source(source)  # noqa: SLF001
-
-    @property
-    def scalar_visibility(self) -> bool:
-        """Whether scalars colour, if there are any; else the colour of the actor's property."""
-        actor = self._shown_by()
-        return not actor._hidden and actor._scalars is not None  # noqa: SLF001
-
-    @scalar_visibility.setter
-    def scalar_visibility(self, shown: bool) -> None:
-        self._shown_by()._hide_scalars(not shown)  # noqa: SLF001
-
-    def SetScalarVisibility(self, shown: Any) -> None:  # noqa: N802 - VTK's name
-        """Have scalars colour, or not."""
-        if cast("Any", self).actor is None:  # as it is made
-            super().SetScalarVisibility(shown)  # type: ignore[misc]  # of vtkMapper
-        else:
-            self.scalar_visibility = bool(shown)
-
-    def ScalarVisibilityOn(self) -> None:  # noqa: N802 - VTK's name
-        """Have scalars colour."""
-        self.scalar_visibility = True
-
-    def ScalarVisibilityOff(self) -> None:  # noqa: N802 - VTK's name
-        """Have the colour of the actor's property count."""
-        self.scalar_visibility = False
-
-    def _wrapped(self, data: Any) -> Any:
-        return pv.wrap(data)
 
 
 # What the engine counts in each window (pvfiblets.engine.fiblets.census).

@@ -7,11 +7,11 @@ package's own to draw: an actor watches its property, and takes over what change
 from __future__ import annotations
 
 import weakref
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-__all__ = ["LinkedProperty", "is_own_write", "own_writes"]
+__all__ = ["LinkedProperty", "is_own_write", "observe", "own_writes"]
 
 _writing = 0
 
@@ -32,36 +32,26 @@ def is_own_write() -> bool:
     return _writing > 0
 
 
+def observe(watched: Any, method: Callable[[], None]) -> int:
+    """Have a method called whenever a VTK object is modified, and return the observer's tag; keeps no method alive."""
+    this = weakref.WeakMethod(method)
+
+    def modified(_watched: Any, _event: str) -> None:
+        call = this()
+        if call is not None:
+            call()
+
+    return int(watched.AddObserver("ModifiedEvent", modified))
+
+
 class LinkedProperty:
-    """The part of an actor that watches its property, which it may share with others."""
+    """The property that an actor watches, and may share with others."""
 
     _watched: Any = None
     _tag = 0
 
-    def SetProperty(self, prop: Any) -> None:  # noqa: N802 - VTK's name
-        """Have another property, and take over what it says."""
-        super().SetProperty(prop)  # type: ignore[misc]  # of vtkActor
-        self._watch_property(prop)
-        self._take_property()
-
-    def _watch_property(self, prop: Any) -> None:
+    def watch(self, prop: Any, modified: Callable[[], None]) -> None:
+        """Call a method whenever a property is modified, and no longer when the one before is."""
         if self._watched is not None:
             self._watched.RemoveObserver(self._tag)
-        this = weakref.ref(self)
-
-        def changed(_prop: Any, _event: str) -> None:
-            actor = this()
-            if actor is not None:
-                actor._take_property()  # noqa: SLF001 - a method would keep the actor alive for ever
-
-        self._watched, self._tag = prop, prop.AddObserver("ModifiedEvent", changed)
-
-    def _take_property(self) -> None:
-        """Take over what a user has changed of the property, now that the actor is whole."""
-        if not _writing and getattr(self, "_mapper", None) is not None:
-            with own_writes():
-                self._property_changed()
-
-    def _property_changed(self) -> None:
-        """Be told that it changed, by somebody else."""
-        raise NotImplementedError
+        self._watched, self._tag = prop, observe(prop, modified)

@@ -7,13 +7,14 @@ on: pictures and scalar bars show it, and other scalars keep it.
 from __future__ import annotations
 
 import weakref
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import pyvista as pv
 
-from pvfiblets.plotting.linked_property import is_own_write
+from pvfiblets.plotting.linked_property import is_own_write, observe
 
 __all__ = ["LinkedTable"]
 
@@ -40,34 +41,35 @@ class _Written:
 
 
 class LinkedTable:
-    """The part of an actor that watches its look-up table."""
+    """What others than an actor's settings write to its look-up table.
 
-    _table: Any
-    _settings: Any
-    _written: _Written | None = None
-    _touched = False
+    A method of the actor, ``modified``, is called at each change by others, who may not be done.
+    """
 
-    def _watch_table(self) -> None:
-        this = weakref.ref(self)
+    touched = False
+    """Whether others have changed it since `note`."""
 
-        def changed(_table: Any, _event: str) -> None:
-            actor = this()
-            if actor is not None and not is_own_write() and actor._written is not None:  # noqa: SLF001
-                actor._touched = True  # noqa: SLF001 - a method would keep the actor alive for ever
-                actor._table_touched()  # noqa: SLF001
+    def __init__(self, table: pv.LookupTable, modified: Callable[[], None]) -> None:
+        self._table = table
+        self._written: _Written | None = None
+        self._modified = weakref.WeakMethod(modified)
+        observe(table, self._changed)
 
-        self._table.AddObserver("ModifiedEvent", changed)
+    def _changed(self) -> None:
+        modified = self._modified()
+        if modified is not None and not is_own_write() and self._written is not None:
+            self.touched = True
+            modified()
 
-    def _note_table(self) -> None:
+    def note(self) -> None:
         """Remember what the settings have made of the table."""
-        self._written, self._touched = _Written.of(self._table), False
+        self._written, self.touched = _Written.of(self._table), False
 
-    def _table_touched(self) -> None:
-        """Be told that somebody else is writing to the table, and may not be done."""
-
-    def _table_settings(self) -> dict[str, Any]:
-        """Return what somebody else has written since, as settings of colours."""
-        before, self._touched = self._written, False
+    def settings(self) -> dict[str, Any]:
+        """Return what others have written since, as settings of colours."""
+        if not self.touched:
+            return {}
+        before, self.touched = self._written, False
         if before is None:
             return {}
         now, found = _Written.of(self._table), dict[str, Any]()

@@ -1,65 +1,150 @@
-"""What PyVista's scripts set of an actor's mapper and ours keep in their actors: taken over, or told where it is.
+"""Mappers as PyVista's scripts know them: what they set of an actor's mapper is taken over, or told where it is.
 
-A mapper of VTK's takes any attribute that Python gives it, and nobody would read it.
+Ours keep it in their actors. A mapper of VTK's takes any attribute that Python gives it, and nobody would read it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
+import warnings
+from typing import Any, cast
 
+import pyvista as pv
+
+from pvfiblets.mappers.engine_mapper import AnyOptions, EngineMapper
+from pvfiblets.plotting.coloured import ColouredActor
+from pvfiblets.plotting.colours import shared_limits
 from pvfiblets.plotting.settings import NoSetting
-from pvfiblets.plotting.volumes.blending import BLENDING, mode_of_blending
 
-__all__ = ["LinesWords", "VolumeWords"]
+__all__ = ["NONE", "Plotted", "PlottedLines"]
 
-_NONE = "this mapper has no {name}: "
-
-
-class _Words:
-    """Words of all mappers."""
-
-    _shown_by: Callable[[], Any]
-
-    copy = NoSetting(_NONE + "actor.copy() makes an actor with a mapper of its own")
-    interpolate_before_map = NoSetting(_NONE + "values are interpolated before they are mapped, always")
-    emissive = NoSetting(_NONE + "it is of points drawn as gaussians")
+NONE = "this mapper has no {name}: "
 
 
-class LinesWords(_Words):
-    """Words of mappers of lines and points."""
+class Plotted(EngineMapper[AnyOptions]):
+    """Mapper that shows PyVista's scalar bars the actor's own look-up table."""
 
-    as_rgba = NoSetting(_NONE + "give colours of points or lines as actor.scalars")
-    clear_active_scalars = NoSetting(_NONE + "set actor.scalars = None")
-    cmap = NoSetting(_NONE + "set actor.cmap")
-    scalar_map_mode = NoSetting(_NONE + "actor.scalars may be of points or of lines")
-    set_active_scalars = NoSetting(_NONE + "set actor.scalars to the name")
-    set_custom_opacity = NoSetting(_NONE + "set actor.opacity_by")
-    set_scalars = NoSetting(_NONE + "set actor.scalars, and actor.cmap, clim and n_colors")
+    copy = NoSetting(NONE + "actor.copy() makes an actor with a mapper of its own")
+    interpolate_before_map = NoSetting(NONE + "values are interpolated before they are mapped, always")
+    emissive = NoSetting(NONE + "it is of points drawn as gaussians")
+
+    @property
+    def _owner(self) -> ColouredActor:
+        return cast("ColouredActor", self.actor)
+
+    @property
+    def lookup_table(self) -> pv.LookupTable:
+        """The table that colours both the picture and the scalar bar."""
+        return self._owner.lookup_table
+
+    @lookup_table.setter
+    def lookup_table(self, table: pv.LookupTable) -> None:
+        actor = self._owner
+        clim = actor.clim  # as a mapper's own, which its table takes on
+        actor.cmap = table
+        actor.clim = clim
+
+    def SetLookupTable(self, table: Any) -> None:  # noqa: N802 - VTK's name
+        """Colour by another look-up table, whose range becomes the mapper's."""
+        if not isinstance(table, pv.LookupTable):
+            copy = pv.LookupTable()
+            copy.DeepCopy(table)
+            table = copy
+        self.lookup_table = table
+
+    def GetLookupTable(self) -> pv.LookupTable:  # noqa: N802 - VTK's name
+        """Return the actor's look-up table."""
+        return self.lookup_table
+
+    def SetScalarRange(self, *limits: Any) -> None:  # noqa: N802 - VTK's name
+        """Set the values of the first and last colour, two numbers or a pair."""
+        self.scalar_range = limits[0] if len(limits) == 1 else limits
+
+    def GetScalarRange(self) -> tuple[float, float]:  # noqa: N802 - VTK's name
+        """Return the values of the first and last colour."""
+        return self.scalar_range
+
+    @property
+    def scalar_range(self) -> tuple[float, float]:
+        """Values of the first and last colour; bars that several actors share set it."""
+        return self._owner.clim
+
+    @scalar_range.setter
+    def scalar_range(self, clim: tuple[float, float]) -> None:
+        actor = self._owner
+        actor.clim = shared_limits(clim, actor._settings, actor._scalars)  # noqa: SLF001
+        if actor._scalars is None and not actor._hidden:  # noqa: SLF001
+            warnings.warn(
+                f"the range {tuple(clim)} changes nothing yet: the actor has one colour and no scalars",
+                UserWarning,
+                stacklevel=3,
+            )
+
+    def _begin(self) -> None:
+        actor: Any = self.actor
+        if isinstance(actor, ColouredActor):
+            try:
+                actor.take_table()
+            except Exception as error:  # noqa: BLE001  VTK would swallow it; see raise_pending
+                self._error = error
+        super()._begin()
+
+
+class PlottedLines(Plotted[AnyOptions]):
+    """Mapper of lines or points that gives PyVista's scripts its data."""
+
+    as_rgba = NoSetting(NONE + "give colours of points or lines as actor.scalars")
+    clear_active_scalars = NoSetting(NONE + "set actor.scalars = None")
+    cmap = NoSetting(NONE + "set actor.cmap")
+    scalar_map_mode = NoSetting(NONE + "actor.scalars may be of points or of lines")
+    set_active_scalars = NoSetting(NONE + "set actor.scalars to the name")
+    set_custom_opacity = NoSetting(NONE + "set actor.opacity_by")
+    set_scalars = NoSetting(NONE + "set actor.scalars, and actor.cmap, clim and n_colors")
 
     @property
     def array_name(self) -> str:
         """Name of what colours; empty without scalars. Set it to colour by another array of what is drawn."""
-        found = self._shown_by()._scalars  # noqa: SLF001
+        found = self._owner._scalars  # noqa: SLF001
         return "" if found is None else str(found.name)
 
     @array_name.setter
     def array_name(self, name: str) -> None:
-        self._shown_by().scalars = name
-
-
-class VolumeWords(_Words):
-    """Words of mappers of volumes."""
-
-    dataset = NoSetting(_NONE + "actor.volume holds values and place; actor.update(image) draws others")
-    scalar_map_mode = NoSetting(_NONE + "as_raycast_volume(image, scalars=...) chooses the array")
+        self._owner.scalars = name
 
     @property
-    def blend_mode(self) -> str:
-        """The actor's mode by ``add_volume``'s words, or its own where these have none."""
-        mode = self._shown_by().mode
-        return next((theirs for theirs, ours in BLENDING.items() if ours == mode), mode)
+    def dataset(self) -> pv.PolyData:
+        """What is drawn as PyVista's own lines or points, made anew each time: of a large set ask for a part."""
+        if self.is_readable:
+            return cast("pv.PolyData", pv.wrap(self.GetDataSetInput()))
+        return self._owner._as_polydata()  # noqa: SLF001
 
-    @blend_mode.setter
-    def blend_mode(self, word: str) -> None:
-        self._shown_by().mode = mode_of_blending(word)
+    @dataset.setter
+    def dataset(self, source: Any) -> None:
+        self._owner._draw_source(source)  # noqa: SLF001
+
+    @property
+    def scalar_visibility(self) -> bool:
+        """Whether scalars colour, if there are any; else the colour of the actor's property."""
+        actor = self._owner
+        return not actor._hidden and actor._scalars is not None  # noqa: SLF001
+
+    @scalar_visibility.setter
+    def scalar_visibility(self, shown: bool) -> None:
+        self._owner._hide_scalars(not shown)  # noqa: SLF001
+
+    def SetScalarVisibility(self, shown: Any) -> None:  # noqa: N802 - VTK's name
+        """Have scalars colour, or not."""
+        if self.actor is None:  # as it is made
+            super().SetScalarVisibility(shown)
+        else:
+            self.scalar_visibility = bool(shown)
+
+    def ScalarVisibilityOn(self) -> None:  # noqa: N802 - VTK's name
+        """Have scalars colour."""
+        self.scalar_visibility = True
+
+    def ScalarVisibilityOff(self) -> None:  # noqa: N802 - VTK's name
+        """Have the colour of the actor's property count."""
+        self.scalar_visibility = False
+
+    def _wrapped(self, data: Any) -> Any:
+        return pv.wrap(data)

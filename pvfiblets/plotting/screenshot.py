@@ -14,16 +14,16 @@ import numpy as np
 import numpy.typing as npt
 import pyvista as pv
 
+from pvfiblets.plotting.actor_registry import A, ActorRegistry
+
 ONE_BIT_FORMATS = (".png", ".tif", ".tiff", ".bmp")
 """Kinds of files that hold one bit for a pixel."""
 
 _HALF = 128
 
 
-class Printing:
-    """The part of a component that takes pictures for print."""
-
-    _plotter: Any
+class PrintableComponent(ActorRegistry[A]):
+    """Component whose pictures can be taken for print."""
 
     def screenshot(
         self,

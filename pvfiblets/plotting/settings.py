@@ -269,7 +269,7 @@ class NoSetting:
 
 
 class Settings:
-    """The part of an actor that has settings; a drawable's are declared in the body of a subclass."""
+    """Settings, declared in the body of a subclass, which is a base of the actor that has them."""
 
     # All of them by name, in their order; those of a class before those that it inherits.
     DECLARED: ClassVar[dict[str, Argument]] = {}

@@ -159,7 +159,7 @@ def test_values_along_a_line_are_those_of_its_layer(scene, tools):
 
 def test_without_layers_nothing_is_left_of_them(scene, tools):
     plotter, mapper, actor = scene(rows(), layers=None, line_width=6.0)
-    before, installed = tools.picture(plotter, mapper), mapper._installed
+    before, installed = tools.picture(plotter, mapper), mapper._link.installed
     assert mapper.GetInput().GetNumberOfPoints() == 6
     assert not holds_layers(mapper)
     mapper.set_effect("layers", Layers(5))
@@ -172,7 +172,7 @@ def test_without_layers_nothing_is_left_of_them(scene, tools):
     actor.GetProperty().SetOpacity(0.4)
     mapper.set_effect("layers", None)
     assert (tools.picture(plotter, mapper) == before).all()
-    assert mapper._installed == installed
+    assert mapper._link.installed == installed
     assert mapper.GetInput().GetNumberOfPoints() == 6
     assert not holds_layers(mapper)
     text = "".join(replacement.text for replacement in installed)

@@ -7,7 +7,7 @@ import weakref
 
 import numpy as np
 import pytest
-from vtkmodules.vtkCommonCore import vtkLookupTable, vtkVariant
+from vtkmodules.vtkCommonCore import vtkLookupTable, vtkVariant, vtkWeakReference
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkCommonExecutionModel import vtkTrivialProducer
 from vtkmodules.vtkCommonTransforms import vtkTransform
@@ -249,6 +249,20 @@ def test_mapper_and_data_go_when_nobody_has_them(make):
     del mapper
     gc.collect()
     assert what() is None
+
+
+def test_connected_data_go_with_their_mapper_while_the_window_stays():
+    mapper, data = FibletMapper(), lines()
+    mapper.SetInputData(data)
+    window = scene(mapper)
+    shot(window)
+    held = vtkWeakReference()
+    held.Set(data)
+    window.GetRenderers().GetFirstRenderer().RemoveAllViewProps()
+    del mapper, data
+    gc.collect()
+    assert held.Get() is None
+    window.Finalize()
 
 
 def logarithm(mapper):

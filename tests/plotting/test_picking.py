@@ -381,7 +381,7 @@ def test_tooltips(plotter, three_lines, mouse):
     plotter.view_xy()
     plotter.show(auto_close=False)
     plotter.fiblets.enable_picking(tooltip=True, show_message=False)
-    tooltip = plotter.fiblets._tooltip
+    tooltip = plotter.fiblets._picking.tooltip
     actor = next(iter(plotter.fiblets))
     place = actor.pick_box((0, 0, 199, 199)).pixels[0].astype(int)
     mouse.at(*place).send("MouseMove")
@@ -391,7 +391,7 @@ def test_tooltips(plotter, three_lines, mouse):
     assert ("in left" in tooltip.shown) == (picked.ids[0] != 1)
     plotter.fiblets.enable_picking(tooltip=lambda picked: f"<{len(picked)}>", show_message=False)
     mouse.at(*place).send("MouseMove")
-    assert plotter.fiblets._tooltip.shown == "<1>"
-    tooltip = plotter.fiblets._tooltip
+    assert plotter.fiblets._picking.tooltip.shown == "<1>"
+    tooltip = plotter.fiblets._picking.tooltip
     plotter.fiblets.disable_picking()
     assert tooltip.shown == ""

@@ -13,24 +13,31 @@ from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.depth_peeling import Layers
 from pvfiblets.mappers.engine_options import EngineOptions
 from pvfiblets.mappers.fiblets import FibletMapper
-from pvfiblets.plotting.coloured import Coloured, PlottedLines, added_up
+from pvfiblets.mappers.line_light import LegendColours, LineLight
+from pvfiblets.mappers.line_tubes import Tubes, TubeShading
+from pvfiblets.mappers.shading import Ink
+from pvfiblets.plotting.coloured import added_up
 from pvfiblets.plotting.colours import limits
-from pvfiblets.plotting.fiblets.filtering import Filtering
+from pvfiblets.plotting.fiblets.filter_state import Choices
 from pvfiblets.plotting.fiblets.looks import PLAIN, look_of, settings_of
-from pvfiblets.plotting.fiblets.opacities import Opacities, apply_transfer, find_opacities
+from pvfiblets.plotting.fiblets.opacities import Opacities, find_opacities
+from pvfiblets.plotting.fiblets.pick_result import Picked, checked_box, everything, visible
 from pvfiblets.plotting.fiblets.scalars import Scalars, find_scalars, mean_direction, refuse_numbers
-from pvfiblets.plotting.fiblets.selection import Selecting
-from pvfiblets.plotting.fiblets.settings import ALL, THINNEST, TONES, WIDEST, FibletSettings
+from pvfiblets.plotting.fiblets.selection import SelectableActor
+from pvfiblets.plotting.fiblets.settings import ALL, STYLES, THINNEST, TONES, WIDEST, FibletSettings
 from pvfiblets.plotting.fiblets.sources import as_fiblets, with_point_values
 from pvfiblets.plotting.linked_property import own_writes
+from pvfiblets.plotting.mapper_words import PlottedLines
 from pvfiblets.plotting.setting_places import OPTIONS
 from pvfiblets.plotting.settings import Given
-from pvfiblets.plotting.shading import Shading
+from pvfiblets.plotting.shading import BACKGROUND
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.engine.fiblets.data.sampled_volume import VolumeSource
 
+_LIGHT = "light"
+_ROUND = "tube_shading"
 _LAYERS = "layers"
 _DENSITY = "density"
 _COUNTS = Scalars("density", "pixel_count")
@@ -42,7 +49,7 @@ def _layers(transparency: Any) -> Layers:
     return Layers(_SOME_LAYERS if transparency == "layers" else transparency)
 
 
-class PlottedMapper(PlottedLines, FibletMapper):
+class PlottedMapper(PlottedLines[EngineOptions], FibletMapper):
     """A fiblet mapper with scalar bars.
 
     Parameters
@@ -52,7 +59,7 @@ class PlottedMapper(PlottedLines, FibletMapper):
     """
 
 
-class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Actor):
+class FibletActor(FibletSettings, SelectableActor):
     """Streamlines drawn from their compressed form.
 
     Everything of :class:`pyvista.Actor` works (``visibility``, ``position``, ``user_matrix``,
@@ -87,23 +94,17 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
         theme: Any = None,
         progress: bool = False,
     ) -> None:
-        theme = pv.global_theme if theme is None else theme
         given = Given(FibletSettings, settings)
         self._fiblets, self._rgb = fiblets, given["rgb"]
-        self._init_colours(scalars, given, theme)
-        self._init_shading()
+        self._style = STYLES[0]
         self._tone = TONES[0]
         self._transparency: str | int | None = None  # until it is told
-        self._opacity_by: Any = None
-        self._opacities = Opacities()
-        self._init_filtering()
-        self._init_selection()
+        self._choices = Choices()
         mapper = PlottedMapper(fiblets, options=EngineOptions(**given.at(OPTIONS)), progress=progress)
-        super().__init__(prop=pv.Property(theme=theme), name=name)
-        self._finish(mapper, given)
-        self.line_width = theme.line_width if given["line_width"] is None else given["line_width"]
+        super().__init__(mapper, scalars, given, name=name, theme=theme)
+        self.line_width = self._theme.line_width if given["line_width"] is None else given["line_width"]
         self._recolour()
-        self.opacity = theme.opacity if given["opacity"] is None else given["opacity"]
+        self.opacity = self._theme.opacity if given["opacity"] is None else given["opacity"]
         look = given["look"]
         if look is not None:
             self._take_look(look, but=given.named)
@@ -125,11 +126,12 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
     @fiblets.setter
     def fiblets(self, fiblets: FibletSet) -> None:
         scalars = self._find(fiblets, self._choice)
-        choices = self._choices_for(fiblets)
+        choices = self._choices.made_for(fiblets, self._fiblets)
         self._mapper.filtering = None  # its bits are of the fiblets before
         self._draw(fiblets)
         self._show(scalars)
-        self._rechoose(choices)
+        self._choices = choices
+        self._choose()
 
     def update(self, source: Any, **options: Any) -> None:
         """Draw other streamlines from the next render on, as they move or grow; settings stay.
@@ -164,8 +166,6 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
         """
         twin = FibletActor(self._fiblets, scalars=self._choice, settings=self._kept(), theme=self._theme)
         twin._be_like(self, deep)
-        twin._choose_as(self)
-        twin._select_like(self)
         return twin
 
     def explain(self) -> dict[str, Any]:
@@ -197,7 +197,8 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
             "share": self.share,
             "look": self.look,
             "colours": self._explain_colours(),
-            **self._explain_choices(),
+            **self._choices.explain(self._fiblets),
+            "clips": list(self._clips),
         }
 
     def pick_at(self, x: int, y: int) -> tuple[int, float] | None:
@@ -214,6 +215,66 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
             ``None`` where no streamline of this actor was drawn.
         """
         return self._mapper.pick_at(x, y)
+
+    def pick_box(self, box: Any, *, through: bool = False, renderer: Any = None) -> Picked | None:
+        """Return the streamlines in a rectangle of the window.
+
+        Parameters
+        ----------
+        box : (float, float, float, float)
+            Two opposite corners ``(x0, y0, x1, y1)``: pixels, counted from the lower left corner of
+            the window; those on the edges belong to it.
+        through : bool, default: False
+            Hidden ones too. Else only those that are seen: the ids are those of the picture.
+        renderer : pyvista.Renderer, optional
+            The subplot to look into; the one drawn last by default.
+
+        Returns
+        -------
+        Picked or None
+            ``None`` if there are none, or nothing has been drawn yet.
+
+        Raises
+        ------
+        ValueError
+            If ``box`` is not four finite numbers.
+        """
+        return self._pick(checked_box(box), through, 0.0, renderer)
+
+    def pick_polygon(
+        self, points: Any, *, through: bool = False, tolerance: float = 0.0, renderer: Any = None
+    ) -> Picked | None:
+        """Return the streamlines in a polygon in the window.
+
+        Parameters
+        ----------
+        points : array_like
+            ``(k, 2)`` corners, pixels counted from the lower left corner of the window. It closes
+            itself; inside is by the even-odd rule. One corner is a point, two are a line.
+        through : bool, default: False
+            Hidden ones too.
+        tolerance : float, default: 0.0
+            Pixels that a streamline may be away.
+        renderer : pyvista.Renderer, optional
+            The subplot to look into; the one drawn last by default.
+
+        Returns
+        -------
+        Picked or None
+            ``None`` if there are none, or nothing has been drawn yet.
+
+        Raises
+        ------
+        ValueError
+            If the corners are not finite pairs of numbers.
+        """
+        return self._pick(points, through, tolerance, renderer)
+
+    def _pick(self, points: Any, through: bool, tolerance: float, renderer: Any) -> Picked | None:
+        from pvfiblets.query.selection.screen import checked_polygon
+
+        find = everything if through else visible
+        return find(self, checked_polygon(points), tolerance=tolerance, renderer=renderer)
 
     # Colours ------------------------------------------------------------------------------------
 
@@ -311,48 +372,83 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
 
     # Opacity ------------------------------------------------------------------------------------
 
-    def _read_opacity(self) -> float:
-        return float(self.prop.opacity)
-
     def _write_opacity(self, opacity: Any) -> None:
         if isinstance(opacity, float):
             self.prop.opacity = opacity
         else:
             self.opacity_by = opacity
 
-    def _read_opacity_by(self) -> Any:
-        return self._opacity_by
-
     def _write_opacity_by(self, choice: Any) -> None:
         fiblets, found = self._fiblets, Opacities()
         if choice is not None:
             fiblets, found = find_opacities(fiblets, choice)
-        if found.transfer is not None and (self._scalars is None or not self._scalars.mapped):
-            raise ValueError(
-                f"opacity {choice!r} follows the numbers of a colour map, but there are none; give scalars, or one "
-                "opacity per streamline or per point"
-            )
-        before = self._opacity_by, self._opacities, self._fiblets
-        if fiblets is not self._fiblets:
+        before = self._fiblets
+        if fiblets is not before:
             self._draw(fiblets)
-        self._opacity_by, self._opacities = choice, found
         try:
-            self._show(self._scalars)
+            self._fade_by(choice, found, "streamline or per point")
         except Exception:
-            self._opacity_by, self._opacities = before[:2]
-            self._draw(before[2])
-            self._show(self._scalars)
+            if fiblets is not before:
+                self._draw(before)
             raise
 
-    def _fade_table(self, table: pv.LookupTable) -> None:
-        if self._opacities.transfer is not None:
-            apply_transfer(table, self._opacities.transfer)
+    # Light and style ----------------------------------------------------------------------------
 
-    def _faded(self, colouring: Colouring) -> Colouring:
-        streamlines, points = self._opacities.streamlines, self._opacities.points
-        if streamlines is None and points is None:
-            return colouring
-        return replace(colouring, opacities=streamlines, opacity_source=points)
+    def _shade(self, name: str, kind: type, wanted: Any) -> None:
+        super()._shade(name, kind, wanted)
+        self._relight()
+
+    def _relight(self) -> None:
+        """Bring the light in step that lines have where nothing else says which."""
+        kind = self._usual_light()
+        present = self._mapper.effects.get(_LIGHT)
+        if kind is not (None if present is None else type(present)):
+            self._mapper.set_effect(_LIGHT, None if kind is None else kind())
+
+    def _usual_light(self) -> type | None:
+        bodies = "tubes" in self._shades or (self._read_tube_shading() and self._mapper.line_width > 1.0)
+        if self._style == _DENSITY:
+            return LegendColours if self.prop.GetLighting() else None
+        if bodies or "illuminated" in self._shades or self._style != STYLES[0] or not self.prop.GetLighting():
+            return None
+        return LegendColours if self._scalars is not None and self._scalars.mapped else LineLight
+
+    def _read_tube_shading(self) -> bool:
+        return bool(self.prop.GetRenderLinesAsTubes())
+
+    def _write_tube_shading(self, wanted: bool) -> None:
+        with own_writes():
+            self.prop.SetRenderLinesAsTubes(wanted)
+        self._take_tube_shading()
+        self._relight()
+
+    def _take_tube_shading(self) -> None:
+        wanted = self._read_tube_shading()
+        if wanted != (_ROUND in self._mapper.effects):
+            self._mapper.set_effect(_ROUND, TubeShading() if wanted else None)
+
+    def _read_tube_radius(self) -> float | None:
+        settings = self._shades.get("tubes")
+        return None if settings is None else float(settings["radius"])
+
+    def _write_tube_radius(self, radius: float | None) -> None:
+        self._shade("tubes", Tubes, None if radius is None else {"radius": float(radius)})
+
+    def _read_style(self) -> str:
+        return self._style
+
+    def _write_style(self, style: str) -> None:
+        if style == self._style:
+            return
+        self._style = style
+        inks = {"halo": Ink(), "ink": Ink(None)}
+        self._mapper.set_effect("ink", inks.get(style))
+        self._relight()
+        self._count_lines()
+        if style == "ink":
+            self.halos = {"color": BACKGROUND}
+        elif style != "halo" or not self.halos:
+            self.halos = style == "halo"
 
     # Density ------------------------------------------------------------------------------------
 
@@ -377,7 +473,7 @@ class FibletActor(FibletSettings, Filtering, Selecting, Coloured, Shading, pv.Ac
             self._scalars = replace(self._scalars, range=(self._scalars.range[0], most))
             with own_writes():
                 self._table.scalar_range = low, most
-            self._note_table()
+            self._linked_table.note()
 
     def _read_density_tone(self) -> str:
         return self._tone

@@ -8,7 +8,7 @@ either name. :class:`FibletsComponent` lives as long as its plotter; its life cy
 from __future__ import annotations
 
 import inspect
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -16,9 +16,12 @@ import pyvista as pv
 
 from pvfiblets.plotting.actor_registry import ActorRegistry
 from pvfiblets.plotting.call_signature import plotter_method
-from pvfiblets.plotting.fiblets.picking import Picking
+from pvfiblets.plotting.fiblets import widgets
+from pvfiblets.plotting.fiblets.filter_state import unique_name
+from pvfiblets.plotting.fiblets.picking import MousePicking
 from pvfiblets.plotting.fiblets.settings import FibletSettings
-from pvfiblets.plotting.fiblets.widgets import Widgets
+from pvfiblets.plotting.fiblets.slabs import FibletSlab
+from pvfiblets.plotting.region_sources import as_region
 from pvfiblets.plotting.setting_places import OPTIONS
 from pvfiblets.plotting.settings import Given, Setting
 from pvfiblets.plotting.words_of_add_mesh import why_not
@@ -31,6 +34,7 @@ if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.engine.gl.capabilities import PipelineTable
     from pvfiblets.plotting.fiblets.actor import FibletActor
+    from pvfiblets.plotting.fiblets.pick_result import Picked
     from pvfiblets.plotting.notebook_view import PageView
     from pvfiblets.plotting.same_names import Preference
     from pvfiblets.streamlines import Streamlines
@@ -39,7 +43,7 @@ if TYPE_CHECKING:
 
 
 @pv.register_plotter_component("fiblets")
-class FibletsComponent(ActorRegistry["FibletActor"], Picking, Widgets):
+class FibletsComponent(ActorRegistry["FibletActor"]):
     """The fiblet actors of one plotter.
 
     Parameters
@@ -61,8 +65,8 @@ class FibletsComponent(ActorRegistry["FibletActor"], Picking, Widgets):
 
     def __init__(self, plotter: pv.BasePlotter) -> None:
         super().__init__(plotter)
-        self._init_widgets()
-        self._init_picking()
+        self._picking: MousePicking | None = None
+        self._removals: dict[str, Callable[[], None]] = {}  # of slabs and widgets, by the names of their cuts
 
     def _make(
         self,
@@ -163,6 +167,352 @@ class FibletsComponent(ActorRegistry["FibletActor"], Picking, Widgets):
             sets = "; ".join(f"actor.{name} = ..." for name in live)
             raise TypeError(f"add_fiblets() takes no {', '.join(live)}: set it on the actor that it returns ({sets})")
         self._refuse(unknown)
+
+    # Picking ------------------------------------------------------------------------------------
+
+    def enable_picking(
+        self,
+        callback: Callable[[Picked], Any] | None = None,
+        *,
+        mode: str = "click",
+        through: bool = False,
+        button: str = "left",
+        tolerance: float = 4.0,
+        tooltip: bool | Callable[[Picked], str] = False,
+        select: bool = True,
+        start: bool = False,
+        show_message: bool | str = True,
+        font_size: int = 18,
+        color: Any = None,
+    ) -> None:
+        """Pick streamlines with the mouse; what was enabled before is disabled.
+
+        Parameters
+        ----------
+        callback : callable, optional
+            Called with a :class:`~pvfiblets.plotting.fiblets.pick_result.Picked` for each actor of which
+            something was picked, and not at all where there is nothing.
+        mode : {"click", "box", "lasso"}
+            ``"click"``: the streamline nearest to the mouse; dragging still turns the camera.
+            ``"box"`` and ``"lasso"``: all within what is drawn with the left button, after the
+            ``r`` key has been pressed, which is PyVista's key for rectangles, until it is pressed
+            again. A click picks then, too.
+        through : bool, default: False
+            Everything under the mouse or the area, hidden streamlines too. Else only what is seen:
+            the ids are those of the picture. Opaque actors in front do hide streamlines;
+            translucent ones do not.
+        button : {"left", "right"}
+            That clicks.
+        tolerance : float, default: 4.0
+            Pixels between the mouse and a streamline.
+        tooltip : bool or callable, default: False
+            Say beside the mouse which streamline is under it, where along it, its value and its
+            groups; or what a function of a :class:`Picked` says.
+        select : bool, default: True
+            Select what is picked (:meth:`FibletActor.select`): with Shift it is added, with Control
+            it changes sides. Nothing picked and no key held: nothing is selected.
+        start : bool, default: False
+            Draw areas at once, without the ``r`` key.
+        show_message : bool or str, default: True
+            Show how to pick.
+        font_size : int, default: 18
+            Of the message.
+        color : color-like, optional
+            Of the outline of areas and of the message; black or white by default, whichever stands
+            out against the background.
+
+        Raises
+        ------
+        TypeError
+            If the callback cannot be called.
+        ValueError
+            If there is no such mode or button, or the tolerance is not a distance.
+        RuntimeError
+            If the plotter is closed.
+        """
+        picking = MousePicking(
+            self._plotter, self, callback, mode=mode, through=through, button=button, tolerance=tolerance,
+            tooltip=tooltip, select=select,
+        )  # fmt: skip
+        self.disable_picking()
+        self._picking = picking
+        picking.begin(start=start, show_message=show_message, font_size=font_size, color=color)
+
+    def disable_picking(self) -> None:
+        """Undo :meth:`enable_picking`; what is selected stays. Twice is harmless."""
+        if self._picking is not None:
+            self._picking.stop()
+            self._picking = None
+
+    # Slabs and widgets that cut -----------------------------------------------------------------
+
+    def add_slab(
+        self,
+        actor: FibletActor | Sequence[FibletActor] | None = None,
+        normal: Any = "z",
+        *,
+        origin: Any = None,
+        thickness: float = 5.0,
+        volume: Any = None,
+        name: str | None = None,
+        render: bool = True,
+        **mesh_options: Any,
+    ) -> FibletSlab:
+        """Cut actors to a slab, and show the slice of a volume in it.
+
+        Parameters
+        ----------
+        actor : FibletActor or sequence of such, optional
+            What is cut; all fiblet actors by default.
+        normal : str or (3,) array, default: "z"
+            ``"x"``, ``"y"``, ``"z"``, or a direction.
+        origin : float or (3,) array, optional
+            A point of the slab's middle plane, or how far along the normal it is; the actors' middle by default, mm.
+        thickness : float, default: 5.0
+            mm.
+        volume : pyvista.DataSet, optional
+            Drawn where the middle plane cuts it, in world coordinates.
+        name : str, optional
+            Of the cut.
+        render : bool, default: True
+            Render at once if the window is shown already.
+        **mesh_options
+            For :meth:`pyvista.Plotter.add_mesh` of the slice, such as ``cmap``, ``clim``,
+            ``opacity``.
+
+        Returns
+        -------
+        FibletSlab
+            ``position``, ``thickness``, ``normal`` and ``origin`` are live; ``remove()`` ends it.
+        """
+        actors = self._cut_actors(actor)
+        slab = FibletSlab(
+            self._plotter,
+            actors,
+            self._new_name(name, "slab"),
+            normal=normal,
+            origin=widgets.centre(actors) if origin is None else origin,
+            thickness=thickness,
+            volume=volume,
+            **mesh_options,
+        )
+        self._removals[slab.name] = slab.remove
+        if render:
+            self._plotter.render()
+        return slab
+
+    def add_clip_plane_widget(
+        self,
+        actor: FibletActor | Sequence[FibletActor] | None = None,
+        normal: Any = "x",
+        *,
+        origin: Any = None,
+        invert: bool = False,
+        name: str | None = None,
+        interaction_event: Any = "always",
+        **widget_options: Any,
+    ) -> Any:
+        """Add a plane that cuts where it is dragged.
+
+        Parameters
+        ----------
+        actor : FibletActor or sequence of such, optional
+            What is cut; all fiblet actors by default.
+        normal : str or (3,) array, default: "x"
+            What it points to stays.
+        origin : (3,) array, optional
+            A point of the plane; the middle of the actors by default, mm.
+        invert : bool, default: False
+            Keep the other side.
+        name : str, optional
+            Of the cut.
+        interaction_event : str, default: "always"
+            ``"end"`` cuts only when the mouse is let go.
+        **widget_options
+            For :meth:`pyvista.Plotter.add_plane_widget`.
+
+        Returns
+        -------
+        vtkImplicitPlaneWidget
+        """
+        actors, name = self._cut_actors(actor), self._new_name(name, "plane")
+
+        def cut(normal: Any, origin: Any) -> None:
+            for item in actors:
+                item.clip((normal, origin), inside=not invert, name=name)
+
+        widget, self._removals[name] = widgets.plane(
+            self._plotter, actors, name, cut, normal=normal, origin=origin, event=interaction_event, **widget_options
+        )
+        return widget
+
+    def add_clip_slab_widget(
+        self,
+        actor: FibletActor | Sequence[FibletActor] | None = None,
+        normal: Any = "z",
+        *,
+        origin: Any = None,
+        thickness: float = 5.0,
+        volume: Any = None,
+        name: str | None = None,
+        interaction_event: Any = "always",
+        mesh_options: dict[str, Any] | None = None,
+        **widget_options: Any,
+    ) -> tuple[Any, FibletSlab]:
+        """Add a plane that a slab follows; parameters as for :meth:`add_slab`.
+
+        Parameters
+        ----------
+        actor, normal, origin, thickness, volume, name
+            As for :meth:`add_slab`.
+        interaction_event : str, default: "always"
+            ``"end"`` cuts only when the mouse is let go.
+        mesh_options : dict, optional
+            For :meth:`pyvista.Plotter.add_mesh` of the slice.
+        **widget_options
+            For :meth:`pyvista.Plotter.add_plane_widget`.
+
+        Returns
+        -------
+        widget : vtkImplicitPlaneWidget
+        slab : FibletSlab
+            For its thickness.
+        """
+        actors = self._cut_actors(actor)
+        slab = self.add_slab(
+            actors,
+            normal,
+            origin=origin,
+            thickness=thickness,
+            volume=volume,
+            name=name,
+            render=False,
+            **(mesh_options or {}),
+        )
+
+        widget, take_plane = widgets.plane(
+            self._plotter, actors, slab.name, lambda normal, origin: slab.place(normal=normal, origin=origin),
+            normal=normal, origin=slab.origin, event=interaction_event, **widget_options,
+        )  # fmt: skip
+
+        def remove() -> None:
+            take_plane()
+            slab.remove()
+
+        self._removals[slab.name] = remove
+        return widget, slab
+
+    def add_clip_box_widget(
+        self,
+        actor: FibletActor | Sequence[FibletActor] | None = None,
+        *,
+        bounds: Any = None,
+        invert: bool = False,
+        name: str | None = None,
+        interaction_event: Any = "always",
+        **widget_options: Any,
+    ) -> Any:
+        """Add a box that cuts where it is dragged, turned or not.
+
+        Parameters
+        ----------
+        actor : FibletActor or sequence of such, optional
+            What is cut; all fiblet actors by default.
+        bounds : (6,) array, optional
+            Of the box, mm; those of the actors by default.
+        invert : bool, default: False
+            Keep what is outside.
+        name : str, optional
+            Of the cut.
+        interaction_event : str, default: "always"
+            ``"end"`` cuts only when the mouse is let go.
+        **widget_options
+            For :meth:`pyvista.Plotter.add_box_widget`.
+
+        Returns
+        -------
+        vtkBoxWidget
+        """
+        actors, name = self._cut_actors(actor), self._new_name(name, "box")
+        widget, self._removals[name] = widgets.box(
+            self._plotter, actors, name, bounds=bounds, inside=not invert, event=interaction_event, **widget_options
+        )
+        return widget
+
+    def add_clip_mesh_widget(
+        self,
+        mesh: pv.PolyData,
+        actor: FibletActor | Sequence[FibletActor] | None = None,
+        *,
+        invert: bool = False,
+        name: str | None = None,
+        color: Any = "white",
+        opacity: float = 0.2,
+        mesh_options: dict[str, Any] | None = None,
+        **widget_options: Any,
+    ) -> tuple[Any, pv.Actor]:
+        """Add a closed mesh that cuts wherever it is dragged and turned.
+
+        Parameters
+        ----------
+        mesh : pyvista.PolyData
+            Closed; concave ones cut as exactly as convex ones.
+        actor : FibletActor or sequence of such, optional
+            What is cut; all fiblet actors by default.
+        invert : bool, default: False
+            Keep what is outside.
+        name : str, optional
+            Of the cut.
+        color : color-like, default: "white"
+            Of the mesh.
+        opacity : float, default: 0.2
+            Of the mesh.
+        mesh_options : dict, optional
+            For :meth:`pyvista.Plotter.add_mesh`.
+        **widget_options
+            For :meth:`pyvista.Plotter.add_affine_transform_widget`.
+
+        Returns
+        -------
+        widget : pyvista.plotting.affine_widget.AffineWidget3D
+        actor : pyvista.Actor
+            Of the mesh; its ``user_matrix`` says where it is.
+
+        Raises
+        ------
+        ValueError
+            If the mesh is open, empty or inside-out.
+        """
+        region = as_region(mesh)
+        actors, name = self._cut_actors(actor), self._new_name(name, "mesh")
+        look = dict(color=color, opacity=opacity, **(mesh_options or {}))
+        widget, shown, self._removals[name] = widgets.surface(
+            self._plotter, actors, name, mesh, region, inside=not invert, look=look, **widget_options
+        )
+        return widget, shown
+
+    def clear_widgets(self) -> None:
+        """Take all slabs and cutting widgets away, and what they cut."""
+        for remove in list(self._removals.values()):
+            remove()
+        self._removals.clear()
+        self._plotter.render()
+
+    def _cut_actors(self, actor: Any) -> list[FibletActor]:
+        actors = list(self) if actor is None else list(actor) if isinstance(actor, Sequence) else [actor]
+        if not actors:
+            raise ValueError("there is nothing to cut: this plotter has no fiblets; add_fiblets() first")
+        return actors
+
+    def _new_name(self, name: str | None, stem: str) -> str:
+        """Return a name for a cut; a widget of the same name goes."""
+        if name is None:
+            return unique_name(self._removals, f"{stem} widget")
+        if name in self._removals:
+            self._removals.pop(name)()
+        return name
+
+    # Pipelines and pages ------------------------------------------------------------------------
 
     def pipelines(self) -> PipelineTable:
         """Return every pipeline: whether the plotter's OpenGL has it, or why not.

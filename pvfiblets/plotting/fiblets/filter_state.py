@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pvfiblets.query.selection.predicates import Listed, Predicate, passes
+from pvfiblets.query.selection.predicates import Listed, Predicate, passes, select
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
@@ -64,11 +64,10 @@ class Condition:
 
 @dataclass
 class Choices:
-    """All that a user chose; see :class:`~pvfiblets.plotting.fiblets.filtering.Filtering`."""
+    """All that a user chose; see :class:`~pvfiblets.plotting.fiblets.filtering.FilteredActor`."""
 
     criteria: dict[str, Criterion] = field(default_factory=dict)
     conditions: dict[str, Condition] = field(default_factory=dict)
-    clips: dict[str, Region] = field(default_factory=dict)
     subset: np.ndarray | None = None
     groups: tuple[str, ...] | None = None
     ungrouped: bool = False  # streamlines in no group too, where only some groups are shown
@@ -78,12 +77,7 @@ class Choices:
 
     def copy(self) -> Choices:
         """The same choices, to be changed on their own."""
-        return replace(
-            self,
-            criteria=dict(self.criteria),
-            conditions=dict(self.conditions),
-            clips=dict(self.clips),
-        )
+        return replace(self, criteria=dict(self.criteria), conditions=dict(self.conditions))
 
     def mask(self, fiblets: FibletSet) -> np.ndarray | None:
         """Which streamlines are shown, (n_streamlines,) bool; None for all."""
@@ -119,9 +113,39 @@ class Choices:
         mask, points = self.mask(fiblets), self.points(fiblets)
         return None if mask is None and points is None else Filter(mask, points)
 
-    def region(self) -> Region | None:
-        """All cuts in one region; None for none."""
-        return reduce(operator.and_, self.clips.values()) if self.clips else None
+    def made_for(self, fiblets: FibletSet, before: FibletSet) -> Choices:
+        """Return the same choices for other fiblets than those before."""
+        from pvfiblets.query.measures.measures import measure
+
+        criteria = {}
+        for name, c in self.criteria.items():
+            try:
+                values = measure(fiblets, c.what)
+            except (KeyError, ValueError) as error:
+                raise type(error)(
+                    f"criterion {name!r} does not fit these fiblets: {error.args[0]}; remove_criterion({name!r}) first"
+                ) from error
+            criteria[name] = replace(c, values=values)
+        conditions = {n: replace(c, mask=select(fiblets, c.predicate)) for n, c in self.conditions.items()}
+        same = fiblets.n_streamlines == before.n_streamlines
+        return Choices(
+            criteria=criteria,
+            conditions=conditions,
+            groups=self.groups if self.groups and set(self.groups) <= set(fiblets.groups) else None,
+            ungrouped=self.ungrouped,
+            subset=self.subset if same else None,
+            ids=self.ids if same else None,
+        )
+
+    def explain(self, fiblets: FibletSet) -> dict[str, Any]:
+        """Return what is chosen, and of how many streamlines."""
+        mask, total = self.mask(fiblets), fiblets.n_streamlines
+        return {
+            "streamlines": {"total": total, "shown": total if mask is None else int(mask.sum())},
+            "criteria": {name: c.range for name, c in self.criteria.items()},
+            "conditions": list(self.conditions),
+            "groups_shown": self.groups,
+        }
 
 
 def in_groups(fiblets: FibletSet, names: Iterable[str]) -> np.ndarray:

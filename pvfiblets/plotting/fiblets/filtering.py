@@ -10,12 +10,12 @@ import operator
 import os
 from collections.abc import Iterable, Mapping
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
 from pvfiblets.images.sources import as_image, is_image
-from pvfiblets.plotting.clipping import Clipping, without
+from pvfiblets.plotting.clipping import ClippedActor, without
 from pvfiblets.plotting.fiblets.filter_state import (
     Choices,
     Condition,
@@ -33,18 +33,16 @@ from pvfiblets.query.selection.predicates import select
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
-    from pvfiblets.plotting.fiblets.actor import PlottedMapper
+    from pvfiblets.mappers.fiblets import FibletMapper
     from pvfiblets.query.selection.predicates import Predicate
-    from pvfiblets.regions import Region
 
 
-class Filtering(Clipping):
-    """The part of :class:`~pvfiblets.plotting.fiblets.actor.FibletActor` that chooses what is there to be drawn."""
+class FilteredActor(ClippedActor):
+    """Actor of fiblets that shows what is chosen of them; other choices begin as of the next render."""
 
-    _mapper: PlottedMapper
-
-    def _init_filtering(self) -> None:
-        self._choices = Choices()
+    _mapper: FibletMapper
+    _fiblets: FibletSet
+    _choices: Choices
 
     # Values -------------------------------------------------------------------------------------
 
@@ -104,9 +102,9 @@ class Filtering(Clipping):
         else:
             from pvfiblets.query.measures.measures import measure
 
-            values = measure(self._data, what)
+            values = measure(self._fiblets, what)
             if is_image(what) and not keep_nan and np.isnan(values.array()).all():
-                warn_if_apart(self._data, as_image(what), "nothing is shown", stacklevel=3)
+                warn_if_apart(self._fiblets, as_image(what), "nothing is shown", stacklevel=3)
         if name is None:
             by_name = isinstance(what, str) and not is_image(what)
             is_new_file = isinstance(what, (str, os.PathLike)) and values.name not in known
@@ -185,7 +183,7 @@ class Filtering(Clipping):
         >>> actor.shown.tolist()
         [True, True]
         """
-        if live.fiblets is not self._data:
+        if live.fiblets is not self._fiblets:
             raise ValueError("live is of other fiblets; make it of this actor's: regions.LiveRegions(actor.fiblets, …)")
         return follow_painted(self, live, name, how)
 
@@ -216,7 +214,7 @@ class Filtering(Clipping):
             (n_streamlines,) bool, shown or not. The GPU is asked where it can be, and gives the
             same answer.
         """
-        return select(self._data, as_predicate(condition, as_region), flags=self._mapper.region_flags)
+        return select(self._fiblets, as_predicate(condition, as_region), flags=self._mapper.region_flags)
 
     # Subsets ------------------------------------------------------------------------------------
 
@@ -237,7 +235,7 @@ class Filtering(Clipping):
         ValueError
             If the amount or ``every`` is out of range, or both are given. Neither shows all again.
         """
-        self._choose(subset=_subset(self._data.n_streamlines, amount, seed, every))
+        self._choose(subset=_subset(self._fiblets.n_streamlines, amount, seed, every))
 
     @property
     def groups_shown(self) -> tuple[str, ...] | None:
@@ -248,7 +246,7 @@ class Filtering(Clipping):
     def groups_shown(self, names: Iterable[str] | None) -> None:
         wanted = None if names is None else tuple([names] if isinstance(names, str) else names)
         if wanted is not None:
-            in_groups(self._data, wanted)
+            in_groups(self._fiblets, wanted)
         self._choose(groups=wanted, ungrouped=False)
 
     @property
@@ -257,15 +255,14 @@ class Filtering(Clipping):
 
         Streamlines in no bundle stay shown whichever bundles are hidden.
         """
-        return Bundles(self._data, self._bundles_changed)
+        return Bundles(self._fiblets, self._bundles_changed)
 
     def _bundles_changed(self) -> None:
-        hidden = hidden_groups(self._data.per_group) & set(self._data.groups)
-        shown = tuple(name for name in self._data.groups if name not in hidden) if hidden else None
+        hidden = hidden_groups(self._fiblets.per_group) & set(self._fiblets.groups)
+        shown = tuple(name for name in self._fiblets.groups if name not in hidden) if hidden else None
         self._choose(groups=shown, ungrouped=hidden != set())
-        actor = cast("Any", self)
-        if isinstance(actor.scalars, str) and actor.scalars == "group":
-            actor.scalars = "group" if self._data.groups else None
+        if isinstance(self.scalars, str) and self.scalars == "group":
+            self.scalars = "group" if self._fiblets.groups else None
 
     def show_only(self, ids: Any) -> None:
         """Show the streamlines of these `ids` only: numbers, a mask or a slice; None for all."""
@@ -273,38 +270,28 @@ class Filtering(Clipping):
         if ids is not None:
             from pvfiblets.codec.decompress import select_streamlines
 
-            mask = np.zeros(self._data.n_streamlines, bool)
-            mask[select_streamlines(self._data.n_streamlines, ids)] = True
+            mask = np.zeros(self._fiblets.n_streamlines, bool)
+            mask[select_streamlines(self._fiblets.n_streamlines, ids)] = True
         self._choose(ids=mask)
 
     @property
     def shown(self) -> np.ndarray:
         """Which streamlines are shown as far as they are chosen as a whole, (n_streamlines,) bool."""
-        mask = self._choices.mask(self._data)
-        return np.ones(self._data.n_streamlines, bool) if mask is None else mask.copy()
+        mask = self._choices.mask(self._fiblets)
+        return np.ones(self._fiblets.n_streamlines, bool) if mask is None else mask.copy()
 
     def show_all(self) -> None:
         """Take all criteria, conditions, subsets and cuts back."""
         self._choices = Choices()
-        self._apply(filtering=True, cuts=True)
+        self._choose()
+        self._cut({})
 
     # Inside -------------------------------------------------------------------------------------
-
-    @property
-    def _cuts(self) -> Mapping[str, Region]:
-        return self._choices.clips
-
-    def _cut(self, clips: dict[str, Region]) -> None:
-        self._choose(clips=clips)
-
-    @property
-    def _data(self) -> FibletSet:
-        return cast("FibletSet", self.fiblets)  # type: ignore[attr-defined]  # of the actor
 
     def _add_condition(self, predicate: Predicate, name: str | None, stem: str) -> str:
         known = self._choices.conditions
         name = unique_name(known, stem) if name is None else name
-        mask = select(self._data, predicate, flags=self._mapper.region_flags)
+        mask = select(self._fiblets, predicate, flags=self._mapper.region_flags)
         self._choose(conditions={**known, name: Condition(name, predicate, mask)})
         return name
 
@@ -314,16 +301,10 @@ class Filtering(Clipping):
         for key, value in changes.items():
             setattr(self._choices, key, value)
         try:
-            self._apply(filtering=set(changes) != {"clips"}, cuts="clips" in changes)
+            self._mapper.filtering = self._choices.filter(self._fiblets)
         except Exception:
             self._choices = before
             raise
-
-    def _apply(self, *, filtering: bool, cuts: bool) -> None:
-        if cuts:
-            self._mapper.region = self._choices.region()
-        if filtering:
-            self._mapper.filtering = self._choices.filter(self._data)
 
     def _values_of_criterion(self, scalars: Any) -> Any:
         """Return what a criterion was made of, where its name colours; all else as it is."""
@@ -331,56 +312,10 @@ class Filtering(Clipping):
             return self._choices.criteria[scalars].what
         return scalars
 
-    def _choose_as(self, other: Filtering) -> None:
-        """Take over the choices of another actor of the same fiblets."""
+    def _be_like(self, other: Self, deep: bool) -> None:
+        super()._be_like(other, deep)
         self._choices = other._choices.copy()
-        self._apply(filtering=True, cuts=True)
-
-    def _choices_for(self, fiblets: FibletSet) -> Choices:
-        """Make the choices anew for other fiblets; nothing changes yet."""
-        from pvfiblets.query.measures.measures import measure
-
-        old = self._choices
-        criteria = {}
-        for name, c in old.criteria.items():
-            try:
-                values = measure(fiblets, c.what)
-            except (KeyError, ValueError) as error:
-                raise type(error)(
-                    f"criterion {name!r} does not fit these fiblets: {error.args[0]}; remove_criterion({name!r}) first"
-                ) from error
-            criteria[name] = Criterion(name, c.what, values, c.range, c.keep_nan)
-        conditions = {
-            name: Condition(name, c.predicate, select(fiblets, c.predicate)) for name, c in old.conditions.items()
-        }
-        same = fiblets.n_streamlines == self._data.n_streamlines
-        groups = old.groups if old.groups and set(old.groups) <= set(fiblets.groups) else None
-        return Choices(
-            criteria=criteria,
-            conditions=conditions,
-            clips=old.clips,
-            groups=groups,
-            ungrouped=old.ungrouped,
-            subset=old.subset if same else None,
-            ids=old.ids if same else None,
-        )
-
-    def _rechoose(self, choices: Choices) -> None:
-        self._choices = choices
-        self._apply(filtering=True, cuts=False)
-
-    def _explain_choices(self) -> dict[str, Any]:
-        """What is chosen, for ``explain()``."""
-        choices = self._choices
-        mask = choices.mask(self._data)
-        total = self._data.n_streamlines
-        return {
-            "streamlines": {"total": total, "shown": total if mask is None else int(mask.sum())},
-            "criteria": dict(self.criteria),
-            "conditions": list(choices.conditions),
-            "clips": list(choices.clips),
-            "groups_shown": choices.groups,
-        }
+        self._choose()
 
 
 def _same(a: Any, b: Any) -> bool:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 import pyvista as pv
@@ -11,13 +12,16 @@ import pyvista as pv
 from pvfiblets.mappers.highlight import Highlight
 from pvfiblets.mappers.picking import Layer
 from pvfiblets.plotting.coloured import added_up
-from pvfiblets.plotting.fiblets.pick_result import Picked, checked_box, everything, visible
-from pvfiblets.plotting.fiblets.profiles import SelectionMeasures
+from pvfiblets.plotting.fiblets.filtering import FilteredActor
+from pvfiblets.plotting.fiblets.pick_result import Picked
+from pvfiblets.plotting.fiblets.profiles import Profile, values_of
 
 if TYPE_CHECKING:
-    from pvfiblets.codec.fibletset import FibletSet
+    from os import PathLike
+
     from pvfiblets.plotting.fiblets.scalars import Scalars
     from pvfiblets.plotting.fiblets.selection_overlay import SelectionOverlay
+    from pvfiblets.query.measures.table import Table
 
 MODES = ("replace", "add", "remove", "toggle")
 _AS_BEFORE: Any = object()
@@ -51,19 +55,12 @@ class SelectionStyle:
     silhouette: tuple[float, float, float] | None = None
 
 
-class Selecting(SelectionMeasures):
-    """The part of :class:`~pvfiblets.plotting.fiblets.actor.FibletActor` that keeps a selection."""
+class SelectableActor(FilteredActor):
+    """Actor of fiblets some of which are selected."""
 
-    _mapper: Any
-    _scalars: Scalars | None
-    fiblets: FibletSet
-
-    def _init_selection(self) -> None:
-        self._selected: np.ndarray | None = None
-        self._selection_style = SelectionStyle()
-        self._standout: SelectionOverlay | None = None
-
-    # Picking ------------------------------------------------------------------------------------
+    _selected: np.ndarray | None = None
+    _selection_style = SelectionStyle()
+    _standout: SelectionOverlay | None = None
 
     @property
     def picking_layers(self) -> list[Layer]:
@@ -75,67 +72,6 @@ class Selecting(SelectionMeasures):
     def active_scalars(self) -> Scalars | None:
         """What colours the actor, as found; ``None`` for one colour."""
         return self._scalars
-
-    def pick_box(self, box: Any, *, through: bool = False, renderer: Any = None) -> Picked | None:
-        """Return the streamlines in a rectangle of the window.
-
-        Parameters
-        ----------
-        box : (float, float, float, float)
-            Two opposite corners ``(x0, y0, x1, y1)``: pixels, counted from the lower left corner of
-            the window; those on the edges belong to it.
-        through : bool, default: False
-            Hidden ones too. Else only those that are seen: the ids are those of the picture.
-        renderer : pyvista.Renderer, optional
-            The subplot to look into; the one drawn last by default.
-
-        Returns
-        -------
-        Picked or None
-            ``None`` if there are none, or nothing has been drawn yet.
-
-        Raises
-        ------
-        ValueError
-            If ``box`` is not four finite numbers.
-        """
-        return self._pick(checked_box(box), through, 0.0, renderer)
-
-    def pick_polygon(
-        self, points: Any, *, through: bool = False, tolerance: float = 0.0, renderer: Any = None
-    ) -> Picked | None:
-        """Return the streamlines in a polygon in the window.
-
-        Parameters
-        ----------
-        points : array_like
-            ``(k, 2)`` corners, pixels counted from the lower left corner of the window. It closes
-            itself; inside is by the even-odd rule. One corner is a point, two are a line.
-        through : bool, default: False
-            Hidden ones too.
-        tolerance : float, default: 0.0
-            Pixels that a streamline may be away.
-        renderer : pyvista.Renderer, optional
-            The subplot to look into; the one drawn last by default.
-
-        Returns
-        -------
-        Picked or None
-            ``None`` if there are none, or nothing has been drawn yet.
-
-        Raises
-        ------
-        ValueError
-            If the corners are not finite pairs of numbers.
-        """
-        return self._pick(points, through, tolerance, renderer)
-
-    def _pick(self, points: Any, through: bool, tolerance: float, renderer: Any) -> Picked | None:
-        from pvfiblets.query.selection.screen import checked_polygon
-
-        find = everything if through else visible
-        corners = checked_polygon(points)
-        return find(self, corners, tolerance=tolerance, renderer=renderer)  # type: ignore[arg-type]  # of the actor
 
     # The selection ------------------------------------------------------------------------------
 
@@ -178,9 +114,9 @@ class Selecting(SelectionMeasures):
 
         if mode not in MODES:
             raise ValueError(f"mode is {mode!r}; choose one of {', '.join(MODES)}")
-        chosen = np.zeros(self.fiblets.n_streamlines, np.bool_)
+        chosen = np.zeros(self._fiblets.n_streamlines, np.bool_)
         given = ids.ids if isinstance(ids, Picked) else ids
-        chosen[select_streamlines(self.fiblets.n_streamlines, given)] = True
+        chosen[select_streamlines(self._fiblets.n_streamlines, given)] = True
         if self._selected is not None and mode != "replace":
             before = self._selected
             chosen = {"add": before | chosen, "remove": before & ~chosen, "toggle": before ^ chosen}[mode]
@@ -199,7 +135,7 @@ class Selecting(SelectionMeasures):
 
     def invert_selection(self) -> None:
         """Select what is not selected, and the other way round."""
-        nothing = np.zeros(self.fiblets.n_streamlines, np.bool_)
+        nothing = np.zeros(self._fiblets.n_streamlines, np.bool_)
         self._select(~(nothing if self._selected is None else self._selected))
 
     def grow_selection(self, distance: float) -> None:
@@ -217,7 +153,7 @@ class Selecting(SelectionMeasures):
         """
         from pvfiblets.query.selection.endpoints import similar_ends
 
-        self.select(similar_ends(self.fiblets, self.selection, distance), mode="add")
+        self.select(similar_ends(self._fiblets, self.selection, distance), mode="add")
 
     def _select(self, selected: np.ndarray | None) -> None:
         self._selected = selected if selected is not None and selected.any() else None
@@ -315,13 +251,130 @@ class Selecting(SelectionMeasures):
         width = self._mapper.line_width if style.width is None else style.width
         radius = style.radius if style.as_tubes else None
         return SelectionOverlay(
-            self,  # type: ignore[arg-type]  # as above
+            self,
             self.selection,
             color=style.color,
             width=width,
             radius=radius,
             outline=style.silhouette,
         )
+
+    # What it holds ------------------------------------------------------------------------------
+
+    def selection_table(self) -> Table:
+        """Return a row for each selected streamline; see :func:`pvfiblets.table`."""
+        return self._fiblets.table(self.selection)
+
+    def selection_statistics(self, scalars: Any = None) -> dict[str, Any]:
+        """Count and measure the selected streamlines.
+
+        Parameters
+        ----------
+        scalars : str or array, optional
+            Of what to give mean and standard deviation, per streamline or per point: a name, or an
+            array with one number per streamline or per point. The numbers that colour the actor by
+            default.
+
+        Returns
+        -------
+        dict
+            ``count``, ``points``; ``length_mean``, ``length_min``, ``length_max`` and
+            ``length_total`` in mm; and, where there are numbers, their name as ``scalars``, and
+            ``mean`` and ``std`` (population) over the streamlines or points that have one. NaN
+            where there is nothing.
+
+        Raises
+        ------
+        KeyError
+            If there is no array of that name.
+        ValueError
+            If an array has the wrong length.
+        """
+        ids = self.selection
+        part = self._fiblets.extract(ids)
+        lengths = part.lengths()
+        some = lengths if len(lengths) else np.full(1, np.nan)
+        found: dict[str, Any] = {
+            "count": len(ids),
+            "points": part.n_points,
+            "length_mean": float(some.mean()),
+            "length_min": float(some.min()),
+            "length_max": float(some.max()),
+            "length_total": float(lengths.sum()),
+        }
+        if scalars is None and self._scalars is not None and self._scalars.mapped:
+            scalars = self._scalars.name if self._scalars.values is None else self._scalars.values
+            name = self._scalars.name
+        else:
+            name = scalars if isinstance(scalars, str) else "Data"
+        if scalars is not None:
+            values = values_of(self._fiblets, scalars, part, ids)
+            values = values[np.isfinite(values)]
+            found |= {
+                "scalars": name,
+                "mean": float(values.mean()) if len(values) else float("nan"),
+                "std": float(values.std()) if len(values) else float("nan"),
+            }
+        return found
+
+    def selection_profile(self, scalars: Any = None, n: int = 100) -> Profile:
+        """Return the mean of a value along the selected streamlines, from end to end.
+
+        Parameters
+        ----------
+        scalars : str or array, optional
+            A value per point: a name or an array. What colours the actor by default.
+        n : int, default: 100
+            Places along each streamline, evenly spaced.
+
+        Returns
+        -------
+        Profile
+            Streamlines are turned so that they run the same way.
+
+        Raises
+        ------
+        KeyError
+            If there is no array of that name.
+        ValueError
+            If the values are not per point, or ``n`` is below 2.
+        """
+        from pvfiblets.query.measures.profile import mean_profile
+
+        if scalars is None:
+            if self._scalars is None or self._scalars.kind != "point_scalar":
+                raise ValueError("scalars is None, and what colours the actor is no value per point; name one")
+            scalars = self._scalars.name
+        mean, std = mean_profile(self._fiblets, self.selection, scalars, n)
+        name = scalars if isinstance(scalars, str) else str(getattr(scalars, "name", "Data"))
+        return Profile(mean, std, np.linspace(0.0, 1.0, n), name, len(self.selection))
+
+    def save_selection(self, path: str | PathLike[str]) -> list[str]:
+        """Write the selected streamlines to a file; its suffix says in which format.
+
+        Parameters
+        ----------
+        path : str or Path
+            ``.fiblets`` takes them as they are; ``.trk``, ``.tck``, ``.trx``, ``.vtk`` and the
+            others take them decompressed. None at all is a file too.
+
+        Returns
+        -------
+        list of str
+            What the format cannot hold and was left out.
+
+        Raises
+        ------
+        UnknownFormatError
+            If no format that can be written has such a suffix.
+        """
+        if Path(path).suffix.lower() != ".fiblets":
+            from pvfiblets.formats import registry
+
+            registry.module_for(path, "write")
+        return self._fiblets.extract(self.selection).save(path)
+
+    # Life ---------------------------------------------------------------------------------------
 
     def entered(self, renderer: Any) -> None:
         """Be told that a renderer draws the actor from now on."""
@@ -330,19 +383,19 @@ class Selecting(SelectionMeasures):
 
     def raise_pending(self) -> None:
         """Raise what drawing stored, once (`FibletMapper.raise_pending`)."""
-        self._mapper.raise_pending()
+        super().raise_pending()
         if self._standout is not None:
             self._standout.mapper.raise_pending()
 
     def release(self, window: Any = None) -> None:
         """Give back the GPU memory that the actor has in a window, or in all."""
-        self._mapper.release(window)
+        super().release(window)
         if self._standout is not None:
             self._standout.leave_with_owner()
             self._standout.mapper.release(window)
 
-    def _select_like(self, other: Selecting) -> None:
-        """Take over the selection of another actor of the same fiblets."""
+    def _be_like(self, other: Self, deep: bool) -> None:
+        super()._be_like(other, deep)
         self._selection_style = other._selection_style
         self._select(None if other._selected is None else other._selected.copy())
 
@@ -358,7 +411,7 @@ class Selecting(SelectionMeasures):
 
     def _reselect(self) -> None:
         """Follow other fiblets: ids of as many streamlines stay, else nothing is selected."""
-        if self._selected is not None and len(self._selected) != self.fiblets.n_streamlines:
+        if self._selected is not None and len(self._selected) != self._fiblets.n_streamlines:
             self._selected = None
         self._show_selection()
 

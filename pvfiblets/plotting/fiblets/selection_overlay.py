@@ -28,7 +28,7 @@ from pvfiblets.streamlines import Streamlines
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.mappers.shader_effects import Draw
-    from pvfiblets.plotting.fiblets.actor import FibletActor
+    from pvfiblets.plotting.fiblets.selection import SelectableActor
     from pvfiblets.tubes.spline_tubes import SplineTubes
 
 
@@ -95,7 +95,7 @@ class SelectionOverlay:
 
     def __init__(
         self,
-        owner: FibletActor,
+        owner: SelectableActor,
         ids: np.ndarray,
         *,
         color: tuple[float, ...] | None,

@@ -46,7 +46,7 @@ def _tube_radius(name: str, radius: Any) -> float | None:
 
 
 class FibletSettings(Settings):
-    """The part of :class:`~pvfiblets.plotting.fiblets.actor.FibletActor` that is set, in the order of the page."""
+    """Settings of :class:`~pvfiblets.plotting.fiblets.actor.FibletActor`, in the order of the page."""
 
     look: Setting[str | None] = Setting(
         None,

@@ -12,11 +12,12 @@ import pyvista as pv
 from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.halos import HaloMapper, HaloOptions
-from pvfiblets.plotting.coloured import Coloured, PlottedLines, added_up
+from pvfiblets.plotting.coloured import added_up
 from pvfiblets.plotting.halos.scalars import Held, coloured, filtered, find_scalars
-from pvfiblets.plotting.halos.settings import LOOKS, HaloLineSettings, HaloPointSettings, HaloSettings
+from pvfiblets.plotting.halos.settings import LOOKS, HaloLineSettings, HaloPointSettings
 from pvfiblets.plotting.halos.style import LookSettings, Spacing
-from pvfiblets.plotting.line_opacities import LineOpacities
+from pvfiblets.plotting.line_opacities import LineActor
+from pvfiblets.plotting.mapper_words import PlottedLines
 from pvfiblets.plotting.setting_places import OPTIONS
 from pvfiblets.plotting.settings import Given
 from pvfiblets.streamlines import Streamlines
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 BACKGROUND = "background"
 
 
-class PlottedHalos(PlottedLines, HaloMapper):
+class PlottedHalos(PlottedLines[HaloOptions], HaloMapper):
     """A mapper of lines or points with halos, with scalar bars.
 
     Parameters
@@ -39,7 +40,7 @@ class PlottedHalos(PlottedLines, HaloMapper):
     """
 
 
-class HaloActor(HaloSettings, LineOpacities, Coloured, pv.Actor):
+class HaloActor(LineActor):
     """What actors of lines and of points with halos have in common.
 
     Parameters
@@ -54,6 +55,7 @@ class HaloActor(HaloSettings, LineOpacities, Coloured, pv.Actor):
         Gives what is not given.
     """
 
+    _mapper: PlottedHalos
     _KIND: ClassVar[type]
 
     _WIDTH = "widths of halos are in mm; see actor.line_width of lines, actor.point_size of points"
@@ -66,20 +68,17 @@ class HaloActor(HaloSettings, LineOpacities, Coloured, pv.Actor):
         name: str | None = None,
         theme: Any = None,
     ) -> None:
-        theme = pv.global_theme if theme is None else theme
         given = Given(type(self), settings)
         self._held = replace(held, drawn=self._checked(held.drawn))
         self._looks = LookSettings(filter_by=held.filter_by, **given.at(LOOKS))
         self._spacing = Spacing(held.drawn)
         self._light_on_dark = given["light_on_dark"]
         self._halo_choice = _halo_choice(given["halo_color"])
-        self._init_colours(held.scalars, given, theme)
-        self._own_color = self._settings.color is not None
-        self._settings.color = pv.Color(self._settings.color, default_color=self._ink)
         look = self._looks.look(held.drawn, self._spacing)
         mapper = PlottedHalos(held.drawn, look, options=HaloOptions(**given.at(OPTIONS)))
-        super().__init__(prop=pv.Property(theme=theme), name=name)
-        self._finish(mapper, given)
+        super().__init__(mapper, held.scalars, given, name=name, theme=theme)
+        self._own_color = self._settings.color is not None
+        self._settings.color = pv.Color(self._settings.color, default_color=self._ink)
         self._colour_halos()
         self._recolour()
         self.opacity = given["opacity"]
@@ -87,7 +86,9 @@ class HaloActor(HaloSettings, LineOpacities, Coloured, pv.Actor):
 
     def __repr__(self) -> str:
         colours = "one colour" if self._scalars is None else self._scalars.name
-        return f"<{type(self).__name__} {self.name!r}: {self._counted}, coloured by {colours}>"
+        drawn = self._held.drawn
+        lines = f"{drawn.n_lines} lines of " if isinstance(drawn, HaloLines) else ""
+        return f"<{type(self).__name__} {self.name!r}: {lines}{drawn.n_points} points, coloured by {colours}>"
 
     # Colours ------------------------------------------------------------------------------------
 
@@ -201,17 +202,12 @@ class HaloActor(HaloSettings, LineOpacities, Coloured, pv.Actor):
         total = added_up(report)
         del total["fiblets"]
         latest = report["windows"][-1] if report["windows"] else {}
-        return {**total, **self._totals, "culling": latest.get("culling")}
+        drawn = self._held.drawn
+        if isinstance(drawn, HaloLines):
+            total |= {"lines_total": drawn.n_lines, "segments_total": drawn.n_segments}
+        return {**total, "points_total": drawn.n_points, "culling": latest.get("culling")}
 
     # Inside -------------------------------------------------------------------------------------
-
-    @property
-    def _counted(self) -> str:
-        raise NotImplementedError
-
-    @property
-    def _totals(self) -> dict[str, int]:
-        raise NotImplementedError
 
     @property
     def _ink(self) -> str:
@@ -221,12 +217,8 @@ class HaloActor(HaloSettings, LineOpacities, Coloured, pv.Actor):
     def _paper(self) -> str:
         return "black" if self._light_on_dark else "white"
 
-    @property
-    def _lines_drawn(self) -> Any:
-        return self._held.drawn
-
-    def _line_values(self) -> Mapping[str, Any]:
-        return self._held.line_values
+    def _opaque_lines(self) -> tuple[Any, Mapping[str, Any]]:
+        return self._held.drawn, self._held.line_values
 
     @property
     def _drawn(self) -> Held:
@@ -287,7 +279,7 @@ class HaloActor(HaloSettings, LineOpacities, Coloured, pv.Actor):
         self._show(found)
 
     def _colour_halos(self) -> None:
-        color = self.halo_color
+        color = self._read_halo_color()
         self._mapper.halo_color = color.float_rgb if isinstance(color, pv.Color) else None
 
 
@@ -332,18 +324,7 @@ class HaloLineActor(HaloLineSettings, HaloActor):
             Line, and place along it: the index of the point before plus the fraction of the segment.
             ``None`` where no line of this actor is within two pixels; halos are none.
         """
-        return self._mapper.pick_at(x, y)
-
-    @property
-    def _counted(self) -> str:
-        return f"{self.lines.n_lines} lines of {self.lines.n_points} points"
-
-    @property
-    def _totals(self) -> dict[str, int]:
-        lines = self.lines
-        return {
-            "lines_total": lines.n_lines, "segments_total": lines.n_segments, "points_total": lines.n_points,
-        }  # fmt: skip
+        return cast("tuple[int, float] | None", self._mapper.pick_at(x, y))
 
 
 class HaloPointActor(HaloPointSettings, HaloActor):
@@ -385,16 +366,7 @@ class HaloPointActor(HaloPointSettings, HaloActor):
         int or None
             ``None`` where no point of this actor is within two pixels; halos are none.
         """
-        return self._mapper.pick_at(x, y)
-
-    @property
-    def _counted(self) -> str:
-        return f"{self.points.n_points} points"
-
-    @property
-    def _totals(self) -> dict[str, int]:
-        return {"points_total": self.points.n_points}
-
+        return cast("int | None", self._mapper.pick_at(x, y))
 
 
 def _halo_choice(color: Any) -> Any:

@@ -12,10 +12,9 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 import pyvista as pv
 
-from pvfiblets.plotting.actor_registry import ActorRegistry
 from pvfiblets.plotting.call_signature import plotter_method
 from pvfiblets.plotting.halos.settings import HaloLineSettings, HaloPointSettings
-from pvfiblets.plotting.screenshot import Printing
+from pvfiblets.plotting.screenshot import PrintableComponent
 from pvfiblets.plotting.setting_places import OPTIONS
 from pvfiblets.plotting.settings import Given
 
@@ -35,7 +34,7 @@ if TYPE_CHECKING:
 
 
 @pv.register_plotter_component("halo_lines")
-class HaloLinesComponent(Printing, ActorRegistry["HaloLineActor"]):
+class HaloLinesComponent(PrintableComponent["HaloLineActor"]):
     """The lines with halos of one plotter.
 
     Parameters
@@ -148,7 +147,7 @@ AddHaloLines = plotter_method(HaloLinesComponent)
 
 
 @pv.register_plotter_component("halo_points")
-class HaloPointsComponent(Printing, ActorRegistry["HaloPointActor"]):
+class HaloPointsComponent(PrintableComponent["HaloPointActor"]):
     """The points with halos of one plotter.
 
     Parameters

@@ -47,7 +47,7 @@ LOOKS = _Looks()
 
 
 class HaloSettings(Settings):
-    """What is set of lines and points alike."""
+    """Settings of lines and points alike."""
 
     max_displacement: Setting[float] = Setting(
         None,
@@ -141,7 +141,7 @@ class HaloSettings(Settings):
 
 
 class HaloLineSettings(HaloSettings):
-    """The part of :class:`~pvfiblets.plotting.halos.actors.HaloLineActor` that is set."""
+    """Settings of :class:`~pvfiblets.plotting.halos.actors.HaloLineActor`."""
 
     line_width: Setting[float] = Setting(
         None,
@@ -180,7 +180,7 @@ class HaloLineSettings(HaloSettings):
 
 
 class HaloPointSettings(HaloSettings):
-    """The part of :class:`~pvfiblets.plotting.halos.actors.HaloPointActor` that is set."""
+    """Settings of :class:`~pvfiblets.plotting.halos.actors.HaloPointActor`."""
 
     point_size: Setting[float] = Setting(
         None,

@@ -11,11 +11,11 @@ import pyvista as pv
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.shading import Silhouette
 from pvfiblets.mappers.tubes import TubeMapper, TubeOptions
-from pvfiblets.plotting.coloured import Coloured, PlottedLines, added_up
-from pvfiblets.plotting.line_opacities import LineOpacities
+from pvfiblets.plotting.coloured import added_up
+from pvfiblets.plotting.line_opacities import LineActor
+from pvfiblets.plotting.mapper_words import PlottedLines
 from pvfiblets.plotting.setting_places import OPTIONS
 from pvfiblets.plotting.settings import Given
-from pvfiblets.plotting.shading import SurfaceShading
 from pvfiblets.plotting.tubes.scalars import find_tube_scalars, with_built_in, with_node_values
 from pvfiblets.plotting.tubes.settings import TubeSettings
 from pvfiblets.tubes.spline_tubes import SplineTubes
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 _OUTLINE = {"color": "white", "width": 2.0, "tubes": None}
 
 
-class PlottedSplines(PlottedLines, TubeMapper):
+class PlottedSplines(PlottedLines[TubeOptions], TubeMapper):
     """A mapper of spline tubes with scalar bars.
 
     Parameters
@@ -37,7 +37,7 @@ class PlottedSplines(PlottedLines, TubeMapper):
     """
 
 
-class TubeActor(TubeSettings, LineOpacities, Coloured, SurfaceShading, pv.Actor):
+class TubeActor(TubeSettings, LineActor):
     """Tubes of varying radius around Hermite splines, ray cast to their exact surface.
 
     Everything of :class:`pyvista.Actor` works (``visibility``, ``position``, ``user_matrix``,
@@ -62,6 +62,7 @@ class TubeActor(TubeSettings, LineOpacities, Coloured, SurfaceShading, pv.Actor)
     Source: Russig, Gumhold and Salm, "GPU-based raycasting of Hermite spline tubes" (2020).
     """
 
+    _mapper: PlottedSplines
     _DATA = "tubes"
     _WIDTH = "tubes have a radius in mm, given as radius; actor.min_width is in pixels"
 
@@ -74,15 +75,11 @@ class TubeActor(TubeSettings, LineOpacities, Coloured, SurfaceShading, pv.Actor)
         name: str | None = None,
         theme: Any = None,
     ) -> None:
-        theme = pv.global_theme if theme is None else theme
         given = Given(TubeSettings, settings)
         self._tubes, scalars = with_node_values(_checked(tubes), scalars)
         self._shown = with_built_in(self._tubes, scalars)  # what is computed for colours is not the user's
-        self._init_colours(scalars, given, theme)
-        self._init_shading()
         mapper = PlottedSplines(self._shown, options=TubeOptions(**given.at(OPTIONS)))
-        super().__init__(prop=pv.Property(theme=theme), name=name)
-        self._finish(mapper, given)
+        super().__init__(mapper, scalars, given, name=name, theme=theme)
         self._recolour()
         self.opacity = given["opacity"]
         self._take(given)
@@ -244,12 +241,8 @@ class TubeActor(TubeSettings, LineOpacities, Coloured, SurfaceShading, pv.Actor)
         if before.n_tubes != tubes.n_tubes and isinstance(outline, dict):
             self.silhouette = outline["tubes"] is None and outline  # numbers mean other tubes now
 
-    @property
-    def _lines_drawn(self) -> Any:
-        return self._tubes
-
-    def _line_values(self) -> Mapping[str, Any]:
-        return self._tubes.tube_values
+    def _opaque_lines(self) -> tuple[Any, Mapping[str, Any]]:
+        return self._tubes, self._tubes.tube_values
 
     def _find(self, tubes: SplineTubes, choice: Any) -> Scalars | None:
         return None if choice is None else find_tube_scalars(tubes, choice)

@@ -12,7 +12,7 @@ _OF_LINES = "{name} is for lines, and spline tubes are surfaces; "
 
 
 class TubeSettings(Settings):
-    """The part of :class:`~pvfiblets.plotting.tubes.actor.TubeActor` that is set, in the order of the page."""
+    """Settings of :class:`~pvfiblets.plotting.tubes.actor.TubeActor`, in the order of the page."""
 
     illuminated = NoSetting(_OF_LINES + "lighting, and prop.specular, shade them")
     tube_shading = NoSetting(_OF_LINES + "lighting shades them as the round bodies that they are")

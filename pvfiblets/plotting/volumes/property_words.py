@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from pvfiblets.plotting.volumes.casting import SURFACE
+from pvfiblets.plotting.volumes.settings import LIGHT, SURFACE
 
 if TYPE_CHECKING:
     from pvfiblets.plotting.volumes.actor import VolumeActor
@@ -35,7 +35,6 @@ class _Word:
     """Whether it goes back to what it was, as VTK would do something else by it."""
 
 
-_LIGHT = "composite"
 _PEAK_MODES = ("mip", "local-mip", "minimum", "average")
 _SHADE = "set actor.shade = True to have light shaded"
 _WORDS = {
@@ -97,7 +96,7 @@ def tell_given(actor: VolumeActor, given: Mapping[str, Any]) -> None:
         for name, word in _WORDS.items()
         if word.light and given.get(name) is not None and not _used(word, actor)
     }
-    if given.get("shade") is False and actor.mode == _LIGHT:
+    if given.get("shade") is False and actor.mode == LIGHT:
         return  # whoever says so knows
     if given.get("shade") and actor.mode in _PEAK_MODES:
         unused["shade"] = _PEAKS
@@ -109,11 +108,11 @@ def tell_given(actor: VolumeActor, given: Mapping[str, Any]) -> None:
 
 
 def _used(word: _Word, actor: VolumeActor) -> bool:
-    return actor.mode in word.used or (bool(word.light) and actor.mode == _LIGHT and actor.shade)
+    return actor.mode in word.used or (bool(word.light) and actor.mode == LIGHT and actor.shade)
 
 
 def _instead(word: _Word, actor: VolumeActor) -> str:
-    return word.light if word.light and actor.mode == _LIGHT else word.instead
+    return word.light if word.light and actor.mode == LIGHT else word.instead
 
 
 def _read(prop: Any) -> dict[str, Any]:

@@ -18,6 +18,10 @@ _CURVES = ("linear", "linear_r", "geom", "geom_r", "sigmoid", "sigmoid_3", "sigm
            "sigmoid_20", "foreground")  # fmt: skip
 
 
+SURFACE, LIGHT = "isosurface", "composite"
+"""Modes."""
+
+
 class _Casting(Place):
     """A field of the actor's `RaycastOptions`, which check it."""
 
@@ -77,7 +81,7 @@ def _unit_limits(volume: Any) -> tuple[float, float]:
 
 
 class VolumeSettings(Settings):
-    """The part of :class:`~pvfiblets.plotting.volumes.actor.VolumeActor` that is set, in the order of the page."""
+    """Settings of :class:`~pvfiblets.plotting.volumes.actor.VolumeActor`, in the order of the page."""
 
     nan_color = NoSetting(_MISSING + "missing voxels count as the least value")
     below_color = NoSetting(_MISSING + "opacity=[0, ...] or thresholds hide values below others")

@@ -1,4 +1,4 @@
-"""`Attached`: the actor that a mapper draws for, and the shader pieces that this actor needs.
+"""`ActorLink`: the actor that a mapper draws for, and the shader pieces that this actor needs.
 
 VTK keeps the pieces with the actor, not with the mapper, and tells a mapper nothing of the actors that have it. So a
 mapper that an actor was given by ``SetMapper`` alone looks for it when VTK first begins to draw
@@ -9,13 +9,11 @@ the property and the shader property.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Mapping
 from typing import Any, cast
 
-from vtkmodules.vtkRenderingCore import vtkActor
+from vtkmodules.vtkRenderingCore import vtkActor, vtkMapper
 
 from pvfiblets.mappers import resolve
-from pvfiblets.mappers.depth_peeling import with_layers
 from pvfiblets.mappers.scene import actors_in, items_of
 from pvfiblets.mappers.vtk_overrides import override
 from pvfiblets.mappers.windows import weak
@@ -29,47 +27,44 @@ _UNUSED = {
 """By PyVista's name: how VTK calls it, and what to say of it."""
 
 
-class Attached:
-    """The part of `pvfiblets.mappers.engine_mapper.EngineMapper` that knows its actor."""
+class ActorLink:
+    """The actor of a mapper, and the shader pieces in it; keeps neither alive."""
 
-    _colouring: Any
-    _effects: Mapping[str, Any]
+    found = False
+    """Whether the actor was given the mapper by ``SetMapper``, not by `attach`."""
+    installed: tuple[resolve.Replacement, ...] = ()
 
-    def _init_actor(self) -> None:
+    def __init__(self, mapper: vtkMapper) -> None:
+        self._mapper = weak(mapper)
+        self._features: frozenset[str] = frozenset()
+        self._translucent = False
+        self._forget()
+
+    def _forget(self) -> None:
         self._actor = weak(None)
         self._property = weak(None)
         self._shader_property = weak(None)
         self._tags = (0, 0)
-        self._installed: tuple[resolve.Replacement, ...] = ()
-        self._found = False
+        self.installed = ()
+        self.found = False
         self._alone = ("", 0)
         self._unused: frozenset[str] = frozenset()
         self._shaders_seen = 0
 
     @property
     def actor(self) -> vtkActor | None:
-        """The actor that has this mapper, if it still exists; None until it is attached or first drawn."""
+        """The actor, if it still exists; None until the mapper is attached or first drawn."""
         return cast("vtkActor | None", self._actor.Get())
 
     def attach(self, actor: vtkActor) -> None:
-        """Make this the mapper of an actor and add the shader pieces to it.
-
-        ``actor.SetMapper(mapper)`` does the same, once VTK draws the actor.
-
-        Parameters
-        ----------
-        actor : vtkActor
-            Shader replacements of others stay. Its representation stays at surface whatever a key or a
-            menu sets for all actors: lines have no wireframe and no edges, and all that shows is a front.
-        """
+        """Make the mapper that of an actor, and add the shader pieces to it."""
         self.detach()
         override()  # of modules of VTK's that have been loaded since
-        self._found = False
         self._actor = weak(actor)
-        actor.SetMapper(cast("Any", self))
-        self._tags = actor.AddObserver("ModifiedEvent", _follow_actor(self)), 0
+        actor.SetMapper(cast("Any", self._mapper.Get()))
+        self._tags = actor.AddObserver("ModifiedEvent", self._actor_changed), 0
         self._watch_property(actor)
-        self._install()
+        self.install()
 
     def detach(self) -> None:
         """Take the shader pieces out of the actor; it then needs another mapper."""
@@ -77,34 +72,33 @@ class Attached:
         if actor is not None:
             actor.RemoveObserver(self._tags[0])
         if shaders is not None:
-            resolve.uninstall(shaders, self._installed)
+            resolve.uninstall(shaders, self.installed)
         if self._property.Get() is not None:
             self._property.Get().RemoveObserver(self._tags[1])
-        self._init_actor()
+        self._forget()
 
-    def _find_actor(self) -> None:
+    def find(self) -> None:
         """Look for the actor that VTK draws, where it is not known: it was given the mapper by ``SetMapper``."""
         if self.actor is not None:
             return
         from pvfiblets.mappers.actor_search import actor_of
 
-        found = actor_of(self)
+        found = actor_of(self._mapper.Get())
         if found is not None:
             self.attach(found)
-            self._found = True
+            self.found = True
 
-    def _actor_changed(self) -> None:
+    def _actor_changed(self, actor: vtkActor, _event: str) -> None:
         """Follow an actor that has another mapper, property or shader property by now."""
-        actor = self.actor
-        if actor is None:
+        if self._mapper.Get() is None:
             return
-        if actor.GetMapper() is not self:
+        if actor.GetMapper() is not self._mapper.Get():
             self.detach()
             return
         if actor.GetProperty() is not self._property.Get():
             self._watch_property(actor)
         if actor.GetShaderProperty() is not self._shader_property.Get():
-            self._install()
+            self.install()
         self._tell_unused(actor)
 
     def _tell_unused(self, actor: vtkActor) -> None:
@@ -114,14 +108,14 @@ class Attached:
         for name in sorted(new):
             warnings.warn(f"actor.{name} changes nothing here: {_UNUSED[name][1]}", UserWarning, stacklevel=2)
 
-    def _check_alone(self, renderer: Any) -> None:
+    def check_alone(self, renderer: Any) -> None:
         """Raise where actors share the mapper, as copies of an actor do: nobody says which of them is drawn."""
         props = renderer.GetViewProps()
         seen = renderer.GetAddressAsString(""), props.GetMTime()
         if seen == self._alone:
             return
         actors = [actor for prop in items_of(props) for actor in actors_in(prop)]
-        count = sum(actor.GetMapper() is self for actor in actors if actor.GetVisibility())
+        count = sum(actor.GetMapper() is self._mapper.Get() for actor in actors if actor.GetVisibility())
         if count > 1:
             raise RuntimeError(
                 f"{count} actors have this mapper, which serves one; give each actor a mapper of its own "
@@ -129,18 +123,18 @@ class Attached:
             )
         self._alone = seen
 
-    def _drop_vertex_stages(self) -> None:
+    def drop_vertex_stages(self) -> None:
         """Take out what others do to vertices, as PyVista's camera distortion does: here these are a rectangle's."""
         shaders: Any = self._shader_property.Get()
         if shaders is None or shaders.GetMTime() == self._shaders_seen:
             return
-        own = {(edit.original, edit.first, edit.text) for edit in self._installed if edit.stage == "vertex"}
+        own = {(edit.original, edit.first, edit.text) for edit in self.installed if edit.stage == "vertex"}
         there = set(resolve.vertex_replacements(shaders))
         found = there - own
         for name, first, _ in found:
             shaders.ClearVertexShaderReplacement(name, first)
         if found or own - there:  # a tag has one of each
-            resolve.install(shaders, self._installed)
+            resolve.install(shaders, self.installed)
         self._shaders_seen = shaders.GetMTime()
         if found:
             warnings.warn(
@@ -157,50 +151,37 @@ class Attached:
         self._property = weak(actor.GetProperty())
         self._tags = self._tags[0], actor.GetProperty().AddObserver("ModifiedEvent", _keep_surface)
 
-    def _actor_modified(self) -> None:
+    def modified(self) -> None:
         """Tell those who render on demand; the mapper's own time would make VTK build its shaders anew."""
         if self.actor is not None:
             self.actor.Modified()
 
-    @property
-    def features(self) -> frozenset[str]:
-        """Pieces of the resolve shader in use."""
-        effects = frozenset().union(*(effect.features for effect in self._effects.values()))
-        return with_layers(frozenset({"gbuffer", "normal"} | self._colouring.features | effects))
+    def show(self, features: frozenset[str], translucent: bool) -> None:
+        """Have the actor's shader pieces, and whether VTK draws it in its translucent pass, whatever its opacity is."""
+        self._features, self._translucent = features, translucent
+        self.install()
 
-    def _install(self) -> None:
-        """Bring the actor's shader pieces and its translucency up to date."""
+    def install(self) -> None:
+        """Give the actor its shader pieces, unless it has them."""
         actor = self.actor
         if actor is None:
             return
         shaders, before = actor.GetShaderProperty(), self._shader_property.Get()
-        wanted = resolve.assemble(self.features)
-        if wanted != self._installed or shaders is not before:
+        wanted = resolve.assemble(self._features)
+        if wanted != self.installed or shaders is not before:
             if before is not None:
-                resolve.uninstall(before, self._installed)
-            self._shader_property, self._installed = weak(shaders), wanted
+                resolve.uninstall(before, self.installed)
+            self._shader_property, self.installed = weak(shaders), wanted
             resolve.install(shaders, wanted)
-        translucent = self._translucent
-        if translucent != actor.GetForceTranslucent():
-            actor.SetForceTranslucent(translucent)
+        if self._translucent != actor.GetForceTranslucent():
+            actor.SetForceTranslucent(self._translucent)
 
-    @property
-    def _translucent(self) -> bool:
-        """Whether VTK must draw it in its translucent pass, whatever the actor's opacity is."""
-        effects = self._effects.values()
-        return self._colouring.translucent() or any(getattr(effect, "translucent", False) for effect in effects)
-
-
-def _follow_actor(mapper: Any) -> Callable[[Any, str], None]:
-    """Return an observer of an actor that does not keep the mapper alive."""
-    follower = weak(mapper)
-
-    def changed(_actor: Any, _event: str) -> None:
-        found: Any = follower.Get()
-        if found is not None:
-            found._actor_changed()  # noqa: SLF001  this module's own
-
-    return changed
+    def take_out(self) -> None:
+        """Take the shader pieces out of the actor, so that VTK draws the mapper's data in its own way."""
+        shaders = self._shader_property.Get()
+        if shaders is not None:
+            resolve.uninstall(shaders, self.installed)
+        self.installed = ()
 
 
 def _keep_surface(actor_property: Any, event: str) -> None:
