@@ -189,7 +189,7 @@ async def test_files_and_volumes_that_colour_lines_are_read_beside_the_page(desk
     layer = scene.open("lines.fiblets")
     threads.clear()
     value = {"volume": {"path": "head.nii.gz"}}
-    await desk.files.colour_by(layer.id, "scalars", value, Source("head.nii.gz"))
+    await desk.files.with_volume(Source("head.nii.gz"), lambda: scene.set(layer.id, "scalars", value))
     assert threads == [False]
     assert scene.layer(layer.id).settings["scalars"] == value
 

@@ -15,6 +15,7 @@ from pvfiblets.volumes import RaycastVolume
 from pvfiblets.volumes.raycast_options import INTEGRATORS
 from pvfiblets.web.scene import layers
 from pvfiblets.web.scene.layers import USUAL
+from pvfiblets.web.session.document import Source
 from pvfiblets.web.session.script import as_script
 
 
@@ -94,6 +95,7 @@ def volumes(scene):
         scene.set(lines.id, "scalars", value)
         scene.set(lines.id, "line_width", 2.0)
         scene.filters.set_filter(lines.id, "weight", 15 * group, 15 * group + 14)
+    scene.filters.set_filter(scene.layers[-1].id, "atlas", 3, 3, image=Source("atlas.nii.gz"))
     scene.remove(demo.id)
     scene.cameras.view("coronal")
 

@@ -265,18 +265,18 @@ class FileActions(SessionActions):
         self._app.scene.store.take(store)
         then()
 
-    async def colour_by(self, layer_id: str, name: str, value: Any, source: Source) -> None:
-        """Set a property to a volume, which is read beside everything else."""
-        app = self._app
-        load = app.scene.files.load
-        loaded = await self.beside(
-            Path(source.path or "demo head").name,
-            lambda progress, cancel: load(source, "colours", progress, cancel),
-            "reading",
-            cancellable=False,
-        )
-        app.scene.store.put(loaded)
-        app.scene.set(layer_id, name, value)
+    async def with_volume(self, source: Source, then: Callable[[], Any]) -> None:
+        """Read a volume that colours or filters lines beside everything else; then do what needs it."""
+        scene = self._app.scene
+        if ("colours", source) not in scene.store.loaded:
+            loaded = await self.beside(
+                Path(source.path or "demo head").name,
+                lambda progress, cancel: scene.files.load(source, "colours", progress, cancel),
+                "reading",
+                cancellable=False,
+            )
+            scene.store.put(loaded)
+        then()
 
     def show_script(self) -> None:
         """Show the Python that makes the same picture."""

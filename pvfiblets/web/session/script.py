@@ -223,7 +223,7 @@ class _Writer(ViewWriter):
         return mesh_code(path, self._file) if space is None else f"read_mesh({self._file(path)}, space={space!r})"
 
     def _colours(self, source: Source) -> Python:
-        """Return Python of a volume that colours lines, as :meth:`.Files.load` takes it."""
+        """Return Python of a volume that colours or filters lines, as :meth:`.Files.load` takes it."""
         if source.demo is not None:
             self._imports.add("from pvfiblets.synthetic.vessels import brain_like")
             self._lines += [f"volume = brain_like({source.size})"]
@@ -261,7 +261,9 @@ class _Writer(ViewWriter):
     def _filters(self, name: str, layer: Layer) -> None:
         filters = layer.filters
         for criterion, (low, high) in filters.criteria.items():
-            self._lines += [f"{name}.criterion({criterion!r}, ({code(low)}, {code(high)}))"]
+            image = filters.images.get(criterion)
+            values = criterion if image is None else self._colours(image)
+            self._lines += [f"{name}.criterion({code(values)}, ({code(low)}, {code(high)}))"]
         if filters.groups is not None:
             self._lines += [f"{name}.groups_shown = {list(filters.groups)}"]
         if filters.subset is not None:

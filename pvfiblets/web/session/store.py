@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from pvfiblets.web.scene.loading import Cancel, Files, Loaded, Progress, Watch
-from pvfiblets.web.session.document import LINES, Layer, Source, State, volumes_of
+from pvfiblets.web.session.document import LINES, Layer, Source, State
 
 __all__ = ["Store"]
 
@@ -84,7 +84,7 @@ class Store:
                     raise ValueError(f"streamline {ids.highest} is asked for, of {total} in {loaded.name}")
                 loaded = replace(loaded, source=layer.source, data=loaded.data.extract(ids.array()))
             self.loaded[key] = loaded
-        for volume in volumes_of(layer.settings).values():
+        for volume in layer.volumes:
             self.colours(volume, progress, cancel)
         return self.loaded[key]
 
@@ -96,7 +96,7 @@ class Store:
         return found.data
 
     def colours(self, source: Source, progress: Progress | None = None, cancel: Cancel | None = None) -> Any:
-        """Return the volume, a :class:`.VolumeSource`, that colours lines where they run."""
+        """Return the volume, a :class:`.VolumeSource`, that colours or filters lines where they run."""
         return self._read("colours", source, progress, cancel).data
 
     def shape(self, kind: str, path: str) -> Any:
