@@ -5,12 +5,15 @@ from __future__ import annotations
 import builtins
 import keyword
 import re
+import textwrap
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from pvfiblets.mappers.scene import USUAL_DPI
 from pvfiblets.plotting.slices.settings import MEANING
+from pvfiblets.support.nifti_space import chosen
+from pvfiblets.support.surface_space import tkras_chosen
 from pvfiblets.web.scene import layers
 from pvfiblets.web.scene.actors import split_cuts
 from pvfiblets.web.scene.glyph_layers import GLYPHS
@@ -78,9 +81,24 @@ class _Writer(ViewWriter):
         self._camera()
         end = "plotter.show()" if picture is None else f"plotter.screenshot({picture!r})\nplotter.close()"
         body = re.sub(r"\n{3,}", "\n\n", "\n".join([*self._lines, end]))
+        if placing := self._placing():
+            body = f"with {', '.join(placing)}:\n{textwrap.indent(body, '    ')}"
         return "\n".join([*self._head(), body]) + "\n"
 
     # Parts ----------------------------------------------------------------------------------------
+
+    def _placing(self) -> list[str]:
+        """Return the contexts that place images and surfaces as this process does, where it was told how."""
+        found = []
+        matrix, units = chosen()
+        if matrix is not None or units != "mm":
+            self._imports.add("import pvfiblets")
+            given = [repr(matrix)] * (matrix is not None) + [f"units={units!r}"] * (units != "mm")
+            found.append(f"pvfiblets.nifti_space({', '.join(given)})")
+        if tkras_chosen():
+            self._imports.add("from pvfiblets.support.surface_space import as_stored")
+            found.append("as_stored()")
+        return found
 
     def _head(self) -> list[str]:
         order = sorted(self._imports, key=lambda line: (line.split()[1].startswith("pvfiblets"), line.split()[1]))
