@@ -100,7 +100,7 @@ class SceneFilters:
     def _checked_shape(self, shape: Mapping[str, Any]) -> dict[str, Any]:
         """Return the shape of a cut, of which a region can be made, even if there is nothing to cut yet."""
         found = check_shape(shape, "cut", CUTTING)
-        make_region(found, self.scene.shape_data)
+        make_region(found, self.scene.store.shape)
         return found
 
     def _checked_layers(self, ids: Any) -> tuple[str, ...] | None:

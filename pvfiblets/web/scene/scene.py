@@ -238,7 +238,7 @@ class Scene:
             if drawn.layer.selected != layer.selected:
                 select_as(actor, layer.selected)
         if drawn.clips != clips:
-            cut(actor, layer, clips, self.shape_data, drawn.whole)
+            cut(actor, layer, clips, self.store.shape, drawn.whole)
         self._drawn[layer.id] = _Drawn(actor, layer, clips, drawn.whole)
 
     def _draw_image(self, layer: Layer, drawn: _Drawn | None) -> None:
@@ -250,13 +250,13 @@ class Scene:
             self._drawn[layer.id] = _Drawn(image, layer, ())
 
     def _filter(self, drawn: _Drawn, layer: Layer) -> None:
-        read = self.shape_data, self.store.end_labels, self.store.colours
+        read = self.store.shape, self.store.end_labels, self.store.colours
         try:
             filter_as(drawn.actor, drawn.layer.filters, layer.filters, *read)
         except BaseException:  # some of it may be in force already
             drawn.actor.show_all()
             filter_as(drawn.actor, Filters(), drawn.layer.filters, *read)
-            cut(drawn.actor, drawn.layer, drawn.clips, self.shape_data)
+            cut(drawn.actor, drawn.layer, drawn.clips, self.store.shape)
             raise
 
     # Layers -------------------------------------------------------------------------------------
@@ -447,10 +447,6 @@ class Scene:
     def forget_unused(self, states: Iterable[State] = ()) -> None:
         """Let go of data that neither the document nor any of some other states needs."""
         self.store.keep([self._state, *states])
-
-    def shape_data(self, kind: str, path: str) -> Any:
-        """Return what a region is made of: the region of a mesh, or an image of labels."""
-        return self.store.shape(kind, path)
 
     def volume_choices(self, layer: Layer) -> list[tuple[Any, str]]:
         """Return what colours a layer by a volume, and how that is called.

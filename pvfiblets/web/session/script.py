@@ -238,7 +238,7 @@ class _Writer(ViewWriter):
     def _mesh(self, path: str, space: str | None = None) -> str:
         """Return Python that reads a surface."""
         self._imports.add("from pvfiblets.plotting.meshes import read_mesh")
-        return mesh_code(path, self._file) if space is None else f"read_mesh({self._file(path)}, space={space!r})"
+        return mesh_code(path, self._file, space)
 
     def _colours(self, source: Source) -> Python:
         """Return Python of a volume that colours or filters lines, as :meth:`.Files.load` takes it."""
@@ -348,7 +348,7 @@ class _Writer(ViewWriter):
         if not names:
             return
         if clip.shape["kind"] == "mesh":
-            region = self._mesh(clip.shape["path"])
+            region = self._mesh(clip.shape["path"], clip.shape.get("space"))
         else:
             self._needs(clip.shape)
             region = shape_code(clip.shape, self._file)
