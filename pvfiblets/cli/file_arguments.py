@@ -285,13 +285,18 @@ def add_sample(commands: Any) -> None:
     parser.add_argument("image", metavar="IMAGE", help="an image with one number per voxel (NIfTI, MGH, MIF, NRRD ...)")
     parser.add_argument("target", metavar="OUT", help="a .tsf, .txt, .csv or .npy file of numbers, one a row; a "
                         "tractogram to write IN with them to; or -")  # fmt: skip
+    add_sampling_options(parser)
+    add_format_option(parser, reads=["source"], writes="target", usual="txt")
+    add_memory_option(parser)
+    parser.set_defaults(run="pvfiblets.cli.samples:sample")
+
+
+def add_sampling_options(parser: argparse.ArgumentParser) -> None:
+    """Let a command be told which values of an image it takes along streamlines."""
     parser.add_argument("--statistic", choices=("mean", "median", "min", "max"), help="of each streamline")
     _add_point_weights(parser)
     parser.add_argument("--nearest", action="store_true", help="take the nearest voxel's value, as labels need it")
     parser.add_argument("--name", help="of the array in a tractogram (default: IMAGE without its suffix)")
-    add_format_option(parser, reads=["source"], writes="target", usual="txt")
-    add_memory_option(parser)
-    parser.set_defaults(run="pvfiblets.cli.samples:sample")
 
 
 def json_option(parser: argparse.ArgumentParser) -> None:
