@@ -249,8 +249,10 @@ def _absolute(text: str) -> str:
     """A path, with or without labels behind a colon, as workers find it, who are in folders of their own."""
     path, colon, labels = text.rpartition(":")
     for name, rest in ((text, ""), (path, colon + labels)):
-        if name and Path(name).expanduser().exists():
-            return f"{Path(name).expanduser().absolute()}{rest}"
+        place = Path(name).expanduser()
+        # A folder beside the study may be called as an array is.
+        if place.is_file() or (place.exists() and (place.suffix or place.name != name)):
+            return f"{place.absolute()}{rest}"
     return text
 
 
