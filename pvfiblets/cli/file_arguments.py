@@ -6,7 +6,7 @@ import argparse
 from typing import Any
 
 from pvfiblets.cli.memory import add_memory_option, bytes_of_file
-from pvfiblets.cli.pipes import add_format_option, add_image_options
+from pvfiblets.cli.pipes import add_format_option, add_image_options, add_surface_option
 from pvfiblets.cli.values import angle, count, positive
 from pvfiblets.codec.parameters import DEFAULT_ANGLE
 
@@ -113,10 +113,11 @@ def add_info(commands: Any) -> None:
         "info",
         help="say what a file holds",
         description="Read FILE, and print size, counts, arrays, groups, affine and what reading leaves out; of a "
-        ".fiblets file, step and promise too.",
+        ".fiblets file, step and promise too; of a surface, bounds and how it is moved to the scanner's space.",
     )
-    info.add_argument("path", metavar="FILE", help="a tractogram of any format, or -")
+    info.add_argument("path", metavar="FILE", help="a tractogram or a surface of any format, or -")
     add_format_option(info, reads=["path"])
+    add_surface_option(info)
     json_option(info)
     add_memory_option(info)
     info.set_defaults(run="pvfiblets.cli.files:info")

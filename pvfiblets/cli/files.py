@@ -12,7 +12,9 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from pvfiblets import formats
 from pvfiblets.codec.parameters import DEFAULT_ANGLE
+from pvfiblets.formats.registry import UnknownFormatError
 from pvfiblets.formats.rewrite import rewrite
+from pvfiblets.line_cells import NOT_LINES
 from pvfiblets.support.addresses import is_url, path_of
 from pvfiblets.web.values import plain
 
@@ -117,10 +119,8 @@ def which_per_point(given: list[str]) -> PerPoint:
 
 def info(path: str, *, json: bool) -> None:
     """Print what a file holds."""
-    facts: dict[str, Any] = {"file": path, "bytes": None, **formats.info(path)}
+    facts: dict[str, Any] = {"file": path, "bytes": None, **_facts(path)}
     facts.pop("path", None)
-    if "dropped" not in facts:  # the header may be wrong of counts, and knows nothing of damage
-        facts |= _counted(path)
     if not is_url(path):
         facts["bytes"] = bytes_of(path)
     if json:
@@ -133,6 +133,25 @@ def info(path: str, *, json: bool) -> None:
         print(f"{key:<16} {readable(value)}")
     for reason, count in dropped.items():
         print(f"{'dropped':<16} {count:,}: {reason}")
+
+
+def _facts(path: str) -> dict[str, Any]:
+    """Return the facts of a tractogram, or of a surface."""
+    try:
+        facts = formats.info(path)
+    except UnknownFormatError:
+        from pvfiblets.plotting.meshes import SUFFIXES, mesh_facts
+
+        if is_url(path) or not path.lower().endswith(SUFFIXES):
+            raise
+        return mesh_facts(path)
+    if "dropped" not in facts:  # the header may be wrong of counts, and knows nothing of damage
+        return facts | _counted(path)
+    if facts["streamlines"] or NOT_LINES not in facts["dropped"]:
+        return facts
+    from pvfiblets.plotting.meshes import mesh_facts
+
+    return mesh_facts(path)
 
 
 def _counted(path: str) -> dict[str, Any]:
