@@ -16,6 +16,7 @@ from pvfiblets.formats.registry import UnknownFormatError
 from pvfiblets.formats.rewrite import rewrite
 from pvfiblets.line_cells import NOT_LINES
 from pvfiblets.support.addresses import is_url, path_of
+from pvfiblets.support.summary import counting
 from pvfiblets.web.values import plain
 
 if TYPE_CHECKING:
@@ -126,6 +127,11 @@ def info(path: str, *, json: bool) -> None:
     if json:
         print_json(facts)
         return
+    _print_facts(facts)
+
+
+def _print_facts(facts: dict[str, Any]) -> None:
+    """Print what there is a line each, and what reading left out last."""
     dropped = facts.pop("dropped", None) or {}
     for key, value in facts.items():
         if value is None or (isinstance(value, (list, dict, tuple)) and not value):
@@ -158,9 +164,8 @@ def _counted(path: str) -> dict[str, Any]:
     """Return the counts of streamlines and points in a file, and of what reading leaves out."""
     streamlines = points = 0
     dropped: Counter[str] = Counter()
-    for chunk in formats.iter_chunks(path):
+    for chunk in counting(formats.iter_chunks(path), dropped):
         streamlines, points = streamlines + len(chunk), points + chunk.n_points
-        dropped.update(chunk.dropped)
     return {"streamlines": streamlines, "points": points, "dropped": dict(dropped)}
 
 
@@ -172,8 +177,7 @@ def verify(path: str, original: str | None, *, max_angle: float | None, quiet: b
     if json:
         print_json(result)
     else:
-        for key, value in result.items():
-            print(f"{key:<16} {readable(value)}")
+        _print_facts(dict(result))
     refuse_broken_promise(result)
 
 
