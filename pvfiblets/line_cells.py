@@ -15,8 +15,10 @@ if TYPE_CHECKING:
 
     from pvfiblets.streamlines import Streamlines
 
-__all__ = ["field_of", "parts_of_cells", "parts_of_polydata", "polydata_of"]
+__all__ = ["NOT_LINES", "field_of", "parts_of_cells", "parts_of_polydata", "polydata_of"]
 
+NOT_LINES = "cells that are not lines"
+"""Why cells were left out, of ``dropped``."""
 _GROUP = "groups/"
 _PER_GROUP = "per_group/"
 _GROUPS_OF = "groups_of"
@@ -107,7 +109,7 @@ def parts_of_cells(
     """Return arguments of `Streamlines` of cells that refer to points by index; parameters as of `from_cells`."""
     dropped: dict[str, int] = {}
     if other_cells:
-        dropped["cells that are not lines"] = other_cells
+        dropped[NOT_LINES] = other_cells
     n = len(points)
     if len(connectivity) != n or not np.array_equal(connectivity, np.arange(n)):
         used = np.zeros(n, bool)

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from pvfiblets.line_cells import NOT_LINES
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.support.ragged import offsets_from_counts
 from pvfiblets.support.vtk_space import Space, space_of_dataset, to_ras
@@ -142,7 +143,7 @@ def _of_vtk(source: Any) -> Streamlines:
     if isinstance(dataset, pv.UnstructuredGrid):
         found = Streamlines.from_polydata(lines_of_grid(dataset))
         if others := dataset.n_cells - len(found):
-            found.dropped["cells that are not lines"] = others
+            found.dropped[NOT_LINES] = others
         return found
     raise TypeError(
         f"source is a {type(dataset).__name__}, which has no lines; of VTK's datasets PolyData, UnstructuredGrid, "
@@ -223,8 +224,9 @@ def lines_of_grid(source: Any) -> Any:
     mesh = pv.PolyData(np.array(grid.points), lines=np.insert(ids[rows], offsets[:-1], counts))
     for name, values in grid.point_data.items():
         mesh.point_data[name] = np.array(values)
-    for name, values in grid.cell_data.items():
-        mesh.cell_data[name] = np.array(values)[wanted]
+    if len(wanted):  # PyVista has no arrays without rows
+        for name, values in grid.cell_data.items():
+            mesh.cell_data[name] = np.array(values)[wanted]
     for name, values in grid.field_data.items():
         mesh.field_data[name] = np.array(values)  # groups, which number the lines
     return mesh

@@ -15,6 +15,7 @@ from types import SimpleNamespace
 import nibabel as nib
 import numpy as np
 import pytest
+import pyvista as pv
 from PIL import Image
 
 from pvfiblets import formats, regions
@@ -197,6 +198,26 @@ def test_info_and_table_state_what_a_header_gets_wrong(tmp_path, capsys):
         assert f"{count}: {reason}" in capsys.readouterr().out
         assert main(["table", str(tmp_path / name), str(tmp_path / "a.csv")]) == 0
         assert f"{reason}: {count}" in capsys.readouterr().err
+
+
+@pytest.mark.filterwarnings("default:.*reading left out")
+@pytest.mark.parametrize("options", ["--voxel 2", "--voxel 2 --contrast direction", "--like grid.nii"])
+def test_a_command_says_once_what_reading_left_out(tmp_path, capsys, options):
+    source, said = tmp_path / "nan.vtp", "(non-finite points: 2)"  # of both segments that end there
+    pv.lines_from_points(np.array([[0.0, 1, 0], [9, 1, 0], [np.nan, 3, 0], [0, 5, 0], [9, 5, 0]])).save(source)
+    formats.write(tmp_path / "one.trk", Streamlines(np.array([[0.0, 0, 0], [9.0, 9, 0]]), [0, 2]))
+    assert main(["density", str(tmp_path / "one.trk"), str(tmp_path / "grid.nii"), "--voxel", "3"]) == 0
+    capsys.readouterr()
+    words = options.replace("grid.nii", str(tmp_path / "grid.nii")).split()
+    assert main(["density", str(source), str(tmp_path / "d.nii"), *words]) == 0
+    out, error = capsys.readouterr()
+    assert error.count(said) == 1
+    assert re.search(r"^(count|direction) +0 to", out, re.MULTILINE)
+    assert main(["convert", str(source), str(tmp_path / "n.fiblets")]) == 0
+    assert main(["verify", str(tmp_path / "n.fiblets"), str(source)]) == 0
+    assert capsys.readouterr().out.count("2: non-finite points") == 2  # once by each
+    assert main(["verify", str(tmp_path / "n.fiblets"), str(source), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["dropped"]["non-finite points"] == 2
 
 
 def test_convert_writes_doubles_if_asked(tmp_path, capsys):

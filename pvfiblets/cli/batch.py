@@ -6,6 +6,7 @@ import argparse
 import sys
 from typing import Any
 
+from pvfiblets.cli.file_arguments import add_sampling_options
 from pvfiblets.cli.files import print_json, show_progress, which_per_point
 from pvfiblets.cli.pipes import add_image_options
 from pvfiblets.codec.parameters import DEFAULT_ANGLE
@@ -19,6 +20,7 @@ _ABOUT = {
     "select": "write the streamlines of each file that pass, end or stay in regions",
     "profile": "put mean values along each bundle of each file into a table",
     "connectome": "put each file's matrix of connections into a table",
+    "sample": "write the values of an image along the streamlines of each file",
 }
 _REGION = "a region: sphere:X,Y,Z,R or box:XMIN,XMAX,YMIN,YMAX,ZMIN,ZMAX (mm), IMAGE, or IMAGE:LABEL,LABEL; may repeat"
 
@@ -117,6 +119,13 @@ def _connectome(parser: argparse.ArgumentParser, positive: Any, angle: Any, coun
     add("--contrast", default="count", metavar="NAME|FILE", help="count, length, or numbers by name or from a file")
     add("--radius", type=float, default=4.0, metavar="MM", help="about an end (default: %(default)s)")
     add("--statistic", choices=("sum", "mean", "min", "max"), help="of a pair's numbers")
+
+
+def _sample(parser: argparse.ArgumentParser, positive: Any, angle: Any, count: Any) -> None:  # noqa: ARG001
+    parser.add_argument("--image", required=True, metavar="IMAGE", help="one number per voxel: 'fa/sub-{subject}.nii'")
+    add_sampling_options(parser)
+    parser.add_argument("--to", default=".txt", metavar="SUFFIX", help=".txt, .csv or .npy of numbers, .tsf, or a "
+                        "tractogram with them (default: %(default)s)")  # fmt: skip
 
 
 def batch(

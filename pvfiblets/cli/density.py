@@ -88,7 +88,7 @@ def summary(result: dict[str, Any]) -> str:
     sides = " x ".join(f"{n:,}" for n in result["shape"])
     lines = [
         f"{result['file']}: {sides} voxels of {' x '.join(f'{mm:.4g}' for mm in result['voxel_mm'])} mm",
-        f"{result['contrast']:<9}{result['low']:.6g} to {result['high']:.6g} {result['unit'] or ''}".rstrip()
+        f"{result['contrast']:<8} {result['low']:.6g} to {result['high']:.6g} {result['unit'] or ''}".rstrip()
         + f"; {100.0 * result['share_not_zero']:.3g} % of the voxels are not 0",
         f"time     {result['seconds']:.1f} s",
     ]

@@ -6,7 +6,7 @@ import argparse
 from typing import Any
 
 from pvfiblets.cli.memory import add_memory_option, bytes_of_file
-from pvfiblets.cli.pipes import add_format_option, add_image_options
+from pvfiblets.cli.pipes import add_format_option, add_image_options, add_surface_option
 from pvfiblets.cli.values import angle, count, positive
 from pvfiblets.codec.parameters import DEFAULT_ANGLE
 
@@ -113,10 +113,11 @@ def add_info(commands: Any) -> None:
         "info",
         help="say what a file holds",
         description="Read FILE, and print size, counts, arrays, groups, affine and what reading leaves out; of a "
-        ".fiblets file, step and promise too.",
+        ".fiblets file, step and promise too; of a surface, bounds and how it is moved to the scanner's space.",
     )
-    info.add_argument("path", metavar="FILE", help="a tractogram of any format, or -")
+    info.add_argument("path", metavar="FILE", help="a tractogram or a surface of any format, or -")
     add_format_option(info, reads=["path"])
+    add_surface_option(info)
     json_option(info)
     add_memory_option(info)
     info.set_defaults(run="pvfiblets.cli.files:info")
@@ -285,13 +286,18 @@ def add_sample(commands: Any) -> None:
     parser.add_argument("image", metavar="IMAGE", help="an image with one number per voxel (NIfTI, MGH, MIF, NRRD ...)")
     parser.add_argument("target", metavar="OUT", help="a .tsf, .txt, .csv or .npy file of numbers, one a row; a "
                         "tractogram to write IN with them to; or -")  # fmt: skip
+    add_sampling_options(parser)
+    add_format_option(parser, reads=["source"], writes="target", usual="txt")
+    add_memory_option(parser)
+    parser.set_defaults(run="pvfiblets.cli.samples:sample")
+
+
+def add_sampling_options(parser: argparse.ArgumentParser) -> None:
+    """Let a command be told which values of an image it takes along streamlines."""
     parser.add_argument("--statistic", choices=("mean", "median", "min", "max"), help="of each streamline")
     _add_point_weights(parser)
     parser.add_argument("--nearest", action="store_true", help="take the nearest voxel's value, as labels need it")
     parser.add_argument("--name", help="of the array in a tractogram (default: IMAGE without its suffix)")
-    add_format_option(parser, reads=["source"], writes="target", usual="txt")
-    add_memory_option(parser)
-    parser.set_defaults(run="pvfiblets.cli.samples:sample")
 
 
 def json_option(parser: argparse.ArgumentParser) -> None:

@@ -12,8 +12,11 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from pvfiblets import formats
 from pvfiblets.codec.parameters import DEFAULT_ANGLE
+from pvfiblets.formats.registry import UnknownFormatError
 from pvfiblets.formats.rewrite import rewrite
+from pvfiblets.line_cells import NOT_LINES
 from pvfiblets.support.addresses import is_url, path_of
+from pvfiblets.support.summary import counting
 from pvfiblets.web.values import plain
 
 if TYPE_CHECKING:
@@ -117,15 +120,18 @@ def which_per_point(given: list[str]) -> PerPoint:
 
 def info(path: str, *, json: bool) -> None:
     """Print what a file holds."""
-    facts: dict[str, Any] = {"file": path, "bytes": None, **formats.info(path)}
+    facts: dict[str, Any] = {"file": path, "bytes": None, **_facts(path)}
     facts.pop("path", None)
-    if "dropped" not in facts:  # the header may be wrong of counts, and knows nothing of damage
-        facts |= _counted(path)
     if not is_url(path):
         facts["bytes"] = bytes_of(path)
     if json:
         print_json(facts)
         return
+    _print_facts(facts)
+
+
+def _print_facts(facts: dict[str, Any]) -> None:
+    """Print what there is a line each, and what reading left out last."""
     dropped = facts.pop("dropped", None) or {}
     for key, value in facts.items():
         if value is None or (isinstance(value, (list, dict, tuple)) and not value):
@@ -135,13 +141,31 @@ def info(path: str, *, json: bool) -> None:
         print(f"{'dropped':<16} {count:,}: {reason}")
 
 
+def _facts(path: str) -> dict[str, Any]:
+    """Return the facts of a tractogram, or of a surface."""
+    try:
+        facts = formats.info(path)
+    except UnknownFormatError:
+        from pvfiblets.plotting.meshes import SUFFIXES, mesh_facts
+
+        if is_url(path) or not path.lower().endswith(SUFFIXES):
+            raise
+        return mesh_facts(path)
+    if "dropped" not in facts:  # the header may be wrong of counts, and knows nothing of damage
+        return facts | _counted(path)
+    if facts["streamlines"] or NOT_LINES not in facts["dropped"]:
+        return facts
+    from pvfiblets.plotting.meshes import mesh_facts
+
+    return mesh_facts(path)
+
+
 def _counted(path: str) -> dict[str, Any]:
     """Return the counts of streamlines and points in a file, and of what reading leaves out."""
     streamlines = points = 0
     dropped: Counter[str] = Counter()
-    for chunk in formats.iter_chunks(path):
+    for chunk in counting(formats.iter_chunks(path), dropped):
         streamlines, points = streamlines + len(chunk), points + chunk.n_points
-        dropped.update(chunk.dropped)
     return {"streamlines": streamlines, "points": points, "dropped": dict(dropped)}
 
 
@@ -153,8 +177,7 @@ def verify(path: str, original: str | None, *, max_angle: float | None, quiet: b
     if json:
         print_json(result)
     else:
-        for key, value in result.items():
-            print(f"{key:<16} {readable(value)}")
+        _print_facts(dict(result))
     refuse_broken_promise(result)
 
 

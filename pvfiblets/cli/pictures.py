@@ -17,12 +17,10 @@ from pvfiblets.formats.by_vtk import read_dataset
 from pvfiblets.formats.registry import READ_BY_VTK, UnknownFormatError, suffix_of
 from pvfiblets.support.addresses import is_url, path_of
 from pvfiblets.support.whole_files import made_folder, replacing
-from pvfiblets.volumes.freesurfer_files import SURFACES, VALUES
-from pvfiblets.volumes.gifti_files import SUFFIXES as GIFTI
+from pvfiblets.volumes.freesurfer_files import VALUES
 from pvfiblets.volumes.gifti_files import VALUES as OF_GIFTI
 from pvfiblets.web.values import plain
 
-MESHES = (".ply", ".stl", ".obj", ".off", *GIFTI, *SURFACES)
 OF_VERTICES = (*OF_GIFTI, *VALUES)
 VTK = (".vtk", ".vtp")
 LINE_CELLS = (3, 4)  # VTK_LINE, VTK_POLY_LINE
@@ -172,6 +170,7 @@ def fill(
 def kind_of(path: str) -> str:
     """Return whether a file is of lines, a volume or a mesh: VTK's formats may be any of them."""
     from pvfiblets.images.files import SUFFIXES as IMAGES
+    from pvfiblets.plotting.meshes import SUFFIXES as MESHES
 
     lower = path.lower()
     if lower.endswith(IMAGES):

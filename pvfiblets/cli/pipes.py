@@ -20,7 +20,7 @@ from pvfiblets.support.addresses import is_url
 from pvfiblets.support.nifti_space import MATRICES, UNITS
 from pvfiblets.support.whole_files import naming_target
 
-__all__ = ["Pipes", "add_format_option", "add_image_options", "add_surface_option"]
+__all__ = ["Pipes", "add_format_option", "add_image_options", "add_space_option", "add_surface_option"]
 
 _IN, _OUT = "standard input", "standard output"
 
@@ -33,11 +33,16 @@ def add_format_option(
     if writes is not None:
         which += f" or output ({f'default: {usual}' if usual else 'needed'}); of both, that of output comes last"
     parser.add_argument("--format", action="append", default=[], metavar="SUFFIX", help=which)
+    add_space_option(parser)
+    parser.set_defaults(pipes=(tuple(reads), writes, usual))
+
+
+def add_space_option(parser: argparse.ArgumentParser) -> None:
+    """Let a command be told the space of files that name none."""
     parser.add_argument(
         "--space", choices=("RAS", "LPS"), type=str.upper,
         help="space of points in VTK's files that name none (default: RAS); DIPY wrote LPS up to 1.11",
     )  # fmt: skip
-    parser.set_defaults(pipes=(tuple(reads), writes, usual))
 
 
 def add_image_options(parser: argparse.ArgumentParser) -> None:

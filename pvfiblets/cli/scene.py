@@ -9,18 +9,19 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from pvfiblets.web.session.shapes import Load
 
 __all__ = ["Wishes", "add_options", "cut_and_filter", "open_session", "options_of"]
 
 KINDS = ("lines", "volumes", "meshes")
 """What ``--clip`` cuts, by ``of=``."""
 
-Load = Callable[[str, str], Any]
-"""From kind, ``"mesh"`` or ``"labels"``, and path to data."""
 Words = Sequence[Sequence[str]]
 Wishes = Mapping[str, Any]
 """Options of :func:`add_options` by their names."""

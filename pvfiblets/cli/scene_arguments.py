@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from pvfiblets.cli.pipes import add_format_option, add_image_options, add_surface_option
+from pvfiblets.cli.pipes import add_format_option, add_image_options, add_space_option, add_surface_option
 from pvfiblets.cli.scene import add_options
 from pvfiblets.cli.values import antialias, count, positive, size
 
@@ -135,6 +135,7 @@ def add_serve(commands: Any) -> None:
         metavar="N",
         help="connections at once from one address (default: %(default)s)",
     )
+    add_space_option(parser)
     add_image_options(parser)
     add_surface_option(parser)
     parser.set_defaults(run="pvfiblets.cli.serve:serve")

@@ -12,6 +12,7 @@ from typing import Any
 from pvfiblets.errors import FibletsError
 from pvfiblets.support.nifti_space import chosen
 from pvfiblets.support.surface_space import tkras_chosen
+from pvfiblets.support.vtk_space import unnamed
 
 
 def serve(
@@ -70,6 +71,7 @@ def serve(
         nifti_space=chosen()[0],
         nifti_units=chosen()[1],
         tkras=tkras_chosen(),
+        space=unnamed(),
     ).checked()
     try:
         import trame_rca  # noqa: F401

@@ -105,7 +105,7 @@ def batch(
 
     Parameters
     ----------
-    operation : {'convert', 'verify', 'density', 'select', 'profile', 'connectome'}
+    operation : {'convert', 'verify', 'density', 'select', 'profile', 'connectome', 'sample'}
     sources : str, PathLike or sequence of these
         Files, or patterns such as ``'sub-*/dwi/*.trk'``.
     folder : str or PathLike
@@ -227,7 +227,7 @@ def _jobs(
         except ValueError as error:
             failed[file.name] = sentence(error)
             continue
-        target = f"{file.stem}{options['to']}" if kind.makes_file else ""
+        target = f"{file.stem}{options['to']}" if kind.check_file else ""
         rows = f".{kind.name}/{file.name}.parquet"
         asked = _asked(kind.name, own | ({} if images == (None, "mm") else {"nifti": images}))
         jobs.append(
@@ -249,8 +249,10 @@ def _absolute(text: str) -> str:
     """A path, with or without labels behind a colon, as workers find it, who are in folders of their own."""
     path, colon, labels = text.rpartition(":")
     for name, rest in ((text, ""), (path, colon + labels)):
-        if name and Path(name).expanduser().exists():
-            return f"{Path(name).expanduser().absolute()}{rest}"
+        place = Path(name).expanduser()
+        # A folder beside the study may be called as an array is.
+        if place.is_file() or (place.exists() and (place.suffix or place.name != name)):
+            return f"{place.absolute()}{rest}"
     return text
 
 

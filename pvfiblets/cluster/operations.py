@@ -7,7 +7,7 @@ returns columns of numbers. It knows nothing of clusters: everything about where
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,6 +21,7 @@ from pvfiblets.formats import registry
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
+    from pvfiblets.query.measures.samples import PointWeights, Statistic
     from pvfiblets.query.selection.point_flags import Sampling
     from pvfiblets.streamlines import Streamlines
 
@@ -213,6 +214,28 @@ def connectome(
     }  # fmt: skip
 
 
+def sample(
+    source: Path,
+    target: Path,
+    *,
+    to: str = ".txt",  # noqa: ARG001 - the target's name says it
+    image: str,
+    statistic: Statistic | None = None,
+    weights: PointWeights = "length",
+    nearest: bool = False,
+    name: str | None = None,
+) -> Columns:
+    """Write the values of an image along streamlines; options as of :func:`pvfiblets.sample`."""
+    from pvfiblets.query.measures.sample_files import write_samples
+
+    values = write_samples(
+        str(source), image, str(target), statistic=statistic, weights=weights, nearest=nearest, name=name
+    )
+    known = values[np.isfinite(values)]
+    low, mean, high = (known.min(), known.mean(), known.max()) if known.size else (np.nan,) * 3
+    return {"values": len(known), "without_value": len(values) - len(known), "low": low, "mean": mean, "high": high}
+
+
 def _opened(source: Path) -> FibletSet:
     from pvfiblets.codec.fibletset import FibletSet
 
@@ -257,8 +280,8 @@ class Operation:
     name : str
     run : callable
         ``(source, target, **options) -> columns``.
-    makes_file : bool
-        Whether it makes a file, whose suffix is the option ``to``.
+    check_file : callable or None
+        Refuses options whose file, with the suffix ``to``, cannot be written; None if it makes no file.
     takes : tuple of str
         Suffixes of sources; any format if empty.
     paths : tuple of str
@@ -269,7 +292,7 @@ class Operation:
 
     name: str
     run: Callable[..., Columns]
-    makes_file: bool
+    check_file: Callable[[Mapping[str, Any]], object] | None = None
     takes: tuple[str, ...] = ()
     paths: tuple[str, ...] = ()
     needs: tuple[tuple[str, ...], ...] = ()
@@ -289,12 +312,8 @@ class Operation:
             if not any(_given(options.get(name)) for name in names):
                 raise ValueError(f"{self.name} needs {' or '.join(names)}; give {names[0]}=")
         made = {name: options.get(name, value) for name, value in known.items()}
-        if self.makes_file and self.name == "density":
-            from pvfiblets.query.density.map_files import check_suffix
-
-            check_suffix(f"map{made['to']}")
-        elif self.makes_file:
-            registry.module_for(f"made{made['to']}", "write")
+        if self.check_file is not None:
+            self.check_file(made)
         return made
 
     def check_source(self, source: Path) -> None:
@@ -310,18 +329,35 @@ def _given(value: Any) -> bool:
     return value is not None
 
 
+def _check_lines(options: Mapping[str, Any]) -> None:
+    registry.module_for(f"made{options['to']}", "write")
+
+
+def _check_map(options: Mapping[str, Any]) -> None:
+    from pvfiblets.query.density.map_files import check_suffix
+
+    check_suffix(f"map{options['to']}")
+
+
+def _check_numbers(options: Mapping[str, Any]) -> None:
+    from pvfiblets.query.measures.sample_files import check_target
+
+    check_target(f"made{options['to']}", options["statistic"])
+
+
 OPERATIONS: dict[str, Operation] = {
     made.name: made
     for made in (
-        Operation("convert", convert, True),
-        Operation("verify", verify, False, (COMPRESSED,), ("original",)),
-        Operation("density", density, True, (), ("like", "weights", "contrast"), (("voxel", "like"),)),
+        Operation("convert", convert, _check_lines),
+        Operation("verify", verify, None, (COMPRESSED,), ("original",)),
+        Operation("density", density, _check_map, (), ("like", "weights", "contrast"), (("voxel", "like"),)),
         Operation(
-            "select", select, True, (), ("passes", "avoids", "ends_in", "both_ends_in", "stays_in"),
+            "select", select, _check_lines, (), ("passes", "avoids", "ends_in", "both_ends_in", "stays_in"),
             (("passes", "avoids", "ends_in", "both_ends_in", "stays_in"),),
         ),
-        Operation("profile", profile, False, (), ("values",), (("values",),)),
-        Operation("connectome", connectome, False, (), ("labels", "weights", "contrast"), (("labels",),)),
+        Operation("profile", profile, None, (), ("values",), (("values",),)),
+        Operation("connectome", connectome, None, (), ("labels", "weights", "contrast"), (("labels",),)),
+        Operation("sample", sample, _check_numbers, (), ("image",), (("image",),)),
     )
 }  # fmt: skip
 """By name: what a batch can do."""

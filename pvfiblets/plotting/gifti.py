@@ -12,11 +12,11 @@ import pyvista as pv
 
 from pvfiblets.errors import FormatError
 from pvfiblets.slices.labels import table_of_gifti
-from pvfiblets.support.surface_space import in_scanner_space, numbers_of
+from pvfiblets.support.surface_space import NO_VOLUME, Placed, in_scanner_space, numbers_of
 from pvfiblets.volumes import freesurfer_files
 from pvfiblets.volumes.gifti_files import SUFFIXES, read_gifti
 
-__all__ = ["read_surface", "shown_array", "with_vertex_values"]
+__all__ = ["placed_surface", "read_surface", "shown_array", "with_vertex_values"]
 
 POINTS, TRIANGLES, LABELS = 1008, 1009, 1002
 """NIFTI_INTENT_POINTSET, NIFTI_INTENT_TRIANGLE and NIFTI_INTENT_LABEL."""
@@ -28,11 +28,16 @@ Array = npt.NDArray[np.float64]
 
 def read_surface(path: str | PathLike[str]) -> pv.PolyData:
     """Read a surface from a file of GIFTI or FreeSurfer, such as ``lh.pial.surf.gii`` and ``lh.pial``."""
+    return placed_surface(path)[0]
+
+
+def placed_surface(path: str | PathLike[str]) -> tuple[pv.PolyData, Placed]:
+    """Return the surface in a file of GIFTI or FreeSurfer, and what places it."""
     place = Path(path).expanduser()
     if place.name.lower().endswith(freesurfer_files.SURFACES):
         corners, triangles, footer = freesurfer_files.read_geometry(place)
-        corners = _of_footer(place, _checked(place, corners, triangles), footer)
-        return pv.PolyData.from_regular_faces(corners, triangles.astype(np.int64))
+        placed = _of_footer(place, _checked(place, corners, triangles), footer)
+        return pv.PolyData.from_regular_faces(placed.points, triangles.astype(np.int64)), placed
     image = read_gifti(place)
     points = [one for one in image.darrays if one.intent == POINTS]
     faces = [one.data for one in image.darrays if one.intent == TRIANGLES]
@@ -42,10 +47,10 @@ def read_surface(path: str | PathLike[str]) -> pv.PolyData:
             "a surface, such as .surf.gii: one of each; numbers of vertices are given to a surface",
         )  # fmt: skip
     corners, triangles = np.asarray(points[0].data, np.float64), np.asarray(faces[0])
-    corners = _of_metadata(place, _checked(place, corners, triangles), points[0], image)
-    mesh = pv.PolyData.from_regular_faces(corners, triangles.astype(np.int64))
+    placed = _of_metadata(place, _checked(place, corners, triangles), points[0], image)
+    mesh = pv.PolyData.from_regular_faces(placed.points, triangles.astype(np.int64))
     _add(mesh, place, image)
-    return mesh
+    return mesh, placed
 
 
 def _checked(place: Path, corners: Array, triangles: Any) -> Array:
@@ -61,14 +66,14 @@ def _checked(place: Path, corners: Array, triangles: Any) -> Array:
     return corners
 
 
-def _of_metadata(place: Path, corners: Array, points: Any, image: Any) -> Array:
+def _of_metadata(place: Path, corners: Array, points: Any, image: Any) -> Placed:
     """Return points of GIFTI in the scanner's space, by FreeSurfer's metadata."""
     if points.coordsys is not None and points.coordsys.dataspace == SCANNER:
-        return corners
+        return Placed(corners)
     said = dict(image.meta or {}) | dict(points.meta or {})
     names = [f"VolGeomC_{axis}" for axis in "RAS"]
     if not all(name in said for name in names):
-        return corners
+        return Placed(corners, space_from=NO_VOLUME)
     middle = numbers_of([said[name] for name in names])
     if middle is None:
         found = ", ".join(f"{name} {said[name]!r}" for name in names)
@@ -78,12 +83,13 @@ def _of_metadata(place: Path, corners: Array, points: Any, image: Any) -> Array:
     return in_scanner_space(place, corners, middle, known if len(known) == len(axes) else None)
 
 
-def _of_footer(place: Path, corners: Array, footer: dict[str, Any]) -> Array:
+def _of_footer(place: Path, corners: Array, footer: dict[str, Any]) -> Placed:
     """Return points of FreeSurfer's own format in the scanner's space."""
-    moved = list(footer.get("head", ()))[:2] == [2, 1]  # by mris_convert --to-scanner
+    if list(footer.get("head", ()))[:2] == [2, 1]:  # moved by mris_convert --to-scanner
+        return Placed(corners)
     middle, *axes = (footer.get(name, np.zeros(0)) for name in ("cras", "xras", "yras", "zras"))
-    if moved or not str(footer.get("valid", "")).startswith("1") or middle.shape != (3,):
-        return corners
+    if not str(footer.get("valid", "")).startswith("1") or middle.shape != (3,):
+        return Placed(corners, space_from=NO_VOLUME)
     return in_scanner_space(place, corners, middle, axes if all(one.shape == (3,) for one in axes) else None)
 
 

@@ -10,11 +10,23 @@ import pyvista as pv
 
 from pvfiblets.formats.registry import READ_BY_VTK
 from pvfiblets.support.surface_space import as_stored, tkras_chosen
-from pvfiblets.support.vtk_space import FIELD, OURS, Space, checked, space_in_header, space_of_dataset, unnamed
+from pvfiblets.support.vtk_space import (
+    FIELD,
+    OURS,
+    Space,
+    checked,
+    space_in_header,
+    space_of_dataset,
+    space_taken,
+    unnamed,
+)
 from pvfiblets.volumes.freesurfer_files import SURFACES as FREESURFER
 from pvfiblets.volumes.gifti_files import SUFFIXES as GIFTI
 
-__all__ = ["read_mesh", "space_of_file"]
+__all__ = ["SUFFIXES", "mesh_facts", "read_mesh", "space_of_file"]
+
+SUFFIXES = (".ply", ".stl", ".obj", ".off", *GIFTI, *FREESURFER)
+"""Of files that hold nothing but surfaces."""
 
 OF_VTK = (".vtk", ".vtp", *READ_BY_VTK)
 _HEAD = 1 << 16  # bytes in which titles and comments are looked for
@@ -45,17 +57,43 @@ def read_mesh(path: str | PathLike[str], *, space: str | None = None, tkras: boo
     ValueError
         If the file holds no points, or `space` is unknown.
     """
+    return _read(Path(path).expanduser(), space, tkras)[0]
+
+
+def mesh_facts(path: str | PathLike[str]) -> dict[str, Any]:
+    """Return the facts of a surface's file: counts, bounds in RAS+ mm, its space, and how it is moved from there."""
     place = Path(path).expanduser()
+    mesh, of_space = _read(place)
+    whole = mesh.combine() if isinstance(mesh, pv.MultiBlock) else mesh
+    surface = isinstance(whole, pv.PolyData)
+    triangles = whole.is_all_triangles if surface else set(whole.celltypes) == {pv.CellType.TRIANGLE}
+    return {
+        "format": next((one for one in SUFFIXES if place.name.lower().endswith(one)), place.suffix.lower()),
+        "points": whole.n_points,
+        "triangles" if triangles else "cells": whole.n_cells,
+        "per_point": list(whole.point_data),
+        "bounds_mm": list(whole.bounds),
+        **of_space,
+    }
+
+
+def _read(place: Path, space: str | None = None, tkras: bool | None = None) -> tuple[Any, dict[str, Any]]:
+    """Return the surface in a file, in RAS+ mm, and the facts of its space."""
     if place.name.lower().endswith((*GIFTI, *FREESURFER)):
-        from pvfiblets.plotting.gifti import read_surface
+        from pvfiblets.plotting.gifti import placed_surface
 
         with as_stored(tkras_chosen() if tkras is None else tkras):
-            return read_surface(place)
+            found, placed = placed_surface(place)
+        return found, {"space": placed.space, "space_from": placed.space_from, "moved": placed.moved}
     mesh = pv.read(place)
     if isinstance(mesh, pv.DataSet) and not mesh.n_points:
-        raise ValueError(f"{path} holds no points: there is nothing to draw; check what wrote it")
-    given = unnamed() if space is None else checked(space)
-    return _in_ras(mesh, space_of_file(place, mesh) or (given if place.name.lower().endswith(OF_VTK) else None))
+        raise ValueError(f"{place} holds no points: there is nothing to draw; check what wrote it")
+    named, given = space_of_file(place, mesh), None if space is None else checked(space)
+    of_vtk = place.name.lower().endswith(OF_VTK)
+    taken = named or ((given or unnamed()) if of_vtk else None)
+    why = space_taken(named, given)[1] if named or of_vtk else "assumed, the file names none"
+    moved = "x and y negated" if taken == "LPS" else None
+    return _in_ras(mesh, taken), {"space": taken or OURS, "space_from": why, "moved": moved}
 
 
 def _in_ras(mesh: Any, space: Space | None) -> Any:

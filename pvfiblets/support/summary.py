@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import html
 import warnings
-from collections.abc import Mapping
-from typing import Any
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from ..streamlines import Streamlines
 
 
 def summary_html(title: str, data: Any, more: dict[str, str] | None = None) -> str:
@@ -21,6 +25,13 @@ def summary_html(title: str, data: Any, more: dict[str, str] | None = None) -> s
         rows["Dropped"] = ", ".join(f"{count:,} {reason}" for reason, count in data.dropped.items())
     cells = (f"<tr><th>{html.escape(k)}</th><td>{html.escape(v)}</td></tr>" for k, v in rows.items())
     return f"<table><tr><th colspan='2'>{html.escape(title)}</th></tr>{''.join(cells)}</table>"
+
+
+def counting(chunks: Iterable[Streamlines], dropped: Counter[str]) -> Iterator[Streamlines]:
+    """Yield the chunks of a source, and add up what reading left out of them."""
+    for chunk in chunks:
+        dropped.update(chunk.dropped)
+        yield chunk
 
 
 def warn_of_losses(name: str, dropped: Mapping[str, int], *, stacklevel: int) -> None:

@@ -10,20 +10,30 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from os import PathLike, fspath
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from .file_notes import note
 
-__all__ = ["as_stored", "in_scanner_space", "numbers_of", "tkras_chosen"]
+__all__ = ["NO_VOLUME", "Placed", "as_stored", "in_scanner_space", "numbers_of", "tkras_chosen"]
 
 Array = npt.NDArray[np.float64]
 
 _AXES = np.array([[-1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 """Directions of a volume's axes, row by row, in tkRAS."""
+NO_VOLUME = "assumed, the file has no geometry of a volume"
 _stored = False
+
+
+class Placed(NamedTuple):
+    """Points ``(n, 3)`` of a surface where they are taken to lie, its file's own space and why, and what was done."""
+
+    points: Array
+    space: str = "RAS"
+    space_from: str = "named by the file"
+    moved: str | None = None
 
 
 @contextmanager
@@ -44,25 +54,26 @@ def tkras_chosen() -> bool:
 
 def in_scanner_space(
     path: str | PathLike[str], points: Array, middle: npt.ArrayLike, axes: npt.ArrayLike | None
-) -> Array:
+) -> Placed:
     """Return ``(n, 3)`` points of tkRAS in the scanner's mm, by the middle and the axes of the volume."""
     centre = np.asarray(middle, np.float64)
-    if _stored or not centre.any():
-        return points
+    c_ras = f"c_ras = ({', '.join(f'{one:g}' for one in centre)}) mm"
+    if not centre.any():
+        return Placed(points, space_from="its c_ras is 0, as after a move to the scanner's space")
+    if _stored:
+        return Placed(points, "tkRAS", f"the file's volume, with {c_ras}")
     turn = np.eye(3)
     if axes is not None and abs(np.linalg.det(np.asarray(axes, np.float64))) > 0.5:
         turn = np.asarray(axes, np.float64).T @ np.linalg.inv(_AXES.T)
         turn = np.eye(3) if np.allclose(turn, np.eye(3), atol=1e-5) else turn
-    moved: Array = points @ turn.T + centre
+    turned = "" if np.array_equal(turn, np.eye(3)) else ", and turned as its volume is,"
     note(
         path,
-        f"{fspath(path)} has its points in FreeSurfer's surface space (tkRAS); they are moved by c_ras = "
-        f"({', '.join(f'{one:g}' for one in centre)}) mm"
-        + ("" if np.array_equal(turn, np.eye(3)) else ", and turned as its volume is,")
-        + " to the scanner's space, where tracts are. To leave them as stored, choose --tkras (in Python "
+        f"{fspath(path)} has its points in FreeSurfer's surface space (tkRAS); they are moved by {c_ras}{turned} to "
+        "the scanner's space, where tracts are. To leave them as stored, choose --tkras (in Python "
         "read_mesh(path, tkras=True))",
     )
-    return moved
+    return Placed(points @ turn.T + centre, "tkRAS", "the file's volume", f"by {c_ras}{turned.rstrip(',')}")
 
 
 def numbers_of(texts: Sequence[Any]) -> list[float] | None:

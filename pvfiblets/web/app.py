@@ -296,7 +296,7 @@ class Explorer(TrameApp):
             known = [choice for choice, _ in self.scene.volume_choices(self.scene.layer(layer_id))]
             volume = volume_in(value) if value in known else None
             if volume is not None and ("colours", volume) not in self.scene.store.loaded:
-                self.later(self.files.colour_by(layer_id, name, value, volume))
+                self.later(self.files.with_volume(volume, lambda: self.scene.set(layer_id, name, value)))
                 return
         try:
             self.scene.set(layer_id, name, value)

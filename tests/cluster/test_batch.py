@@ -21,7 +21,7 @@ from pvfiblets import regions
 from pvfiblets.cli.command import main
 from pvfiblets.cluster import batch, operations
 from pvfiblets.query.measures.profile import mean_profile
-from tests.cluster.conftest import SUBJECTS
+from tests.cluster.conftest import AFFINE, SUBJECTS
 
 pytestmark = pytest.mark.more
 
@@ -137,6 +137,32 @@ def test_profiles_of_bundles_by_arrays_and_by_images(client, cohort, tmp_path):
     ).read().to_pylist()  # fmt: skip
     np.testing.assert_allclose(column(straight, "mean"), np.linspace(0, 40, 9), atol=1e-3)
     assert {row["bundle"] for row in straight} == {"CST"}
+
+
+def test_samples_are_those_of_each_files_image(client, cohort, tmp_path):
+    """An image whose values are 1000 times its subject and x (mm); a third of the lines leave it."""
+    for n, subject in enumerate(SUBJECTS):
+        x = (AFFINE[0, 0] * np.arange(20.0) + AFFINE[0, 3])[:, None, None] + 1000 * n
+        image = nib.Nifti1Image(np.broadcast_to(x, (20, 24, 12)).astype(np.float32), AFFINE)
+        nib.save(image, tmp_path / f"{subject}.nii")
+    options = {"image": str(tmp_path / "{subject}.nii")}
+    result = batch("sample", cohort / PATTERN, tmp_path / "points", cluster=client, to=".npy", **options)
+    means = batch("sample", cohort / PATTERN, tmp_path / "means", cluster=client, to=".trx", statistic="mean",
+                  weights="points", name="x", **options)  # fmt: skip
+    for n, subject in enumerate(SUBJECTS):
+        lines = pf.read(cohort / name_of(subject))
+        wanted = np.where(lines.points[:, 2] <= AFFINE[2, 3] + 10 * 11.5, lines.points[:, 0] + 1000.0 * n, np.nan)
+        found = np.load(tmp_path / "points" / name_of(subject, ".npy"))
+        np.testing.assert_allclose(found, wanted, atol=0.01)
+        (row,) = rows_of(result, subject)
+        assert (row["values"], row["without_value"]) == (np.isfinite(wanted).sum(), np.isnan(wanted).sum())
+        assert (row["low"], row["mean"], row["high"]) == pytest.approx(
+            (np.nanmin(wanted), np.nanmean(wanted), np.nanmax(wanted)), abs=0.01
+        )
+        of_lines = pf.read(tmp_path / "means" / name_of(subject, ".trx")).per_streamline["x"].ravel()
+        known = [part[np.isfinite(part)] for part in np.split(wanted, lines.offsets[1:-1])]
+        np.testing.assert_allclose(of_lines, [part.mean() if len(part) else np.nan for part in known], atol=0.01)
+        assert rows_of(means, subject)[0]["values"] == sum(len(part) > 0 for part in known)
 
 
 AFFINE_X = np.array([[2.0, 0, 0, -4], [0, 2.0, 0, -2], [0, 0, 2.0, -2], [0, 0, 0, 1]])
@@ -320,6 +346,9 @@ def test_what_cannot_be_begun(cohort, tmp_path):
         (("paint", source, tmp_path), {}, "operation is 'paint'; expected one of 'convert'"),
         (("density", source, tmp_path), {}, "density needs voxel or like"),
         (("select", source, tmp_path), {}, "select needs passes or"),
+        (("sample", source, tmp_path), {}, "sample needs image; give image="),
+        (("sample", source, tmp_path), {"image": "a.nii", "to": ".tsf", "statistic": "mean"}, "a value per point"),
+        (("sample", source, tmp_path), {"image": "a.nii", "to": ".nii"}, "no format has this suffix"),
         (("convert", source, tmp_path), {"workers": 0}, "workers is 0"),
         (("convert", source, tmp_path), {"to": ".trk.gz"}, "no write"),
         (("convert", source, tmp_path), {"resume": True, "overwrite": True}, "exclude each other"),

@@ -21,16 +21,18 @@ PAGE = Path(__file__).resolve().parents[2] / "docs" / "clusters.md"
 
 def test_the_page_runs(client, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    Path("atlas").mkdir()
+    for folder in ("atlas", "fa"):
+        Path(folder).mkdir()
     for n, name in enumerate(("01", "02")):
         Path(f"study/sub-{name}/dwi").mkdir(parents=True)
         pf.write(f"study/sub-{name}/dwi/sub-{name}_tracts.trk", brain_streamlines(60, 2.0, seed=n, fa=True))
         nib.save(nib.Nifti1Image(np.arange(8000, dtype=np.int16).reshape(20, 20, 20) % 5, AFFINE),
                  f"atlas/sub-{name}.nii.gz")  # fmt: skip
+        nib.save(nib.Nifti1Image(np.ones((20, 20, 20), np.float32), AFFINE), f"fa/sub-{name}.nii.gz")
     blocks = re.findall(r"^```(sh|python)\n(.*?)^```", PAGE.read_text(), re.DOTALL | re.MULTILINE)
     assert [language for language, _ in blocks] == ["sh", "python"]
     commands = [shlex.split(line) for line in blocks[0][1].splitlines()]
-    assert len(commands) == 6
+    assert len(commands) == 7
     for command in commands:
         extra = ["--no-exact", "--per-point", "fa"] if command[2] == "convert" else []
         assert main([*command[1:], *extra, "--cluster", client.scheduler.address]) == 0, command

@@ -41,6 +41,15 @@ def test_columns_are_colours_or_vectors_as_rgb_says(plotter, three_lines, colour
     assert actor.copy().rgb is False
 
 
+def test_three_bytes_are_a_colour_unless_rgb_is_false(plotter, three_lines, colours_in):
+    three_lines.per_streamline["colors"] = np.array([[255, 0, 0], [0, 255, 0], [0, 0, 255]], np.uint8)
+    actor = plotter.add_fiblets(three_lines, scalars="colors", lighting=False)
+    plotter.show(auto_close=False)
+    assert colours_in(plotter.screenshot(None)) == {(255, 0, 0), (0, 255, 0), (0, 0, 255)}
+    actor.rgb = False
+    np.testing.assert_array_equal(actor.active_scalars.values, 255.0)
+
+
 @pytest.mark.parametrize("how", ["array", "name", "compressed", "later"])
 def test_vectors_of_points_by_their_magnitude(plotter, three_lines, how):
     rng = np.random.default_rng(2)

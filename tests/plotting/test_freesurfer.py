@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import warnings
 
@@ -83,6 +84,57 @@ def test_an_oblique_volume_turns_its_surface(tmp_path, writer):
     matrix = header.get_affine() @ np.linalg.inv(header.get_vox2ras_tkr())
     found = read_mesh(writer(tmp_path / ("a.gii" if writer is gifti else "lh.pial"), axes=axes))
     np.testing.assert_allclose(found.points, apply_affine(matrix, POINTS), atol=1e-4)
+
+
+def info_of(path, *options, capsys):
+    assert main(["info", str(path), "--json", *options]) == 0
+    return json.loads(capsys.readouterr().out)
+
+
+MOVED = "by c_ras = (5.5, -17, 32) mm"
+
+
+@pytest.mark.filterwarnings("always")
+@pytest.mark.parametrize(
+    ("name", "write", "space", "moved"),
+    [
+        ("lh.pial", binary, "tkRAS", MOVED),
+        ("a.surf.gii", gifti, "tkRAS", MOVED),
+        ("lh.white", to_scanner, "RAS", None),
+        ("b.gii", lambda path: gifti(path, dataspace=1), "RAS", None),
+        ("c.gii", lambda path: gifti(path, c_ras=(0, 0, 0)), "RAS", None),
+    ],
+)
+def test_info_says_where_a_surface_lies(tmp_path, capsys, name, write, space, moved):
+    path = write(tmp_path / name)
+    said = info_of(path, capsys=capsys)
+    assert (said["points"], said["triangles"], said["bytes"]) == (len(POINTS), len(FACES), path.stat().st_size)
+    assert (said["space"], said["moved"]) == (space, moved)
+    box = np.stack([POINTS.min(axis=0), POINTS.max(axis=0)], axis=1)
+    shift = np.array(C_RAS if moved else (0.0, 0.0, 0.0))[:, None]
+    np.testing.assert_allclose(said["bounds_mm"], (box + shift).ravel(), atol=1e-4)
+    kept = info_of(path, "--tkras", capsys=capsys)
+    np.testing.assert_allclose(kept["bounds_mm"], box.ravel(), atol=1e-4)
+    assert kept["moved"] is None
+    assert (MOVED.removeprefix("by ") in kept["space_from"]) == (moved is not None)
+
+
+@pytest.mark.parametrize("suffix", [".vtk", ".vtp", ".vtu", ".vtm", ".ply", ".stl", ".obj"])
+def test_info_reads_surfaces_of_vtk(tmp_path, capsys, suffix):
+    ball, path = BALL.translate((20.0, 5.0, 1.0)), tmp_path / f"ball{suffix}"
+    whole = {".vtu": ball.cast_to_unstructured_grid(), ".vtm": pv.MultiBlock([ball])}.get(suffix, ball)
+    whole.save(path)
+    said = info_of(path, capsys=capsys)
+    assert (said["format"], said["triangles"], said["space"]) == (suffix, len(FACES), "RAS")
+    np.testing.assert_allclose(said["bounds_mm"], ball.bounds, atol=1e-4)
+    assert said["space_from"].startswith("assumed")
+    of_vtk = suffix in (".vtk", ".vtp", ".vtu", ".vtm")
+    said = info_of(path, "--space", "lps", capsys=capsys)
+    x_min, x_max = ball.bounds[:2]
+    np.testing.assert_allclose(said["bounds_mm"][:2], (-x_max, -x_min) if of_vtk else (x_min, x_max), atol=1e-4)
+    assert said["moved"] == ("x and y negated" if of_vtk else None)
+    assert main(["info", str(path)]) == 0
+    assert re.search(r"^triangles +320$", capsys.readouterr().out, re.MULTILINE)
 
 
 def test_what_lies_in_the_scanners_space_stays(tmp_path):

@@ -41,9 +41,13 @@ def scene_of_views(folder):
         plotter.close()
 
 
-def assert_script_draws(scene, folder, picture):
-    """Run the script of a scene whose root is a folder, and compare what it draws with a picture."""
-    text = as_script(scene, str(folder / "found.png"))
+def assert_script_draws(scene, folder, picture, placing=contextlib.nullcontext):
+    """Run the script of a scene whose root is a folder, and compare what it draws with a picture.
+
+    It is written, but not run, in the context ``placing``.
+    """
+    with placing():
+        text = as_script(scene, str(folder / "found.png"))
     exec(compile(text.replace('FOLDER = Path(".")', f"FOLDER = Path({str(folder)!r})"), "script", "exec"), {})
     found = np.asarray(pv.read(folder / "found.png").active_scalars).reshape(*picture.shape[:2], -1)[::-1]
     assert (abs(found[..., :3].astype(int) - picture).max(axis=-1) > 8).mean() < 0.002

@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 import pyvista as pv
 
+from pvfiblets.cli.command import main
 from pvfiblets.web.server.access import LARGEST_SESSION
+from pvfiblets.web.server.options import Options
 from pvfiblets.web.server.scratch import Notes
 from pvfiblets.web.session import files as session
 from pvfiblets.web.session.document import Source
@@ -87,6 +89,49 @@ async def test_the_dialog_says_the_space_of_files_that_name_none(desk, scene, fo
     kept["layers"][0]["source"]["space"] = "LAS"
     with pytest.raises(SessionError, match="space of a source is 'LAS'; choose RAS or LPS"):
         session.from_dict(scene, kept)
+
+
+@pytest.mark.parametrize("suffix", [".vtk", ".vtp", ".ply"])
+async def test_the_dialog_says_the_space_of_cuts_and_regions(desk, scene, folder, suffix):
+    """A ball about the lines' middle by LPS: its file has x and y negated. PLY is no file of VTK: it is left alone."""
+    pv.Sphere(radius=8.0, center=(-20, -18, 10)).save(folder / f"lps{suffix}")
+    layer = scene.open("lines.fiblets")
+    desk.choose(layer)
+    for purpose in ("clip", "region"):
+        desk.files.browse("", purpose)
+        desk.page.open_space = "LPS"
+        desk.files.take(f"lps{suffix}", False)
+        await desk.done()
+    space = {} if suffix == ".ply" else {"space": "LPS"}
+    shape = {"kind": "mesh", "path": f"lps{suffix}", **space}
+    assert scene.state.clips[0].shape == shape
+    assert scene.layer(layer.id).filters.regions["of"][0]["region"] == {**shape, "name": "A"}
+    shown = scene.actor(layer.id).shown
+    scene.filters.set_regions(layer.id, {"how": "passes", "region": {"kind": "mesh", "path": "ball.ply"}})
+    np.testing.assert_array_equal(shown, scene.actor(layer.id).shown if space else np.zeros(60, bool))
+    assert shown.any() == bool(space)
+    desk.history.undo()
+    kept, picture = session.to_dict(scene), scene.cameras.screenshot()
+    assert_script_draws(scene, folder, picture)
+    scene.remove(layer.id)
+    session.from_dict(scene, kept)
+    np.testing.assert_array_equal(scene.cameras.screenshot(), picture)
+    kept["clips"][0]["shape"]["space"] = "LAS"
+    with pytest.raises(SessionError, match="space of cut is 'LAS'; choose RAS or LPS"):
+        session.from_dict(scene, kept)
+
+
+async def test_the_server_says_the_space_of_the_files_that_it_is_given(desk, scene, folder, monkeypatch):
+    pv.Sphere(radius=2.0, center=(5, 7, 9)).save(folder / "ball.vtk")
+    started = []
+    monkeypatch.setattr("pvfiblets.cli.serve._run", lambda options, _: started.append(options) or 0)
+    given = ["--mesh", str(folder / "ball.vtk"), "--mesh", str(folder / "ball.ply"), "--root", str(folder)]
+    assert main(["serve", *given, "--space", "lps", "--port", "0"]) == 0
+    desk.options = Options.from_dict(started[0].as_dict())
+    desk.files.open_given()
+    await desk.done()
+    assert [layer.source.space for layer in scene.layers] == ["LPS", None]
+    assert np.allclose(scene.actor(scene.layers[0].id).center, [-5, -7, 9], atol=0.1)
 
 
 async def test_a_session_is_read_beside_the_page_and_the_page_goes_on(desk, scene, threads):
@@ -189,7 +234,7 @@ async def test_files_and_volumes_that_colour_lines_are_read_beside_the_page(desk
     layer = scene.open("lines.fiblets")
     threads.clear()
     value = {"volume": {"path": "head.nii.gz"}}
-    await desk.files.colour_by(layer.id, "scalars", value, Source("head.nii.gz"))
+    await desk.files.with_volume(Source("head.nii.gz"), lambda: scene.set(layer.id, "scalars", value))
     assert threads == [False]
     assert scene.layer(layer.id).settings["scalars"] == value
 

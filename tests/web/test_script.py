@@ -1,21 +1,27 @@
 """Scripts: plain Python that makes the same picture, run as anybody would."""
 
 import builtins
+import contextlib
 import keyword
 import re
 import subprocess
 import sys
 
+import nibabel as nib
 import numpy as np
 import pytest
 import pyvista as pv
 
 import pvfiblets
+from pvfiblets.support.nifti_space import nifti_space
+from pvfiblets.support.surface_space import as_stored
 from pvfiblets.volumes import RaycastVolume
 from pvfiblets.volumes.raycast_options import INTEGRATORS
 from pvfiblets.web.scene import layers
 from pvfiblets.web.scene.layers import USUAL
+from pvfiblets.web.session.document import Source
 from pvfiblets.web.session.script import as_script
+from tests.web.desk import assert_script_draws
 
 
 def tracts(scene):
@@ -94,6 +100,7 @@ def volumes(scene):
         scene.set(lines.id, "scalars", value)
         scene.set(lines.id, "line_width", 2.0)
         scene.filters.set_filter(lines.id, "weight", 15 * group, 15 * group + 14)
+    scene.filters.set_filter(scene.layers[-1].id, "atlas", 3, 3, image=Source("atlas.nii.gz"))
     scene.remove(demo.id)
     scene.cameras.view("coronal")
 
@@ -120,6 +127,36 @@ def test_a_script_makes_the_same_picture(scene, folder, fill):
     assert len(np.unique(picture.reshape(-1, 3), axis=0)) > 100
     differ = (again != picture).any(axis=-1)
     assert differ.sum() == 0, f"{differ.sum()} of {differ.size} pixels differ"
+
+
+@contextlib.contextmanager
+def as_told():
+    """What ``serve --nifti-space qform --nifti-units header --tkras`` does."""
+    with nifti_space("qform", units="header"), as_stored():
+        yield
+
+
+def test_a_script_places_images_and_surfaces_as_the_server_does(scene, folder):
+    mirrored = np.diag([-4.0, 4.0, 4.0, 1.0])
+    mirrored[0, 3] = 60.0
+    image = nib.Nifti1Image(np.arange(16**3, dtype=np.float32).reshape(16, 16, 16), np.diag([4.0, 4.0, 4.0, 1.0]))
+    image.set_qform(mirrored)
+    nib.save(image, folder / "both.nii")
+    ball = pv.Icosphere(radius=8.0, nsub=1)
+    space = {"head": [2, 0, 20], "valid": "1", "filename": "t1", "volume": [9, 9, 9], "voxelsize": [1.0] * 3,
+             "xras": [-1.0, 0, 0], "yras": [0, 0, -1.0], "zras": [0, 1.0, 0], "cras": [30.0, 20.0, 0]}  # fmt: skip
+    nib.freesurfer.write_geometry(folder / "lh.pial", ball.points, ball.regular_faces, volume_info=space)
+    with as_told():
+        layer = scene.open("lines.fiblets")
+        scene.open("lh.pial")
+        scene.open("both.nii", "volume")
+        scene.set(layer.id, "scalars", {"volume": {"path": "both.nii"}})
+        scene.show(scene.layers[-1].id, False)
+        picture = scene.cameras.screenshot()
+    assert_script_draws(scene, folder, picture, as_told)
+    for kept in (nifti_space("qform", units="header"), as_stored()):  # either moves something
+        with pytest.warns(UserWarning, match="both.nii|lh.pial"), pytest.raises(AssertionError):
+            assert_script_draws(scene, folder, picture, lambda kept=kept: kept)
 
 
 def test_a_script_can_be_read(scene):

@@ -15,9 +15,11 @@ from pvfiblets.errors import FormatError
 from pvfiblets.formats import attachments
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.web.session import files as session
+from pvfiblets.web.session.document import Source
 from pvfiblets.web.session.history import History
 from pvfiblets.web.session.script import as_script
-from tests.web.desk import Desk
+from tests.web.conftest import look_down
+from tests.web.desk import Desk, scene_of_views
 
 
 @pytest.fixture
@@ -31,6 +33,20 @@ def heights(folder, lines):
 @pytest.fixture
 def desk(scene, folder):
     return Desk(scene, folder)
+
+
+def filters_of(desk, layer):
+    """Return what the tab Filter shows of a layer."""
+    desk.choose(layer)
+    desk.filtering.refresh()
+    return desk.page.filters
+
+
+def drawn_x(scene):
+    """Return where along x something is drawn, mm, to a pixel of 0.5."""
+    look_down(scene, (30, 18, 0), 0.5)
+    picture = scene.cameras.screenshot()
+    return np.flatnonzero(picture.any(axis=(0, 2))) * 0.5 - 20.0
 
 
 def values_of(scene, layer):
@@ -174,6 +190,82 @@ def test_volumes_of_the_scene_are_choices_and_stay_when_their_layer_goes(scene, 
     history.redo()
     found = scene.queries.histogram(layer.id)
     assert (found["name"], sum(found["counts"])) == ("head", 16**3)
+
+
+async def test_an_open_image_is_a_criterion(desk, scene, lines):
+    """A voxel of the atlas has 3 up to x = 14.3 mm, then 5 up to 30.3 mm, then 0, and ends at x = 62.3 mm."""
+    layer = scene.open("lines.fiblets")
+    assert "volume atlas.nii.gz" not in [entry["value"] for entry in filters_of(desk, layer)["more"]]
+    atlas = scene.open("atlas.nii.gz")
+    scene.show(atlas.id, False)
+    name = "volume atlas.nii.gz"
+    assert name in [entry["value"] for entry in filters_of(desk, layer)["more"]]
+    with pytest.raises(ValueError, match="no values"):
+        scene.filters.set_filter(layer.id, name, 3, 3)
+    desk.filtering.add(name)
+    await desk.done()
+    (row,) = filters_of(desk, layer)["criteria"]
+    assert (row["name"], row["limits"], row["value"]) == (name, [0.0, 5.0], [0.0, 5.0])
+    assert name not in [entry["value"] for entry in filters_of(desk, layer)["more"]]
+    counts = scene.queries.histogram(layer.id, Source("atlas.nii.gz"))["counts"]
+    x = lines.points[:, 0]
+    assert (counts[0], counts[-1]) == (((x > 30.3) & (x < 62.3)).sum(), ((x > 14.3) & (x < 30.3)).sum())
+
+    assert drawn_x(scene).max() == pytest.approx(62.0, abs=0.6)
+    desk.filtering.set_criterion(name, [4.5, 5.0])
+    scene.remove(atlas.id)
+    scene.forget_unused()
+    assert dict(scene.actor(layer.id).criteria) == {name: (4.5, 5.0)}
+    kept = drawn_x(scene)
+    assert kept.min() == pytest.approx(14.5, abs=0.6)
+    assert kept.max() == pytest.approx(30.0, abs=0.6)
+    script, data = as_script(scene), session.to_dict(scene)
+    assert ".criterion(FOLDER / 'atlas.nii.gz', (4.5, 5.0))" in script
+    assert data["layers"][0]["filters"]["images"] == {name: {"path": "atlas.nii.gz"}}
+    desk.filtering.remove(name)
+    assert not scene.layer(layer.id).filters.images
+    assert drawn_x(scene).max() == pytest.approx(69.0, abs=0.6)
+    desk.history.undo()
+    assert drawn_x(scene).max() == pytest.approx(30.0, abs=0.6)
+
+    session.from_dict(scene, data)
+    assert dict(scene.actor(layer.id).criteria) == {name: (4.5, 5.0)}
+    for bad, says in (
+        ({"images": {name: {"path": "../atlas.nii.gz"}}}, "outside of the folder"),
+        ({"images": {name: {"path": "lines.fiblets"}}}, "cannot be opened"),
+        ({"images": {"other": {"path": "atlas.nii.gz"}}}, "cannot have"),
+        ({"images": {}}, "cannot have"),
+    ):
+        data["layers"][0]["filters"].update(bad)
+        with pytest.raises(session.SessionError, match=says):
+            session.from_dict(scene, data)
+
+
+def test_images_of_slices_are_criteria_and_colour_lines(folder):
+    with scene_of_views(folder) as scene:
+        scene.open("atlas.nii.gz", "image")
+        layer = scene.open("lines.fiblets")
+        desk = Desk(scene, folder)
+        assert "volume atlas.nii.gz" in [entry["value"] for entry in filters_of(desk, layer)["more"]]
+        scene.set(layer.id, "scalars", {"volume": {"path": "atlas.nii.gz"}})
+        desk.choose(layer)
+        desk.run(lambda: desk.filtering.add("volume atlas.nii.gz"))
+        assert list(scene.actor(layer.id).criteria) == ["volume atlas.nii.gz"]
+
+
+async def test_an_image_that_no_line_meets_is_no_criterion(desk, scene, folder):
+    import nibabel
+
+    far = np.diag([4.0, 4.0, 4.0, 1.0])
+    far[:3, 3] = 500.0
+    nibabel.save(nibabel.Nifti1Image(np.arange(64, dtype=np.float32).reshape(4, 4, 4), far), folder / "far.nii")
+    scene.open("far.nii")
+    layer = scene.open("lines.fiblets")
+    desk.choose(layer)
+    desk.filtering.add("volume far.nii")
+    with pytest.raises(ValueError, match="no streamline of 'lines.fiblets' has a value of volume far.nii"):
+        await desk.done()
+    assert not scene.layer(layer.id).filters.active
 
 
 def test_tables_and_profiles_say_what_the_volume_has_there(scene, lines):

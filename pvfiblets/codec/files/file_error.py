@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from os import PathLike
@@ -10,6 +11,7 @@ import numpy as np
 
 from ... import formats
 from ...streamlines import Streamlines
+from ...support.summary import counting
 from ..compress import CHUNK_POINTS
 from ..decompress import iter_chunks
 from ..error import CodingError, ErrorTally
@@ -20,11 +22,19 @@ __all__ = ["compare_file", "measure_file_error"]
 
 
 def measure_file_error(
-    fiblets: str | PathLike[str], original: str | PathLike[str], *, progress: Progress = False
+    fiblets: str | PathLike[str],
+    original: str | PathLike[str],
+    *,
+    progress: Progress = False,
+    dropped: Counter[str] | None = None,
 ) -> CodingError:
-    """Compare a ``.fiblets`` file with the file it was made from, in bounded memory."""
+    """Compare a ``.fiblets`` file with the file it was made from, in bounded memory.
+
+    What reading leaves out of the original is added to `dropped`.
+    """
     total = FibletSet.open(fiblets).n_points
-    return compare_file(formats.iter_chunks(original, CHUNK_POINTS), total, fiblets, progress)
+    originals = counting(formats.iter_chunks(original, CHUNK_POINTS), Counter() if dropped is None else dropped)
+    return compare_file(originals, total, fiblets, progress)
 
 
 def compare_file(

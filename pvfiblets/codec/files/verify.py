@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from os import PathLike, fspath
 from pathlib import Path
 from typing import Any
@@ -41,8 +42,9 @@ def verified(
         "promise_mm": fiblets.points_promise,
     }
     if original is not None:
+        dropped: Counter[str] = Counter()
         try:
-            error = measure_file_error(path, original, progress=progress)
+            error = measure_file_error(path, original, progress=progress, dropped=dropped)
         except FormatError:
             raise
         except ValueError as mismatch:
@@ -51,6 +53,7 @@ def verified(
         result["kept"] = bool(error.max_mm <= result["promise_mm"])
         # Files do not say which angle they were made for, so that this is told and fails nothing.
         result["directions_kept"] = max_angle is None or not error.max_degrees > max_angle
+        result["dropped"] = dict(dropped)  # of the original, by reading it
     return result
 
 

@@ -93,10 +93,11 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
             ``"group"``; ``"ends"``, the direction from end to end as red, green, blue; ``"id"``,
             the number of the streamline; ``"random"``, a colour for each; ``"density"``,
             streamlines per pixel), the name of per-streamline or
-            per-point data, or an array with one value or one colour (3 or 4 columns) per streamline
-            or per point. A colour per point takes 3 bytes (4 with an alpha), and 4 on the GPU; with an alpha it
-            is drawn in 6 bits a channel. Vectors are mapped by their magnitude (``rgb``); words, one per
-            streamline, are categories.
+            per-point data, or an array with one value or one colour per streamline or per point.
+            3 or 4 columns of uint8, or of floats from 0 to 1, are colours, as VTK takes bytes (such as the array
+            ``colors`` that DIPY writes); other columns are vectors, mapped by their magnitude. ``rgb=True`` or
+            ``rgb=False`` decides otherwise, as in ``add_mesh``. A colour per point takes 3 bytes (4 with an alpha),
+            and 4 on the GPU; with an alpha it is drawn in 6 bits a channel. Words, one per streamline, are categories.
             The path of a file with a number per point or per streamline is another choice: ``.tsf``
             (MRtrix), ``.npy``, ``.txt``, ``.csv``; it is called by its name without the suffix.
             ``"coding_error"`` shows how far each point is from where it was, if ``source`` is not

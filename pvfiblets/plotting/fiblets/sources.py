@@ -17,6 +17,7 @@ from pvfiblets.codec.point_arrays import with_point_values as add_values
 from pvfiblets.engine.fiblets.data.sampled_volume import VolumeSource
 from pvfiblets.formats.attachments import is_values_file, name_of, values_for
 from pvfiblets.invalid_points import Invalid, valid_points
+from pvfiblets.line_cells import NOT_LINES
 from pvfiblets.lines import refuse_words, rows_of
 from pvfiblets.other_libraries import EXPECTED, streamlines_of
 from pvfiblets.plotting.fiblets.scalars import UNNAMED, are_colours, magnitudes, refuse_unknown
@@ -191,7 +192,7 @@ def as_streamlines(source: Any) -> Streamlines:
         return source[:]
     found = streamlines_of(source)
     if found is not None:
-        cells = found.dropped.get("cells that are not lines", 0)
+        cells = found.dropped.get(NOT_LINES, 0)
         if not len(found) and cells:
             raise ValueError(
                 f"source is a {type(source).__name__} without lines, but with {cells:,} other cells (vertices, "

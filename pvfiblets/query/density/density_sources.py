@@ -6,7 +6,7 @@ import os
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -22,7 +22,8 @@ from ...images.image import Image
 from ...images.sources import as_image, is_image
 from ...invalid_points import CUT, NONFINITE, valid_points
 from ...streamlines import Streamlines
-from ...support.summary import warn_of_losses
+from ...support.summary import counting, warn_of_losses
+from ..measures.chunks import without_groups
 from ..measures.measures import Distance, Values, decoded_by_rank, measure
 
 if TYPE_CHECKING:
@@ -90,7 +91,7 @@ def as_source(source: Any, weights: Any, wanted: Wanted) -> Source:
         if formats.registry.suffix_of(path) != ".fiblets":
             facts = formats.info(path)
             known = facts.get("streamlines"), facts.get("points")
-            return _Plain(lambda: _chunks_of(path), path, known, weights, wanted)
+            return _Plain(partial(formats.iter_chunks, path, CHUNK), path, known, weights, wanted)
         source = FibletSet.open(path)
     if isinstance(source, FibletSet):
         return _Compressed(source, weights, wanted)
@@ -100,21 +101,12 @@ def as_source(source: Any, weights: Any, wanted: Wanted) -> Source:
             cut = {reason: lines.dropped[reason] for reason in (NONFINITE, CUT) if reason in lines.dropped}
             warn_of_losses("the streamlines", cut, stacklevel=3)
         spans = list(lines.blocks(CHUNK))
-        known = len(lines), lines.n_points
+        known, lines = (len(lines), lines.n_points), without_groups(lines)
         return _Plain(lambda: (lines[a:b] for a, b in spans), "the streamlines", known, weights, wanted)
     raise TypeError(
         f"source is a {type(source).__name__}; give a FibletSet, Streamlines, or the path of a tractogram; "
         "lines of PyVista are lines.fiblets.to_streamlines()"
     )
-
-
-def _chunks_of(path: str) -> Iterator[Streamlines]:
-    """Yield a file's streamlines, and warn of what reading left out."""
-    dropped: Counter[str] = Counter()
-    for chunk in formats.iter_chunks(path, CHUNK):
-        dropped.update(chunk.dropped)
-        yield chunk
-    warn_of_losses(path, dropped, stacklevel=3)
 
 
 class _Compressed:
@@ -232,7 +224,8 @@ class _Plain:
             wanted = np.asarray(wanted)
             self.per_point = _is_per_point(wanted, *self._survey[2:])
         line = point = 0
-        for chunk in shown(self._chunks(), self._known[1], "adding up", progress):
+        dropped: Counter[str] = Counter()
+        for chunk in shown(counting(self._chunks(), dropped), self._known[1], "adding up", progress):
             lines, points = slice(line, line + len(chunk)), slice(point, point + chunk.n_points)
             own = np.ones(len(chunk))
             if isinstance(weights, str):
@@ -248,6 +241,7 @@ class _Plain:
                 values = np.array(wanted[points if self.per_point else lines], np.float64)
             yield Part(_writable(chunk.points, np.float64), _writable(chunk.offsets, np.int64), own, values)
             line, point = lines.stop, points.stop
+        warn_of_losses(self._place, dropped, stacklevel=3)
 
     def _named(self, chunk: Streamlines, name: str) -> tuple[bool, Floats]:
         """Whether an array is of points, and its numbers."""

@@ -85,7 +85,7 @@ def _write_nifti(path: str | PathLike[str], values: npt.NDArray[Any], grid: Voxe
     image.set_sform(grid.affine, grid.space_code)
     image.set_qform(grid.affine, grid.space_code if _is_rigid(grid.affine) else 0)  # a quaternion holds no shear
     image.header.set_xyzt_units("mm")
-    image.header["descrip"] = f"pvfiblets density: {name}".encode()[:79]
+    image.header["descrip"] = f"pvfiblets: {name}".encode()[:79]
     with _opened(path) as file:
         image.to_stream(file)
 
@@ -106,7 +106,7 @@ def _write_mif(path: str | PathLike[str], values: npt.NDArray[Any], affine: Arra
         f"layout: {','.join(f'+{axis}' for axis in range(data.ndim))}",
         f"datatype: {kinds[data.dtype.kind]}{bits}{'LE' if bits > 8 else ''}",
         *(f"transform: {','.join(repr(float(part)) for part in row)}" for row in rows),
-        f"comments: pvfiblets density: {' '.join(name.split())}",
+        f"comments: pvfiblets: {' '.join(name.split())}",
     ]
     text = "\n".join(lines)
     start = len(text.encode()) + 40

@@ -17,6 +17,7 @@ from ...errors import FormatError
 from ...images.files import stem_of
 from ...images.sources import as_image
 from ..bundles.colours import as_colour, distinct_colour, hex_colour
+from ..density.map_files import write_map
 from ..density.voxel_grid import VoxelGrid, grid_like
 from ..regions.labels import Labels
 from ..regions.placement import finite_vector, positive
@@ -274,28 +275,21 @@ class RegionPainter:
     # --------------------------------------------------------------------------------------------------------- files
 
     def save(self, path: str | os.PathLike[str]) -> Path:
-        """Write a NIfTI label volume, and beside it a BIDS table of its ``index``, ``name`` and ``color``.
+        """Write a label volume, and beside it a BIDS table of its ``index``, ``name`` and ``color``.
 
         Parameters
         ----------
         path : str or PathLike
-            ``.nii`` or ``.nii.gz``.
+            Ends in ``.nii``, ``.nii.gz``, ``.mif``, ``.mif.gz`` or ``.vti``.
 
         Returns
         -------
         Path
             The table's: the same name, ``.tsv``.
         """
-        import nibabel
-
         target = Path(path).expanduser()
-        if not target.name.lower().endswith((".nii", ".nii.gz")):
-            raise ValueError(f"{target} is no name of a NIfTI file; give .nii or .nii.gz")
         table = target.with_name(f"{stem_of(target.name)}.tsv")
-        image = nibabel.Nifti1Image(self.labels, self.grid.affine)
-        image.set_sform(self.grid.affine, self.grid.space_code)
-        image.header.set_xyzt_units("mm")
-        nibabel.save(image, target)
+        write_map(target, self.labels, self.grid, "labels")
         with table.open("w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file, delimiter="\t", lineterminator="\n")
             writer.writerow(["index", "name", "color"])

@@ -145,7 +145,7 @@ class AtlasActions(Actions):
         rows.append({"not": False, "how": self._how, "region": region})
         wanted = condition("and" if not asked else join, rows)
         self._app.later(
-            self._app.files.with_shape("labels", path, lambda: self._app.scene.filters.set_regions(lines.id, wanted))
+            self._app.files.with_shape(region, lambda: self._app.scene.filters.set_regions(lines.id, wanted))
         )
 
     def clear(self) -> None:

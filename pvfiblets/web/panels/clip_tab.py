@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -38,13 +39,14 @@ class CutActions(Actions):
             for clip in self._app.scene.state.clips
         ]
 
-    def add(self, kind: str, path: str | None = None) -> None:
-        """Add a cut in the middle of what is shown, or by the mesh in a file, which is read beside everything else."""
-        scene, files = self._app.scene, self._app.files
-        if path is None:
-            scene.filters.add_clip(kind)
-        else:
-            self._app.later(files.with_shape("mesh", path, lambda: scene.filters.add_clip(kind, path=path)))
+    def add(self, kind: str) -> None:
+        """Add a cut in the middle of what is shown."""
+        self._app.scene.filters.add_clip(kind)
+
+    def add_file(self, place: Mapping[str, Any]) -> None:
+        """Add a cut by the mesh in a file (path, and maybe space), which is read beside everything else."""
+        shape = {"kind": "mesh", **place}
+        self._app.later(self._app.files.with_shape(shape, lambda: self._app.scene.filters.add_clip(**shape)))
 
     def enable(self, clip_id: str, enabled: bool) -> None:
         """Switch a cut on or off."""

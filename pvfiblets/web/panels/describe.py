@@ -77,12 +77,13 @@ class Charts:
 
     def __init__(self, scene: Any) -> None:
         self._scene = scene
-        self._kept: dict[tuple[Any, str, str], tuple[str, list[float]]] = {}
+        self._kept: dict[tuple[Any, ...], tuple[str, list[float]]] = {}
 
     def of(self, layer_id: str, name: str) -> tuple[str, list[float]]:
         """Return the chart of a layer's values, and between which they lie."""
         found = self._scene.layer(layer_id)
-        return self._chart((found.source, found.kind, name), lambda: self._scene.queries.histogram(layer_id, name))
+        array = found.filters.images.get(name, name)
+        return self._chart((found.source, found.kind, array), lambda: self._scene.queries.histogram(layer_id, array))
 
     def of_range(self, layer_id: str) -> str:
         """Return the chart of what colours a layer; nothing where colours stand for no numbers."""
@@ -97,7 +98,7 @@ class Charts:
             name = names[0]
         return self.of(layer_id, name)[0] if name in names else ""
 
-    def _chart(self, key: tuple[Any, str, str], count: Callable[[], dict[str, Any]]) -> tuple[str, list[float]]:
+    def _chart(self, key: tuple[Any, ...], count: Callable[[], dict[str, Any]]) -> tuple[str, list[float]]:
         if key not in self._kept:
             if len(self._kept) >= MOST_CHARTS:
                 self._kept.pop(next(iter(self._kept)))

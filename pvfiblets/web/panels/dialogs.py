@@ -136,7 +136,7 @@ def _files(app: Any) -> None:
                 v_if=f"entries.length && !{LISTED}.length",
                 classes="pv-small pa-4",
             )
-        with html.Div(classes="px-4 py-1 pv-pair", v_if="several && entries.some((e) => e.spaced)", data_part="space"):
+        with html.Div(classes="px-4 py-1 pv-pair", v_if="entries.some((e) => e.spaced)", data_part="space"):
             html.Span("VTK files without a space are in", classes="pv-small", style="flex: 1")
             with v3.VBtnToggle(v_model=("open_space",), mandatory=True, density="compact", style="height: 32px"):
                 for name in ("RAS", "LPS"):

@@ -93,17 +93,17 @@ class RegionActions(LineActions):
         region = {**scene.regions.usual_region(kind, last, beside), "name": scene.regions.free_region_name()}
         self._edit(lambda rows: rows.append({"not": False, "how": "passes", "region": region}))
 
-    def add_file(self, path: str) -> None:
+    def add_file(self, place: Mapping[str, Any]) -> None:
         """Add the region of a closed mesh, or of the labels of a volume, which is read beside everything else."""
         layer = self._layer
-        kind = "labels" if path.lower().endswith(LABELS) else "mesh"
-        region = {"kind": kind, "path": path} | ({"labels": None} if kind == "labels" else {})
+        labelled = place["path"].lower().endswith(LABELS)
+        region = {"kind": "labels", **place, "labels": None} if labelled else {"kind": "mesh", **place}
 
         def add() -> None:
             named = {**region, "name": self._app.scene.regions.free_region_name()}
             self._edit(lambda rows: rows.append({"not": False, "how": "passes", "region": named}), layer)
 
-        self._app.later(self._app.files.with_shape(kind, path, add))
+        self._app.later(self._app.files.with_shape(region, add))
 
     def set_labels(self, row: int, text: str) -> None:
         """Choose the labels of a region by their numbers, between commas; none chosen are all but 0."""

@@ -10,7 +10,7 @@ import numpy as np
 from pvfiblets.web.actions import LineActions
 from pvfiblets.web.panels.charts import short, steps
 from pvfiblets.web.panels.describe import Charts, typed
-from pvfiblets.web.session.document import LINES
+from pvfiblets.web.session.document import LINES, Layer, Source, volume_in
 
 
 class FilterActions(LineActions):
@@ -49,7 +49,7 @@ class FilterActions(LineActions):
             "criteria": [self._criterion(layer, name, titles.get(name, name)) for name in filters.criteria],
             "more": [
                 {"title": entry["title"], "value": entry["name"]}
-                for entry in arrays
+                for entry in [*arrays, *({"title": title, "name": title} for title in self._images(layer))]
                 if entry["name"] not in filters.criteria
             ],
             "groups": list(actor.fiblets.groups),
@@ -66,6 +66,11 @@ class FilterActions(LineActions):
         left = int(np.count_nonzero(actor.shown)) if layer.filters.active else total
         return f"{left:,} of {total:,} streamlines"
 
+    def _images(self, layer: Layer) -> dict[str, Source]:
+        """Return the images that are open, by the names of criteria that compare their values."""
+        named = [(title, volume_in(choice)) for choice, title in self._app.scene.volume_choices(layer)]
+        return {title: source for title, source in named if source is not None}
+
     def _criterion(self, layer: Any, name: str, title: str) -> dict[str, Any]:
         chart, limits = self._charts.of(layer.id, name)
         low, high = layer.filters.criteria[name]
@@ -79,10 +84,16 @@ class FilterActions(LineActions):
     # What is done
 
     def add(self, name: str) -> None:
-        """Add a criterion that leaves all in."""
-        layer = self._layer
+        """Add a criterion that leaves all in that has a value."""
+        app, layer = self._app, self._layer
+        image = self._images(layer).get(name)
+        if image is not None and name not in [entry["name"] for entry in app.scene.queries.arrays(layer.id)]:
+            app.later(
+                app.files.with_volume(image, lambda: app.scene.filters.set_filter(layer.id, name, image=image))
+            )
+            return
         low, high = self._charts.of(layer.id, name)[1]
-        self._app.scene.filters.set_filter(layer.id, name, low, high)
+        app.scene.filters.set_filter(layer.id, name, low, high)
 
     def remove(self, name: str) -> None:
         """Take a criterion away."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import os
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable, Coroutine, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -55,7 +55,7 @@ class FileActions(SessionActions):
     async def _open_all(self, given: list[tuple[str, str | None]]) -> None:
         for path, kind in given:
             try:
-                await self._start(self.open(path, kind))
+                await self._start(self.open(path, kind, self._app.options.space))
             except Exception as error:  # noqa: BLE001 - the others are opened all the same
                 self._app.complain(str(error))
         if self._app.options.demo:
@@ -161,10 +161,12 @@ class FileActions(SessionActions):
         app.confined.existing(path)
         app.page.dialog = ""
         purpose, self._for = self._for, ""
+        space = self._space_chosen()
+        place = {"path": path, "space": space} if space and path.lower().endswith(SPACED) else {"path": path}
         if purpose == "clip":
-            app.cuts.add("mesh", path)
+            app.cuts.add_file(place)
         elif purpose == "region":
-            app.regions.add_file(path)
+            app.regions.add_file(place)
         elif purpose == "slices":
             app.later(self.open(path, "image"))
         elif purpose == "painted":
@@ -174,7 +176,7 @@ class FileActions(SessionActions):
         elif path.lower().endswith(SESSION):
             self.open_session(path)
         else:
-            app.later(self.open(path, space=self._space_chosen()))
+            app.later(self.open(path, space=space))
 
     def _space_chosen(self) -> Space | None:
         """Return the space that the dialog says files of VTK have which name none; None where it is the default."""
@@ -258,25 +260,25 @@ class FileActions(SessionActions):
 
     # For other parts of the page
 
-    async def with_shape(self, kind: str, path: str, then: Callable[[], Any]) -> None:
+    async def with_shape(self, shape: Mapping[str, Any], then: Callable[[], Any]) -> None:
         """Read what a region is made of, a mesh or labels, beside everything else; then do what needs it."""
         store = self._app.scene.store.fork()
-        await self.beside(Path(path).name, lambda *_: store.shape(kind, path), "reading", cancellable=False)
+        await self.beside(Path(shape["path"]).name, lambda *_: store.shape(shape), "reading", cancellable=False)
         self._app.scene.store.take(store)
         then()
 
-    async def colour_by(self, layer_id: str, name: str, value: Any, source: Source) -> None:
-        """Set a property to a volume, which is read beside everything else."""
-        app = self._app
-        load = app.scene.files.load
-        loaded = await self.beside(
-            Path(source.path or "demo head").name,
-            lambda progress, cancel: load(source, "colours", progress, cancel),
-            "reading",
-            cancellable=False,
-        )
-        app.scene.store.put(loaded)
-        app.scene.set(layer_id, name, value)
+    async def with_volume(self, source: Source, then: Callable[[], Any]) -> None:
+        """Read a volume that colours or filters lines beside everything else; then do what needs it."""
+        scene = self._app.scene
+        if ("colours", source) not in scene.store.loaded:
+            loaded = await self.beside(
+                Path(source.path or "demo head").name,
+                lambda progress, cancel: scene.files.load(source, "colours", progress, cancel),
+                "reading",
+                cancellable=False,
+            )
+            scene.store.put(loaded)
+        then()
 
     def show_script(self) -> None:
         """Show the Python that makes the same picture."""

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from pvfiblets.web.session.shapes import Load
 
     Colours = Callable[[Source], Any]
-    """From where a volume comes from to the volume that colours lines."""
+    """From where a volume comes from to the volume that colours or filters lines."""
     Ends = Callable[[Any, str, float], Any]
     """From fiblets, a label volume's path and mm to the parcels of ends."""
 
@@ -127,14 +127,15 @@ def _selection_style(settings: Mapping[str, Any]) -> dict[str, Any]:
 # What is shown of lines -----------------------------------------------------------------------------
 
 
-def filter_as(actor: Any, old: Filters, new: Filters, load: Load, ends: Ends) -> None:
+def filter_as(actor: Any, old: Filters, new: Filters, load: Load, ends: Ends, colours: Colours) -> None:
     """Bring what is shown of a tractogram in step with filters that were checked."""
     for name in old.criteria:
         if name not in new.criteria:
             actor.remove_criterion(name)
     for name, limits in new.criteria.items():
-        if old.criteria.get(name) != limits:
-            actor.criterion(name, limits)
+        image = new.images.get(name)
+        if (old.criteria.get(name), old.images.get(name)) != (limits, image):
+            actor.criterion(name if image is None else colours(image), limits, name=name)
     if old.groups != new.groups:
         actor.groups_shown = new.groups
     if old.subset != new.subset:

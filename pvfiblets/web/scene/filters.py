@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from pvfiblets.plotting.viewpoints import visible_bounds
 from pvfiblets.web.scene.matrix import check_connection
-from pvfiblets.web.session.document import Clip, Filters, Layer
+from pvfiblets.web.session.document import Clip, Filters, Layer, Source
 from pvfiblets.web.session.shapes import CUTTING, check_condition, check_shape, make_region
 from pvfiblets.web.values import mapping, number, shown, text, truth, whole
 
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 __all__ = ["SceneFilters", "check_filters"]
 
 MOST_CLIPS = 16
+LONGEST_CRITERION = 1100  # characters of the name of an image's values: its layer's, and a word
 
 
 class SceneFilters:
@@ -99,7 +100,7 @@ class SceneFilters:
     def _checked_shape(self, shape: Mapping[str, Any]) -> dict[str, Any]:
         """Return the shape of a cut, of which a region can be made, even if there is nothing to cut yet."""
         found = check_shape(shape, "cut", CUTTING)
-        make_region(found, self.scene.shape_data)
+        make_region(found, self.scene.store.shape)
         return found
 
     def _checked_layers(self, ids: Any) -> tuple[str, ...] | None:
@@ -115,13 +116,27 @@ class SceneFilters:
 
     # Filters ------------------------------------------------------------------------------------
 
-    def set_filter(self, layer_id: str, criterion: str, low: float | None = None, high: float | None = None) -> None:
-        """Show only what has values in a range."""
+    def set_filter(
+        self,
+        layer_id: str,
+        criterion: str,
+        low: float | None = None,
+        high: float | None = None,
+        *,
+        image: Source | None = None,
+    ) -> None:
+        """Show only what has values in a range; those of an `image` at the points get the criterion's name."""
         layer = self.scene.lines_layer(layer_id)
         limits = check_range(low, high, criterion)
-        self._check_values(layer, criterion)
+        images = layer.filters.images
+        if image is not None:
+            self._check_image(layer, criterion, image)
+            images = {**images, criterion: image}
+        elif criterion not in images:
+            self._check_values(layer, criterion)
         criteria = {**layer.filters.criteria, criterion: limits}
-        self.filter_by(layer, f"range of {criterion}", ("filter", layer_id, criterion), criteria=criteria)
+        key = ("filter", layer_id, criterion)
+        self.filter_by(layer, f"range of {criterion}", key, criteria=criteria, images=images)
 
     def remove_filter(self, layer_id: str, criterion: str | None = None) -> None:
         """Take a criterion back, or with no name all filters."""
@@ -132,8 +147,11 @@ class SceneFilters:
         if criterion not in layer.filters.criteria:
             there = ", ".join(layer.filters.criteria) or "none"
             raise KeyError(f"there is no criterion {shown(criterion)}; there are: {there}")
-        criteria = {name: limits for name, limits in layer.filters.criteria.items() if name != criterion}
-        self.filter_by(layer, f"no range of {criterion}", criteria=criteria)
+        criteria, images = (
+            {name: one for name, one in part.items() if name != criterion}
+            for part in (layer.filters.criteria, layer.filters.images)
+        )
+        self.filter_by(layer, f"no range of {criterion}", criteria=criteria, images=images)
 
     def set_groups(self, layer_id: str, names: Sequence[str] | None) -> None:
         """Show some groups only; ``None`` for all streamlines, in a group or not."""
@@ -161,6 +179,11 @@ class SceneFilters:
         """Change some of a layer's filters."""
         filters = replace(layer.filters, **changes)
         self.scene.change(replace(layer, filters=filters), f"{what} of {layer.name}", key)
+
+    def _check_image(self, layer: Layer, criterion: str, image: Source) -> None:
+        text(criterion, "name", LONGEST_CRITERION)
+        if not sum(self.scene.queries.histogram(layer.id, image)["counts"]):
+            raise ValueError(f"no streamline of {layer.name!r} has a value of {criterion}; choose another image")
 
     def _check_values(self, layer: Layer, criterion: Any) -> None:
         from pvfiblets.web.scene.layer_properties import value_names
@@ -208,17 +231,22 @@ def check_subset(value: Any) -> dict[str, Any]:
 
 
 def check_filters(
-    value: Any, data: Any, groups: Any = None, place: Callable[[str], str] = lambda path: path
+    value: Any, data: Any, groups: Any, place: Callable[[str], str], volume: Callable[[Any], Source]
 ) -> Filters:
     """Return filters of a session file that fit some fiblets; ``groups`` are names of these by another list.
 
-    ``place`` gives a path as documents hold it, of a file that is there.
+    ``place`` gives a path as documents hold it, of a file that is there; ``volume`` the source of one that is read.
     """
     from pvfiblets.web.scene.layer_properties import value_names
 
-    mapping(value, "filters", (), ("criteria", "groups", "subset", "regions", "connection"))
+    mapping(value, "filters", (), ("criteria", "images", "groups", "subset", "regions", "connection"))
     criteria = {}
-    known = value_names(data)
+    ranges = mapping(value.get("criteria") or {}, "criteria", (), tuple(value.get("criteria") or ()))
+    images = {
+        text(name, "name", LONGEST_CRITERION): volume(one)
+        for name, one in mapping(value.get("images") or {}, "images", (), tuple(ranges)).items()
+    }
+    known = [*value_names(data), *images]
     for name, limits in mapping(value.get("criteria") or {}, "criteria", (), known).items():
         if not isinstance(limits, (list, tuple)) or len(limits) != 2:
             raise ValueError(f"the range of {name} is {shown(limits)}; give two numbers, of which one may be null")
@@ -226,7 +254,8 @@ def check_filters(
     subset, regions = value.get("subset"), value.get("regions")
     return Filters(
         criteria,
-        check_groups(value.get("groups"), data.groups if groups is None else groups),
+        images,
+        check_groups(value.get("groups"), groups),
         None if subset is None else check_subset(subset),
         None if regions is None else check_condition(regions),
         None if value.get("connection") is None else check_connection(value["connection"], place),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pvfiblets.web.scene import layers
-from pvfiblets.web.session.document import LINES, Layer, volume_in
+from pvfiblets.web.session.document import LINES, Layer, Source, volume_in
 from pvfiblets.web.values import plain, shown, whole
 
 if TYPE_CHECKING:
@@ -54,8 +54,8 @@ class LayerQueries:
             names = ["radius"]
         return [{"name": name, "title": UNITS.get(name, name)} for name in names]
 
-    def histogram(self, layer_id: str, array: str | None = None, bins: int = 64) -> dict[str, Any]:
-        """Return how often which values are there."""
+    def histogram(self, layer_id: str, array: str | Source | None = None, bins: int = 64) -> dict[str, Any]:
+        """Return how often which values are there; those of an image are taken at the points of lines."""
         layer = self.scene.layer(layer_id)
         count = whole(bins, "bins", 1, 4096)
         known = [entry["name"] for entry in self.arrays(layer_id)]
@@ -64,12 +64,16 @@ class LayerQueries:
             return self._kept(("colours", volume, count), lambda: _counted(self.scene.store.colours(volume), count))
         if array is None:
             array = colours if colours in known else (known or [""])[0]
-        if array not in known:
+        what: Any = array
+        name: Any = array
+        if isinstance(array, Source) and layer.kind in LINES:
+            what = self.scene.store.colours(array)
+            name = what.name
+        elif array not in known:
             raise ValueError(f"there are no values {shown(array)} in {layer.name!r}; there are {', '.join(known)}")
-        name: str = array
         data = self.scene.data(layer).data
         return self._kept(
-            (layer.kind, layer.source, name, count), lambda: _count(name, *_values(layer, data, name), count)
+            (layer.kind, layer.source, array, count), lambda: _count(name, *_values(layer, data, what), count)
         )
 
     def _kept(self, key: tuple[Any, ...], make: Callable[[], dict[str, Any]]) -> dict[str, Any]:
@@ -151,7 +155,7 @@ def _count(name: str, values: np.ndarray, share: float, count: int) -> dict[str,
     }
 
 
-def _values(layer: Layer, data: Any, name: str) -> tuple[np.ndarray, float]:
+def _values(layer: Layer, data: Any, name: Any) -> tuple[np.ndarray, float]:
     """Return the numbers of a layer, or of an even share of it, and how large that is."""
     if layer.kind in LINES:
         from pvfiblets.query.measures.measures import measure

@@ -238,7 +238,7 @@ class Scene:
             if drawn.layer.selected != layer.selected:
                 select_as(actor, layer.selected)
         if drawn.clips != clips:
-            cut(actor, layer, clips, self.shape_data, drawn.whole)
+            cut(actor, layer, clips, self.store.shape, drawn.whole)
         self._drawn[layer.id] = _Drawn(actor, layer, clips, drawn.whole)
 
     def _draw_image(self, layer: Layer, drawn: _Drawn | None) -> None:
@@ -250,12 +250,13 @@ class Scene:
             self._drawn[layer.id] = _Drawn(image, layer, ())
 
     def _filter(self, drawn: _Drawn, layer: Layer) -> None:
+        read = self.store.shape, self.store.end_labels, self.store.colours
         try:
-            filter_as(drawn.actor, drawn.layer.filters, layer.filters, self.shape_data, self.store.end_labels)
+            filter_as(drawn.actor, drawn.layer.filters, layer.filters, *read)
         except BaseException:  # some of it may be in force already
             drawn.actor.show_all()
-            filter_as(drawn.actor, Filters(), drawn.layer.filters, self.shape_data, self.store.end_labels)
-            cut(drawn.actor, drawn.layer, drawn.clips, self.shape_data)
+            filter_as(drawn.actor, Filters(), drawn.layer.filters, *read)
+            cut(drawn.actor, drawn.layer, drawn.clips, self.store.shape)
             raise
 
     # Layers -------------------------------------------------------------------------------------
@@ -447,19 +448,14 @@ class Scene:
         """Let go of data that neither the document nor any of some other states needs."""
         self.store.keep([self._state, *states])
 
-    def shape_data(self, kind: str, path: str) -> Any:
-        """Return what a region is made of: the region of a mesh, or an image of labels."""
-        return self.store.shape(kind, path)
-
     def volume_choices(self, layer: Layer) -> list[tuple[Any, str]]:
-        """Return what colours a layer by a volume, and how that is called: the scene's volumes, and its present one.
+        """Return what colours a layer by a volume, and how that is called.
 
-        Of images of slices, the scene's other images of one number per voxel, too.
+        These are the scene's volumes, its other images of one number per voxel, and what colours the layer now.
         """
-        named = {other.source: other.name for other in self.layers if other.kind == "volume"}
-        if layer.kind == "image":
-            others = [other for other in self.layers if other.kind == "image" and other.id != layer.id]
-            named |= {one.source.bare: one.name for one in others if self.data(one).data.n_volumes == 1}
+        others = [other for other in self.layers if other.kind == "image" and other.id != layer.id]
+        named = {one.source.bare: one.name for one in others if self.data(one).data.n_volumes == 1}
+        named |= {other.source: other.name for other in self.layers if other.kind == "volume"}
         for present in volumes_of(layer.settings).values():
             if present not in named:
                 named[present] = f"demo {present.demo}" if present.path is None else Path(present.path).name

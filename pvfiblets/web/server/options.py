@@ -10,6 +10,7 @@ from typing import Any
 from pvfiblets.plotting.fiblets.looks import check_look
 from pvfiblets.support.memory import CAN_LIMIT, of_machine, parse, shown
 from pvfiblets.support.nifti_space import Matrix, Units
+from pvfiblets.support.vtk_space import Space
 from pvfiblets.web.scene.file_kinds import is_tractogram_folder
 
 MEBIBYTE = 1024 * 1024
@@ -63,6 +64,8 @@ class Options:
         What places images of NIfTI, as of :func:`pvfiblets.nifti_space`.
     tkras : bool
         Whether surfaces of FreeSurfer stay in its surface space.
+    space : {"RAS", "LPS"} or None
+        Of points in VTK's files, of those above, that name none.
     connections, by_address : int
         The most connections at once, in all and from one address.
     proxies : list of str
@@ -94,6 +97,7 @@ class Options:
     nifti_space: Matrix | None = None
     nifti_units: Units = "mm"
     tkras: bool = False
+    space: Space | None = None
 
     @property
     def on_loopback(self) -> bool:

@@ -169,6 +169,8 @@ class Filters:
     ----------
     criteria : mapping of str to (float, float)
         Least and greatest value that is shown, by the name of the values.
+    images : mapping of str to Source
+        Images whose values at the points criteria of these names compare.
     groups : tuple of str or None
         Those shown; ``None`` for all streamlines.
     subset : mapping or None
@@ -182,6 +184,7 @@ class Filters:
     """
 
     criteria: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    images: Mapping[str, Source] = field(default_factory=dict)
     groups: tuple[str, ...] | None = None
     subset: Mapping[str, Any] | None = None
     regions: Mapping[str, Any] | None = None
@@ -229,6 +232,11 @@ class Layer:
     def path(self) -> str | None:
         """The file, relative to the scene's root where it lies in it; None where there is none."""
         return self.source.path
+
+    @property
+    def volumes(self) -> tuple[Source, ...]:
+        """Volumes and images that colour or filter it."""
+        return *volumes_of(self.settings).values(), *self.filters.images.values()
 
 
 @dataclass(frozen=True)
@@ -363,9 +371,9 @@ class State:
         return named(self.clips, clip_id, "cut", by="id")
 
     def sources(self) -> set[tuple[str, Source]]:
-        """Kind and source of all layers, and of volumes that colour them as of the kind ``"colours"``."""
-        coloured = {("colours", source) for layer in self.layers for source in volumes_of(layer.settings).values()}
-        return coloured | {(layer.kind, layer.source) for layer in self.layers}
+        """Kind and source of all layers, and of volumes that colour or filter them as of the kind ``"colours"``."""
+        sampled = {("colours", source) for layer in self.layers for source in layer.volumes}
+        return sampled | {(layer.kind, layer.source) for layer in self.layers}
 
 
 def free_name(name: str, taken: Collection[str], kept: int | None = None) -> str:

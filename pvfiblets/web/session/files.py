@@ -201,7 +201,7 @@ def _layer_to_dict(layer: Layer, path_of: Any, shape_of: Any) -> dict[str, Any]:
     for name, volume in volumes_of(layer.settings).items():
         found["settings"][name] = {"volume": _place_of(volume, path_of)}
     if layer.filters.active:
-        found["filters"] = _filters_to_dict(layer.filters, shape_of)
+        found["filters"] = _filters_to_dict(layer.filters, path_of, shape_of)
     if layer.selected is not None:
         found["selected"] = layer.selected.packed
     return found
@@ -214,7 +214,7 @@ def _place_of(source: Source, path_of: Any) -> dict[str, Any]:
     return {**place, "values": [path_of(path) for path in source.values]} if source.values else place
 
 
-def _filters_to_dict(filters: Filters, shape_of: Any) -> dict[str, Any]:
+def _filters_to_dict(filters: Filters, path_of: Any, shape_of: Any) -> dict[str, Any]:
     def end(value: float) -> float | None:
         return value if math.isfinite(value) else None
 
@@ -223,17 +223,18 @@ def _filters_to_dict(filters: Filters, shape_of: Any) -> dict[str, Any]:
             return {"op": condition["op"], "of": [condition_of(part) for part in condition["of"]]}
         return {**condition, "region": shape_of(condition["region"])}
 
+    images = {name: _place_of(image, path_of) for name, image in filters.images.items()}
     return {
         "criteria": {name: [end(low), end(high)] for name, (low, high) in filters.criteria.items()},
+        **({"images": images} if images else {}),
         "groups": None if filters.groups is None else list(filters.groups),
         "subset": None if filters.subset is None else dict(filters.subset),
         "regions": None if filters.regions is None else condition_of(filters.regions),
-        **_connection(filters, shape_of),
+        **_connection(filters, path_of),
     }
 
 
-def _connection(filters: Filters, shape_of: Any) -> dict[str, Any]:
+def _connection(filters: Filters, path_of: Any) -> dict[str, Any]:
     if filters.connection is None:
         return {}
-    path = shape_of({"path": filters.connection["labels"]})["path"]
-    return {"connection": {**filters.connection, "labels": path}}
+    return {"connection": {**filters.connection, "labels": path_of(filters.connection["labels"])}}

@@ -163,11 +163,15 @@ class _Reading:
         if not isinstance(setting, Mapping):
             return []
         mapping(setting, "volume of a setting", ("volume",))
-        source = self.source(setting["volume"], "volume")
+        return [(as_volume_choice(self.sampled(setting["volume"])), "volume")]
+
+    def sampled(self, value: Any) -> Source:
+        """Return the source of a volume that colours or filters lines, which is read."""
+        source = self.source(value, "volume")
         if source.values:
-            raise ValueError("a volume that colours lines has values; volumes have no streamlines")
+            raise ValueError("a volume that colours or filters lines has values; volumes have no streamlines")
         self.store.colours(source, self.progress, self.cancel)
-        return [(as_volume_choice(source), "volume")]
+        return source
 
 
 def _layer_from_dict(value: Any, reading: _Reading) -> Layer:
@@ -197,7 +201,7 @@ def _layer_from_dict(value: Any, reading: _Reading) -> Layer:
     if value.get("filters") is not None:
         bundles = reading.bundles.get(source)
         groups = reading.own(source, data) if bundles is None else [str(one["name"]) for one in bundles]
-        filters = check_filters(value["filters"], data, groups, paths)
+        filters = check_filters(value["filters"], data, groups, paths, reading.sampled)
         if filters.connection is not None:  # here, where nobody waits for a picture
             path, radius = filters.connection["labels"], filters.connection["radius"]
             store.end_labels(data, path, radius, reading.progress, reading.cancel)

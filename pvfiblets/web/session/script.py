@@ -5,12 +5,15 @@ from __future__ import annotations
 import builtins
 import keyword
 import re
+import textwrap
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from pvfiblets.mappers.scene import USUAL_DPI
 from pvfiblets.plotting.slices.settings import MEANING
+from pvfiblets.support.nifti_space import chosen
+from pvfiblets.support.surface_space import tkras_chosen
 from pvfiblets.web.scene import layers
 from pvfiblets.web.scene.actors import split_cuts
 from pvfiblets.web.scene.glyph_layers import GLYPHS
@@ -78,9 +81,24 @@ class _Writer(ViewWriter):
         self._camera()
         end = "plotter.show()" if picture is None else f"plotter.screenshot({picture!r})\nplotter.close()"
         body = re.sub(r"\n{3,}", "\n\n", "\n".join([*self._lines, end]))
+        if placing := self._placing():
+            body = f"with {', '.join(placing)}:\n{textwrap.indent(body, '    ')}"
         return "\n".join([*self._head(), body]) + "\n"
 
     # Parts ----------------------------------------------------------------------------------------
+
+    def _placing(self) -> list[str]:
+        """Return the contexts that place images and surfaces as this process does, where it was told how."""
+        found = []
+        matrix, units = chosen()
+        if matrix is not None or units != "mm":
+            self._imports.add("import pvfiblets")
+            given = [repr(matrix)] * (matrix is not None) + [f"units={units!r}"] * (units != "mm")
+            found.append(f"pvfiblets.nifti_space({', '.join(given)})")
+        if tkras_chosen():
+            self._imports.add("from pvfiblets.support.surface_space import as_stored")
+            found.append("as_stored()")
+        return found
 
     def _head(self) -> list[str]:
         order = sorted(self._imports, key=lambda line: (line.split()[1].startswith("pvfiblets"), line.split()[1]))
@@ -220,10 +238,10 @@ class _Writer(ViewWriter):
     def _mesh(self, path: str, space: str | None = None) -> str:
         """Return Python that reads a surface."""
         self._imports.add("from pvfiblets.plotting.meshes import read_mesh")
-        return mesh_code(path, self._file) if space is None else f"read_mesh({self._file(path)}, space={space!r})"
+        return mesh_code(path, self._file, space)
 
     def _colours(self, source: Source) -> Python:
-        """Return Python of a volume that colours lines, as :meth:`.Files.load` takes it."""
+        """Return Python of a volume that colours or filters lines, as :meth:`.Files.load` takes it."""
         if source.demo is not None:
             self._imports.add("from pvfiblets.synthetic.vessels import brain_like")
             self._lines += [f"volume = brain_like({source.size})"]
@@ -261,7 +279,9 @@ class _Writer(ViewWriter):
     def _filters(self, name: str, layer: Layer) -> None:
         filters = layer.filters
         for criterion, (low, high) in filters.criteria.items():
-            self._lines += [f"{name}.criterion({criterion!r}, ({code(low)}, {code(high)}))"]
+            image = filters.images.get(criterion)
+            values = criterion if image is None else self._colours(image)
+            self._lines += [f"{name}.criterion({code(values)}, ({code(low)}, {code(high)}))"]
         if filters.groups is not None:
             self._lines += [f"{name}.groups_shown = {list(filters.groups)}"]
         if filters.subset is not None:
@@ -328,7 +348,7 @@ class _Writer(ViewWriter):
         if not names:
             return
         if clip.shape["kind"] == "mesh":
-            region = self._mesh(clip.shape["path"])
+            region = self._mesh(clip.shape["path"], clip.shape.get("space"))
         else:
             self._needs(clip.shape)
             region = shape_code(clip.shape, self._file)

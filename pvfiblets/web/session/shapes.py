@@ -6,7 +6,7 @@ A *shape* is one of::
     {"kind": "slab", "normal": [x, y, z], "origin": [x, y, z], "thickness": mm}
     {"kind": "box", "bounds": [xmin, xmax, ymin, ymax, zmin, zmax]}
     {"kind": "sphere", "center": [x, y, z], "radius": mm}
-    {"kind": "mesh", "path": "lesion.ply"}
+    {"kind": "mesh", "path": "lesion.ply"}      (of a file of VTK that names no space, "space": "RAS" | "LPS")
     {"kind": "labels", "path": "atlas.nii.gz", "labels": [12, 17]}      (without labels: all that are not 0)
 
 A *condition* on streamlines is ``{"how": how, "region": shape}`` with one of `HOWS`, or
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from pvfiblets.query.selection.predicates import Predicate
     from pvfiblets.regions import Region
 
-    Load = Callable[[str, str], Any]
-    """From kind, ``"mesh"`` or ``"labels"``, and path to data."""
+    Load = Callable[[Mapping[str, Any]], Any]
+    """From a shape of the kind ``"mesh"`` or ``"labels"`` to data."""
 
 __all__ = [
     "CUTTING", "HOWS", "SAMPLED", "SHAPES", "check_condition", "check_shape", "condition_code", "make_predicate",
@@ -74,8 +74,11 @@ def check_shape(value: Any, name: str = "shape", kinds: tuple[str, ...] = SHAPES
         radius = _length(value["radius"], f"{name}'s radius")
         return {"kind": kind, "center": numbers(value["center"], f"{name}'s center", 3), "radius": radius}
     if kind == "mesh":
-        mapping(value, name, ("kind", "path"))
-        return {"kind": kind, "path": text(value["path"], f"{name}'s path", 4096)}
+        mapping(value, name, ("kind", "path"), ("space",))
+        space = {key: part for key, part in value.items() if key == "space"}
+        if space and space["space"] not in ("RAS", "LPS"):
+            raise ValueError(f"space of {name} is {shown(space['space'])}; choose RAS or LPS")
+        return {"kind": kind, "path": text(value["path"], f"{name}'s path", 4096), **space}
     mapping(value, name, ("kind", "path"), ("labels",))
     labels = value.get("labels")
     if labels is not None:
@@ -153,11 +156,11 @@ def make_region(shape: Mapping[str, Any], load: Load) -> Region:
     if kind == "sphere":
         return regions.Sphere(shape["center"], shape["radius"])
     if kind == "mesh":
-        return as_region(load("mesh", shape["path"]))
-    region = as_region(load("labels", shape["path"]))
+        return as_region(load(shape))
+    region = as_region(load(shape))
     if shape["labels"] is None:
         return region
-    values, affine = label_array(load("labels", shape["path"]))
+    values, affine = label_array(load(shape))
     return regions.Labels(values, affine, labels=shape["labels"])
 
 
@@ -229,15 +232,15 @@ def shape_code(shape: Mapping[str, Any], file: Callable[[str], str]) -> str:
     if kind == "sphere":
         return f"regions.Sphere({shape['center']}, {shape['radius']})"
     if kind == "mesh":
-        return f"as_region({mesh_code(shape['path'], file)})"
+        return f"as_region({mesh_code(shape['path'], file, shape.get('space'))})"
     if shape["labels"] is None:
         return f"as_region({file(shape['path'])})"
     return f"labels_of({file(shape['path'])}, {shape['labels']})"
 
 
-def mesh_code(path: str, file: Callable[[str], str]) -> str:
+def mesh_code(path: str, file: Callable[[str], str], space: str | None = None) -> str:
     """Return Python that reads a surface."""
-    return f"read_mesh({file(path)})"
+    return f"read_mesh({file(path)}{'' if space is None else f', space={space!r}'})"
 
 
 def condition_code(condition: Mapping[str, Any], file: Callable[[str], str]) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any
@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from pvfiblets.web.scene.loading import Cancel, Files, Loaded, Progress, Watch
-from pvfiblets.web.session.document import LINES, Layer, Source, State, volumes_of
+from pvfiblets.web.session.document import LINES, Layer, Source, State
 
 __all__ = ["Store"]
 
@@ -39,7 +39,7 @@ class Store:
     def __init__(self, files: Files) -> None:
         self.files = files
         self.loaded: dict[tuple[str, Source], Loaded] = {}
-        self.shapes: dict[tuple[str, str], Any] = {}
+        self.shapes: dict[tuple[str, Source], Any] = {}
         self.ends: list[_Ends] = []
 
     def fork(self) -> Store:
@@ -84,7 +84,7 @@ class Store:
                     raise ValueError(f"streamline {ids.highest} is asked for, of {total} in {loaded.name}")
                 loaded = replace(loaded, source=layer.source, data=loaded.data.extract(ids.array()))
             self.loaded[key] = loaded
-        for volume in volumes_of(layer.settings).values():
+        for volume in layer.volumes:
             self.colours(volume, progress, cancel)
         return self.loaded[key]
 
@@ -96,21 +96,22 @@ class Store:
         return found.data
 
     def colours(self, source: Source, progress: Progress | None = None, cancel: Cancel | None = None) -> Any:
-        """Return the volume, a :class:`.VolumeSource`, that colours lines where they run."""
+        """Return the volume, a :class:`.VolumeSource`, that colours or filters lines where they run."""
         return self._read("colours", source, progress, cancel).data
 
-    def shape(self, kind: str, path: str) -> Any:
+    def shape(self, shape: Mapping[str, Any]) -> Any:
         """Return what a region is made of: the region of a mesh, or an image of labels."""
-        if (kind, path) not in self.shapes:
+        key = kind, source = shape["kind"], Source(shape["path"], space=shape.get("space"))
+        if key not in self.shapes:
             from pvfiblets.plotting.region_sources import as_region
 
-            data = self.files.load(Source(path), kind).data
-            self.shapes[kind, path] = as_region(data) if kind == "mesh" else data
-        return self.shapes[kind, path]
+            data = self.files.load(source, kind).data
+            self.shapes[key] = as_region(data) if kind == "mesh" else data
+        return self.shapes[key]
 
     def parcels(self, path: str) -> tuple[Any, Any]:
         """Return the labels of a volume, ``(i, j, k)``, and the matrix that places them."""
-        volume = self.shape("labels", path)
+        volume = self.shape({"kind": "labels", "path": path})
         return volume.labels, volume.affine
 
     def end_labels(

@@ -250,24 +250,28 @@ def test_strokes_are_undone_and_done_again():
     assert len(told) == 9
 
 
-def test_regions_are_saved_with_their_names_and_colours(tmp_path):
+@pytest.mark.parametrize("suffix", [".nii.gz", ".nii", ".mif", ".vti"])
+def test_regions_are_saved_with_their_names_and_colours(tmp_path, suffix):
     painter = regions.RegionPainter((SHAPE, AFFINE))
     painter.add("corpus callosum", "#ff8000")
     painter.add("other").visible = False
     painter.sphere("other", (0.0, 0.0, 0.0), 5.0)
     painter.rename("other", "seed")
-    table = painter.save(tmp_path / "regions.nii.gz")
+    path = tmp_path / f"regions{suffix}"
+    table = painter.save(path)
     assert table.read_text().splitlines()[1] == "1\tcorpus callosum\t#ff8000"
-    image = nibabel.load(tmp_path / "regions.nii.gz")
-    assert np.array_equal(np.asarray(image.dataobj), painter.labels)
-    assert np.allclose(image.affine, AFFINE)
-    back = regions.RegionPainter.open(tmp_path / "regions.nii.gz")
+    if ".nii" in suffix:
+        image = nibabel.load(path)
+        assert np.array_equal(np.asarray(image.dataobj), painter.labels)
+        assert np.allclose(image.affine, AFFINE)
+    back = regions.RegionPainter.open(path)
+    assert np.allclose(back.grid.affine, AFFINE)
     assert list(back.regions) == ["corpus callosum", "seed"]
     assert back.regions["corpus callosum"].color == pytest.approx((1.0, 128 / 255, 0.0))
     assert np.array_equal(back.mask("seed"), painter.mask("seed"))
     assert back.region("seed").contains([[0.0, 0.0, 0.0]])[0]
     table.unlink()
-    assert list(regions.RegionPainter.open(tmp_path / "regions.nii.gz").regions) == ["2"]
+    assert list(regions.RegionPainter.open(path).regions) == ["2"]
 
 
 @pytest.mark.parametrize(
@@ -281,7 +285,7 @@ def test_regions_are_saved_with_their_names_and_colours(tmp_path):
         (lambda p: p.fill("a", (999, 0, 0)), ValueError, "outside of the grid"),
         (lambda p: p.polygon("a", [(0, 0, 0)], 0), ValueError, "three corners"),
         (lambda p: p.grow("a", (0, 0, 0), np.zeros(3), 0, 1), ValueError, "the grid's is"),
-        (lambda p: p.save("regions.png"), ValueError, "NIfTI"),
+        (lambda p: p.save("regions.png"), ValueError, "let it end in .nii"),
     ],
 )
 def test_what_cannot_be_painted_is_told(do, error, says):
