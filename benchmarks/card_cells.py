@@ -164,13 +164,12 @@ def halos(ctx: Any, cell: Row, _folder: Path) -> tuple[Row, Any]:
 
 def volume(ctx: Any, cell: Row, _folder: Path) -> tuple[Row, Any]:
     """A ray-cast volume in one mode."""
-    from volumes_data import make_data
-
     from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle
     from pvfiblets.report.studies.volumes.pictures import colours_of
     from pvfiblets.report.studies.volumes.scene import circle, look_of
+    from pvfiblets.synthetic.vessels import vessel_tree
 
-    data = make_data(cell["set"])
+    data = vessel_tree(int(cell["set"].partition("-")[2]), 0, "uint16")
     look = look_of(data, cell["mode"])
     path = circle(data, cell["frames"] + WARM, tuple(cell["size"]))
     renderer, style = VolumeRenderer(ctx, data), VolumeStyle(casting=look.casting())

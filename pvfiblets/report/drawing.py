@@ -11,6 +11,7 @@ import re
 import time
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
+from types import MappingProxyType
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -19,10 +20,13 @@ from .record import LeftOut, Record, Timing
 from .studies.codec.errors_and_times import Turns
 from .study import Options, Unavailable
 
-__all__ = ["LATE", "Part", "clock_of", "drawing_context", "run_parts", "timing", "turns_of"]
+__all__ = ["LATE", "Part", "WindowPart", "clock_of", "drawing_context", "run_parts", "timing", "turns_of"]
 
 Part: TypeAlias = Callable[[Any, Options, list[LeftOut]], Iterator[Record]]
 """Of a study: from a context and options to records."""
+
+WindowPart: TypeAlias = Callable[[Options, list[LeftOut]], Iterator[Record]]
+"""Of a study: draws in windows."""
 
 LATE = "the time given was used up"
 """Why something was left out."""
@@ -50,12 +54,29 @@ def drawing_context(options: Options) -> Iterator[Any]:
         ctx.release()
 
 
-def run_parts(parts: Mapping[Part, float], options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
-    """Yield records part by part, each with its share of what time is left, by weights."""
+def run_parts(
+    parts: Mapping[Part, float],
+    options: Options,
+    left_out: list[LeftOut],
+    windows: Mapping[WindowPart, float] = MappingProxyType({}),
+) -> Iterator[Record]:
+    """Yield records part by part, each with its share of what time is left, by weights.
+
+    Parts in windows come after the bare context is gone: a window that VTK closes takes older ones' display along.
+    """
+    weights = [*parts.values(), *windows.values()]
+
+    def share(number: int) -> Options:
+        return replace(options, budget=options.budget.share(weights[number] / sum(weights[number:])))
+
     with drawing_context(options) as ctx:
-        for number, (part, weight) in enumerate(parts.items()):
-            share = weight / sum(list(parts.values())[number:])
-            yield from part(ctx, replace(options, budget=options.budget.share(share)), left_out)
+        for number, part in enumerate(parts):
+            yield from part(ctx, share(number), left_out)
+    for number, drawn in enumerate(windows, len(parts)):
+        try:
+            yield from drawn(share(number), left_out)
+        except ImportError as error:
+            left_out.append(LeftOut("pictures in windows", f"{error.name} is not installed"))
 
 
 def clock_of(ctx: Any) -> tuple[Callable[[], float], str]:

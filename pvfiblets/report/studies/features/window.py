@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import sys
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -12,9 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from ...drawing import LATE, clock_of, timing
+from ...drawing import LATE, timing
 from ...record import FRAME, Figure, LeftOut, Record
 from ...study import Options
+from ...window import Window
 from .scenes import PLAIN
 from .subjects import torus
 
@@ -120,36 +119,25 @@ def window_features(fiblets: Any) -> list[WindowFeature]:
     return found
 
 
-class Window:
-    """A PyVista window with fiblets that turns, each picture waited for."""
+class FibletWindow(Window):
+    """A window with fiblets that turns."""
 
     def __init__(self, fiblets: Any, size: tuple[int, int]) -> None:
-        if sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
-            os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
-        import pyvista as pv
-
-        from pvfiblets.mappers.windows import borrowed_context
-
-        self.plotter = pv.Plotter(off_screen=True, window_size=list(size))
-        self.plotter.picture.antialias = "off"
+        super().__init__(size, "white", multisampled=True)
         self.actor: Any = self.plotter.add_fiblets(fiblets)
         self.plotter.view_vector((1.0, 0.8, 0.5), (0.0, 0.0, 1.0))
         self.plotter.camera.zoom(1.4)
-        self.plotter.show(auto_close=False)
-        with borrowed_context(self.plotter.render_window) as ctx:
-            self._clock, self.clock_name = clock_of(ctx)
+        self.show()
 
     def seconds(self, before: Callable[[], object] | None = None) -> float:
         """Draw, after a change or one step on, and return the seconds that both took."""
         if before is None:
             self.plotter.camera.azimuth += DEGREES
-        begun = self._clock()
+        begun = self.clock()
         if before is not None:
             before()
-        self.plotter.render()
-        self.plotter.render_window.WaitForCompletion()
-        self.plotter.render_window.GetPixelData(0, 0, 0, 0, 0, 0)
-        return self._clock() - begun
+        self.render()
+        return self.clock() - begun
 
 
 def in_window(
@@ -161,7 +149,7 @@ def in_window(
         left_out.append(LeftOut(f"{data}: everything", LATE))
         return
     fiblets = make()
-    window = Window(fiblets, size)
+    window = FibletWindow(fiblets, size)
     actor, late, plain_frames, plain_bytes = window.actor, [], [], 0
     try:
         for _ in range(3):
@@ -191,7 +179,7 @@ def in_window(
             times = {"draw": timing(plain_frames, 1.0, FRAME, window.clock_name)}
             yield _record(data, PLAIN, "", plain_bytes, plain_bytes, times, times["draw"].median, options)
     finally:
-        window.plotter.close()
+        window.release()
     if late:
         left_out.append(LeftOut(f"{data}: {', '.join(late)}", LATE))
     options.log(f"features: in a window: {time.perf_counter() - begun:.0f} s")

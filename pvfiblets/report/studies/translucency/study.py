@@ -130,7 +130,7 @@ def _measured(subject: Subject, options: Options, left_out: list[LeftOut]) -> It
                     machine=options.machine,
                 )
     finally:
-        window.plotter.close()
+        window.release()
     if late:
         left_out.append(LeftOut(f"{subject.name}: {', '.join(late)}", LATE))
     options.log(f"translucency: {subject.name}: {time.perf_counter() - begun:.0f} s")

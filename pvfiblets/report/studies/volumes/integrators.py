@@ -15,7 +15,7 @@ from pvfiblets.volumes.raycast_options import INTEGRATORS, RaycastOptions
 from pvfiblets.volumes.reference_profiles import profiles
 
 from ...cameras import Camera, by_turns
-from ...drawing import LATE
+from ...drawing import LATE, turns_of
 from ...record import Figure, LeftOut, Record
 from ...study import Options
 from .fields import DENSE, field, tables
@@ -72,7 +72,7 @@ def _integrated(
     through = reference.rays(camera.model_view_projection, camera.size, volume)
     at = sample(~np.isnan(through.near), QUICK_LIGHT_PIXELS if options.quick else LIGHT_PIXELS)
     truth = reference.composite(volume, transfer, through[at[:, 0], at[:, 1]], TOLERANCE)
-    timed = Timed(ctx, options, name, "draw")
+    timed = Timed(turns_of(ctx), options, name, "draw")
     for step in QUICK_STEPS if options.quick else STEPS:
         for integrator in INTEGRATORS:
             if not timed.allows(f"{integrator} step {step:g}"):

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from pvfiblets.volumes import RaycastVolume, reference
 from pvfiblets.volumes.raycast_options import RaycastOptions
 
-from ...drawing import LATE
+from ...drawing import LATE, turns_of
 from ...record import Figure, LeftOut, Record
 from ...study import Options
 from .openness import SETS, exact_openness, seen_from
@@ -39,7 +39,7 @@ def openness(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Re
         picture = _Picture(ctx, make(voxels), value, away, QUICK_SIZE if options.quick else SIZE)
         try:
             at, truth = picture.exact(QUICK_PIXELS if options.quick else PIXELS)
-            timed = Timed(ctx, part, data, "occlusion")
+            timed = Timed(turns_of(ctx), part, data, "occlusion")
             for samples in QUICK_SAMPLES if options.quick else SAMPLES:
                 for smooth in (False, True):
                     method, setting = "rays, smoothed" if smooth else "rays", f"{samples} rays"

@@ -13,7 +13,7 @@ from pvfiblets.volumes import FILTERS
 from pvfiblets.volumes.raycast_options import INTEGRATORS, RaycastOptions
 
 from ...cameras import by_turns
-from ...drawing import LATE, Part, run_parts
+from ...drawing import LATE, Part, WindowPart, run_parts, turns_of
 from ...record import Axes, Figure, LeftOut, Record
 from ...study import Options
 from .integrators import LIGHT_SIZE, SIDE, formulae, integrators
@@ -21,6 +21,7 @@ from .occlusion import RADIUS, openness
 from .pictures import GroundTruth, colours_of, ground_truth_of, places
 from .scene import Look, circle, look_of
 from .timed import Timed, drawing, drawn
+from .windows import beside_vtk
 
 __all__ = ["STUDY", "VolumeStudy", "settings"]
 
@@ -109,7 +110,7 @@ def _varied(
     from pvfiblets.engine.volumes import VolumeStyle
 
     cameras = exact.colours.cameras
-    timed = Timed(ctx, options, name, "draw")
+    timed = Timed(turns_of(ctx), options, name, "draw")
     plain: list[Any] = []
     for varied, how, fields in settings(look.mode, options.quick, spread):
         if kind != "trilinear" and varied != "default" and fields.get("step") not in QUICK_PICTURE_STEPS:
@@ -149,6 +150,7 @@ def _varied(
 
 
 PARTS: dict[Part, float] = {integrators: 4.0, formulae: 0.5, pictures: 4.0, openness: 2.0}
+IN_WINDOWS: dict[WindowPart, float] = {beside_vtk: 4.0}
 """What is measured, and by what weight each part has its share of the time."""
 
 
@@ -189,11 +191,14 @@ class VolumeStudy:
         "10), beside a rule of 48² directions whose rays end at exact roots; *independent rays*: the rms that as many "
         "rays have by chance. The time is that of the pass alone. Where software draws, times are of the processor, of "
         "all threads; those of cards are by the clock.",
+        "*in a window*: `plotter.add_raycast_volume` and `plotter.add_volume(mapper='gpu')` in PyVista windows, one "
+        "light at the eye, one transfer function, the same lengths of steps: compare times at equal errors. *cast*: "
+        "the share of the octree's leaves that is not skipped.",
     )
 
     def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
         """Yield records part by part, each with its share of what time is left."""
-        return run_parts(PARTS, options, left_out)
+        return run_parts(PARTS, options, left_out, IN_WINDOWS)
 
 
 STUDY = VolumeStudy()

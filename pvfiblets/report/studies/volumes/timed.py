@@ -9,9 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from ...cameras import Camera
-from ...drawing import LATE, turns_of
+from ...drawing import LATE
 from ...record import FRAME, LeftOut, Record
 from ...study import Options
+from ..codec.errors_and_times import Turns
 
 __all__ = ["Timed", "drawing", "drawn", "sample"]
 
@@ -19,9 +20,9 @@ __all__ = ["Timed", "drawing", "drawn", "sample"]
 class Timed:
     """Records of one data set whose pictures are timed by turns once all are there."""
 
-    def __init__(self, ctx: Any, options: Options, name: str, what: str) -> None:
+    def __init__(self, turns: Turns, options: Options, name: str, what: str) -> None:
         self._options, self._name = options, name
-        self._turns, self._what = turns_of(ctx), what
+        self._turns, self._what = turns, what
         self._done: list[tuple[Record, int, int]] = []
         self._late: list[str] = []
         self._budget = options.budget.share()  # the reference is no measurement
