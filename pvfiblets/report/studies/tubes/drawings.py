@@ -11,10 +11,10 @@ import numpy.typing as npt
 from pvfiblets.tubes import SplineTubes
 
 from ...cameras import Camera, Lens
-from ..codec.baselines.tessellated import TessellatedTubes
 from .pictures import reversed_depth_of
+from .tessellated import TessellatedTubes
 
-__all__ = ["CastTubes", "Drawing", "MeshedTubes", "drawings"]
+__all__ = ["GROWS", "CastTubes", "Drawing", "MeshedTubes", "VisibleDepths", "drawings"]
 
 SIDES = ((6, 6), (12, 12), (30, 30), (6, 30))
 GROWS = ("gbuffer", "occlusion", "framebuffer", "depth")  # with the picture, not with the data

@@ -37,10 +37,6 @@ class TessellatedTubes:
     tubes : SplineTubes
     size : tuple of int
         Of the picture, pixels.
-    discard : bool, default: False
-        Draw nothing: fragments are discarded first thing, to time what comes before them.
-    cull : bool, default: False
-        Leave out back faces: faster, but one looks through the tubes' open ends.
     tolerance : float, optional
         Pixels that a polygon may stray from its curve as long as the levels go that far.
     sides : tuple of int, optional
@@ -50,8 +46,6 @@ class TessellatedTubes:
     ----------
     nbytes : int
         GPU memory of the nodes and segments.
-    triangles : int
-        Submitted by the last picture.
     """
 
     def __init__(
@@ -60,12 +54,10 @@ class TessellatedTubes:
         tubes: Any,
         size: tuple[int, int],
         *,
-        discard: bool = False,
-        cull: bool = False,
         tolerance: float = TOLERANCE,
         sides: tuple[int, int] = (LEAST_SIDES, MOST_SIDES),
     ) -> None:
-        self._ctx, self._size, self._cull = ctx, tuple(size), cull
+        self._ctx, self._size = ctx, tuple(size)
         self._scaled = bool(tubes.scaled)
         self.origin = tubes.points.mean(axis=0) if tubes.n_nodes else np.zeros(3)
         nodes = np.empty((tubes.n_nodes, 11), np.float32)
@@ -76,17 +68,15 @@ class TessellatedTubes:
         nodes[:, 8:] = carried_normals(tubes.tangents, tubes.segments)
         indices = np.ascontiguousarray(tubes.segments, np.uint32)
         self.nbytes = nodes.nbytes + indices.nbytes
-        self.triangles = 0
-        self._program = _program(ctx, discard=discard, tolerance=tolerance, sides=sides)
+        self._program = _program(ctx, tolerance=tolerance, sides=sides)
         self._nodes, self._indices = ctx.buffer(nodes.tobytes()), ctx.buffer(indices.tobytes())
         layout = (self._nodes, "4f 4f 3f", "node_place", "node_slope", "node_across")
         self._array = ctx.vertex_array(self._program, [layout], index_buffer=self._indices, index_element_size=4)
         self._colour = ctx.renderbuffer(self._size, 4)
         self._depth = ctx.depth_renderbuffer(self._size)
         self._target = ctx.framebuffer([self._colour], self._depth)
-        self._primitives = ctx.query(primitives=True)
 
-    def render(self, model_view_projection: Any, *, count: bool = False) -> None:
+    def render(self, model_view_projection: Any) -> None:
         """Draw one picture."""
         import moderngl
 
@@ -113,15 +103,10 @@ class TessellatedTubes:
             if name in self._program:  # compilers drop what a stage does not use
                 self._program[name].write(np.asarray(value, np.int32 if name == "scaled" else np.float32).tobytes())
         self._ctx.patch_vertices = 2
-        self._ctx.enable_only(moderngl.DEPTH_TEST | (moderngl.CULL_FACE if self._cull else 0))
+        self._ctx.enable_only(moderngl.DEPTH_TEST)
         self._target.use()
         self._target.clear(depth=1.0)
-        if count:
-            with self._primitives:
-                self._array.render(moderngl.PATCHES)
-            self.triangles = int(self._primitives.primitives)
-        else:
-            self._array.render(moderngl.PATCHES)
+        self._array.render(moderngl.PATCHES)
 
     def depth(self) -> Array:
         """Return the last picture's window depth: (height, width), the bottom row first, 1 where there is nothing."""
@@ -129,17 +114,13 @@ class TessellatedTubes:
         depth = np.frombuffer(self._target.read(attachment=-1, components=1, dtype="f4"), np.float32)
         return depth.reshape(height, width).astype(np.float64)
 
-    def covered(self) -> npt.NDArray[np.bool_]:
-        """Return where the last picture shows a tube: (height, width) bool, the bottom row first."""
-        return self.depth() < 1.0
-
     def release(self) -> None:
         """Give everything back."""
         for thing in (self._array, self._nodes, self._indices, self._target, self._colour, self._depth, self._program):
             thing.release()
 
 
-def _program(ctx: Any, *, discard: bool, tolerance: float, sides: tuple[int, int]) -> Any:
+def _program(ctx: Any, *, tolerance: float, sides: tuple[int, int]) -> Any:
     from pvfiblets.engine.gl.shaders import assemble
 
     constants = {
@@ -147,7 +128,6 @@ def _program(ctx: Any, *, discard: bool, tolerance: float, sides: tuple[int, int
         "least_sides": float(sides[0]),
         "most_sides": float(sides[1]),
         "most_steps": float(1 + ADDITIONAL),
-        "discard": int(discard),
     }
     return ctx.program(**{stage: assemble(name, constants=constants) for stage, name in STAGES.items()})
 
