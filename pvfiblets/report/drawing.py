@@ -20,7 +20,7 @@ from .record import LeftOut, Record, Timing
 from .studies.codec.errors_and_times import Turns
 from .study import Options, Unavailable
 
-__all__ = ["LATE", "Part", "WindowPart", "clock_of", "drawing_context", "run_parts", "timing", "turns_of"]
+__all__ = ["LATE", "Part", "WindowPart", "clock_of", "data_bytes", "drawing_context", "run_parts", "timing", "turns_of"]
 
 Part: TypeAlias = Callable[[Any, Options, list[LeftOut]], Iterator[Record]]
 """Of a study: from a context and options to records."""
@@ -30,6 +30,9 @@ WindowPart: TypeAlias = Callable[[Options, list[LeftOut]], Iterator[Record]]
 
 LATE = "the time given was used up"
 """Why something was left out."""
+
+OF_THE_PICTURE = ("gbuffer", "occlusion", "framebuffer", "depth", "depth of tubes", "marks of tubes")
+"""Buffers that grow with the picture, not with the data."""
 
 SOFTWARE = re.compile("llvmpipe|softpipe|swrast|swiftshader|software", re.IGNORECASE)
 
@@ -94,3 +97,8 @@ def turns_of(ctx: Any) -> Turns:
 def timing(seconds: list[float], items: float, item: str, clock: str) -> Timing:
     """Return what repeats of one call took, which handles so many items."""
     return Timing(float(np.median(seconds)), min(seconds), max(seconds), len(seconds), float(items), item, clock)
+
+
+def data_bytes(explained: Mapping[str, Any]) -> int:
+    """Return the bytes on the GPU that grow with the data, of what a renderer or an actor explains."""
+    return sum(buffer["bytes"] for buffer in explained["buffers"] if buffer["name"] not in OF_THE_PICTURE)

@@ -13,19 +13,13 @@ from pvfiblets.engine.halos import HaloRenderer
 from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
 
 from ...cameras import Camera
+from ...drawing import data_bytes
 from .pictures import Singles, Viewpoint, averaged, darkness_of, finer
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
 
 __all__ = ["Drawing", "FibletHalos", "Strips"]
-
-PICTURE = (
-    "gbuffer",
-    "occlusion",
-    "depth of tubes",
-    "marks of tubes",
-)  # buffers that grow with the picture, not with the data
 
 
 class Drawing(Protocol):
@@ -78,7 +72,7 @@ class Strips:
     @property
     def nbytes(self) -> int:
         """Bytes on the GPU that grow with the data."""
-        return _bytes(self.renderer.explain())
+        return data_bytes(self.renderer.explain())
 
     def release(self) -> None:
         """Give everything back."""
@@ -119,7 +113,7 @@ class FibletHalos:
     @property
     def nbytes(self) -> int:
         """Bytes on the GPU that grow with the data."""
-        return _bytes(self._renderer.explain(counts=False))
+        return data_bytes(self._renderer.explain(counts=False))
 
     def release(self) -> None:
         """Give everything back."""
@@ -129,7 +123,3 @@ class FibletHalos:
 
 def _view(camera: Viewpoint, times: int) -> View:
     return View((times * camera.size[0], times * camera.size[1]), camera.model_view_projection)
-
-
-def _bytes(report: dict[str, Any]) -> int:
-    return sum(buffer["bytes"] for buffer in report["buffers"] if buffer["name"] not in PICTURE)

@@ -14,7 +14,7 @@ from pvfiblets.engine.errors import EngineError
 from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
 from pvfiblets.halos.style import TABLE_SIZE
 
-from ...drawing import LATE, clock_of, drawing_context, timing, turns_of
+from ...drawing import LATE, clock_of, run_parts, timing, turns_of
 from ...record import FRAME, Axes, Figure, LeftOut, Record
 from ...study import Options
 from ..codec.data_sets import DataSet, file_sets, synthetic_tracking
@@ -22,6 +22,7 @@ from ..culling.flights import Flight
 from .drawing import Drawing, FibletHalos, Strips
 from .exact import Crossings, crossings, gaps, pixel_errors
 from .pictures import Singles, differences, helices, look_of, orbit, picture
+from .windows import beside_plain
 
 if TYPE_CHECKING:
     from ...cameras import Camera
@@ -135,15 +136,18 @@ class HaloStudy:
         "OpenGL is software, times are the processor time of all its threads; on a graphics card they are elapsed. "
         "*memory*: what grows with the data. *fibres-subset*, *office* and *shape-small* (points) are synthetic, of "
         "sizes in the paper's table 1; tractograms are cut by leaving streamlines out evenly, which their names say.",
+        "*in a window*: all sets of the paper's table 1 in PyVista windows, seen from six places, beside VTK's plain "
+        "lines of one pixel, or plain points as large as those with halos.",
     )
 
     def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
         """Yield a record for every scene and variant."""
-        with drawing_context(options) as ctx:
-            for measure in (_exact, _gaps):
-                yield from measure(ctx, options, left_out)
-            for scene in scenes(options, left_out):
-                yield from _pictures(ctx, scene, options, left_out)
+        return run_parts({_exact: 1.0, _gaps: 1.0, _all_pictures: 6.0}, options, left_out, {beside_plain: 2.0})
+
+
+def _all_pictures(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+    for scene in scenes(options, left_out):
+        yield from _pictures(ctx, scene, options, left_out)
 
 
 def scenes(options: Options, left_out: list[LeftOut]) -> Iterator[Scene]:

@@ -11,13 +11,13 @@ import numpy.typing as npt
 from pvfiblets.tubes import SplineTubes
 
 from ...cameras import Camera, Lens
+from ...drawing import data_bytes
 from .pictures import reversed_depth_of
 from .tessellated import TessellatedTubes
 
-__all__ = ["GROWS", "CastTubes", "Drawing", "MeshedTubes", "VisibleDepths", "drawings"]
+__all__ = ["CastTubes", "Drawing", "MeshedTubes", "VisibleDepths", "drawings"]
 
 SIDES = ((6, 6), (12, 12), (30, 30), (6, 30))
-GROWS = ("gbuffer", "occlusion", "framebuffer", "depth")  # with the picture, not with the data
 
 VisibleDepths = tuple[npt.NDArray[np.float64], npt.NDArray[np.bool_]]
 
@@ -56,8 +56,7 @@ class CastTubes:
         self.setting = self._renderer.solver
         self.ours = self.setting != "bisection"
         self.default = solver == "auto"
-        buffers: Any = self._renderer.explain()["buffers"]
-        self.nbytes = sum(part["bytes"] for part in buffers if part["name"] not in GROWS)
+        self.nbytes = data_bytes(self._renderer.explain())
 
     def draw(self, camera: Camera | Lens) -> None:
         """Draw a G-buffer, if the camera is not that of the last one."""

@@ -10,8 +10,9 @@ import numpy as np
 from pvfiblets.tubes import SplineTubes, curves
 
 from ...cameras import Camera, Lens
+from ...drawing import data_bytes
 from ...window import Window
-from .drawings import GROWS, Drawing, VisibleDepths
+from .drawings import Drawing, VisibleDepths
 
 __all__ = ["FilteredTubes", "ShadedLines", "WindowTubes", "window_drawings"]
 
@@ -43,7 +44,7 @@ class WindowTubes(_TubeWindow):
         super().__init__(size)
         actor = self.plotter.add_spline_tubes(tubes, color="steelblue", min_width=0.0)
         self.show()
-        self.nbytes = sum(part["bytes"] for part in actor.explain()["buffers"] if part["name"] not in GROWS)
+        self.nbytes = data_bytes(actor.explain())
 
 
 class FilteredTubes(_TubeWindow):
