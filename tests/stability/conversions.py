@@ -1,31 +1,22 @@
-"""Files converted piece by piece: points per second, and the peak of memory against the number of points.
-
-    python benchmarks/streaming.py [--points 1e6 1e7 1e8] [--source .tck .trk .trx] [--target .fiblets] [--output DIR]
+"""Files of any number of points that are never held in memory, and what converting one takes: time and memory.
 
 Lines like those of whole-brain tracking (0.5 mm steps, 250 points each) are written as a file, piece by piece, and
-converted by ``pvfiblets.compress_file`` or, for other targets, by what ``pvfiblets convert`` calls. Each conversion is
-a process of its own, so that its peak of resident memory, mapped pages of files included, is that conversion's alone.
-The slope of that peak over the points says what a larger file would take. ``--points 1e9`` wants 26 GB of disk.
+converted by ``pvfiblets.compress_file`` or, for other targets, by what ``pvfiblets convert`` calls.
 """
 
 from __future__ import annotations
 
-import argparse
 import json
 import subprocess
 import sys
-import tempfile
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from common import record
 
 from pvfiblets import formats
 from pvfiblets.formats.spool import gathered
-from pvfiblets.report.machine import about
 from pvfiblets.streamlines import Streamlines
 
 STEP, LENGTH, LINES = 0.5, 250, 2000
@@ -106,61 +97,3 @@ def slope(rows: list[dict[str, Any]]) -> float:
     """Return bytes of peak memory per point, by least squares over conversions of unlike sizes."""
     points, peaks = (np.array([row[key] for row in rows], float) for key in ("points", "peak_mb"))
     return float(np.polyfit(points, peaks, 1)[0] * 2**20)
-
-
-def measure(sizes: list[int], sources: list[str], targets: list[str], folder: Path) -> list[dict[str, Any]]:
-    """Convert files of all sizes and formats, and say each as it is done."""
-    rows = []
-    for size in sizes:
-        for suffix in sources:
-            begin = time.perf_counter()
-            source = made(folder / f"source{suffix}", size)
-            print(f"{source.name}: {size:,} points written in {time.perf_counter() - begin:.0f} s", flush=True)
-            for target in targets:
-                (row,) = converted((source, folder / f"target{target}"))
-                rows.append(row)
-                print(json.dumps(row), flush=True)
-                (folder / f"target{target}").unlink()
-            source.unlink()
-    return rows
-
-
-def to_page(rows: list[dict[str, Any]]) -> str:
-    """Return the table of a page."""
-    lines = [
-        "| from | to | points | GB read | peak MB | M points/s | M points per CPU second | bytes per point |",
-        "|---|---|---|---|---|---|---|---|",
-    ]
-    lines += [
-        f"| {r['source']} | {r['target']} | {r['points']:,} | {r['source_bytes'] / 1e9:.2f} | {r['peak_mb']:.0f} "
-        f"| {r['points'] / r['seconds'] / 1e6:.1f} | {r['points'] / r['cpu_seconds'] / 1e6:.1f} "
-        f"| {r['bytes'] / r['points']:.2f} |"
-        for r in rows
-    ]
-    for pair in dict.fromkeys((r["source"], r["target"]) for r in rows):
-        of_pair = [r for r in rows if (r["source"], r["target"]) == pair]
-        if len({r["points"] for r in of_pair}) > 1:
-            lines += ["", f"{pair[0]} to {pair[1]}: {slope(of_pair):.3f} bytes of memory for each further point."]
-    return "\n".join(lines) + "\n"
-
-
-def main() -> None:
-    """Run the benchmark and write its table."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--points", type=float, nargs="+", default=[1e6, 1e7, 1e8])
-    parser.add_argument("--source", nargs="+", default=[".tck", ".trk", ".trx"])
-    parser.add_argument("--target", nargs="+", default=[".fiblets"])
-    parser.add_argument("--output", type=Path, help="a folder for streaming.json and streaming.md")
-    parser.add_argument("--scratch", type=Path, help="a folder with room for the files; the system's by default")
-    options = parser.parse_args()
-    with tempfile.TemporaryDirectory(dir=options.scratch) as name:
-        rows = measure([int(size) for size in options.points], options.source, options.target, Path(name))
-    page = to_page(rows)
-    print(page)
-    if options.output is not None:
-        content = {"machine": about(SEED, quick=False), "rows": rows}
-        record("streaming", content, page, options.output)
-
-
-if __name__ == "__main__":
-    main()

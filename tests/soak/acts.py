@@ -12,7 +12,7 @@ from pvfiblets import compress, regions
 from pvfiblets.streamlines import Streamlines
 
 Act = Callable[[Any, np.random.Generator], str | None]
-"""Does something to a :class:`soak.Soak` and says what; None where there is nothing to do it to."""
+"""Does something to a :class:`.walk.Soak` and says what; None where there is nothing to do it to."""
 
 REACH = 40.0  # mm from the middle to the farthest of the data
 
@@ -32,6 +32,8 @@ class Data:
         self.points = pv.PolyData(rng.uniform(-REACH, REACH, (80, 3)))
         self.points["size"] = rng.random(80)
         self.meshes = [pv.Sphere(radius=12.0), pv.Cube(x_length=30.0, y_length=20.0, z_length=15.0)]
+        # Loads compiled kernels: whenever an act first needs them, their 70 MB would be taken for growth.
+        self.fiblets[0].select(regions.passes(regions.Labels((self.values > 30.0).astype(np.uint8), self.affine)))
         self.torus = pv.ParametricTorus(ringradius=20, crosssectionradius=9, u_res=12, v_res=8, w_res=8)
 
 

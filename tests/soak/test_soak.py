@@ -2,7 +2,6 @@
 
 import ctypes
 import os
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,9 +10,8 @@ import pyvista as pv
 from pvfiblets import compress
 from pvfiblets.mappers import windows
 from pvfiblets.streamlines import Streamlines
-from tests.gl_calls import possible, recording
 
-from .scripts import imported
+from . import acts, walk
 
 FRAMES = int(os.environ.get("PVFIBLETS_SOAK", "60"))
 PER_ROUND = max(FRAMES // 5, 10)
@@ -25,30 +23,31 @@ MOST_GROWTH = 40.0
 """MB of resident memory from the second round on. A window alone, of 100 pixels, takes 30."""
 
 
-@pytest.fixture(scope="module")
-def bench():
-    """Return the soak's modules."""
-    with imported(soak="soak", soak_acts="soak_acts", gpu_memory="gpu_memory") as modules:
-        yield modules
+@pytest.fixture(scope="module", autouse=True)
+def aliased():
+    """Smooth edges are an act of their own: as the default they would take most of the time."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("PVFIBLETS_ANTIALIAS", "off")
+        yield
 
 
 @pytest.fixture(scope="module")
-def walked(bench):
+def walked():
     """Walk once; an error ends it, and says what was done."""
-    return bench.soak.walk(FRAMES, PER_ROUND, seed=3, size=100)
+    return walk.walk(FRAMES, PER_ROUND, seed=3, size=100)
 
 
 @pytest.mark.more
-def test_most_kinds_of_acts_were_done(bench, walked):
+def test_most_kinds_of_acts_were_done(walked):
     soak, rounds = walked
     assert soak.frames == FRAMES
-    assert len(soak.acts) >= 0.8 * len(bench.soak_acts.WEIGHTS)
+    assert len(soak.acts) >= 0.8 * len(acts.WEIGHTS)
     assert sum(soak.refused.values()) <= 0.05 * sum(soak.acts.values()), soak.refused
 
 
 @pytest.mark.more
-def test_all_objects_of_opengl_are_given_back(bench, walked):
-    kinds = [kind for kind in bench.soak.KINDS if kind != "Program"]  # VTK keeps programs as long as the window is
+def test_all_objects_of_opengl_are_given_back(walked):
+    kinds = [kind for kind in walk.KINDS if kind != "Program"]  # VTK keeps programs as long as the window is
     for row in walked[1]:
         more = sum(row["after"][kind] - row["before"][kind] for kind in kinds)
         assert more <= MOST_OBJECTS, row
@@ -71,10 +70,10 @@ def test_resident_memory_stays_after_the_first_rounds(walked):
 
 @pytest.mark.more
 @pytest.mark.exhaustive
-def test_the_same_seed_does_the_same(bench):
+def test_the_same_seed_does_the_same():
     log = []
     for _ in range(2):
-        soak = bench.soak.Soak(5, 64)
+        soak = walk.Soak(5, 64)
         soak.round(4)
         log.append(soak.log)
     assert log[0] == log[1]
@@ -82,8 +81,8 @@ def test_the_same_seed_does_the_same(bench):
 
 
 @pytest.mark.more
-def test_a_failing_act_is_reported_with_those_before_it(bench, monkeypatch):
-    soak = bench.soak.Soak(5, 64)
+def test_a_failing_act_is_reported_with_those_before_it(monkeypatch):
+    soak = walk.Soak(5, 64)
     soak.open()
 
     def broken(*_):
@@ -91,16 +90,16 @@ def test_a_failing_act_is_reported_with_those_before_it(bench, monkeypatch):
 
     soak.log.append("1: something before")
     monkeypatch.setattr(soak, "_kinds", [broken] * len(soak._kinds))
-    with pytest.raises(bench.soak.SoakError, match=r"(?s)frame 1 of seed 5: RuntimeError: no such thing.*something be"):
+    with pytest.raises(walk.SoakError, match=r"(?s)frame 1 of seed 5: RuntimeError: no such thing.*something be"):
         soak.frame()
     soak.windows.pop().close()
 
 
 @pytest.mark.more
-def test_what_leaks_is_found(bench):
+def test_what_leaks_is_found():
     """A texture that nobody gives back, and an actor that somebody keeps."""
-    soak = bench.soak.Soak(5, 64)
-    soak._kinds, soak._shares = [bench.soak_acts.turn], np.ones(1)
+    soak = walk.Soak(5, 64)
+    soak._kinds, soak._shares = [acts.turn], np.ones(1)
     kept = []
 
     def leak(self, rng):
@@ -109,7 +108,7 @@ def test_what_leaks_is_found(bench):
         window.plotter.render_window.MakeCurrent()
         make = ctypes.CFUNCTYPE(None, ctypes.c_uint, ctypes.c_int, ctypes.POINTER(ctypes.c_uint))
         name = ctypes.c_uint()
-        make(bench.soak.loader()("glCreateTextures"))(0x0DE1, 1, ctypes.byref(name))
+        make(walk.loader()("glCreateTextures"))(0x0DE1, 1, ctypes.byref(name))
         return "leak"
 
     clean = soak.round(2)
@@ -123,9 +122,9 @@ def test_what_leaks_is_found(bench):
 
 
 @pytest.mark.more
-def test_an_error_that_vtk_left_behind_is_not_taken_for_ours(bench):
+def test_an_error_that_vtk_left_behind_is_not_taken_for_ours():
     """Depth peeling in a multi-sampled window leaves one; making the first buffer was then said to lack memory."""
-    others = sum(bench.soak.unreleased().values())
+    others = sum(walk.unreleased().values())
     points = np.linspace(-5.0, 5.0, 60)[:, None] * (1.0, 0.2, 0.0)
     lines = Streamlines(points, [0, 30, 60])
     plotter = pv.Plotter(off_screen=True, window_size=(64, 64))
@@ -134,7 +133,7 @@ def test_an_error_that_vtk_left_behind_is_not_taken_for_ours(bench):
         plotter.show(auto_close=False)
 
         def err(_renderer, _event):
-            ctypes.CFUNCTYPE(None, ctypes.c_uint)(bench.soak.loader()("glEnable"))(0xFFFF)
+            ctypes.CFUNCTYPE(None, ctypes.c_uint)(walk.loader()("glEnable"))(0xFFFF)
 
         plotter.renderer.AddObserver("StartEvent", err)
         plotter.add_fiblets(compress(lines), color="red", line_width=3, lighting=False)
@@ -142,25 +141,8 @@ def test_an_error_that_vtk_left_behind_is_not_taken_for_ours(bench):
         plotter.render()
         picture = plotter.screenshot(return_img=True).astype(int)
         assert (picture[..., 0] - picture[..., 1] > 80).sum() > 30
-        assert sum(bench.soak.unreleased().values()) > others + 5
+        assert sum(walk.unreleased().values()) > others + 5
     finally:
         plotter.close()
     assert not windows._contexts
-    assert sum(bench.soak.unreleased().values()) == others
-
-
-@pytest.mark.skipif(not possible(), reason="calls are recorded on x86-64 and Linux only")
-@pytest.mark.more
-@pytest.mark.parametrize(("pipeline", "most"), [("compute", 90), ("geometry", 12)])
-def test_a_chunk_more_asks_little_of_opengl(gl, pipeline, most):
-    """Whatever the graphics card, the processor makes these calls in every picture for each chunk."""
-    rows = []
-    with imported(cost="frame_cost") as modules:
-        for chunks in (1, 3):
-            fiblets = modules.cost.tiny_fiblets(chunks)
-            case = {"pipeline": pipeline, "culling": "two-phase"}
-            with modules.cost.as_on_a_card(), recording() as calls:
-                rows.append(modules.cost.engine(calls, fiblets, case, SimpleNamespace(frames=2)))
-    assert [row["chunks"] for row in rows] == [1, 3]
-    assert (rows[1]["calls"] - rows[0]["calls"]) / 2 <= most
-    assert rows[0]["ms"] > 0.0
+    assert sum(walk.unreleased().values()) == others

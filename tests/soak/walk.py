@@ -1,38 +1,29 @@
-"""Thousands of frames of whatever a plotter offers, at random: no error of OpenGL, and nothing that grows.
+"""A random walk over all that a plotter offers: no error of OpenGL, and nothing that grows.
 
-    python benchmarks/soak.py [--frames 2000] [--round 100] [--seed 0] [--size 120] [--output DIR]
-
-Every round opens a plotter, does one to three random acts before each frame (``soak_acts.py``: adding, removing,
-styles, cuts, filters, selections, picking, widgets, VTK's passes, picture effects, resizing, second windows), and ends
-by removing everything. Then OpenGL is asked what is still there, by the names of its objects and their bytes, and once
-the windows are closed the process is asked for its memory. What is left must be what was there before, and the memory
-after the first rounds must not rise. An error is reported with the acts that led to it; the same seed repeats them.
+Every round opens a plotter, does one to three random acts before each frame (:mod:`.acts`: adding, removing, styles,
+cuts, filters, selections, picking, widgets, VTK's passes, picture effects, resizing, second windows), and ends by
+removing everything. Then OpenGL is asked for its remaining objects, by their names and bytes, and once the windows are
+closed the process for its memory. An error is reported with the acts that led to it; the same seed repeats them.
 """
 
 from __future__ import annotations
 
-import argparse
 import ctypes
 import gc
-import json
-import os
 import sys
-import time
 from collections import Counter
 from pathlib import Path
 from typing import Any
 
-import gpu_memory
 import moderngl
 import numpy as np
 import pyvista as pv
-from soak_acts import WEIGHTS, Data
 
 from pvfiblets.engine.gl.gl_loader import loader
 from pvfiblets.mappers import windows
-from pvfiblets.report.machine import about
 
-os.environ.setdefault("PVFIBLETS_ANTIALIAS", "off")  # an act of its own: as the default it would be most of the time
+from . import gpu_memory
+from .acts import WEIGHTS, Data
 
 MOST_ACTORS = 4
 OURS = (moderngl.Buffer, moderngl.ComputeShader, moderngl.Framebuffer, moderngl.Program, moderngl.Query,
@@ -206,7 +197,7 @@ class Soak:
         gc.collect()
         self._draw()
         after, ours = opengl_objects(), unreleased()
-        contexts = sum(len(context.slots) for context in windows._contexts.values())  # noqa: SLF001
+        contexts = sum(len(context.slots) for context in windows._contexts.values())
         self.windows.pop().close()
         del first
         gc.collect()
@@ -253,6 +244,7 @@ def alive() -> int:
     return sum(
         str(type(thing).__module__).startswith(("pvfiblets.plotting", "pvfiblets.mappers"))
         and type(thing).__name__.endswith(("Actor", "Mapper"))
+        and not type(thing).__name__.startswith("_")  # the place of a setting, of which there is one
         for thing in gc.get_objects()
     )
 
@@ -276,74 +268,11 @@ def resident() -> float:
     return int(status["VmRSS"].split()[0]) / 1024
 
 
-def slope(rounds: list[dict[str, Any]]) -> float:
-    """Return kB of resident memory for each further frame, the first quarter of the rounds left out."""
-    rest = rounds[len(rounds) // 4 :]
-    if len(rest) < 2:
-        return 0.0
-    frames, memory = ([row[key] for row in rest] for key in ("frames", "resident_mb"))
-    return float(np.polyfit(frames, memory, 1)[0]) * 1024.0
-
-
-def walk(frames: int, per_round: int, seed: int, size: int, show: Any = None) -> tuple[Soak, list[dict[str, Any]]]:
+def walk(frames: int, per_round: int, seed: int, size: int) -> tuple[Soak, list[dict[str, Any]]]:
     """Draw so many frames in rounds; return the walk, and what was left after each round."""
     soak = Soak(seed, size)
     rounds = []
     while soak.frames < frames:
-        begin = time.perf_counter(), time.process_time()
         rounds.append(soak.round(min(per_round, frames - soak.frames)))
-        rounds[-1]["seconds"] = time.perf_counter() - begin[0]
-        rounds[-1]["cpu_seconds"] = time.process_time() - begin[1]
-        if show is not None:
-            show(rounds[-1])
+        print({key: value for key, value in rounds[-1].items() if key not in ("before", "after")})
     return soak, rounds
-
-
-def to_page(soak: Soak, rounds: list[dict[str, Any]]) -> str:
-    """Return the table of a page."""
-    keys = [kind for kind in KINDS if kind != "Program"]
-    lines = [
-        f"{soak.frames} frames, {sum(row['acts'] for row in rounds)} acts of {len(soak.acts)} kinds, seed {soak.seed}; "
-        f"{slope(rounds):+.1f} kB of resident memory for each frame after the first quarter.",
-        "",
-        *(f"- refused {n} times: {what}" for what, n in soak.refused.most_common()),
-        "",
-        "| frames | objects of OpenGL before, after | of these the engine's | GPU bytes before, after | actors left "
-        "| resident MB | seconds |",
-        "|---|---|---|---|---|---|---|",
-    ]
-    lines += [
-        f"| {row['frames']} | {sum(row['before'][k] for k in keys)}, {sum(row['after'][k] for k in keys)} "
-        f"| {row['ours']} | {row['before']['bytes']:,}, {row['after']['bytes']:,} | {row['actors']} "
-        f"| {row['resident_mb']:.0f} | {row['seconds']:.0f} |"
-        for row in rounds
-    ]
-    return "\n".join(lines) + "\n"
-
-
-def main() -> None:
-    """Run the soak and write what it found."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--frames", type=int, default=2000)
-    parser.add_argument("--round", type=int, default=100)
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--size", type=int, default=120)
-    parser.add_argument("--output", type=Path, help="a folder for soak.json and soak.md")
-    options = parser.parse_args()
-
-    def show(row: dict[str, Any]) -> None:
-        print(json.dumps(row), flush=True)
-
-    soak, rounds = walk(options.frames, options.round, options.seed, options.size, show)
-    page = to_page(soak, rounds)
-    print(page)
-    if options.output is not None:
-        options.output.mkdir(parents=True, exist_ok=True)
-        (options.output / "soak.md").write_text(page, encoding="utf-8")
-        content = {"machine": about(options.seed, quick=False), "acts": dict(soak.acts)}
-        content |= {"refused": dict(soak.refused), "rounds": rounds}
-        (options.output / "soak.json").write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
-
-
-if __name__ == "__main__":
-    main()
