@@ -30,6 +30,7 @@ MODULES = {
     "halos": "pvfiblets.report.studies.halos.study",
     "features": "pvfiblets.report.studies.features.study",
     "translucency": "pvfiblets.report.studies.translucency.study",
+    "query": "pvfiblets.report.studies.query.study",
     "stability": "pvfiblets.report.studies.stability.study",
 }
 
