@@ -31,6 +31,7 @@ MODULES = {
     "features": "pvfiblets.report.studies.features.study",
     "translucency": "pvfiblets.report.studies.translucency.study",
     "query": "pvfiblets.report.studies.query.study",
+    "speed": "pvfiblets.report.studies.speed.study",
     "stability": "pvfiblets.report.studies.stability.study",
 }
 
