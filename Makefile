@@ -55,7 +55,7 @@ soak: environment gl
 	PVFIBLETS_SOAK=2000 $(BIN)/python -m pytest -m '' -s --timeout=14400 tests/soak
 
 bench: environment gl
-	$(BIN)/python benchmarks/lines.py --output $(DEMO)/lines.json
+	$(BIN)/pvfiblets report --only lines -o $(DEMO)/lines
 
 docs: environment gl
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'

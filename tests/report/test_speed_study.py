@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from pvfiblets.report.studies.speed import lines, reading
 from pvfiblets.report.studies.speed import study as speed
 from pvfiblets.report.studies.speed.cells import measure_cell
 from pvfiblets.report.studies.speed.process import CellProcess
@@ -105,6 +106,36 @@ def test_data_that_cannot_be_made_is_told(tmp_path):
     cell = {**CELLS[0], "folder": str(tmp_path / "a file")}
     assert speed._measured(cell, CellProcess([]), set(), little(), left) is None
     assert left[0].reason.startswith("its data was not made: ")
+
+
+@pytest.mark.more
+def test_lines_in_windows_are_measured_beside_vtks(monkeypatch):
+    monkeypatch.setattr(lines, "QUICK_SIZE", (64, 48))
+    left = []
+    records = list(lines.STUDY.run(little(), left))
+    assert not left
+    found = {record.label: record for record in records}
+    assert list(found) == ["fiblets", "VTK's polylines", "VTK's polylines (without multi-sampling)", "VTK's tubes"]
+    memory = {label: record.costs["memory"].value for label, record in found.items()}
+    assert memory["fiblets"] < 4.0
+    # 12 bytes of place, 4 of colour, 8 of the two indices of a segment; six sides of tubes have normals as well.
+    assert 23.5 < memory["VTK's polylines"] < 24.0
+    assert memory["VTK's tubes"] > 6 * (12 + 4 + 12 + 24)
+    for record in records:
+        assert record.costs["peak"].value > 50.0
+        assert record.costs["load"].value > 0.0
+        assert len(record.data.split(" M segments")) == 2
+
+
+def test_reading_is_measured_beside_nibabel():
+    left = []
+    records = list(reading.STUDY.run(little(), left))
+    assert not left
+    assert [record.label for record in records] == 2 * ["pvfiblets", "pvfiblets (in pieces)", "nibabel"] + [
+        "pvfiblets", "pvfiblets (in pieces)",
+    ]  # fmt: skip
+    assert all(record.costs["size"].value >= 12.0 for record in records)
+    assert all(record.times["read"].items > 50_000 for record in records)
 
 
 @pytest.mark.more

@@ -32,6 +32,8 @@ MODULES = {
     "translucency": "pvfiblets.report.studies.translucency.study",
     "query": "pvfiblets.report.studies.query.study",
     "speed": "pvfiblets.report.studies.speed.study",
+    "lines": "pvfiblets.report.studies.speed.lines",
+    "reading": "pvfiblets.report.studies.speed.reading",
     "stability": "pvfiblets.report.studies.stability.study",
 }
 

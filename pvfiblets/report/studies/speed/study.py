@@ -18,7 +18,7 @@ from ...study import Options
 from .cells import stored_brain
 from .process import CellProcess, Row
 
-__all__ = ["STUDY", "SpeedStudy", "sections"]
+__all__ = ["STUDY", "SpeedStudy", "by_size", "sections"]
 
 SEGMENTS, QUICK_SEGMENTS = (1e6, 6e6, 60e6, 434e6, 1e9, 5.4e9), (5e4, 2e5)  # Schertzer et al. 2022, table 2
 STRIPS, QUICK_STRIPS = (8e6, 81e6, 202e6, 434e6), (5e4,)  # and table 3
@@ -84,7 +84,7 @@ class SpeedStudy:
                         record.default = (cell.get("pipeline"), cell.get("culling")) == (fastest, CULLINGS[0])
                         found.append(record)
                         yield record
-                yield from _by_size(found)
+                yield from by_size(found)
 
 
 def sections(quick: bool, pipelines: list[str]) -> list[list[Row]]:
@@ -167,7 +167,7 @@ def _named(cell: Row) -> tuple[str, str, str]:
     return f"{cell['kind']}: {cell['set']}, {at}", cell["kind"], cell.get("view", "")
 
 
-def _by_size(records: list[Record]) -> Iterator[Record]:
+def by_size(records: list[Record]) -> Iterator[Record]:
     """Yield milliseconds as lines over the number of segments, of each pipeline and culling."""
     shown: dict[tuple[str, str], dict[str, Figure]] = {}
     for record in records:
