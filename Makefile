@@ -52,10 +52,10 @@ fuzz: environment
 	PVFIBLETS_FUZZ=10000 $(BIN)/python -m pytest tests/formats/test_fuzz.py tests/web/test_session_damage.py --timeout=14400
 
 soak: environment gl
-	$(BIN)/python benchmarks/soak.py --frames 2000 --output $(DEMO)
+	PVFIBLETS_SOAK=2000 $(BIN)/python -m pytest -m '' -s --timeout=14400 tests/soak
 
 bench: environment gl
-	$(BIN)/python benchmarks/lines.py --output $(DEMO)/lines.json
+	$(BIN)/pvfiblets report --only lines -o $(DEMO)/lines
 
 docs: environment gl
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'

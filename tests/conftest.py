@@ -58,7 +58,7 @@ LONGEST = (
     "plotting/test_everything_at_once.py", "web/test_browser_tools.py", "engine/test_two_phase.py",
     "page/test_page_browser.py", "stability/test_cases.py", "web/test_browser_drawing.py", "web/test_firefox.py",
     "web/test_browser_layers.py", "stability/test_load.py", "engine/test_volume_steep.py",
-    "benchmarks/test_soak.py", "engine/test_coverage.py",
+    "soak/test_soak.py", "engine/test_coverage.py",
     "web/test_browser_attacks.py", "engine/test_region_query.py",
     "web/test_browser_exports.py", "engine/test_clip_regions.py", "web/test_browser_touch.py",
     "engine/test_filter_textures.py", "engine/test_line_tubes.py",

@@ -255,7 +255,7 @@ KINDS = ("glsl", "comp", "frag", "vert", "geom", "tesc", "tese", "task", "mesh",
 NAMED = re.compile(
     rf"(?<![\w/.*{{}}<>-])((?:[\w-]+/)*[a-z][\w-]*\.(?:{'|'.join(KINDS)})|shaders(?:/[\w-]+)+)(?![\w*/(-]|\.\w)"
 )
-FOLDERS = ("pvfiblets", "shaders", "tests", "benchmarks", "docs", "examples", "scripts")
+FOLDERS = ("pvfiblets", "shaders", "tests", "docs", "examples", "scripts")
 FILES = {
     path.relative_to(ROOT).as_posix()
     for folder in FOLDERS

@@ -19,6 +19,7 @@ __all__ = ["QUICK_SECONDS", "make_report", "one_study", "write_pages"]
 QUICK_SECONDS = 120.0  # of a quick report, plots included
 PLOT_SECONDS = 30.0  # of these, kept for the page and the plots
 QUICK_REPEATS = 3
+SAVE_SECONDS = 10.0  # between savings of what a study has found so far: a run may be cut short
 
 Log = Callable[[str], None]
 
@@ -49,6 +50,14 @@ def make_report(
     report = Report(machine.about(seed, quick))
     seconds = 60.0 * minutes if minutes is not None else QUICK_SECONDS - PLOT_SECONDS if quick else float("inf")
     whole = Budget(seconds, clock)
+    saved = clock()
+
+    def keep(so_far: StudyResult) -> None:
+        nonlocal saved
+        if clock() - saved >= SAVE_SECONDS:
+            Report(report.about, [*report.studies, so_far]).save(folder)
+            saved = clock()
+
     for done, name in enumerate(names):
         options = Options(
             quick=quick,
@@ -60,15 +69,15 @@ def make_report(
         )
         if quick:
             options.repeats = QUICK_REPEATS
-        report.studies.append(one_study(name, options))
+        report.studies.append(one_study(name, options, keep))
         if options.driver:
             report.about["driver"] = options.driver
         report.save(folder)
     return report
 
 
-def one_study(name: str, options: Options) -> StudyResult:
-    """Run one study; where it cannot be done, return the reason."""
+def one_study(name: str, options: Options, keep: Callable[[StudyResult], None] = lambda _: None) -> StudyResult:
+    """Run one study; where it cannot be done, return the reason. ``keep`` is called after each record."""
     study = studies.find(name)
     result = StudyResult(study.name, study.title, study.approximates, list(study.notes), list(study.axes))
     result.across = list(getattr(study, "across", ()))
@@ -78,7 +87,9 @@ def one_study(name: str, options: Options) -> StudyResult:
             if isinstance(found, CaseResult):
                 result.cases.append(found)
             else:
+                found.machine = options.machine
                 result.records.append(found)
+            keep(result)
     except Unavailable as error:
         result.unavailable = str(error)
         options.log(f"{name}: {error}")

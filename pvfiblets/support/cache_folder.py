@@ -13,7 +13,7 @@ def cache_folder() -> Path:
     """Return the folder of this program's caches, as the system has it; it may not be there yet."""
     try:
         import platformdirs
-    except ImportError:  # a bare machine whose graphics card is measured (benchmarks/card.sh); the same place on Linux
+    except ImportError:  # a bare machine whose graphics card is measured (scripts/card.sh); the same place on Linux
         return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "pvfiblets"
     return Path(platformdirs.user_cache_dir("pvfiblets", appauthor=False))
 

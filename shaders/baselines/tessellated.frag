@@ -1,4 +1,4 @@
-// Baseline `tessellated`: one light at the eye, diffuse and specular; or nothing at all, to time what comes before.
+// Baseline `tessellated`: one light at the eye, diffuse and specular.
 
 #version 430
 
@@ -10,10 +10,6 @@ in vec3 surface_normal;
 out vec4 colour;
 
 void main() {
-#if {{ discard }}
-    discard;
-#else
     float facing = abs(dot(normalize(surface_normal), normalize(eye - surface_place)));
     colour = vec4(vec3(0.1, 0.5, 0.9) * (0.15 + 0.85 * facing) + 0.3 * pow(facing, 40.0), 1.0);
-#endif
 }

@@ -25,7 +25,7 @@ from pvfiblets.engine.gl.shaders import EXTENDED, NEWEST, assemble
 from pvfiblets.engine.halos.uniform_blocks import CONSTANTS as OF_HALOS
 from pvfiblets.engine.volumes.ray_occlusion import GOLDEN, LIFT
 from pvfiblets.engine.volumes.uniform_blocks import CONSTANTS as OF_VOLUMES
-from pvfiblets.report.studies.codec.baselines.tessellated import LEAST_SIDES, MOST_SIDES, TOLERANCE
+from pvfiblets.report.studies.tubes.tessellated import LEAST_SIDES, MOST_SIDES, TOLERANCE
 
 __all__ = ["EXCLUSIVE", "KINDS", "NEEDS", "Choice", "Kind", "preprocessed", "rows", "varied"]
 
@@ -359,7 +359,7 @@ def _others():
     kinds["scene depth"] = Kind({"frag": "frame/scene_depth.frag"}, (330,))
     stages = {stage: f"baselines/tessellated.{stage}" for stage in ("vert", "tesc", "tese", "frag")}
     sides = {"least_sides": float(LEAST_SIDES), "most_sides": float(MOST_SIDES), "most_steps": 6.0}
-    sides |= {"tolerance": TOLERANCE, "discard": 0}
+    sides["tolerance"] = TOLERANCE
     kinds["tessellated tubes"] = Kind(stages, constants=sides)
     return kinds
 

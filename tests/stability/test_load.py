@@ -1,6 +1,5 @@
 """Files are converted in memory that does not grow with them: a billion points take what a million do."""
 
-import importlib
 import mmap
 import sys
 from pathlib import Path
@@ -12,9 +11,10 @@ from pvfiblets import formats
 from pvfiblets.formats.mapped import forget
 from pvfiblets.streamlines import Streamlines
 
+from . import conversions
+
 pytestmark = pytest.mark.more
 
-ROOT = Path(__file__).resolve().parents[2]
 LINUX = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="resident memory is read from /proc")
 
 CHUNK = 100_000
@@ -26,17 +26,6 @@ MOST = {True: 7.0, False: 6.0}
 What is allocated and given back meanwhile makes the peak uncertain by up to 20 MB."""
 
 
-@pytest.fixture(scope="module")
-def streaming():
-    """Return the benchmark, which is in no package."""
-    sys.path.insert(0, str(ROOT / "benchmarks"))
-    try:
-        yield importlib.import_module("streaming")
-    finally:
-        sys.path.remove(str(ROOT / "benchmarks"))
-        sys.modules.pop("streaming", None)
-
-
 PAIRS = [
     (".tck", ".fiblets"), (".trk", ".fiblets"), (".trx", ".fiblets"), (".fiblets", ".fiblets"),
     (".tck", ".trx"), (".trk", ".tck"), (".trx", ".trk"),
@@ -44,7 +33,7 @@ PAIRS = [
 
 
 @pytest.fixture(scope="module")
-def conversions(streaming, tmp_path_factory):
+def converted(tmp_path_factory):
     """Convert a small and a large file of every pair, all in one process; return what each took."""
     folder = tmp_path_factory.mktemp("conversions")
     jobs = []
@@ -52,31 +41,31 @@ def conversions(streaming, tmp_path_factory):
         for n in SIZES[target == ".fiblets"]:
             source = folder / f"{n}{suffix}"
             if suffix != ".fiblets":
-                streaming.made(source, n)
+                conversions.made(source, n)
             # The first pair makes the .fiblets files that another reads.
             name = f"{n}" if suffix == ".tck" else "out"
             jobs.append((source, folder / f"{name}{target}"))
     warm = jobs[0]  # what is loaded and compiled by the first conversion is no growth
-    rows = streaming.converted(warm, *jobs, chunk_points=CHUNK)[1:]
+    rows = conversions.converted(warm, *jobs, chunk_points=CHUNK)[1:]
     return {pair: rows[2 * i : 2 * i + 2] for i, pair in enumerate(PAIRS)}
 
 
 @LINUX
 @pytest.mark.timeout(900)
 @pytest.mark.parametrize("pair", PAIRS, ids="-".join)
-def test_peak_memory_is_alike_for_many_times_the_points(streaming, conversions, pair):
-    rows, compressed = conversions[pair], pair[1] == ".fiblets"
+def test_peak_memory_is_alike_for_many_times_the_points(converted, pair):
+    rows, compressed = converted[pair], pair[1] == ".fiblets"
     assert [row["points"] for row in rows] == [*SIZES[compressed]]
-    assert [row["streamlines"] for row in rows] == [n // streaming.LENGTH for n in SIZES[compressed]]
+    assert [row["streamlines"] for row in rows] == [n // conversions.LENGTH for n in SIZES[compressed]]
     assert not any(row["dropped"] for row in rows)
-    assert streaming.slope(rows) < MOST[compressed], [row["peak_mb"] for row in rows]
+    assert conversions.slope(rows) < MOST[compressed], [row["peak_mb"] for row in rows]
 
 
-def test_pieces_of_the_benchmark_hold_the_points_asked_for(streaming):
-    pieces = list(streaming.chunks(1_234_567))
+def test_pieces_hold_the_points_asked_for():
+    pieces = list(conversions.chunks(1_234_567))
     assert sum(piece.n_points for piece in pieces) == 1_234_567
     steps = np.linalg.norm(np.diff(pieces[1][7].astype(float), axis=0), axis=1)
-    np.testing.assert_allclose(steps, streaming.STEP, rtol=1e-4)
+    np.testing.assert_allclose(steps, conversions.STEP, rtol=1e-4)
     assert not np.array_equal(pieces[0][0], pieces[1][0])
 
 

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import os
-import sys
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -14,9 +12,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ...drawing import LATE, clock_of, timing
 from ...record import FRAME, Axes, Figure, LeftOut, Record
 from ...study import Options, Unavailable
+from ...timing import LATE, timing
+from ...window import Window
 from ..codec.data_sets import files_of
 
 __all__ = [
@@ -44,25 +43,14 @@ def _nothing(_plotter: Any) -> None:
 
 @dataclass(frozen=True)
 class Variant:
-    """How edges are smoothed.
+    """How edges are smoothed."""
 
-    Attributes
-    ----------
-    method, setting : str
-        As of :class:`.Record`.
-    antialias : str or int
-        Of ``plotter.picture``.
-    vtk : callable, optional
-        Called with a plotter: what VTK does about edges.
-    singly : bool
-        Whether one sample is drawn after the other where all could be drawn at once.
-    """
-
+    # As of :class:`.Record`
     method: str
     setting: str
-    antialias: str | int = "off"
-    vtk: Callable[[Any], object] = _nothing
-    singly: bool = False
+    antialias: str | int = "off"  # Of `plotter.picture`
+    vtk: Callable[[Any], object] = _nothing  # Called with a plotter: what VTK does about edges
+    singly: bool = False  # Whether one sample is drawn after the other where all could be drawn at once
 
 
 def variants(quick: bool) -> list[Variant]:
@@ -212,25 +200,15 @@ def differences(picture: Pixels, reference: Pixels) -> dict[str, float]:
     }
 
 
-class PictureWindow:
-    """A PyVista window with a scene."""
+class PictureWindow(Window):
+    """A window with a scene."""
 
     def __init__(self, subject: Subject, size: tuple[int, int]) -> None:
-        if sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
-            os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
-        import pyvista as pv
-
-        from pvfiblets.mappers.windows import borrowed_context
-
-        self.plotter: Any = pv.Plotter(off_screen=True, window_size=list(size))
-        self.plotter.set_background("black")
+        super().__init__(size)
         subject.fill(self.plotter)
         self.take(Variant(OURS, "off"))
         self._camera = self.plotter.camera_position
-        self.plotter.show(auto_close=False)
-        with borrowed_context(self.plotter.render_window) as ctx:
-            self.driver = f"{ctx.info['GL_RENDERER']}, {ctx.info['GL_VERSION']}"
-            self.clock, self.clock_name = clock_of(ctx)
+        self.show()
 
     def take(self, variant: Variant) -> None:
         """Smooth edges in another way from the next frame on."""
@@ -243,19 +221,13 @@ class PictureWindow:
     def look_back(self) -> None:
         """Draw a frame of the camera that the window began with."""
         self.plotter.camera_position = self._camera
-        self.plotter.render()
-        self._finish()
-
-    def _finish(self) -> None:
-        self.plotter.render_window.WaitForCompletion()
-        self.plotter.render_window.GetPixelData(0, 0, 0, 0, 0, 0)
+        self.render()
 
     def frame(self) -> float:
         """Turn the camera, draw, and return the seconds that it took."""
         self.plotter.camera.azimuth += TURN
         begun = self.clock()
-        self.plotter.render()
-        self._finish()
+        self.render()
         return self.clock() - begun
 
     def shimmer(self, turns: int) -> float:
@@ -263,8 +235,7 @@ class PictureWindow:
         frames = []
         for _ in range(turns + 1):
             self.plotter.camera.azimuth += SHIMMER
-            self.plotter.render()
-            self._finish()
+            self.render()
             frames.append(self.pixels())
         return float(np.mean([differences(after, before)["mean"] for before, after in itertools.pairwise(frames)]))
 
@@ -273,7 +244,7 @@ class PictureWindow:
         begun = self.clock()
         while self.plotter.picture.refine():
             pass
-        self._finish()
+        self.wait()
         return self.clock() - begun
 
     def pixels(self) -> Pixels:
@@ -340,7 +311,7 @@ def _measured(subject: Subject, options: Options, left_out: list[LeftOut]) -> It
                 continue
             yield _record(subject, variant, window, reference, options)
     finally:
-        window.plotter.close()
+        window.release()
     if late:
         left_out.append(LeftOut(f"{subject.name}: {', '.join(late)}", LATE))
     options.log(f"antialias: {subject.name}: {time.perf_counter() - begun:.0f} s")
@@ -374,7 +345,6 @@ def _record(subject: Subject, variant: Variant, window: PictureWindow, reference
         times={name: timing(seconds, 1.0, FRAME, window.clock_name) for name, seconds in times.items()},
         ours=variant.method == OURS,
         default=variant.antialias == "refined",
-        machine=options.machine,
     )
 
 

@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ...drawing import LATE
 from ...record import Axes, Figure, LeftOut, Record
 from ...study import Options, Unavailable
+from ...timing import LATE
+from ...window import Window
 from .baselines.directions import PaperFiblets, QFib
 from .data_sets import DataSet, file_sets
-from .errors_and_times import median_step
+from .errors import median_step
 
 __all__ = ["STUDY", "PixelsStudy", "beyond", "difference_picture", "lines_of"]
 
@@ -77,7 +78,7 @@ def _measured(pv: Any, data: DataSet, options: Options) -> Iterator[Record]:
     kept, fine = compress(data.streamlines), compress(data.streamlines, max_error=FINE * step)
     paper, qfib = PaperFiblets()(points, offsets), QFib(8)(points, offsets)
     size = QUICK_SIZE if options.quick else SIZE
-    raw = _Scene(pv, size, lambda plotter: _by_vtk(pv, plotter, points, offsets))
+    raw = _Scene(size, lambda plotter: _by_vtk(pv, plotter, points, offsets))
     methods: list[tuple[str, str, Any, float]] = [
         ("fiblets", "drawn", lambda plotter: _drawn(plotter, kept), kept.nbytes),
         ("fiblets", "by VTK", lambda plotter: _by_vtk(pv, plotter, kept.decompress().points, offsets), kept.nbytes),
@@ -88,7 +89,7 @@ def _measured(pv: Any, data: DataSet, options: Options) -> Iterator[Record]:
     try:
         wanted = {view: raw.pixels(zoom) for view, zoom in VIEWS.items()}
         for method, setting, add, nbytes in methods:
-            scene = _Scene(pv, size, add, raw.plotter.camera_position)
+            scene = _Scene(size, add, raw.plotter.camera_position)
             try:
                 for view, zoom in VIEWS.items():
                     shown = scene.pixels(zoom)
@@ -107,13 +108,12 @@ def _measured(pv: Any, data: DataSet, options: Options) -> Iterator[Record]:
                         costs={"size": Figure(nbytes / len(points), "bytes/point")},
                         ours=method == "fiblets",
                         default=setting == "drawn",
-                        machine=options.machine,
                     )
             finally:
-                scene.close()
+                scene.release()
         options.driver = options.driver or raw.driver
     finally:
-        raw.close()
+        raw.release()
     options.log(f"pixels: {data.name}")
 
 
@@ -151,14 +151,11 @@ def _drawn(plotter: Any, fiblets: Any) -> None:
     plotter.add_fiblets(fiblets, color="white", lighting=False, show_scalar_bar=False, name="lines")
 
 
-class _Scene:
+class _Scene(Window):
     """A window that shows lines in white on black."""
 
-    def __init__(self, pv: Any, size: tuple[int, int], add: Callable[[Any], None], camera: Any = None) -> None:
-        self.plotter = pv.Plotter(off_screen=True, window_size=list(size))
-        self.plotter.set_background("black")
-        self.plotter.disable_anti_aliasing()
-        self.plotter.picture.antialias = "off"
+    def __init__(self, size: tuple[int, int], add: Callable[[Any], None], camera: Any = None) -> None:
+        super().__init__(size)
         add(self.plotter)
         if camera is None:
             self.plotter.view_vector((1.0, 0.8, 0.5), (0.0, 0.0, 1.0))
@@ -166,13 +163,7 @@ class _Scene:
             self.plotter.camera_position = camera
             self.plotter.renderer.ResetCameraClippingRange()
         self._angle = self.plotter.camera.view_angle
-        self.plotter.show(auto_close=False)
-
-    @property
-    def driver(self) -> str:
-        said = str(self.plotter.render_window.ReportCapabilities())
-        lines = [line.partition(":")[2].strip() for line in said.splitlines() if "renderer string" in line]
-        return lines[0] if lines else ""
+        self.show()
 
     def pixels(self, zoom: float) -> Pixels:
         """Return which pixels show a line, ``(height, width)``."""
@@ -180,9 +171,6 @@ class _Scene:
         self.plotter.render()
         image: npt.NDArray[np.uint8] = np.asarray(self.plotter.screenshot(None))
         return np.asarray(image[..., :3].max(axis=2) > 0)
-
-    def close(self) -> None:
-        self.plotter.close()
 
 
 STUDY = PixelsStudy()

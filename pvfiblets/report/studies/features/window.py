@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import sys
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -12,9 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from ...drawing import LATE, clock_of, timing
 from ...record import FRAME, Figure, LeftOut, Record
 from ...study import Options
+from ...timing import LATE, timing
+from ...window import Window
 from .scenes import PLAIN
 from .subjects import torus
 
@@ -26,25 +25,15 @@ GROUP = "window"
 
 @dataclass(frozen=True)
 class WindowFeature:
-    """One feature of an actor.
+    """One feature of an actor."""
 
-    Attributes
-    ----------
-    group, name : str
-        As of :class:`~.scenes.Feature`.
-    change : callable
-        Called with the actor and a number: turns the feature on, or changes it for the n-th time.
-    undo : callable
-        Called with the actor: turns it off.
-    varies : bool
-        Whether the n-th time differs from the one before.
-    """
-
+    # As of :class:`~.scenes.Feature`
     group: str
     name: str
+    # Called with the actor and a number: turns the feature on, or changes it for the n-th time
     change: Callable[[Any, int], object]
-    undo: Callable[[Any], object]
-    varies: bool = True
+    undo: Callable[[Any], object]  # Called with the actor: turns it off
+    varies: bool = True  # Whether the n-th time differs from the one before
 
 
 def window_features(fiblets: Any) -> list[WindowFeature]:
@@ -120,36 +109,25 @@ def window_features(fiblets: Any) -> list[WindowFeature]:
     return found
 
 
-class Window:
-    """A PyVista window with fiblets that turns, each picture waited for."""
+class FibletWindow(Window):
+    """A window with fiblets that turns."""
 
     def __init__(self, fiblets: Any, size: tuple[int, int]) -> None:
-        if sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
-            os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
-        import pyvista as pv
-
-        from pvfiblets.mappers.windows import borrowed_context
-
-        self.plotter = pv.Plotter(off_screen=True, window_size=list(size))
-        self.plotter.picture.antialias = "off"
+        super().__init__(size, "white", multisampled=True)
         self.actor: Any = self.plotter.add_fiblets(fiblets)
         self.plotter.view_vector((1.0, 0.8, 0.5), (0.0, 0.0, 1.0))
         self.plotter.camera.zoom(1.4)
-        self.plotter.show(auto_close=False)
-        with borrowed_context(self.plotter.render_window) as ctx:
-            self._clock, self.clock_name = clock_of(ctx)
+        self.show()
 
     def seconds(self, before: Callable[[], object] | None = None) -> float:
         """Draw, after a change or one step on, and return the seconds that both took."""
         if before is None:
             self.plotter.camera.azimuth += DEGREES
-        begun = self._clock()
+        begun = self.clock()
         if before is not None:
             before()
-        self.plotter.render()
-        self.plotter.render_window.WaitForCompletion()
-        self.plotter.render_window.GetPixelData(0, 0, 0, 0, 0, 0)
-        return self._clock() - begun
+        self.render()
+        return self.clock() - begun
 
 
 def in_window(
@@ -161,7 +139,7 @@ def in_window(
         left_out.append(LeftOut(f"{data}: everything", LATE))
         return
     fiblets = make()
-    window = Window(fiblets, size)
+    window = FibletWindow(fiblets, size)
     actor, late, plain_frames, plain_bytes = window.actor, [], [], 0
     try:
         for _ in range(3):
@@ -186,12 +164,12 @@ def in_window(
                 plain_bytes = actor.explain()["gpu_bytes"]
             times = {name: timing(seconds, 1.0, FRAME, window.clock_name) for name, seconds in frames.items()}
             base = float(np.median(plain_frames[-options.repeats :]))
-            yield _record(data, feature.group, feature.name, nbytes, plain_bytes, times, base, options)
+            yield _record(data, feature.group, feature.name, nbytes, plain_bytes, times, base)
         if plain_frames:
             times = {"draw": timing(plain_frames, 1.0, FRAME, window.clock_name)}
-            yield _record(data, PLAIN, "", plain_bytes, plain_bytes, times, times["draw"].median, options)
+            yield _record(data, PLAIN, "", plain_bytes, plain_bytes, times, times["draw"].median)
     finally:
-        window.plotter.close()
+        window.release()
     if late:
         left_out.append(LeftOut(f"{data}: {', '.join(late)}", LATE))
     options.log(f"features: in a window: {time.perf_counter() - begun:.0f} s")
@@ -199,7 +177,6 @@ def in_window(
 
 def _record(
     data: str, group: str, name: str, nbytes: int, plain_bytes: int, times: dict[str, Any], base: float,
-    options: Options,
 ) -> Record:  # fmt: skip
     return Record(
         data=data,
@@ -216,5 +193,4 @@ def _record(
         times=times,
         ours=True,
         default=group == PLAIN,
-        machine=options.machine,
     )

@@ -13,19 +13,13 @@ from pvfiblets.engine.halos import HaloRenderer
 from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
 
 from ...cameras import Camera
+from ...drawing import data_bytes
 from .pictures import Singles, Viewpoint, averaged, darkness_of, finer
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
 
 __all__ = ["Drawing", "FibletHalos", "Strips"]
-
-PICTURE = (
-    "gbuffer",
-    "occlusion",
-    "depth of tubes",
-    "marks of tubes",
-)  # buffers that grow with the picture, not with the data
 
 
 class Drawing(Protocol):
@@ -50,16 +44,7 @@ class Drawing(Protocol):
 
 
 class Strips:
-    """Lines or points with strips around them.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    drawn : HaloLines or HaloPoints
-    times : int
-        Samples along a pixel's side.
-    culling : {'two-phase', None}
-    """
+    """Lines or points with strips around them, some samples along a pixel's side."""
 
     def __init__(
         self, ctx: Any, drawn: HaloLines | HaloPoints, times: int = 1, culling: str | None = "two-phase"
@@ -78,7 +63,7 @@ class Strips:
     @property
     def nbytes(self) -> int:
         """Bytes on the GPU that grow with the data."""
-        return _bytes(self.renderer.explain())
+        return data_bytes(self.renderer.explain())
 
     def release(self) -> None:
         """Give everything back."""
@@ -88,12 +73,7 @@ class Strips:
 class FibletHalos:
     """Fiblets as tubes, whose pixels have halos.
 
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    fiblets : FibletSet
-    times : int
-        Samples along a pixel's side. A line takes one of them at least, whatever its look says.
+    A line takes one of the samples along a pixel's side at least, whatever its look says.
     """
 
     def __init__(self, ctx: Any, fiblets: FibletSet, times: int = 1) -> None:
@@ -119,7 +99,7 @@ class FibletHalos:
     @property
     def nbytes(self) -> int:
         """Bytes on the GPU that grow with the data."""
-        return _bytes(self._renderer.explain(counts=False))
+        return data_bytes(self._renderer.explain(counts=False))
 
     def release(self) -> None:
         """Give everything back."""
@@ -129,7 +109,3 @@ class FibletHalos:
 
 def _view(camera: Viewpoint, times: int) -> View:
     return View((times * camera.size[0], times * camera.size[1]), camera.model_view_projection)
-
-
-def _bytes(report: dict[str, Any]) -> int:
-    return sum(buffer["bytes"] for buffer in report["buffers"] if buffer["name"] not in PICTURE)

@@ -14,18 +14,19 @@ from pvfiblets.engine.errors import EngineError
 from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
 from pvfiblets.halos.style import TABLE_SIZE
 
-from ...drawing import LATE, clock_of, drawing_context, timing, turns_of
+from ...drawing import run_parts
 from ...record import FRAME, Axes, Figure, LeftOut, Record
 from ...study import Options
+from ...timing import LATE, Comparison, clock_of, timing, turns_of
 from ..codec.data_sets import DataSet, file_sets, synthetic_tracking
 from ..culling.flights import Flight
 from .drawing import Drawing, FibletHalos, Strips
 from .exact import Crossings, crossings, gaps, pixel_errors
 from .pictures import Singles, differences, helices, look_of, orbit, picture
+from .windows import beside_plain
 
 if TYPE_CHECKING:
     from ...cameras import Camera
-    from ..codec.errors_and_times import Turns
 
 __all__ = ["STUDY", "HaloStudy", "Scene", "Variant", "variants"]
 
@@ -135,15 +136,18 @@ class HaloStudy:
         "OpenGL is software, times are the processor time of all its threads; on a graphics card they are elapsed. "
         "*memory*: what grows with the data. *fibres-subset*, *office* and *shape-small* (points) are synthetic, of "
         "sizes in the paper's table 1; tractograms are cut by leaving streamlines out evenly, which their names say.",
+        "*in a window*: all sets of the paper's table 1 in PyVista windows, seen from six places, beside VTK's plain "
+        "lines of one pixel, or plain points as large as those with halos.",
     )
 
     def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
         """Yield a record for every scene and variant."""
-        with drawing_context(options) as ctx:
-            for measure in (_exact, _gaps):
-                yield from measure(ctx, options, left_out)
-            for scene in scenes(options, left_out):
-                yield from _pictures(ctx, scene, options, left_out)
+        return run_parts({_exact: 1.0, _gaps: 1.0, _all_pictures: 6.0}, options, left_out, {beside_plain: 2.0})
+
+
+def _all_pictures(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+    for scene in scenes(options, left_out):
+        yield from _pictures(ctx, scene, options, left_out)
 
 
 def scenes(options: Options, left_out: list[LeftOut]) -> Iterator[Scene]:
@@ -178,14 +182,13 @@ def _tractogram(data: DataSet, options: Options) -> Scene:
     return Scene(data.name, data.group, lines, look, _path(lines, options), data)
 
 
-def _record(scene: tuple[str, str], variant: Variant, options: Options, **more: Any) -> Record:
+def _record(scene: tuple[str, str], variant: Variant, **more: Any) -> Record:
     return Record(
         data=scene[0],
         group=scene[1],
         approximation="pictures with halos",
         method=variant.name,
         setting=variant.setting,
-        machine=options.machine,
         **{"ours": True, "default": variant.default, **more},
     )
 
@@ -200,35 +203,28 @@ def _percent(found: dict[str, float]) -> dict[str, Figure]:
 
 def _pictures(ctx: Any, scene: Scene, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
     """Compare pictures with finely sampled ones."""
-    turns, done, late = turns_of(ctx), [], []
+    compared = Comparison(scene.name, options, left_out, turns_of(ctx), len(scene.path) - 1)
     truth: list[Singles] | None = None
     with ExitStack() as stack:
         others = variants(options.quick, scene.tractogram is not None)
         for variant in [Variant(HARD, REFERENCE), *others, Variant(SMOOTH, REFERENCE)]:
-            if not options.budget.allows() or (truth is None and variant.times != REFERENCE):
-                late.append(f"{variant.name} ({variant.setting})")
+            label = f"{variant.name} ({variant.setting})"
+            if (truth is None and variant.times != REFERENCE) or not compared.allows(label):
                 continue
             try:
                 if variant.times == REFERENCE:
                     found, seconds, clock = _finely(ctx, scene, variant)
                     truth = truth or found
                     times = {"draw": timing([seconds], len(found), FRAME, clock)}
-                    record = _record((scene.name, scene.group), variant, options, errors={}, times=times)
+                    record = _record((scene.name, scene.group), variant, errors={}, times=times)
+                    calls: dict[str, Flight] = {}
                 else:
-                    found, record = _measured(ctx, scene, variant, turns, stack, options)
+                    found, record, calls = _measured(ctx, scene, variant, stack)
                 record.errors = _percent(differences(found, truth or found))
-                done.append(record)
+                compared.add(record, **calls)
             except (EngineError, ValueError) as error:
-                left_out.append(LeftOut(f"{scene.name}: {variant.name} ({variant.setting})", str(error)))
-        turns.run(options.repeats, options.budget.allows)
-        timed = (record for record in done if not record.times)
-        for number, record in enumerate(timed):
-            record.times = {"draw": turns.timing(number, len(scene.path) - 1, FRAME)}
-        yield from done
-    if late:
-        what = ", ".join(late) if done else "everything"
-        left_out.append(LeftOut(f"{scene.name}: {what}", LATE))
-    options.log(f"halos: {scene.name}: {len(done)} variants")
+                compared.refuse(label, error)
+        yield from compared.finish()
 
 
 def _finely(ctx: Any, scene: Scene, variant: Variant) -> tuple[list[Singles], float, str]:
@@ -244,16 +240,16 @@ def _finely(ctx: Any, scene: Scene, variant: Variant) -> tuple[list[Singles], fl
 
 
 def _measured(
-    ctx: Any, scene: Scene, variant: Variant, turns: Turns, stack: ExitStack, options: Options
-) -> tuple[list[Singles], Record]:
-    """Draw in one variant; return pictures and a record without errors, and add the flight to those that are timed."""
+    ctx: Any, scene: Scene, variant: Variant, stack: ExitStack
+) -> tuple[list[Singles], Record, dict[str, Flight]]:
+    """Draw in one variant; return pictures, a record without errors, and the flight that is to be timed."""
     drawing = variant.drawing(ctx, scene)
     stack.callback(drawing.release)
     flight = Flight(ctx, drawing, scene.path, variant.look(scene.look))
     found = flight.pictures(drawing.read)
-    turns.add(flight)
     costs = {"memory": Figure(drawing.nbytes / max(scene.drawn.n_points, 1), "bytes/point")}
-    return found, _record((scene.name, scene.group), variant, options, errors={}, costs=costs)
+    record = _record((scene.name, scene.group), variant, errors={}, costs=costs)
+    return found, record, {"draw": flight}
 
 
 # ------------------------------------------------------------------------------------------- what pictures should show
@@ -261,7 +257,7 @@ def _measured(
 
 def _exact(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
     """Compare pictures of one sample a pixel with the float64 reference."""
-    from pvfiblets.halos.reference import picture as reference
+    from .reference import picture as reference
 
     count, size = (QUICK_HELICES, QUICK_EXACT_SIZE) if options.quick else (HELICES, EXACT_SIZE)
     name, drawn = f"{count} helices", helices(count)
@@ -285,13 +281,12 @@ def _exact(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Reco
             turns.run(options.repeats, options.budget.allows)
         finally:
             strips.release()
-        yield _record((name, "helices"), variant, options, errors=errors, times={"draw": turns.timing(0, 1, FRAME)})
+        yield _record((name, "helices"), variant, errors=errors, times={"draw": turns.timing(0, 1, FRAME)})
         if variant.name == HARD:
             continue
         yield _record(
             (name, "helices"),
             Variant("float64 reference", 1),
-            options,
             errors={key: Figure(0.0, figure.unit) for key, figure in errors.items()},
             times={"draw": timing([seconds], 1, FRAME, "cpu")},
             ours=False,
@@ -304,25 +299,18 @@ def _gaps(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Recor
     made: Crossings = crossings()
     # The same picture would not be drawn again: the camera moves to and fro by a thousandth of a pixel.
     aside = replace(made, model_view_projection=_moved(made, 1e-3))
-    turns, done, late = turns_of(ctx), [], []
+    compared = Comparison("crossings", options, left_out, turns_of(ctx))
     with ExitStack() as stack:
         for variant in (variant for variant in variants(options.quick, False) if variant.name != UNCULLED):
-            if not options.budget.allows():
-                late.append(f"{variant.name} ({variant.setting})")
+            if not compared.allows(f"{variant.name} ({variant.setting})"):
                 continue
             strips = Strips(ctx, made.lines, variant.times)
             stack.callback(strips.release)
             flight = Flight(ctx, strips, [aside, made], variant.look(made.look))
             (found,) = flight.pictures(strips.read)
-            turns.add(flight)
-            done.append(_record(("crossings", "crossings"), variant, options, errors=gaps(found, made)))
-        turns.run(options.repeats, options.budget.allows)
-    for number, record in enumerate(done):
-        record.times = {"draw": turns.timing(number, 1, FRAME)}
-        yield record
-    if late:
-        left_out.append(LeftOut(f"crossings: {', '.join(late)}", LATE))
-    options.log(f"halos: crossings: {len(done)} variants")
+            record = _record(("crossings", "crossings"), variant, errors=gaps(found, made))
+            compared.add(record, draw=flight)
+        yield from compared.finish()
 
 
 def _moved(made: Crossings, pixels: float) -> Any:

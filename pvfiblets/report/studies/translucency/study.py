@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ...drawing import LATE, timing
 from ...record import FRAME, Axes, Figure, LeftOut, Record
 from ...study import Options, Unavailable
+from ...timing import LATE, timing
 from ..antialias.study import OURS, PictureWindow, Subject, differences
 
 __all__ = ["STUDY", "TranslucencyStudy"]
@@ -127,10 +127,9 @@ def _measured(subject: Subject, options: Options, left_out: list[LeftOut]) -> It
                     times={"frame": timing(frames, 1.0, FRAME, window.clock_name)},
                     ours=True,
                     default=transparency == "all",
-                    machine=options.machine,
                 )
     finally:
-        window.plotter.close()
+        window.release()
     if late:
         left_out.append(LeftOut(f"{subject.name}: {', '.join(late)}", LATE))
     options.log(f"translucency: {subject.name}: {time.perf_counter() - begun:.0f} s")

@@ -11,13 +11,14 @@ import numpy.typing as npt
 from pvfiblets.tubes import SplineTubes
 
 from ...cameras import Camera, Lens
-from ..codec.baselines.tessellated import TessellatedTubes
+from ...drawing import data_bytes
+from ...timing import Turns, turns_of
 from .pictures import reversed_depth_of
+from .tessellated import TessellatedTubes
 
-__all__ = ["CastTubes", "Drawing", "MeshedTubes", "drawings"]
+__all__ = ["CastTubes", "Drawing", "MeshedTubes", "VisibleDepths", "drawings"]
 
 SIDES = ((6, 6), (12, 12), (30, 30), (6, 30))
-GROWS = ("gbuffer", "occlusion", "framebuffer", "depth")  # with the picture, not with the data
 
 VisibleDepths = tuple[npt.NDArray[np.float64], npt.NDArray[np.bool_]]
 
@@ -30,6 +31,11 @@ class Drawing(Protocol):
     ours: bool
     default: bool
     nbytes: int
+
+    @property
+    def turns(self) -> Turns:
+        """Calls that take turns, timed by the clock that measures its frames."""
+        ...
 
     def draw(self, camera: Camera) -> None:
         """Draw a picture and wait for it."""
@@ -56,8 +62,12 @@ class CastTubes:
         self.setting = self._renderer.solver
         self.ours = self.setting != "bisection"
         self.default = solver == "auto"
-        buffers: Any = self._renderer.explain()["buffers"]
-        self.nbytes = sum(part["bytes"] for part in buffers if part["name"] not in GROWS)
+        self.nbytes = data_bytes(self._renderer.explain())
+
+    @property
+    def turns(self) -> Turns:
+        """Calls that take turns, timed by the context's clock."""
+        return turns_of(self._ctx)
 
     def draw(self, camera: Camera | Lens) -> None:
         """Draw a G-buffer, if the camera is not that of the last one."""
@@ -88,6 +98,11 @@ class MeshedTubes:
         self._ctx, self._tubes = ctx, TessellatedTubes(ctx, tubes, size, sides=sides)
         self.setting = f"{sides[0]} sides" if sides[0] == sides[1] else f"{sides[0]} to {sides[1]} sides by size"
         self.nbytes = self._tubes.nbytes
+
+    @property
+    def turns(self) -> Turns:
+        """Calls that take turns, timed by the context's clock."""
+        return turns_of(self._ctx)
 
     def draw(self, camera: Camera) -> None:
         """Draw it, whatever was drawn last."""

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from pvfiblets.tubes import curves
+from pvfiblets.tubes import SplineTubes, curves
 
-from ...cameras import VIEWS, Lens, by_turns, orbit
-from ...drawing import LATE, Part, run_parts, turns_of
-from ...record import FRAME, Axes, Figure, LeftOut, Record
+from ...cameras import VIEWS, Camera, Lens, by_turns, orbit
+from ...drawing import Part, WindowPart, run_parts
+from ...record import Axes, Figure, LeftOut, Record
 from ...study import Options
+from ...timing import LATE, Comparison
 from .drawings import CastTubes, Drawing, drawings
 from .pictures import FORMATS, Truth, helices, sampled
 from .rays import GOAL
@@ -58,122 +60,135 @@ def picture_sweeps(ctx: Any, options: Options, left_out: list[LeftOut]) -> Itera
         for number, (solver, found) in enumerate(errors.items()):
             yield Record(
                 about, "stiff", f"pictures by {name}", "ray cast" if number < 2 else solver,
-                solver if number < 2 else "", found, ours=number == 0, machine=options.machine,
+                solver if number < 2 else "", found, ours=number == 0,
             )  # fmt: skip
 
 
 def pictures(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
     """Yield records of whole pictures: silhouettes and depths against float64, and what a picture takes."""
-    size = QUICK_SIZE if options.quick else SIZE
-    tubes = helices(TUBES)
-    for view in VIEWS:
-        name = f"{TUBES} helices, {view}"
-        if not options.budget.allows():
-            left_out.append(LeftOut(name, LATE))
-            continue
-        camera = orbit(tubes, view, 2, size)[0]
-        lens = Lens.of(camera)
-        truth = Truth.of(tubes, lens)
-        options.log(f"tubes: {name}: {int(truth.there.sum())} of {len(truth.there)} pixels show tubes")
-        within = options.budget.share()  # the reference took longer than pictures do
-        turns, done, late = turns_of(ctx), [], 0
-        made: list[Drawing] = []
-        try:
-            for make in drawings(ctx, tubes, size):
-                if not within.allows():
-                    late += 1
-                    continue
-                drawn = make()
-                made.append(drawn)
-                drawn.draw(camera)
-                found = truth.errors(*drawn.visible(lens))
-                units = {"silhouette": "pixels", "depth p50": "radii", "depth p99": "radii"}
-                record = Record(
-                    data=name,
-                    group="pictures",
-                    approximation="a picture of tubes",
-                    method=drawn.method,
-                    setting=drawn.setting,
-                    errors={key: Figure(value, units[key]) for key, value in found.items()},
-                    costs={"geometry": Figure(float(drawn.nbytes), "bytes")},
-                    ours=drawn.ours,
-                    default=drawn.default,
-                    machine=options.machine,
-                )
-                done.append((record, turns.add(by_turns(drawn.draw, [camera]))))
-            turns.run(options.repeats, within.allows)
-            for record, number in done:
-                record.times["draw"] = turns.timing(number, 1.0, FRAME)
-                yield record
-        finally:
-            for drawn in made:
-                drawn.release()
-        if late:
-            left_out.append(LeftOut(f"{name}: {late} further methods of drawing", LATE))
+    yield from _helices("", partial(drawings, ctx), options, left_out)
 
 
 def sets(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
     """Yield records of pictures of the paper's sets by every solver, against float64 in a sample of the pixels."""
     from pvfiblets.engine.tubes import SOLVERS
+
+    def solvers_of(tubes: SplineTubes, _: tuple[int, int]) -> list[Callable[[], Drawing]]:
+        return [partial(CastTubes, ctx, tubes, solver) for solver in ("auto", *list(SOLVERS)[1:])]
+
+    yield from _sets("", solvers_of, options, left_out)
+
+
+def in_windows(options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+    """Yield records of the same pictures in windows, beside VTK's meshes."""
+    from .windows import window_drawings
+
+    half = replace(options, budget=options.budget.share(0.5))
+    yield from _helices(", in a window", window_drawings, half, left_out)
+    yield from _sets(", in a window", window_drawings, options, left_out)
+
+
+Makers = Callable[[SplineTubes, tuple[int, int]], list[Callable[[], Drawing]]]
+
+
+def _helices(where: str, makers: Makers, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+    """Compare all pixels of pictures of helices."""
+    size = QUICK_SIZE if options.quick else SIZE
+    tubes = helices(TUBES)
+    for view in VIEWS:
+        name = f"{TUBES} helices, {view}{where}"
+        if not options.budget.allows():
+            left_out.append(LeftOut(name, LATE))
+            continue
+        camera = orbit(tubes, view, 2, size)[0]
+        truth = Truth.of(tubes, Lens.of(camera))
+        within = replace(options, budget=options.budget.share())  # the reference took longer than pictures do
+        yield from _measured(name, "pictures", camera, makers(tubes, size), _errors_of(truth), within, left_out)
+
+
+def _errors_of(truth: Truth) -> Callable[[Drawing], dict[str, Figure]]:
+    units = {"silhouette": "pixels", "depth p50": "radii", "depth p99": "radii"}
+
+    def errors(drawn: Drawing) -> dict[str, Figure]:
+        return {key: Figure(value, units[key]) for key, value in truth.errors(*drawn.visible(truth.lens)).items()}
+
+    return errors
+
+
+def _sets(where: str, makers: Makers, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+    """Compare some pixels of pictures of the paper's sets."""
     from pvfiblets.synthetic.tubes import tube_set
 
-    size, count = (QUICK_SIZE, QUICK_SAMPLE) if options.quick else (SET_SIZE, SAMPLE)
+    size = QUICK_SIZE if options.quick else SET_SIZE
     for name in QUICK_SETS if options.quick else SETS:
         tubes = tube_set(name, options.seed)
         for view in VIEWS:
-            data, camera = f"the set {name}, {view}", orbit(tubes, view, 2, size)[0]
-            lens, truth = Lens.of(camera), None
-            turns, done, late = turns_of(ctx), [], []
-            made: list[CastTubes] = []
-            try:
-                for solver in ("auto", *list(SOLVERS)[1:]):
-                    if not options.budget.allows():
-                        late.append(solver)
-                        continue
-                    drawn = CastTubes(ctx, tubes, solver)
-                    made.append(drawn)
-                    drawn.draw(camera)
-                    shown, there = drawn.visible(lens)
-                    if truth is None:
-                        rng = np.random.default_rng([options.seed, 1])
-                        truth = Truth.of(tubes, lens, sampled(there.reshape(size[::-1]), count, rng))
-                    done.append((_set_record(data, drawn, truth, shown, there, options), drawn))
-                for _, drawn in done:
-                    turns.add(by_turns(drawn.draw, [camera]))
-                turns.run(options.repeats, options.budget.allows)
-                for number, (record, _) in enumerate(done):
-                    record.times["draw"] = turns.timing(number, 1.0, FRAME)
-                    yield record
-            finally:
-                for drawn in made:
-                    drawn.release()
-            if late:
-                left_out.append(LeftOut(f"{data}: {', '.join(late)}", LATE))
-            options.log(f"tubes: {data}: {len(done)} solvers")
+            camera = orbit(tubes, view, 2, size)[0]
+            errors = _sampled_errors(tubes, Lens.of(camera), options)
+            data = f"the set {name}, {view}{where}"
+            yield from _measured(data, "sets", camera, makers(tubes, size), errors, options, left_out)
 
 
-def _set_record(data: str, drawn: CastTubes, truth: Truth, shown: Any, there: Any, options: Options) -> Record:
-    here, should = there[truth.pixels], truth.there
-    off = truth.depth_errors(shown[truth.pixels], here)
-    quantiles = np.quantile(off, (0.5, 0.99, 0.999)) if len(off) else (np.nan,) * 3
-    errors = {f"depth {q}": Figure(float(value), "radii") for q, value in zip(("p50", "p99", "p99.9"), quantiles,
-                                                                                strict=True)}  # fmt: skip
-    errors["depth p99 by storing"] = Figure(truth.stored(FORMATS["float32"]), "radii")
-    for name, wrong, of in (("holes", should & ~here, ~here), ("false", here & ~should, here)):
-        errors[name] = Figure(100.0 * float(wrong.sum()) / max(int(of.sum()), 1), "%")
-    errors[f"off by {GOAL:g}"] = Figure(100.0 * float((off > GOAL).mean()) if len(off) else 0.0, "%")
-    return Record(
-        data=data,
-        group="sets",
-        approximation="a picture of tubes",
-        method="ray cast",
-        setting=drawn.setting,
-        errors=errors,
-        costs={"geometry": Figure(float(drawn.nbytes), "bytes")},
-        ours=drawn.ours,
-        default=drawn.default,
-        machine=options.machine,
-    )
+def _sampled_errors(tubes: SplineTubes, lens: Lens, options: Options) -> Callable[[Drawing], dict[str, Figure]]:
+    """Return what compares pictures in pixels that are chosen by what the first of them shows."""
+    truths: list[Truth] = []
+
+    def errors(drawn: Drawing) -> dict[str, Figure]:
+        shown, there = drawn.visible(lens)
+        if not truths:
+            rng = np.random.default_rng([options.seed, 1])
+            count = QUICK_SAMPLE if options.quick else SAMPLE
+            truths.append(Truth.of(tubes, lens, sampled(there.reshape(lens.size[::-1]), count, rng)))
+        (truth,) = truths
+        here, should = there[truth.pixels], truth.there
+        off = truth.depth_errors(shown[truth.pixels], here)
+        quantiles = np.quantile(off, (0.5, 0.99, 0.999)) if len(off) else (np.nan,) * 3
+        found = {f"depth {q}": Figure(float(value), "radii")
+                 for q, value in zip(("p50", "p99", "p99.9"), quantiles, strict=True)}  # fmt: skip
+        found["depth p99 by storing"] = Figure(truth.stored(FORMATS["float32"]), "radii")
+        for name, wrong, of in (("holes", should & ~here, ~here), ("false", here & ~should, here)):
+            found[name] = Figure(100.0 * float(wrong.sum()) / max(int(of.sum()), 1), "%")
+        found[f"off by {GOAL:g}"] = Figure(100.0 * float((off > GOAL).mean()) if len(off) else 0.0, "%")
+        return found
+
+    return errors
+
+
+def _measured(
+    data: str, group: str, camera: Camera, makers: list[Callable[[], Drawing]],
+    errors: Callable[[Drawing], dict[str, Figure]], options: Options, left_out: list[LeftOut],
+) -> Iterator[Record]:  # fmt: skip
+    """Draw one picture by every method."""
+    compared: Comparison | None = None
+    made: list[Drawing] = []
+    try:
+        for number, make in enumerate(makers):
+            if compared is None and not options.budget.allows():
+                left_out.append(LeftOut(f"{data}: everything", LATE))
+                return
+            if compared is not None and not compared.allows(f"method {number + 1}"):
+                continue
+            drawn = make()
+            made.append(drawn)
+            drawn.draw(camera)
+            record = Record(
+                data=data,
+                group=group,
+                approximation="a picture of tubes",
+                method=drawn.method,
+                setting=drawn.setting,
+                errors=errors(drawn),
+                costs={"geometry": Figure(float(drawn.nbytes), "bytes")},
+                ours=drawn.ours,
+                default=drawn.default,
+            )
+            compared = compared or Comparison(data, options, left_out, drawn.turns)
+            compared.add(record, draw=by_turns(drawn.draw, [camera]))
+        if compared is not None:
+            yield from compared.finish()
+    finally:
+        for drawn in made:
+            drawn.release()
 
 
 def stored(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
@@ -204,7 +219,7 @@ def stored(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Reco
             bits = 24 if "24" in kind else 32
             yield Record(
                 "stored depth", "stored", "depth of a pixel", kind, "", found,
-                {"depth": Figure(bits / 8.0, "bytes/pixel")}, ours=kind.startswith("key"), machine=options.machine,
+                {"depth": Figure(bits / 8.0, "bytes/pixel")}, ours=kind.startswith("key"),
             )  # fmt: skip
 
 
@@ -226,13 +241,14 @@ def halves(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Reco
             yield Record(
                 f"cubics of the set {name}", "", "a cubic segment", "two quadratics", setting,
                 {f"apart {key}": Figure(value, "radii") for key, value in found.items()},
-                ours=share == curves.MIDDLE, machine=options.machine,
+                ours=share == curves.MIDDLE,
             )  # fmt: skip
 
 
 PARTS: dict[Part, float] = {
     solvers: 3.0, pictures: 5.0, sets: 4.0, ray_sweeps: 2.0, picture_sweeps: 1.0, stored: 1.0, halves: 1.0,
 }  # fmt: skip
+IN_WINDOWS: dict[WindowPart, float] = {in_windows: 4.0}
 """What is measured, and by what weight each part has its share of the time."""
 
 
@@ -254,8 +270,9 @@ class TubesStudy:
         Axes("stored", "", "errors/p99 at far/near ", "far over near plane", "99th percentile, radii", series=True),
     )
     notes = (
-        "What is right is found in float64 by another method (pvfiblets/tubes/reference.py: eigenvalues of companion "
-        "matrices, nothing is bracketed). Errors are in radii of the sphere that is met: along the ray, where it meets "
+        "What is right is found in float64 by another method (report/studies/tubes/reference.py: eigenvalues of "
+        "companion matrices, nothing is bracketed). Errors are in radii of the sphere that is met: along the ray, "
+        "where it meets "
         "the tube and should; where only one of both is so, by how much the radius would have to change to make the "
         "answer right; *missed* and *false* are such rays. Rays pass a sphere of a half segment within 1.15 radii of "
         "its middle. *loop*: one loop for all minima; *chain*: the paper's chain of derivatives "
@@ -275,11 +292,14 @@ class TubesStudy:
         "*stored depth*: what rounding the right depth to a format costs, and the depths of a picture as drawn and "
         "stored, as a key of 32 bits; the near plane moves towards the eye. Where software draws, times are of the "
         "processor, of all threads; those of cards are by the clock.",
+        "*in a window*: the same pictures in PyVista windows with one light at the eye: `plotter.add_spline_tubes`, "
+        "VTK's tube filter around the nodes' polylines, or around more samples of each segment, and VTK's lines shaded "
+        "as tubes, as wide as the mean radius. Meshes of more than 12 million corners are left out.",
     )
 
     def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
         """Yield records part by part, each with its share of what time is left."""
-        return run_parts(PARTS, options, left_out)
+        return run_parts(PARTS, options, left_out, IN_WINDOWS)
 
 
 STUDY = TubesStudy()

@@ -9,19 +9,20 @@ from typing import Any
 
 import numpy as np
 
-from pvfiblets.volumes import RaycastVolume, Transfer, reference
-from pvfiblets.volumes.integrators import STABLE_UP_TO, study
+from pvfiblets.volumes import RaycastVolume, Transfer
 from pvfiblets.volumes.raycast_options import INTEGRATORS, RaycastOptions
-from pvfiblets.volumes.reference_profiles import profiles
 
 from ...cameras import Camera, by_turns
-from ...drawing import LATE
 from ...record import Figure, LeftOut, Record
 from ...study import Options
+from ...timing import LATE, Comparison, turns_of
+from . import reference
+from .drawing import drawing, drawn, sample
 from .fields import DENSE, field, tables
+from .formulae import STABLE_UP_TO, study
 from .pictures import light_of
+from .reference_profiles import profiles
 from .scene import TOLERANCE, circle
-from .timed import Timed, drawing, drawn, sample
 
 __all__ = ["LIGHT_SIZE", "SIDE", "formulae", "integrators"]
 
@@ -72,7 +73,8 @@ def _integrated(
     through = reference.rays(camera.model_view_projection, camera.size, volume)
     at = sample(~np.isnan(through.near), QUICK_LIGHT_PIXELS if options.quick else LIGHT_PIXELS)
     truth = reference.composite(volume, transfer, through[at[:, 0], at[:, 1]], TOLERANCE)
-    timed = Timed(ctx, options, name, "draw")
+    within = replace(options, budget=options.budget.share())  # the reference is no measurement
+    timed = Comparison(name, within, left_out, turns_of(ctx))
     for step in QUICK_STEPS if options.quick else STEPS:
         for integrator in INTEGRATORS:
             if not timed.allows(f"{integrator} step {step:g}"):
@@ -93,10 +95,9 @@ def _integrated(
                 },
                 ours=True,
                 default=(integrator, step) == (RaycastOptions.integrator, RaycastOptions.step),
-                machine=options.machine,
             )
-            timed.add(record, by_turns(drawing(ctx, renderer, style), [camera]), 1)
-    yield from timed.finish(left_out)
+            timed.add(record, draw=by_turns(drawing(ctx, renderer, style), [camera]))
+    yield from timed.finish()
 
 
 def _by_density(name: str, found: list[tuple[float, Record]]) -> Iterator[Record]:
@@ -108,9 +109,8 @@ def _by_density(name: str, found: list[tuple[float, Record]]) -> Iterator[Record
             if (record.method, record.setting) == (integrator, f"step {RaycastOptions.step:g}")
         }
         if errors:
-            machine = found[0][1].machine
             step = f"step {RaycastOptions.step:g}"
-            yield Record(name, "stiff", "light along a ray", integrator, step, errors, ours=True, machine=machine)
+            yield Record(name, "stiff", "light along a ray", integrator, step, errors, ours=True)
 
 
 def formulae(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:  # noqa: ARG001 - as other parts
@@ -139,5 +139,4 @@ def formulae(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Re
             method=method,
             setting="never unstable" if limit is None else f"unstable beyond κΔ {limit:.3g}",
             errors=errors,
-            machine=options.machine,
         )

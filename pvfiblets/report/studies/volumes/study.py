@@ -13,14 +13,16 @@ from pvfiblets.volumes import FILTERS
 from pvfiblets.volumes.raycast_options import INTEGRATORS, RaycastOptions
 
 from ...cameras import by_turns
-from ...drawing import LATE, Part, run_parts
+from ...drawing import Part, WindowPart, run_parts
 from ...record import Axes, Figure, LeftOut, Record
 from ...study import Options
+from ...timing import LATE, Comparison, turns_of
+from .drawing import drawing, drawn
 from .integrators import LIGHT_SIZE, SIDE, formulae, integrators
 from .occlusion import RADIUS, openness
 from .pictures import GroundTruth, colours_of, ground_truth_of, places
 from .scene import Look, circle, look_of
-from .timed import Timed, drawing, drawn
+from .windows import beside_vtk
 
 __all__ = ["STUDY", "VolumeStudy", "settings"]
 
@@ -96,6 +98,7 @@ def pictures(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Re
                 continue
             look = look_of(volume, mode)
             exact = ground_truth_of(volume, look, cameras, QUICK_PIXELS if options.quick else PIXELS, kind)
+            part.budget = part.budget.share()  # the reference is no measurement
             yield from _varied(ctx, renderer, look, exact, name, kind, float(np.ptp(volume.value_range)),
                                float(volume.spacing.mean()), part, left_out)  # fmt: skip
     finally:
@@ -109,7 +112,7 @@ def _varied(
     from pvfiblets.engine.volumes import VolumeStyle
 
     cameras = exact.colours.cameras
-    timed = Timed(ctx, options, name, "draw")
+    timed = Comparison(name, options, left_out, turns_of(ctx), len(cameras))
     plain: list[Any] = []
     for varied, how, fields in settings(look.mode, options.quick, spread):
         if kind != "trilinear" and varied != "default" and fields.get("step") not in QUICK_PICTURE_STEPS:
@@ -139,16 +142,16 @@ def _varied(
             errors=errors,
             ours=True,
             default=varied == "default",
-            machine=options.machine,
         )
-        timed.add(record, by_turns(drawing(ctx, renderer, style), cameras), len(cameras))
-    yield from timed.finish(left_out)
+        timed.add(record, draw=by_turns(drawing(ctx, renderer, style), cameras))
+    yield from timed.finish()
 
 
 # --------------------------------------------------------------------------------------------------------------- study
 
 
 PARTS: dict[Part, float] = {integrators: 4.0, formulae: 0.5, pictures: 4.0, openness: 2.0}
+IN_WINDOWS: dict[WindowPart, float] = {beside_vtk: 4.0}
 """What is measured, and by what weight each part has its share of the time."""
 
 
@@ -171,8 +174,9 @@ class VolumeStudy:
     )
     notes = (
         "What is right is found in float64, ray by ray and cell by cell, without steps "
-        "(pvfiblets/volumes/reference.py), in a sample of the pixels whose rays meet the volume. Colours and opacities "
-        "are from 0 to 1; pictures keep them in 8 bits, which makes up 0.003 of largest errors and 0.001 of rms.",
+        "(report/studies/volumes/reference.py), in a sample of the pixels whose rays meet the volume. Colours and "
+        "opacities are from 0 to 1; pictures keep them in 8 bits, which makes up 0.003 of largest errors and 0.001 of "
+        "rms.",
         f"Integrators: a ball and a slope of {SIDE}³ voxels, {LIGHT_SIZE[0]}×{LIGHT_SIZE[1]} pixels; transfer "
         "functions that rise gently (*ramp*), that jump (*edge*), and that are nothing but for one entry (*peak*) or "
         "several (*peaks*). κΔ is the optical depth of a step of half a voxel where they are densest. The default is "
@@ -189,11 +193,14 @@ class VolumeStudy:
         "10), beside a rule of 48² directions whose rays end at exact roots; *independent rays*: the rms that as many "
         "rays have by chance. The time is that of the pass alone. Where software draws, times are of the processor, of "
         "all threads; those of cards are by the clock.",
+        "*in a window*: `plotter.add_raycast_volume` and `plotter.add_volume(mapper='gpu')` in PyVista windows, one "
+        "light at the eye, one transfer function, the same lengths of steps: compare times at equal errors. *cast*: "
+        "the share of the octree's leaves that is not skipped.",
     )
 
     def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
         """Yield records part by part, each with its share of what time is left."""
-        return run_parts(PARTS, options, left_out)
+        return run_parts(PARTS, options, left_out, IN_WINDOWS)
 
 
 STUDY = VolumeStudy()

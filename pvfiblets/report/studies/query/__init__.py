@@ -1,0 +1,1 @@
+"""The study of queries: similar streamlines, clusters, and painted regions."""
