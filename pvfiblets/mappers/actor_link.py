@@ -167,7 +167,7 @@ class ActorLink:
         if actor is None:
             return
         shaders, before = actor.GetShaderProperty(), self._shader_property.Get()
-        wanted = resolve.assemble(self._features)
+        wanted = resolve.assemble(self._features) + (resolve.NO_HIGHLIGHTS if self._is_dull else ())
         if wanted != self.installed or shaders is not before:
             if before is not None:
                 resolve.uninstall(before, self.installed)
@@ -175,6 +175,15 @@ class ActorLink:
             resolve.install(shaders, wanted)
         if self._translucent != actor.GetForceTranslucent():
             actor.SetForceTranslucent(self._translucent)
+
+    @property
+    def _is_dull(self) -> bool:
+        return bool(cast("vtkActor", self.actor).GetProperty().GetSpecular() == 0.0)
+
+    def follow_highlights(self) -> None:
+        """Compute highlights from now on if the actor has come to have any, and not if it has none."""
+        if self.installed and self._is_dull != (self.installed[-1:] == resolve.NO_HIGHLIGHTS):
+            self.install()
 
     def take_out(self) -> None:
         """Take the shader pieces out of the actor, so that VTK draws the mapper's data in its own way."""

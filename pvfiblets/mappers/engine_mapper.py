@@ -461,6 +461,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         self._link.find()
         if self._connection.input is not None and not self.is_readable:
             self._connection.input.follow()
+        self._link.follow_highlights()
         self._link.drop_vertex_stages()
 
     def _input_state(self, data: Any) -> tuple[Any, ...]:

@@ -106,6 +106,10 @@ class Replacement:
     text: str
 
 
+# VTK computes the highlight of every light, a power each, also where specular is 0.
+NO_HIGHLIGHTS = (Replacement("fragment", "sf = sign(df)*pow(", False, "sf = 0.0*pow("),)
+
+
 @dataclass
 class _Edits:
     """What pieces want done at one tag of one stage."""

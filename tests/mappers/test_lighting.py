@@ -116,6 +116,27 @@ def test_specular_highlights_need_the_position(rod):
     assert rod((1, 0, 0), headlight(), light={"Specular": 1.0, "Diffuse": 0.0}).min() > 230
 
 
+@pytest.mark.parametrize("effect", [None, LineLight(), Illuminated()])
+def test_highlights_come_and_go_with_the_property(make_plotter, make_fibres, tools, effect):
+    def drawn(*values):
+        mapper, actor = make_fibres(tools.helices(5, 40)).actor(lighting=True, colouring=Colouring("solid"))
+        if effect is not None:
+            mapper.set_effect("light", effect)
+        plotter = make_plotter(lighting="light kit")
+        plotter.add_actor(actor)
+        pictures = []
+        for value in values:
+            actor.GetProperty().SetSpecular(value)
+            pictures.append(tools.picture(plotter, mapper).astype(int))
+        return pictures
+
+    dull, bright, again = drawn(0.0, 0.8, 0.0)
+    (at_once,) = drawn(0.8)
+    assert (bright - dull).max() > 25
+    np.testing.assert_array_equal(bright, at_once)
+    np.testing.assert_array_equal(again, dull)
+
+
 def test_a_line_straight_at_the_viewer_has_no_nan(make_plotter, make_fibres, tools):
     along = np.linspace(-10, 10, 41)[:, None] * np.array((0.0, 1.0, 0.0))
     fibres = make_fibres(type(tools.helices(1, 2)).from_list([along, along + np.array((5, 0, 0))]))
