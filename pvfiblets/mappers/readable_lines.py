@@ -37,7 +37,7 @@ _CELLS = 1  # vtkDataObject.FIELD_ASSOCIATION_CELLS; 0 are points
 class LineReading:
     """Real lines as VTK's data of one mapper, which is not kept alive, for a while."""
 
-    drawn = ""
+    purpose = ""
     """What VTK draws the lines for: ``"selection"``, ``"export"``, or nothing."""
 
     def __init__(self, mapper: EngineMapper[Any], connection: Connection, link: ActorLink) -> None:
@@ -60,20 +60,20 @@ class LineReading:
             self._connection.input.Update()
         return None if mapper._drawn is None else mapper._readable_points()  # noqa: SLF001
 
-    def begin(self, data: vtkPolyData, *, drawn: str = "") -> None:
-        """Make some PolyData VTK's data, which VTK draws if it is said what for."""
+    def begin(self, data: vtkPolyData, *, purpose: str = "") -> None:
+        """Make some PolyData VTK's data, which VTK draws if there is a purpose."""
         self._connection.begin_reading(data)
-        if drawn and not self.drawn:
-            self.drawn = drawn
+        if purpose and not self.purpose:
+            self.purpose = purpose
             self._link.take_out()
 
     def end(self) -> None:
         """Undo `begin`; twice is harmless."""
         self._connection.end_reading()
-        exported, drawn, self.drawn = self.drawn == "export", self.drawn, ""
-        if drawn:
+        purpose, self.purpose = self.purpose, ""
+        if purpose:
             self._link.install()
-        if exported:  # by an exporter that rendered
+        if purpose == "export":  # by an exporter that rendered
             self._link.modified()
 
     def data(self, *, colours: bool = False, segments: bool = False, budget: int | None = MOST_POINTS) -> vtkPolyData:
@@ -125,11 +125,11 @@ class LineReading:
     def _follow_selection(self, selector: Any) -> None:
         """Be real lines while VTK selects cells or points, and be drawn by the engine in every other picture."""
         mapper = self.mapper
-        if self.drawn == "export":
+        if self.purpose == "export":
             return
         if selector is None or selector.GetActorPassOnly() or selector.GetFieldAssociation() > _CELLS:
             self.end()
-        elif self.drawn != "selection" and mapper._drawn is not None and mapper._selects_lines():  # noqa: SLF001
+        elif self.purpose != "selection" and mapper._drawn is not None and mapper._selects_lines():  # noqa: SLF001
             count = self.points
             if count is not None and count > MOST_POINTS:
                 warnings.warn(
@@ -142,7 +142,7 @@ class LineReading:
             elif count:
                 self.end()
                 self._selected_from = self.data(segments=True)  # pickers keep its address
-                self.begin(self._selected_from, drawn="selection")
+                self.begin(self._selected_from, purpose="selection")
                 _clear_errors(mapper, selector)
 
 
@@ -216,7 +216,7 @@ def readable(window: Any, *, most: int = MOST_POINTS) -> Iterator[None]:
             data = vtkPolyData()
             if share is not None:
                 data = reading.mapper._readable_data(share, colours=True, segments=False)  # noqa: SLF001
-            reading.begin(data, drawn="export")
+            reading.begin(data, purpose="export")
         _tell(readings, counts, total, most)
         yield
 

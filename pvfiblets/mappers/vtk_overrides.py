@@ -64,7 +64,7 @@ def _readings(picker: Any) -> list[LineReading]:
 def _begin(picker: Any, _event: str) -> None:
     looked_at = []
     for reading in _readings(picker):
-        if reading.drawn == "selection":  # until the next picture
+        if reading.purpose == "selection":  # until the next picture
             reading.end()
         if not reading.mapper.is_readable and reading.points is not None:
             looked_at.append(reading.near(_ray(picker, reading.mapper.actor), MOST_POINTS))

@@ -16,7 +16,7 @@ __all__ = ["LineActor"]
 class LineActor(ColouredActor):
     """Actor of tubes or halos: its lines have opacities."""
 
-    def _opaque_lines(self) -> tuple[Any, Mapping[str, Any]]:
+    def _lines_and_values(self) -> tuple[Any, Mapping[str, Any]]:
         """Return what is drawn, with ``n_streamlines`` and ``n_points``, and arrays with a row for each line."""
         raise NotImplementedError
 
@@ -31,7 +31,7 @@ class LineActor(ColouredActor):
             self._fade_by(choice, Opacities() if choice is None else self._find_opacities(choice), "line")
 
     def _find_opacities(self, choice: Any) -> Opacities:
-        drawn, named = self._opaque_lines()
+        drawn, named = self._lines_and_values()
         n_lines = drawn.n_streamlines
         if isinstance(choice, str) and choice not in named:
             return Opacities(transfer=as_transfer(choice, named))

@@ -15,17 +15,17 @@ from pvfiblets.plotting.coloured import ColouredActor
 from pvfiblets.plotting.colours import shared_limits
 from pvfiblets.plotting.settings import NoSetting
 
-__all__ = ["NONE", "Plotted", "PlottedLines"]
+__all__ = ["NO_ATTRIBUTE", "Plotted", "PlottedLines"]
 
-NONE = "this mapper has no {name}: "
+NO_ATTRIBUTE = "this mapper has no {name}: "
 
 
 class Plotted(EngineMapper[AnyOptions]):
     """Mapper that shows PyVista's scalar bars the actor's own look-up table."""
 
-    copy = NoSetting(NONE + "actor.copy() makes an actor with a mapper of its own")
-    interpolate_before_map = NoSetting(NONE + "values are interpolated before they are mapped, always")
-    emissive = NoSetting(NONE + "it is of points drawn as gaussians")
+    copy = NoSetting(NO_ATTRIBUTE + "actor.copy() makes an actor with a mapper of its own")
+    interpolate_before_map = NoSetting(NO_ATTRIBUTE + "values are interpolated before they are mapped, always")
+    emissive = NoSetting(NO_ATTRIBUTE + "it is of points drawn as gaussians")
 
     @property
     def _owner(self) -> ColouredActor:
@@ -92,13 +92,13 @@ class Plotted(EngineMapper[AnyOptions]):
 class PlottedLines(Plotted[AnyOptions]):
     """Mapper of lines or points that gives PyVista's scripts its data."""
 
-    as_rgba = NoSetting(NONE + "give colours of points or lines as actor.scalars")
-    clear_active_scalars = NoSetting(NONE + "set actor.scalars = None")
-    cmap = NoSetting(NONE + "set actor.cmap")
-    scalar_map_mode = NoSetting(NONE + "actor.scalars may be of points or of lines")
-    set_active_scalars = NoSetting(NONE + "set actor.scalars to the name")
-    set_custom_opacity = NoSetting(NONE + "set actor.opacity_by")
-    set_scalars = NoSetting(NONE + "set actor.scalars, and actor.cmap, clim and n_colors")
+    as_rgba = NoSetting(NO_ATTRIBUTE + "give colours of points or lines as actor.scalars")
+    clear_active_scalars = NoSetting(NO_ATTRIBUTE + "set actor.scalars = None")
+    cmap = NoSetting(NO_ATTRIBUTE + "set actor.cmap")
+    scalar_map_mode = NoSetting(NO_ATTRIBUTE + "actor.scalars may be of points or of lines")
+    set_active_scalars = NoSetting(NO_ATTRIBUTE + "set actor.scalars to the name")
+    set_custom_opacity = NoSetting(NO_ATTRIBUTE + "set actor.opacity_by")
+    set_scalars = NoSetting(NO_ATTRIBUTE + "set actor.scalars, and actor.cmap, clim and n_colors")
 
     @property
     def array_name(self) -> str:

@@ -217,7 +217,7 @@ class HaloActor(LineActor):
     def _paper(self) -> str:
         return "black" if self._light_on_dark else "white"
 
-    def _opaque_lines(self) -> tuple[Any, Mapping[str, Any]]:
+    def _lines_and_values(self) -> tuple[Any, Mapping[str, Any]]:
         return self._held.drawn, self._held.line_values
 
     @property

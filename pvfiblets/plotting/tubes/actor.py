@@ -241,7 +241,7 @@ class TubeActor(TubeSettings, LineActor):
         if before.n_tubes != tubes.n_tubes and isinstance(outline, dict):
             self.silhouette = outline["tubes"] is None and outline  # numbers mean other tubes now
 
-    def _opaque_lines(self) -> tuple[Any, Mapping[str, Any]]:
+    def _lines_and_values(self) -> tuple[Any, Mapping[str, Any]]:
         return self._tubes, self._tubes.tube_values
 
     def _find(self, tubes: SplineTubes, choice: Any) -> Scalars | None:

@@ -16,7 +16,7 @@ from pvfiblets.plotting.coloured import added_up
 from pvfiblets.plotting.colours import make_colouring, update_table
 from pvfiblets.plotting.fiblets.scalars import Scalars
 from pvfiblets.plotting.linked_property import is_own_write, own_writes
-from pvfiblets.plotting.mapper_words import NONE, Plotted
+from pvfiblets.plotting.mapper_words import NO_ATTRIBUTE, Plotted
 from pvfiblets.plotting.settings import Given, NoSetting
 from pvfiblets.plotting.volumes.blending import BLENDING, mode_of_blending
 from pvfiblets.plotting.volumes.opacity import (
@@ -57,8 +57,8 @@ class PlottedRaycast(Plotted[Options], VolumeMapper):
         How.
     """
 
-    dataset = NoSetting(NONE + "actor.volume holds values and place; actor.update(image) draws others")
-    scalar_map_mode = NoSetting(NONE + "as_raycast_volume(image, scalars=...) chooses the array")
+    dataset = NoSetting(NO_ATTRIBUTE + "actor.volume holds values and place; actor.update(image) draws others")
+    scalar_map_mode = NoSetting(NO_ATTRIBUTE + "as_raycast_volume(image, scalars=...) chooses the array")
 
     @property
     def blend_mode(self) -> str:
