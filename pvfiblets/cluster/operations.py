@@ -73,7 +73,8 @@ def verify(
     result = verified(source, original, max_angle=max_angle)
     refuse_broken_promise(result)
     told = ("checksums", "streamlines", "points", "exact", "promise_mm", "kept", "directions_kept")
-    return {name: result[name] for name in told if name in result} | _errors(result)
+    row = {name: result[name] for name in told if name in result} | _errors(result)
+    return row | {"dropped": sum(result["dropped"].values())} if original is not None else row
 
 
 def density(

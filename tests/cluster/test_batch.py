@@ -15,6 +15,7 @@ import nibabel as nib
 import numpy as np
 import pyarrow.parquet
 import pytest
+import pyvista as pv
 
 import pvfiblets as pf
 from pvfiblets import regions
@@ -247,6 +248,16 @@ def test_density_and_verify(client, cohort, tmp_path):
     assert "changed bytes" in checked.failed[name_of("02", ".fiblets")]
     assert [(row["subject"], row["kept"]) for row in checked.read().to_pylist()] == [("01", True), ("03", True)]
     assert all(0 < row["error_mm_max"] <= row["promise_mm"] for row in checked.read().to_pylist())
+    assert [row["dropped"] for row in checked.read().to_pylist()] == [0, 0]
+
+
+def test_verify_counts_what_reading_left_out_of_the_original(tmp_path):
+    lines = np.array([[0.0, 0, 0], [1, 0, 0], [np.nan, 0, 0], [3, 0, 0], [4, 0, 0]])
+    pv.lines_from_points(lines).save(tmp_path / "a.vtp")
+    pf.compress_file(tmp_path / "a.vtp", tmp_path / "a.fiblets")
+    row = operations.verify(tmp_path / "a.fiblets", original=str(tmp_path / "a.vtp"))
+    assert row["dropped"] == sum(pf.read(tmp_path / "a.vtp").dropped.values()) > 0
+    assert "dropped" not in operations.verify(tmp_path / "a.fiblets")
 
 
 def test_memory_is_bounded_and_said(client, cohort, tmp_path):

@@ -176,7 +176,35 @@ def test_a_file_of_vtk_is_opened_in_the_space_that_is_chosen(revisit):
     assert saved["layers"][1]["source"] == {"path": "dipy.vtk", "space": "LPS"}
     here.press("o")
     here.wait(lambda: here.state("open_space") == "RAS", "the default again")
-    (here.served.root / "dipy.vtk").unlink()
+    here.page.click("#dialog-open [aria-label=Close]")
+    here.page.wait_for_selector("#dialog-open", state="hidden")
+    pv.Sphere(radius=8.0, center=(-20, -18, 10)).save(here.served.root / "lps.vtp")
+    here.tab("clip")
+    here.page.click("[data-cut=mesh]")
+    here.page.click("#dialog-open [data-space=LPS]")
+    here.page.click("[data-entry='lps.vtp']")
+    here.wait(lambda: len(here.state("clips")) == 1, "the cut")
+    saved = json.loads(here.page.evaluate("window.trame.trigger('save_session')"))
+    assert saved["clips"][0]["shape"] == {"kind": "mesh", "path": "lps.vtp", "space": "LPS"}
+    for name in ("dipy.vtk", "lps.vtp"):
+        (here.served.root / name).unlink()
+
+
+def test_an_image_that_is_open_is_a_criterion(revisit):
+    here = revisit("lines.fiblets", "--volume", "head.nii.gz")
+    here.wait(lambda: here.layers() == 2, "both layers")
+    here.page.click("text=lines.fiblets")
+    here.tab("filter")
+    here.page.click("#tab-filter .v-select:has(#add-criterion) .v-field")
+    here.page.click(".v-overlay--active .v-list-item:has-text('volume head.nii.gz')")
+    row = here.page.locator("[data-criterion='volume head.nii.gz']")
+    row.locator("svg").first.wait_for()
+    before = here.rests()
+    row.locator("input.pv-num").first.fill("0.5")
+    here.press("Tab")
+    here.changed(before)
+    saved = json.loads(here.page.evaluate("window.trame.trigger('save_session')"))
+    assert saved["layers"][0]["filters"]["criteria"]["volume head.nii.gz"][0] == 0.5
 
 
 def passing(lines, sphere):
