@@ -23,11 +23,11 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # the tests' server and pages
 
 from pvfiblets.report import machine
-from pvfiblets.report.drawing import timing
 from pvfiblets.report.record import FRAME, Axes, Figure, Record, StudyResult
 from pvfiblets.report.report_file import Report
 from pvfiblets.report.run import write_pages
 from pvfiblets.report.studies.speed.cells import stored_brain
+from pvfiblets.report.timing import timing
 from tests.web.browsing import Served, Visit, launched
 
 # Notes when each picture came, and its bytes.

@@ -22,7 +22,7 @@ from pvfiblets.cli.command import main, make_parser
 from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.engine.gl.capabilities import PIPELINES
 from pvfiblets.formats.recognise import suffix_by_content
-from pvfiblets.report.studies.codec.errors_and_times import direction_angles
+from pvfiblets.report.studies.codec.errors import direction_angles
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.support import memory
 from pvfiblets.synthetic import brain_streamlines

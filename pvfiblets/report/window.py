@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .cameras import Camera
-from .drawing import clock_of
+from .timing import Turns, clock_of
 
 __all__ = ["Window"]
 
@@ -46,6 +46,11 @@ class Window:
         with borrowed_context(self.plotter.render_window) as ctx:
             self.driver = f"{ctx.info['GL_RENDERER']}, {ctx.info['GL_VERSION']}"
             self.clock, self.clock_name = clock_of(ctx)
+
+    @property
+    def turns(self) -> Turns:
+        """Calls that take turns, timed by the window's clock."""
+        return Turns(self.clock, self.clock_name)
 
     def render(self) -> None:
         """Draw a frame and wait for it."""

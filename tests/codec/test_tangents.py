@@ -6,7 +6,7 @@ import pytest
 import pvfiblets as pf
 from pvfiblets.codec.kernels.tangent_kernels import tangent_angles
 from pvfiblets.codec.tangents import pixel
-from pvfiblets.report.studies.codec.errors_and_times import direction_angles
+from pvfiblets.report.studies.codec.errors import direction_angles
 from pvfiblets.streamlines import Streamlines
 
 from .samples import extremes, noisy, smooth, wandering

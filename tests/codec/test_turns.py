@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 import pvfiblets as pf
 from pvfiblets.codec.turn_reference import cut, may_turn
-from pvfiblets.report.studies.codec.errors_and_times import direction_angles
+from pvfiblets.report.studies.codec.errors import direction_angles
 from pvfiblets.streamlines import Streamlines
 
 from .samples import extremes, noisy, smooth, wandering

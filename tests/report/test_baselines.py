@@ -12,7 +12,7 @@ from pvfiblets.report.studies.codec.baselines.directions import PaperFiblets, QF
 from pvfiblets.report.studies.codec.baselines.linearised import LinesPacked, linearised
 from pvfiblets.report.studies.codec.baselines.numbers import float16, int16, squeezed_by_zlib, squeezed_by_zstd
 from pvfiblets.report.studies.codec.data_sets import synthetic_tracking
-from pvfiblets.report.studies.codec.errors_and_times import distances, median_step
+from pvfiblets.report.studies.codec.errors import distances, median_step
 
 
 def directions(n, seed=0):

@@ -39,7 +39,7 @@ def test_all_variants_are_measured_on_every_scene(gl, small, tmp_path):
     for scene in scenes:
         found = {record.label: record for record in records if record.data == scene}
         assert set(found) == labels
-        assert [record.label for record in found.values() if record.default] == ["two-phase (0.5 px)"]
+        assert [record.label for record in found.values() if record.default] == ["auto (every point)"]
         for record in found.values():
             assert all(math.isfinite(figure.value) for figure in record.errors.values())
             assert record.costs["memory"].value > 96 * 64 * 24 / 1e6

@@ -84,8 +84,7 @@ def test_what_time_did_not_suffice_for_is_named(gl, small):
     assert list(halos.STUDY.run(little(points=1500, budget=Budget(0.0)), left)) == []
     late = [item.what for item in left if item.reason == "the time given was used up"]
     assert late[0] == "2 helices: everything"
-    assert late[1].startswith("crossings: smooth edges (1 sample), ")
-    assert late[2] == "brain, 0.5 mm: everything"
+    assert late[1:3] == ["crossings: everything", "brain, 0.5 mm: everything"]
 
 
 def test_a_few_of_many_files_are_enough_and_it_says_so(gl, small, tmp_path):

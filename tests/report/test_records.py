@@ -16,12 +16,12 @@ from pvfiblets.cli.command import main
 from pvfiblets.errors import FormatError
 from pvfiblets.report import plots
 from pvfiblets.report.dot_plot import in_rows
-from pvfiblets.report.drawing import timing
 from pvfiblets.report.page import page
 from pvfiblets.report.pareto import mark_fronts, pareto
 from pvfiblets.report.record import Axes, Figure, LeftOut, Record, StudyResult, Timing
 from pvfiblets.report.report_file import Report
-from pvfiblets.report.studies.codec.errors_and_times import Turns, distances, error_figures, median_step
+from pvfiblets.report.studies.codec.errors import distances, error_figures, median_step
+from pvfiblets.report.timing import Turns, timing
 
 
 def a_record(method="a", data="d", size=1.0, error=0.5, **rest):

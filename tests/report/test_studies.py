@@ -11,7 +11,7 @@ import pytest
 from pvfiblets import formats
 from pvfiblets.codec.compress import compress
 from pvfiblets.codec.reference import encode_direction
-from pvfiblets.report import drawing, run, studies
+from pvfiblets.report import drawing, run, studies, timing
 from pvfiblets.report.record import Axes, Figure, LeftOut, Record
 from pvfiblets.report.studies.codec import data_sets
 from pvfiblets.report.studies.codec import study as codec
@@ -78,7 +78,7 @@ def test_files_are_taken_from_folders_and_what_cannot_be_read_is_named(tmp_path,
 
 def test_made_up_sets_have_constant_steps_and_noise_turns_them_more():
     from pvfiblets.report.studies.codec.baselines.directions import widest_turn
-    from pvfiblets.report.studies.codec.errors_and_times import median_step
+    from pvfiblets.report.studies.codec.errors import median_step
 
     smooth, noisy = (data_sets.synthetic_tracking(0.5, noise, 3000, 0) for noise in (False, True))
     for made in (smooth, noisy):
@@ -315,7 +315,7 @@ def test_a_study_that_draws_has_a_context_and_the_report_its_driver(gl, monkeypa
 
 
 def test_pictures_that_the_processor_draws_are_timed_by_its_time(gl):
-    turns = drawing.turns_of(gl)
+    turns = timing.turns_of(gl)
     turns.add(gl.finish)
     software = "llvmpipe" in gl.info["GL_RENDERER"] or "softpipe" in gl.info["GL_RENDERER"]
     assert turns.timing(0, 1, "frame").clock == ("cpu" if software else "wall")

@@ -14,11 +14,11 @@ import numpy.typing as npt
 from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.streamlines import Streamlines
 
-from ...drawing import LATE
 from ...record import Axes, Figure, LeftOut, Record
 from ...study import Options
+from ...timing import LATE, Comparison, Turns
 from .data_sets import DataSet
-from .errors_and_times import Turns, median_step
+from .errors import median_step
 from .tractograms import trackings, whole_files
 
 if TYPE_CHECKING:
@@ -62,10 +62,10 @@ class MeasuresStudy:
             if not options.budget.allows():
                 left_out.append(LeftOut(data.name, LATE))
                 continue
-            yield from _measured(data, options)
+            yield from _measured(data, options, left_out)
 
 
-def _measured(data: DataSet, options: Options) -> Iterator[Record]:
+def _measured(data: DataSet, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
     from pvfiblets import compress
 
     lines = data.streamlines
@@ -74,18 +74,14 @@ def _measured(data: DataSet, options: Options) -> Iterator[Record]:
     sets = {"default": usual} | {
         f"{factor:g} times": compress(lines, exact=False, max_error=factor * usual.promise) for factor in OTHERS
     }
-    turns, done = Turns(), []
+    compared = Comparison(data.name, options, left_out, Turns(), lines.n_points, "point")
     for setting, fiblets in sets.items():
         figures = _errors(truth, _numbers(fiblets, lines), step)
         record = Record(data.name, data.group, "measures", "fiblets", setting, figures, ours=True,
                         default=setting == "default", machine=options.machine)  # fmt: skip
         record.costs["size"] = Figure(fiblets.nbytes / max(lines.n_points, 1), "bytes/point")
-        done.append((record, turns.add(partial(_table, fiblets))))
-    turns.run(options.repeats, options.budget.allows)
-    for record, number in done:
-        record.times["table"] = turns.timing(number, lines.n_points)
-        yield record
-    options.log(f"measures: {data.name}: {lines.n_points:,} points")
+        compared.add(record, table=partial(_table, fiblets))
+    yield from compared.finish()
 
 
 def _table(source: Source) -> Table:

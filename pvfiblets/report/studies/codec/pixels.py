@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ...drawing import LATE
 from ...record import Axes, Figure, LeftOut, Record
 from ...study import Options, Unavailable
+from ...timing import LATE
 from ...window import Window
 from .baselines.directions import PaperFiblets, QFib
 from .data_sets import DataSet, file_sets
-from .errors_and_times import median_step
+from .errors import median_step
 
 __all__ = ["STUDY", "PixelsStudy", "beyond", "difference_picture", "lines_of"]
 

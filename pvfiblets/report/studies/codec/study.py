@@ -14,11 +14,12 @@ from pvfiblets.streamlines import Streamlines
 
 from ...record import Axes, Figure, LeftOut, Record
 from ...study import Options
+from ...timing import Comparison, Turns
 from .baselines.directions import PaperFiblets, QFib
 from .baselines.linearised import linearised
 from .baselines.numbers import float16, int16, squeezed_by_zlib, squeezed_by_zstd
 from .data_sets import SMALL, DataSet, data_sets
-from .errors_and_times import Turns, direction_figures, distances, error_figures, median_step
+from .errors import direction_figures, distances, error_figures, median_step
 
 __all__ = ["STUDY", "CodecStudy", "Variant", "variants"]
 
@@ -173,42 +174,34 @@ class CodecStudy:
     ) -> Iterator[Record]:
         points, offsets = data.streamlines.points, np.asarray(data.streamlines.offsets, np.int64)
         step = median_step(points, offsets)
-        turns, done, late = Turns(), [], []
+        compared = Comparison(data.name, options, left_out, Turns(), len(points), "point")
         for variant in chosen:
-            if variant.name in missing:
-                continue
-            if not options.budget.allows():
-                late.append(f"{variant.name} {variant.setting}".strip())
+            label = f"{variant.name} {variant.setting}".strip()
+            if variant.name in missing or not compared.allows(label):
                 continue
             try:
-                done.append(measured(data, variant, points, offsets, step, turns, options.machine))
+                record, calls = measured(data, variant, points, offsets, step, options.machine)
+                compared.add(record, **calls)
             except ImportError as error:
                 missing.add(variant.name)
                 left_out.append(LeftOut(variant.name, f"{error.name or error} is not installed"))
             except ValueError as error:
-                left_out.append(LeftOut(f"{data.name}: {variant.name} {variant.setting}".strip(), str(error)))
-        turns.run(options.repeats, options.budget.allows)
-        for record, numbers in done:
-            record.times = {name: turns.timing(number, len(points)) for name, number in numbers.items()}
-            yield record
-        if late:
-            what = "everything" if not done else ", ".join(late)
-            left_out.append(LeftOut(f"{data.name}: {what}", "the time given was used up"))
-        options.log(f"codec: {data.name}: {len(done)} variants")
+                compared.refuse(label, error)
+        yield from compared.finish()
 
 
 def measured(
-    data: DataSet, variant: Variant, points: Points, offsets: Offsets, step: float, turns: Turns, machine: str
-) -> tuple[Record, dict[str, int]]:
-    """Pack and unpack in one variant; return a record of errors and bytes, and the numbers of what is to be timed."""
+    data: DataSet, variant: Variant, points: Points, offsets: Offsets, step: float, machine: str
+) -> tuple[Record, dict[str, Callable[[], object]]]:
+    """Pack and unpack in one variant; return a record of errors and bytes, and the calls that are to be timed."""
     pack = variant.make(step)
     packed = pack(points, offsets)
-    numbers = {"compress": turns.add(lambda: pack(points, offsets))}
+    calls: dict[str, Callable[[], object]] = {"compress": lambda: pack(points, offsets)}
     if hasattr(packed, "points"):
         decoded = packed.points()
         firsts = packed.fiblets.fiblet_points() if isinstance(packed, _Fiblets) else None
         apart, angles = distances(points, decoded), direction_figures(points, decoded, offsets, firsts)
-        numbers["decompress"] = turns.add(packed.points)
+        calls["decompress"] = packed.points
     else:
         apart, angles = packed.distances(points, offsets), {}
     record = Record(
@@ -223,7 +216,7 @@ def measured(
         default=variant.default,
         machine=machine,
     )
-    return record, numbers
+    return record, calls
 
 
 @contextmanager

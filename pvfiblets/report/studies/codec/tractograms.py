@@ -12,8 +12,9 @@ from pvfiblets.streamlines import Streamlines
 
 from ...record import Axes, Figure, LeftOut, Record
 from ...study import Options
+from ...timing import Comparison, Turns
 from .data_sets import LENGTH, QUICK_STEPS, SMALL, STEPS, DataSet, files_of
-from .errors_and_times import Turns, median_step
+from .errors import median_step
 from .study import DEFAULT, Variant, measured, one_thread, variants
 
 __all__ = ["METHODS", "STUDY", "TractogramsStudy", "trackings", "whole_files"]
@@ -107,23 +108,22 @@ def _told(error: Exception, path: Path) -> str:
 
 def _measured(data: DataSet, chosen: list[Variant], options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
     points, offsets = data.streamlines.points, np.asarray(data.streamlines.offsets, np.int64)
-    step, turns, done = median_step(points, offsets), Turns(), []
+    step = median_step(points, offsets)
+    compared = Comparison(data.name, options, left_out, Turns(), len(points), "point")
+    raw = RAW_BYTES * (len(points) + len(offsets) - 1) / len(points)
     for variant in chosen:
         try:
-            done.append(measured(data, variant, points, offsets, step, turns, options.machine))
+            record, calls = measured(data, variant, points, offsets, step, options.machine)
         except ValueError as error:
-            left_out.append(LeftOut(f"{data.name}: {variant.name} {variant.setting}".strip(), str(error)))
-    turns.run(options.repeats, options.budget.allows)
-    raw = RAW_BYTES * (len(points) + len(offsets) - 1) / len(points)
-    for record, numbers in done:
+            compared.refuse(f"{variant.name} {variant.setting}".strip(), error)
+            continue
         kept = {name: record.errors[name] for name in ("max", "mean")}
         record.errors = kept | {
             f"{name} of a step": Figure(100.0 * figure.value / step, "%") for name, figure in kept.items()
         }
         record.costs["ratio"] = Figure(raw / record.costs["size"].value, "to 1")
-        record.times = {name: turns.timing(number, len(points)) for name, number in numbers.items()}
-        yield record
-    options.log(f"tractograms: {data.name}: {len(points):,} points, {len(done)} methods")
+        compared.add(record, **calls)
+    yield from compared.finish()
 
 
 STUDY = TractogramsStudy()

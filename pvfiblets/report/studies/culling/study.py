@@ -13,9 +13,10 @@ from pvfiblets.codec.restrict import restrict
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.errors import EngineError
 
-from ...drawing import LATE, drawing_context, turns_of
-from ...record import FRAME, Axes, Figure, LeftOut, Record
+from ...drawing import drawing_context
+from ...record import Axes, Figure, LeftOut, Record
 from ...study import Options
+from ...timing import Comparison, turns_of
 from ..codec.data_sets import file_sets
 from .flights import Flight
 from .pictures import Singles, Visible, averaged, colours, difference, errors, views, visible
@@ -23,7 +24,6 @@ from .pictures import Singles, Visible, averaged, colours, difference, errors, v
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
 
-    from ..codec.errors_and_times import Turns
 
 __all__ = ["STUDY", "CullingStudy", "Scene", "Variant", "variants"]
 
@@ -161,9 +161,9 @@ class CullingStudy:
         "culling, so that it is what culling alone changes.",
         "*none*: what is outside the view volume is left out, nothing else. *two-phase*: what this very picture hides "
         "is left out, which changes no pixel. *coverage*: what the last picture hid, as Schertzer et al. 2022 have it "
-        "(section 3.4). The setting is the level of detail: a fiblet whose points all lie so near to the segment "
-        "between its ends is drawn as that segment (section 3.4.4); 0.5 px is the default, *every point* turns it off. "
-        "*fewer streamlines*: one of two or four, with the default's culling.",
+        "(section 3.4). *auto*, the default: two-phase while it is the faster one. The setting is the level of "
+        "detail: a fiblet whose points all lie so near to the segment between its ends is drawn as that segment "
+        "(section 3.4.4); *every point* turns it off. *fewer streamlines*: one of two or four, two-phase.",
         "Names of data say where the eye is and how far it turns between frames: *far*, from where the whole set fits "
         "the picture; *close*, a third of that; *inside*, near the middle. Every frame is one step from the one "
         "before. Files are seen from far, by 1.14° a frame. Pictures are of the engine without VTK, each waited for. "
@@ -179,27 +179,20 @@ class CullingStudy:
                 yield from self._measured(ctx, scene, options, left_out)
 
     def _measured(self, ctx: Any, scene: Scene, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
-        turns, done, late = turns_of(ctx), [], []
+        compared = Comparison(scene.name, options, left_out, turns_of(ctx), len(scene.path) - 1)
         with ExitStack() as stack:
             basis: _Basis | None = None
             for variant in variants(options.quick):
                 label = f"{variant.name} ({variant.setting})"
-                if not options.budget.allows():
-                    late.append(label)
+                if not compared.allows(label):
                     continue
                 try:
                     basis = basis or _Basis(ctx, scene)
-                    done.append(measured(ctx, scene, variant, basis, turns, stack, options.machine))
+                    record, flight = measured(ctx, scene, variant, basis, stack, options.machine)
+                    compared.add(record, draw=flight)
                 except EngineError as error:
-                    left_out.append(LeftOut(f"{scene.name}: {label}", str(error)))
-            turns.run(options.repeats, options.budget.allows)
-            for number, record in enumerate(done):
-                record.times = {"draw": turns.timing(number, len(scene.path) - 1, FRAME)}
-                yield record
-        if late:
-            what = ", ".join(late) if done else "everything"
-            left_out.append(LeftOut(f"{scene.name}: {what}", LATE))
-        options.log(f"culling: {scene.name}: {len(done)} variants")
+                    compared.refuse(label, error)
+            yield from compared.finish()
 
 
 def scenes(options: Options, left_out: list[LeftOut]) -> Iterator[Scene]:
@@ -237,9 +230,9 @@ def synthetic_brain(options: Options) -> FibletSet:
 
 
 def measured(
-    ctx: Any, scene: Scene, variant: Variant, basis: _Basis, turns: Turns, stack: ExitStack, machine: str
-) -> Record:
-    """Draw by one variant; return a record of errors, and add the flight to those that are timed."""
+    ctx: Any, scene: Scene, variant: Variant, basis: _Basis, stack: ExitStack, machine: str
+) -> tuple[Record, Flight]:
+    """Draw by one variant; return a record of errors, and the flight that is to be timed."""
     fiblets = scene.fiblets
     if variant.of > 1:
         fiblets = restrict(fiblets, np.arange(0, fiblets.n_streamlines, variant.of))
@@ -248,7 +241,6 @@ def measured(
     flight = Flight(ctx, renderer, scene.path, FibletStyle(tolerance=variant.tolerance))
     pictures = flight.pictures(visible)
     report: dict[str, Any] = renderer.explain()
-    turns.add(flight)
     found = errors(pictures, basis.plain(0.0))
     coloured = [colours(picture) for picture in pictures]
     found |= {"colour": difference(coloured, basis.coloured), "fine": difference(coloured, basis.fine)}
@@ -258,7 +250,7 @@ def measured(
     drawn = report["fiblets"]["drawn"]
     if drawn is not None:
         costs["drawn"] = Figure(100.0 * drawn / max(scene.fiblets.n_fiblets, 1), "%")
-    return Record(
+    record = Record(
         data=scene.name,
         group=scene.group,
         approximation="pictures of fiblets",
@@ -270,6 +262,7 @@ def measured(
         default=variant.default,
         machine=machine,
     )
+    return record, flight
 
 
 STUDY = CullingStudy()

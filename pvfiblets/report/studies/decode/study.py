@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,8 @@ from pvfiblets.codec.reference import first_frame
 
 from ...record import Axes, Figure, LeftOut, Record
 from ...study import Options
-from ..codec.errors_and_times import Turns, error_figures
+from ...timing import Comparison, Turns
+from ..codec.errors import error_figures
 from . import decoders
 
 __all__ = ["STUDY", "DecodeStudy", "Made", "exact", "made"]
@@ -125,18 +126,14 @@ class DecodeStudy:
             name = f"steps of {step:g} mm, cap angle {CAP_DEGREES[cap]:g}°"
             fiblets = made(n, cap, step, options.seed)
             truth = exact(fiblets)
-            turns, records = Turns(), []
+            often = replace(options, repeats=REPEATS * options.repeats)
+            compared = Comparison(name, often, left_out, Turns(), n * decoders.POINTS, "point")
             for combination in combinations():
-                if not options.budget.allows():
-                    left_out.append(LeftOut(f"{name}: {', '.join(combination)}", "the time given was used up"))
-                    continue
-                records.append(measured(fiblets, truth, combination, turns))
-            turns.run(REPEATS * options.repeats, options.budget.allows)
-            for number, record in enumerate(records):
-                record.data, record.group, record.machine = name, group, options.machine
-                record.times = {"decode": turns.timing(number, n * decoders.POINTS)}
-                yield record
-            options.log(f"decode: {name}: {len(records)} variants")
+                if compared.allows(", ".join(combination)):
+                    record, decode = measured(fiblets, truth, combination)
+                    record.data, record.group, record.machine = name, group, options.machine
+                    compared.add(record, decode=decode)
+            yield from compared.finish()
 
 
 def combinations() -> list[tuple[str, str, str, str]]:
@@ -145,8 +142,10 @@ def combinations() -> list[tuple[str, str, str, str]]:
     return sorted(every, key=lambda variant: variant[2:] != ("quaternions", "table"))
 
 
-def measured(fiblets: Made, truth: Any, combination: tuple[str, str, str, str], turns: Turns) -> Record:
-    """Decode by one variant; return a record of errors, and add the call to those that are timed."""
+def measured(
+    fiblets: Made, truth: Any, combination: tuple[str, str, str, str]
+) -> tuple[Record, Callable[[], None]]:
+    """Decode by one variant; return a record of errors, and the call that is to be timed."""
     order, number, algebra, source = combination
     dtype = NUMBERS[number]
     arrays = [np.ascontiguousarray(a.astype(dtype)) for a in (fiblets.anchors, fiblets.frames)]
@@ -164,9 +163,8 @@ def measured(fiblets: Made, truth: Any, combination: tuple[str, str, str, str], 
     errors = error_figures(apart.ravel(), fiblets.step)
     for i in DRIFT_AT:
         errors[f"mean at point {i}"] = Figure(float(apart[:, i].mean()) / fiblets.step, "steps")
-    turns.add(run)
     own = (algebra, source) == ("quaternions", "table")
-    return Record(
+    record = Record(
         data="",
         group="",
         approximation="decoded points",
@@ -176,6 +174,7 @@ def measured(fiblets: Made, truth: Any, combination: tuple[str, str, str, str], 
         ours=own and (order, number) != ("prefix", "float64"),
         default=own and (order, number) == ("sequential", "float32"),
     )
+    return record, run
 
 
 STUDY = DecodeStudy()

@@ -11,9 +11,10 @@ import numpy as np
 
 from pvfiblets.engine.errors import EngineError
 
-from ...drawing import LATE, drawing_context, turns_of
+from ...drawing import drawing_context
 from ...record import FRAME, Axes, Figure, LeftOut, Record
 from ...study import Options
+from ...timing import LATE, turns_of
 from .scenes import PLAIN, Drawn, Subject
 from .subjects import brain_subject, halo_subject, tube_subject, volume_subject
 from .window import in_window

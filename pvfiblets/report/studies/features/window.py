@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from ...drawing import LATE, timing
 from ...record import FRAME, Figure, LeftOut, Record
 from ...study import Options
+from ...timing import LATE, timing
 from ...window import Window
 from .scenes import PLAIN
 from .subjects import torus

@@ -14,9 +14,10 @@ from pvfiblets.engine.errors import EngineError
 from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
 from pvfiblets.halos.style import TABLE_SIZE
 
-from ...drawing import LATE, clock_of, run_parts, timing, turns_of
+from ...drawing import run_parts
 from ...record import FRAME, Axes, Figure, LeftOut, Record
 from ...study import Options
+from ...timing import LATE, Comparison, clock_of, timing, turns_of
 from ..codec.data_sets import DataSet, file_sets, synthetic_tracking
 from ..culling.flights import Flight
 from .drawing import Drawing, FibletHalos, Strips
@@ -26,7 +27,6 @@ from .windows import beside_plain
 
 if TYPE_CHECKING:
     from ...cameras import Camera
-    from ..codec.errors_and_times import Turns
 
 __all__ = ["STUDY", "HaloStudy", "Scene", "Variant", "variants"]
 
@@ -204,13 +204,13 @@ def _percent(found: dict[str, float]) -> dict[str, Figure]:
 
 def _pictures(ctx: Any, scene: Scene, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
     """Compare pictures with finely sampled ones."""
-    turns, done, late = turns_of(ctx), [], []
+    compared = Comparison(scene.name, options, left_out, turns_of(ctx), len(scene.path) - 1)
     truth: list[Singles] | None = None
     with ExitStack() as stack:
         others = variants(options.quick, scene.tractogram is not None)
         for variant in [Variant(HARD, REFERENCE), *others, Variant(SMOOTH, REFERENCE)]:
-            if not options.budget.allows() or (truth is None and variant.times != REFERENCE):
-                late.append(f"{variant.name} ({variant.setting})")
+            label = f"{variant.name} ({variant.setting})"
+            if (truth is None and variant.times != REFERENCE) or not compared.allows(label):
                 continue
             try:
                 if variant.times == REFERENCE:
@@ -218,21 +218,14 @@ def _pictures(ctx: Any, scene: Scene, options: Options, left_out: list[LeftOut])
                     truth = truth or found
                     times = {"draw": timing([seconds], len(found), FRAME, clock)}
                     record = _record((scene.name, scene.group), variant, options, errors={}, times=times)
+                    calls: dict[str, Flight] = {}
                 else:
-                    found, record = _measured(ctx, scene, variant, turns, stack, options)
+                    found, record, calls = _measured(ctx, scene, variant, stack, options)
                 record.errors = _percent(differences(found, truth or found))
-                done.append(record)
+                compared.add(record, **calls)
             except (EngineError, ValueError) as error:
-                left_out.append(LeftOut(f"{scene.name}: {variant.name} ({variant.setting})", str(error)))
-        turns.run(options.repeats, options.budget.allows)
-        timed = (record for record in done if not record.times)
-        for number, record in enumerate(timed):
-            record.times = {"draw": turns.timing(number, len(scene.path) - 1, FRAME)}
-        yield from done
-    if late:
-        what = ", ".join(late) if done else "everything"
-        left_out.append(LeftOut(f"{scene.name}: {what}", LATE))
-    options.log(f"halos: {scene.name}: {len(done)} variants")
+                compared.refuse(label, error)
+        yield from compared.finish()
 
 
 def _finely(ctx: Any, scene: Scene, variant: Variant) -> tuple[list[Singles], float, str]:
@@ -248,16 +241,16 @@ def _finely(ctx: Any, scene: Scene, variant: Variant) -> tuple[list[Singles], fl
 
 
 def _measured(
-    ctx: Any, scene: Scene, variant: Variant, turns: Turns, stack: ExitStack, options: Options
-) -> tuple[list[Singles], Record]:
-    """Draw in one variant; return pictures and a record without errors, and add the flight to those that are timed."""
+    ctx: Any, scene: Scene, variant: Variant, stack: ExitStack, options: Options
+) -> tuple[list[Singles], Record, dict[str, Flight]]:
+    """Draw in one variant; return pictures, a record without errors, and the flight that is to be timed."""
     drawing = variant.drawing(ctx, scene)
     stack.callback(drawing.release)
     flight = Flight(ctx, drawing, scene.path, variant.look(scene.look))
     found = flight.pictures(drawing.read)
-    turns.add(flight)
     costs = {"memory": Figure(drawing.nbytes / max(scene.drawn.n_points, 1), "bytes/point")}
-    return found, _record((scene.name, scene.group), variant, options, errors={}, costs=costs)
+    record = _record((scene.name, scene.group), variant, options, errors={}, costs=costs)
+    return found, record, {"draw": flight}
 
 
 # ------------------------------------------------------------------------------------------- what pictures should show
@@ -308,25 +301,18 @@ def _gaps(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Recor
     made: Crossings = crossings()
     # The same picture would not be drawn again: the camera moves to and fro by a thousandth of a pixel.
     aside = replace(made, model_view_projection=_moved(made, 1e-3))
-    turns, done, late = turns_of(ctx), [], []
+    compared = Comparison("crossings", options, left_out, turns_of(ctx))
     with ExitStack() as stack:
         for variant in (variant for variant in variants(options.quick, False) if variant.name != UNCULLED):
-            if not options.budget.allows():
-                late.append(f"{variant.name} ({variant.setting})")
+            if not compared.allows(f"{variant.name} ({variant.setting})"):
                 continue
             strips = Strips(ctx, made.lines, variant.times)
             stack.callback(strips.release)
             flight = Flight(ctx, strips, [aside, made], variant.look(made.look))
             (found,) = flight.pictures(strips.read)
-            turns.add(flight)
-            done.append(_record(("crossings", "crossings"), variant, options, errors=gaps(found, made)))
-        turns.run(options.repeats, options.budget.allows)
-    for number, record in enumerate(done):
-        record.times = {"draw": turns.timing(number, 1, FRAME)}
-        yield record
-    if late:
-        left_out.append(LeftOut(f"crossings: {', '.join(late)}", LATE))
-    options.log(f"halos: crossings: {len(done)} variants")
+            record = _record(("crossings", "crossings"), variant, options, errors=gaps(found, made))
+            compared.add(record, draw=flight)
+        yield from compared.finish()
 
 
 def _moved(made: Crossings, pixels: float) -> Any:

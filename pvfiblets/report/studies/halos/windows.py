@@ -10,11 +10,11 @@ import numpy as np
 from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
 
 from ...cameras import Camera, by_turns
-from ...drawing import LATE, data_bytes
-from ...record import FRAME, Figure, LeftOut, Record
+from ...drawing import data_bytes
+from ...record import Figure, LeftOut, Record
 from ...study import Options
+from ...timing import LATE, Comparison
 from ...window import Window
-from ..codec.errors_and_times import Turns
 from ..codec.pixels import lines_of
 from .pictures import helices, look_of, orbit
 
@@ -79,11 +79,10 @@ def beside_plain(options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
             left_out.append(LeftOut(f"{name}, in a window", LATE))
             continue
         drawn = helices(QUICK_HELICES) if options.quick else halo_set(name, options.seed)
-        yield from _measured(f"{name}, {drawn.n_points:,} vertices, in a window", drawn, options)
-        options.log(f"halos: {name}, in a window")
+        yield from _measured(f"{name}, {drawn.n_points:,} vertices, in a window", drawn, options, left_out)
 
 
-def _measured(data: str, drawn: Any, options: Options) -> Iterator[Record]:
+def _measured(data: str, drawn: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
     places, size = (QUICK_PLACES, QUICK_SIZE) if options.quick else (PLACES, SIZE)
     cameras = [place[0] for place in orbit(drawn, places, 1, size)]
     look = look_of(drawn)
@@ -93,11 +92,9 @@ def _measured(data: str, drawn: Any, options: Options) -> Iterator[Record]:
             made.append(kind(drawn, look, cameras[0]))
             for camera in cameras:  # programs are compiled, and what is made when first needed is made
                 made[-1].draw(camera)
-        turns = Turns(made[0].clock, made[0].clock_name)
-        numbers = [turns.add(by_turns(window.draw, cameras)) for window in made]
-        turns.run(options.repeats, options.budget.allows)
-        for window, number in zip(made, numbers, strict=True):
-            yield Record(
+        compared = Comparison(data, options, left_out, made[0].turns, len(cameras))
+        for window in made:
+            record = Record(
                 data=data,
                 group="",
                 approximation="pictures with halos",
@@ -105,11 +102,12 @@ def _measured(data: str, drawn: Any, options: Options) -> Iterator[Record]:
                 setting="",
                 errors={},
                 costs={"memory": Figure(window.nbytes / drawn.n_points, "bytes/point")},
-                times={"draw": turns.timing(number, len(cameras), FRAME)},
                 ours=window.ours,
                 default=window.ours,
                 machine=options.machine,
             )
+            compared.add(record, draw=by_turns(window.draw, cameras))
+        yield from compared.finish()
     finally:
         for window in made:
             window.release()

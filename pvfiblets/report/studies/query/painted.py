@@ -13,9 +13,9 @@ import numpy as np
 from pvfiblets import FibletSet, regions
 from pvfiblets.query.painting.live import LiveRegion
 
-from ...drawing import timing
 from ...record import Figure, Record
 from ...study import Options
+from ...timing import timing
 
 __all__ = ["painted"]
 

@@ -14,7 +14,7 @@ from pvfiblets.streamlines import Streamlines
 
 from ...record import Figure, LeftOut, Record
 from ...study import Options
-from ..codec.errors_and_times import Turns
+from ...timing import Comparison, Turns
 
 __all__ = ["equal_arcs", "mdf_distances", "similar"]
 
@@ -30,7 +30,7 @@ Floats = npt.NDArray[np.float64]
 def similar(fiblets: FibletSet, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
     """Yield records of one set."""
     like = np.sort(np.random.default_rng(options.seed).choice(len(fiblets), LIKE, replace=False))
-    turns, done = Turns(), []
+    compared = Comparison(f"{len(fiblets):,} streamlines", options, left_out, Turns(), len(fiblets), "streamline")
     small = len(fiblets) <= REFERENCE
     lines = fiblets.decompress() if small else None
     baselines = _dipy(lines, like, left_out) if lines is not None else {}
@@ -47,7 +47,7 @@ def similar(fiblets: FibletSet, options: Options, left_out: list[LeftOut]) -> It
             default=method == "fiblets",
             machine=options.machine,
         )
-        done.append((record, turns.add(ask)))
+        compared.add(record, answer=ask)
 
     name = f"like {LIKE}"
     near = fiblets.similar(like, distance=REACH)
@@ -72,10 +72,7 @@ def similar(fiblets: FibletSet, options: Options, left_out: list[LeftOut]) -> It
         add(name, "fiblets", errors, partial(fiblets.clusters, threshold=threshold))
         if name in baselines:
             add(name, "dipy", _elsewhere(np.zeros(1, bool)), baselines[name])
-    turns.run(options.repeats, options.budget.allows)
-    for record, number in done:
-        record.times["answer"] = turns.timing(number, len(fiblets), "streamline")
-        yield record
+    yield from compared.finish()
 
 
 def _elsewhere(wrong: npt.NDArray[np.bool_]) -> dict[str, Figure]:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from ...drawing import LATE
 from ...record import Axes, LeftOut, Record
 from ...study import Options
+from ...timing import LATE
 from .painted import painted
 from .similar import similar
 

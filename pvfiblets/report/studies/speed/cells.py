@@ -16,7 +16,8 @@ import numpy as np
 from pvfiblets.engine.view import View
 
 from ...cameras import orbit
-from ...drawing import clock_of, data_bytes
+from ...drawing import data_bytes
+from ...timing import clock_of
 from ..culling.pictures import views
 from .process import Row, serve
 

@@ -15,9 +15,10 @@ from typing import Any
 
 import numpy as np
 
-from ...drawing import LATE, data_bytes, timing
+from ...drawing import data_bytes
 from ...record import FRAME, Axes, Figure, LeftOut, Record
 from ...study import Options, Unavailable
+from ...timing import LATE, timing
 from ...window import Window
 from .cells import DEGREES_PER_FRAME, PER_STREAMLINE, WARM
 from .process import CellProcess, Row, serve

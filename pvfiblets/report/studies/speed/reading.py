@@ -11,10 +11,9 @@ from typing import Any
 
 from pvfiblets import formats
 
-from ...drawing import LATE
 from ...record import Axes, Figure, LeftOut, Record
 from ...study import Options
-from ..codec.errors_and_times import Turns
+from ...timing import LATE, Comparison, Turns
 
 __all__ = ["STUDY", "ReadingStudy"]
 
@@ -50,7 +49,6 @@ class ReadingStudy:
                     continue
                 formats.write(path, whole)
                 yield from _read(path, data, whole.n_points, options, left_out)
-                options.log(f"reading: {data}")
 
 
 def _read(path: Path, data: str, points: int, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
@@ -59,17 +57,14 @@ def _read(path: Path, data: str, points: int, options: Options, left_out: list[L
     }  # fmt: skip
     if path.suffix != ".trx":
         readers["nibabel", ""] = _by_nibabel
-    turns, numbers = Turns(), {}
-    for name, read in readers.items():
+    compared = Comparison(data, options, left_out, Turns(), points, "point")
+    for (method, setting), read in readers.items():
         try:
             read(path)
         except ImportError as error:
-            left_out.append(LeftOut(f"{data}: {name[0]}", f"{error.name} is not installed"))
+            compared.refuse(method, f"{error.name} is not installed")
             continue
-        numbers[name] = turns.add(partial(read, path))
-    turns.run(options.repeats, options.budget.allows)
-    for (method, setting), number in numbers.items():
-        yield Record(
+        record = Record(
             data=data,
             group="files",
             approximation="nothing",
@@ -77,11 +72,12 @@ def _read(path: Path, data: str, points: int, options: Options, left_out: list[L
             setting=setting,
             errors={},
             costs={"size": Figure(path.stat().st_size / points, "bytes/point")},
-            times={"read": turns.timing(number, points)},
             ours=method == "pvfiblets",
             default=(method, setting) == ("pvfiblets", ""),
             machine=options.machine,
         )
+        compared.add(record, read=partial(read, path))
+    yield from compared.finish()
 
 
 def _in_pieces(path: Path) -> int:

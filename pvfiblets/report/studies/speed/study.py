@@ -12,9 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from ...drawing import LATE, drawing_context, timing
+from ...drawing import drawing_context
 from ...record import FRAME, Axes, Figure, LeftOut, Record
 from ...study import Options
+from ...timing import LATE, timing
 from .cells import stored_brain
 from .process import CellProcess, Row
 

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ...drawing import LATE, timing
 from ...record import FRAME, Axes, Figure, LeftOut, Record
 from ...study import Options, Unavailable
+from ...timing import LATE, timing
 from ..antialias.study import OURS, PictureWindow, Subject, differences
 
 __all__ = ["STUDY", "TranslucencyStudy"]

@@ -12,6 +12,7 @@ from pvfiblets.tubes import SplineTubes
 
 from ...cameras import Camera, Lens
 from ...drawing import data_bytes
+from ...timing import Turns, turns_of
 from .pictures import reversed_depth_of
 from .tessellated import TessellatedTubes
 
@@ -30,6 +31,11 @@ class Drawing(Protocol):
     ours: bool
     default: bool
     nbytes: int
+
+    @property
+    def turns(self) -> Turns:
+        """Calls that take turns, timed by the clock that measures its frames."""
+        ...
 
     def draw(self, camera: Camera) -> None:
         """Draw a picture and wait for it."""
@@ -57,6 +63,11 @@ class CastTubes:
         self.ours = self.setting != "bisection"
         self.default = solver == "auto"
         self.nbytes = data_bytes(self._renderer.explain())
+
+    @property
+    def turns(self) -> Turns:
+        """Calls that take turns, timed by the context's clock."""
+        return turns_of(self._ctx)
 
     def draw(self, camera: Camera | Lens) -> None:
         """Draw a G-buffer, if the camera is not that of the last one."""
@@ -87,6 +98,11 @@ class MeshedTubes:
         self._ctx, self._tubes = ctx, TessellatedTubes(ctx, tubes, size, sides=sides)
         self.setting = f"{sides[0]} sides" if sides[0] == sides[1] else f"{sides[0]} to {sides[1]} sides by size"
         self.nbytes = self._tubes.nbytes
+
+    @property
+    def turns(self) -> Turns:
+        """Calls that take turns, timed by the context's clock."""
+        return turns_of(self._ctx)
 
     def draw(self, camera: Camera) -> None:
         """Draw it, whatever was drawn last."""

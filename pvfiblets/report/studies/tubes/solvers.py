@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from ...drawing import LATE, clock_of, timing
 from ...record import Figure, LeftOut, Record
 from ...study import Options
+from ...timing import LATE, clock_of, timing
 from .rays import CLASSES, GOAL, Rays, of_class, of_set
 from .sweeps import SWEEPS
 

@@ -12,10 +12,10 @@ import numpy as np
 from pvfiblets.tubes import SplineTubes, curves
 
 from ...cameras import VIEWS, Camera, Lens, by_turns, orbit
-from ...drawing import LATE, Part, WindowPart, run_parts, turns_of
-from ...record import FRAME, Axes, Figure, LeftOut, Record
+from ...drawing import Part, WindowPart, run_parts
+from ...record import Axes, Figure, LeftOut, Record
 from ...study import Options
-from ..codec.errors_and_times import Turns
+from ...timing import LATE, Comparison
 from .drawings import CastTubes, Drawing, drawings
 from .pictures import FORMATS, Truth, helices, sampled
 from .rays import GOAL
@@ -66,7 +66,7 @@ def picture_sweeps(ctx: Any, options: Options, left_out: list[LeftOut]) -> Itera
 
 def pictures(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
     """Yield records of whole pictures: silhouettes and depths against float64, and what a picture takes."""
-    yield from _helices("", partial(drawings, ctx), lambda _: turns_of(ctx), options, left_out)
+    yield from _helices("", partial(drawings, ctx), options, left_out)
 
 
 def sets(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
@@ -76,27 +76,22 @@ def sets(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record
     def solvers_of(tubes: SplineTubes, _: tuple[int, int]) -> list[Callable[[], Drawing]]:
         return [partial(CastTubes, ctx, tubes, solver) for solver in ("auto", *list(SOLVERS)[1:])]
 
-    yield from _sets("", solvers_of, lambda _: turns_of(ctx), options, left_out)
+    yield from _sets("", solvers_of, options, left_out)
 
 
 def in_windows(options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
     """Yield records of the same pictures in windows, beside VTK's meshes."""
     from .windows import window_drawings
 
-    def turns(drawn: Any) -> Turns:
-        return Turns(drawn.clock, drawn.clock_name)
-
     half = replace(options, budget=options.budget.share(0.5))
-    yield from _helices(", in a window", window_drawings, turns, half, left_out)
-    yield from _sets(", in a window", window_drawings, turns, options, left_out)
+    yield from _helices(", in a window", window_drawings, half, left_out)
+    yield from _sets(", in a window", window_drawings, options, left_out)
 
 
 Makers = Callable[[SplineTubes, tuple[int, int]], list[Callable[[], Drawing]]]
 
 
-def _helices(
-    where: str, makers: Makers, turns: Callable[[Drawing], Turns], options: Options, left_out: list[LeftOut]
-) -> Iterator[Record]:
+def _helices(where: str, makers: Makers, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
     """Compare all pixels of pictures of helices."""
     size = QUICK_SIZE if options.quick else SIZE
     tubes = helices(TUBES)
@@ -108,7 +103,7 @@ def _helices(
         camera = orbit(tubes, view, 2, size)[0]
         truth = Truth.of(tubes, Lens.of(camera))
         within = replace(options, budget=options.budget.share())  # the reference took longer than pictures do
-        yield from _measured(name, "pictures", camera, makers(tubes, size), _errors_of(truth), turns, within, left_out)
+        yield from _measured(name, "pictures", camera, makers(tubes, size), _errors_of(truth), within, left_out)
 
 
 def _errors_of(truth: Truth) -> Callable[[Drawing], dict[str, Figure]]:
@@ -120,9 +115,7 @@ def _errors_of(truth: Truth) -> Callable[[Drawing], dict[str, Figure]]:
     return errors
 
 
-def _sets(
-    where: str, makers: Makers, turns: Callable[[Drawing], Turns], options: Options, left_out: list[LeftOut]
-) -> Iterator[Record]:
+def _sets(where: str, makers: Makers, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
     """Compare some pixels of pictures of the paper's sets."""
     from pvfiblets.synthetic.tubes import tube_set
 
@@ -133,7 +126,7 @@ def _sets(
             camera = orbit(tubes, view, 2, size)[0]
             errors = _sampled_errors(tubes, Lens.of(camera), options)
             data = f"the set {name}, {view}{where}"
-            yield from _measured(data, "sets", camera, makers(tubes, size), errors, turns, options, left_out)
+            yield from _measured(data, "sets", camera, makers(tubes, size), errors, options, left_out)
 
 
 def _sampled_errors(tubes: SplineTubes, lens: Lens, options: Options) -> Callable[[Drawing], dict[str, Figure]]:
@@ -163,16 +156,17 @@ def _sampled_errors(tubes: SplineTubes, lens: Lens, options: Options) -> Callabl
 
 def _measured(
     data: str, group: str, camera: Camera, makers: list[Callable[[], Drawing]],
-    errors: Callable[[Drawing], dict[str, Figure]], turns_by: Callable[[Drawing], Turns], options: Options,
-    left_out: list[LeftOut],
+    errors: Callable[[Drawing], dict[str, Figure]], options: Options, left_out: list[LeftOut],
 ) -> Iterator[Record]:  # fmt: skip
-    """Draw one picture by every method; they are timed by turns once all are there."""
-    turns: Turns | None = None
-    done: list[tuple[Record, int]] = []
+    """Draw one picture by every method."""
+    compared: Comparison | None = None
     made: list[Drawing] = []
     try:
-        for make in makers:
-            if not options.budget.allows():
+        for number, make in enumerate(makers):
+            if compared is None and not options.budget.allows():
+                left_out.append(LeftOut(f"{data}: everything", LATE))
+                return
+            if compared is not None and not compared.allows(f"method {number + 1}"):
                 continue
             drawn = make()
             made.append(drawn)
@@ -189,19 +183,13 @@ def _measured(
                 default=drawn.default,
                 machine=options.machine,
             )
-            turns = turns or turns_by(drawn)
-            done.append((record, turns.add(by_turns(drawn.draw, [camera]))))
-        if turns is not None:
-            turns.run(options.repeats, options.budget.allows)
-            for record, number in done:
-                record.times["draw"] = turns.timing(number, 1.0, FRAME)
-                yield record
+            compared = compared or Comparison(data, options, left_out, drawn.turns)
+            compared.add(record, draw=by_turns(drawn.draw, [camera]))
+        if compared is not None:
+            yield from compared.finish()
     finally:
         for drawn in made:
             drawn.release()
-    if late := len(makers) - len(done):
-        left_out.append(LeftOut(f"{data}: {late} methods of drawing", LATE))
-    options.log(f"tubes: {data}: {len(done)} methods")
 
 
 def stored(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:

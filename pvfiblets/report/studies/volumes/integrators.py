@@ -15,13 +15,13 @@ from pvfiblets.volumes.raycast_options import INTEGRATORS, RaycastOptions
 from pvfiblets.volumes.reference_profiles import profiles
 
 from ...cameras import Camera, by_turns
-from ...drawing import LATE, turns_of
 from ...record import Figure, LeftOut, Record
 from ...study import Options
+from ...timing import LATE, Comparison, turns_of
+from .drawing import drawing, drawn, sample
 from .fields import DENSE, field, tables
 from .pictures import light_of
 from .scene import TOLERANCE, circle
-from .timed import Timed, drawing, drawn, sample
 
 __all__ = ["LIGHT_SIZE", "SIDE", "formulae", "integrators"]
 
@@ -72,7 +72,8 @@ def _integrated(
     through = reference.rays(camera.model_view_projection, camera.size, volume)
     at = sample(~np.isnan(through.near), QUICK_LIGHT_PIXELS if options.quick else LIGHT_PIXELS)
     truth = reference.composite(volume, transfer, through[at[:, 0], at[:, 1]], TOLERANCE)
-    timed = Timed(turns_of(ctx), options, name, "draw")
+    within = replace(options, budget=options.budget.share())  # the reference is no measurement
+    timed = Comparison(name, within, left_out, turns_of(ctx))
     for step in QUICK_STEPS if options.quick else STEPS:
         for integrator in INTEGRATORS:
             if not timed.allows(f"{integrator} step {step:g}"):
@@ -95,8 +96,8 @@ def _integrated(
                 default=(integrator, step) == (RaycastOptions.integrator, RaycastOptions.step),
                 machine=options.machine,
             )
-            timed.add(record, by_turns(drawing(ctx, renderer, style), [camera]), 1)
-    yield from timed.finish(left_out)
+            timed.add(record, draw=by_turns(drawing(ctx, renderer, style), [camera]))
+    yield from timed.finish()
 
 
 def _by_density(name: str, found: list[tuple[float, Record]]) -> Iterator[Record]:

@@ -12,11 +12,11 @@ import numpy.typing as npt
 from pvfiblets.volumes import RaycastVolume, reference
 from pvfiblets.volumes.raycast_options import RaycastOptions
 
-from ...drawing import LATE, turns_of
 from ...record import Figure, LeftOut, Record
 from ...study import Options
+from ...timing import LATE, Comparison, turns_of
+from .drawing import sample
 from .openness import SETS, exact_openness, seen_from
-from .timed import Timed, sample
 
 __all__ = ["RADIUS", "openness"]
 
@@ -39,7 +39,8 @@ def openness(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Re
         picture = _Picture(ctx, make(voxels), value, away, QUICK_SIZE if options.quick else SIZE)
         try:
             at, truth = picture.exact(QUICK_PIXELS if options.quick else PIXELS)
-            timed = Timed(turns_of(ctx), part, data, "occlusion")
+            part.budget = part.budget.share()  # the reference is no measurement
+            timed = Comparison(data, part, left_out, turns_of(ctx))
             for samples in QUICK_SAMPLES if options.quick else SAMPLES:
                 for smooth in (False, True):
                     method, setting = "rays, smoothed" if smooth else "rays", f"{samples} rays"
@@ -63,8 +64,8 @@ def openness(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Re
                         ours=True,
                         machine=options.machine,
                     )
-                    timed.add(record, picture.drawing(samples, smooth), 1)
-            yield from timed.finish(left_out)
+                    timed.add(record, occlusion=picture.drawing(samples, smooth))
+            yield from timed.finish()
             for samples in QUICK_SAMPLES if options.quick else SAMPLES:
                 chance = Figure(float(np.sqrt(np.mean(truth * (1.0 - truth)) / samples)), "of 1")
                 yield Record(

@@ -13,14 +13,15 @@ from pvfiblets.volumes import FILTERS
 from pvfiblets.volumes.raycast_options import INTEGRATORS, RaycastOptions
 
 from ...cameras import by_turns
-from ...drawing import LATE, Part, WindowPart, run_parts, turns_of
+from ...drawing import Part, WindowPart, run_parts
 from ...record import Axes, Figure, LeftOut, Record
 from ...study import Options
+from ...timing import LATE, Comparison, turns_of
+from .drawing import drawing, drawn
 from .integrators import LIGHT_SIZE, SIDE, formulae, integrators
 from .occlusion import RADIUS, openness
 from .pictures import GroundTruth, colours_of, ground_truth_of, places
 from .scene import Look, circle, look_of
-from .timed import Timed, drawing, drawn
 from .windows import beside_vtk
 
 __all__ = ["STUDY", "VolumeStudy", "settings"]
@@ -97,6 +98,7 @@ def pictures(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Re
                 continue
             look = look_of(volume, mode)
             exact = ground_truth_of(volume, look, cameras, QUICK_PIXELS if options.quick else PIXELS, kind)
+            part.budget = part.budget.share()  # the reference is no measurement
             yield from _varied(ctx, renderer, look, exact, name, kind, float(np.ptp(volume.value_range)),
                                float(volume.spacing.mean()), part, left_out)  # fmt: skip
     finally:
@@ -110,7 +112,7 @@ def _varied(
     from pvfiblets.engine.volumes import VolumeStyle
 
     cameras = exact.colours.cameras
-    timed = Timed(turns_of(ctx), options, name, "draw")
+    timed = Comparison(name, options, left_out, turns_of(ctx), len(cameras))
     plain: list[Any] = []
     for varied, how, fields in settings(look.mode, options.quick, spread):
         if kind != "trilinear" and varied != "default" and fields.get("step") not in QUICK_PICTURE_STEPS:
@@ -142,8 +144,8 @@ def _varied(
             default=varied == "default",
             machine=options.machine,
         )
-        timed.add(record, by_turns(drawing(ctx, renderer, style), cameras), len(cameras))
-    yield from timed.finish(left_out)
+        timed.add(record, draw=by_turns(drawing(ctx, renderer, style), cameras))
+    yield from timed.finish()
 
 
 # --------------------------------------------------------------------------------------------------------------- study

@@ -12,13 +12,11 @@ from pvfiblets.synthetic.vessels import brain_like, vessel_tree
 from pvfiblets.volumes import RaycastVolume
 
 from ...cameras import Camera, by_turns
-from ...drawing import LATE
 from ...record import Figure, LeftOut, Record
 from ...study import Options
+from ...timing import LATE, Comparison
 from ...window import Window
-from ..codec.errors_and_times import Turns
 from .scene import Look, circle, look_of, truth
-from .timed import Timed
 
 __all__ = ["WINDOWS", "CastWindow", "VTKWindow", "beside_vtk"]
 
@@ -106,12 +104,13 @@ def _measured(
     floats = RaycastVolume(np.ascontiguousarray(volume.values, np.float32), volume.affine)
     right = truth(floats, look, cameras, QUICK_PIXELS if options.quick else PIXELS)
     made: list[CastWindow | VTKWindow] = []
-    timed: Timed | None = None
+    timed: Comparison | None = None
+    options.budget = options.budget.share()  # the reference is no measurement
     try:
         for kind in WINDOWS:
             window = kind(volume, look, (side, side))
             made.append(window)
-            timed = timed or Timed(Turns(window.clock, window.clock_name), options, data, "draw")
+            timed = timed or Comparison(data, options, left_out, window.turns, len(cameras))
             for step in QUICK_STEPS if options.quick else STEPS:
                 if not timed.allows(f"{kind.method}, step {step:g}"):
                     continue
@@ -132,9 +131,9 @@ def _measured(
                     default=kind.ours and step == 0.5,
                     machine=options.machine,
                 )
-                timed.add(record, _drawing(window, step, cameras), len(cameras))
+                timed.add(record, draw=_drawing(window, step, cameras))
         if timed is not None:
-            yield from timed.finish(left_out)
+            yield from timed.finish()
     finally:
         for window in made:
             window.release()

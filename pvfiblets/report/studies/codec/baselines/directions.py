@@ -29,7 +29,7 @@ import numpy.typing as npt
 
 from pvfiblets.codec.jit import kernel
 
-from ..errors_and_times import median_step
+from ..errors import median_step
 from . import COUNT_BYTES
 from .octahedral import from_cap, pack, ratio_of, to_cap, unpack
 

@@ -1,17 +1,13 @@
-"""Errors and times, measured alike for every method; independent of what is measured."""
+"""Errors of points and directions, measured alike for every method."""
 
 from __future__ import annotations
-
-import gc
-import time
-from collections.abc import Callable
 
 import numpy as np
 import numpy.typing as npt
 
-from ...record import Figure, Timing
+from ...record import Figure
 
-__all__ = ["Turns", "direction_angles", "direction_figures", "distances", "error_figures", "median_step"]
+__all__ = ["direction_angles", "direction_figures", "distances", "error_figures", "median_step"]
 
 ONE_POINT = 1e-3  # pixels
 LEAST_SUM = 1e-3  # of two unit vectors; a shorter one has no direction
@@ -110,67 +106,3 @@ def direction_figures(
         return {}
     numbers = {"max": angles.max(), "mean": angles.mean(), "p99": np.quantile(angles, 0.99)}
     return {f"direction {name}": Figure(float(value), "degrees") for name, value in numbers.items()}
-
-
-class Turns:
-    """Times of several calls that take turns, so that what else the machine does meets all of them alike.
-
-    Calls that are much shorter than the clock's grain are put together; of calls longer than half a second three are
-    enough.
-
-    Parameters
-    ----------
-    clock : callable
-        Returns seconds.
-    clock_name : str
-        As in :class:`.Timing`.
-    """
-
-    def __init__(self, clock: Callable[[], float] = time.process_time, clock_name: str = "cpu") -> None:
-        self._clock = clock
-        self._name = clock_name
-        self._calls: list[tuple[Callable[[], object], int]] = []
-        self._seconds: list[list[float]] = []
-
-    def add(self, function: Callable[[], object]) -> int:
-        """Take in a call that has been made before (so that it is compiled and warm), time it once, and number it."""
-        once = self._once(function, 1)
-        inner = 1 if once >= _GRAIN else int(min(np.ceil(_GRAIN / max(once, 1e-6)), 1000))
-        self._calls.append((function, inner))
-        self._seconds.append([once])
-        return len(self._calls) - 1
-
-    def run(self, repeats: int, go_on: Callable[[], bool] = lambda: True) -> None:
-        """Time all calls until each has been ``repeats`` times, as long as ``go_on()`` says so before a call."""
-        for turn in range(1, repeats):
-            for (function, inner), seconds in zip(self._calls, self._seconds, strict=True):
-                if turn >= 3 and seconds[0] > _LONG:
-                    continue
-                if not go_on():
-                    return
-                if turn == 1 and inner > 1:
-                    seconds.clear()  # the first was too short to be measured
-                seconds.append(self._once(function, inner))
-
-    def timing(self, number: int, items: float, item: str = "point") -> Timing:
-        """Return what was found of one call, which handles so many items."""
-        seconds = self._seconds[number]
-        return Timing(
-            float(np.median(seconds)), min(seconds), max(seconds), len(seconds), float(items), item, self._name
-        )
-
-    def _once(self, function: Callable[[], object], inner: int) -> float:
-        collecting = gc.isenabled()
-        gc.disable()  # a collection that falls into one call is not that call's cost
-        try:
-            begun = self._clock()
-            for _ in range(inner):
-                function()
-            return (self._clock() - begun) / inner
-        finally:
-            if collecting:
-                gc.enable()
-
-
-_GRAIN = 2e-3  # s: shorter calls are put together until they take about as long
-_LONG = 0.5  # s
