@@ -6,7 +6,7 @@ import numpy as np
 
 from pvfiblets.engine.halos import HaloDrawStyle, HaloRenderer
 from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
-from pvfiblets.halos.reference import HALO, LINE, NOTHING, picture
+from pvfiblets.report.studies.halos.reference import HALO, LINE, NOTHING, picture
 
 from .pictures import EMPTY, unpacked_tangent
 

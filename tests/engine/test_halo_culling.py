@@ -6,7 +6,7 @@ import pytest
 from pvfiblets.engine import View
 from pvfiblets.engine.halos import HaloRenderer
 from pvfiblets.halos import HaloLines, HaloPoints
-from pvfiblets.halos.reference import LINE
+from pvfiblets.report.studies.halos.reference import LINE
 
 from .halos import EYES, PLAIN, SIZE, assert_same, buffers, read_halos, scattered, styled, wandering
 

@@ -5,7 +5,7 @@ import pytest
 
 from pvfiblets.engine import View
 from pvfiblets.halos import HaloLines, HaloPoints
-from pvfiblets.halos.reference import HALO, LINE, NOTHING
+from pvfiblets.report.studies.halos.reference import HALO, LINE, NOTHING
 
 from .halos import (
     ABOVE,

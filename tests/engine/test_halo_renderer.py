@@ -9,7 +9,7 @@ from pvfiblets.engine.gl.moderngl_extras import GLExtras
 from pvfiblets.engine.gl.queries import Timers
 from pvfiblets.engine.halos import HaloDrawStyle, HaloRenderer
 from pvfiblets.halos import HaloLines, HaloPoints
-from pvfiblets.halos.reference import LINE
+from pvfiblets.report.studies.halos.reference import LINE
 
 from .halos import EYES, PLAIN, SIZE, assert_same, buffers, draw_halos, look, read_halos, scattered, styled, wandering
 

@@ -5,9 +5,9 @@ import pytest
 
 from pvfiblets.engine import View
 from pvfiblets.engine.tubes import SILHOUETTES, SOLVERS
+from pvfiblets.report.studies.tubes.reference import CAP, EXIT
 from pvfiblets.tubes import NodeValues, SplineTubes
 from pvfiblets.tubes.curves import controls, evaluate
-from pvfiblets.tubes.reference import CAP, EXIT
 
 from .line_tubes import rays
 from .pictures import near

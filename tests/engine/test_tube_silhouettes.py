@@ -12,9 +12,9 @@ from pvfiblets.engine.gl.shaders import Programs
 from pvfiblets.engine.lattice import TOP
 from pvfiblets.engine.tubes.nodes import Nodes
 from pvfiblets.engine.tubes.uniform_blocks import TubeBlocks
+from pvfiblets.report.studies.tubes.reference import nearest_hits
 from pvfiblets.tubes import SplineTubes
 from pvfiblets.tubes.curves import MIDDLE, boxes, controls, sample_spheres
-from pvfiblets.tubes.reference import nearest_hits
 
 from .line_tubes import rays
 from .tubes import bundle, far_ends

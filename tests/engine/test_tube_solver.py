@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 
 from pvfiblets.engine.tubes import SOLVERS
 from pvfiblets.engine.tubes.solver_probe import SolverProbe
+from pvfiblets.report.studies.tubes.reference import CAP, ENTRY, EXIT, Hits, hits, surface_distance
 from pvfiblets.tubes.curves import sample_spheres
-from pvfiblets.tubes.reference import CAP, ENTRY, EXIT, Hits, hits, surface_distance
 
 from .tubes import KINDS, grazing, halves, rays_past, unit
 

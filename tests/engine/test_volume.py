@@ -7,7 +7,7 @@ import pytest
 
 from pvfiblets.engine import EngineError, FibletStyle, View
 from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle, nodes
-from pvfiblets.volumes import reference
+from pvfiblets.report.studies.volumes import reference
 from pvfiblets.volumes.raycast_options import RaycastOptions
 from pvfiblets.volumes.transfer import Transfer
 from pvfiblets.volumes.volume import RaycastVolume

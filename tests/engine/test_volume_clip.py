@@ -6,7 +6,7 @@ import pytest
 from pvfiblets import regions
 from pvfiblets.engine import View
 from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle
-from pvfiblets.volumes import reference
+from pvfiblets.report.studies.volumes import reference
 from pvfiblets.volumes.raycast_options import RaycastOptions
 from pvfiblets.volumes.transfer import Transfer
 from pvfiblets.volumes.volume import RaycastVolume

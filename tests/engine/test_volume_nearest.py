@@ -4,7 +4,7 @@ import numpy as np
 
 from pvfiblets.engine import View
 from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle
-from pvfiblets.volumes import reference
+from pvfiblets.report.studies.volumes import reference
 from pvfiblets.volumes.raycast_options import RaycastOptions
 from pvfiblets.volumes.volume import RaycastVolume
 

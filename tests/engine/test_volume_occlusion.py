@@ -7,7 +7,7 @@ from pvfiblets import regions
 from pvfiblets.engine import EngineError, View
 from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle
 from pvfiblets.engine.volumes.ray_occlusion import LIFT, RayOcclusionPass, turns_of_ray
-from pvfiblets.volumes import reference
+from pvfiblets.report.studies.volumes import reference
 from pvfiblets.volumes.raycast_options import RaycastOptions
 from pvfiblets.volumes.transfer import Transfer
 from pvfiblets.volumes.volume import RaycastVolume

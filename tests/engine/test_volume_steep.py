@@ -8,7 +8,7 @@ import pytest
 from pvfiblets.engine import View
 from pvfiblets.engine.gl.passes import is_software
 from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle, nodes
-from pvfiblets.volumes import reference
+from pvfiblets.report.studies.volumes import reference
 from pvfiblets.volumes.raycast_options import RaycastOptions
 from pvfiblets.volumes.steepness import OFF, UNTRUSTED, allowed_bends, largest_bend
 from pvfiblets.volumes.transfer import Transfer

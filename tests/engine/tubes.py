@@ -6,9 +6,10 @@ import numpy as np
 
 from pvfiblets.engine import View
 from pvfiblets.engine.tubes import SILHOUETTES, TubeRenderer, TubeStyle
-from pvfiblets.tubes import NodeValues, SplineTubes, reference
+from pvfiblets.report.studies.tubes import reference
+from pvfiblets.report.studies.tubes.reference import CAP, EXIT, MISS, surface_distance
+from pvfiblets.tubes import NodeValues, SplineTubes
 from pvfiblets.tubes.curves import MIDDLE, controls, derivative, evaluate
-from pvfiblets.tubes.reference import CAP, EXIT, MISS, surface_distance
 
 from .line_tubes import rays
 from .pictures import EMPTY, unpacked_tangent

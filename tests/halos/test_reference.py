@@ -8,7 +8,7 @@ import pytest
 from hypothesis import strategies as st
 
 from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
-from pvfiblets.halos.reference import HALO, LINE, picture
+from pvfiblets.report.studies.halos.reference import HALO, LINE, picture
 
 from .views import CAMERAS, PLAIN, SIZE, centres, kinds, line, lines, parallel, perspective, window_depth
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from pvfiblets.halos import HaloPoints, HaloStyle
-from pvfiblets.halos.reference import HALO, LINE, NOTHING, picture
-from pvfiblets.halos.strips_reference import mask, places_along
+from pvfiblets.report.studies.halos.reference import HALO, LINE, NOTHING, picture
+from pvfiblets.report.studies.halos.strips_reference import mask, places_along
 
 from .views import CAMERAS, NEAR, PLAIN, SIZE, centres, kinds, line, lines, parallel, perspective, window_depth
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from pvfiblets.halos import HaloLines
-from pvfiblets.halos.reference import HALO, LINE, NOTHING
+from pvfiblets.report.studies.halos.reference import HALO, LINE, NOTHING
 
 SIZE = (80, 60)
 NEAR, FAR = 50.0, 250.0

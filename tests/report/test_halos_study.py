@@ -11,7 +11,6 @@ from pvfiblets import formats
 from pvfiblets.codec.compress import compress
 from pvfiblets.engine.halos import HaloRenderer
 from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
-from pvfiblets.halos.reference import picture as reference
 from pvfiblets.report.cameras import Camera
 from pvfiblets.report.record import LeftOut
 from pvfiblets.report.studies.codec import data_sets
@@ -19,6 +18,7 @@ from pvfiblets.report.studies.halos import study as halos
 from pvfiblets.report.studies.halos.drawing import FibletHalos, Strips
 from pvfiblets.report.studies.halos.exact import crossings, gaps, pixel_errors
 from pvfiblets.report.studies.halos.pictures import helices, look_of, orbit, picture
+from pvfiblets.report.studies.halos.reference import picture as reference
 from pvfiblets.report.studies.halos.windows import SETS, HaloWindow, PlainWindow
 from pvfiblets.report.study import Budget
 from pvfiblets.synthetic.halos import HALO_SETS

@@ -21,6 +21,7 @@ from pvfiblets.report.studies.volumes import (
 from pvfiblets.report.studies.volumes import (
     pictures as volumes_pictures,
 )
+from pvfiblets.report.studies.volumes import reference
 from pvfiblets.report.studies.volumes import (
     scene as volumes_scene,
 )
@@ -30,7 +31,7 @@ from pvfiblets.report.studies.volumes import (
 from pvfiblets.report.studies.volumes import windows as volumes_windows
 from pvfiblets.report.studies.volumes.openness import exact_openness, seen_from
 from pvfiblets.report.study import Budget
-from pvfiblets.volumes import RaycastVolume, reference
+from pvfiblets.volumes import RaycastVolume
 from pvfiblets.volumes.raycast_options import INTEGRATORS
 
 from .little import little

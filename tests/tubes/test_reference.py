@@ -8,7 +8,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from pvfiblets.tubes.reference import CAP, ENTRY, EXIT, MISS, hits, nearest_hits, surface_distance
+from pvfiblets.report.studies.tubes.reference import CAP, ENTRY, EXIT, MISS, hits, nearest_hits, surface_distance
 
 
 def curve(controls, t):

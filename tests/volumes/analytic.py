@@ -14,7 +14,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from pvfiblets.volumes.reference_profiles import Profile
+from pvfiblets.report.studies.volumes.reference_profiles import Profile
 from pvfiblets.volumes.transfer import Transfer
 from pvfiblets.volumes.volume import RaycastVolume
 

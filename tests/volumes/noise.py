@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pvfiblets.volumes.reference import Rays
+from pvfiblets.report.studies.volumes.reference import Rays
 from pvfiblets.volumes.transfer import Transfer
 from pvfiblets.volumes.volume import RaycastVolume
 

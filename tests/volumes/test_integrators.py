@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pvfiblets.volumes.integrators import (
+from pvfiblets.report.studies.volumes.formulae import (
     MIDDLE,
     PANELS,
     STABLE_UP_TO,
     integrate,
     study,
 )  # fmt: skip
-from pvfiblets.volumes.reference_profiles import Profile, profiles
+from pvfiblets.report.studies.volumes.reference_profiles import Profile, profiles
 from pvfiblets.volumes.transfer import Transfer
 
 

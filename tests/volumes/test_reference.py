@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import strategies as st
 
-from pvfiblets.volumes.reference import gradient, isosurface, mip, rays, sample
+from pvfiblets.report.studies.volumes.reference import gradient, isosurface, mip, rays, sample
 from pvfiblets.volumes.volume import FILTERS, RaycastVolume
 
 from .analytic import GRIDS, Ball, Layers, Plane, middle

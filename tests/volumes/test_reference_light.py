@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pvfiblets.volumes.reference import composite, mip, rays, sample
-from pvfiblets.volumes.reference_profiles import profiles
+from pvfiblets.report.studies.volumes.reference import composite, mip, rays, sample
+from pvfiblets.report.studies.volumes.reference_profiles import profiles
 from pvfiblets.volumes.transfer import Transfer
 from pvfiblets.volumes.volume import FILTERS, RaycastVolume
 

@@ -111,7 +111,7 @@ def halos_part(ctx: Any) -> Made:
 def _halos(ctx: Any, points: bool = False, **more: Any) -> Scene:
     from pvfiblets.engine.halos import HaloRenderer
     from pvfiblets.halos import HaloPoints
-    from pvfiblets.halos.reference import picture
+    from pvfiblets.report.studies.halos.reference import picture
 
     from ..halos.exact import pixel_errors
     from ..halos.pictures import darkness_of, finer, look_of

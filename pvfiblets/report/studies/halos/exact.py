@@ -10,12 +10,12 @@ import numpy.typing as npt
 
 from pvfiblets.engine.gbuffer import EMPTY
 from pvfiblets.halos import HaloLines, HaloStyle
-from pvfiblets.halos.reference import HALO, LINE, NOTHING, Picture
 from pvfiblets.halos.widths import halo_width
 
 from ...cameras import Camera
 from ...record import Figure
 from .pictures import Singles
+from .reference import HALO, LINE, NOTHING, Picture
 
 __all__ = ["Crossings", "crossings", "gaps", "kinds", "pixel_errors"]
 

@@ -258,7 +258,7 @@ def _measured(
 
 def _exact(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
     """Compare pictures of one sample a pixel with the float64 reference."""
-    from pvfiblets.halos.reference import picture as reference
+    from .reference import picture as reference
 
     count, size = (QUICK_HELICES, QUICK_EXACT_SIZE) if options.quick else (HELICES, EXACT_SIZE)
     name, drawn = f"{count} helices", helices(count)

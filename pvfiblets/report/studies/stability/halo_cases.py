@@ -9,7 +9,7 @@ import numpy as np
 from pvfiblets.engine import View
 from pvfiblets.engine.halos import HaloDrawStyle, HaloRenderer
 from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
-from pvfiblets.halos.reference import LINE, NOTHING, picture
+from pvfiblets.report.studies.halos.reference import LINE, NOTHING, picture
 
 from .case import Cases, Outcome, Setting, refused, worst
 from .render_checks import EMPTY, Array, camera

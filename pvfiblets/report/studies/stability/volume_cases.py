@@ -9,9 +9,9 @@ import numpy.typing as npt
 
 from pvfiblets.engine import View
 from pvfiblets.engine.volumes import VolumeRenderer, VolumeStyle
-from pvfiblets.volumes import reference
+from pvfiblets.report.studies.volumes import reference
+from pvfiblets.report.studies.volumes.reference_rays import rays
 from pvfiblets.volumes.raycast_options import RaycastOptions
-from pvfiblets.volumes.reference_rays import rays
 from pvfiblets.volumes.transfer import Transfer
 from pvfiblets.volumes.volume import RaycastVolume
 

@@ -10,10 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from pvfiblets.tubes import SplineTubes, curves
-from pvfiblets.tubes.reference import ENTRY, nearest_hits
 
 from ...cameras import Lens
 from .rays import radius_at
+from .reference import ENTRY, nearest_hits
 
 __all__ = ["FORMATS", "Truth", "helices", "outline", "sampled"]
 

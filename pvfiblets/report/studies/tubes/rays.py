@@ -15,9 +15,9 @@ import numpy as np
 import numpy.typing as npt
 
 from pvfiblets.tubes import curves
-from pvfiblets.tubes.reference import Hits, hits, surface_distance
 
 from ...cameras import Lens, orbit, unit
+from .reference import Hits, hits, surface_distance
 
 __all__ = [
     "CLASSES",

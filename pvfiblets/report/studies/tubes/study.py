@@ -271,8 +271,9 @@ class TubesStudy:
         Axes("stored", "", "errors/p99 at far/near ", "far over near plane", "99th percentile, radii", series=True),
     )
     notes = (
-        "What is right is found in float64 by another method (pvfiblets/tubes/reference.py: eigenvalues of companion "
-        "matrices, nothing is bracketed). Errors are in radii of the sphere that is met: along the ray, where it meets "
+        "What is right is found in float64 by another method (report/studies/tubes/reference.py: eigenvalues of "
+        "companion matrices, nothing is bracketed). Errors are in radii of the sphere that is met: along the ray, "
+        "where it meets "
         "the tube and should; where only one of both is so, by how much the radius would have to change to make the "
         "answer right; *missed* and *false* are such rays. Rays pass a sphere of a half segment within 1.15 radii of "
         "its middle. *loop*: one loop for all minima; *chain*: the paper's chain of derivatives "

@@ -9,18 +9,19 @@ from typing import Any
 
 import numpy as np
 
-from pvfiblets.volumes import RaycastVolume, Transfer, reference
-from pvfiblets.volumes.integrators import STABLE_UP_TO, study
+from pvfiblets.volumes import RaycastVolume, Transfer
 from pvfiblets.volumes.raycast_options import INTEGRATORS, RaycastOptions
-from pvfiblets.volumes.reference_profiles import profiles
 
 from ...cameras import Camera, by_turns
 from ...record import Figure, LeftOut, Record
 from ...study import Options
 from ...timing import LATE, Comparison, turns_of
+from . import reference
 from .drawing import drawing, drawn, sample
 from .fields import DENSE, field, tables
+from .formulae import STABLE_UP_TO, study
 from .pictures import light_of
+from .reference_profiles import profiles
 from .scene import TOLERANCE, circle
 
 __all__ = ["LIGHT_SIZE", "SIDE", "formulae", "integrators"]

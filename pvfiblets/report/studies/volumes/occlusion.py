@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.volumes import RaycastVolume, reference
+from pvfiblets.volumes import RaycastVolume
 from pvfiblets.volumes.raycast_options import RaycastOptions
 
 from ...record import Figure, LeftOut, Record
 from ...study import Options
 from ...timing import LATE, Comparison, turns_of
+from . import reference
 from .drawing import sample
 from .openness import SETS, exact_openness, seen_from
 

@@ -9,9 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from pvfiblets.synthetic.vessels import brain_like, vessel_tree
-from pvfiblets.volumes import RaycastVolume, reference
+from pvfiblets.volumes import RaycastVolume
 
 from ...cameras import Lens, unit
+from . import reference
 
 __all__ = ["SETS", "exact_openness", "opened_head", "seen_from"]
 

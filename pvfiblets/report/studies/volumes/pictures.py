@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.volumes import RaycastVolume, reference
+from pvfiblets.volumes import RaycastVolume
 
 from ...cameras import Camera
+from . import reference
 from .scene import Look, Truth, grey_of, lit, truth
 
 __all__ = ["GroundTruth", "along_of", "colours_of", "directions_of", "ground_truth_of", "light_of", "places"]

@@ -2,7 +2,7 @@
 
 Everything that shows a volume here shows the same: light by one transfer function, greatest values in grey, one surface
 in white that a lamp at the eye lights, on black. What is right is computed ray by ray in float64, without steps
-(`pvfiblets.volumes.reference`), for a sample of the pixels whose rays meet the volume.
+(`pvfiblets.report.studies.volumes.reference`), for a sample of the pixels whose rays meet the volume.
 """
 
 from __future__ import annotations
@@ -14,10 +14,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.volumes import RaycastVolume, Transfer, reference
+from pvfiblets.volumes import RaycastVolume, Transfer
 from pvfiblets.volumes.raycast_options import RaycastOptions
 
 from ...cameras import ELEVATION, VERTICAL_ANGLE, Camera
+from . import reference
 
 __all__ = ["Look", "Truth", "circle", "grey_of", "ground_truth", "lit", "look_of", "truth"]
 

@@ -175,8 +175,9 @@ class VolumeStudy:
     )
     notes = (
         "What is right is found in float64, ray by ray and cell by cell, without steps "
-        "(pvfiblets/volumes/reference.py), in a sample of the pixels whose rays meet the volume. Colours and opacities "
-        "are from 0 to 1; pictures keep them in 8 bits, which makes up 0.003 of largest errors and 0.001 of rms.",
+        "(report/studies/volumes/reference.py), in a sample of the pixels whose rays meet the volume. Colours and "
+        "opacities are from 0 to 1; pictures keep them in 8 bits, which makes up 0.003 of largest errors and 0.001 of "
+        "rms.",
         f"Integrators: a ball and a slope of {SIDE}³ voxels, {LIGHT_SIZE[0]}×{LIGHT_SIZE[1]} pixels; transfer "
         "functions that rise gently (*ramp*), that jump (*edge*), and that are nothing but for one entry (*peak*) or "
         "several (*peaks*). κΔ is the optical depth of a step of half a voxel where they are densest. The default is "

@@ -17,9 +17,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from pvfiblets.volumes.transfer import LARGEST_DEPTH, Transfer
+from pvfiblets.volumes.volume import FILTERS, RaycastVolume
+
 from .reference_rays import Rays, rays
-from .transfer import LARGEST_DEPTH, Transfer
-from .volume import FILTERS, RaycastVolume
 
 __all__ = ["Crossings", "Maxima", "Rays", "composite", "gradient", "isosurface", "mip", "rays", "sample"]
 

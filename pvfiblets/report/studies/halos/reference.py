@@ -18,11 +18,12 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 import numpy.typing as npt
 
+from pvfiblets.halos.displacement import displaced
+from pvfiblets.halos.geometry import HaloLines, HaloPoints
+from pvfiblets.halos.style import HaloStyle
+
 from .camera_reference import Array, Camera, Fragments, Ints, box
-from .displacement import displaced
-from .geometry import HaloLines, HaloPoints
 from .strips_reference import strips
-from .style import HaloStyle
 
 __all__ = ["HALO", "LINE", "NOTHING", "Picture", "picture"]
 

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from .volume import RaycastVolume
+from pvfiblets.volumes.volume import RaycastVolume
 
 __all__ = ["Rays", "rays"]
 

@@ -18,9 +18,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pvfiblets.halos.geometry import HaloLines
+from pvfiblets.halos.style import HaloStyle
+
 from .camera_reference import Array, Camera, Fragments, Ints, between, box, kept
-from .geometry import HaloLines
-from .style import HaloStyle
 
 __all__ = ["mask", "places_along", "rates", "strips"]
 

@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..codec.jit import kernel
+from pvfiblets.codec.jit import kernel
 
 __all__ = [
     "NEAREST", "TRICUBIC", "TRILINEAR", "Scratch", "along", "enter", "evaluated", "extrema", "leave", "limits",

@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from ..codec.jit import kernel
+from pvfiblets.codec.jit import kernel
+
 from .reference_cells import NEAREST, Scratch, along, enter, evaluated, extrema, leave, limits, sample, scratch, solved
 
 __all__ = ["first_crossings", "gradients", "greatest", "samples", "step", "stretch"]

@@ -20,8 +20,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from .transfer import Transfer
-from .volume import RaycastVolume
+from pvfiblets.volumes.transfer import Transfer
+from pvfiblets.volumes.volume import RaycastVolume
 
 __all__ = ["DENSE", "ENTRIES", "Profile", "profiles"]
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from .style import HaloStyle
+from pvfiblets.halos.style import HaloStyle
 
 __all__ = ["Array", "Camera", "Fragments", "Ints", "between", "box", "kept"]
 

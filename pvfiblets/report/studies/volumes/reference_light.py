@@ -17,7 +17,8 @@ from typing import Any
 
 import numpy as np
 
-from ..codec.jit import kernel
+from pvfiblets.codec.jit import kernel
+
 from .reference_cells import Scratch, enter, evaluated, extrema, leave, limits, scratch, solved
 from .reference_kernels import step, stretch
 

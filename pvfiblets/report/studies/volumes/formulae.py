@@ -39,8 +39,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from pvfiblets.volumes.transfer import Transfer
+
 from .reference_profiles import Profile
-from .transfer import Transfer
 
 __all__ = ["INTEGRATORS", "PANELS", "STABLE_UP_TO", "Row", "composed", "integrate", "preintegrated", "study"]
 
