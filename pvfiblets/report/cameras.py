@@ -95,25 +95,13 @@ def unit(vectors: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Lens:
-    """A camera of any angle, and its pixels' rays in float64.
-
-    Attributes
-    ----------
-    size : tuple of int
-    eye : numpy.ndarray
-        (3,) mm.
-    backwards : numpy.ndarray
-        (3,) unit vector from what is looked at to the eye; not upright.
-    slant : float
-        Tangent of half the angle from top to bottom.
-    near, far : float
-        mm from the eye's plane.
-    """
+    """A camera of any angle, and its pixels' rays in float64."""
 
     size: tuple[int, int]
-    eye: Array
-    backwards: Array
-    slant: float
+    eye: Array  # (3,) mm
+    backwards: Array  # (3,) unit vector from what is looked at to the eye; not upright
+    slant: float  # Tangent of half the angle from top to bottom
+    # mm from the eye's plane
     near: float
     far: float
 

@@ -20,29 +20,16 @@ class Figure:
 
 @dataclass(frozen=True)
 class Timing:
-    """Seconds that one call takes, of several.
+    """Seconds that one call takes, of several."""
 
-    Attributes
-    ----------
-    median, low, high : float
-        Of the repeats, s; low and high are the least and the greatest.
-    repeats : int
-        Calls measured, after one that was not.
-    items : float
-        How many of ``item`` one call handles.
-    item : str
-        Such as ``"point"``. Times of a ``"frame"`` are given in ms, of all else in ns.
-    clock : str
-        What was read: ``"cpu"`` is the processor time of this process, which other programs disturb little.
-    """
-
+    # Of the repeats, s; low and high are the least and the greatest
     median: float
     low: float
     high: float
-    repeats: int
-    items: float
-    item: str
-    clock: str
+    repeats: int  # Calls measured, after one that was not
+    items: float  # How many of `item` one call handles
+    item: str  # Such as `"point"`. Times of a `"frame"` are given in ms, of all else in ns.
+    clock: str  # What was read: `"cpu"` is the processor time of this process, which other programs disturb little
 
     @property
     def each(self) -> float:
@@ -62,39 +49,24 @@ class Timing:
 
 @dataclass
 class Record:
-    """One method with one setting, on one data set.
+    """One method with one setting, on one data set."""
 
-    Attributes
-    ----------
-    data, group : str
-        Data set, and the group of sets that are drawn in one picture; an empty group is not drawn.
-    approximation : str
-        What is approximated.
-    method, setting : str
-        Method, which gives the colour, and its setting.
-    errors, costs : dict of str to Figure
-        Such as ``{"max": Figure(0.01, "mm")}`` and ``{"size": Figure(1.4, "bytes/point")}``; less is better.
-    times : dict of str to Timing
-        By what is done.
-    ours, default : bool
-        Whether this is the program's own method, and its default.
-    machine : str
-        The ``name`` of the machine in the report's ``about``: times of two machines are never compared.
-    front : list of str
-        Keys of the axes on whose Pareto front this record lies among the records of its data set.
-    """
-
+    # Data set, and the group of sets that are drawn in one picture; an empty group is not drawn
     data: str
     group: str
-    approximation: str
+    approximation: str  # What is approximated
+    # Method, which gives the colour, and its setting
     method: str
     setting: str
+    # Such as `{"max": Figure(0.01, "mm")}` and `{"size": Figure(1.4, "bytes/point")}`; less is better
     errors: dict[str, Figure]
     costs: dict[str, Figure] = field(default_factory=dict)
-    times: dict[str, Timing] = field(default_factory=dict)
+    times: dict[str, Timing] = field(default_factory=dict)  # By what is done
+    # Whether this is the program's own method, and its default
     ours: bool = False
     default: bool = False
-    machine: str = ""
+    machine: str = ""  # The `name` of the machine in the report's `about`: times of two machines are never compared
+    # Keys of the axes on whose Pareto front this record lies among the records of its data set
     front: list[str] = field(default_factory=list)
 
     @property
@@ -120,30 +92,20 @@ class Record:
 
 @dataclass(frozen=True)
 class Axes:
-    """Two figures to be drawn against each other, less of both being better.
+    """Two figures to be drawn against each other, less of both being better."""
 
-    Attributes
-    ----------
-    key : str
-        Short name, part of the plots' file names.
-    x, y : str
-        Paths as :meth:`Record.value` takes them.
-    x_label, y_label : str
-        With units. Times are drawn in ns per item, those of pictures in ms per frame.
-    series : bool
-        A line for each method instead: ``y`` is how the names of several errors begin, which end in the numbers that
-        they are drawn at; ``x`` is empty, and there is no front.
-    alternatives : bool
-        Whether one method is taken in place of another, so that one may be better. Where each adds something else there
-        is no front, nothing beats the default, and all are drawn in rows beside it.
-    """
-
-    key: str
+    key: str  # Short name, part of the plots' file names
+    # Paths as :meth:`Record.value` takes them
     x: str
     y: str
+    # With units. Times are drawn in ns per item, those of pictures in ms per frame.
     x_label: str
     y_label: str
+    # A line for each method instead: `y` is how the names of several errors begin, which end in the numbers that
+    # they are drawn at; `x` is empty, and there is no front
     series: bool = False
+    # Whether one method is taken in place of another, so that one may be better. Where each adds something else
+    # there is no front, nothing beats the default, and all are drawn in rows beside it.
     alternatives: bool = True
 
     @property
@@ -154,32 +116,18 @@ class Axes:
 
 @dataclass(frozen=True)
 class CaseResult:
-    """What one named extreme case found.
+    """What one named extreme case found."""
 
-    Attributes
-    ----------
-    system, name : str
-        Part of the program, and the case.
-    does, must : str
-        What was done, and what must hold.
-    measured : Figure
-        NaN where it ended in an error that was not expected.
-    limit : float
-        What must hold does where ``measured`` is no larger.
-    held : bool
-    note : str
-        What else is worth saying, such as an error's message.
-    seconds : float
-    """
-
+    # Part of the program, and the case
     system: str
     name: str
+    # What was done, and what must hold
     does: str
     must: str
-    measured: Figure
-    limit: float
+    measured: Figure  # NaN where it ended in an error that was not expected
+    limit: float  # What must hold does where `measured` is no larger
     held: bool
-    note: str = ""
+    note: str = ""  # What else is worth saying, such as an error's message
     seconds: float = 0.0
 
 
@@ -193,35 +141,18 @@ class LeftOut:
 
 @dataclass
 class StudyResult:
-    """All that one study found.
+    """All that one study found."""
 
-    Attributes
-    ----------
-    name, title, approximates : str
-        As of the study.
-    notes : list of str
-        Paragraphs that a reader needs: what was measured and how.
-    axes : list of Axes
-    records : list of Record
-    left_out : list of LeftOut
-    unavailable : str
-        Why nothing could be measured; empty if it could.
-    seconds : float
-        How long the study took.
-    cases : list of CaseResult
-        Of a study of what holds rather than of what costs what.
-    across : list of str
-        Figures, as :meth:`Record.value` takes them, that one table shows of all data sets, method beside method.
-    """
-
+    # As of the study
     name: str
     title: str
     approximates: str
-    notes: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)  # Paragraphs that a reader needs: what was measured and how
     axes: list[Axes] = field(default_factory=list)
     records: list[Record] = field(default_factory=list)
     left_out: list[LeftOut] = field(default_factory=list)
-    unavailable: str = ""
-    seconds: float = 0.0
-    cases: list[CaseResult] = field(default_factory=list)
+    unavailable: str = ""  # Why nothing could be measured; empty if it could
+    seconds: float = 0.0  # How long the study took
+    cases: list[CaseResult] = field(default_factory=list)  # Of a study of what holds rather than of what costs what
+    # Figures, as :meth:`Record.value` takes them, that one table shows of all data sets, method beside method
     across: list[str] = field(default_factory=list)

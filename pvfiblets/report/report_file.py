@@ -30,16 +30,9 @@ DIGITS = 6
 
 @dataclass
 class Report:
-    """Measurements of one run.
+    """Measurements of one run."""
 
-    Attributes
-    ----------
-    about : dict
-        Machine, versions, seed, date: what the numbers hold for (:mod:`.machine`).
-    studies : list of StudyResult
-    """
-
-    about: dict[str, Any]
+    about: dict[str, Any]  # Machine, versions, seed, date: what the numbers hold for (:mod:`.machine`)
     studies: list[StudyResult] = field(default_factory=list)
 
     def to_json(self) -> dict[str, Any]:

@@ -87,6 +87,7 @@ def one_study(name: str, options: Options, keep: Callable[[StudyResult], None] =
             if isinstance(found, CaseResult):
                 result.cases.append(found)
             else:
+                found.machine = options.machine
                 result.records.append(found)
             keep(result)
     except Unavailable as error:

@@ -26,17 +26,10 @@ class Unavailable(Exception):  # noqa: N818 - it is a state to be reported, not 
 
 
 class Budget:
-    """Seconds that may be spent.
+    """Seconds that may be spent, ``inf`` for no limit.
 
     Before anything is measured, :meth:`allows` is asked. It takes the longest measurement so far as what the next one
     may cost, so that a budget is overrun by no more than one measurement that is longer than all before it.
-
-    Parameters
-    ----------
-    seconds : float
-        ``inf`` for no limit.
-    clock : callable
-        Returns seconds.
     """
 
     def __init__(self, seconds: float, clock: Callable[[], float] = time.monotonic) -> None:
@@ -69,38 +62,17 @@ class Budget:
 
 @dataclass
 class Options:
-    """What a study is asked for.
+    """What a study is asked for."""
 
-    Attributes
-    ----------
-    quick : bool
-        A little of each.
-    budget : Budget
-        This study's share of time.
-    files : tuple of Path
-        Real data: files, and folders whose files are taken.
-    seed : int
-        Of all synthetic data.
-    repeats : int
-        Timed calls of each method, after one that is not timed.
-    points : int
-        To which data sets are cut.
-    machine : str
-        Name of the machine for the records.
-    driver : str
-        OpenGL renderer and version; a study that draws writes them here.
-    log : callable
-        Takes lines that say how far the study is.
-    """
-
-    quick: bool = False
-    budget: Budget = field(default_factory=lambda: Budget(float("inf")))
-    files: tuple[Path, ...] = ()
-    seed: int = 0
-    repeats: int = 5
-    points: int = 100_000
-    machine: str = ""
-    driver: str = ""
+    quick: bool = False  # A little of each
+    budget: Budget = field(default_factory=lambda: Budget(float("inf")))  # This study's share of time
+    files: tuple[Path, ...] = ()  # Real data: files, and folders whose files are taken
+    seed: int = 0  # Of all synthetic data
+    repeats: int = 5  # Timed calls of each method, after one that is not timed
+    points: int = 100_000  # To which data sets are cut
+    machine: str = ""  # Name of the machine for the records
+    driver: str = ""  # OpenGL renderer and version; a study that draws writes them here
+    # Takes lines that say how far the study is
     log: Callable[[str], None] = lambda line: print(line, file=sys.stderr, flush=True)
 
 

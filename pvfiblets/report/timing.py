@@ -50,13 +50,6 @@ class Turns:
 
     Calls that are much shorter than the clock's grain are put together; of calls longer than half a second three are
     enough.
-
-    Parameters
-    ----------
-    clock : callable
-        Returns seconds.
-    clock_name : str
-        As in :class:`.Timing`.
     """
 
     def __init__(self, clock: Callable[[], float] = time.process_time, clock_name: str = "cpu") -> None:

@@ -248,6 +248,7 @@ def test_a_whole_report_has_no_limit_and_minutes_are_shared(fakes, tmp_path):
     report = run.make_report(tmp_path, log=quiet, clock=clock)
     assert len(report.studies[0].records) == 5
     assert all(record.front == ["cost"] for record in report.studies[0].records)
+    assert {record.machine for record in report.studies[0].records} == {report.about["name"]}
     fakes(FakeStudy("slow", clock, 50.0, 10), FakeStudy("brief", clock, 1.0, 3))
     report = run.make_report(tmp_path, minutes=10.0, log=quiet, clock=clock)
     assert [len(study.records) for study in report.studies] == [6, 3]

@@ -35,7 +35,6 @@ def test_all_parts_are_measured_and_exact_solvers_are_exact(gl, small):
     assert not left
     assert options.driver.startswith(gl.info["GL_RENDERER"])
     assert all(math.isfinite(figure.value) for record in records for figure in record.errors.values())
-    assert all(record.machine == "m" for record in records)
     rays = {(record.method, record.setting): record for record in records if record.group == "rays"}
     default = next(record for record in rays.values() if record.default)
     assert default.label == "illinois, loop (48 iterations)"

@@ -43,25 +43,14 @@ def _nothing(_plotter: Any) -> None:
 
 @dataclass(frozen=True)
 class Variant:
-    """How edges are smoothed.
+    """How edges are smoothed."""
 
-    Attributes
-    ----------
-    method, setting : str
-        As of :class:`.Record`.
-    antialias : str or int
-        Of ``plotter.picture``.
-    vtk : callable, optional
-        Called with a plotter: what VTK does about edges.
-    singly : bool
-        Whether one sample is drawn after the other where all could be drawn at once.
-    """
-
+    # As of :class:`.Record`
     method: str
     setting: str
-    antialias: str | int = "off"
-    vtk: Callable[[Any], object] = _nothing
-    singly: bool = False
+    antialias: str | int = "off"  # Of `plotter.picture`
+    vtk: Callable[[Any], object] = _nothing  # Called with a plotter: what VTK does about edges
+    singly: bool = False  # Whether one sample is drawn after the other where all could be drawn at once
 
 
 def variants(quick: bool) -> list[Variant]:
@@ -356,7 +345,6 @@ def _record(subject: Subject, variant: Variant, window: PictureWindow, reference
         times={name: timing(seconds, 1.0, FRAME, window.clock_name) for name, seconds in times.items()},
         ours=variant.method == OURS,
         default=variant.antialias == "refined",
-        machine=options.machine,
     )
 
 

@@ -29,19 +29,12 @@ MODULE = "pvfiblets.report.studies.card.part"
 
 @dataclass
 class CardCheck:
-    """What a check found.
+    """What a check found."""
 
-    Attributes
-    ----------
-    opengl : dict
-        Driver, limits and extensions, as ``pvfiblets gl --json`` has them; empty where OpenGL could not be asked.
-    findings : list of Finding
-    pictures : dict
-        Files of what differs, ``.npy``, by the feature's ``part: feature``.
-    """
-
+    # Driver, limits and extensions, as `pvfiblets gl --json` has them; empty where OpenGL could not be asked
     opengl: dict[str, Any] = field(default_factory=dict)
     findings: list[Finding] = field(default_factory=list)
+    # Files of what differs, `.npy`, by the feature's `part: feature`
     pictures: dict[str, list[Path]] = field(default_factory=dict)
 
     @property

@@ -20,34 +20,18 @@ BAD = (DIFFERS, FAILS)
 
 @dataclass(frozen=True)
 class Finding:
-    """One thing that was tried.
+    """One thing that was tried."""
 
-    Attributes
-    ----------
-    part, feature : str
-        What it belongs to, and what it is.
-    verdict : str
-        One of ``'works'``, ``'drawn'`` (not compared), ``'differs'``, ``'too slow'``, ``'missing'`` and ``'fails'``.
-    note : str
-        Why, in a few words.
-    figures : dict
-        What was measured; errors are shares of 1 unless their name says otherwise.
-    limits : dict
-        What the figures may be at most.
-    ms : float or None
-        Of one picture, once all is compiled.
-    first_ms : float or None
-        Of the first picture, with compiling.
-    """
-
+    # What it belongs to, and what it is
     part: str
     feature: str
-    verdict: str
-    note: str = ""
+    verdict: str  # One of `'works'`, `'drawn'` (not compared), `'differs'`, `'too slow'`, `'missing'` and `'fails'`
+    note: str = ""  # Why, in a few words
+    # What was measured; errors are shares of 1 unless their name says otherwise
     figures: dict[str, float] = field(default_factory=dict)
-    limits: dict[str, float] = field(default_factory=dict)
-    ms: float | None = None
-    first_ms: float | None = None
+    limits: dict[str, float] = field(default_factory=dict)  # What the figures may be at most
+    ms: float | None = None  # Of one picture, once all is compiled
+    first_ms: float | None = None  # Of the first picture, with compiling
 
     @property
     def bad(self) -> bool:

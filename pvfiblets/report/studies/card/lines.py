@@ -59,30 +59,14 @@ def shown(gbuffer: Any) -> Shown:
 
 @dataclass(frozen=True, eq=False)
 class LineSamples:
-    """Points along polylines in the window, a fraction of a pixel apart, some of them left out.
+    """Points along polylines in the window, a fraction of a pixel apart, some of them left out."""
 
-    Attributes
-    ----------
-    size : tuple of int
-        Of the window, pixels.
-    cell : numpy.ndarray
-        ``(n,)`` int64 pixels, row by row from below.
-    depth : numpy.ndarray
-        ``(n,)`` window depth, 0 to 1.
-    streamline : numpy.ndarray
-        ``(n,)`` int64.
-    direction : numpy.ndarray
-        ``(n, 3)`` unit vectors of their segments.
-    value : numpy.ndarray
-        ``(n,)`` numbers that run evenly along segments.
-    """
-
-    size: tuple[int, int]
-    cell: Ints
-    depth: Array
-    streamline: Ints
-    direction: Array
-    value: Array
+    size: tuple[int, int]  # Of the window, pixels
+    cell: Ints  # `(n,)` int64 pixels, row by row from below
+    depth: Array  # `(n,)` window depth, 0 to 1
+    streamline: Ints  # `(n,)` int64
+    direction: Array  # `(n, 3)` unit vectors of their segments
+    value: Array  # `(n,)` numbers that run evenly along segments
 
     @classmethod
     def of(

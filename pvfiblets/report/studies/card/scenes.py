@@ -23,44 +23,25 @@ Pixels = npt.NDArray[np.uint8]
 
 @dataclass(frozen=True, eq=False)
 class Judged:
-    """A picture, held against what is right.
+    """A picture, held against what is right."""
 
-    Attributes
-    ----------
-    figures, limits : dict
-        As in `Finding`.
-    pictures : dict
-        By name, ``(height, width)`` bool or ``(height, width, 3)`` uint8, row 0 at the bottom: what to look at where it
-        differs.
-    note : str
-    compared : bool
-        Whether it was held against anything; else it only had to be drawn.
-    """
-
+    # As in `Finding`
     figures: Mapping[str, float]
     limits: Mapping[str, float]
+    # By name, `(height, width)` bool or `(height, width, 3)` uint8, row 0 at the bottom: what to look at where it
+    # differs
     pictures: Mapping[str, Any] = field(default_factory=dict)
     note: str = ""
-    compared: bool = True
+    compared: bool = True  # Whether it was held against anything; else it only had to be drawn
 
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """Something to be drawn and judged.
-
-    Attributes
-    ----------
-    feature : str
-    draw : callable
-        Draws picture number so and so, each from another place, and waits for it.
-    judge : callable
-        Judges the last picture.
-    release : callable, optional
-    """
+    """Something to be drawn and judged."""
 
     feature: str
-    draw: Callable[[int], object]
-    judge: Callable[[], Judged]
+    draw: Callable[[int], object]  # Draws picture number so and so, each from another place, and waits for it
+    judge: Callable[[], Judged]  # Judges the last picture
     release: Callable[[], object] = lambda: None
 
 

@@ -78,7 +78,7 @@ def _measured(data: DataSet, options: Options, left_out: list[LeftOut]) -> Itera
     for setting, fiblets in sets.items():
         figures = _errors(truth, _numbers(fiblets, lines), step)
         record = Record(data.name, data.group, "measures", "fiblets", setting, figures, ours=True,
-                        default=setting == "default", machine=options.machine)  # fmt: skip
+                        default=setting == "default")  # fmt: skip
         record.costs["size"] = Figure(fiblets.nbytes / max(lines.n_points, 1), "bytes/point")
         compared.add(record, table=partial(_table, fiblets))
     yield from compared.finish()

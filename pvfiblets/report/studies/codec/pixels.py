@@ -108,7 +108,6 @@ def _measured(pv: Any, data: DataSet, options: Options) -> Iterator[Record]:
                         costs={"size": Figure(nbytes / len(points), "bytes/point")},
                         ours=method == "fiblets",
                         default=setting == "drawn",
-                        machine=options.machine,
                     )
             finally:
                 scene.release()

@@ -180,7 +180,7 @@ class CodecStudy:
             if variant.name in missing or not compared.allows(label):
                 continue
             try:
-                record, calls = measured(data, variant, points, offsets, step, options.machine)
+                record, calls = measured(data, variant, points, offsets, step)
                 compared.add(record, **calls)
             except ImportError as error:
                 missing.add(variant.name)
@@ -191,7 +191,7 @@ class CodecStudy:
 
 
 def measured(
-    data: DataSet, variant: Variant, points: Points, offsets: Offsets, step: float, machine: str
+    data: DataSet, variant: Variant, points: Points, offsets: Offsets, step: float
 ) -> tuple[Record, dict[str, Callable[[], object]]]:
     """Pack and unpack in one variant; return a record of errors and bytes, and the calls that are to be timed."""
     pack = variant.make(step)
@@ -214,7 +214,6 @@ def measured(
         costs={"size": Figure(packed.nbytes / len(points), "bytes/point")},
         ours=variant.ours,
         default=variant.default,
-        machine=machine,
     )
     return record, calls
 

@@ -113,7 +113,7 @@ def _measured(data: DataSet, chosen: list[Variant], options: Options, left_out: 
     raw = RAW_BYTES * (len(points) + len(offsets) - 1) / len(points)
     for variant in chosen:
         try:
-            record, calls = measured(data, variant, points, offsets, step, options.machine)
+            record, calls = measured(data, variant, points, offsets, step)
         except ValueError as error:
             compared.refuse(f"{variant.name} {variant.setting}".strip(), error)
             continue

@@ -13,14 +13,7 @@ Read = TypeVar("Read")
 class Flight:
     """A camera that flies through views, and back the next time: every picture is one step from the one before.
 
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    renderer : object
-        ``render(view, style)`` draws, and returns what is to be read.
-    path : sequence of View
-        The first is where the camera is before it flies.
-    style : Style
+    ``renderer.render(view, style)`` draws, and returns what is to be read; the first view is where the camera starts.
     """
 
     def __init__(self, ctx: Any, renderer: Any, path: Sequence[Any], style: Any) -> None:

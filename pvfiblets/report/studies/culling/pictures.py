@@ -41,17 +41,10 @@ Words = npt.NDArray[np.uint32]
 
 @dataclass(frozen=True, eq=False)
 class Visible:
-    """What the pixels of a picture show.
+    """What the pixels of a picture show."""
 
-    Attributes
-    ----------
-    streamline : numpy.ndarray
-        ``(height, width)`` int64; -1 where there is none.
-    tangent : numpy.ndarray
-        ``(height, width)`` uint32, directions as the G-buffer packs them; without meaning where there is no streamline.
-    """
-
-    streamline: npt.NDArray[np.int64]
+    streamline: npt.NDArray[np.int64]  # `(height, width)` int64; -1 where there is none
+    # `(height, width)` uint32, directions as the G-buffer packs them; without meaning where there is no streamline
     tangent: Words
 
 

@@ -95,18 +95,7 @@ class Scene:
 
 
 class _Basis:
-    """What pictures are compared with; each is drawn once.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    scene : Scene
-
-    Attributes
-    ----------
-    coloured, fine : list of numpy.ndarray
-        ``(height, width, 3)`` float32: the right pictures, and the means of several samples a pixel.
-    """
+    """What pictures are compared with, each drawn once: right ones, and means of several samples a pixel."""
 
     def __init__(self, ctx: Any, scene: Scene) -> None:
         self._ctx, self._scene = ctx, scene
@@ -188,7 +177,7 @@ class CullingStudy:
                     continue
                 try:
                     basis = basis or _Basis(ctx, scene)
-                    record, flight = measured(ctx, scene, variant, basis, stack, options.machine)
+                    record, flight = measured(ctx, scene, variant, basis, stack)
                     compared.add(record, draw=flight)
                 except EngineError as error:
                     compared.refuse(label, error)
@@ -230,7 +219,7 @@ def synthetic_brain(options: Options) -> FibletSet:
 
 
 def measured(
-    ctx: Any, scene: Scene, variant: Variant, basis: _Basis, stack: ExitStack, machine: str
+    ctx: Any, scene: Scene, variant: Variant, basis: _Basis, stack: ExitStack
 ) -> tuple[Record, Flight]:
     """Draw by one variant; return a record of errors, and the flight that is to be timed."""
     fiblets = scene.fiblets
@@ -260,7 +249,6 @@ def measured(
         costs=costs,
         ours=variant.of == 1,
         default=variant.default,
-        machine=machine,
     )
     return record, flight
 

@@ -131,7 +131,7 @@ class DecodeStudy:
             for combination in combinations():
                 if compared.allows(", ".join(combination)):
                     record, decode = measured(fiblets, truth, combination)
-                    record.data, record.group, record.machine = name, group, options.machine
+                    record.data, record.group = name, group
                     compared.add(record, decode=decode)
             yield from compared.finish()
 

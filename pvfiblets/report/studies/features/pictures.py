@@ -53,11 +53,6 @@ class WholePicture:
     Depths are the scene's; colours are synthetic of the streamlines' numbers, on white. Both lie in textures of one
     sample a pixel. They are made when a camera is seen first, from the G-buffer: what is drawn from it later is the
     effect alone.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    effect : PictureEffect
     """
 
     def __init__(self, ctx: Any, effect: PictureEffect) -> None:

@@ -23,58 +23,29 @@ Effect = Callable[["Drawn", Any, Camera, View], None]
 
 @dataclass(frozen=True)
 class Feature:
-    """One feature alone.
+    """One feature alone."""
 
-    Attributes
-    ----------
-    group, name : str
-        What it belongs to, and what it is called; the method and the setting of its record.
-    options : dict
-        Keywords of the engine's renderer that differ from the defaults.
-    style : dict
-        Fields of the style that do.
-    view : dict
-        Fields of the view that do.
-    prepare : callable, optional
-        Called with the renderer before the first picture.
-    effect : callable, optional
-        Called with what is drawn, the G-buffer, the camera and the view after each picture.
-    passes : callable, optional
-        Makes, of a context, what ``effect`` draws with.
-    """
-
+    # What it belongs to, and what it is called; the method and the setting of its record
     group: str
     name: str
+    # Keywords of the engine's renderer that differ from the defaults
     options: dict[str, Any] = field(default_factory=dict)
-    style: dict[str, Any] = field(default_factory=dict)
-    view: dict[str, Any] = field(default_factory=dict)
-    prepare: Callable[[Any], None] | None = None
-    effect: Effect | None = None
-    passes: Callable[[Any], Any] | None = None
+    style: dict[str, Any] = field(default_factory=dict)  # Fields of the style that differ
+    view: dict[str, Any] = field(default_factory=dict)  # Fields of the view that differ
+    prepare: Callable[[Any], None] | None = None  # Called with the renderer before the first picture
+    effect: Effect | None = None  # Called with what is drawn, the G-buffer, the camera and the view after each picture
+    passes: Callable[[Any], Any] | None = None  # Makes, of a context, what `effect` draws with
 
 
 @dataclass(frozen=True)
 class Subject:
-    """Something to be shown, its plain look, and the features that it may have.
-
-    Attributes
-    ----------
-    name : str
-    make : callable
-        Takes a context and the feature's options; returns the engine's renderer.
-    style : Style
-        The plain one.
-    bounds : sequence of float
-        ``(xmin, xmax, ymin, ymax, zmin, zmax)``, mm.
-    features : list of Feature
-        The plain one first.
-    """
+    """Something to be shown, its plain look, and the features that it may have."""
 
     name: str
-    make: Callable[..., Any]
-    style: Style
-    bounds: Sequence[float]
-    features: list[Feature]
+    make: Callable[..., Any]  # Takes a context and the feature's options; returns the engine's renderer
+    style: Style  # The plain one
+    bounds: Sequence[float]  # `(xmin, xmax, ymin, ymax, zmin, zmax)`, mm
+    features: list[Feature]  # The plain one first
 
     def path(self, frames: int, size: tuple[int, int]) -> list[Camera]:
         """Return cameras of a slow flight around it."""
@@ -85,21 +56,7 @@ class Subject:
 
 
 class Drawn:
-    """A subject with one feature, drawn from camera after camera, and back.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    subject : Subject
-    feature : Feature
-    path : sequence of Camera
-        The first is where the camera is before it flies.
-
-    Attributes
-    ----------
-    last : GBuffer
-        What the last picture was drawn into.
-    """
+    """A subject with one feature, drawn from camera after camera, and back; ``last`` is the last G-buffer."""
 
     def __init__(self, ctx: Any, subject: Subject, feature: Feature, path: Sequence[Camera]) -> None:
         self._ctx, self._feature, self._path = ctx, feature, list(path)

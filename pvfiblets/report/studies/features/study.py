@@ -106,7 +106,6 @@ def _measured(ctx: Any, subject: Subject, options: Options, left_out: list[LeftO
                 times={"draw": timing},
                 ours=True,
                 default=feature.group == PLAIN,
-                machine=options.machine,
             )
     if late:
         what = ", ".join(late) if done else "everything"

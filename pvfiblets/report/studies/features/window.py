@@ -25,25 +25,15 @@ GROUP = "window"
 
 @dataclass(frozen=True)
 class WindowFeature:
-    """One feature of an actor.
+    """One feature of an actor."""
 
-    Attributes
-    ----------
-    group, name : str
-        As of :class:`~.scenes.Feature`.
-    change : callable
-        Called with the actor and a number: turns the feature on, or changes it for the n-th time.
-    undo : callable
-        Called with the actor: turns it off.
-    varies : bool
-        Whether the n-th time differs from the one before.
-    """
-
+    # As of :class:`~.scenes.Feature`
     group: str
     name: str
+    # Called with the actor and a number: turns the feature on, or changes it for the n-th time
     change: Callable[[Any, int], object]
-    undo: Callable[[Any], object]
-    varies: bool = True
+    undo: Callable[[Any], object]  # Called with the actor: turns it off
+    varies: bool = True  # Whether the n-th time differs from the one before
 
 
 def window_features(fiblets: Any) -> list[WindowFeature]:
@@ -174,10 +164,10 @@ def in_window(
                 plain_bytes = actor.explain()["gpu_bytes"]
             times = {name: timing(seconds, 1.0, FRAME, window.clock_name) for name, seconds in frames.items()}
             base = float(np.median(plain_frames[-options.repeats :]))
-            yield _record(data, feature.group, feature.name, nbytes, plain_bytes, times, base, options)
+            yield _record(data, feature.group, feature.name, nbytes, plain_bytes, times, base)
         if plain_frames:
             times = {"draw": timing(plain_frames, 1.0, FRAME, window.clock_name)}
-            yield _record(data, PLAIN, "", plain_bytes, plain_bytes, times, times["draw"].median, options)
+            yield _record(data, PLAIN, "", plain_bytes, plain_bytes, times, times["draw"].median)
     finally:
         window.release()
     if late:
@@ -187,7 +177,6 @@ def in_window(
 
 def _record(
     data: str, group: str, name: str, nbytes: int, plain_bytes: int, times: dict[str, Any], base: float,
-    options: Options,
 ) -> Record:  # fmt: skip
     return Record(
         data=data,
@@ -204,5 +193,4 @@ def _record(
         times=times,
         ours=True,
         default=group == PLAIN,
-        machine=options.machine,
     )

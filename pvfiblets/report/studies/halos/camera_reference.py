@@ -21,22 +21,9 @@ Ints = npt.NDArray[np.int64]
 
 
 class Camera:
-    """A matrix, and how wide and how deep things are under it.
+    """A matrix, and how wide and how deep things are under it; depth cueing goes by the bounds of the data.
 
-    Parameters
-    ----------
-    matrix : numpy.ndarray
-        ``(4, 4)``: mm to clip coordinates.
-    size : tuple of int
-        Width and height of the picture, pixels.
-    bounds : sequence of float
-        ``(xmin, xmax, ymin, ymax, zmin, zmax)`` of the data, mm: depth cueing goes by them.
-    look : HaloStyle
-
-    Attributes
-    ----------
-    scale : float
-        ``s``: pixels times W of 1 mm.
+    ``scale`` is ``s``: pixels times W of 1 mm.
     """
 
     def __init__(self, matrix: Array, size: tuple[int, int], bounds: tuple[float, ...], look: HaloStyle) -> None:

@@ -44,16 +44,7 @@ class Drawing(Protocol):
 
 
 class Strips:
-    """Lines or points with strips around them.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    drawn : HaloLines or HaloPoints
-    times : int
-        Samples along a pixel's side.
-    culling : {'two-phase', None}
-    """
+    """Lines or points with strips around them, some samples along a pixel's side."""
 
     def __init__(
         self, ctx: Any, drawn: HaloLines | HaloPoints, times: int = 1, culling: str | None = "two-phase"
@@ -82,12 +73,7 @@ class Strips:
 class FibletHalos:
     """Fiblets as tubes, whose pixels have halos.
 
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    fiblets : FibletSet
-    times : int
-        Samples along a pixel's side. A line takes one of them at least, whatever its look says.
+    A line takes one of the samples along a pixel's side at least, whatever its look says.
     """
 
     def __init__(self, ctx: Any, fiblets: FibletSet, times: int = 1) -> None:

@@ -56,28 +56,16 @@ def pixel_errors(gbuffer: Any, darkness: Singles, truth: Picture, camera: Camera
 
 @dataclass(frozen=True, eq=False)
 class Crossings:
-    """Upright lines in front, and level ones some way behind, in parallel projection: every crossing has a gap.
-
-    Attributes
-    ----------
-    lines : HaloLines
-    look : HaloStyle
-    size : tuple of int
-    model_view_projection : numpy.ndarray
-        What is drawn, and how it is seen.
-    columns, rows : numpy.ndarray
-        Pixels: where the axes of lines in front, not at whole ones, and behind are.
-    truth : numpy.ndarray
-        Of each line behind, how wide a gap shows on either side of a line in front, pixels (appendix A).
-    """
+    """Upright lines in front, and level ones some way behind, in parallel projection: every crossing has a gap."""
 
     lines: HaloLines
     look: HaloStyle
     size: tuple[int, int]
-    model_view_projection: Floats
+    model_view_projection: Floats  # What is drawn, and how it is seen
+    # Pixels: where the axes of lines in front, not at whole ones, and behind are
     columns: Floats
     rows: Floats
-    truth: Floats
+    truth: Floats  # Of each line behind, how wide a gap shows on either side of a line in front, pixels (appendix A)
 
 
 def crossings() -> Crossings:

@@ -32,42 +32,23 @@ NOTHING, LINE, HALO = range(3)
 
 @dataclass(frozen=True, eq=False)
 class Picture:
-    """What the pixels show; all are ``(height, width)``, row 0 at the bottom.
+    """What the pixels show; all are ``(height, width)``, row 0 at the bottom."""
 
-    Attributes
-    ----------
-    kind : numpy.ndarray
-        int64: ``NOTHING`` 0, ``LINE`` 1 (points too), ``HALO`` 2.
-    owner : numpy.ndarray
-        int64 point, or first point of the segment, that the fragment belongs to; -1 where there is nothing.
-    t : numpy.ndarray
-        float64 place along that segment, 0..1; 0 of points.
-    depth : numpy.ndarray
-        float64 window depth, 0..1; 1 where there is nothing.
-    ink : numpy.ndarray
-        float64: 1 on a line, 0 elsewhere, and between where edges are smooth.
-    margin : numpy.ndarray
-        float64 pixels, to first order: how far the pixel's centre is from where a fragment begins, ends or turns from
-        line into halo that would change what shows. Inf away from all of them. 0 where a bend is so sharp for its
-        strip's width that it is open whether a nearer fragment is there.
-    gap : numpy.ndarray
-        float64 window depth between what shows and what is next behind it. Inf where nothing else is.
-    other : numpy.ndarray
-        float64 window depth between what shows and the next of the other kind: as `gap`, but for fragments that
-        would look alike, such as those of both segments at a bend.
-    cover : numpy.ndarray
-        float64 pixels, to first order: at least so far is the pixel from where there may be nothing; 0 where there is
-        nothing. The bisector of a bend does not count where both segments are there.
-    """
-
-    kind: Ints
-    owner: Ints
-    t: Array
-    depth: Array
-    ink: Array
+    kind: Ints  # int64: `NOTHING` 0, `LINE` 1 (points too), `HALO` 2
+    owner: Ints  # int64 point, or first point of the segment, that the fragment belongs to; -1 where there is nothing
+    t: Array  # float64 place along that segment, 0..1; 0 of points
+    depth: Array  # float64 window depth, 0..1; 1 where there is nothing
+    ink: Array  # float64: 1 on a line, 0 elsewhere, and between where edges are smooth
+    # float64 pixels, to first order: how far the pixel's centre is from where a fragment begins, ends or turns from
+    # line into halo that would change what shows. Inf away from all of them. 0 where a bend is so sharp for its
+    # strip's width that it is open whether a nearer fragment is there.
     margin: Array
-    gap: Array
+    gap: Array  # float64 window depth between what shows and what is next behind it. Inf where nothing else is.
+    # float64 window depth between what shows and the next of the other kind: as `gap`, but for fragments that would
+    # look alike, such as those of both segments at a bend
     other: Array
+    # float64 pixels, to first order: at least so far is the pixel from where there may be nothing; 0 where there is
+    # nothing. The bisector of a bend does not count where both segments are there.
     cover: Array
 
 

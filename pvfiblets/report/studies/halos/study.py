@@ -182,14 +182,13 @@ def _tractogram(data: DataSet, options: Options) -> Scene:
     return Scene(data.name, data.group, lines, look, _path(lines, options), data)
 
 
-def _record(scene: tuple[str, str], variant: Variant, options: Options, **more: Any) -> Record:
+def _record(scene: tuple[str, str], variant: Variant, **more: Any) -> Record:
     return Record(
         data=scene[0],
         group=scene[1],
         approximation="pictures with halos",
         method=variant.name,
         setting=variant.setting,
-        machine=options.machine,
         **{"ours": True, "default": variant.default, **more},
     )
 
@@ -217,10 +216,10 @@ def _pictures(ctx: Any, scene: Scene, options: Options, left_out: list[LeftOut])
                     found, seconds, clock = _finely(ctx, scene, variant)
                     truth = truth or found
                     times = {"draw": timing([seconds], len(found), FRAME, clock)}
-                    record = _record((scene.name, scene.group), variant, options, errors={}, times=times)
+                    record = _record((scene.name, scene.group), variant, errors={}, times=times)
                     calls: dict[str, Flight] = {}
                 else:
-                    found, record, calls = _measured(ctx, scene, variant, stack, options)
+                    found, record, calls = _measured(ctx, scene, variant, stack)
                 record.errors = _percent(differences(found, truth or found))
                 compared.add(record, **calls)
             except (EngineError, ValueError) as error:
@@ -241,7 +240,7 @@ def _finely(ctx: Any, scene: Scene, variant: Variant) -> tuple[list[Singles], fl
 
 
 def _measured(
-    ctx: Any, scene: Scene, variant: Variant, stack: ExitStack, options: Options
+    ctx: Any, scene: Scene, variant: Variant, stack: ExitStack
 ) -> tuple[list[Singles], Record, dict[str, Flight]]:
     """Draw in one variant; return pictures, a record without errors, and the flight that is to be timed."""
     drawing = variant.drawing(ctx, scene)
@@ -249,7 +248,7 @@ def _measured(
     flight = Flight(ctx, drawing, scene.path, variant.look(scene.look))
     found = flight.pictures(drawing.read)
     costs = {"memory": Figure(drawing.nbytes / max(scene.drawn.n_points, 1), "bytes/point")}
-    record = _record((scene.name, scene.group), variant, options, errors={}, costs=costs)
+    record = _record((scene.name, scene.group), variant, errors={}, costs=costs)
     return found, record, {"draw": flight}
 
 
@@ -282,13 +281,12 @@ def _exact(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Reco
             turns.run(options.repeats, options.budget.allows)
         finally:
             strips.release()
-        yield _record((name, "helices"), variant, options, errors=errors, times={"draw": turns.timing(0, 1, FRAME)})
+        yield _record((name, "helices"), variant, errors=errors, times={"draw": turns.timing(0, 1, FRAME)})
         if variant.name == HARD:
             continue
         yield _record(
             (name, "helices"),
             Variant("float64 reference", 1),
-            options,
             errors={key: Figure(0.0, figure.unit) for key, figure in errors.items()},
             times={"draw": timing([seconds], 1, FRAME, "cpu")},
             ours=False,
@@ -310,7 +308,7 @@ def _gaps(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Recor
             stack.callback(strips.release)
             flight = Flight(ctx, strips, [aside, made], variant.look(made.look))
             (found,) = flight.pictures(strips.read)
-            record = _record(("crossings", "crossings"), variant, options, errors=gaps(found, made))
+            record = _record(("crossings", "crossings"), variant, errors=gaps(found, made))
             compared.add(record, draw=flight)
         yield from compared.finish()
 

@@ -104,7 +104,6 @@ def _measured(data: str, drawn: Any, options: Options, left_out: list[LeftOut]) 
                 costs={"memory": Figure(window.nbytes / drawn.n_points, "bytes/point")},
                 ours=window.ours,
                 default=window.ours,
-                machine=options.machine,
             )
             compared.add(record, draw=by_turns(window.draw, cameras))
         yield from compared.finish()

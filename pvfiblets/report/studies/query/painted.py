@@ -35,7 +35,7 @@ def painted(fiblets: FibletSet, options: Options) -> Iterator[Record]:
     for radius in QUICK_RADII if options.quick else RADII:
         if not options.budget.allows():
             return
-        strokes = _Strokes(fiblets, f"{len(fiblets):,} streamlines, balls of {radius:g} mm", options)
+        strokes = _Strokes(fiblets, f"{len(fiblets):,} streamlines, balls of {radius:g} mm")
         painter = strokes.painter
         strokes.do(partial(painter.paint, "a", at, radius) for at in places)
         yield strokes.record("painted", strokes.elsewhere())
@@ -51,8 +51,8 @@ def painted(fiblets: FibletSet, options: Options) -> Iterator[Record]:
 class _Strokes:
     """A region on a grid of 1 mm about a set, and how long its answers take."""
 
-    def __init__(self, fiblets: FibletSet, name: str, options: Options) -> None:
-        self._fiblets, self._name, self._options = fiblets, name, options
+    def __init__(self, fiblets: FibletSet, name: str) -> None:
+        self._fiblets, self._name = fiblets, name
         low = np.floor(np.array(fiblets.bounds)[::2]) - 1.0
         place = np.eye(4)
         place[:3, 3] = low
@@ -114,5 +114,4 @@ class _Strokes:
             times={"answer": timing(seconds, len(self._fiblets), "streamline", "cpu")},
             ours=True,
             default=method == "index" and setting == "painted",
-            machine=self._options.machine,
         )

@@ -45,7 +45,6 @@ def similar(fiblets: FibletSet, options: Options, left_out: list[LeftOut]) -> It
             errors=errors,
             ours=method == "fiblets",
             default=method == "fiblets",
-            machine=options.machine,
         )
         compared.add(record, answer=ask)
 

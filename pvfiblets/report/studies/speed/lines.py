@@ -89,12 +89,12 @@ class LinesStudy:
                         continue
                     options.driver = row["driver"]
                     options.log(f"lines: {what}")
-                    found.append(_record(data, method, setting, row, options))
+                    found.append(_record(data, method, setting, row))
                     yield found[-1]
         yield from by_size(found)
 
 
-def _record(data: str, method: str, setting: str, row: Row, options: Options) -> Record:
+def _record(data: str, method: str, setting: str, row: Row) -> Record:
     return Record(
         data=data,
         group="lines",
@@ -110,7 +110,6 @@ def _record(data: str, method: str, setting: str, row: Row, options: Options) ->
         times={"draw": timing(row["seconds"], 1.0, FRAME, row["clock"])},
         ours=method == FIBLETS,
         default=method == FIBLETS,
-        machine=options.machine,
     )
 
 

@@ -74,7 +74,6 @@ def _read(path: Path, data: str, points: int, options: Options, left_out: list[L
             costs={"size": Figure(path.stat().st_size / points, "bytes/point")},
             ours=method == "pvfiblets",
             default=(method, setting) == ("pvfiblets", ""),
-            machine=options.machine,
         )
         compared.add(record, read=partial(read, path))
     yield from compared.finish()

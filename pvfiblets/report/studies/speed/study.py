@@ -149,7 +149,6 @@ def _measured(
         costs={"memory": Figure(row["gpu_bytes"] / 1e6, "MB"), "first": Figure(1e3 * row["first"], "ms")},
         times={"draw": timing(row["seconds"], 1.0, FRAME, row["clock"])},
         ours=cell["kind"] != "line strips",
-        machine=options.machine,
     )
 
 
@@ -180,8 +179,7 @@ def by_size(records: list[Record]) -> Iterator[Record]:
             )
     for (size, label), figures in shown.items():
         if len(figures) > 1:
-            yield Record(f"by segments, {size}", "segments", "nothing", label, "", figures, ours=True,
-                         machine=records[0].machine)  # fmt: skip
+            yield Record(f"by segments, {size}", "segments", "nothing", label, "", figures, ours=True)
 
 
 STUDY = SpeedStudy()

@@ -17,18 +17,10 @@ __all__ = ["Case", "Cases", "Outcome", "Setting", "refused"]
 
 @dataclass(frozen=True)
 class Setting:
-    """What a case is run with.
+    """What a case is run with."""
 
-    Attributes
-    ----------
-    whole : bool
-        Whether the largest cases are of their full size. Their text says what they are otherwise.
-    ctx : moderngl.Context, optional
-        Current; only cases that draw need it.
-    """
-
-    whole: bool = False
-    ctx: moderngl.Context | None = None
+    whole: bool = False  # Whether the largest cases are of their full size. Their text says what they are otherwise.
+    ctx: moderngl.Context | None = None  # Current; only cases that draw need it
 
     @property
     def gl(self) -> moderngl.Context:
@@ -40,22 +32,13 @@ class Setting:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a case found.
+    """What a case found."""
 
-    Attributes
-    ----------
-    measured, limit : float
-        What must hold does if ``measured`` is no larger than ``limit``; NaN is larger than any.
-    unit : str
-        Of both.
-    note : str
-        What else is worth saying, such as the message of an error.
-    """
-
+    # What must hold does if `measured` is no larger than `limit`; NaN is larger than any
     measured: float
     limit: float
-    unit: str
-    note: str = ""
+    unit: str  # Of both
+    note: str = ""  # What else is worth saying, such as the message of an error
 
     @property
     def held(self) -> bool:
@@ -65,43 +48,23 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Case:
-    """One extreme case.
+    """One extreme case."""
 
-    Attributes
-    ----------
-    system, name : str
-        Part of the program, and what the case is called within it.
-    does, must : str
-        What is done, and what must hold.
-    run : callable
-        Takes a :class:`Setting`, returns an :class:`Outcome`.
-    draws : bool
-        Whether it needs an OpenGL context.
-    long : bool
-        Whether it takes seconds: such cases come last where time is short.
-    known : str
-        Why it does not hold, of a fault that is known and not mended yet; tests fail when it holds after all.
-    """
-
+    # Part of the program, and what the case is called within it
     system: str
     name: str
+    # What is done, and what must hold
     does: str
     must: str
-    run: Callable[[Setting], Outcome]
-    draws: bool = False
-    long: bool = False
+    run: Callable[[Setting], Outcome]  # Takes a :class:`Setting`, returns an :class:`Outcome`
+    draws: bool = False  # Whether it needs an OpenGL context
+    long: bool = False  # Whether it takes seconds: such cases come last where time is short
+    # Why it does not hold, of a fault that is known and not mended yet; tests fail when it holds after all
     known: str = ""
 
 
 class Cases(list[Case]):
-    """The cases of one system.
-
-    Parameters
-    ----------
-    system : str
-    draws : bool
-        Whether they need an OpenGL context unless they say otherwise.
-    """
+    """The cases of one system; ``draws``: they need an OpenGL context unless they say otherwise."""
 
     def __init__(self, system: str, *, draws: bool = False) -> None:
         super().__init__()

@@ -127,7 +127,6 @@ def _measured(subject: Subject, options: Options, left_out: list[LeftOut]) -> It
                     times={"frame": timing(frames, 1.0, FRAME, window.clock_name)},
                     ours=True,
                     default=transparency == "all",
-                    machine=options.machine,
                 )
     finally:
         window.release()

@@ -49,26 +49,13 @@ def outline(mask: Mask) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Truth:
-    """What a picture of tubes should show, in all pixels or in some.
-
-    Attributes
-    ----------
-    lens : Lens
-    pixels : numpy.ndarray
-        ``(n,)`` int64, counted in rows from below.
-    along : numpy.ndarray
-        ``(n,)`` mm along each pixel's ray to the first tube, infinite where there is none.
-    radius : numpy.ndarray
-        ``(n,)`` mm of the sphere that is met; 1 where there is none.
-    forwards : numpy.ndarray
-        ``(n,)`` mm forwards by mm of ray.
-    """
+    """What a picture of tubes should show, in all pixels or in some."""
 
     lens: Lens
-    pixels: npt.NDArray[np.int64]
-    along: Array
-    radius: Array
-    forwards: Array
+    pixels: npt.NDArray[np.int64]  # `(n,)` int64, counted in rows from below
+    along: Array  # `(n,)` mm along each pixel's ray to the first tube, infinite where there is none
+    radius: Array  # `(n,)` mm of the sphere that is met; 1 where there is none
+    forwards: Array  # `(n,)` mm forwards by mm of ray
 
     @classmethod
     def of(cls, tubes: SplineTubes, lens: Lens, pixels: npt.NDArray[np.int64] | None = None) -> Truth:

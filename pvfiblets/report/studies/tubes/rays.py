@@ -51,17 +51,10 @@ CLASSES = {
 
 @dataclass(frozen=True, eq=False)
 class Rays:
-    """A ray and a half each.
+    """A ray and a half each."""
 
-    Attributes
-    ----------
-    controls : numpy.ndarray
-        (n, 3, 4) control points, mm.
-    origins, directions : numpy.ndarray
-        (n, 3); directions are unit vectors.
-    """
-
-    controls: Array
+    controls: Array  # (n, 3, 4) control points, mm
+    # (n, 3); directions are unit vectors
     origins: Array
     directions: Array
 

@@ -48,34 +48,19 @@ _PAIRS = 1 << 21
 
 @dataclass(frozen=True, eq=False)
 class Hits:
-    """What rays meet.
+    """What rays meet."""
 
-    Attributes
-    ----------
-    l : numpy.ndarray
-        ``(n,)`` float64 mm along the ray from its origin; NaN for a miss.
-    t : numpy.ndarray
-        ``(n,)`` float64, 0..1: whose sphere is met; of a cap, the sphere that holds it deepest. NaN for a miss.
-    kind : numpy.ndarray
-        ``(n,)`` int64: ``MISS`` 0, ``ENTRY`` 1, ``EXIT`` 2 (the surface's inner side), ``CAP`` 3 (the inside, cut).
-    """
-
+    # `(n,)` float64 mm along the ray from its origin; NaN for a miss
     l: Array  # noqa: E741 - the paper's name for it
-    t: Array
-    kind: Ints
+    t: Array  # `(n,)` float64, 0..1: whose sphere is met; of a cap, the sphere that holds it deepest. NaN for a miss.
+    kind: Ints  # `(n,)` int64: `MISS` 0, `ENTRY` 1, `EXIT` 2 (the surface's inner side), `CAP` 3 (the inside, cut)
 
 
 @dataclass(frozen=True, eq=False)
 class Nearest(Hits):
-    """What rays meet first of many halves.
+    """What rays meet first of many halves."""
 
-    Attributes
-    ----------
-    half : numpy.ndarray
-        ``(n,)`` int64 index of the half; -1 for a miss.
-    """
-
-    half: Ints
+    half: Ints  # `(n,)` int64 index of the half; -1 for a miss
 
 
 def hits(

@@ -91,7 +91,6 @@ def solvers(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Rec
                     errors=hit_errors(rays.errors(*answer)),
                     ours=variant.solver != "bisection",
                     default=variant.default,
-                    machine=options.machine,
                 )
                 done.append((variant, record, []))
             for turn in range(options.repeats):
@@ -137,7 +136,7 @@ def ray_sweeps(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[
             for variant in chosen:
                 yield Record(
                     about, "stiff", f"rays by {name}", variant.name, variant.setting, errors[variant],
-                    ours=variant.default, machine=options.machine,
+                    ours=variant.default,
                 )  # fmt: skip
 
 

@@ -60,7 +60,7 @@ def picture_sweeps(ctx: Any, options: Options, left_out: list[LeftOut]) -> Itera
         for number, (solver, found) in enumerate(errors.items()):
             yield Record(
                 about, "stiff", f"pictures by {name}", "ray cast" if number < 2 else solver,
-                solver if number < 2 else "", found, ours=number == 0, machine=options.machine,
+                solver if number < 2 else "", found, ours=number == 0,
             )  # fmt: skip
 
 
@@ -181,7 +181,6 @@ def _measured(
                 costs={"geometry": Figure(float(drawn.nbytes), "bytes")},
                 ours=drawn.ours,
                 default=drawn.default,
-                machine=options.machine,
             )
             compared = compared or Comparison(data, options, left_out, drawn.turns)
             compared.add(record, draw=by_turns(drawn.draw, [camera]))
@@ -220,7 +219,7 @@ def stored(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Reco
             bits = 24 if "24" in kind else 32
             yield Record(
                 "stored depth", "stored", "depth of a pixel", kind, "", found,
-                {"depth": Figure(bits / 8.0, "bytes/pixel")}, ours=kind.startswith("key"), machine=options.machine,
+                {"depth": Figure(bits / 8.0, "bytes/pixel")}, ours=kind.startswith("key"),
             )  # fmt: skip
 
 
@@ -242,7 +241,7 @@ def halves(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Reco
             yield Record(
                 f"cubics of the set {name}", "", "a cubic segment", "two quadratics", setting,
                 {f"apart {key}": Figure(value, "radii") for key, value in found.items()},
-                ours=share == curves.MIDDLE, machine=options.machine,
+                ours=share == curves.MIDDLE,
             )  # fmt: skip
 
 

@@ -28,24 +28,10 @@ STAGES = {
 
 
 class TessellatedTubes:
-    """Spline tubes on the GPU, and a framebuffer that they are drawn into.
+    """Spline tubes on the GPU, OpenGL 4.3 or later, and a framebuffer that they are drawn into.
 
-    Parameters
-    ----------
-    ctx : moderngl.Context
-        OpenGL 4.3 or later.
-    tubes : SplineTubes
-    size : tuple of int
-        Of the picture, pixels.
-    tolerance : float, optional
-        Pixels that a polygon may stray from its curve as long as the levels go that far.
-    sides : tuple of int, optional
-        The least and the most corners around a tube.
-
-    Attributes
-    ----------
-    nbytes : int
-        GPU memory of the nodes and segments.
+    ``tolerance``: pixels that a polygon may stray from its curve as long as the levels go that far; ``sides``: the
+    least and the most corners around a tube.
     """
 
     def __init__(

@@ -193,27 +193,15 @@ _FORMULAE = {
 
 @dataclass(frozen=True)
 class Row:
-    """One integrator on one profile.
-
-    Attributes
-    ----------
-    profile, method, dtype : str
-    steps : int
-        Per ray.
-    kappa_ds : float
-        Optical depth of a step where the profile is densest.
-    error : float
-        Largest difference of colour or opacity to the closed form; inf where a result is not finite.
-    low, high : float
-        Least and greatest colour or opacity.
-    """
+    """One integrator on one profile."""
 
     profile: str
     method: str
     dtype: str
-    steps: int
-    kappa_ds: float
-    error: float
+    steps: int  # Per ray
+    kappa_ds: float  # Optical depth of a step where the profile is densest
+    error: float  # Largest difference of colour or opacity to the closed form; inf where a result is not finite
+    # Least and greatest colour or opacity
     low: float
     high: float
 

@@ -95,7 +95,6 @@ def _integrated(
                 },
                 ours=True,
                 default=(integrator, step) == (RaycastOptions.integrator, RaycastOptions.step),
-                machine=options.machine,
             )
             timed.add(record, draw=by_turns(drawing(ctx, renderer, style), [camera]))
     yield from timed.finish()
@@ -110,9 +109,8 @@ def _by_density(name: str, found: list[tuple[float, Record]]) -> Iterator[Record
             if (record.method, record.setting) == (integrator, f"step {RaycastOptions.step:g}")
         }
         if errors:
-            machine = found[0][1].machine
             step = f"step {RaycastOptions.step:g}"
-            yield Record(name, "stiff", "light along a ray", integrator, step, errors, ours=True, machine=machine)
+            yield Record(name, "stiff", "light along a ray", integrator, step, errors, ours=True)
 
 
 def formulae(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:  # noqa: ARG001 - as other parts
@@ -141,5 +139,4 @@ def formulae(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Re
             method=method,
             setting="never unstable" if limit is None else f"unstable beyond κΔ {limit:.3g}",
             errors=errors,
-            machine=options.machine,
         )

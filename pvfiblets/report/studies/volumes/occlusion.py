@@ -63,7 +63,6 @@ def openness(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Re
                             "openness bias": Figure(float(bias.mean()), "of 1"),
                         },
                         ours=True,
-                        machine=options.machine,
                     )
                     timed.add(record, occlusion=picture.drawing(samples, smooth))
             yield from timed.finish()
@@ -71,7 +70,7 @@ def openness(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Re
                 chance = Figure(float(np.sqrt(np.mean(truth * (1.0 - truth)) / samples)), "of 1")
                 yield Record(
                     data, "occlusion", "ambient occlusion", "independent rays, by chance", f"{samples} rays",
-                    {"openness rms": chance}, machine=options.machine,
+                    {"openness rms": chance},
                 )  # fmt: skip
         finally:
             picture.release()

@@ -11,10 +11,11 @@ import numpy.typing as npt
 from pvfiblets.volumes import RaycastVolume
 
 from ...cameras import Camera
+from ..culling.pictures import directions
 from . import reference
 from .scene import Look, Truth, grey_of, lit, truth
 
-__all__ = ["GroundTruth", "along_of", "colours_of", "directions_of", "ground_truth_of", "light_of", "places"]
+__all__ = ["GroundTruth", "along_of", "colours_of", "ground_truth_of", "light_of", "places"]
 
 Array = npt.NDArray[np.float64]
 Words = npt.NDArray[np.uint32]
@@ -32,25 +33,10 @@ def colours_of(gbuffer: Any, look: Look, camera: Camera) -> Array:
         values = np.frombuffer(gbuffer.position.read(), np.float32).reshape(height, width, 2)[..., 1]
         shown = grey_of(values.astype(np.float64), look)
     else:
-        normals = directions_of(np.frombuffer(gbuffer.across.read(), np.uint32)).reshape(height, width, 3)
+        normals = directions(np.frombuffer(gbuffer.across.read(), np.uint32)).reshape(height, width, 3)
         # They face the eye already.
         shown = lit(normals, -normals, camera.backwards)
     return np.where(there[..., None], shown, 0.0)
-
-
-def directions_of(words: Words) -> Array:
-    """Return ``(n, 3)`` unit vectors of words, each an octahedral map about +x in two signed 16 bits."""
-    from pvfiblets.codec.layout import DIRECTION_SCALE
-
-    u, v = ((words >> shift).astype(np.uint16).view(np.int16) / DIRECTION_SCALE for shift in (0, 16))
-    x = 1.0 - abs(u) - abs(v)
-    behind = x < 0.0
-    u, v = (
-        np.where(behind, (1.0 - abs(v)) * np.where(u < 0.0, -1.0, 1.0), u),
-        np.where(behind, (1.0 - abs(u)) * np.where(v < 0.0, -1.0, 1.0), v),
-    )
-    found = np.stack([x, u, v], axis=-1)
-    return found / np.linalg.norm(found, axis=-1, keepdims=True)
 
 
 def light_of(gbuffer: Any) -> Array:

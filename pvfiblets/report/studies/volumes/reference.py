@@ -37,44 +37,23 @@ maximum, it has not fallen."""
 
 @dataclass(frozen=True, eq=False)
 class Crossings:
-    """Where rays cross an isosurface; all are ``(...)`` as the rays are.
+    """Where rays cross an isosurface; all are ``(...)`` as the rays are."""
 
-    Attributes
-    ----------
-    t : numpy.ndarray
-        float64 mm along the ray; NaN where it crosses none.
-    value : numpy.ndarray
-        int64 index of the isosurface's value; -1 where it crosses none.
-    gradient : numpy.ndarray
-        ``(..., 3)`` float64 per mm, by central differences (:func:`gradient`); NaN where it crosses none.
-    depth : numpy.ndarray
-        float64 window depth; 1 where it crosses none.
-    chord : numpy.ndarray
-        float64 mm from there to where the ray crosses that isosurface again, or else to its far end: what looks at
-        places farther apart may not see it. NaN where it crosses none.
-    """
-
-    t: Array
-    value: Ints
-    gradient: Array
-    depth: Array
+    t: Array  # float64 mm along the ray; NaN where it crosses none
+    value: Ints  # int64 index of the isosurface's value; -1 where it crosses none
+    gradient: Array  # `(..., 3)` float64 per mm, by central differences (:func:`gradient`); NaN where it crosses none
+    depth: Array  # float64 window depth; 1 where it crosses none
+    # float64 mm from there to where the ray crosses that isosurface again, or else to its far end: what looks at
+    # places farther apart may not see it. NaN where it crosses none.
     chord: Array
 
 
 @dataclass(frozen=True, eq=False)
 class Maxima:
-    """Greatest values along rays; both are ``(...)`` as the rays are.
+    """Greatest values along rays; both are ``(...)`` as the rays are."""
 
-    Attributes
-    ----------
-    value : numpy.ndarray
-        float64; NaN where there is none.
-    t : numpy.ndarray
-        float64 mm along the ray, of the first place that has it; NaN where there is none.
-    """
-
-    value: Array
-    t: Array
+    value: Array  # float64; NaN where there is none
+    t: Array  # float64 mm along the ray, of the first place that has it; NaN where there is none
 
 
 @dataclass(frozen=True, eq=False)

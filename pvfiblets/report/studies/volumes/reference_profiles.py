@@ -36,18 +36,7 @@ DENSE = 0.9
 
 @dataclass(frozen=True, eq=False)
 class Profile:
-    """Values along a ray, and what they mean.
-
-    Parameters
-    ----------
-    name : str
-        For people.
-    values : numpy.ndarray
-        ``(m,)`` float64, evenly spaced from the ray's beginning to its end, linear between.
-    length : float
-        Of the ray, mm.
-    transfer : Transfer
-    """
+    """``(m,)`` values along a ray of so many mm, evenly spaced and linear between, and what they mean."""
 
     name: str
     values: Array
@@ -76,13 +65,7 @@ class Profile:
         return RaycastVolume(values.copy(), np.diag([1.0, 1.0, self.length / (len(self.values) - 1), 1.0]))
 
     def light(self, start: float = 0.0, end: float | None = None) -> Array:
-        """RGB, multiplied by the opacity, and opacity of the ray from one place to another, mm; ``(4,)``.
-
-        Raises
-        ------
-        ValueError
-            If on some piece both opacity and colour change, so that there is no closed form.
-        """
+        """Return RGB, multiplied by the opacity, and opacity of the ray from one place to another, mm; ``(4,)``."""
         table, (low, high) = self.transfer.table.astype(np.float64), self.transfer.clim
         end = self.length if end is None else end
         entries, places, values = np.linspace(low, high, len(table)), self.places, self.values

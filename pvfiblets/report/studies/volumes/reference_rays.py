@@ -25,23 +25,15 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Rays:
-    """Rays through a volume, of any shape ``...``; of a picture ``(height, width)``, row 0 at the bottom.
+    """Rays through a volume, of any shape ``...``; of a picture ``(height, width)``, row 0 at the bottom."""
 
-    Attributes
-    ----------
-    origins, directions : numpy.ndarray
-        ``(..., 3)`` float64, mm. Directions are unit vectors, so that lengths along rays are mm.
-    near, far : numpy.ndarray
-        ``(...)`` float64: from where to where along it the ray is in the volume. NaN of those that never are.
-    matrix : numpy.ndarray
-        ``(4, 4)`` data coordinates in mm to clip coordinates.
-    """
-
+    # `(..., 3)` float64, mm. Directions are unit vectors, so that lengths along rays are mm.
     origins: Array
     directions: Array
+    # `(...)` float64: from where to where along it the ray is in the volume. NaN of those that never are.
     near: Array
     far: Array
-    matrix: Array
+    matrix: Array  # `(4, 4)` data coordinates in mm to clip coordinates
 
     def points(self, t: npt.ArrayLike) -> Array:
         """Places ``(..., 3)`` at `t` mm along the rays."""

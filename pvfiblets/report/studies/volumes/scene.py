@@ -34,23 +34,12 @@ Pixels = npt.NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False)
 class Look:
-    """What is shown of a volume.
-
-    Attributes
-    ----------
-    mode : str
-    clim : tuple of float
-        Values of the first and the last colour.
-    transfer : Transfer
-        Of light; its colours are multiples of 1/255, so that tables of bytes hold them.
-    value : float
-        Of the surface.
-    """
+    """What is shown of a volume."""
 
     mode: str
-    clim: tuple[float, float]
-    transfer: Transfer
-    value: float
+    clim: tuple[float, float]  # Values of the first and the last colour
+    transfer: Transfer  # Of light; its colours are multiples of 1/255, so that tables of bytes hold them
+    value: float  # Of the surface
 
     def casting(self, **more: Any) -> RaycastOptions:
         """Return how the engine casts it."""
@@ -91,21 +80,13 @@ def circle(volume: RaycastVolume, frames: int, size: tuple[int, int]) -> list[Ca
 
 @dataclass(frozen=True, eq=False)
 class Truth:
-    """What some pixels of pictures should show.
-
-    Attributes
-    ----------
-    cameras : list of Camera
-    pixels : list of numpy.ndarray
-        For each camera, ``(n, 2)`` rows and columns, row 0 at the bottom.
-    colours : list of numpy.ndarray
-        For each camera, ``(2, n, 3)`` RGB on black: with a lamp that shines along the camera's direction, as VTK has it
-        for meshes, and with one that shines from the eye along each ray, as VTK has it for volumes; the same but for
-        surfaces.
-    """
+    """What some pixels of pictures should show."""
 
     cameras: list[Camera]
-    pixels: list[Pixels]
+    pixels: list[Pixels]  # For each camera, `(n, 2)` rows and columns, row 0 at the bottom
+    # For each camera, `(2, n, 3)` RGB on black: with a lamp that shines along the camera's direction, as VTK has it
+    # for meshes, and with one that shines from the eye along each ray, as VTK has it for volumes; the same but for
+    # surfaces
     colours: list[Array]
 
     def error(self, pictures: list[Array], lamp: int = 0) -> float:

@@ -142,7 +142,6 @@ def _varied(
             errors=errors,
             ours=True,
             default=varied == "default",
-            machine=options.machine,
         )
         timed.add(record, draw=by_turns(drawing(ctx, renderer, style), cameras))
     yield from timed.finish()

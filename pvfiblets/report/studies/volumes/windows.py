@@ -129,7 +129,6 @@ def _measured(
                     costs=window.costs,
                     ours=kind.ours,
                     default=kind.ours and step == 0.5,
-                    machine=options.machine,
                 )
                 timed.add(record, draw=_drawing(window, step, cameras))
         if timed is not None:
