@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from pvfiblets.report.process import CellProcess
 from pvfiblets.report.studies.speed import lines, reading
 from pvfiblets.report.studies.speed import study as speed
 from pvfiblets.report.studies.speed.cells import measure_cell
-from pvfiblets.report.studies.speed.process import CellProcess
 from pvfiblets.report.study import Budget
 
 from .little import little
@@ -58,7 +58,7 @@ def test_cells_are_records_by_size_and_what_is_not_there_is_told(gl, monkeypatch
         assert records[2].errors[f"ms at M segments {number}"].value == pytest.approx(1e3 * record.value("times/draw"))
     reasons = [item.reason for item in left if item.what.endswith("none, culling two-phase")]
     assert len(reasons) == 2
-    assert reasons[0].startswith("failed: ValueError: pipeline is 'none'")
+    assert reasons[0].startswith("ended with 1: ValueError: pipeline is 'none'")
     assert reasons[1] == "far too slow at fewer segments"
 
 
@@ -94,8 +94,8 @@ def test_what_a_process_dies_of_is_a_row_and_the_next_cell_has_another(tmp_path)
     rows += [process.measure({"wanted": "sleep"}, 0.5), process.measure({"wanted": ""}, 5.0)]
     process.close()
     assert rows == [
-        {"number": 0}, {"number": 1}, {"unmeasured": "failed: no such card"}, {"number": 0},
-        {"unmeasured": "failed: ended with -6"}, {"number": 0}, {"unmeasured": "takes more than 0.5 s here"},
+        {"number": 0}, {"number": 1}, {"unmeasured": "ended with 1: no such card"}, {"number": 0},
+        {"unmeasured": "ended by SIGABRT"}, {"number": 0}, {"unmeasured": "takes more than 0.5 s here"},
         {"number": 0},
     ]  # fmt: skip
 

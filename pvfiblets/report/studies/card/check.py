@@ -7,16 +7,14 @@ what comes after. Neither VTK nor a display is needed.
 from __future__ import annotations
 
 import json
-import queue
-import signal
 import subprocess
 import sys
-import threading
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from ...process import CellProcess, ended
 from .findings import FAILS, MISSING, Finding
 
 __all__ = ["CardCheck", "run_check"]
@@ -73,7 +71,7 @@ def run_check(
     for part in wanted:
         if segments or not part.startswith(SPEED):
             log(part)
-            _run_part(check, part, folder, patience, command)
+            _run_part(check, part, folder, patience, CellProcess(command))
     return check
 
 
@@ -90,76 +88,23 @@ def _ask(patience: float) -> dict[str, Any] | str:
     return found
 
 
-def _run_part(check: CardCheck, part: str, folder: Path, patience: float, command: Sequence[str]) -> None:
+def _run_part(check: CardCheck, part: str, folder: Path, patience: float, process: CellProcess) -> None:
     """Run a part to its end, by as many processes as die of it."""
-    after = ""
+    number = 0
     while True:
-        process = subprocess.Popen(
-            [*command, part, str(folder), *([after] if after else [])],
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-        )  # fmt: skip
-        with process:  # closes its pipes
-            begun, why = _listen(check, process, folder, patience)
-        if not begun and not why:
-            return
-        check.findings.append(Finding(part, begun or "beginning", FAILS, why))
-        if not begun:
-            return
-        after = begun
-
-
-def _listen(check: CardCheck, process: subprocess.Popen[str], folder: Path, patience: float) -> tuple[str, str]:
-    """Take down what a process says; return the feature that it died of, and how; both empty if it ended well."""
-    lines: queue.Queue[str | None] = queue.Queue()
-    said: list[str] = []
-
-    def read() -> None:
-        assert process.stdout is not None
-        for line in process.stdout:
-            lines.put(line)
-        lines.put(None)
-
-    def hear() -> None:
-        assert process.stderr is not None
-        said.extend(process.stderr)
-
-    readers = [threading.Thread(target=target, daemon=True) for target in (read, hear)]
-    for reader in readers:
-        reader.start()
-    begun = ""
-    try:
-        while True:
-            line = lines.get(timeout=patience)
-            if line is None:
-                break
-            told = json.loads(line) if line.startswith("{") else {}  # drivers print what they like
-            begun = told.get("begin", begun)
-            if "finding" in told:
-                finding = Finding(**told["finding"])
-                check.findings.append(finding)
-                if told["pictures"]:
-                    check.pictures[f"{finding.part}: {finding.feature}"] = [folder / name for name in told["pictures"]]
-                begun = ""
-        process.wait()
-        readers[1].join()
-        if process.returncode == 0:
-            return "", ""
-        last = next((line.strip() for line in reversed(said) if line.strip()), "")
-        return begun, f"{ended(process.returncode)}{': ' * bool(last)}{last}"
-    except queue.Empty:
-        return begun, f"no answer within {patience:g} s"
-    finally:
-        process.kill()
-        process.wait()
-        for reader in readers:
-            reader.join()
-
-
-def ended(code: int) -> str:
-    """Say how a process ended."""
-    if code >= 0:
-        return f"ended with {code}"
-    try:
-        return f"ended by {signal.Signals(-code).name}"
-    except ValueError:
-        return f"ended by signal {-code}"
+        begun = process.measure({"part": part, "folder": str(folder), "number": number}, patience)
+        if "unmeasured" in begun:
+            check.findings.append(Finding(part, "beginning", FAILS, begun["unmeasured"]))
+            break
+        feature = begun["feature"]
+        if not feature:
+            break
+        found = process.measure({"feature": feature}, patience)
+        if "unmeasured" in found:
+            check.findings.append(Finding(part, feature, FAILS, found["unmeasured"]))
+        else:
+            check.findings.append(Finding(**found["finding"]))
+            if found["pictures"]:
+                check.pictures[f"{part}: {feature}"] = [folder / name for name in found["pictures"]]
+        number += 1
+    process.close()

@@ -37,8 +37,8 @@ def _scene(ctx: Any, subject: Any, feature: Any) -> Scene:
     path = subject.path(2, SIZE)
     drawn = Drawn(ctx, subject, feature, path)
 
-    def judge() -> Judged:
+    def judge(_: Any) -> Judged:
         keys = np.frombuffer(drawn.last.depth.read(), np.uint32)
         return Judged({EMPTY: float((keys == NO_KEY).all())}, {EMPTY: 0.0}, compared=False)
 
-    return Scene("", lambda _number: drawn(), judge, drawn.release)
+    return Scene(lambda _number: drawn(), judge, drawn.release)

@@ -130,21 +130,20 @@ def _lines(
     chosen = np.arange(len(about.lines)) % 2 == 0
     if half:
         renderer.filtering = Filter(streamlines=chosen)
-    last: list[Any] = []
 
-    def draw(number: int) -> None:
-        last[:] = [renderer.render(path[number], FibletStyle(**wanted))]
+    def draw(number: int) -> Any:
+        return renderer.render(path[number], FibletStyle(**wanted))
 
-    def judge() -> Judged:
+    def judge(last: Any) -> Judged:
         numbers = np.flatnonzero(chosen) if half else np.arange(len(about.lines))
         along = getattr(about, values or "arc_length")
         samples = LineSamples.of([about.lines[i] for i in numbers], [along[i] for i in numbers],
                                  path[PICTURES - 1].model_view_projection, SIZE, keep)  # fmt: skip
         samples = replace(samples, streamline=numbers[samples.streamline])
-        picture = shown(last[0])
+        picture = shown(last)
         return judged(picture, samples.wrong(picture, width, values=values is not None), limits or {}, values)
 
-    return Scene("", draw, judge, renderer.release)
+    return Scene(draw, judge, renderer.release)
 
 
 def judged(picture: Shown, wrong: dict[str, Any], limits: dict[str, float], values: str | None) -> Judged:
@@ -172,14 +171,13 @@ def _tubes(ctx: Any, pipeline: str) -> Scene:
     tubes = capsules_of(lines, RADIUS)
     path = orbit(tubes, "far", 90, SMALL)[:PICTURES]
     renderer = FibletRenderer(ctx, fiblets, pipeline=pipeline)
-    last: list[Any] = []
 
-    def draw(number: int) -> None:
+    def draw(number: int) -> Any:
         camera = path[number]
         style = FibletStyle(radius=RADIUS, tolerance=0.0, exact=True)
-        last[:] = [renderer.render(View(camera.size, camera.model_view_projection), style)]
+        return renderer.render(View(camera.size, camera.model_view_projection), style)
 
-    return Scene("", draw, lambda: judge_depths(last[0], tubes, path[PICTURES - 1]), renderer.release)
+    return Scene(draw, lambda last: judge_depths(last, tubes, path[PICTURES - 1]), renderer.release)
 
 
 def _counted(ctx: Any, pipeline: str) -> Scene:
@@ -189,13 +187,12 @@ def _counted(ctx: Any, pipeline: str) -> Scene:
 
     path = views(brain().fiblets.bounds, "far", DEGREES, PICTURES, SIZE)
     renderer = _renderer(ctx, pipeline)
-    last: list[Any] = []
 
-    def draw(number: int) -> None:
-        last[:] = [renderer.gather(path[number], FibletStyle(tolerance=0.0))]
+    def draw(number: int) -> Any:
+        return renderer.gather(path[number], FibletStyle(tolerance=0.0))
 
-    def judge() -> Judged:
-        found = last[0].read()[0, ..., 3]
+    def judge(last: Any) -> Judged:
+        found = last.read()[0, ..., 3]
         right = counted(brain().lines, path[PICTURES - 1].model_view_projection, SIZE)
         there = right > 0
         figures = {EMPTY: float(not found.any()), "other number": share(found != right, there),
@@ -204,7 +201,7 @@ def _counted(ctx: Any, pipeline: str) -> Scene:
         limits = {EMPTY: 0.0, "other number": COUNTED, "by more than one": 0.002, "of all": 0.002}
         return Judged(figures, limits, {"drawn": _grey(found), "right": _grey(right), "wrong": found != right})
 
-    return Scene("", draw, judge, renderer.release)
+    return Scene(draw, judge, renderer.release)
 
 
 def _grey(numbers: Array) -> npt.NDArray[np.uint8]:
@@ -219,16 +216,15 @@ def _layers(ctx: Any, pipeline: str) -> Scene:
 
     path = views(brain().fiblets.bounds, "far", DEGREES, PICTURES, SIZE)
     renderer = _renderer(ctx, pipeline)
-    last: list[Any] = []
 
-    def draw(number: int) -> None:
-        last[:] = [renderer.render_layers(path[number], FibletStyle(tolerance=0.0), LAYERS)]
+    def draw(number: int) -> Any:
+        return renderer.render_layers(path[number], FibletStyle(tolerance=0.0), LAYERS)
 
-    def judge() -> Judged:
+    def judge(last: Any) -> Judged:
         about, width, height = brain(), *SIZE
         samples = LineSamples.of(about.lines, about.arc_length, path[PICTURES - 1].model_view_projection, SIZE)
-        keys = np.frombuffer(last[0].depth.read(), np.uint32).reshape(LAYERS, height, width)
-        ids = np.frombuffer(last[0].ids.read(), np.uint32).reshape(LAYERS, height, width, 2)
+        keys = np.frombuffer(last.depth.read(), np.uint32).reshape(LAYERS, height, width)
+        ids = np.frombuffer(last.ids.read(), np.uint32).reshape(LAYERS, height, width, 2)
         wrong = np.zeros((height, width), bool)
         order = np.any(keys[1:] < keys[:-1], axis=0)
         for key, number in zip(keys, ids[..., 0], strict=True):
@@ -242,7 +238,7 @@ def _layers(ctx: Any, pipeline: str) -> Scene:
                    "order": share(order, there)}  # fmt: skip
         return Judged(figures, {EMPTY: 0.0, "line": LAYERS * WRONG, "order": 0.0}, {"wrong": wrong | order})
 
-    return Scene("", draw, judge, renderer.release)
+    return Scene(draw, judge, renderer.release)
 
 
 def _query(ctx: Any, pipeline: str) -> Scene:
@@ -251,13 +247,12 @@ def _query(ctx: Any, pipeline: str) -> Scene:
     from pvfiblets.query.selection.passing import region_flags
 
     renderer, region = _renderer(ctx, pipeline), regions.Sphere(*_middle())
-    last: list[Any] = []
 
-    def draw(_number: int) -> None:
-        last[:] = [renderer.query(region)]
+    def draw(_number: int) -> Any:
+        return renderer.query(region)
 
-    def judge() -> Judged:
-        other = np.asarray(last[0]) != np.asarray(region_flags(brain().fiblets, region))
+    def judge(last: Any) -> Judged:
+        other = np.asarray(last) != np.asarray(region_flags(brain().fiblets, region))
         return Judged({"streamlines": float(other.mean())}, {"streamlines": 0.0})
 
-    return Scene("", draw, judge, renderer.release)
+    return Scene(draw, judge, renderer.release)

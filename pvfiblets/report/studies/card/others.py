@@ -88,13 +88,12 @@ def _tubes(ctx: Any, **options: Any) -> Scene:
 
     tubes, path = _helices()
     renderer = TubeRenderer(ctx, tubes, **options)
-    last: list[Any] = []
 
-    def draw(number: int) -> None:
+    def draw(number: int) -> Any:
         view = View(path[number].size, path[number].model_view_projection)
-        last[:] = [renderer.render(view, TubeStyle(min_width=0.0))]
+        return renderer.render(view, TubeStyle(min_width=0.0))
 
-    return Scene("", draw, lambda: judge_depths(last[0], tubes, path[PICTURES - 1]), renderer.release)
+    return Scene(draw, lambda last: judge_depths(last, tubes, path[PICTURES - 1]), renderer.release)
 
 
 # --------------------------------------------------------------------------------------------------------------- halos
@@ -124,23 +123,22 @@ def _halos(ctx: Any, points: bool = False, **more: Any) -> Scene:
     look = look_of(drawn, **more)
     path = halo_orbit(drawn, 1, PICTURES - 1, SIZE)[0]
     renderer = HaloRenderer(ctx, drawn)
-    last: list[Any] = []
 
-    def draw(number: int) -> None:
-        last[:] = [renderer.render(View(path[number].size, path[number].model_view_projection), finer(look, 1))]
+    def draw(number: int) -> Any:
+        return renderer.render(View(path[number].size, path[number].model_view_projection), finer(look, 1))
 
-    def judge() -> Judged:
+    def judge(last: Any) -> Judged:
         camera = path[PICTURES - 1]
         truth = picture(drawn, look, camera.model_view_projection, camera.size)
-        dark = darkness_of(last[0])
-        found = pixel_errors(last[0], dark, truth, camera)
+        dark = darkness_of(last)
+        found = pixel_errors(last, dark, truth, camera)
         figures = {EMPTY: float(not dark.any()), "line or halo, %": found["kind"].value,
                    "darkness, %": found["mean"].value, "depth, mm": found["depth"].value}  # fmt: skip
         limits = {EMPTY: 0.0, "line or halo, %": KINDS, "darkness, %": KINDS, "depth, mm": HALO_DEPTH}
         off = np.abs(dark - truth.ink) > 0.25
         return Judged(figures, limits, {"drawn": dark > 0.5, "right": truth.ink > 0.5, "wrong": off})
 
-    return Scene("", draw, judge, renderer.release)
+    return Scene(draw, judge, renderer.release)
 
 
 # ------------------------------------------------------------------------------------------------------------- volumes
@@ -181,15 +179,14 @@ def _volume(ctx: Any, mode: str, filter: str = "trilinear", **more: Any) -> Scen
     cameras = circle(volume, PICTURES, SMALL)
     renderer = VolumeRenderer(ctx, volume)
     style = VolumeStyle(casting=look.casting(filter=filter, **more))
-    last: list[Any] = []
 
-    def draw(number: int) -> None:
+    def draw(number: int) -> Any:
         camera = cameras[number]
-        last[:] = [renderer.render(View(camera.size, camera.model_view_projection), style)]
+        return renderer.render(View(camera.size, camera.model_view_projection), style)
 
-    def judge() -> Judged:
+    def judge(last: Any) -> Judged:
         camera = cameras[PICTURES - 1]
-        picture = colours_of(last[0], look, camera)
+        picture = colours_of(last, look, camera)
         right = truth(volume, look, [camera], PIXELS, filter)
         at = right.pixels[0]
         off = np.abs(picture[at[:, 0], at[:, 1]] - right.colours[0][0]).max(axis=1)
@@ -198,4 +195,4 @@ def _volume(ctx: Any, mode: str, filter: str = "trilinear", **more: Any) -> Scen
         limits = {EMPTY: 0.0, "median colour": COLOUR, "pixels off": PIXELS_OFF}
         return Judged(figures, limits, {"drawn": (255.0 * picture).astype(np.uint8)})
 
-    return Scene("", draw, judge, renderer.release)
+    return Scene(draw, judge, renderer.release)

@@ -1,16 +1,15 @@
-"""One part of the card's check, in a process of its own: ``python -m pvfiblets.report.studies.card.part PART FOLDER``.
+"""One part of the card's check, in a process of its own: ``python -m pvfiblets.report.studies.card.part``.
 
-Every line on standard output is an object in JSON: ``{"begin": feature}`` before a feature is tried, and
-``{"finding": ..., "pictures": [names]}`` after it. Who reads them knows from the last line what a driver died of.
+Each line that it reads asks for one thing (:mod:`pvfiblets.report.process`): first the name of a part's feature by its
+number, then that this feature is tried. The check knows from the last line what a driver died of.
 """
 
 from __future__ import annotations
 
-import json
 import re
-import sys
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -18,10 +17,11 @@ import numpy as np
 
 from pvfiblets.engine.errors import EngineError, GPUMemoryError
 
+from ...process import Row, serve
 from .findings import FAILS, MISSING, SLOW, Finding
 from .scenes import Scene, tried
 
-__all__ = ["PARTS", "SPEED", "main", "parts_of"]
+__all__ = ["PARTS", "SPEED", "Trial", "parts_of"]
 
 LACKING = re.compile(r"needs OpenGL|, which this OpenGL|has no function|no (GPU )?memory")
 SPEED = "speed"
@@ -32,38 +32,16 @@ def parts_of(pipelines: list[str]) -> list[str]:
     return [*(f"fiblets {name}" for name in pipelines), *PARTS, *(f"{SPEED} {name}" for name in pipelines)]
 
 
-def _tubes(ctx: Any) -> Iterator[tuple[str, Callable[[], Scene]]]:
-    from .others import tubes_part
-
-    return tubes_part(ctx)
-
-
-def _halos(ctx: Any) -> Iterator[tuple[str, Callable[[], Scene]]]:
-    from .others import halos_part
-
-    return halos_part(ctx)
-
-
-def _volumes(ctx: Any) -> Iterator[tuple[str, Callable[[], Scene]]]:
-    from .others import volumes_part
-
-    return volumes_part(ctx)
-
-
-def _features(ctx: Any) -> Iterator[tuple[str, Callable[[], Scene]]]:
-    from .features import features_part
-
-    return features_part(ctx)
-
-
-PARTS: dict[str, Any] = {"spline tubes": _tubes, "halos": _halos, "volumes": _volumes, "features": _features}
-"""Those that are the same whatever the pipeline."""
+PARTS = {"spline tubes": "others:tubes_part", "halos": "others:halos_part", "volumes": "others:volumes_part",
+         "features": "features:features_part"}  # fmt: skip
+"""Those that are the same whatever the pipeline: modules and functions."""
 
 
 def _scenes(ctx: Any, part: str, folder: Path) -> Iterator[tuple[str, Callable[[], Scene]]]:
     kind, _, pipeline = part.rpartition(" ")
     if part in PARTS:
-        yield from PARTS[part](ctx)
+        module, function = PARTS[part].split(":")
+        yield from getattr(import_module(f".{module}", __package__), function)(ctx)
     elif kind == SPEED:
         from .speed import speed_part
 
@@ -74,30 +52,41 @@ def _scenes(ctx: Any, part: str, folder: Path) -> Iterator[tuple[str, Callable[[
         yield from fiblets_part(ctx, pipeline)
 
 
-def main(part: str, folder: Path, after: str = "") -> None:
-    """Try all features of a part, or those after one, and tell of each."""
-    from pvfiblets.engine.gl.standalone import bare_context
+class Trial:
+    """The features of one part, one after the other, on a context of its own."""
 
-    ctx = bare_context()
-    waiting = bool(after)
-    for number, (feature, make) in enumerate(_scenes(ctx, part, folder)):
-        if waiting:
-            waiting = feature != after
-            continue
-        _tell({"begin": feature})
+    def __init__(self) -> None:
+        self._part = ""
+
+    def __call__(self, wanted: Row) -> Row:
+        """Return the name of a feature, empty after the last, or what trying it finds."""
+        if "feature" in wanted:
+            return self._tried(wanted["feature"])
+        if not self._part:
+            from pvfiblets.engine.gl.standalone import bare_context
+
+            self._part, self._folder, self._ctx = wanted["part"], Path(wanted["folder"]), bare_context()
+            self._left = enumerate(_scenes(self._ctx, self._part, self._folder))
+        for number, (feature, make) in self._left:
+            if number == wanted["number"]:
+                self._number, self._make = number, make
+                return {"feature": feature}
+        return {"feature": ""}
+
+    def _tried(self, feature: str) -> Row:
         names = []
         try:
-            finding, pictures = tried(ctx, part, feature, make)
+            finding, pictures = tried(self._ctx, self._part, feature, self._make)
             finding = _judged_by_speed(finding)
             for name, picture in pictures.items():
-                names.append(f"{part}-{number}-{name}.npy".replace(" ", "-"))
-                np.save(folder / names[-1], picture)
+                names.append(f"{self._part}-{self._number}-{name}.npy".replace(" ", "-"))
+                np.save(self._folder / names[-1], picture)
         except (EngineError, MemoryError) as error:
             lacking = isinstance(error, (GPUMemoryError, MemoryError)) or LACKING.search(str(error))
-            finding = Finding(part, feature, MISSING if lacking else FAILS, _first_line(error))
+            finding = Finding(self._part, feature, MISSING if lacking else FAILS, _first_line(error))
         except Exception as error:  # noqa: BLE001  whatever a driver leads to is what is looked for
-            finding = Finding(part, feature, FAILS, f"{type(error).__name__}: {_first_line(error)}")
-        _tell({"finding": finding.as_dict(), "pictures": names})
+            finding = Finding(self._part, feature, FAILS, f"{type(error).__name__}: {_first_line(error)}")
+        return {"finding": finding.as_dict(), "pictures": names}
 
 
 def _judged_by_speed(finding: Finding) -> Finding:
@@ -115,9 +104,5 @@ def _first_line(error: BaseException) -> str:
     return (str(error).strip() or type(error).__name__).splitlines()[0]
 
 
-def _tell(what: dict[str, Any]) -> None:
-    print(json.dumps(what), flush=True)
-
-
 if __name__ == "__main__":
-    main(sys.argv[1], Path(sys.argv[2]), *sys.argv[3:])
+    serve(Trial())

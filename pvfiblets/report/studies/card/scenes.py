@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from .findings import DIFFERS, Finding, verdict_of
 
-__all__ = ["SIZE", "SMALL", "Judged", "Part", "Scene", "Tell", "share", "tried"]
+__all__ = ["SIZE", "SMALL", "Judged", "Scene", "share", "tried"]
 
 SIZE, SMALL = (320, 240), (160, 120)  # the latter where a reference takes its time
 TIMED = 3  # pictures
@@ -39,17 +39,9 @@ class Judged:
 class Scene:
     """Something to be drawn and judged."""
 
-    feature: str
-    draw: Callable[[int], object]  # Draws picture number so and so, each from another place, and waits for it
-    judge: Callable[[], Judged]  # Judges the last picture
+    draw: Callable[[int], Any]  # Draws picture number so and so, each from another place, and returns it
+    judge: Callable[[Any], Judged]  # Judges the last picture
     release: Callable[[], object] = lambda: None
-
-
-Tell = Callable[[Finding, Mapping[str, Any]], None]
-"""Takes a finding, and the pictures of one that differs."""
-
-Part = Callable[[Any], Iterator[tuple[str, Callable[[], Scene]]]]
-"""Of a check: takes a context; yields names of features, and what makes their scenes."""
 
 
 def tried(ctx: Any, part: str, feature: str, make: Callable[[], Scene]) -> tuple[Finding, Mapping[str, Any]]:
@@ -68,10 +60,10 @@ def tried(ctx: Any, part: str, feature: str, make: Callable[[], Scene]) -> tuple
         taken = []
         for number in range(1, 1 + TIMED):
             begin = time.perf_counter()
-            scene.draw(number)
+            drawn = scene.draw(number)
             ctx.finish()
             taken.append(1e3 * (time.perf_counter() - begin))
-        judged = scene.judge()
+        judged = scene.judge(drawn)
         complaint = ctx.error
     finally:
         scene.release()

@@ -67,9 +67,9 @@ def _scene(ctx: Any, pipeline: str, path: Path, taken: list[float]) -> Scene:
         if number > 0:  # the first compiles
             taken.append(time.perf_counter() - begin)
 
-    def judge() -> Judged:
+    def judge(_: Any) -> Judged:
         ms = 1e3 * float(np.median(taken))
         figures = {EMPTY: 0.0, "M segments a second": 1e-3 * segments / ms}
         return Judged(figures, {EMPTY: 0.0}, note=f"{figures['M segments a second']:,.0f} M segments a second")
 
-    return Scene("", draw, judge, renderer.release)
+    return Scene(draw, judge, renderer.release)

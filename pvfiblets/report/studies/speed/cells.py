@@ -1,6 +1,6 @@
 """The cells of the study of speed: each draws one thing from a slow flight on a bare context of its own.
 
-``python -m pvfiblets.report.studies.speed.cells`` measures the cells that it reads (:mod:`.process`).
+``python -m pvfiblets.report.studies.speed.cells`` measures the cells that it reads (:mod:`pvfiblets.report.process`).
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from pvfiblets.engine.view import View
 
 from ...cameras import orbit
 from ...drawing import data_bytes
+from ...process import Row, serve
 from ...timing import clock_of
 from ..culling.pictures import views
-from .process import Row, serve
 
 __all__ = ["CELLS", "measure_cell", "stored_brain"]
 

@@ -1,6 +1,6 @@
 """The study of lines in windows: fiblets beside VTK's polylines and tubes, each in a process of its own.
 
-``python -m pvfiblets.report.studies.speed.lines`` measures the cells that it reads (:mod:`.process`).
+``python -m pvfiblets.report.studies.speed.lines`` measures the cells that it reads (:mod:`pvfiblets.report.process`).
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from typing import Any
 import numpy as np
 
 from ...drawing import data_bytes
+from ...process import CellProcess, Row, serve
 from ...record import FRAME, Axes, Figure, LeftOut, Record
 from ...study import Options, Unavailable
 from ...timing import LATE, timing
 from ...window import Window
 from .cells import DEGREES_PER_FRAME, PER_STREAMLINE, WARM
-from .process import CellProcess, Row, serve
 from .study import FRAMES, LIMIT, QUICK_FRAMES, QUICK_SECONDS, by_size
 
 __all__ = ["STUDY", "LinesStudy", "measure_lines"]

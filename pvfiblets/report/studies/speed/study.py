@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 
 from ...drawing import drawing_context
+from ...process import CellProcess, Row
 from ...record import FRAME, Axes, Figure, LeftOut, Record
 from ...study import Options
 from ...timing import LATE, timing
 from .cells import stored_brain
-from .process import CellProcess, Row
 
 __all__ = ["STUDY", "SpeedStudy", "by_size", "sections"]
 

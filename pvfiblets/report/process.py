@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import signal
 import subprocess
 import sys
 import tempfile
@@ -11,7 +12,7 @@ import threading
 from collections.abc import Callable, Sequence
 from typing import IO, Any
 
-__all__ = ["CellProcess", "Row", "serve"]
+__all__ = ["CellProcess", "Row", "ended", "serve"]
 
 Row = dict[str, Any]
 
@@ -60,11 +61,13 @@ class CellProcess:
             process.stdin.write(json.dumps(cell) + "\n")
             process.stdin.flush()
             line = process.stdout.readline()
+            while line and not (line.startswith("{") and line.endswith("}\n")):  # drivers print what they like
+                line = process.stdout.readline()
         except BrokenPipeError:
             line = ""
         finally:
             timer.cancel()
-        if line.endswith("}\n"):
+        if line:
             row: Row = json.loads(line)
             return row
         reason = self.close()
@@ -87,6 +90,16 @@ class CellProcess:
         if process.stdout is not None:
             process.stdout.close()
         errors.seek(0)
-        said = errors.read().strip()
+        last = next((line.strip() for line in reversed(errors.read().splitlines()) if line.strip()), "")
         errors.close()
-        return f"failed: {said.splitlines()[-1] if said else f'ended with {process.returncode}'}"
+        return f"{ended(process.returncode)}{': ' * bool(last)}{last}"
+
+
+def ended(code: int) -> str:
+    """Return how a process ended, in words."""
+    if code >= 0:
+        return f"ended with {code}"
+    try:
+        return f"ended by {signal.Signals(-code).name}"
+    except ValueError:
+        return f"ended by signal {-code}"
