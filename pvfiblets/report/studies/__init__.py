@@ -15,7 +15,7 @@ from importlib import import_module
 
 from ..study import Study
 
-__all__ = ["MODULES", "chosen_names", "find"]
+__all__ = ["MODULES", "ONLY_NAMED", "chosen_names", "find"]
 
 MODULES = {
     "antialias": "pvfiblets.report.studies.antialias.study",
@@ -38,9 +38,13 @@ MODULES = {
 }
 
 
+ONLY_NAMED = ("speed", "lines", "reading")
+"""Studies that compare no approximations, and take hours and gigabytes: a report of all is without them."""
+
+
 def chosen_names(only: Sequence[str] | None = None) -> list[str]:
-    """Return the names of the studies asked for, all if none are named."""
-    names = list(dict.fromkeys(only or MODULES))
+    """Return the names of the studies asked for; all but :data:`ONLY_NAMED` if none are named."""
+    names = list(dict.fromkeys(only or (name for name in MODULES if name not in ONLY_NAMED)))
     for name in names:
         if name not in MODULES:
             raise ValueError(f"there is no study {name!r}; choose among {', '.join(MODULES)}")

@@ -25,6 +25,7 @@ SIDES, QUICK_SIDES = (64, 256), (48,)  # voxels along each side
 SIZE, QUICK_SIZE = 512, 96
 FRAMES = 3
 PIXELS, QUICK_PIXELS = 3000, 500
+PATIENCE = 3.0  # seconds a frame, beyond which no shorter steps are tried
 MODES = ("composite", "mip", "isosurface")
 
 
@@ -111,14 +112,19 @@ def _measured(
             window = kind(volume, look, (side, side))
             made.append(window)
             timed = timed or Comparison(data, options, left_out, window.turns, len(cameras))
+            taken = 0.0
             for step in QUICK_STEPS if options.quick else STEPS:
                 if not timed.allows(f"{kind.method}, step {step:g}"):
                     continue
+                if taken > PATIENCE:
+                    timed.refuse(f"{kind.method}, step {step:g}", f"longer steps take more than {PATIENCE:g} s a frame")
+                    continue
                 window.step(step)
-                shown = []
+                begun, shown = window.clock(), []
                 for camera in cameras:
                     window.draw(camera)
                     shown.append(window.colours())
+                taken = (window.clock() - begun) / len(cameras)
                 record = Record(
                     data=data,
                     group="windows",
