@@ -4,7 +4,7 @@ To add one, such as ``culling``: write ``pvfiblets/report/studies/culling/study.
 :class:`~pvfiblets.report.study.Study`, and put ``"culling": "pvfiblets.report.studies.culling.study"`` into
 ``MODULES``. Nothing else
 knows of it: records, Pareto fronts, page and plots are the same for all. It takes its share of a run's time, asks
-``options.budget.allows()`` before each measurement, and raises ``Unavailable`` where it cannot be done (a drawing
+``options.allows(what)`` before each measurement, and raises ``Unavailable`` where it cannot be done (a drawing
 study: where no OpenGL context can be made).
 """
 

@@ -12,9 +12,9 @@ import numpy as np
 from pvfiblets.engine.errors import EngineError
 
 from ...drawing import drawing_context
-from ...record import FRAME, Axes, Figure, LeftOut, Record
-from ...study import Options
-from ...timing import LATE, turns_of
+from ...record import FRAME, Axes, Figure, Record
+from ...study import LATE, Options
+from ...timing import turns_of
 from .scenes import PLAIN, Drawn, Subject
 from .subjects import brain_subject, halo_subject, tube_subject, volume_subject
 from .window import in_window
@@ -61,19 +61,19 @@ class FeatureStudy:
         "*change*: the feature is set anew and drawn at once, which is what dragging costs.",
     )
 
-    def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+    def run(self, options: Options) -> Iterator[Record]:
         """Yield a record for every subject and feature."""
         with drawing_context(options) as ctx:
             for make in subjects(options):
                 subject = make()
-                yield from _measured(ctx, subject, options, left_out)
+                yield from _measured(ctx, subject, options)
         try:
-            yield from in_window(partial(brain, options), QUICK_SIZE if options.quick else SIZE, options, left_out)
+            yield from in_window(partial(brain, options), QUICK_SIZE if options.quick else SIZE, options)
         except ImportError as error:
-            left_out.append(LeftOut("streamlines in a window", f"{error.name} is not installed"))
+            options.leave_out("streamlines in a window", f"{error.name} is not installed")
 
 
-def _measured(ctx: Any, subject: Subject, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+def _measured(ctx: Any, subject: Subject, options: Options) -> Iterator[Record]:
     size, frames = (QUICK_SIZE, QUICK_FRAMES) if options.quick else (SIZE, FRAMES)
     path = subject.path(frames + 1, size)
     turns, done, late = turns_of(ctx), [], []
@@ -86,7 +86,7 @@ def _measured(ctx: Any, subject: Subject, options: Options, left_out: list[LeftO
             try:
                 drawn = Drawn(ctx, subject, feature, path)
             except EngineError as error:
-                left_out.append(LeftOut(f"{subject.name}: {label}", str(error)))
+                options.leave_out(f"{subject.name}: {label}", str(error))
                 continue
             stack.callback(drawn.release)
             turns.add(drawn)
@@ -109,7 +109,7 @@ def _measured(ctx: Any, subject: Subject, options: Options, left_out: list[LeftO
             )
     if late:
         what = ", ".join(late) if done else "everything"
-        left_out.append(LeftOut(f"{subject.name}: {what}", LATE))
+        options.leave_out(f"{subject.name}: {what}", LATE)
     options.log(f"features: {subject.name}: {len(done)} features")
 
 
