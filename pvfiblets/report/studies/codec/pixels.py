@@ -15,7 +15,7 @@ from .baselines.directions import PaperFiblets, QFib
 from .data_sets import DataSet, file_sets
 from .errors import median_step
 
-__all__ = ["STUDY", "PixelsStudy", "beyond", "difference_picture", "lines_of"]
+__all__ = ["STUDY", "PixelsStudy", "beyond", "lines_of"]
 
 SIZE, QUICK_SIZE = (960, 720), (240, 180)
 STREAMLINES, QUICK_STREAMLINES = 300, 40  # a few, as in the paper: of more, pixels show the nearest of many
@@ -131,14 +131,6 @@ def beyond(shown: Pixels, other: Pixels) -> Pixels:
         for j in range(3):
             near |= padded[i : i + height, j : j + width]
     return shown & ~near
-
-
-def difference_picture(shown: Pixels, wanted: Pixels) -> npt.NDArray[np.uint8]:
-    """Pixels of both in grey on white, those of one alone in red: ``(height, width, 3)``."""
-    picture = np.full((*shown.shape, 3), 255, np.uint8)
-    picture[shown & wanted] = 150
-    picture[shown ^ wanted] = (220, 0, 0)
-    return picture
 
 
 def _by_vtk(pv: Any, plotter: Any, points: npt.ArrayLike, offsets: npt.NDArray[np.int64]) -> None:

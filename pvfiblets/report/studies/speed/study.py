@@ -6,7 +6,6 @@ import os
 import tempfile
 from collections.abc import Iterator
 from contextlib import ExitStack
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -79,7 +78,7 @@ class SpeedStudy:
             hopeless: set[tuple[Any, ...]] = set()
             parts = sections(options.quick, pipelines)
             for number, cells in enumerate(parts):
-                part = replace(options, budget=options.budget.share(1.0 / (len(parts) - number)))
+                part = options.share(1.0 / (len(parts) - number))
                 found: list[Record] = []
                 for cell in cells:
                     record = _measured({**cell, "folder": folder}, process, hopeless, part)

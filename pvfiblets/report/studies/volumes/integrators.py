@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -46,7 +45,7 @@ def integrators(ctx: Any, options: Options) -> Iterator[Record]:
         volume = field(shape, SIDE)
         camera = circle(volume, 1, LIGHT_SIZE)[0]
         name = look if shape == "ball" else f"{look} in a {shape}"
-        part = replace(options, budget=options.budget.share(1.0 / (len(chosen) - number)))
+        part = options.share(1.0 / (len(chosen) - number))
         found: list[tuple[float, Record]] = []
         renderer = VolumeRenderer(ctx, volume)
         try:

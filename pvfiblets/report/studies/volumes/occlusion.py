@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -33,7 +32,7 @@ def openness(ctx: Any, options: Options) -> Iterator[Record]:
     voxels = QUICK_VOXELS if options.quick else VOXELS
     for number, (name, (make, value, away)) in enumerate(SETS.items()):
         data = f"{voxels}³ {name}, occlusion"
-        part = replace(options, budget=options.budget.share(1.0 / (len(SETS) - number)))
+        part = options.share(1.0 / (len(SETS) - number))
         if not part.lasts(data):
             continue
         picture = _Picture(ctx, make(voxels), value, away, QUICK_SIZE if options.quick else SIZE)

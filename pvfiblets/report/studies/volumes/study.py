@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -92,7 +91,7 @@ def pictures(ctx: Any, options: Options) -> Iterator[Record]:
     try:
         for number, (mode, kind) in enumerate(cases):
             name = f"{volume.shape[0]}³ vessels, {mode}" + ("" if kind == "trilinear" else f", {kind}")
-            part = replace(options, budget=options.budget.share(1.0 / (len(cases) - number)))
+            part = options.share(1.0 / (len(cases) - number))
             if not part.lasts(name):
                 continue
             look = look_of(volume, mode)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -89,7 +88,7 @@ def beside_vtk(options: Options) -> Iterator[Record]:
     makers = [("vessels", vessel_tree, n) for n in sides] + ([] if options.quick else [("head", brain_like, 192)])
     cases = [(name, make, n, mode) for name, make, n in makers for mode in MODES]
     for number, (name, make, n, mode) in enumerate(cases):
-        part = replace(options, budget=options.budget.share(1.0 / (len(cases) - number)))
+        part = options.share(1.0 / (len(cases) - number))
         data = f"{n}³ {name}, {mode}, in a window"
         if not part.lasts(data):
             continue
