@@ -12,9 +12,9 @@ import numpy as np
 from pvfiblets.engine.errors import EngineError
 
 from ...drawing import drawing_context
-from ...record import FRAME, Axes, Figure, Record
-from ...study import LATE, Options
-from ...timing import turns_of
+from ...record import Axes, Figure, Record
+from ...study import Options
+from ...timing import Comparison, turns_of
 from .scenes import PLAIN, Drawn, Subject
 from .subjects import brain_subject, halo_subject, tube_subject, volume_subject
 from .window import in_window
@@ -76,41 +76,35 @@ class FeatureStudy:
 def _measured(ctx: Any, subject: Subject, options: Options) -> Iterator[Record]:
     size, frames = (QUICK_SIZE, QUICK_FRAMES) if options.quick else (SIZE, FRAMES)
     path = subject.path(frames + 1, size)
-    turns, done, late = turns_of(ctx), [], []
+    compared, shown = Comparison(subject.name, options, turns_of(ctx), frames), []
     with ExitStack() as stack:
         for feature in subject.features:
             label = f"{feature.group} {feature.name}".strip()
-            if not options.budget.allows():
-                late.append(label)
+            if not compared.allows(label):
                 continue
             try:
                 drawn = Drawn(ctx, subject, feature, path)
             except EngineError as error:
-                options.leave_out(f"{subject.name}: {label}", str(error))
+                compared.refuse(label, error)
                 continue
             stack.callback(drawn.release)
-            turns.add(drawn)
-            done.append((feature, drawn))
-        turns.run(options.repeats, options.budget.allows)
-        timings = [turns.timing(number, frames, FRAME) for number in range(len(done))]
-        sizes = [drawn.nbytes for _, drawn in done]
-        for (feature, _), timing, nbytes in zip(done, timings, sizes, strict=True):
-            yield Record(
+            shown.append(drawn)
+            record = Record(
                 data=f"{subject.name}, {size[0]} x {size[1]}",
                 group=subject.name.replace(" ", "-"),
                 approximation="nothing",
                 method=feature.group,
                 setting=feature.name,
                 errors={},
-                costs=_costs(nbytes, sizes[0], timing, timings[0]),
-                times={"draw": timing},
                 ours=True,
                 default=feature.group == PLAIN,
             )
-    if late:
-        what = ", ".join(late) if done else "everything"
-        options.leave_out(f"{subject.name}: {what}", LATE)
-    options.log(f"features: {subject.name}: {len(done)} features")
+            compared.add(record, draw=drawn)
+        plain: tuple[int, Timing] | None = None
+        for record, drawn in zip(compared.finish(), shown, strict=True):
+            plain = plain or (drawn.nbytes, record.times["draw"])
+            record.costs = _costs(drawn.nbytes, plain[0], record.times["draw"], plain[1])
+            yield record
 
 
 def _costs(nbytes: int, plain_nbytes: int, timing: Timing, plain: Timing) -> dict[str, Figure]:
