@@ -4,19 +4,18 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
 from types import MappingProxyType
 from typing import Any, TypeAlias
 
-from .record import LeftOut, Record
+from .record import Record
 from .study import Options, Unavailable
 
 __all__ = ["Part", "WindowPart", "data_bytes", "drawing_context", "run_parts"]
 
-Part: TypeAlias = Callable[[Any, Options, list[LeftOut]], Iterator[Record]]
+Part: TypeAlias = Callable[[Any, Options], Iterator[Record]]
 """Of a study: from a context and options to records."""
 
-WindowPart: TypeAlias = Callable[[Options, list[LeftOut]], Iterator[Record]]
+WindowPart: TypeAlias = Callable[[Options], Iterator[Record]]
 """Of a study: draws in windows."""
 
 OF_THE_PICTURE = ("gbuffer", "occlusion", "framebuffer", "depth", "depth of tubes", "marks of tubes")
@@ -46,7 +45,6 @@ def drawing_context(options: Options) -> Iterator[Any]:
 def run_parts(
     parts: Mapping[Part, float],
     options: Options,
-    left_out: list[LeftOut],
     windows: Mapping[WindowPart, float] = MappingProxyType({}),
 ) -> Iterator[Record]:
     """Yield records part by part, each with its share of what time is left, by weights.
@@ -56,16 +54,16 @@ def run_parts(
     weights = [*parts.values(), *windows.values()]
 
     def share(number: int) -> Options:
-        return replace(options, budget=options.budget.share(weights[number] / sum(weights[number:])))
+        return options.share(weights[number] / sum(weights[number:]))
 
     with drawing_context(options) as ctx:
         for number, part in enumerate(parts):
-            yield from part(ctx, share(number), left_out)
+            yield from part(ctx, share(number))
     for number, drawn in enumerate(windows, len(parts)):
         try:
-            yield from drawn(share(number), left_out)
+            yield from drawn(share(number))
         except ImportError as error:
-            left_out.append(LeftOut("pictures in windows", f"{error.name} is not installed"))
+            options.leave_out("pictures in windows", f"{error.name} is not installed")
 
 
 def data_bytes(explained: Mapping[str, Any]) -> int:

@@ -1,8 +1,8 @@
 """What a study is, and what it is given: options, and a budget of time that it keeps to.
 
 A study is an object with ``name``, ``title``, ``approximates`` (one sentence: what is approximated, beside what),
-``axes`` (what is drawn against what), ``notes``, and ``run(options, left_out)``, which yields records as they are
-measured. What it cannot measure it puts into ``left_out`` with the reason; if it cannot measure anything (no GPU, no
+``axes`` (what is drawn against what), ``notes``, and ``run(options)``, which yields records as they are measured. What
+it cannot measure it leaves out with the reason (:meth:`Options.leave_out`); if it cannot measure anything (no GPU, no
 data, a package that is missing) it raises :class:`Unavailable`, and the report names it with that reason. If it has
 ``across`` as well, paths of figures, one table shows these of all data sets.
 """
@@ -12,13 +12,16 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Protocol
 
 from .record import Axes, CaseResult, LeftOut, Record
 
-__all__ = ["Budget", "Options", "Study", "Unavailable"]
+__all__ = ["LATE", "Budget", "Options", "Study", "Unavailable"]
+
+LATE = "the time given was used up"
+"""Why something was left out."""
 
 
 class Unavailable(Exception):  # noqa: N818 - it is a state to be reported, not an error
@@ -74,6 +77,27 @@ class Options:
     driver: str = ""  # OpenGL renderer and version; a study that draws writes them here
     # Takes lines that say how far the study is
     log: Callable[[str], None] = lambda line: print(line, file=sys.stderr, flush=True)
+    left_out: list[LeftOut] = field(default_factory=list)  # What was not measured, and why
+
+    def share(self, part: float = 1.0) -> Options:
+        """Return the same with such a part of the time that is left."""
+        return replace(self, budget=self.budget.share(part))
+
+    def leave_out(self, what: str, reason: object) -> None:
+        """Note what is not measured, and why."""
+        self.left_out.append(LeftOut(what, str(reason)))
+
+    def allows(self, what: str) -> bool:
+        """Return whether another measurement fits; if not, it is left out."""
+        return self.budget.allows() or self._late(what)
+
+    def lasts(self, what: str) -> bool:
+        """Return whether any time is left; if not, something is left out."""
+        return self.budget.left > 0.0 or self._late(what)
+
+    def _late(self, what: str) -> bool:
+        self.leave_out(what, LATE)
+        return False
 
 
 class Study(Protocol):
@@ -85,6 +109,6 @@ class Study(Protocol):
     axes: Sequence[Axes]
     notes: Sequence[str]
 
-    def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record | CaseResult]:
+    def run(self, options: Options) -> Iterator[Record | CaseResult]:
         """Yield records, and results of extreme cases, as they are measured."""
         ...

@@ -14,13 +14,10 @@ from typing import Any
 
 import numpy as np
 
-from .record import FRAME, LeftOut, Record, Timing
-from .study import Options
+from .record import FRAME, Record, Timing
+from .study import LATE, Options
 
-__all__ = ["LATE", "Comparison", "Turns", "clock_of", "timing", "turns_of"]
-
-LATE = "the time given was used up"
-"""Why something was left out."""
+__all__ = ["Comparison", "Turns", "clock_of", "timing", "turns_of"]
 
 SOFTWARE = re.compile("llvmpipe|softpipe|swrast|swiftshader|software", re.IGNORECASE)
 
@@ -102,9 +99,9 @@ class Comparison:
     """
 
     def __init__(
-        self, data: str, options: Options, left_out: list[LeftOut], turns: Turns, items: float = 1.0, item: str = FRAME
+        self, data: str, options: Options, turns: Turns, items: float = 1.0, item: str = FRAME
     ) -> None:
-        self._data, self._options, self._left_out = data, options, left_out
+        self._data, self._options = data, options
         self._turns, self._items, self._item = turns, items, item
         self._done: list[tuple[Record, dict[str, int]]] = []
         self._late: list[str] = []
@@ -118,7 +115,7 @@ class Comparison:
 
     def refuse(self, label: str, reason: object) -> None:
         """Leave a variant out."""
-        self._left_out.append(LeftOut(f"{self._data}: {label}", str(reason)))
+        self._options.leave_out(f"{self._data}: {label}", reason)
 
     def add(self, record: Record, **calls: Callable[[], object]) -> None:
         """Take in a record, and calls to be timed under their names; each has been made before."""
@@ -132,5 +129,5 @@ class Comparison:
             yield record
         if self._late:
             what = ", ".join(self._late) if self._done else "everything"
-            self._left_out.append(LeftOut(f"{self._data}: {what}", LATE))
+            self._options.leave_out(f"{self._data}: {what}", LATE)
         self._options.log(f"{self._data}: {len(self._done)} variants")

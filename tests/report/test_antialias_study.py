@@ -21,7 +21,7 @@ def small(monkeypatch):
 @pytest.fixture
 def measured(small):
     left = []
-    records = list(antialias.STUDY.run(little(), left))
+    records = list(antialias.STUDY.run(little(left_out=left)))
     assert not left
     mark_fronts(records, antialias.STUDY.axes)
     return {(record.group, record.setting): record for record in records}
@@ -66,5 +66,5 @@ def test_differences_are_of_pixels_that_show_something():
 
 def test_what_there_is_no_time_for_is_named(small):
     left = []
-    assert not list(antialias.STUDY.run(little(budget=Budget(0.0)), left))
+    assert not list(antialias.STUDY.run(little(budget=Budget(0.0), left_out=left)))
     assert [one.what for one in left][:2] == ["brain of 3,000 segments", "bundle"]

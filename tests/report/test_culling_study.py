@@ -29,7 +29,7 @@ def small(monkeypatch):
 def test_all_variants_are_measured_on_every_scene(gl, small, tmp_path):
     formats.write(tmp_path / "some.tck", data_sets.synthetic_tracking(0.5, False, 2000, 0))
     left = []
-    records = list(culling.STUDY.run(little(files=(tmp_path,)), left))
+    records = list(culling.STUDY.run(little(files=(tmp_path,), left_out=left)))
     assert not left
     scenes = {record.data for record in records}
     assert scenes == {
@@ -62,7 +62,7 @@ def test_all_variants_are_measured_on_every_scene(gl, small, tmp_path):
 
 def test_what_time_did_not_suffice_for_is_named(gl, small):
     left = []
-    assert list(culling.STUDY.run(little(budget=Budget(0.0)), left)) == []
+    assert list(culling.STUDY.run(little(budget=Budget(0.0), left_out=left))) == []
     late = [item.what for item in left if item.reason == "the time given was used up"]
     assert late == ["brain, far, 1.14° a frame: everything", "brain, inside, 1.14° a frame: everything"]
     assert "real files" in {item.what for item in left}
@@ -74,7 +74,7 @@ def test_a_few_of_many_files_are_enough_and_it_says_so(gl, small, tmp_path, monk
     for name in ("a", "b"):
         formats.write(tmp_path / f"{name}.tck", data_sets.synthetic_tracking(0.5, False, 800, 0))
     left = []
-    assert list(culling.STUDY.run(little(files=(tmp_path,)), left)) == []
+    assert list(culling.STUDY.run(little(files=(tmp_path,), left_out=left))) == []
     assert left == [LeftOut("smaller files", "the largest are enough to see what culling does")]
 
 

@@ -40,7 +40,7 @@ def measured(_headless, request):
             patch.setattr(features, f"QUICK_{name}", value)
         patch.setattr(features_window, "window_features", lambda made: [f for f in every(made) if f.name in IN_WINDOW])
         left = []
-        records = list(features.STUDY.run(little(), left))
+        records = list(features.STUDY.run(little(left_out=left)))
     assert not left
     return {(record.group, record.method, record.setting): record for record in records}
 
@@ -137,7 +137,7 @@ def test_whole_pictures_are_changed(gl, wanted):
 
 def test_time_that_is_used_up_is_told(gl, small):
     left = []
-    assert list(features.STUDY.run(little(budget=Budget(0.0)), left)) == []
+    assert list(features.STUDY.run(little(budget=Budget(0.0), left_out=left))) == []
     assert [item.what for item in left] == [
         f"{name}: everything"
         for name in ("streamlines", "spline tubes", "lines with halos", "volume", "streamlines in a window, 96 x 64")

@@ -38,7 +38,7 @@ def small(monkeypatch):
 def test_all_variants_are_measured_on_every_scene(gl, small, tmp_path):
     formats.write(tmp_path / "some.tck", data_sets.synthetic_tracking(0.5, False, 1500, 3))
     left = []
-    records = list(halos.STUDY.run(little(points=1500, files=(tmp_path,)), left))
+    records = list(halos.STUDY.run(little(points=1500, files=(tmp_path,), left_out=left)))
     assert not left
     windows = [record for record in records if record.data == "helices, 1,200 vertices, in a window"]
     assert [(record.method, record.default) for record in windows] == [("halos", True), ("VTK, plain", False)]
@@ -67,7 +67,7 @@ def test_all_variants_are_measured_on_every_scene(gl, small, tmp_path):
 
 
 def test_the_float64_reference_is_off_by_nothing_and_pictures_by_next_to_nothing(gl, small):
-    found = {r.label: r for r in halos.STUDY.run(little(points=1500), []) if r.group == "helices"}
+    found = {r.label: r for r in halos.STUDY.run(little(points=1500)) if r.group == "helices"}
     right = found["float64 reference (1 sample)"]
     assert {figure.value for figure in right.errors.values()} == {0.0}
     assert not right.ours
@@ -81,7 +81,7 @@ def test_the_float64_reference_is_off_by_nothing_and_pictures_by_next_to_nothing
 
 def test_what_time_did_not_suffice_for_is_named(gl, small):
     left = []
-    assert list(halos.STUDY.run(little(points=1500, budget=Budget(0.0)), left)) == []
+    assert list(halos.STUDY.run(little(points=1500, budget=Budget(0.0), left_out=left))) == []
     late = [item.what for item in left if item.reason == "the time given was used up"]
     assert late[0] == "2 helices: everything"
     assert late[1:3] == ["crossings: everything", "brain, 0.5 mm: everything"]
@@ -91,7 +91,8 @@ def test_a_few_of_many_files_are_enough_and_it_says_so(gl, small, tmp_path):
     for name in ("a", "b"):
         formats.write(tmp_path / f"{name}.tck", data_sets.synthetic_tracking(0.5, False, 300, 0))
     left = []
-    assert [s.name for s in halos.scenes(little(points=1500, files=(tmp_path,)), left)] == ["brain, 0.5 mm", "a.tck"]
+    found = halos.scenes(little(points=1500, files=(tmp_path,), left_out=left))
+    assert [scene.name for scene in found] == ["brain, 0.5 mm", "a.tck"]
     assert left == [LeftOut("smaller files", "the largest are enough to see what halos are off by")]
 
 
@@ -158,7 +159,7 @@ def test_pixel_errors_tell_what_differs(gl):
 
 
 def test_halos_of_fiblets_are_those_of_the_same_lines(gl):
-    scene = next(halos.scenes(little(points=1500), []))
+    scene = next(halos.scenes(little(points=1500)))
     fiblets = compress(scene.tractogram.streamlines)
     shown = []
     for drawing in (FibletHalos(gl, fiblets, 2), Strips(gl, scene.drawn, 2)):

@@ -12,7 +12,7 @@ from .little import little
 
 def test_errors_are_those_of_the_decoded_points():
     left_out = []
-    records = {(record.data, record.setting): record for record in STUDY.run(little(points=2000), left_out)}
+    records = {(record.data, record.setting): record for record in STUDY.run(little(points=2000, left_out=left_out))}
     assert left_out
     for (data, setting), record in records.items():
         assert record.default == (setting == "default")

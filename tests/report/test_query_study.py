@@ -15,7 +15,7 @@ from .little import little
 def test_answers_are_those_of_the_references(monkeypatch):
     monkeypatch.setattr(query, "QUICK_STREAMLINES", (300,))
     left = []
-    records = list(query.STUDY.run(little(), left))
+    records = list(query.STUDY.run(little(left_out=left)))
     assert not left
     found = {(record.data, record.method, record.setting): record for record in records}
     for name in ("like 100", "clusters at 20 mm", "clusters at 10 mm"):
@@ -32,7 +32,7 @@ def test_answers_are_those_of_the_references(monkeypatch):
 
 def test_what_there_was_no_time_for_is_told():
     left = []
-    assert not list(query.STUDY.run(little(budget=Budget(0.0)), left))
+    assert not list(query.STUDY.run(little(budget=Budget(0.0), left_out=left)))
     assert [item.what for item in left] == ["2,000 streamlines"]
 
 

@@ -49,7 +49,7 @@ def test_cells_are_records_by_size_and_what_is_not_there_is_told(gl, monkeypatch
              for count in (1e4, 2e4) for pipeline in ("compute", "none")]  # fmt: skip
     monkeypatch.setattr(speed, "sections", lambda *_: [cells])
     left = []
-    records = list(speed.STUDY.run(little(), left))
+    records = list(speed.STUDY.run(little(left_out=left)))
     assert [record.data for record in records] == [
         "0.01 M segments, 96×72", "0.02 M segments, 96×72", "by segments, 96×72",
     ]  # fmt: skip
@@ -64,7 +64,7 @@ def test_cells_are_records_by_size_and_what_is_not_there_is_told(gl, monkeypatch
 
 def test_what_there_was_no_time_for_is_told(gl):
     left = []
-    assert not list(speed.STUDY.run(little(budget=Budget(0.0)), left))
+    assert not list(speed.STUDY.run(little(budget=Budget(0.0), left_out=left)))
     late = [item for item in left if item.reason == "the time given was used up"]
     assert len(late) > 20
     assert any(item.what == "halos: shape-small, 320×180, halos" for item in late)
@@ -104,7 +104,7 @@ def test_data_that_cannot_be_made_is_told(tmp_path):
     (tmp_path / "a file").write_text("")
     left = []
     cell = {**CELLS[0], "folder": str(tmp_path / "a file")}
-    assert speed._measured(cell, CellProcess([]), set(), little(), left) is None
+    assert speed._measured(cell, CellProcess([]), set(), little(left_out=left)) is None
     assert left[0].reason.startswith("its data was not made: ")
 
 
@@ -112,7 +112,7 @@ def test_data_that_cannot_be_made_is_told(tmp_path):
 def test_lines_in_windows_are_measured_beside_vtks(monkeypatch):
     monkeypatch.setattr(lines, "QUICK_SIZE", (64, 48))
     left = []
-    records = list(lines.STUDY.run(little(), left))
+    records = list(lines.STUDY.run(little(left_out=left)))
     assert not left
     found = {record.label: record for record in records}
     assert list(found) == ["fiblets", "VTK's polylines", "VTK's polylines (without multi-sampling)", "VTK's tubes"]
@@ -129,7 +129,7 @@ def test_lines_in_windows_are_measured_beside_vtks(monkeypatch):
 
 def test_reading_is_measured_beside_nibabel():
     left = []
-    records = list(reading.STUDY.run(little(), left))
+    records = list(reading.STUDY.run(little(left_out=left)))
     assert not left
     assert [record.label for record in records] == 2 * ["pvfiblets", "pvfiblets (in pieces)", "nibabel"] + [
         "pvfiblets", "pvfiblets (in pieces)",

@@ -64,7 +64,7 @@ def test_files_are_taken_from_folders_and_what_cannot_be_read_is_named(tmp_path,
     (tmp_path / "notes.txt").write_text("no tractogram")
     formats.write(tmp_path / "empty.tck", ragged([]))
     left = []
-    sets = list(data_sets.data_sets(little(files=(tmp_path,)), left))
+    sets = list(data_sets.data_sets(little(files=(tmp_path,), left_out=left)))
     assert [s.name for s in sets if s.group not in ("smooth", "noisy")] == ["good.tck"]
     assert {item.what for item in left} == {"bad.tck", "empty.tck"}
     assert str(tmp_path) not in " ".join(item.reason for item in left)
@@ -93,7 +93,7 @@ def test_made_up_sets_have_constant_steps_and_noise_turns_them_more():
 @pytest.fixture(scope="module")
 def of_codec():
     left = []
-    return list(codec.STUDY.run(little(), left)), left
+    return list(codec.STUDY.run(little(left_out=left))), left
 
 
 def test_every_way_is_measured_on_every_set_or_named_and_keeps_its_bound(of_codec):
@@ -130,7 +130,7 @@ def test_records_of_fewer_points():
 def test_a_missing_package_is_named_once(monkeypatch):
     monkeypatch.setitem(sys.modules, "zstandard", None)
     left = []
-    records = list(codec.STUDY.run(little(), left))
+    records = list(codec.STUDY.run(little(left_out=left)))
     assert [item for item in left if "zstd" in item.what] == [LeftOut("zstd of float32", "zstandard is not installed")]
     assert not any(record.method.startswith("zstd") for record in records)
 
@@ -179,7 +179,7 @@ def test_what_codes_mean_is_what_the_codec_decodes():
 def test_the_study_of_decoding_measures_all_variants(monkeypatch):
     monkeypatch.setattr(decode, "QUICK_FIBLETS", 10)
     left = []
-    records = list(decode.STUDY.run(little(), left))
+    records = list(decode.STUDY.run(little(left_out=left)))
     assert not left
     assert len(records) == 4 * 24
     assert sum(record.default for record in records) == 4
@@ -209,10 +209,9 @@ class FakeStudy:
     def __init__(self, name, clock, seconds, wanted):
         self.name, self.clock, self.seconds, self.wanted = name, clock, seconds, wanted
 
-    def run(self, options, left_out):
+    def run(self, options):
         for i in range(self.wanted):
-            if not options.budget.allows():
-                left_out.append(LeftOut(f"{i}", "the time given was used up"))
+            if not options.allows(f"{i}"):
                 continue
             self.clock.now += self.seconds
             yield Record("set", "g", "nothing", "method", f"{i}", {"max": Figure(1.0 / (i + 1), "mm")},
@@ -271,7 +270,7 @@ def test_a_budget_looks_at_what_the_longest_took():
 
 def test_a_study_that_cannot_be_done_is_named_with_its_reason(fakes, tmp_path):
     class Away(FakeStudy):
-        def run(self, options, left_out):
+        def run(self, options):
             raise Unavailable("no OpenGL context can be made here")
             yield
 
@@ -304,7 +303,7 @@ def test_a_study_that_draws_has_a_context_and_the_report_its_driver(gl, monkeypa
     class Drawing:
         name, title, approximates, axes, notes = "drawing", "Drawing", "", (), ()
 
-        def run(self, options, left_out):
+        def run(self, options):
             with drawing.drawing_context(options) as ctx:
                 self.version = ctx.info["GL_VERSION"]
                 yield from ()
@@ -346,4 +345,4 @@ def test_without_opengl_a_study_is_unavailable_with_the_reason(monkeypatch):
 def test_a_study_that_draws_is_unavailable_without_opengl(name, monkeypatch):
     monkeypatch.setitem(sys.modules, "moderngl", None)
     with pytest.raises(Unavailable, match="moderngl"):
-        list(studies.find(name).run(little(), []))
+        list(studies.find(name).run(little()))

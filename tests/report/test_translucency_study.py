@@ -17,7 +17,7 @@ def small(monkeypatch):
 @pytest.mark.more
 def test_all_lines_are_nearer_to_the_exact_picture_than_few_layers(small):
     left = []
-    records = {(r.group, r.setting): r for r in translucency.STUDY.run(little(), left)}
+    records = {(r.group, r.setting): r for r in translucency.STUDY.run(little(left_out=left))}
     assert not left
     groups = {group for group, _ in records}
     assert groups == {f"{name}-{o}" for name in ("whole-brain", "brain-and-a-surface") for o in (0.05, 0.5)}
@@ -34,5 +34,5 @@ def test_all_lines_are_nearer_to_the_exact_picture_than_few_layers(small):
 
 def test_what_there_is_no_time_for_is_named(small):
     left = []
-    assert not list(translucency.STUDY.run(little(budget=Budget(0.0)), left))
+    assert not list(translucency.STUDY.run(little(budget=Budget(0.0), left_out=left)))
     assert [one.what for one in left] == ["whole brain", "brain and a surface"]

@@ -30,8 +30,8 @@ def small(monkeypatch):
 @pytest.mark.more
 def test_all_parts_are_measured_and_exact_solvers_are_exact(gl, small):
     left = []
-    options = little()
-    records = list(tubes.STUDY.run(options, left))
+    options = little(left_out=left)
+    records = list(tubes.STUDY.run(options))
     assert not left
     assert options.driver.startswith(gl.info["GL_RENDERER"])
     assert all(math.isfinite(figure.value) for record in records for figure in record.errors.values())
@@ -72,7 +72,7 @@ def test_all_parts_are_measured_and_exact_solvers_are_exact(gl, small):
 
 def test_what_there_was_no_time_for_is_told(gl, small):
     left = []
-    records = list(tubes.STUDY.run(little(budget=Budget(0.0)), left))
+    records = list(tubes.STUDY.run(little(budget=Budget(0.0), left_out=left)))
     assert all(not record.errors for record in records)
     assert {item.reason for item in left} == {"the time given was used up"}
     told = " ".join(item.what for item in left)

@@ -57,8 +57,8 @@ def small(monkeypatch):
 @pytest.mark.exhaustive
 def test_all_parts_are_measured_and_what_converges_is_right(gl, small):
     left = []
-    options = little()
-    records = list(volumes.STUDY.run(options, left))
+    options = little(left_out=left)
+    records = list(volumes.STUDY.run(options))
     assert not left
     assert options.driver.startswith(gl.info["GL_RENDERER"])
     bounded = [record for record in records if record.data != "bare formulae"]  # unstable ones leave all bounds
@@ -107,7 +107,7 @@ def test_all_parts_are_measured_and_what_converges_is_right(gl, small):
 
 def test_what_there_was_no_time_for_is_told(gl, small):
     left = []
-    assert not list(volumes.STUDY.run(little(budget=Budget(0.0)), left))
+    assert not list(volumes.STUDY.run(little(budget=Budget(0.0), left_out=left)))
     assert {item.reason for item in left} == {"the time given was used up"}
     told = " ".join(item.what for item in left)
     assert all(name in told for name in ("ramp, κΔ 0.1", "24³ vessels, mip", "32³ head, occlusion"))

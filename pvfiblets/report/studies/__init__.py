@@ -2,10 +2,10 @@
 
 To add one, such as ``culling``: write ``pvfiblets/report/studies/culling/study.py`` with an object ``STUDY`` that is a
 :class:`~pvfiblets.report.study.Study`, and put ``"culling": "pvfiblets.report.studies.culling.study"`` into
-``MODULES``. Nothing else
-knows of it: records, Pareto fronts, page and plots are the same for all. It takes its share of a run's time, asks
-``options.budget.allows()`` before each measurement, and raises ``Unavailable`` where it cannot be done (a drawing
-study: where no OpenGL context can be made).
+``MODULES``. Nothing else depends on it: records, Pareto fronts, page and plots are the same for all. A study takes its
+share of a run's time, asks ``options.allows(what)`` before each measurement, and raises ``Unavailable`` where it cannot
+be done (a drawing study: where no OpenGL context can be made). Variants of one data set that are timed by turns are a
+:class:`~pvfiblets.report.timing.Comparison`.
 """
 
 from __future__ import annotations

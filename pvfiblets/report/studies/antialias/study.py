@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ...record import FRAME, Axes, Figure, LeftOut, Record
-from ...study import Options, Unavailable
-from ...timing import LATE, timing
+from ...record import FRAME, Axes, Figure, Record
+from ...study import LATE, Options, Unavailable
+from ...timing import timing
 from ...window import Window
 from ..codec.data_sets import files_of
 
@@ -173,17 +173,16 @@ class AntialiasStudy:
         "under MSAA of 8.",
     )
 
-    def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+    def run(self, options: Options) -> Iterator[Record]:
         """Yield a record for every scene and variant."""
         try:
             import pyvista  # noqa: F401
         except ImportError as error:
             raise Unavailable(f"{error.name} is not installed") from error
         for subject in subjects(options):
-            if not options.budget.allows():
-                left_out.append(LeftOut(subject.name, LATE))
+            if not options.allows(subject.name):
                 continue
-            yield from _measured(subject, options, left_out)
+            yield from _measured(subject, options)
 
 
 def differences(picture: Pixels, reference: Pixels) -> dict[str, float]:
@@ -289,7 +288,7 @@ class PictureWindow(Window):
         return total / side**2
 
 
-def _measured(subject: Subject, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+def _measured(subject: Subject, options: Options) -> Iterator[Record]:
     quick, begun, late = options.quick, time.perf_counter(), []
     size, side = (QUICK_SIZE, QUICK_REFERENCE) if quick else (SIZE, REFERENCE)
     window = PictureWindow(subject, subject.size or size)
@@ -313,7 +312,7 @@ def _measured(subject: Subject, options: Options, left_out: list[LeftOut]) -> It
     finally:
         window.release()
     if late:
-        left_out.append(LeftOut(f"{subject.name}: {', '.join(late)}", LATE))
+        options.leave_out(f"{subject.name}: {', '.join(late)}", LATE)
     options.log(f"antialias: {subject.name}: {time.perf_counter() - begun:.0f} s")
 
 

@@ -13,7 +13,6 @@ from pvfiblets import formats
 from pvfiblets.formats.registry import suffixes
 from pvfiblets.streamlines import Streamlines
 
-from ...record import LeftOut
 from ...study import Options
 
 __all__ = ["DataSet", "data_sets", "file_sets", "files_of", "thinned"]
@@ -37,30 +36,30 @@ class DataSet:
     streamlines: Streamlines
 
 
-def data_sets(options: Options, left_out: list[LeftOut]) -> Iterator[DataSet]:
+def data_sets(options: Options) -> Iterator[DataSet]:
     """Make or read one set after the other, so that one at a time is in memory."""
     for noisy in (False, True):
         for step in QUICK_STEPS if options.quick else STEPS:
             kind = "noisy" if noisy else "smooth"
             yield DataSet(f"{kind}, {step:g} mm", kind, synthetic_tracking(step, noisy, options.points, options.seed))
-    yield from file_sets(options, options.points, left_out)
+    yield from file_sets(options, options.points)
 
 
-def file_sets(options: Options, points: int, left_out: list[LeftOut]) -> Iterator[DataSet]:
+def file_sets(options: Options, points: int) -> Iterator[DataSet]:
     """Read one file after the other, the largest first, each cut to so many points."""
     paths, reason = files_of(options.files)
     if reason:
-        left_out.append(LeftOut("real files", reason))
+        options.leave_out("real files", reason)
     for path in paths:
         try:
             streamlines, note = thinned(formats.iter_chunks(path), points)
         except (ValueError, OSError) as error:
-            left_out.append(LeftOut(path.name, " ".join(str(error).replace(str(path), path.name).split())))
+            options.leave_out(path.name, " ".join(str(error).replace(str(path), path.name).split()))
             continue
         if not streamlines.n_points:
-            left_out.append(LeftOut(path.name, "it has no points"))
+            options.leave_out(path.name, "it has no points")
         elif not np.isfinite(streamlines.points).all():
-            left_out.append(LeftOut(path.name, "it has points that are not finite"))
+            options.leave_out(path.name, "it has points that are not finite")
         else:
             name = f"{path.name}, {note}" if note else path.name
             yield DataSet(name, "files" if streamlines.n_points >= SMALL else "", streamlines)

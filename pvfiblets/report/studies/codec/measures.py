@@ -14,9 +14,9 @@ import numpy.typing as npt
 from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.streamlines import Streamlines
 
-from ...record import Axes, Figure, LeftOut, Record
+from ...record import Axes, Figure, Record
 from ...study import Options
-from ...timing import LATE, Comparison, Turns
+from ...timing import Comparison, Turns
 from .data_sets import DataSet
 from .errors import median_step
 from .tractograms import trackings, whole_files
@@ -56,16 +56,15 @@ class MeasuresStudy:
         "Where it is not within 2 %, ``table`` warns and names the promise that is needed.",
     )
 
-    def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+    def run(self, options: Options) -> Iterator[Record]:
         """Yield a record for every set and promise."""
-        for data in chain(trackings(options), whole_files(options, left_out)):
-            if not options.budget.allows():
-                left_out.append(LeftOut(data.name, LATE))
+        for data in chain(trackings(options), whole_files(options)):
+            if not options.allows(data.name):
                 continue
-            yield from _measured(data, options, left_out)
+            yield from _measured(data, options)
 
 
-def _measured(data: DataSet, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+def _measured(data: DataSet, options: Options) -> Iterator[Record]:
     from pvfiblets import compress
 
     lines = data.streamlines
@@ -74,7 +73,7 @@ def _measured(data: DataSet, options: Options, left_out: list[LeftOut]) -> Itera
     sets = {"default": usual} | {
         f"{factor:g} times": compress(lines, exact=False, max_error=factor * usual.promise) for factor in OTHERS
     }
-    compared = Comparison(data.name, options, left_out, Turns(), lines.n_points, "point")
+    compared = Comparison(data.name, options, Turns(), lines.n_points, "point")
     for setting, fiblets in sets.items():
         figures = _errors(truth, _numbers(fiblets, lines), step)
         record = Record(data.name, data.group, "measures", "fiblets", setting, figures, ours=True,

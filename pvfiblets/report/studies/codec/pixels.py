@@ -8,15 +8,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ...record import Axes, Figure, LeftOut, Record
+from ...record import Axes, Figure, Record
 from ...study import Options, Unavailable
-from ...timing import LATE
 from ...window import Window
 from .baselines.directions import PaperFiblets, QFib
 from .data_sets import DataSet, file_sets
 from .errors import median_step
 
-__all__ = ["STUDY", "PixelsStudy", "beyond", "difference_picture", "lines_of"]
+__all__ = ["STUDY", "PixelsStudy", "beyond", "lines_of"]
 
 SIZE, QUICK_SIZE = (960, 720), (240, 180)
 STREAMLINES, QUICK_STREAMLINES = 300, 40  # a few, as in the paper: of more, pixels show the nearest of many
@@ -44,27 +43,26 @@ class PixelsStudy:
         "the same without an error to speak of, which leaves what the two ways of rasterising differ by.",
     )
 
-    def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+    def run(self, options: Options) -> Iterator[Record]:
         """Yield a record for every set, view and method."""
         try:
             import pyvista as pv
         except ImportError as error:
             raise Unavailable(f"{error.name} is not installed") from error
-        for data in _sets(options, left_out):
-            if not options.budget.allows():
-                left_out.append(LeftOut(data.name, LATE))
+        for data in _sets(options):
+            if not options.allows(data.name):
                 continue
             yield from _measured(pv, data, options)
 
 
-def _sets(options: Options, left_out: list[LeftOut]) -> Iterator[DataSet]:
+def _sets(options: Options) -> Iterator[DataSet]:
     from pvfiblets.synthetic.trackers import tracked_streamlines
 
     count = QUICK_STREAMLINES if options.quick else STREAMLINES
     for algorithm in ("iFOD1", "SD_STREAM"):
         made = tracked_streamlines(algorithm, count, STEP, options.seed)
         yield DataSet(f"{algorithm}-like, {STEP:g} mm", algorithm, made)
-    for data in file_sets(options, options.points, left_out):
+    for data in file_sets(options, options.points):
         some = data.streamlines[: min(count, len(data.streamlines))]
         if some.n_points > len(some):
             yield DataSet(data.name, "files", some)
@@ -133,14 +131,6 @@ def beyond(shown: Pixels, other: Pixels) -> Pixels:
         for j in range(3):
             near |= padded[i : i + height, j : j + width]
     return shown & ~near
-
-
-def difference_picture(shown: Pixels, wanted: Pixels) -> npt.NDArray[np.uint8]:
-    """Pixels of both in grey on white, those of one alone in red: ``(height, width, 3)``."""
-    picture = np.full((*shown.shape, 3), 255, np.uint8)
-    picture[shown & wanted] = 150
-    picture[shown ^ wanted] = (220, 0, 0)
-    return picture
 
 
 def _by_vtk(pv: Any, plotter: Any, points: npt.ArrayLike, offsets: npt.NDArray[np.int64]) -> None:

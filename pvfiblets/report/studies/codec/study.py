@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from pvfiblets.streamlines import Streamlines
 
-from ...record import Axes, Figure, LeftOut, Record
+from ...record import Axes, Figure, Record
 from ...study import Options
 from ...timing import Comparison, Turns
 from .baselines.directions import PaperFiblets, QFib
@@ -159,22 +159,22 @@ class CodecStudy:
         "otherwise, much as iFOD1 does.",
     )
 
-    def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+    def run(self, options: Options) -> Iterator[Record]:
         """Yield a record for every data set and variant."""
         if options.quick:
             options.points = min(options.points, QUICK_POINTS)
         chosen = variants(options.quick)
         missing: set[str] = set()
         with one_thread():
-            for data in data_sets(options, left_out):
-                yield from self._measured(data, chosen, missing, options, left_out)
+            for data in data_sets(options):
+                yield from self._measured(data, chosen, missing, options)
 
     def _measured(
-        self, data: DataSet, chosen: list[Variant], missing: set[str], options: Options, left_out: list[LeftOut]
+        self, data: DataSet, chosen: list[Variant], missing: set[str], options: Options
     ) -> Iterator[Record]:
         points, offsets = data.streamlines.points, np.asarray(data.streamlines.offsets, np.int64)
         step = median_step(points, offsets)
-        compared = Comparison(data.name, options, left_out, Turns(), len(points), "point")
+        compared = Comparison(data.name, options, Turns(), len(points), "point")
         for variant in chosen:
             label = f"{variant.name} {variant.setting}".strip()
             if variant.name in missing or not compared.allows(label):
@@ -184,7 +184,7 @@ class CodecStudy:
                 compared.add(record, **calls)
             except ImportError as error:
                 missing.add(variant.name)
-                left_out.append(LeftOut(variant.name, f"{error.name or error} is not installed"))
+                options.leave_out(variant.name, f"{error.name or error} is not installed")
             except ValueError as error:
                 compared.refuse(label, error)
         yield from compared.finish()

@@ -10,7 +10,7 @@ import numpy as np
 
 from pvfiblets.streamlines import Streamlines
 
-from ...record import Axes, Figure, LeftOut, Record
+from ...record import Axes, Figure, Record
 from ...study import Options
 from ...timing import Comparison, Turns
 from .data_sets import LENGTH, QUICK_STEPS, SMALL, STEPS, DataSet, files_of
@@ -57,7 +57,7 @@ class TractogramsStudy:
         "do not depend on the machine.",
     )
 
-    def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+    def run(self, options: Options) -> Iterator[Record]:
         """Yield a record for every set and method."""
         chosen = [
             variant
@@ -65,11 +65,11 @@ class TractogramsStudy:
             if variant.name in METHODS and variant.setting in (DEFAULT, BITS, "")
         ]
         with one_thread():
-            for data in chain(trackings(options), whole_files(options, left_out)):
+            for data in chain(trackings(options), whole_files(options)):
                 if not options.budget.allows():
-                    left_out.append(LeftOut(data.name, "the time given was used up"))
+                    options.leave_out(data.name, "the time given was used up")
                     continue
-                yield from _measured(data, chosen, options, left_out)
+                yield from _measured(data, chosen, options)
 
 
 def trackings(options: Options) -> Iterator[DataSet]:
@@ -83,21 +83,21 @@ def trackings(options: Options) -> Iterator[DataSet]:
             yield DataSet(f"{algorithm}-like, {step:g} mm", algorithm, made)
 
 
-def whole_files(options: Options, left_out: list[LeftOut]) -> Iterator[DataSet]:
+def whole_files(options: Options) -> Iterator[DataSet]:
     """Read whole files, the largest first."""
     from pvfiblets import formats
 
     paths, reason = files_of(options.files)
     if reason:
-        left_out.append(LeftOut("real files", reason))
+        options.leave_out("real files", reason)
     for path in paths[:2] if options.quick else paths:
         try:
             found = formats.read(path)
         except (ValueError, OSError) as error:
-            left_out.append(LeftOut(path.name, _told(error, path)))
+            options.leave_out(path.name, _told(error, path))
             continue
         if found.n_points < SMALL or not np.isfinite(found.points).all():
-            left_out.append(LeftOut(path.name, f"it has fewer than {SMALL:,} points, or some that are not finite"))
+            options.leave_out(path.name, f"it has fewer than {SMALL:,} points, or some that are not finite")
             continue
         yield DataSet(path.name, "files", Streamlines(found.points, found.offsets))
 
@@ -106,10 +106,10 @@ def _told(error: Exception, path: Path) -> str:
     return " ".join(str(error).replace(str(path), path.name).split())
 
 
-def _measured(data: DataSet, chosen: list[Variant], options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+def _measured(data: DataSet, chosen: list[Variant], options: Options) -> Iterator[Record]:
     points, offsets = data.streamlines.points, np.asarray(data.streamlines.offsets, np.int64)
     step = median_step(points, offsets)
-    compared = Comparison(data.name, options, left_out, Turns(), len(points), "point")
+    compared = Comparison(data.name, options, Turns(), len(points), "point")
     raw = RAW_BYTES * (len(points) + len(offsets) - 1) / len(points)
     for variant in chosen:
         try:

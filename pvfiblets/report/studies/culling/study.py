@@ -14,7 +14,7 @@ from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.errors import EngineError
 
 from ...drawing import drawing_context
-from ...record import Axes, Figure, LeftOut, Record
+from ...record import Axes, Figure, Record
 from ...study import Options
 from ...timing import Comparison, turns_of
 from ..codec.data_sets import file_sets
@@ -161,14 +161,14 @@ class CullingStudy:
         "neither the view volume nor culling leaves out, of all.",
     )
 
-    def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+    def run(self, options: Options) -> Iterator[Record]:
         """Yield a record for every scene and variant."""
         with drawing_context(options) as ctx:
-            for scene in scenes(options, left_out):
-                yield from self._measured(ctx, scene, options, left_out)
+            for scene in scenes(options):
+                yield from self._measured(ctx, scene, options)
 
-    def _measured(self, ctx: Any, scene: Scene, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
-        compared = Comparison(scene.name, options, left_out, turns_of(ctx), len(scene.path) - 1)
+    def _measured(self, ctx: Any, scene: Scene, options: Options) -> Iterator[Record]:
+        compared = Comparison(scene.name, options, turns_of(ctx), len(scene.path) - 1)
         with ExitStack() as stack:
             basis: _Basis | None = None
             for variant in variants(options.quick):
@@ -184,7 +184,7 @@ class CullingStudy:
             yield from compared.finish()
 
 
-def scenes(options: Options, left_out: list[LeftOut]) -> Iterator[Scene]:
+def scenes(options: Options) -> Iterator[Scene]:
     """Make or read one set after the other, and fly around each."""
     size = QUICK_SIZE if options.quick else SIZE
     frames = QUICK_FRAMES if options.quick else FRAMES
@@ -197,14 +197,14 @@ def scenes(options: Options, left_out: list[LeftOut]) -> Iterator[Scene]:
     from pvfiblets.report.studies.codec.coded import compress
 
     limit = QUICK_FILE_POINTS if options.quick else FILE_POINTS
-    for number, data in enumerate(file_sets(options, limit, left_out)):
+    for number, data in enumerate(file_sets(options, limit)):
         if number == (1 if options.quick else FILES):
-            left_out.append(LeftOut("smaller files", "the largest are enough to see what culling does"))
+            options.leave_out("smaller files", "the largest are enough to see what culling does")
             return
         try:
             fiblets = compress(data.streamlines)
         except ValueError as error:
-            left_out.append(LeftOut(data.name, str(error)))
+            options.leave_out(data.name, str(error))
             continue
         path = views(fiblets.bounds, "far", SLOW, frames + 1, size)
         yield Scene(data.name, data.group, fiblets, path)

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from pvfiblets.codec.direction_codebook import CAP_DEGREES, quaternions
 from pvfiblets.codec.reference import first_frame
 
-from ...record import Axes, Figure, LeftOut, Record
+from ...record import Axes, Figure, Record
 from ...study import Options
 from ...timing import Comparison, Turns
 from ..codec.errors import error_figures
@@ -117,7 +117,7 @@ class DecodeStudy:
         "is that of the work alone.",
     )
 
-    def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+    def run(self, options: Options) -> Iterator[Record]:
         """Yield a record for every set and variant."""
         n = QUICK_FIBLETS if options.quick else FIBLETS
         steps, caps = (QUICK_STEPS, QUICK_CAPS) if options.quick else (STEPS, CAPS)
@@ -127,7 +127,7 @@ class DecodeStudy:
             fiblets = made(n, cap, step, options.seed)
             truth = exact(fiblets)
             often = replace(options, repeats=REPEATS * options.repeats)
-            compared = Comparison(name, often, left_out, Turns(), n * decoders.POINTS, "point")
+            compared = Comparison(name, often, Turns(), n * decoders.POINTS, "point")
             for combination in combinations():
                 if compared.allows(", ".join(combination)):
                     record, decode = measured(fiblets, truth, combination)

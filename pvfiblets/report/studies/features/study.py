@@ -12,9 +12,9 @@ import numpy as np
 from pvfiblets.engine.errors import EngineError
 
 from ...drawing import drawing_context
-from ...record import FRAME, Axes, Figure, LeftOut, Record
+from ...record import Axes, Figure, Record
 from ...study import Options
-from ...timing import LATE, turns_of
+from ...timing import Comparison, turns_of
 from .scenes import PLAIN, Drawn, Subject
 from .subjects import brain_subject, halo_subject, tube_subject, volume_subject
 from .window import in_window
@@ -61,56 +61,50 @@ class FeatureStudy:
         "*change*: the feature is set anew and drawn at once, which is what dragging costs.",
     )
 
-    def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+    def run(self, options: Options) -> Iterator[Record]:
         """Yield a record for every subject and feature."""
         with drawing_context(options) as ctx:
             for make in subjects(options):
                 subject = make()
-                yield from _measured(ctx, subject, options, left_out)
+                yield from _measured(ctx, subject, options)
         try:
-            yield from in_window(partial(brain, options), QUICK_SIZE if options.quick else SIZE, options, left_out)
+            yield from in_window(partial(brain, options), QUICK_SIZE if options.quick else SIZE, options)
         except ImportError as error:
-            left_out.append(LeftOut("streamlines in a window", f"{error.name} is not installed"))
+            options.leave_out("streamlines in a window", f"{error.name} is not installed")
 
 
-def _measured(ctx: Any, subject: Subject, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+def _measured(ctx: Any, subject: Subject, options: Options) -> Iterator[Record]:
     size, frames = (QUICK_SIZE, QUICK_FRAMES) if options.quick else (SIZE, FRAMES)
     path = subject.path(frames + 1, size)
-    turns, done, late = turns_of(ctx), [], []
+    compared, shown = Comparison(subject.name, options, turns_of(ctx), frames), []
     with ExitStack() as stack:
         for feature in subject.features:
             label = f"{feature.group} {feature.name}".strip()
-            if not options.budget.allows():
-                late.append(label)
+            if not compared.allows(label):
                 continue
             try:
                 drawn = Drawn(ctx, subject, feature, path)
             except EngineError as error:
-                left_out.append(LeftOut(f"{subject.name}: {label}", str(error)))
+                compared.refuse(label, error)
                 continue
             stack.callback(drawn.release)
-            turns.add(drawn)
-            done.append((feature, drawn))
-        turns.run(options.repeats, options.budget.allows)
-        timings = [turns.timing(number, frames, FRAME) for number in range(len(done))]
-        sizes = [drawn.nbytes for _, drawn in done]
-        for (feature, _), timing, nbytes in zip(done, timings, sizes, strict=True):
-            yield Record(
+            shown.append(drawn)
+            record = Record(
                 data=f"{subject.name}, {size[0]} x {size[1]}",
                 group=subject.name.replace(" ", "-"),
                 approximation="nothing",
                 method=feature.group,
                 setting=feature.name,
                 errors={},
-                costs=_costs(nbytes, sizes[0], timing, timings[0]),
-                times={"draw": timing},
                 ours=True,
                 default=feature.group == PLAIN,
             )
-    if late:
-        what = ", ".join(late) if done else "everything"
-        left_out.append(LeftOut(f"{subject.name}: {what}", LATE))
-    options.log(f"features: {subject.name}: {len(done)} features")
+            compared.add(record, draw=drawn)
+        plain: tuple[int, Timing] | None = None
+        for record, drawn in zip(compared.finish(), shown, strict=True):
+            plain = plain or (drawn.nbytes, record.times["draw"])
+            record.costs = _costs(drawn.nbytes, plain[0], record.times["draw"], plain[1])
+            yield record
 
 
 def _costs(nbytes: int, plain_nbytes: int, timing: Timing, plain: Timing) -> dict[str, Figure]:

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from ...record import FRAME, Figure, LeftOut, Record
-from ...study import Options
-from ...timing import LATE, timing
+from ...record import FRAME, Figure, Record
+from ...study import LATE, Options
+from ...timing import timing
 from ...window import Window
 from .scenes import PLAIN
 from .subjects import torus
@@ -131,12 +131,11 @@ class FibletWindow(Window):
 
 
 def in_window(
-    make: Callable[[], Any], size: tuple[int, int], options: Options, left_out: list[LeftOut]
+    make: Callable[[], Any], size: tuple[int, int], options: Options
 ) -> Iterator[Record]:
     """Yield a record for every feature, whose frames take turns with frames that have none."""
     data = f"streamlines in a window, {size[0]} x {size[1]}"
-    if not options.budget.allows():
-        left_out.append(LeftOut(f"{data}: everything", LATE))
+    if not options.allows(f"{data}: everything"):
         return
     fiblets = make()
     window = FibletWindow(fiblets, size)
@@ -171,7 +170,7 @@ def in_window(
     finally:
         window.release()
     if late:
-        left_out.append(LeftOut(f"{data}: {', '.join(late)}", LATE))
+        options.leave_out(f"{data}: {', '.join(late)}", LATE)
     options.log(f"features: in a window: {time.perf_counter() - begun:.0f} s")
 
 

@@ -15,9 +15,9 @@ from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
 from pvfiblets.halos.style import TABLE_SIZE
 
 from ...drawing import run_parts
-from ...record import FRAME, Axes, Figure, LeftOut, Record
+from ...record import FRAME, Axes, Figure, Record
 from ...study import Options
-from ...timing import LATE, Comparison, clock_of, timing, turns_of
+from ...timing import Comparison, clock_of, timing, turns_of
 from ..codec.data_sets import DataSet, file_sets, synthetic_tracking
 from ..culling.flights import Flight
 from .drawing import Drawing, FibletHalos, Strips
@@ -140,17 +140,17 @@ class HaloStudy:
         "lines of one pixel, or plain points as large as those with halos.",
     )
 
-    def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+    def run(self, options: Options) -> Iterator[Record]:
         """Yield a record for every scene and variant."""
-        return run_parts({_exact: 1.0, _gaps: 1.0, _all_pictures: 6.0}, options, left_out, {beside_plain: 2.0})
+        return run_parts({_exact: 1.0, _gaps: 1.0, _all_pictures: 6.0}, options, {beside_plain: 2.0})
 
 
-def _all_pictures(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
-    for scene in scenes(options, left_out):
-        yield from _pictures(ctx, scene, options, left_out)
+def _all_pictures(ctx: Any, options: Options) -> Iterator[Record]:
+    for scene in scenes(options):
+        yield from _pictures(ctx, scene, options)
 
 
-def scenes(options: Options, left_out: list[LeftOut]) -> Iterator[Scene]:
+def scenes(options: Options) -> Iterator[Scene]:
     """Make or read one set after the other, and fly around each."""
     points = min(options.points, QUICK_POINTS) if options.quick else options.points
     streamlines = synthetic_tracking(STEP, False, points, options.seed)
@@ -161,9 +161,9 @@ def scenes(options: Options, left_out: list[LeftOut]) -> Iterator[Scene]:
         for name in SETS:
             drawn = halo_set(name, options.seed)
             yield Scene(name, "sets", drawn, look_of(drawn), _path(drawn, options))
-    for number, data in enumerate(file_sets(options, points, left_out)):
+    for number, data in enumerate(file_sets(options, points)):
         if number == (1 if options.quick else FILES):
-            left_out.append(LeftOut("smaller files", "the largest are enough to see what halos are off by"))
+            options.leave_out("smaller files", "the largest are enough to see what halos are off by")
             return
         yield _tractogram(replace(data, group=data.group and "tractograms"), options)
 
@@ -201,9 +201,9 @@ def _percent(found: dict[str, float]) -> dict[str, Figure]:
     return {names.get(name, name): Figure(100.0 * value, "%") for name, value in found.items()}
 
 
-def _pictures(ctx: Any, scene: Scene, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+def _pictures(ctx: Any, scene: Scene, options: Options) -> Iterator[Record]:
     """Compare pictures with finely sampled ones."""
-    compared = Comparison(scene.name, options, left_out, turns_of(ctx), len(scene.path) - 1)
+    compared = Comparison(scene.name, options, turns_of(ctx), len(scene.path) - 1)
     truth: list[Singles] | None = None
     with ExitStack() as stack:
         others = variants(options.quick, scene.tractogram is not None)
@@ -255,14 +255,13 @@ def _measured(
 # ------------------------------------------------------------------------------------------- what pictures should show
 
 
-def _exact(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+def _exact(ctx: Any, options: Options) -> Iterator[Record]:
     """Compare pictures of one sample a pixel with the float64 reference."""
     from .reference import picture as reference
 
     count, size = (QUICK_HELICES, QUICK_EXACT_SIZE) if options.quick else (HELICES, EXACT_SIZE)
     name, drawn = f"{count} helices", helices(count)
-    if not options.budget.allows():
-        left_out.append(LeftOut(f"{name}: everything", LATE))
+    if not options.allows(f"{name}: everything"):
         return
     look, path = look_of(drawn), orbit(drawn, 1, 1, size)[0]
     camera = path[1]
@@ -294,12 +293,12 @@ def _exact(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Reco
     options.log(f"halos: {name}: 2 variants")
 
 
-def _gaps(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+def _gaps(ctx: Any, options: Options) -> Iterator[Record]:
     """Compare the gaps at crossings with the paper's formula."""
     made: Crossings = crossings()
     # The same picture would not be drawn again: the camera moves to and fro by a thousandth of a pixel.
     aside = replace(made, model_view_projection=_moved(made, 1e-3))
-    compared = Comparison("crossings", options, left_out, turns_of(ctx))
+    compared = Comparison("crossings", options, turns_of(ctx))
     with ExitStack() as stack:
         for variant in (variant for variant in variants(options.quick, False) if variant.name != UNCULLED):
             if not compared.allows(f"{variant.name} ({variant.setting})"):

@@ -11,9 +11,9 @@ from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
 
 from ...cameras import Camera, by_turns
 from ...drawing import data_bytes
-from ...record import Figure, LeftOut, Record
+from ...record import Figure, Record
 from ...study import Options
-from ...timing import LATE, Comparison
+from ...timing import Comparison
 from ...window import Window
 from ..codec.pixels import lines_of
 from .pictures import helices, look_of, orbit
@@ -70,19 +70,18 @@ class PlainWindow(Window):
         self.show()
 
 
-def beside_plain(options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+def beside_plain(options: Options) -> Iterator[Record]:
     """Yield times and bytes of the paper's sets, with halos and plain."""
     from pvfiblets.synthetic.halos import halo_set
 
     for name in ("helices",) if options.quick else SETS:
-        if not options.budget.allows():
-            left_out.append(LeftOut(f"{name}, in a window", LATE))
+        if not options.allows(f"{name}, in a window"):
             continue
         drawn = helices(QUICK_HELICES) if options.quick else halo_set(name, options.seed)
-        yield from _measured(f"{name}, {drawn.n_points:,} vertices, in a window", drawn, options, left_out)
+        yield from _measured(f"{name}, {drawn.n_points:,} vertices, in a window", drawn, options)
 
 
-def _measured(data: str, drawn: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+def _measured(data: str, drawn: Any, options: Options) -> Iterator[Record]:
     places, size = (QUICK_PLACES, QUICK_SIZE) if options.quick else (PLACES, SIZE)
     cameras = [place[0] for place in orbit(drawn, places, 1, size)]
     look = look_of(drawn)
@@ -92,7 +91,7 @@ def _measured(data: str, drawn: Any, options: Options, left_out: list[LeftOut]) 
             made.append(kind(drawn, look, cameras[0]))
             for camera in cameras:  # programs are compiled, and what is made when first needed is made
                 made[-1].draw(camera)
-        compared = Comparison(data, options, left_out, made[0].turns, len(cameras))
+        compared = Comparison(data, options, made[0].turns, len(cameras))
         for window in made:
             record = Record(
                 data=data,

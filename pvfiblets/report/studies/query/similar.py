@@ -12,7 +12,7 @@ import numpy.typing as npt
 from pvfiblets import FibletSet
 from pvfiblets.streamlines import Streamlines
 
-from ...record import Figure, LeftOut, Record
+from ...record import Figure, Record
 from ...study import Options
 from ...timing import Comparison, Turns
 
@@ -27,13 +27,13 @@ REFERENCE = 10_000  # streamlines up to which the references are asked
 Floats = npt.NDArray[np.float64]
 
 
-def similar(fiblets: FibletSet, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+def similar(fiblets: FibletSet, options: Options) -> Iterator[Record]:
     """Yield records of one set."""
     like = np.sort(np.random.default_rng(options.seed).choice(len(fiblets), LIKE, replace=False))
-    compared = Comparison(f"{len(fiblets):,} streamlines", options, left_out, Turns(), len(fiblets), "streamline")
+    compared = Comparison(f"{len(fiblets):,} streamlines", options, Turns(), len(fiblets), "streamline")
     small = len(fiblets) <= REFERENCE
     lines = fiblets.decompress() if small else None
-    baselines = _dipy(lines, like, left_out) if lines is not None else {}
+    baselines = _dipy(lines, like, options) if lines is not None else {}
 
     def add(query: str, method: str, errors: dict[str, Figure], ask: Callable[[], Any]) -> None:
         record = Record(
@@ -78,7 +78,7 @@ def _elsewhere(wrong: npt.NDArray[np.bool_]) -> dict[str, Figure]:
     return {"elsewhere": Figure(100.0 * float(wrong.mean()), "%")}
 
 
-def _dipy(lines: Streamlines, like: Any, left_out: list[LeftOut]) -> dict[str, Callable[[], Any]]:
+def _dipy(lines: Streamlines, like: Any, options: Options) -> dict[str, Callable[[], Any]]:
     """Return dipy's queries of the same lines, resampled beforehand."""
     from pvfiblets.query.bundles.resampled import resampled
 
@@ -87,7 +87,7 @@ def _dipy(lines: Streamlines, like: Any, left_out: list[LeftOut]) -> dict[str, C
         from dipy.segment.metric import AveragePointwiseEuclideanMetric
         from dipy.tracking.distances import bundles_distances_mdf
     except ImportError:
-        left_out.append(LeftOut("dipy's queries", "dipy is not installed"))
+        options.leave_out("dipy's queries", "dipy is not installed")
         return {}
     few = list(resampled(lines, POINTS))
     metric = AveragePointwiseEuclideanMetric()  # its usual one resamples again

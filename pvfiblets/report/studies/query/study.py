@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from ...record import Axes, LeftOut, Record
+from ...record import Axes, Record
 from ...study import Options
-from ...timing import LATE
 from .painted import painted
 from .similar import similar
 
@@ -42,7 +41,7 @@ class QueryStudy:
         "asked, which misses streamlines that pass between two.",
     )
 
-    def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+    def run(self, options: Options) -> Iterator[Record]:
         """Yield records set by set."""
         from pvfiblets.synthetic import brain
 
@@ -50,11 +49,10 @@ class QueryStudy:
         warm.clusters()
         warm.similar([0])  # compiled
         for count in QUICK_STREAMLINES if options.quick else STREAMLINES:
-            if not options.budget.allows():
-                left_out.append(LeftOut(f"{count:,} streamlines", LATE))
+            if not options.allows(f"{count:,} streamlines"):
                 continue
             fiblets = brain(count, STEP, seed=options.seed)
-            yield from similar(fiblets, options, left_out)
+            yield from similar(fiblets, options)
             yield from painted(fiblets, options)
             options.log(f"query: {count:,} streamlines")
 

@@ -17,9 +17,9 @@ import numpy as np
 
 from ...drawing import data_bytes
 from ...process import CellProcess, Row, serve
-from ...record import FRAME, Axes, Figure, LeftOut, Record
+from ...record import FRAME, Axes, Figure, Record
 from ...study import Options, Unavailable
-from ...timing import LATE, timing
+from ...timing import timing
 from ...window import Window
 from .cells import DEGREES_PER_FRAME, PER_STREAMLINE, WARM
 from .study import FRAMES, LIMIT, QUICK_FRAMES, QUICK_SECONDS, by_size
@@ -53,7 +53,7 @@ class LinesStudy:
         "coding included.",
     )
 
-    def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+    def run(self, options: Options) -> Iterator[Record]:
         """Yield a record for every size and method."""
         from pvfiblets import formats
         from pvfiblets.synthetic import brain_streamlines
@@ -76,8 +76,7 @@ class LinesStudy:
                     what = ", ".join(part for part in (data, method, setting) if part)
                     if method == TUBES and segments > MOST_OF_TUBES:
                         continue
-                    if not options.budget.allows():
-                        left_out.append(LeftOut(what, LATE))
+                    if not options.allows(what):
                         continue
                     cell = {"method": method, "aliased": bool(setting), "path": str(path), "size": size,
                             "frames": frames, "limit": seconds}  # fmt: skip
@@ -85,7 +84,7 @@ class LinesStudy:
                     row = process.measure(cell, LIMIT)
                     process.close()
                     if "unmeasured" in row:
-                        left_out.append(LeftOut(what, row["unmeasured"]))
+                        options.leave_out(what, row["unmeasured"])
                         continue
                     options.driver = row["driver"]
                     options.log(f"lines: {what}")

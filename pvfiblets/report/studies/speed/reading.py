@@ -11,9 +11,9 @@ from typing import Any
 
 from pvfiblets import formats
 
-from ...record import Axes, Figure, LeftOut, Record
+from ...record import Axes, Figure, Record
 from ...study import Options
-from ...timing import LATE, Comparison, Turns
+from ...timing import Comparison, Turns
 
 __all__ = ["STUDY", "ReadingStudy"]
 
@@ -34,7 +34,7 @@ class ReadingStudy:
         "chunk, of which nothing is kept. nibabel reads no .trx. Times are of the processor, all threads.",
     )
 
-    def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+    def run(self, options: Options) -> Iterator[Record]:
         """Yield a record for every format and reader."""
         from pvfiblets.synthetic import brain_streamlines
 
@@ -44,20 +44,19 @@ class ReadingStudy:
             for suffix in SUFFIXES:
                 path = Path(folder) / f"brain{suffix}"
                 data = f"{suffix}, {whole.n_points / 1e6:.3g} M points"
-                if not options.budget.allows():
-                    left_out.append(LeftOut(data, LATE))
+                if not options.allows(data):
                     continue
                 formats.write(path, whole)
-                yield from _read(path, data, whole.n_points, options, left_out)
+                yield from _read(path, data, whole.n_points, options)
 
 
-def _read(path: Path, data: str, points: int, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+def _read(path: Path, data: str, points: int, options: Options) -> Iterator[Record]:
     readers: dict[tuple[str, str], Callable[[Path], Any]] = {
         ("pvfiblets", ""): formats.read, ("pvfiblets", "in pieces"): _in_pieces,
     }  # fmt: skip
     if path.suffix != ".trx":
         readers["nibabel", ""] = _by_nibabel
-    compared = Comparison(data, options, left_out, Turns(), points, "point")
+    compared = Comparison(data, options, Turns(), points, "point")
     for (method, setting), read in readers.items():
         try:
             read(path)

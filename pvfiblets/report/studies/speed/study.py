@@ -6,7 +6,6 @@ import os
 import tempfile
 from collections.abc import Iterator
 from contextlib import ExitStack
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,9 +13,9 @@ import numpy as np
 
 from ...drawing import drawing_context
 from ...process import CellProcess, Row
-from ...record import FRAME, Axes, Figure, LeftOut, Record
+from ...record import FRAME, Axes, Figure, Record
 from ...study import Options
-from ...timing import LATE, timing
+from ...timing import timing
 from .cells import stored_brain
 
 __all__ = ["STUDY", "SpeedStudy", "by_size", "sections"]
@@ -61,14 +60,16 @@ class SpeedStudy:
         "2020: the sets of spline tubes. Everts et al. 2009: those of halos.",
     )
 
-    def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+    def run(self, options: Options) -> Iterator[Record]:
         """Yield a record for every cell, the most important first."""
         from pvfiblets.engine.gl import capabilities
 
         with drawing_context(options) as ctx:
             known = capabilities.pipelines(ctx)
             fastest = capabilities.choose(ctx, "auto")
-        left_out += [LeftOut(f"pipeline {info.name}", info.why_not or "") for info in known if not info.available]
+        for info in known:
+            if not info.available:
+                options.leave_out(f"pipeline {info.name}", info.why_not)
         pipelines = sorted((info.name for info in known if info.available), key=lambda name: name != fastest)
         with ExitStack() as stack:
             folder = os.environ.get(BRAINS) or stack.enter_context(tempfile.TemporaryDirectory())
@@ -77,10 +78,10 @@ class SpeedStudy:
             hopeless: set[tuple[Any, ...]] = set()
             parts = sections(options.quick, pipelines)
             for number, cells in enumerate(parts):
-                part = replace(options, budget=options.budget.share(1.0 / (len(parts) - number)))
+                part = options.share(1.0 / (len(parts) - number))
                 found: list[Record] = []
                 for cell in cells:
-                    record = _measured({**cell, "folder": folder}, process, hopeless, part, left_out)
+                    record = _measured({**cell, "folder": folder}, process, hopeless, part)
                     if record is not None:
                         record.default = (cell.get("pipeline"), cell.get("culling")) == (fastest, CULLINGS[0])
                         found.append(record)
@@ -113,30 +114,29 @@ def sections(quick: bool, pipelines: list[str]) -> list[list[Row]]:
 
 
 def _measured(
-    cell: Row, process: CellProcess, hopeless: set[tuple[Any, ...]], options: Options, left_out: list[LeftOut]
+    cell: Row, process: CellProcess, hopeless: set[tuple[Any, ...]], options: Options
 ) -> Record | None:
     """Return the record of one cell, if there is one; its data is made before, outside its time."""
     data, method, setting = _named(cell)
     what = ", ".join(part for part in (data, method, setting) if part)
     key = tuple(str(cell.get(name)) for name in ("kind", "size", "pipeline", "culling"))
     if key in hopeless:
-        left_out.append(LeftOut(what, "far too slow at fewer segments"))
+        options.leave_out(what, "far too slow at fewer segments")
         return None
-    if not options.budget.allows():
-        left_out.append(LeftOut(what, LATE))
+    if not options.allows(what):
         return None
     if "segments" in cell:
         try:
             stored_brain(cell["segments"], cell["step"], Path(cell["folder"]))
         except (OSError, MemoryError) as error:
-            left_out.append(LeftOut(what, f"its data was not made: {error or type(error).__name__}"))
+            options.leave_out(what, f"its data was not made: {error or type(error).__name__}")
             return None
     frames, seconds = (QUICK_FRAMES, QUICK_SECONDS) if options.quick else (FRAMES, SECONDS)
     row = process.measure({**cell, "frames": frames, "limit": seconds}, min(LIMIT, max(options.budget.left, 1.0)))
     if "segments" in cell and not np.median(row.get("seconds", HOPELESS)) < HOPELESS:
         hopeless.add(key)
     if "unmeasured" in row:
-        left_out.append(LeftOut(what, row["unmeasured"]))
+        options.leave_out(what, row["unmeasured"])
         return None
     options.log(f"speed: {what}")
     return Record(

@@ -11,7 +11,7 @@ from contextlib import ExitStack
 from typing import Any
 
 from ...drawing import drawing_context
-from ...record import Axes, CaseResult, Figure, LeftOut, Record
+from ...record import Axes, CaseResult, Figure, Record
 from ...study import Options, Unavailable
 from . import all_cases
 from .case import Case, Setting
@@ -64,7 +64,7 @@ class StabilityStudy:
         "report, as they say.",
     )
 
-    def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record | CaseResult]:
+    def run(self, options: Options) -> Iterator[Record | CaseResult]:
         """Yield a result for every case."""
         late: Counter[str] = Counter()
         count, broken = 0, 0
@@ -73,7 +73,7 @@ class StabilityStudy:
             try:
                 ctx = stack.enter_context(drawing_context(options))
             except Unavailable as error:
-                left_out.append(LeftOut("all cases that draw", str(error)))
+                options.leave_out("all cases that draw", str(error))
             for case in in_turn(all_cases()):
                 if case.draws and ctx is None:
                     continue
@@ -86,7 +86,7 @@ class StabilityStudy:
                     options.log(f"stability: {case.system}: {case.name}: does not hold ({found.note})")
                 yield found
         for system, number in late.items():
-            left_out.append(LeftOut(f"{system}: {number} cases", "the time given was used up"))
+            options.leave_out(f"{system}: {number} cases", "the time given was used up")
         options.log(f"stability: {count - broken} of {count} cases hold")
 
 

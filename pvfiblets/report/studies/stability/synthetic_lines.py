@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 import numpy.typing as npt
 
@@ -69,8 +67,3 @@ def differences(a: npt.ArrayLike, b: npt.ArrayLike) -> Array:
     scale = np.where(most > 0.0, most, 1.0)[:, None]
     found: Array = most * np.sqrt(((delta / scale) ** 2).sum(axis=1))
     return found
-
-
-def concatenated(parts: Sequence[Streamlines]) -> Streamlines:
-    """Return the streamlines of several sets."""
-    return Streamlines.concatenate(list(parts))

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ...record import FRAME, Axes, Figure, LeftOut, Record
-from ...study import Options, Unavailable
-from ...timing import LATE, timing
+from ...record import FRAME, Axes, Figure, Record
+from ...study import LATE, Options, Unavailable
+from ...timing import timing
 from ..antialias.study import OURS, PictureWindow, Subject, differences
 
 __all__ = ["STUDY", "TranslucencyStudy"]
@@ -42,17 +42,16 @@ class TranslucencyStudy:
         "or fewer, so that it leaves none out; *counted* is their share of the pixels that show anything.",
     )
 
-    def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+    def run(self, options: Options) -> Iterator[Record]:
         """Yield a record for every opacity and way of blending."""
         try:
             import pyvista as pv
         except ImportError as error:
             raise Unavailable(f"{error.name} is not installed") from error
         for subject in _subjects(options, pv):
-            if not options.budget.allows():
-                left_out.append(LeftOut(subject.name, LATE))
+            if not options.allows(subject.name):
                 continue
-            yield from _measured(subject, options, left_out)
+            yield from _measured(subject, options)
 
 
 def _subjects(options: Options, pv: Any) -> list[Subject]:
@@ -90,7 +89,7 @@ def _lines_of_pixels(actor: Any) -> npt.NDArray[np.float64]:
     return counted
 
 
-def _measured(subject: Subject, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+def _measured(subject: Subject, options: Options) -> Iterator[Record]:
     quick, begun, late = options.quick, time.perf_counter(), []
     window = PictureWindow(subject, QUICK_SIZE if quick else SIZE)
     try:
@@ -131,7 +130,7 @@ def _measured(subject: Subject, options: Options, left_out: list[LeftOut]) -> It
     finally:
         window.release()
     if late:
-        left_out.append(LeftOut(f"{subject.name}: {', '.join(late)}", LATE))
+        options.leave_out(f"{subject.name}: {', '.join(late)}", LATE)
     options.log(f"translucency: {subject.name}: {time.perf_counter() - begun:.0f} s")
 
 

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 import numpy as np
 
-from ...record import Figure, LeftOut, Record
-from ...study import Options
-from ...timing import LATE, clock_of, timing
+from ...record import Figure, Record
+from ...study import LATE, Options
+from ...timing import clock_of, timing
 from .rays import CLASSES, GOAL, Rays, of_class, of_set
 from .sweeps import SWEEPS
 
@@ -61,7 +61,7 @@ def variants(quick: bool) -> list[Variant]:
     return found
 
 
-def solvers(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+def solvers(ctx: Any, options: Options) -> Iterator[Record]:
     """Yield records of solvers alone, on rays at halves of each class."""
     count = QUICK_RAYS if options.quick else RAYS
     data = {f"rays at {name} tubes": partial(of_class, name, count, options.seed)
@@ -72,7 +72,7 @@ def solvers(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Rec
     with _Probes(ctx, clock) as probes:
         for variant in variants(options.quick):
             probes.made(variant)
-        options = replace(options, budget=options.budget.share())  # no measurement takes as long as compiling did
+        options = options.share()  # no measurement takes as long as compiling did
         for name, make in data.items():
             rays = make()
             done: list[tuple[Variant, Record, list[float]]] = []
@@ -101,7 +101,7 @@ def solvers(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Rec
                 record.times["hit"] = timing(seconds, len(rays.controls), "ray", clock_name)
                 yield record
             if late:
-                left_out.append(LeftOut(f"{name}: {', '.join(late)}", LATE))
+                options.leave_out(f"{name}: {', '.join(late)}", LATE)
             options.log(f"tubes: {name}: {len(done)} variants")
 
 
@@ -118,14 +118,13 @@ def hit_errors(found: dict[str, float]) -> dict[str, Figure]:
     return quantiles | {name: Figure(100.0 * found[key], "%") for name, key in shares.items()}
 
 
-def ray_sweeps(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+def ray_sweeps(ctx: Any, options: Options) -> Iterator[Record]:
     """Yield records of errors by ratios that end where float32 does: ours and the paper's."""
     chosen = [v for v in variants(True) if v.default or (v.solver == "bisection" and v.iterations == 20)]
     with _Probes(ctx, clock_of(ctx)[0]) as probes:
         for name, (about, ratios, make) in SWEEPS.items():
             shown = [ratio for ratio in ratios if ratio > 0.0]  # the axis is logarithmic
-            if not options.budget.allows():
-                left_out.append(LeftOut(f"sweep of {about}", LATE))
+            if not options.allows(f"sweep of {about}"):
                 continue
             errors: dict[Variant, dict[str, Figure]] = {variant: {} for variant in chosen}
             for ratio in shown[:: 3 if options.quick else 1]:

@@ -13,9 +13,9 @@ from pvfiblets.tubes import SplineTubes, curves
 
 from ...cameras import VIEWS, Camera, Lens, by_turns, orbit
 from ...drawing import Part, WindowPart, run_parts
-from ...record import Axes, Figure, LeftOut, Record
-from ...study import Options
-from ...timing import LATE, Comparison
+from ...record import Axes, Figure, Record
+from ...study import LATE, Options
+from ...timing import Comparison
 from .drawings import CastTubes, Drawing, drawings
 from .pictures import FORMATS, Truth, helices, sampled
 from .rays import GOAL
@@ -36,11 +36,10 @@ SEGMENTS = 20_000  # of a set that are compared with their cubics
 # ----------------------------------------------------------------------------------------------------------- the parts
 
 
-def picture_sweeps(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+def picture_sweeps(ctx: Any, options: Options) -> Iterator[Record]:
     """Yield records of whole small pictures by ratio: how far the eye is, and how far the tubes are from 0."""
     for name, (about, ratios, make) in PICTURE_SWEEPS.items():
-        if not options.budget.allows():
-            left_out.append(LeftOut(f"sweep of {about}", LATE))
+        if not options.allows(f"sweep of {about}"):
             continue
         errors: dict[str, dict[str, Figure]] = {}
         for ratio in ratios[:: 3 if options.quick else 1]:
@@ -64,46 +63,45 @@ def picture_sweeps(ctx: Any, options: Options, left_out: list[LeftOut]) -> Itera
             )  # fmt: skip
 
 
-def pictures(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+def pictures(ctx: Any, options: Options) -> Iterator[Record]:
     """Yield records of whole pictures: silhouettes and depths against float64, and what a picture takes."""
-    yield from _helices("", partial(drawings, ctx), options, left_out)
+    yield from _helices("", partial(drawings, ctx), options)
 
 
-def sets(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+def sets(ctx: Any, options: Options) -> Iterator[Record]:
     """Yield records of pictures of the paper's sets by every solver, against float64 in a sample of the pixels."""
     from pvfiblets.engine.tubes import SOLVERS
 
     def solvers_of(tubes: SplineTubes, _: tuple[int, int]) -> list[Callable[[], Drawing]]:
         return [partial(CastTubes, ctx, tubes, solver) for solver in ("auto", *list(SOLVERS)[1:])]
 
-    yield from _sets("", solvers_of, options, left_out)
+    yield from _sets("", solvers_of, options)
 
 
-def in_windows(options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+def in_windows(options: Options) -> Iterator[Record]:
     """Yield records of the same pictures in windows, beside VTK's meshes."""
     from .windows import window_drawings
 
-    half = replace(options, budget=options.budget.share(0.5))
-    yield from _helices(", in a window", window_drawings, half, left_out)
-    yield from _sets(", in a window", window_drawings, options, left_out)
+    half = options.share(0.5)
+    yield from _helices(", in a window", window_drawings, half)
+    yield from _sets(", in a window", window_drawings, options)
 
 
 Makers = Callable[[SplineTubes, tuple[int, int]], list[Callable[[], Drawing]]]
 
 
-def _helices(where: str, makers: Makers, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+def _helices(where: str, makers: Makers, options: Options) -> Iterator[Record]:
     """Compare all pixels of pictures of helices."""
     size = QUICK_SIZE if options.quick else SIZE
     tubes = helices(TUBES)
     for view in VIEWS:
         name = f"{TUBES} helices, {view}{where}"
-        if not options.budget.allows():
-            left_out.append(LeftOut(name, LATE))
+        if not options.allows(name):
             continue
         camera = orbit(tubes, view, 2, size)[0]
         truth = Truth.of(tubes, Lens.of(camera))
-        within = replace(options, budget=options.budget.share())  # the reference took longer than pictures do
-        yield from _measured(name, "pictures", camera, makers(tubes, size), _errors_of(truth), within, left_out)
+        within = options.share()  # the reference took longer than pictures do
+        yield from _measured(name, "pictures", camera, makers(tubes, size), _errors_of(truth), within)
 
 
 def _errors_of(truth: Truth) -> Callable[[Drawing], dict[str, Figure]]:
@@ -115,7 +113,7 @@ def _errors_of(truth: Truth) -> Callable[[Drawing], dict[str, Figure]]:
     return errors
 
 
-def _sets(where: str, makers: Makers, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+def _sets(where: str, makers: Makers, options: Options) -> Iterator[Record]:
     """Compare some pixels of pictures of the paper's sets."""
     from pvfiblets.synthetic.tubes import tube_set
 
@@ -126,7 +124,7 @@ def _sets(where: str, makers: Makers, options: Options, left_out: list[LeftOut])
             camera = orbit(tubes, view, 2, size)[0]
             errors = _sampled_errors(tubes, Lens.of(camera), options)
             data = f"the set {name}, {view}{where}"
-            yield from _measured(data, "sets", camera, makers(tubes, size), errors, options, left_out)
+            yield from _measured(data, "sets", camera, makers(tubes, size), errors, options)
 
 
 def _sampled_errors(tubes: SplineTubes, lens: Lens, options: Options) -> Callable[[Drawing], dict[str, Figure]]:
@@ -156,7 +154,7 @@ def _sampled_errors(tubes: SplineTubes, lens: Lens, options: Options) -> Callabl
 
 def _measured(
     data: str, group: str, camera: Camera, makers: list[Callable[[], Drawing]],
-    errors: Callable[[Drawing], dict[str, Figure]], options: Options, left_out: list[LeftOut],
+    errors: Callable[[Drawing], dict[str, Figure]], options: Options,
 ) -> Iterator[Record]:  # fmt: skip
     """Draw one picture by every method."""
     compared: Comparison | None = None
@@ -164,7 +162,7 @@ def _measured(
     try:
         for number, make in enumerate(makers):
             if compared is None and not options.budget.allows():
-                left_out.append(LeftOut(f"{data}: everything", LATE))
+                options.leave_out(f"{data}: everything", LATE)
                 return
             if compared is not None and not compared.allows(f"method {number + 1}"):
                 continue
@@ -182,7 +180,7 @@ def _measured(
                 ours=drawn.ours,
                 default=drawn.default,
             )
-            compared = compared or Comparison(data, options, left_out, drawn.turns)
+            compared = compared or Comparison(data, options, drawn.turns)
             compared.add(record, draw=by_turns(drawn.draw, [camera]))
         if compared is not None:
             yield from compared.finish()
@@ -191,7 +189,7 @@ def _measured(
             drawn.release()
 
 
-def stored(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+def stored(ctx: Any, options: Options) -> Iterator[Record]:
     """Yield records of depth by what it is stored as, and by how far the near and the far plane lie apart."""
     tubes, size = helices(2), QUICK_SIZE
     far = orbit(tubes, "far", 2, size)[0]
@@ -202,8 +200,7 @@ def stored(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Reco
     errors: dict[str, dict[str, Figure]] = {name: {} for name in ("key of 32 bits, as drawn", *FORMATS)}
     try:
         for name, ratio in zip(names, QUICK_RANGES if options.quick else RANGES, strict=True):
-            if not options.budget.allows():
-                left_out.append(LeftOut(f"stored depth: {name}", LATE))
+            if not options.allows(f"stored depth: {name}"):
                 continue
             camera = replace(far, near=far.far / ratio)
             seen = replace(truth, lens=Lens.of(camera))
@@ -223,14 +220,13 @@ def stored(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Reco
             )  # fmt: skip
 
 
-def halves(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:  # noqa: ARG001 - as other parts
+def halves(ctx: Any, options: Options) -> Iterator[Record]:  # noqa: ARG001 - as other parts
     """Yield records of how far the two quadratics of a segment are from its cubic, by the share of a derivative."""
     from pvfiblets.synthetic.tubes import tube_set
 
     rng = np.random.default_rng([options.seed, 2])
     for name in QUICK_SETS if options.quick else SETS:
-        if not options.budget.allows():
-            left_out.append(LeftOut(f"quadratics for cubics: {name}", LATE))
+        if not options.allows(f"quadratics for cubics: {name}"):
             continue
         tubes = tube_set(name, options.seed)
         chosen = rng.permutation(tubes.n_segments)[:SEGMENTS]
@@ -297,9 +293,9 @@ class TubesStudy:
         "as tubes, as wide as the mean radius. Meshes of more than 12 million corners are left out.",
     )
 
-    def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+    def run(self, options: Options) -> Iterator[Record]:
         """Yield records part by part, each with its share of what time is left."""
-        return run_parts(PARTS, options, left_out, IN_WINDOWS)
+        return run_parts(PARTS, options, IN_WINDOWS)
 
 
 STUDY = TubesStudy()

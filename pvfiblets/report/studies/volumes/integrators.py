@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -13,9 +12,9 @@ from pvfiblets.volumes import RaycastVolume, Transfer
 from pvfiblets.volumes.raycast_options import INTEGRATORS, RaycastOptions
 
 from ...cameras import Camera, by_turns
-from ...record import Figure, LeftOut, Record
+from ...record import Figure, Record
 from ...study import Options
-from ...timing import LATE, Comparison, turns_of
+from ...timing import Comparison, turns_of
 from . import reference
 from .drawing import drawing, drawn, sample
 from .fields import DENSE, field, tables
@@ -35,7 +34,7 @@ LIGHT_PIXELS, QUICK_LIGHT_PIXELS = 3000, 300
 OFF = 0.01  # of colours and opacities: a share of pixels that are farther off is given
 
 
-def integrators(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+def integrators(ctx: Any, options: Options) -> Iterator[Record]:
     """Yield records of every integrator by transfer function, density and step; then how errors grow with density."""
     from pvfiblets.engine.volumes import VolumeRenderer
 
@@ -46,17 +45,15 @@ def integrators(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator
         volume = field(shape, SIDE)
         camera = circle(volume, 1, LIGHT_SIZE)[0]
         name = look if shape == "ball" else f"{look} in a {shape}"
-        part = replace(options, budget=options.budget.share(1.0 / (len(chosen) - number)))
+        part = options.share(1.0 / (len(chosen) - number))
         found: list[tuple[float, Record]] = []
         renderer = VolumeRenderer(ctx, volume)
         try:
             for density in QUICK_DENSITIES if options.quick else DENSITIES:
                 transfer = Transfer(looks[look].astype(np.float32), (0.0, 1.0), -0.5 * math.log1p(-DENSE) / density)
-                if part.budget.left <= 0.0:
-                    left_out.append(LeftOut(f"{name}, κΔ {density:g}", LATE))
+                if not part.lasts(f"{name}, κΔ {density:g}"):
                     continue
-                for record in _integrated(ctx, renderer, volume, camera, transfer, f"{name}, κΔ {density:g}", part,
-                                          left_out):  # fmt: skip
+                for record in _integrated(ctx, renderer, volume, camera, transfer, f"{name}, κΔ {density:g}", part):
                     found.append((density, record))
                     yield record
         finally:
@@ -66,15 +63,14 @@ def integrators(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator
 
 def _integrated(
     ctx: Any, renderer: Any, volume: RaycastVolume, camera: Camera, transfer: Transfer, name: str, options: Options,
-    left_out: list[LeftOut],
 ) -> Iterator[Record]:  # fmt: skip
     from pvfiblets.engine.volumes import VolumeStyle
 
     through = reference.rays(camera.model_view_projection, camera.size, volume)
     at = sample(~np.isnan(through.near), QUICK_LIGHT_PIXELS if options.quick else LIGHT_PIXELS)
     truth = reference.composite(volume, transfer, through[at[:, 0], at[:, 1]], TOLERANCE)
-    within = replace(options, budget=options.budget.share())  # the reference is no measurement
-    timed = Comparison(name, within, left_out, turns_of(ctx))
+    within = options.share()  # the reference is no measurement
+    timed = Comparison(name, within, turns_of(ctx))
     for step in QUICK_STEPS if options.quick else STEPS:
         for integrator in INTEGRATORS:
             if not timed.allows(f"{integrator} step {step:g}"):
@@ -113,11 +109,10 @@ def _by_density(name: str, found: list[tuple[float, Record]]) -> Iterator[Record
             yield Record(name, "stiff", "light along a ray", integrator, step, errors, ours=True)
 
 
-def formulae(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:  # noqa: ARG001 - as other parts
+def formulae(ctx: Any, options: Options) -> Iterator[Record]:  # noqa: ARG001 - as other parts
     """Yield records of the bare formulae in float32, without the shaders' limits, against closed forms."""
     densities = QUICK_DENSITIES if options.quick else DENSITIES
-    if not options.budget.allows():
-        left_out.append(LeftOut("bare formulae", LATE))
+    if not options.allows("bare formulae"):
         return
     rows = [
         (density, row)

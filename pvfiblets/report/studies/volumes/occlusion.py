@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,9 +11,9 @@ import numpy.typing as npt
 from pvfiblets.volumes import RaycastVolume
 from pvfiblets.volumes.raycast_options import RaycastOptions
 
-from ...record import Figure, LeftOut, Record
+from ...record import Figure, Record
 from ...study import Options
-from ...timing import LATE, Comparison, turns_of
+from ...timing import Comparison, turns_of
 from . import reference
 from .drawing import sample
 from .openness import SETS, exact_openness, seen_from
@@ -28,20 +27,19 @@ SIZE, QUICK_SIZE = 256, 96
 RADIUS = 12.0  # mm of a ray
 
 
-def openness(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+def openness(ctx: Any, options: Options) -> Iterator[Record]:
     """Yield records of ambient occlusion by so many rays, beside a rule of directions whose rays end at exact roots."""
     voxels = QUICK_VOXELS if options.quick else VOXELS
     for number, (name, (make, value, away)) in enumerate(SETS.items()):
         data = f"{voxels}³ {name}, occlusion"
-        part = replace(options, budget=options.budget.share(1.0 / (len(SETS) - number)))
-        if part.budget.left <= 0.0:
-            left_out.append(LeftOut(data, LATE))
+        part = options.share(1.0 / (len(SETS) - number))
+        if not part.lasts(data):
             continue
         picture = _Picture(ctx, make(voxels), value, away, QUICK_SIZE if options.quick else SIZE)
         try:
             at, truth = picture.exact(QUICK_PIXELS if options.quick else PIXELS)
             part.budget = part.budget.share()  # the reference is no measurement
-            timed = Comparison(data, part, left_out, turns_of(ctx))
+            timed = Comparison(data, part, turns_of(ctx))
             for samples in QUICK_SAMPLES if options.quick else SAMPLES:
                 for smooth in (False, True):
                     method, setting = "rays, smoothed" if smooth else "rays", f"{samples} rays"

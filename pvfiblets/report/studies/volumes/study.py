@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -14,9 +13,9 @@ from pvfiblets.volumes.raycast_options import INTEGRATORS, RaycastOptions
 
 from ...cameras import by_turns
 from ...drawing import Part, WindowPart, run_parts
-from ...record import Axes, Figure, LeftOut, Record
+from ...record import Axes, Figure, Record
 from ...study import Options
-from ...timing import LATE, Comparison, turns_of
+from ...timing import Comparison, turns_of
 from .drawing import drawing, drawn
 from .integrators import LIGHT_SIZE, SIDE, formulae, integrators
 from .occlusion import RADIUS, openness
@@ -78,7 +77,7 @@ def _at_steps(name: str, how: str, quick: bool, fields: dict[str, Any]) -> Itera
             yield name, ", ".join(at), fields if usual else {**fields, "step": step}
 
 
-def pictures(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+def pictures(ctx: Any, options: Options) -> Iterator[Record]:
     """Yield records of all that may be set, in each mode, on a tree of vessels."""
     from pvfiblets.engine.volumes import VolumeRenderer
 
@@ -92,27 +91,26 @@ def pictures(ctx: Any, options: Options, left_out: list[LeftOut]) -> Iterator[Re
     try:
         for number, (mode, kind) in enumerate(cases):
             name = f"{volume.shape[0]}³ vessels, {mode}" + ("" if kind == "trilinear" else f", {kind}")
-            part = replace(options, budget=options.budget.share(1.0 / (len(cases) - number)))
-            if part.budget.left <= 0.0:
-                left_out.append(LeftOut(name, LATE))
+            part = options.share(1.0 / (len(cases) - number))
+            if not part.lasts(name):
                 continue
             look = look_of(volume, mode)
             exact = ground_truth_of(volume, look, cameras, QUICK_PIXELS if options.quick else PIXELS, kind)
             part.budget = part.budget.share()  # the reference is no measurement
             yield from _varied(ctx, renderer, look, exact, name, kind, float(np.ptp(volume.value_range)),
-                               float(volume.spacing.mean()), part, left_out)  # fmt: skip
+                               float(volume.spacing.mean()), part)  # fmt: skip
     finally:
         renderer.release()
 
 
 def _varied(
     ctx: Any, renderer: Any, look: Look, exact: GroundTruth, name: str, kind: str, spread: float, spacing: float,
-    options: Options, left_out: list[LeftOut],
+    options: Options,
 ) -> Iterator[Record]:  # fmt: skip
     from pvfiblets.engine.volumes import VolumeStyle
 
     cameras = exact.colours.cameras
-    timed = Comparison(name, options, left_out, turns_of(ctx), len(cameras))
+    timed = Comparison(name, options, turns_of(ctx), len(cameras))
     plain: list[Any] = []
     for varied, how, fields in settings(look.mode, options.quick, spread):
         if kind != "trilinear" and varied != "default" and fields.get("step") not in QUICK_PICTURE_STEPS:
@@ -198,9 +196,9 @@ class VolumeStudy:
         "the share of the octree's leaves that is not skipped.",
     )
 
-    def run(self, options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+    def run(self, options: Options) -> Iterator[Record]:
         """Yield records part by part, each with its share of what time is left."""
-        return run_parts(PARTS, options, left_out, IN_WINDOWS)
+        return run_parts(PARTS, options, IN_WINDOWS)
 
 
 STUDY = VolumeStudy()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,9 +11,9 @@ from pvfiblets.synthetic.vessels import brain_like, vessel_tree
 from pvfiblets.volumes import RaycastVolume
 
 from ...cameras import Camera, by_turns
-from ...record import Figure, LeftOut, Record
+from ...record import Figure, Record
 from ...study import Options
-from ...timing import LATE, Comparison
+from ...timing import Comparison
 from ...window import Window
 from .scene import Look, circle, look_of, truth
 
@@ -82,23 +81,22 @@ class VTKWindow(Window):
 WINDOWS: tuple[type[CastWindow | VTKWindow], ...] = (CastWindow, VTKWindow)
 
 
-def beside_vtk(options: Options, left_out: list[LeftOut]) -> Iterator[Record]:
+def beside_vtk(options: Options) -> Iterator[Record]:
     """Yield records of volumes in windows, by this program and by VTK, at each length of steps."""
     side, sides = (QUICK_SIZE, QUICK_SIDES) if options.quick else (SIZE, SIDES)
     makers: list[tuple[str, Callable[[int, int, str], RaycastVolume], int]]
     makers = [("vessels", vessel_tree, n) for n in sides] + ([] if options.quick else [("head", brain_like, 192)])
     cases = [(name, make, n, mode) for name, make, n in makers for mode in MODES]
     for number, (name, make, n, mode) in enumerate(cases):
-        part = replace(options, budget=options.budget.share(1.0 / (len(cases) - number)))
+        part = options.share(1.0 / (len(cases) - number))
         data = f"{n}³ {name}, {mode}, in a window"
-        if part.budget.left <= 0.0:
-            left_out.append(LeftOut(data, LATE))
+        if not part.lasts(data):
             continue
-        yield from _measured(make(n, options.seed, "uint16"), mode, data, side, part, left_out)
+        yield from _measured(make(n, options.seed, "uint16"), mode, data, side, part)
 
 
 def _measured(
-    volume: RaycastVolume, mode: str, data: str, side: int, options: Options, left_out: list[LeftOut]
+    volume: RaycastVolume, mode: str, data: str, side: int, options: Options
 ) -> Iterator[Record]:
     look, cameras = look_of(volume, mode), circle(volume, 1 if options.quick else FRAMES, (side, side))
     # The reference takes floats; else it would convert the voxels for every camera.
@@ -111,7 +109,7 @@ def _measured(
         for kind in WINDOWS:
             window = kind(volume, look, (side, side))
             made.append(window)
-            timed = timed or Comparison(data, options, left_out, window.turns, len(cameras))
+            timed = timed or Comparison(data, options, window.turns, len(cameras))
             taken = 0.0
             for step in QUICK_STEPS if options.quick else STEPS:
                 if not timed.allows(f"{kind.method}, step {step:g}"):
