@@ -45,7 +45,7 @@ test-all: $(VENV)/.ready-more lint gl shaders browser display proxy
 lint: environment
 	$(BIN)/ruff check .
 	$(BIN)/mypy
-	$(BIN)/lint-imports
+	$(BIN)/lint-imports --no-cache
 
 fuzz: environment
 	$(BIN)/python -m pytest -m hypothesis --hypothesis-profile=fuzz --timeout=3600

@@ -8,7 +8,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-__version__ = "0.1.0"
+from .support.version import __version__
 
 _HOME = {
     "Bundles": "query.bundles.bundle_list",
@@ -40,9 +40,6 @@ _HOME = {
 }
 
 _ROOMS = ("synthetic",)
-
-FORMATS = {".fiblets": "pvfiblets.codec.files.fiblets_format"}
-"""Formats of rooms that `pvfiblets.formats` knows nothing of: suffix to module, imported with the first such file."""
 
 __all__ = ["__version__", *_HOME, *_ROOMS]
 

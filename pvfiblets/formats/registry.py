@@ -3,8 +3,7 @@
 A format module offers ``read(path, *, progress=False)``, ``iter_chunks(path, max_points)`` and
 ``info(path)``, and where the format can be written ``write(path, streamlines)``. Modules are
 named by strings and imported when a file of theirs is first touched: a program that reads tck
-files never loads the trx code. Here stand the modules of this room. The package itself, which
-knows all rooms, names those of others, such as the codec's (`pvfiblets.FORMATS`).
+files never loads the trx code. One of them is the codec's, of which nothing else here knows.
 """
 
 from __future__ import annotations
@@ -16,7 +15,6 @@ from os import PathLike, fspath
 from pathlib import Path
 from types import ModuleType
 
-import pvfiblets
 from pvfiblets.errors import FibletsError
 
 _MODULES: dict[str, str] = {
@@ -28,7 +26,7 @@ _MODULES: dict[str, str] = {
     ".vtp": "pvfiblets.formats.vtp",
     ".tt.gz": "pvfiblets.formats.tinytrack",
     ".fib": "pvfiblets.formats.vtk_legacy",
-    **pvfiblets.FORMATS,
+    ".fiblets": "pvfiblets.codec.files.fiblets_format",
 }
 READ_BY_VTK = (".vtu", ".pvtu", ".pvtp", ".vtm", ".vtmb", ".vtkhdf")
 _READ_BY_LIBRARIES = {**dict.fromkeys(READ_BY_VTK, "pvfiblets.formats.by_vtk"), ".dpy": "pvfiblets.formats.dpy"}

@@ -6,10 +6,17 @@ import html
 import warnings
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol, TypeVar
 
-if TYPE_CHECKING:
-    from ..streamlines import Streamlines
+
+class _Read(Protocol):
+    """What a source was read as: it knows how much of what was left out."""
+
+    @property
+    def dropped(self) -> Mapping[str, int]: ...
+
+
+AnyRead = TypeVar("AnyRead", bound=_Read)
 
 
 def summary_html(title: str, data: Any, more: dict[str, str] | None = None) -> str:
@@ -27,7 +34,7 @@ def summary_html(title: str, data: Any, more: dict[str, str] | None = None) -> s
     return f"<table><tr><th colspan='2'>{html.escape(title)}</th></tr>{''.join(cells)}</table>"
 
 
-def counting(chunks: Iterable[Streamlines], dropped: Counter[str]) -> Iterator[Streamlines]:
+def counting(chunks: Iterable[AnyRead], dropped: Counter[str]) -> Iterator[AnyRead]:
     """Yield the chunks of a source, and add up what reading left out of them."""
     for chunk in chunks:
         dropped.update(chunk.dropped)

@@ -149,7 +149,7 @@ def is_sharded(path: str | PathLike[str]) -> bool:
 def open_fiblets(path: str | PathLike[str], kind: type[FibletSet]) -> FibletSet:
     """Map a ``.fiblets`` file; shards of a folder or an address (:mod:`.shards`) are read when they are asked for."""
     if is_sharded(path):
-        from ... import UnreadSet  # by the package's own name for it: it is a set of this kind
+        from ..shards.unread_set import UnreadSet
 
         return UnreadSet.open_shards(path)
     header, arrays = open_archive(path)

@@ -113,13 +113,13 @@ class ShardedSet:
         FormatError
             If its file is missing or damaged.
         """
-        from ... import FibletSet  # by the package's own name for it: that module gathers shards
+        from ..fibletset import FibletSet
 
         return self._opened(self._shard(number), FibletSet)
 
     def thinned(self) -> tuple[FibletSet, Ints] | None:
         """Map the even share of all streamlines, if the set has one, with the numbers that they have in the whole."""
-        from ... import FibletSet
+        from ..fibletset import FibletSet
 
         shard = self.manifest.thinned
         return None if shard is None else (self._opened(shard, FibletSet), self._numbers(shard))

@@ -44,7 +44,8 @@ def compress_file_in_shards(
     **options: Any,
 ) -> dict[str, Any]:
     """Compress a tractogram file into a folder of shards."""
-    from ... import FibletSet, compress_file  # by the package's own names for them: sets are saved in shards, too
+    from ..fibletset import FibletSet
+    from ..files.convert import compress_file
 
     target = Path(target).expanduser()
     _refuse(target, size)

@@ -28,9 +28,9 @@ from typing import Any
 
 import moderngl
 
-from ... import __version__
 from ...codec import layout
 from ...support.cache_folder import is_first_time
+from ...support.version import __version__
 from ..errors import EngineError
 from .bindings import BLOCKS, CONSTANTS
 from .gl_version import version_of
