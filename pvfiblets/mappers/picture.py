@@ -178,6 +178,9 @@ class Picture:
                 self._lacks_memory = True
                 self._drop_job()
                 return False
+            except Exception:
+                self._drop_job()  # its steps are at their end, the picture is not
+                raise
         if job.share < 1.0 and self.drawn is not None:
             self.drawn()
         return job.share < 1.0

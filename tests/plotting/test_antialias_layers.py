@@ -204,6 +204,24 @@ def test_picks_depths_and_memory_are_those_of_the_picture_before(scene, monkeypa
     assert {buffer["name"] for buffer in actor.explain()["buffers"]} == before
 
 
+@pytest.mark.parametrize("sets", [1, 2])
+def test_lines_beside_the_picture_are_not_in_it(lines, sets):
+    plotter = pv.Plotter(off_screen=True, window_size=SIZE)
+    for shift in range(sets):
+        plotter.add_fiblets([line + shift for line in lines], show_scalar_bar=False)
+    before = plotter.camera_position = [(0, -400, 0), (0, 0, 0), (0, 0, 1)]
+    seen = shot(plotter)
+    assert seen.std() > 10.0
+    for focus in ((-900, 0, 0), (900, 0, 0), (0, 0, 900), (0, 0, -900)):
+        plotter.camera_position = [before[0], focus, (0.1, 0, 1)]
+        plotter.render()
+        assert shot(plotter).std() == 0.0
+    plotter.camera_position = before
+    plotter.render()
+    np.testing.assert_array_equal(shot(plotter), seen)
+    plotter.close()
+
+
 def test_where_memory_lacks_samples_come_one_after_the_other(scene, monkeypatch):
     plotter, _ = scene
     plotter.show(auto_close=False)

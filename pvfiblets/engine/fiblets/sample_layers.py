@@ -130,7 +130,8 @@ class _Together:
 
     def clear(self) -> None:
         """Begin with nothing."""
-        self._depths.clear(depth=1.0)
+        with self._gl.framebuffers_kept():
+            self._depths.clear(depth=1.0)
         for attachment in (0, 1):
             self._gl.clear_integers(self.framebuffer, (EMPTY,), attachment)
 
@@ -143,7 +144,6 @@ class SampleLayers:
     ctx : moderngl.Context
     gl : GLExtras
     programs : Programs
-
     """
 
     def __init__(self, ctx: moderngl.Context, gl: GLExtras, programs: Programs) -> None:
@@ -353,7 +353,8 @@ def _times(factor: int, pair: tuple[int, int]) -> tuple[int, int]:
 
 def _parts(rectangle: Rectangle, most: int) -> tuple[tuple[int, int], list[tuple[int, int]]]:
     """Return the size of parts that hold a rectangle, and where each begins."""
-    x, y, width, height = rectangle
+    x, y = rectangle[:2]
+    width, height = (max(side, 1) for side in rectangle[2:])  # beside the picture there is none
     parts = math.ceil(SAMPLES * width * height / most)
     rows = min(math.ceil(math.sqrt(parts * height / width)), height)
     columns = min(math.ceil(parts / rows), width)

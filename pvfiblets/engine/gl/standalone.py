@@ -1,4 +1,4 @@
-"""An OpenGL context without a window, for what draws on its own: the command line, reports and benchmarks."""
+"""An OpenGL context without a window, for what draws on its own: the command line and reports."""
 
 from __future__ import annotations
 
