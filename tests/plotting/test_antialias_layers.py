@@ -335,6 +335,7 @@ def test_progress_is_shown_after_a_while(scene, monkeypatch):
         yield SimpleNamespace(update=told.append)
 
     monkeypatch.setattr(antialias_windows, "progress_bar", bar)
+    monkeypatch.setattr(antialias_windows, "PATIENCE", 600.0)
     shown(plotter, monkeypatch, singly=True)
     assert told == []
     monkeypatch.setattr(antialias_windows, "PATIENCE", 0.0)

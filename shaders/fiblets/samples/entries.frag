@@ -4,7 +4,8 @@
 //
 //   drawn_owner   fiblets by sample (FEATURE_SUBSAMPLES), 4 x 4 texels a pixel; that of no fiblet is one of them
 //   drawn_ids     streamlines and tangents
-//   entries       16 bytes, from the lowest, those with most samples first: 16 (samples - 1) + the sample's number
+//   entries       16 bytes, from the lowest, that of no fiblet first, then those with most samples: 16 (samples - 1) + the
+//                 sample's number
 
 #version 430
 
@@ -19,6 +20,13 @@ bool alike(uint one, uint other) {
     return max(apart.x, apart.y) <= ALIKE;
 }
 
+// samples: a bit each
+uint entry_of(uint samples) {
+    uint many = uint(bitCount(samples)), middle = samples;
+    for (uint skipped = (many - 1u) / 2u; skipped > 0u; --skipped) middle &= middle - 1u;
+    return (many - 1u) << 4u | uint(findLSB(middle));
+}
+
 void main() {
     ivec2 at = 4 * ivec2(gl_FragCoord.xy);
     uint owners[16], tangents[16];
@@ -30,19 +38,23 @@ void main() {
     }
     entries = uvec4(0xF0u, 0u, 0u, 0u);
     if (differing == 0u) return;
-    uint found[16];
+    uint found[16], left = 0xFFFFu, none = 0u;
+    for (int i = 0; i < 16; ++i) none |= owners[i] == 0xFFFFFFFFu ? 1u << i : 0u;
     int count = 0;
-    for (uint left = 0xFFFFu; left != 0u; ++count) {
+    if (none != 0u) {
+        found[count++] = entry_of(none);
+        left &= ~none;
+    }
+    int lines = count;
+    for (; left != 0u; ++count) {
         int first = findLSB(left);
         uint mine = owners[first], tangent = tangents[first], same = 0u;
         for (int i = 0; i < 16; ++i) same |= owners[i] == mine && alike(tangents[i], tangent) ? 1u << i : 0u;
         same &= left;
         left &= ~same;
-        uint samples = uint(bitCount(same)), middle = same;
-        for (uint skipped = (samples - 1u) / 2u; skipped > 0u; --skipped) middle &= middle - 1u;
-        uint entry = (samples - 1u) << 4u | uint(findLSB(middle));
+        uint entry = entry_of(same);
         int place = count;
-        for (; place > 0 && found[place - 1] < entry; --place) found[place] = found[place - 1];
+        for (; place > lines && found[place - 1] < entry; --place) found[place] = found[place - 1];
         found[place] = entry;
     }
     entries = uvec4(0u);
