@@ -289,7 +289,6 @@ class FibletMapper(CutMapper[EngineOptions]):
                 context.window.MakeCurrent()
                 with context.foreign():
                     steps.close()
-                    engine.drop_samples()
 
     def sampled_lines(self, renderer: vtkRenderer, context: WindowContext) -> Any:
         """Return what the engine takes of this set (`pvfiblets.engine.fiblets.sample_layers.SampledLines`)."""

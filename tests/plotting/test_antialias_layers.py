@@ -306,6 +306,34 @@ def test_between_frames_parts_are_drawn_until_something_changes(scene, change, m
     np.testing.assert_array_equal(found, shown(plotter, monkeypatch)[0])
 
 
+@pytest.mark.parametrize("parts", [1, 4])
+def test_an_actor_in_two_renderers_has_the_samples_of_each(lines, parts, monkeypatch):
+    monkeypatch.setattr(sample_layers, "MOST_TEXELS", 8 * SIZE[0] * SIZE[1] // parts)
+    plotter = pv.Plotter(off_screen=True, window_size=SIZE, shape=(1, 2))
+    actor = plotter.add_fiblets(lines, color="white", lighting=False)
+    plotter.subplot(0, 1)
+    plotter.add_actor(actor)
+    plotter.camera_position = "xz"
+    plotter.show(auto_close=False)
+
+    def finished(singly):
+        with monkeypatch.context() as patch:
+            if singly:
+                patch.setattr(Picture, "_lines_at_once", lambda *_: [])
+            for column in (0, 1):
+                plotter.subplot(0, column)
+                plotter.picture.antialias = "off"
+                plotter.picture.antialias = "refined"
+            plotter.render()
+            renders = Renders(plotter)
+            return shot(plotter), renders.since()
+
+    (at_once, frames), (mean, _) = finished(False), finished(True)
+    assert frames == 1
+    assert np.sqrt((off_by(at_once, mean) ** 2.0).mean()) < 3.0
+    plotter.close()
+
+
 def test_progress_is_shown_after_a_while(scene, monkeypatch):
     plotter, _ = scene
     plotter.show(auto_close=False)

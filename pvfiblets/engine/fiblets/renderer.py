@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Generator, Sequence
 from contextlib import nullcontext
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from ...query.selection.point_flags import Sampling
     from .data.sampled_volume import VolumeSource
     from .region_query import RegionQuery
-    from .sample_layers import Layer, SampledLines, SampleLayers
+    from .sample_layers import Layer, SampledLines
 
 __all__ = ["FibletRenderer"]
 
@@ -128,7 +128,6 @@ class FibletRenderer(LinesBehind):
         self._last: tuple[View, FibletStyle] | None = None
         self._known_times: dict[str, tuple[float, int]] = {}
         self._query: RegionQuery | None = None
-        self._samples: SampleLayers | None = None
         self._choice: CullingChoice | None = None
         self._limits = limits = Limits.of(ctx, self._gl, pipeline, max_buffer_bytes, max_groups)
         with self._making():
@@ -284,7 +283,7 @@ class FibletRenderer(LinesBehind):
         assert isinstance(self._pipeline, ComputePipeline)
         return SampledLines(view, style, rectangle, self._fiblets.n_fiblets, self._request, self._pipeline)
 
-    def sample_layers(self, lines: Sequence[SampledLines]) -> Iterator[float | Layer]:
+    def sample_layers(self, lines: Sequence[SampledLines]) -> Generator[float | Layer, None, None]:
         """Draw sixteen samples of every pixel, as layers of the lines that they show (:mod:`.sample_layers`).
 
         The picture of :meth:`render` stays as it is.
@@ -297,8 +296,7 @@ class FibletRenderer(LinesBehind):
         Yields
         ------
         float or Layer
-            The share of the work that is done, at times; then the layers. These are this renderer's, until
-            :meth:`drop_samples`.
+            The share of the work that is done, at times; then the layers, which hold until the iterator is closed.
 
         Raises
         ------
@@ -308,15 +306,12 @@ class FibletRenderer(LinesBehind):
         from .sample_layers import SampleLayers
 
         self._check_alive()
-        if self._samples is None:
-            self._samples = self._keep(SampleLayers(self._ctx, self._gl, self._programs), "samples")
-        yield from self._samples.draw(lines)
-        yield from self._samples.layers
-
-    def drop_samples(self) -> None:
-        """Give back what :meth:`sample_layers` keeps; twice is harmless."""
-        self._drop_one(self._samples)
-        self._samples = None
+        samples = self._keep(SampleLayers(self._ctx, self._gl, self._programs), "samples")
+        try:
+            yield from samples.draw(lines)
+            yield from samples.layers
+        finally:
+            self._drop(samples)
 
     def value_range(self, values: str | VolumeSource) -> tuple[float, float]:
         """Return the least and the greatest of a per-point value, for a colour map's range.
