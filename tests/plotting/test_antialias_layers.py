@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import re
 import signal
 from contextlib import contextmanager
@@ -22,6 +23,7 @@ from pvfiblets.mappers.picture import Picture
 from pvfiblets.regions import Box
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.synthetic import brain_streamlines
+from tests.gl_calls import possible, recording
 
 from .refined_scene import Renders, real_default, shot  # noqa: F401 - a fixture
 
@@ -332,6 +334,26 @@ def test_an_actor_in_two_renderers_has_the_samples_of_each(lines, parts, monkeyp
     assert frames == 1
     assert np.sqrt((off_by(at_once, mean) ** 2.0).mean()) < 3.0
     plotter.close()
+
+
+@pytest.mark.skipif(not possible(), reason="calls are recorded on x86-64 and Linux only")
+def test_a_window_that_is_gone_between_parts_is_left_alone(lines, monkeypatch):
+    """Names of OpenGL's objects may be those of another window by then."""
+    monkeypatch.setattr(sample_layers, "MOST_TEXELS", 16 * SIZE[0] * SIZE[1] // 4)
+    with recording() as calls:
+        plotter = pv.Plotter(off_screen=True, window_size=SIZE)
+        plotter.add_fiblets(lines)
+        plotter.show(auto_close=False)
+        plotter.picture.antialias = "off"
+        plotter.picture.antialias = "refined"
+        plotter.render()
+        assert plotter.picture.refine()
+        plotter.render_window.Finalize()
+        calls.forget()
+        plotter.close()
+        del plotter
+        gc.collect()
+        assert not calls.counts
 
 
 def test_progress_is_shown_after_a_while(scene, monkeypatch):
