@@ -229,12 +229,15 @@ def sample(
     """Write the values of an image along streamlines; options as of :func:`pvfiblets.sample`."""
     from pvfiblets.query.measures.sample_files import write_samples
 
-    values = write_samples(
+    values, dropped = write_samples(
         str(source), image, str(target), statistic=statistic, weights=weights, nearest=nearest, name=name
     )
     known = values[np.isfinite(values)]
     low, mean, high = (known.min(), known.mean(), known.max()) if known.size else (np.nan,) * 3
-    return {"values": len(known), "without_value": len(values) - len(known), "low": low, "mean": mean, "high": high}
+    return {
+        "values": len(known), "without_value": len(values) - len(known), "low": low, "mean": mean, "high": high,
+        "dropped": dropped,
+    }  # fmt: skip
 
 
 def _opened(source: Path) -> FibletSet:

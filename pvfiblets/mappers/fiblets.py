@@ -276,7 +276,8 @@ class FibletMapper(CutMapper[EngineOptions]):
         context = self._context_in(renderer)
         assert context is not None
         engine = self._engine(context, context.slot(self))
-        steps = engine.sample_layers([one.sampled_lines(renderer, context) for one in lines])
+        samples = engine.sample_layers()
+        steps = samples.draw([one.sampled_lines(renderer, context) for one in lines])
         try:
             while context.alive:
                 with context.foreign():
@@ -288,8 +289,7 @@ class FibletMapper(CutMapper[EngineOptions]):
             if context.alive:
                 context.window.MakeCurrent()
                 with context.foreign():
-                    steps.close()
-                    engine.drop_samples()
+                    engine.drop_samples(samples)
 
     def sampled_lines(self, renderer: vtkRenderer, context: WindowContext) -> Any:
         """Return what the engine takes of this set (`pvfiblets.engine.fiblets.sample_layers.SampledLines`)."""

@@ -260,6 +260,18 @@ def test_verify_counts_what_reading_left_out_of_the_original(tmp_path):
     assert "dropped" not in operations.verify(tmp_path / "a.fiblets")
 
 
+@pytest.mark.parametrize("to", [".txt", ".tsf"])
+def test_samples_count_what_reading_left_out_and_name_files_that_stay(to, tmp_path):
+    lines = np.array([[0.0, 0, 0], [1, 0, 0], [np.nan, 0, 0], [3, 0, 0], [99, 0, 0]])
+    pv.lines_from_points(lines).save(tmp_path / "a.vtp")
+    nib.save(nib.Nifti1Image(np.ones((5, 5, 5), np.float32), np.eye(4)), tmp_path / "one.nii")
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        row = operations.sample(tmp_path / "a.vtp", tmp_path / f"a{to}", to=to, image=str(tmp_path / "one.nii"))
+    assert row["dropped"] == sum(pf.read(tmp_path / "a.vtp").dropped.values()) > 0
+    assert not any(f"a{to}" in str(one.message) for one in told), "a batch writes to a name of its own first"
+
+
 def test_memory_is_bounded_and_said(client, cohort, tmp_path):
     result = batch("density", cohort / name_of("01"), tmp_path, cluster=client, voxel=0.3, memory="1G")
     assert "says that it takes" in result.failed[name_of("01")]

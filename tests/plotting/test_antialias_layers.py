@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import re
 import signal
 from contextlib import contextmanager
@@ -22,6 +23,7 @@ from pvfiblets.mappers.picture import Picture
 from pvfiblets.regions import Box
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.synthetic import brain_streamlines
+from tests.gl_calls import possible, recording
 
 from .refined_scene import Renders, real_default, shot  # noqa: F401 - a fixture
 
@@ -322,6 +324,54 @@ def test_between_frames_parts_are_drawn_until_something_changes(scene, change, m
     assert renders.since() == (1 if change is nothing else 2)
     found = shot(plotter)
     np.testing.assert_array_equal(found, shown(plotter, monkeypatch)[0])
+
+
+@pytest.mark.parametrize("parts", [1, 4])
+def test_an_actor_in_two_renderers_has_the_samples_of_each(lines, parts, monkeypatch):
+    monkeypatch.setattr(sample_layers, "MOST_TEXELS", 8 * SIZE[0] * SIZE[1] // parts)
+    plotter = pv.Plotter(off_screen=True, window_size=SIZE, shape=(1, 2))
+    actor = plotter.add_fiblets(lines, color="white", lighting=False)
+    plotter.subplot(0, 1)
+    plotter.add_actor(actor)
+    plotter.camera_position = "xz"
+    plotter.show(auto_close=False)
+
+    def finished(singly):
+        with monkeypatch.context() as patch:
+            if singly:
+                patch.setattr(Picture, "_lines_at_once", lambda *_: [])
+            for column in (0, 1):
+                plotter.subplot(0, column)
+                plotter.picture.antialias = "off"
+                plotter.picture.antialias = "refined"
+            plotter.render()
+            renders = Renders(plotter)
+            return shot(plotter), renders.since()
+
+    (at_once, frames), (mean, _) = finished(False), finished(True)
+    assert frames == 1
+    assert np.sqrt((off_by(at_once, mean) ** 2.0).mean()) < 3.0
+    plotter.close()
+
+
+@pytest.mark.skipif(not possible(), reason="calls are recorded on x86-64 and Linux only")
+def test_a_window_that_is_gone_between_parts_is_left_alone(lines, monkeypatch):
+    """Names of OpenGL's objects may be those of another window by then."""
+    monkeypatch.setattr(sample_layers, "MOST_TEXELS", 16 * SIZE[0] * SIZE[1] // 4)
+    with recording() as calls:
+        plotter = pv.Plotter(off_screen=True, window_size=SIZE)
+        plotter.add_fiblets(lines)
+        plotter.show(auto_close=False)
+        plotter.picture.antialias = "off"
+        plotter.picture.antialias = "refined"
+        plotter.render()
+        assert plotter.picture.refine()
+        plotter.render_window.Finalize()
+        calls.forget()
+        plotter.close()
+        del plotter
+        gc.collect()
+        assert not calls.counts
 
 
 def test_progress_is_shown_after_a_while(scene, monkeypatch):

@@ -209,8 +209,11 @@ def test_refused_choices_leave_all_as_it_was(shown):
         actor.subset(1.5)
     with pytest.raises(ValueError, match="give one of them"):
         actor.subset(0.5, every=2)
-    with pytest.raises(ValueError, match="every is 0"):
-        actor.subset(every=0)
+    with pytest.raises(ValueError, match="amount is 'half'; give a share"):
+        actor.subset("half")
+    for every in (0, 2.5, np.nan, np.inf, "2"):
+        with pytest.raises(ValueError, match=f"every is {every!r}; give a whole number"):
+            actor.subset(every=every)
     with pytest.raises(IndexError):
         actor.show_only([400])
     with pytest.raises(KeyError, match="there is no criterion 'fa'; there are: 'length'"):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Generator
 from contextlib import nullcontext
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from ...query.selection.point_flags import Sampling
     from .data.sampled_volume import VolumeSource
     from .region_query import RegionQuery
-    from .sample_layers import Layer, SampledLines, SampleLayers
+    from .sample_layers import SampledLines, SampleLayers
 
 __all__ = ["FibletRenderer"]
 
@@ -128,7 +128,6 @@ class FibletRenderer(LinesBehind):
         self._last: tuple[View, FibletStyle] | None = None
         self._known_times: dict[str, tuple[float, int]] = {}
         self._query: RegionQuery | None = None
-        self._samples: SampleLayers | None = None
         self._choice: CullingChoice | None = None
         self._limits = limits = Limits.of(ctx, self._gl, pipeline, max_buffer_bytes, max_groups)
         with self._making():
@@ -284,39 +283,19 @@ class FibletRenderer(LinesBehind):
         assert isinstance(self._pipeline, ComputePipeline)
         return SampledLines(view, style, rectangle, self._fiblets.n_fiblets, self._request, self._pipeline)
 
-    def sample_layers(self, lines: Sequence[SampledLines]) -> Iterator[float | Layer]:
-        """Draw sixteen samples of every pixel, as layers of the lines that they show (:mod:`.sample_layers`).
+    def sample_layers(self) -> SampleLayers:
+        """Return what draws sixteen samples of every pixel, of this set and of others of the same picture and context.
 
-        The picture of :meth:`render` stays as it is.
-
-        Parameters
-        ----------
-        lines : sequence of SampledLines
-            Of this set, and of others of the same picture and context, in the order in which they are drawn.
-
-        Yields
-        ------
-        float or Layer
-            The share of the work that is done, at times; then the layers. These are this renderer's, until
-            :meth:`drop_samples`.
-
-        Raises
-        ------
-        EngineError
-            After :meth:`release`, if memory does not suffice, or sets have more fiblets than can be told apart.
+        The picture of :meth:`render` stays as it is. :meth:`drop_samples` gives it back, or :meth:`release`.
         """
         from .sample_layers import SampleLayers
 
         self._check_alive()
-        if self._samples is None:
-            self._samples = self._keep(SampleLayers(self._ctx, self._gl, self._programs), "samples")
-        yield from self._samples.draw(lines)
-        yield from self._samples.layers
+        return self._keep(SampleLayers(self._ctx, self._gl, self._programs), "samples")
 
-    def drop_samples(self) -> None:
-        """Give back what :meth:`sample_layers` keeps; twice is harmless."""
-        self._drop_one(self._samples)
-        self._samples = None
+    def drop_samples(self, samples: SampleLayers) -> None:
+        """Give back what :meth:`sample_layers` returned; twice is harmless."""
+        self._drop(samples)
 
     def value_range(self, values: str | VolumeSource) -> tuple[float, float]:
         """Return the least and the greatest of a per-point value, for a colour map's range.

@@ -18,6 +18,7 @@ from functools import partial
 import moderngl
 import numpy as np
 
+from ..drawable import AnyResource
 from ..errors import EngineError
 from ..gbuffer import EMPTY, GBuffer
 from ..gl.bindings import SAMPLE_LAYER
@@ -137,7 +138,7 @@ class _Together:
 
 
 class SampleLayers:
-    """The layers of one picture.
+    """The layers of one picture, drawn once.
 
     Parameters
     ----------
@@ -154,55 +155,50 @@ class SampleLayers:
         self._sets = 1
         self._depths: tuple[moderngl.Texture, moderngl.Framebuffer] | None = None
         self._shown = Query(gl, "samples")
+        self._held = ExitStack()  # until all is drawn; a generator may be closed when the context is gone
 
-    @property
-    def layers(self) -> list[Layer]:
-        """What has been drawn."""
-        return [Layer(target.picture.owner, partial(self._of_set, target.picture)) for target in self._targets]
-
-    def draw(self, lines: Sequence[SampledLines]) -> Iterator[float]:
-        """Draw anew, part by part; yield the share of the work that is done after each.
+    def draw(self, lines: Sequence[SampledLines]) -> Iterator[float | Layer]:
+        """Draw once, part by part; yield the share of the work that is done after each, at last the layers.
 
         Raises
         ------
         EngineError
             If memory does not suffice, or sets have more fiblets than can be told apart.
         """
-        self._drop_layers()
         self._sets = len(lines)
         if len(lines) > MOST_SETS or max(one.n_fiblets for one in lines) * len(lines) >= EMPTY:
             raise EngineError(f"{len(lines)} sets are more than samples at once can tell apart; hide some")
         whole = lines[0].view.size
         size, corners = _parts(_union([one.rectangle for one in lines]), MOST_TEXELS // min(len(lines), 2))
-        with ExitStack() as held:
-            drawn = _Buffers(self._ctx)
-            held.callback(drawn.release)
-            entries, listed = _target(self._ctx, size, 4)
-            held.callback(entries.release)
-            held.callback(listed.release)
-            kept = _Together(self._ctx, self._gl, _times(SIDE, size)) if len(lines) > 1 else None
+        drawn = self._keep(_Buffers(self._ctx))
+        entries, listed = _target(self._ctx, size, 4)
+        self._keep(entries)
+        self._keep(listed)
+        kept = self._keep(_Together(self._ctx, self._gl, _times(SIDE, size))) if len(lines) > 1 else None
+        steps = len(corners) * len(lines)
+        for part, corner in enumerate(corners):
+            self._ctx.scissor = None
             if kept is not None:
-                held.callback(kept.release)
-            undo = held.enter_context(ExitStack())
-            undo.callback(self._drop_layers)
-            steps = len(corners) * len(lines)
-            for part, corner in enumerate(corners):
-                self._ctx.scissor = None
-                if kept is not None:
-                    kept.clear()
-                for number, one in enumerate(lines):
-                    if kept is None:
-                        self._draw_set(one, corner, drawn.of(size))
-                    elif (place := _common(one.rectangle, (*corner, *size))) is not None:
-                        self._draw_set(one, place[:2], drawn.of(place[2:]))
-                        begin = place[0] - corner[0], place[1] - corner[1]
-                        self._merge(drawn.of(place[2:]), kept, _times(SIDE, begin), number)
-                    if number + 1 < len(lines):
-                        yield (part * len(lines) + number + 1) / steps
-                with self._gl.framebuffers_kept():
-                    self._sort(whole, drawn.of(size) if kept is None else kept.picture, entries, listed, corner)
-                yield (part + 1) / len(corners)
-            undo.pop_all()
+                kept.clear()
+            for number, one in enumerate(lines):
+                if kept is None:
+                    self._draw_set(one, corner, drawn.of(size))
+                elif (place := _common(one.rectangle, (*corner, *size))) is not None:
+                    self._draw_set(one, place[:2], drawn.of(place[2:]))
+                    begin = place[0] - corner[0], place[1] - corner[1]
+                    self._merge(drawn.of(place[2:]), kept, _times(SIDE, begin), number)
+                if number + 1 < len(lines):
+                    yield (part * len(lines) + number + 1) / steps
+            with self._gl.framebuffers_kept():
+                self._sort(whole, drawn.of(size) if kept is None else kept.picture, entries, listed, corner)
+            yield (part + 1) / len(corners)
+        self._held.close()
+        for target in self._targets:
+            yield Layer(target.picture.owner, partial(self._of_set, target.picture))
+
+    def _keep(self, kept: AnyResource) -> AnyResource:
+        self._held.callback(kept.release)
+        return kept
 
     def _draw_set(self, lines: SampledLines, corner: tuple[int, int], drawn: GBuffer) -> None:
         style, width = lines.style, SIDE * lines.style.line_width
@@ -305,10 +301,8 @@ class SampleLayers:
 
     def release(self) -> None:
         """Give everything on the GPU back; twice is harmless."""
-        self._drop_layers()
+        self._held.close()
         self._shown.release()
-
-    def _drop_layers(self) -> None:
         while self._targets:
             self._targets.pop().release()
         for texture in self._depths or ():

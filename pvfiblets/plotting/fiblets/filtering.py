@@ -6,6 +6,7 @@ and nothing is compressed or copied anew.
 
 from __future__ import annotations
 
+import numbers
 import operator
 import os
 from collections.abc import Iterable, Mapping
@@ -333,16 +334,16 @@ def _subset(count: int, amount: float | None, seed: int, every: int | None) -> n
     if amount is not None and every is not None:
         raise ValueError(f"amount is {amount} and every is {every}; give one of them")
     if every is not None:
-        if every < 1 or int(every) != every:
-            raise ValueError(f"every is {every}; give a whole number above zero")
+        if not isinstance(every, numbers.Real) or not every >= 1 or every % 1:
+            raise ValueError(f"every is {every!r}; give a whole number above zero")
         return np.arange(count) % int(every) == 0
     if amount is None:
         return None
     whole = isinstance(amount, (int, np.integer)) and not isinstance(amount, bool)
     if whole and not 0 <= amount <= count:
         raise ValueError(f"amount is {amount}; there are {count} streamlines")
-    if not whole and not 0.0 <= float(amount) <= 1.0:
-        raise ValueError(f"amount is {amount}; give a share from 0 to 1, or a whole number")
+    if not whole and not (isinstance(amount, numbers.Real) and 0.0 <= amount <= 1.0):
+        raise ValueError(f"amount is {amount!r}; give a share from 0 to 1, or a whole number")
     wanted = int(amount) if whole else round(float(amount) * count)
     mask = np.zeros(count, bool)
     mask[np.random.default_rng(seed).permutation(count)[:wanted]] = True

@@ -42,21 +42,25 @@ def check_target(target: str, statistic: Statistic | None) -> str:
 def write_samples(
     source: str, image: str, target: str, *, statistic: Statistic | None, weights: PointWeights, nearest: bool,
     name: str | None,
-) -> npt.NDArray[np.float64]:  # fmt: skip
-    """Write the values of an image along streamlines, or the streamlines with these, and return the values."""
+) -> tuple[npt.NDArray[np.float64], int]:  # fmt: skip
+    """Write the values of an image along streamlines, or the streamlines with these.
+
+    Return the values, and how many parts of the source reading left out.
+    """
     suffix = check_target(target, statistic)  # before any work, not after
     taken = as_image(image)
     data = open_lines(source)
     values = sample(data, taken, statistic, weights=weights, nearest=nearest)
+    dropped = sum(data.dropped.values())
     if suffix in NUMBERS:
         _write_numbers(Path(target), values)
-        return values
+        return values, dropped
     called = name or taken.name
     if suffix == ".tsf":
         lines = _decoded(data)
         if lacking := int(np.isnan(values).sum()):
             warnings.warn(
-                f"{lacking:,} of {len(values):,} points have no value in {image}; {target} has 0 there",
+                f"{lacking:,} of {len(values):,} points have no value in {image}; the .tsf of {source} has 0 there",
                 UserWarning,
                 stacklevel=2,
             )
@@ -64,7 +68,7 @@ def write_samples(
         write_scalars(target, Streamlines(lines.points, lines.offsets, {called: known}, space=lines.space), called)
     else:
         _write_lines(target, data, called, values, per_point=statistic is None)
-    return values
+    return values, dropped
 
 
 def _decoded(data: FibletSet | Streamlines) -> Streamlines:

@@ -41,8 +41,8 @@ class FeatureStudy:
     name = "features"
     title = "What features cost"
     approximates = (
-        "Nothing: what each feature adds to a plain scene, in bytes on the GPU and in milliseconds a frame. A feature "
-        "that is off is not there: no code, no buffer, no pass."
+        "No approximation: what each feature adds to a plain scene, in bytes on the GPU and in milliseconds a frame. A "
+        "feature that is off is not there: no code, no buffer, no pass."
     )
     axes = (Axes("cost", "times/draw", "costs/memory", "ms per frame", "memory on the GPU, MB", alternatives=False),)
     notes = (

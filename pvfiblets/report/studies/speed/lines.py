@@ -40,7 +40,7 @@ class LinesStudy:
 
     name = "lines"
     title = "Lines in a window"
-    approximates = "Nothing: frames, memory and time to load of lines, beside VTK's own."
+    approximates = "No approximation: frames, memory and time to load of lines, beside VTK's own."
     axes = (
         Axes("size", "", "errors/ms at M segments ", "million segments", "ms per frame", series=True),
         Axes("memory", "times/draw", "costs/memory", "ms per frame", "bytes per point on the GPU"),

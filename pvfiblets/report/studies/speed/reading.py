@@ -27,7 +27,7 @@ class ReadingStudy:
 
     name = "reading"
     title = "Reading files"
-    approximates = "Nothing: points a second of reading files, beside nibabel."
+    approximates = "No approximation: points a second of reading files, beside nibabel."
     axes = (Axes("read", "times/read", "costs/size", "ns per point", "bytes per point of the file"),)
     notes = (
         "A synthetic whole brain in each format; the page cache is warm, and readers take turns. *in pieces*: chunk by "

@@ -46,8 +46,8 @@ class SpeedStudy:
     name = "speed"
     title = "Speed"
     approximates = (
-        "Nothing: milliseconds and bytes of pipelines by the number of segments, beside line strips of the same "
-        "points; of features, spline tubes, halos and volumes. Neither VTK nor a display is needed."
+        "No approximation: milliseconds and bytes of pipelines by the number of segments, beside line strips of the "
+        "same points; of features, spline tubes, halos and volumes. Neither VTK nor a display is needed."
     )
     axes = (Axes("size", "", "errors/ms at M segments ", "million segments", "ms per frame", series=True),)
     notes = (
