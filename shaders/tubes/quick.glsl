@@ -8,7 +8,8 @@
 //   1. g has the five Bezier coefficients <q_i, q_j>: with none positive the ray misses.
 //   2. Where g is concave, and f convex for certain, F1 has one root in 0..1: one piece. Else there are stops at the roots of
 //      g'' and at the minima of g, which lie where g'' > 0: between two of them g > 0 in one part at most. Three more stops
-//      between each find minima of f that have a maximum between them.
+//      between each find minima of f that have a maximum between them. At a node without slopes f' = 0, and a minimum
+//      may be close beside: two stops lie MARGIN away from the ends.
 //   3. From stop to stop: where F1 goes from - to +, the bracket is narrowed to the root. The ends count where f rises
 //      from 0, or falls to 1. The nearest of all is kept.
 // Stops and roots take turns in one loop with one evaluation, whatever its lanes are at: processors that run many fragments at
@@ -16,6 +17,8 @@
 // then for the other one; the report measures how often that is, and how far off.
 
 // Needs tubes/functions.glsl before it.
+
+const float MARGIN = 0.125;
 
 // Whether a minimum at an end where another segment goes on is that one's: its slope says so clearly.
 bool others(float sloped, float g1, float size) {
@@ -118,7 +121,7 @@ void meet_half(vec4 k0, vec4 k1, vec4 k2, float first, bool cut, bvec2 joined, i
                 minimum = t >= 1.0 && u_t < 0.0;
                 lo = t;
                 u_lo = u_t;
-                ++stop;
+                stop = max(stop + 1, t >= 1.0 - MARGIN ? 24 : 0);
             }
         }
         if (minimum && g >= 0.0) {
@@ -136,6 +139,7 @@ void meet_half(vec4 k0, vec4 k1, vec4 k2, float first, bool cut, bvec2 joined, i
         if (narrowing) {
 #if FEATURE_TUBE_ILLINOIS
             t = hi - u_hi * (hi - lo) / (u_hi - u_lo);
+            if (u_hi == 0.0) t = mix(hi, lo, 1e-3);      // hi may be a maximum: the sign beside it decides
             float low = min(lo, hi), high = max(lo, hi);
             if (!(t >= low && t <= high)) t = 0.5 * (lo + hi);
 #elif FEATURE_TUBE_ITP
@@ -155,6 +159,7 @@ void meet_half(vec4 k0, vec4 k1, vec4 k2, float first, bool cut, bvec2 joined, i
             int k = stop >> 2, part = stop & 3;
             t = k < 2 ? (k == 0 ? stops.x : stops.y) : k == 2 ? stops.z : k == 3 ? stops.w : 1.0;
             if (outside && k > 3 && k < 6) t = k == 4 ? from.y : to.y;
+            if (k < 6) t = clamp(t, max(MARGIN, lo), 1.0 - MARGIN);
             if (part < 3) t = lo + (t - lo) / float(4 - part);
         }
     }

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from pvfiblets.engine.tubes import SOLVERS
 from pvfiblets.engine.tubes.solver_probe import SolverProbe
+from pvfiblets.report.studies.tubes.rays import of_class
 from pvfiblets.report.studies.tubes.reference import CAP, ENTRY, EXIT, Hits, hits, surface_distance
 from pvfiblets.tubes.curves import sample_spheres
 
@@ -80,6 +81,17 @@ def test_rays_meet_halves_where_the_reference_says(gl, sample, solver, chain, ki
         assert clear.max() < 1e-3
     else:
         assert (clear > 1e-3).mean() < (1e-3 if kind in ("bent", "cone") else 1e-9)
+
+
+@pytest.mark.parametrize(("solver", "chain"), WAYS)
+def test_minima_beside_nodes_without_slopes_are_found(gl, solver, chain):
+    """At such a node f' is 0, and f may fall from there, or rise towards there, with its minimum close by."""
+    rays = of_class("flat-ended", 8192)
+    found = probe(gl, solver, rays.controls, rays.origins, rays.directions, chain=chain)
+    wrong = (found[2] > 0) != (rays.truth.kind > 0)
+    assert (np.abs(rays.clearance[wrong]) < 1e-5).all()  # a silhouette
+    along, off = errors_of(rays.controls, rays.origins, rays.directions, found, rays.truth)
+    assert np.minimum(along, off).max() < 1e-3
 
 
 @pytest.mark.parametrize(("solver", "chain"), WAYS)

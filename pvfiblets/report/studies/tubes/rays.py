@@ -7,14 +7,15 @@ how much the radius would have to change to make that answer right.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from pvfiblets.tubes import curves
+from pvfiblets.tubes import SplineTubes, curves
 
 from ...cameras import Lens, orbit, unit
 from .reference import Hits, hits, surface_distance
@@ -37,16 +38,6 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 GOAL = 1e-4  # of the radius
-
-# Halves of length 1: radius, bend of the axis, how much the radius changes.
-CLASSES = {
-    "thin": (0.02, 0.05, 0.3),
-    "usual": (0.1, 0.1, 0.3),
-    "bent": (0.1, 0.6, 0.3),
-    "thick": (2.0, 0.3, 0.3),
-    "blob": (20.0, 0.3, 0.1),
-    "cone": (0.3, 0.1, 1.0),
-}
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,6 +109,21 @@ def halves(count: int, rng: Any, length: Any, radius: Any, bend: float, change: 
     return made
 
 
+def flat_ended(count: int, rng: Any) -> Array:
+    """Return (count, 3, 4) halves of segments of length 1 with every combination of slopes of 0 at their nodes."""
+    chord, pairs = unit(rng.normal(size=(count, 3))), np.arange(2 * count).reshape(-1, 2)
+    slopes = np.concatenate(
+        [chord[:, None] + rng.normal(0.0, 0.6, (count, 2, 3)), rng.normal(0.0, 0.08, (count, 2, 1))], axis=2
+    )
+    slopes *= rng.integers(0, 2, (count, 2, 2))[..., [0, 0, 0, 1]]  # of position and of radius
+    tubes = SplineTubes(
+        points=np.stack([np.zeros_like(chord), chord], axis=1).reshape(-1, 3), segments=pairs,
+        radius=rng.uniform(0.05, 0.15, 2 * count), tangents=slopes[..., :3].reshape(-1, 3),
+        radius_slopes=slopes[..., 3].ravel(), scaled=False, tubes=np.arange(count), n_tubes=count,
+    )  # fmt: skip
+    return curves.controls(tubes)[np.arange(count), rng.integers(0, 2, count)]
+
+
 def aimed(controls: Array, rng: Any, directions: Array | None = None, eye: Array | None = None) -> Rays:
     """Return rays that pass some sphere of each half within 1.15 radii of its middle: from anywhere, or from an eye."""
     count = len(controls)
@@ -132,11 +138,21 @@ def aimed(controls: Array, rng: Any, directions: Array | None = None, eye: Array
     return Rays(controls, at - 10.0 * size[:, None] * directions, directions)
 
 
+CLASSES: dict[str, Callable[[int, Any], Array]] = {
+    "thin": partial(halves, length=1.0, radius=0.02, bend=0.05, change=0.3),
+    "usual": partial(halves, length=1.0, radius=0.1, bend=0.1, change=0.3),
+    "bent": partial(halves, length=1.0, radius=0.1, bend=0.6, change=0.3),
+    "thick": partial(halves, length=1.0, radius=2.0, bend=0.3, change=0.3),
+    "blob": partial(halves, length=1.0, radius=20.0, bend=0.3, change=0.1),
+    "cone": partial(halves, length=1.0, radius=0.3, bend=0.1, change=1.0),
+    "flat-ended": flat_ended,
+}
+
+
 def of_class(name: str, count: int, seed: int = 0) -> Rays:
     """Return rays at synthetic halves of one class, from all around."""
-    radius, bend, change = CLASSES[name]
     rng = np.random.default_rng([seed, list(CLASSES).index(name)])
-    return aimed(halves(count, rng, 1.0, radius, bend, change), rng)
+    return aimed(CLASSES[name](count, rng), rng)
 
 
 def of_set(tubes: Any, count: int, size: tuple[int, int], seed: int = 0) -> Rays:

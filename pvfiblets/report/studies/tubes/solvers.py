@@ -20,7 +20,7 @@ __all__ = ["SETS", "SET_SIZE", "ray_sweeps", "solvers"]
 
 ITERATIONS = (1, 2, 3, 4, 6, 8, 12, 16, 24)  # besides each solver's own
 QUICK_ITERATIONS = (2, 4, 8)
-QUICK_CLASSES = ("thin", "usual", "cone")
+QUICK_CLASSES = ("thin", "usual", "cone", "flat-ended")
 RAYS, QUICK_RAYS = 8192, 2048
 SETS = ("fibers", "hotroom", "bundle", "brain", "furball")  # Russig et al. 2020, section 4
 SET_SIZE = (960, 540)  # of their pictures
