@@ -66,6 +66,8 @@ class TessellatedTubes:
         """Draw one picture."""
         import moderngl
 
+        from pvfiblets.engine.gl.moderngl_extras import GLExtras
+
         shift = np.eye(4)
         shift[:3, 3] = self.origin
         matrix = np.asarray(model_view_projection, np.float64) @ shift
@@ -90,9 +92,10 @@ class TessellatedTubes:
                 self._program[name].write(np.asarray(value, np.int32 if name == "scaled" else np.float32).tobytes())
         self._ctx.patch_vertices = 2
         self._ctx.enable_only(moderngl.DEPTH_TEST)
-        self._target.use()
-        self._target.clear(depth=1.0)
-        self._array.render(moderngl.PATCHES)
+        with GLExtras(self._ctx).framebuffers_kept():  # this one may be released next
+            self._target.use()
+            self._target.clear(depth=1.0)
+            self._array.render(moderngl.PATCHES)
 
     def depth(self) -> Array:
         """Return the last picture's window depth: (height, width), the bottom row first, 1 where there is nothing."""
