@@ -91,12 +91,17 @@ export function readArchive(bytes: Uint8Array): Archive {
   const arrays = new Map<string, NpyArray>();
   let header: any = null, at = start;
   for (let i = 0; i < count; ++i) {
-    if (at + 46 > bytes.length || view.getUint32(at, true) !== CENTRAL) throw new FileError(`The list of the file's members is damaged. ${AGAIN}`);
+    if (at + 46 > bytes.length || view.getUint32(at, true) !== CENTRAL)
+      throw new FileError(`The list of the file's members is damaged. ${AGAIN}`);
     const nameSize = view.getUint16(at + 28, true), extra = view.getUint16(at + 30, true), comment = view.getUint16(at + 32, true);
     const name = new TextDecoder().decode(bytes.subarray(at + 46, at + 46 + nameSize));
     const [size, offset] = long(view, at, nameSize, extra);
-    if (view.getUint16(at + 10, true) !== 0) throw new FileError(`The member ${name} of the file is compressed; .fiblets files store their members as they are.`);
-    if (offset + 30 > bytes.length || view.getUint32(offset, true) !== LOCAL) throw new FileError(`The member ${name} of the file is damaged. ${AGAIN}`);
+    if (view.getUint16(at + 10, true) !== 0)
+      throw new FileError(
+        `The member ${name} of the file is compressed; .fiblets files store their members as they are.`,
+      );
+    if (offset + 30 > bytes.length || view.getUint32(offset, true) !== LOCAL)
+      throw new FileError(`The member ${name} of the file is damaged. ${AGAIN}`);
     const data = offset + 30 + view.getUint16(offset + 26, true) + view.getUint16(offset + 28, true);
     if (data + size > bytes.length) throw new FileError(`The file ends within its member ${name}. Copy or make it again.`);
     const member = bytes.subarray(data, data + size);
@@ -120,7 +125,8 @@ function readHeader(bytes: Uint8Array): unknown {
 }
 
 function whole(header: any, arrays: Map<string, NpyArray>, ready: number): Archive {
-  if (header === null || typeof header !== "object") throw new FileError("This is a zip archive, but no .fiblets file: it has no header.json.");
+  if (header === null || typeof header !== "object")
+    throw new FileError("This is a zip archive, but no .fiblets file: it has no header.json.");
   return { header, arrays, ready };
 }
 
@@ -143,7 +149,8 @@ export async function openParts(parts: Parts, values: string[]): Promise<Archive
     for (let p = at + 30 + nameSize; size === 0xffffffff && p + 20 <= data; p += 4 + view.getUint16(p + 2, true)) {
       if (view.getUint16(p, true) === 1) size = big(view, p + 4);
     }
-    if (view.getUint16(at + 8, true) !== 0 || data + size > bytes.length) throw new FileError(`The member ${name} of the file is damaged. ${AGAIN}`);
+    if (view.getUint16(at + 8, true) !== 0 || data + size > bytes.length)
+      throw new FileError(`The member ${name} of the file is damaged. ${AGAIN}`);
     if (name === HEADER) {
       await parts.need(data, data + size);
       header = readHeader(bytes.subarray(data, data + size));
@@ -161,18 +168,43 @@ export async function openParts(parts: Parts, values: string[]): Promise<Archive
   return whole(header, arrays, 0);
 }
 
-const ELEMENTS: [string, number, number][] = [ // of a member: how many a fiblet, streamline's part or point has, and which column of pages counts those
-  ["anchors.npy", 2, -1], ["decoding.npy", 3, -1], ["anchors_low.npy", 3, -1], ["rank_to_id.npy", 1, 0], ["codes.npy", 1, 1],
+const ELEMENTS: [string, number, number][] = [
+  // of a member: how many a fiblet, streamline's part or point has, and which column of pages counts those
+  ["anchors.npy", 2, -1],
+  ["decoding.npy", 3, -1],
+  ["anchors_low.npy", 3, -1],
+  ["rank_to_id.npy", 1, 0],
+  ["codes.npy", 1, 1],
 ];
 
 /** Have all that draws the fiblets of some pages, and the values of their points that are named. */
-export async function needPages(parts: Parts, archive: Archive, first: number, last: number, perPage: number, values: string[]): Promise<void> {
-  const table = archive.arrays.get("pages.npy")!.data as BigInt64Array, n = archive.header.n_fiblets;
-  const members = [...ELEMENTS, ...values.map((name): [string, number, number] => [archive.header.per_point?.[name]?.member, 1, 2])];
-  await Promise.all(members.map(([name, columns, counted]) => {
-    const array = archive.arrays.get(name)?.data;
-    if (!array) return undefined;
-    const [begin, end] = [first, last].map((page) => (counted < 0 ? Math.min(page * perPage, n) * columns : Number(table[3 * page + counted])) * array.BYTES_PER_ELEMENT);
-    return parts.need(array.byteOffset + begin, Math.min(array.byteOffset + end + (counted === 1 ? 4 : 0), parts.bytes.length));
-  }));
+export async function needPages(
+  parts: Parts,
+  archive: Archive,
+  first: number,
+  last: number,
+  perPage: number,
+  values: string[],
+): Promise<void> {
+  const table = archive.arrays.get("pages.npy")!.data as BigInt64Array,
+    n = archive.header.n_fiblets;
+  const members = [
+    ...ELEMENTS,
+    ...values.map((name): [string, number, number] => [archive.header.per_point?.[name]?.member, 1, 2]),
+  ];
+  await Promise.all(
+    members.map(([name, columns, counted]) => {
+      const array = archive.arrays.get(name)?.data;
+      if (!array) return undefined;
+      const [begin, end] = [first, last].map(
+        (page) =>
+          (counted < 0 ? Math.min(page * perPage, n) * columns : Number(table[3 * page + counted])) *
+          array.BYTES_PER_ELEMENT,
+      );
+      return parts.need(
+        array.byteOffset + begin,
+        Math.min(array.byteOffset + end + (counted === 1 ? 4 : 0), parts.bytes.length),
+      );
+    }),
+  );
 }

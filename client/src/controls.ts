@@ -27,7 +27,13 @@ const number = (value: number): string => (Number.isFinite(value) ? String(Numbe
 
 function slider(label: string, low: number, high: number, value: number, changed: (value: number) => void): HTMLElement {
   const step = (high - low) / 200 || 1, shown = make("output", {}, number(value));
-  const input = make("input", { type: "range", min: String(low), max: String(high), step: String(step), value: String(value) }) as HTMLInputElement;
+  const input = make("input", {
+    type: "range",
+    min: String(low),
+    max: String(high),
+    step: String(step),
+    value: String(value),
+  }) as HTMLInputElement;
   input.addEventListener("input", () => {
     shown.textContent = number(input.valueAsNumber);
     changed(input.valueAsNumber);
@@ -59,7 +65,12 @@ const VIEWS: [string, Vec, Vec][] = [
 
 function drawBar(bar: Bar): HTMLElement {
   const table = fromBase64(bar.table), n = table.length / 4;
-  const canvas = make("canvas", { width: String(n), height: "1", role: "img", "aria-label": `Colours from ${number(bar.clim[0])} to ${number(bar.clim[1])}` }) as HTMLCanvasElement;
+  const canvas = make("canvas", {
+    width: String(n),
+    height: "1",
+    role: "img",
+    "aria-label": `Colours from ${number(bar.clim[0])} to ${number(bar.clim[1])}`,
+  }) as HTMLCanvasElement;
   const context = canvas.getContext("2d")!, pixels = context.createImageData(n, 1);
   pixels.data.set(table);
   context.putImageData(pixels, 0, 0);
@@ -69,7 +80,12 @@ function drawBar(bar: Bar): HTMLElement {
       swatch.style.background = `rgb(${colour.join(",")})`;
       return make("li", {}, swatch, name);
     });
-    return make("figure", { class: "bar" }, make("figcaption", {}, bar.title), make("ul", { tabindex: "0", "aria-label": bar.title }, ...names));
+    return make(
+      "figure",
+      { class: "bar" },
+      make("figcaption", {}, bar.title),
+      make("ul", { tabindex: "0", "aria-label": bar.title }, ...names),
+    );
   }
   const [low, high] = bar.clim, middle = bar.log ? Math.sqrt(low * high) : (low + high) / 2;
   return make("figure", { class: "bar" }, make("figcaption", {}, bar.title), canvas,
@@ -164,7 +180,9 @@ export class Controls {
     const sliders = make("div");
     let at = 0, thickness = 0;
     const apply = (): void => {
-      const axis = choice.selectedIndex - 1, plane = (sign: number): number[] => [0, 1, 2].map((i) => (i === axis ? sign : 0)).concat(-sign * at + thickness / 2);
+      const axis = choice.selectedIndex - 1,
+        plane = (sign: number): number[] =>
+          [0, 1, 2].map((i) => (i === axis ? sign : 0)).concat(-sign * at + thickness / 2);
       renderer.planes = axis < 0 ? [] : [plane(1), plane(-1)];
       renderer.change(true);
     };
@@ -175,7 +193,16 @@ export class Controls {
         const low = b[2 * axis], high = b[2 * axis + 1];
         at = (low + high) / 2;
         thickness = (high - low) / 8;
-        sliders.append(slider("Middle", low, high, at, (value) => { at = value; apply(); }), slider("Thickness", (high - low) / 200, high - low, thickness, (value) => { thickness = value; apply(); }));
+        sliders.append(
+          slider("Middle", low, high, at, (value) => {
+            at = value;
+            apply();
+          }),
+          slider("Thickness", (high - low) / 200, high - low, thickness, (value) => {
+            thickness = value;
+            apply();
+          }),
+        );
       }
       apply();
     });
@@ -184,7 +211,11 @@ export class Controls {
 
   private choiceOf(lines: Lines): Choice {
     let found = this.choices.get(lines.index);
-    if (!found) this.choices.set(lines.index, (found = new Choice(lines, lines.layer.kept === undefined ? null : this.data[lines.layer.kept])));
+    if (!found)
+      this.choices.set(
+        lines.index,
+        (found = new Choice(lines, lines.layer.kept === undefined ? null : this.data[lines.layer.kept])),
+      );
     return found;
   }
 
@@ -198,7 +229,19 @@ export class Controls {
           renderer.lines[lines.index].shownValues = now[0] > low || now[1] < high ? [now[0], now[1]] : [1, 0];
           renderer.change(true);
         };
-        made.push(group(values.name, slider("From", low, high, low, (value) => { now[0] = value; apply(); }), slider("To", low, high, high, (value) => { now[1] = value; apply(); })));
+        made.push(
+          group(
+            values.name,
+            slider("From", low, high, low, (value) => {
+              now[0] = value;
+              apply();
+            }),
+            slider("To", low, high, high, (value) => {
+              now[1] = value;
+              apply();
+            }),
+          ),
+        );
       }
       for (const control of layer.controls ?? []) {
         if (control.data === undefined) continue;
@@ -234,7 +277,9 @@ export class Controls {
   private regionList(): HTMLElement {
     const list = make("div"), { renderer } = this, b = renderer.scene.bounds, size = Math.hypot(b[1] - b[0], b[3] - b[2], b[5] - b[4]);
     const add = (ball: boolean) => (): void => {
-      const place = this.picked ? (apply(this.picked.lines.model, this.picked.place).slice(0, 3) as Vec) : ([0, 1, 2].map((axis) => (b[2 * axis] + b[2 * axis + 1]) / 2) as Vec);
+      const place = this.picked
+        ? (apply(this.picked.lines.model, this.picked.place).slice(0, 3) as Vec)
+        : ([0, 1, 2].map((axis) => (b[2 * axis] + b[2 * axis + 1]) / 2) as Vec);
       const region: Region = { ball, at: place, size: [size / 40, size / 40, size / 40], on: true, inverted: false };
       this.regions.push(region);
       list.append(this.regionRow(region, size));
@@ -254,16 +299,38 @@ export class Controls {
       for (const axis of axes) region.size[axis] = value;
       later();
     });
-    const row = make("details", {}, make("summary", {}, name), check("On", true, (on) => { region.on = on; this.choose(); }),
-      check("Streamlines outside it", false, (inverted) => { region.inverted = inverted; this.choose(); }),
-      ...["x", "y", "z"].map((axis, i) => slider(`${axis}, mm`, b[2 * i], b[2 * i + 1], region.at[i], (value) => { region.at[i] = value; later(); })),
-      ...(region.ball ? [sized("Radius, mm", [0, 1, 2])] : ["x", "y", "z"].map((axis, i) => sized(`Half of ${axis}, mm`, [i]))),
-      make("div", { class: "buttons" }, button(`Remove ${name.toLowerCase()}`, () => {
-        row.remove();
-        this.regions.splice(this.regions.indexOf(region), 1);
-        for (const choice of this.choices.values()) choice.regions.delete(region);
+    const row = make(
+      "details",
+      {},
+      make("summary", {}, name),
+      check("On", true, (on) => {
+        region.on = on;
         this.choose();
-      })));
+      }),
+      check("Streamlines outside it", false, (inverted) => {
+        region.inverted = inverted;
+        this.choose();
+      }),
+      ...["x", "y", "z"].map((axis, i) =>
+        slider(`${axis}, mm`, b[2 * i], b[2 * i + 1], region.at[i], (value) => {
+          region.at[i] = value;
+          later();
+        }),
+      ),
+      ...(region.ball
+        ? [sized("Radius, mm", [0, 1, 2])]
+        : ["x", "y", "z"].map((axis, i) => sized(`Half of ${axis}, mm`, [i]))),
+      make(
+        "div",
+        { class: "buttons" },
+        button(`Remove ${name.toLowerCase()}`, () => {
+          row.remove();
+          this.regions.splice(this.regions.indexOf(region), 1);
+          for (const choice of this.choices.values()) choice.regions.delete(region);
+          this.choose();
+        }),
+      ),
+    );
     (row as HTMLDetailsElement).open = true;
     return row;
   }
@@ -300,7 +367,9 @@ export class Controls {
     const { renderer } = this, found = renderer.reads() ? renderer.pick(x, y) : null;
     this.unmark();
     if (found) {
-      const { lines, streamline, value } = found, place = renderer.placeOf(lines, streamline, x, y), world = apply(lines.model, place).slice(0, 3);
+      const { lines, streamline, value } = found,
+        place = renderer.placeOf(lines, streamline, x, y),
+        world = apply(lines.model, place).slice(0, 3);
       this.say(lines, streamline, value, world);
       this.picked = { lines, streamline, place };
       this.told?.({ layer: renderer.scene.layers.indexOf(lines.layer), streamline, place: world });
@@ -332,7 +401,8 @@ export class Controls {
     const said = [`Streamline ${streamline} of ${lines.layer.name}`];
     if (value !== null && lines.values) said.push(`${lines.values.name} ${number(value)}`);
     for (const control of lines.layer.controls ?? []) {
-      if (control.data !== undefined) said.push(`${control.name} ${number(new Float32Array(this.data[control.data].slice().buffer)[streamline])}`);
+      if (control.data !== undefined)
+        said.push(`${control.name} ${number(new Float32Array(this.data[control.data].slice().buffer)[streamline])}`);
     }
     if (world.length) said.push(`at ${world.map(number).join(", ")} mm`);
     this.status.textContent = said.join("; ");

@@ -5,7 +5,7 @@ import { Mat, Vec, apply, inverse } from "./camera";
 /** A region of the world; pvfiblets/plotting/page_cuts.py makes it. */
 export interface Cut {
   leaves: { centre: Vec; planes?: number[][]; ball?: number[][] }[]; // held where all planes are not below 0, or in the unit ball of what three rows map to; rows over (x, y, z, 1)
-  program: number[];                                                 // postfix: numbers of leaves; -1 both, -2 either, -3 not
+  program: number[]; // postfix: numbers of leaves; -1 both, -2 either, -3 not
 }
 
 const ROWS = 6;
@@ -28,7 +28,10 @@ export function raysOf({ leaves }: Cut, window: Mat, width: number, height: numb
   const rows = new Float64Array(4 * ROWS * leaves.length), centres = new Float64Array(4 * leaves.length);
   leaves.forEach(({ centre, planes, ball }, k) => {
     const [x, y, z, w] = apply(window, centre), place = [x / w, y / w, z / w];
-    const about = w > 0 && place.every(isFinite) ? place.map((part, i) => Math.min(Math.max(part, 0), span[i])) : [width / 2, height / 2, 0];
+    const about =
+      w > 0 && place.every(isFinite)
+        ? place.map((part, i) => Math.min(Math.max(part, 0), span[i]))
+        : [width / 2, height / 2, 0];
     const seen = (row: number[]): number[] => {
       const found = four.map((j) => four.reduce((sum, i) => sum + row[i] * back[i + 4 * j], 0));
       found[3] += found[0] * about[0] + found[1] * about[1] + found[2] * about[2];
@@ -44,7 +47,12 @@ export function raysOf({ leaves }: Cut, window: Mat, width: number, height: numb
     const units = [...ball, [0, 0, 0, 1]].map(seen);
     const q = four.map((i) => four.map((j) => units.reduce((sum, unit, at) => sum + (at < 3 ? 1 : -1) * unit[i] * unit[j], 0)));
     const most = Math.max(...four.flatMap((i) => four.map((j) => Math.abs(q[i][j] * span[i] * span[j])))) || 1;
-    rows.set([q[0][0], q[1][1], 2 * q[0][1], q[3][3], 2 * q[0][3], 2 * q[1][3], q[0][2], q[1][2], q[2][2], q[2][3]].map((value) => value / most), 4 * ROWS * k);
+    rows.set(
+      [q[0][0], q[1][1], 2 * q[0][1], q[3][3], 2 * q[0][3], 2 * q[1][3], q[0][2], q[1][2], q[2][2], q[2][3]].map(
+        (value) => value / most,
+      ),
+      4 * ROWS * k,
+    );
   });
   return { rays_rows: rows, rays_centres: centres };
 }

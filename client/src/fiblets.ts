@@ -76,7 +76,8 @@ function words(array: NpyArray | undefined, name: string, columns: number, n: nu
 /** An array as whole words of four bytes, of which the last may have something else behind it, which nothing reads. */
 export function asWords(data: Uint8Array | Uint16Array): Uint32Array {
   const n = Math.ceil(data.byteLength / 4);
-  if (data.byteOffset % 4 === 0 && data.byteOffset + 4 * n <= data.buffer.byteLength) return new Uint32Array(data.buffer as ArrayBuffer, data.byteOffset, n);
+  if (data.byteOffset % 4 === 0 && data.byteOffset + 4 * n <= data.buffer.byteLength)
+    return new Uint32Array(data.buffer as ArrayBuffer, data.byteOffset, n);
   const all = new Uint8Array(4 * n);
   all.set(new Uint8Array(data.buffer as ArrayBuffer, data.byteOffset, data.byteLength));
   return new Uint32Array(all.buffer);
@@ -88,12 +89,12 @@ export function asCodes(data: Uint8Array, bits: 8 | 16): Uint8Array | Uint16Arra
 }
 
 export class FibletSet {
-  readonly blocks: Block[] = [];       // that can be drawn
+  readonly blocks: Block[] = []; // that can be drawn
   readonly streamlines: number;
   readonly points: number;
   readonly bounds: Bounds;
-  readonly reference: Vec;             // anchor integers of local 0
-  readonly toData: Mat;                // local mm to data mm
+  readonly reference: Vec; // anchor integers of local 0
+  readonly toData: Mat; // local mm to data mm
   readonly coding: UniformBlock;
   budget = 256 << 20;
 
@@ -111,10 +112,10 @@ export class FibletSet {
   private itemBytes = 15 * SLOT_BYTES;
   private kinds = new Set<number>();
   private table: number[];
-  private done = 0;                    // fiblets that have come
-  private shares = 0;                  // of them
-  private before = 0;                  // points of the streamline before the next fiblet
-  private open: Block | null = null;   // that waits for the fiblet after it
+  private done = 0; // fiblets that have come
+  private shares = 0; // of them
+  private before = 0; // points of the streamline before the next fiblet
+  private open: Block | null = null; // that waits for the fiblet after it
   private growing: Record<string, Growing> = {};
   private values: Growing[] = [];
   private held = 0;
@@ -122,30 +123,51 @@ export class FibletSet {
   private fiblets: number;
   private decodeArray: WebGLVertexArrayObject;
 
-  constructor(private gl: GL, private archive: Archive) {
+  constructor(
+    private gl: GL,
+    private archive: Archive,
+  ) {
     const { header, arrays } = archive;
-    if (header.format !== "fiblets") throw new FileError("The file is no .fiblets file: its header says something else.");
-    if (header.version !== 2) throw new FileError(`The file is of version ${header.version}; this page reads version 2. Make the page again with a newer pvfiblets.`);
-    const p = (this.parameters = header.parameters), n = (this.fiblets = header.n_fiblets);
+    if (header.format !== "fiblets")
+      throw new FileError("The file is no .fiblets file: its header says something else.");
+    if (header.version !== 2)
+      throw new FileError(
+        `The file is of version ${header.version}; this page reads version 2. Make the page again with a newer pvfiblets.`,
+      );
+    const p = (this.parameters = header.parameters),
+      n = (this.fiblets = header.n_fiblets);
     this.streamlines = header.n_streamlines;
     this.points = header.n_points;
     this.bounds = header.bounds;
-    const anchors = words(arrays.get("anchors.npy"), "anchors", 2, n), decoding = words(arrays.get("decoding.npy"), "records", 3, n);
-    const codes = arrays.get("codes.npy"), pages = arrays.get("pages.npy");
-    if (!codes || !(codes.data instanceof Uint8Array) || !pages || !(pages.data instanceof BigInt64Array)) throw new FileError("The file's codes or pages are missing. Copy or make it again.");
-    const table = this.table = Array.from(pages.data, Number), pageCount = Math.ceil(n / (1 << PAGE_BITS));
-    if (table.length !== 3 * (pageCount + 1) || table[3 * pageCount + 1] !== codes.data.length || table[3 * pageCount + 2] !== this.points) {
+    const anchors = words(arrays.get("anchors.npy"), "anchors", 2, n),
+      decoding = words(arrays.get("decoding.npy"), "records", 3, n);
+    const codes = arrays.get("codes.npy"),
+      pages = arrays.get("pages.npy");
+    if (!codes || !(codes.data instanceof Uint8Array) || !pages || !(pages.data instanceof BigInt64Array))
+      throw new FileError("The file's codes or pages are missing. Copy or make it again.");
+    const table = (this.table = Array.from(pages.data, Number)),
+      pageCount = Math.ceil(n / (1 << PAGE_BITS));
+    if (
+      table.length !== 3 * (pageCount + 1) ||
+      table[3 * pageCount + 1] !== codes.data.length ||
+      table[3 * pageCount + 2] !== this.points
+    ) {
       throw new FileError("The file's table of pages does not fit its records. Copy or make it again.");
     }
     const low = p.anchor_bits === 32 ? arrays.get("anchors_low.npy") : undefined;
-    if (p.anchor_bits === 32 && !(low?.data instanceof Uint16Array && low.data.length === 3 * n)) throw new FileError("The lower halves of the file's anchors are missing. Copy or make it again.");
+    if (p.anchor_bits === 32 && !(low?.data instanceof Uint16Array && low.data.length === 3 * n))
+      throw new FileError("The lower halves of the file's anchors are missing. Copy or make it again.");
     const top = p.anchor_bits === 32 ? 4294967295 : 65535;
     this.reference = [0, 1, 2].map((axis) => {
-      const middle = (this.bounds[2 * axis] + this.bounds[2 * axis + 1]) / 2, scale = p.anchor_scale[axis];
-      return scale > 0 && Number.isFinite(middle) ? Math.round(Math.min(Math.max((middle - p.origin[axis]) / scale, 0), top)) : 0;
+      const middle = (this.bounds[2 * axis] + this.bounds[2 * axis + 1]) / 2,
+        scale = p.anchor_scale[axis];
+      return scale > 0 && Number.isFinite(middle)
+        ? Math.round(Math.min(Math.max((middle - p.origin[axis]) / scale, 0), top))
+        : 0;
     }) as Vec;
     this.toData = new Float64Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
-    for (let axis = 0; axis < 3; ++axis) this.toData[12 + axis] = p.origin[axis] + p.anchor_scale[axis] * this.reference[axis];
+    for (let axis = 0; axis < 3; ++axis)
+      this.toData[12 + axis] = p.origin[axis] + p.anchor_scale[axis] * this.reference[axis];
 
     this.grow("anchor_texels", "rg32ui", anchors, "anchors");
     this.grow("decoding_texels", "r32ui", decoding, "records");
@@ -156,8 +178,13 @@ export class FibletSet {
     this.textures.page_texels = rows(gl, "rgba32ui", starts, "pages");
     this.coding = new UniformBlock(gl, "Coding");
     this.coding.write({
-      anchor_scale: p.anchor_scale, radius_scale: 0, step_low: p.step_lo, step_span: p.step_hi - p.step_lo, lattice_edge: p.lattice,
-      end_vector_scale: 0, rotation_scales: rotationScales,
+      anchor_scale: p.anchor_scale,
+      radius_scale: 0,
+      step_low: p.step_lo,
+      step_span: p.step_hi - p.step_lo,
+      lattice_edge: p.lattice,
+      end_vector_scale: 0,
+      rotation_scales: rotationScales,
     });
     this.rotationBlock = new UniformBlock(gl, "Rotations");
     this.rotationBlock.fill(rotations);
@@ -171,7 +198,12 @@ export class FibletSet {
   }
 
   private grow(name: string, format: Format, data: Uint32Array, what: string): void {
-    const texture = (this.textures[name] = emptyRows(this.gl, format, format === "rg32ui" ? data.length / 2 : data.length, what));
+    const texture = (this.textures[name] = emptyRows(
+      this.gl,
+      format,
+      format === "rg32ui" ? data.length / 2 : data.length,
+      what,
+    ));
     this.growing[name] = { texture, format, data };
   }
 
@@ -182,23 +214,27 @@ export class FibletSet {
 
   /** How many shares a fiblet has. */
   private sharesOf(f: number, share = this.share): number {
-    const points = field("last", this.growing.decoding_texels.data[3 * f + 2]) + 1, end = this.growing.anchor_texels.data[2 * f + 1] >>> 31;
+    const points = field("last", this.growing.decoding_texels.data[3 * f + 2]) + 1,
+      end = this.growing.anchor_texels.data[2 * f + 1] >>> 31;
     return points % share === 0 && !end ? points / share : Math.ceil((points + (end ? 1 : 2)) / share);
   }
 
   /** Choose the size of shares by the first fiblets, and have place for those of all. */
   private begin(first: number): void {
-    const gl = this.gl, counts = SHARES.map((share) => {
-      // A slot costs its drawing; an item its walk from the fiblet's anchor, on average half of it.
-      let cost = 0, total = 0;
-      for (let f = 0; f < first; ++f) {
-        const k = this.sharesOf(f, share);
-        cost += k * share * (1 + 0.05 * k);
-        total += k;
-      }
-      return { share, cost, total };
-    });
-    const best = counts.reduce((a, b) => (b.cost < a.cost ? b : a)), left = this.fiblets - first;
+    const gl = this.gl,
+      counts = SHARES.map((share) => {
+        // A slot costs its drawing; an item its walk from the fiblet's anchor, on average half of it.
+        let cost = 0,
+          total = 0;
+        for (let f = 0; f < first; ++f) {
+          const k = this.sharesOf(f, share);
+          cost += k * share * (1 + 0.05 * k);
+          total += k;
+        }
+        return { share, cost, total };
+      });
+    const best = counts.reduce((a, b) => (b.cost < a.cost ? b : a)),
+      left = this.fiblets - first;
     this.share = best.share;
     this.itemBytes = this.share * SLOT_BYTES;
     let points = this.points;
@@ -213,13 +249,25 @@ export class FibletSet {
 
   /** Take in the fiblets that have come: `upto` in all, whole pages or everything. */
   advance(upto: number): void {
-    const gl = this.gl, from = this.done, n = Math.min(upto, this.fiblets), p = this.parameters, { table } = this;
+    const gl = this.gl,
+      from = this.done,
+      n = Math.min(upto, this.fiblets),
+      p = this.parameters,
+      { table } = this;
     if (n <= from && this.fiblets) return;
     if (!from) this.begin(n);
-    const ids = this.archive.arrays.get("rank_to_id.npy")?.data as BigInt64Array | undefined, low = this.archive.arrays.get("anchors_low.npy")?.data as Uint16Array | undefined;
-    const anchors = this.growing.anchor_texels.data, decoding = this.growing.decoding_texels.data, items = this.toItems;
-    const codeBytes = table[table.length - 2], firstItem = this.shares, margin = 2 * p.largest_radius, kinds = this.kinds.size;
-    let item = firstItem, block = this.open, more = 0;
+    const ids = this.archive.arrays.get("rank_to_id.npy")?.data as BigInt64Array | undefined,
+      low = this.archive.arrays.get("anchors_low.npy")?.data as Uint16Array | undefined;
+    const anchors = this.growing.anchor_texels.data,
+      decoding = this.growing.decoding_texels.data,
+      items = this.toItems;
+    const codeBytes = table[table.length - 2],
+      firstItem = this.shares,
+      margin = 2 * p.largest_radius,
+      kinds = this.kinds.size;
+    let item = firstItem,
+      block = this.open,
+      more = 0;
     for (let f = from; f < n; ++f) more += this.sharesOf(f);
     const pairs = new Uint32Array(2 * more);
     const close = (): void => {
@@ -228,18 +276,40 @@ export class FibletSet {
       this.blocks.push(block);
     };
     for (let f = from; f < n; ++f) {
-      const page = 3 * (f >> PAGE_BITS), word = anchors[2 * f + 1], record = decoding[3 * f + 2];
-      const rank = field("rank", word) + table[page], points = field("last", record) + 1;
-      const id = ids ? Number(ids[rank]) : rank, begin = field("begin", word), end = field("end", word);
-      const code = field("code", decoding[3 * f + 1]) + table[page + 1], point = field("point", record) + table[page + 2];
+      const page = 3 * (f >> PAGE_BITS),
+        word = anchors[2 * f + 1],
+        record = decoding[3 * f + 2];
+      const rank = field("rank", word) + table[page],
+        points = field("last", record) + 1;
+      const id = ids ? Number(ids[rank]) : rank,
+        begin = field("begin", word),
+        end = field("end", word);
+      const code = field("code", decoding[3 * f + 1]) + table[page + 1],
+        point = field("point", record) + table[page + 2];
       const shares = this.sharesOf(f);
-      if (points > 60 || 4 * (item + shares) > items.length || !(id >= 0 && id < this.streamlines) || code > codeBytes || point + points > this.points) {
+      if (
+        points > 60 ||
+        4 * (item + shares) > items.length ||
+        !(id >= 0 && id < this.streamlines) ||
+        code > codeBytes ||
+        point + points > this.points
+      ) {
         throw new FileError(`Record ${f} of the file is damaged. Copy or make it again.`);
       }
       this.kinds.add(field("kind", record));
       if (f % BLOCK === 0) {
         close();
-        block = { firstItem: item, items: 0, more: 0, bounds: [Infinity, -Infinity, Infinity, -Infinity, Infinity, -Infinity], buffer: null, used: 0, shapes: null, likely: null, likelies: 0 };
+        block = {
+          firstItem: item,
+          items: 0,
+          more: 0,
+          bounds: [Infinity, -Infinity, Infinity, -Infinity, Infinity, -Infinity],
+          buffer: null,
+          used: 0,
+          shapes: null,
+          likely: null,
+          likelies: 0,
+        };
       }
       const grid = [anchors[2 * f] & 0xffff, anchors[2 * f] >>> 16, word & 0xffff];
       for (let axis = 0; axis < 3; ++axis) {
@@ -271,7 +341,8 @@ export class FibletSet {
     this.fill("decoding_texels", 3 * from, 3 * n);
     this.fill("anchor_low_texels", Math.floor(1.5 * from), Math.ceil(1.5 * n));
     this.fill("code_texels", this.countBefore(from, 1) >> 2, (this.countBefore(n, 1) + 3) >> 2);
-    for (const { texture, format, data } of this.values) fillRows(gl, texture, format, data, this.countBefore(from, 2), this.countBefore(n, 2));
+    for (const { texture, format, data } of this.values)
+      fillRows(gl, texture, format, data, this.countBefore(from, 2), this.countBefore(n, 2));
   }
 
   /** What a column of the table of pages counts before a fiblet, of whole pages or of all. */
@@ -281,21 +352,30 @@ export class FibletSet {
 
   /** A stored array of a value for each point. */
   pointValues(name: string): PointValues {
-    const said = this.archive.header.per_point?.[name], array = said && this.archive.arrays.get(said.member);
-    if (!array || array.data.length !== this.points) throw new FileError(`The file has no values ${name} for its points.`);
+    const said = this.archive.header.per_point?.[name],
+      array = said && this.archive.arrays.get(said.member);
+    if (!array || array.data.length !== this.points)
+      throw new FileError(`The file has no values ${name} for its points.`);
     const table = this.archive.arrays.get(said.table);
-    if (!(table?.data instanceof Float32Array)) throw new FileError(`The file does not say what the codes of ${name} mean. Make the page again.`);
+    if (!(table?.data instanceof Float32Array))
+      throw new FileError(`The file does not say what the codes of ${name} mean. Make the page again.`);
     return this.codedValues(name, array.data as Uint8Array | Uint16Array, table.data, said);
   }
 
   /** Values for each point of the set, by their codes, what these mean, and what the least and the greatest one is. */
-  codedValues(name: string, data: Uint8Array | Uint16Array, table: Float32Array, { lo, hi, reference }: ValueFacts): PointValues {
+  codedValues(
+    name: string,
+    data: Uint8Array | Uint16Array,
+    table: Float32Array,
+    { lo, hi, reference }: ValueFacts,
+  ): PointValues {
     if (data.length !== this.points) throw new FileError(`The values ${name} are not those of the file's points.`);
-    const wide = data instanceof Uint16Array, format = wide ? "r16ui" : "r8ui";
+    const wide = data instanceof Uint16Array,
+      format = wide ? "r16ui" : "r8ui";
     const texture = emptyRows(this.gl, format, this.points, "values of points");
     this.values.push({ texture, format, data });
     fillRows(this.gl, texture, format, data, 0, this.countBefore(this.done, 2));
-    const full = new Float32Array(wide ? 65536 : 256).fill(NaN);  // of which a file has what is used
+    const full = new Float32Array(wide ? 65536 : 256).fill(NaN); // of which a file has what is used
     full.set(table.subarray(0, full.length));
     const meant = new Uint32Array(full.buffer);
     return { name, texture, table: rows(this.gl, "r32ui", meant, "values of codes"), range: [lo, hi], reference };
@@ -312,12 +392,19 @@ export class FibletSet {
     if (this.textures.anchor_low_texels) features.push("ANCHORS_LOW");
     if (this.kinds.size > 1 || !this.kinds.has(KIND_DIRECTION)) features.push("LATTICE");
     if (this.kinds.has(KIND_WIDE)) features.push("WIDE_LATTICE");
-    return (this.decodeProgram ??= new Program(this.gl, "page/decode.vert", "page/none.frag", features, Array.from({ length: this.share }, (_, i) => `o${i}`)));
+    return (this.decodeProgram ??= new Program(
+      this.gl,
+      "page/decode.vert",
+      "page/none.frag",
+      features,
+      Array.from({ length: this.share }, (_, i) => `o${i}`),
+    ));
   }
 
   /** Decode a block into a buffer. */
   private decode(block: Block, buffer: WebGLBuffer): void {
-    const gl = this.gl, n = block.items + block.more;
+    const gl = this.gl,
+      n = block.items + block.more;
     this.coding.bind();
     this.rotationBlock.bind();
     this.frameForDecoding.bind();
@@ -344,7 +431,8 @@ export class FibletSet {
   }
 
   private newBuffer(bytes: number): WebGLBuffer {
-    const gl = this.gl, buffer = gl.createBuffer()!;
+    const gl = this.gl,
+      buffer = gl.createBuffer()!;
     gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
     gl.bufferData(gl.ARRAY_BUFFER, bytes, gl.DYNAMIC_COPY);
     gl.bindBuffer(gl.ARRAY_BUFFER, null);
@@ -390,7 +478,8 @@ export class FibletSet {
   }
 
   private drawRun(block: Block, program: Program, from: number, to: number, sprites: boolean): number {
-    const gl = this.gl, n = (to - from) * this.share;
+    const gl = this.gl,
+      n = (to - from) * this.share;
     this.aim(block, program, from, sprites);
     if (sprites) gl.drawArrays(gl.POINTS, 0, n);
     else gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, n);
@@ -399,22 +488,31 @@ export class FibletSet {
   }
 
   private aim(block: Block, program: Program, from: number, sprites: boolean): void {
-    const gl = this.gl, buffer = this.pointsOf(block);
+    const gl = this.gl,
+      buffer = this.pointsOf(block);
     program.use().ints({ first_item: block.firstItem + from, share_size: this.share });
     gl.bindVertexArray(this.segmentArray(sprites));
     gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-    for (let i = 0; i < 3; ++i) gl.vertexAttribIPointer(i, 4, gl.UNSIGNED_INT, SLOT_BYTES, from * this.itemBytes + i * SLOT_BYTES);
+    for (let i = 0; i < 3; ++i)
+      gl.vertexAttribIPointer(i, 4, gl.UNSIGNED_INT, SLOT_BYTES, from * this.itemBytes + i * SLOT_BYTES);
   }
 
   /** Those of a block's items that are drawn before others: what was seen last, and of what was never looked at a share. */
   likely(block: Block): Uint8Array {
-    if (!block.likely) block.likely = new Uint8Array(block.items).fill(1, 0, (block.likelies = Math.max(1, Math.round(FIRST * block.items))));
+    if (!block.likely)
+      block.likely = new Uint8Array(block.items).fill(
+        1,
+        0,
+        (block.likelies = Math.max(1, Math.round(FIRST * block.items))),
+      );
     return block.likely;
   }
 
   /** Find which of a block's items may show, and return those that are not `likely`, which these are from now on. */
   look(block: Block, window: Mat, brush: number, width: number, height: number, far: FarDepths): Uint8Array {
-    const shows = new Uint8Array(block.items), before = this.likely(block), more = new Uint8Array(block.items);
+    const shows = new Uint8Array(block.items),
+      before = this.likely(block),
+      more = new Uint8Array(block.items);
     lookAt((block.shapes ??= this.shapesOf(block)), window, brush, width, height, far, shows);
     block.likelies = 0;
     for (let i = 0; i < more.length; ++i) {
@@ -426,15 +524,19 @@ export class FibletSet {
   }
 
   private shapesOf(block: Block): Float32Array {
-    const a = this.toItems, { share } = this;
+    const a = this.toItems,
+      { share } = this;
     return capsules(this.slotsOf(block), block.items, share, (i) => {
-      const word = a[4 * (block.firstItem + i) + 2], end = (word >>> 7) & 1, points = word & 63;
+      const word = a[4 * (block.firstItem + i) + 2],
+        end = (word >>> 7) & 1,
+        points = word & 63;
       return Math.min(points + 1 - end - share * (word >>> 8), share + 1);
     });
   }
 
   private slotsOf(block: Block): Float32Array {
-    const gl = this.gl, slots = new Float32Array((block.items + block.more + 1) * this.share * 4);
+    const gl = this.gl,
+      slots = new Float32Array((block.items + block.more + 1) * this.share * 4);
     gl.bindBuffer(gl.ARRAY_BUFFER, this.pointsOf(block));
     gl.getBufferSubData(gl.ARRAY_BUFFER, 0, slots, 0, (block.items + block.more) * this.share * 4);
     gl.bindBuffer(gl.ARRAY_BUFFER, null);
@@ -445,10 +547,12 @@ export class FibletSet {
 
   /** Draw those of a block's items that are chosen, `most` of them at most. */
   drawSome(block: Block, program: Program, chosen: Uint8Array, sprites: boolean, most = Infinity): number {
-    const gl = this.gl, { share } = this;
+    const gl = this.gl,
+      { share } = this;
     let n = 0;
     if (!sprites) {
-      let drawn = 0, found = 0;
+      let drawn = 0,
+        found = 0;
       for (let from = 0; from < chosen.length && found < most; ++from) {
         if (!chosen[from]) continue;
         let to = from + 1;
@@ -463,10 +567,13 @@ export class FibletSet {
       }
       return drawn;
     }
-    const left = Math.min(most, chosen.length), slots = new Uint32Array(left * share);
+    const left = Math.min(most, chosen.length),
+      slots = new Uint32Array(left * share);
     for (let i = 0, found = 0; i < chosen.length && found < left; ++i) {
       if (!chosen[i]) continue;
-      const word = this.toItems[4 * (block.firstItem + i) + 2], points = word & 63, segments = points - ((word & 128) !== 0 && points > 1 ? 1 : 0);
+      const word = this.toItems[4 * (block.firstItem + i) + 2],
+        points = word & 63,
+        segments = points - ((word & 128) !== 0 && points > 1 ? 1 : 0);
       for (let k = i * share, end = k + Math.min(segments - share * (word >>> 8), share); k < end; ++k) slots[n++] = k;
       ++found;
     }
@@ -502,7 +609,9 @@ export class FibletSet {
       const slots = this.slotsOf(block);
       for (let item = block.firstItem; item < block.firstItem + block.items; ++item) {
         if (a[4 * item + 2] >>> 8) continue;
-        const points = a[4 * item + 2] & 63, end = (a[4 * item + 2] & 128) !== 0, at = 4 * this.share * (item - block.firstItem);
+        const points = a[4 * item + 2] & 63,
+          end = (a[4 * item + 2] & 128) !== 0,
+          at = 4 * this.share * (item - block.firstItem);
         yield [a[4 * item], slots.subarray(at, at + 4 * (points + (end ? 0 : 1))), (a[4 * item + 2] & 64) !== 0];
       }
     }
@@ -511,7 +620,8 @@ export class FibletSet {
   private blocksOf(streamline: number): (block: Block) => boolean {
     const a = this.toItems;
     return (block) => {
-      for (let item = block.firstItem; item < block.firstItem + block.items; ++item) if (a[4 * item] === streamline) return true;
+      for (let item = block.firstItem; item < block.firstItem + block.items; ++item)
+        if (a[4 * item] === streamline) return true;
       return false;
     };
   }
@@ -533,8 +643,14 @@ export class FibletSet {
   through(region: Region, model: Mat, from = 0, kept: Uint8Array = new Uint8Array(this.streamlines)): Uint8Array {
     const { at, size } = region;
     const near = ({ bounds: b }: Block): boolean => {
-      const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => apply(model, [b[i & 1], b[2 + ((i >> 1) & 1)], b[4 + (i >> 2)]]));
-      return [0, 1, 2].every((axis) => corners.some((c) => c[axis] >= at[axis] - size[axis]) && corners.some((c) => c[axis] <= at[axis] + size[axis]));
+      const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) =>
+        apply(model, [b[i & 1], b[2 + ((i >> 1) & 1)], b[4 + (i >> 2)]]),
+      );
+      return [0, 1, 2].every(
+        (axis) =>
+          corners.some((c) => c[axis] >= at[axis] - size[axis]) &&
+          corners.some((c) => c[axis] <= at[axis] + size[axis]),
+      );
     };
     for (const [id, p] of this.decoded(near, from)) {
       if (kept[id]) continue;

@@ -17,7 +17,10 @@ function stage(gl: GL, name: string, features: readonly string[]): string {
   const row = Math.log2(rowOf(gl)), named = shaders[name].replace("ROW_BITS=12", `ROW_BITS=${row}`);
   const text = features.includes("SPRITES") ? named.replace("const bool SPRITES=false", "const bool SPRITES=true") : named;
   const region = features.find((one) => one.startsWith("REGION "));
-  return (region ? text.replace(/#define REGION .*/, `#define ${region}`) : text).replace(/#define FEATURE_(\w+) [01]/g, (_, feature) => `#define FEATURE_${feature} ${features.includes(feature) ? 1 : 0}`);
+  return (region ? text.replace(/#define REGION .*/, `#define ${region}`) : text).replace(
+    /#define FEATURE_(\w+) [01]/g,
+    (_, feature) => `#define FEATURE_${feature} ${features.includes(feature) ? 1 : 0}`,
+  );
 }
 
 export class Program {
@@ -122,8 +125,14 @@ function plain(gl: GL): void {
 
 /** Place for a long array, as rows of texels. */
 export function emptyRows(gl: GL, format: Format, texels: number, what: string): WebGLTexture {
-  const [internal] = FORMATS[format], row = rowOf(gl), height = Math.max(1, Math.ceil(texels / row)), most = gl.getParameter(gl.MAX_TEXTURE_SIZE);
-  if (height > most) throw new GraphicsError(`The ${what} have ${texels} texels; this device's textures hold ${most * row}. Make a page of fewer streamlines.`);
+  const [internal] = FORMATS[format],
+    row = rowOf(gl),
+    height = Math.max(1, Math.ceil(texels / row)),
+    most = gl.getParameter(gl.MAX_TEXTURE_SIZE);
+  if (height > most)
+    throw new GraphicsError(
+      `The ${what} have ${texels} texels; this device's textures hold ${most * row}. Make a page of fewer streamlines.`,
+    );
   const texture = gl.createTexture()!;
   gl.bindTexture(gl.TEXTURE_2D, texture);
   plain(gl);
@@ -132,14 +141,34 @@ export function emptyRows(gl: GL, format: Format, texels: number, what: string):
 }
 
 /** Put texels of an array into such rows, and what else is in them. What does not fill the last row is copied; the rest is not. */
-export function fillRows(gl: GL, texture: WebGLTexture, format: Format, data: Uint8Array | Uint16Array | Uint32Array, from: number, to: number): void {
-  const [, layout, type, components, Kind] = FORMATS[format], width = rowOf(gl), step = width * components;
-  const whole = Math.floor(data.length / step), last = Math.ceil(to / width);
+export function fillRows(
+  gl: GL,
+  texture: WebGLTexture,
+  format: Format,
+  data: Uint8Array | Uint16Array | Uint32Array,
+  from: number,
+  to: number,
+): void {
+  const [, layout, type, components, Kind] = FORMATS[format],
+    width = rowOf(gl),
+    step = width * components;
+  const whole = Math.floor(data.length / step),
+    last = Math.ceil(to / width);
   gl.bindTexture(gl.TEXTURE_2D, texture);
   gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
   for (let row = Math.floor(from / width); row < Math.min(whole, last); row += 256) {
     const n = Math.min(256, whole - row, last - row);
-    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, row, width, n, gl[layout], gl[type], data.subarray(row * step, (row + n) * step));
+    gl.texSubImage2D(
+      gl.TEXTURE_2D,
+      0,
+      0,
+      row,
+      width,
+      n,
+      gl[layout],
+      gl[type],
+      data.subarray(row * step, (row + n) * step),
+    );
   }
   if (last > whole) {
     const rest = new Kind(step);

@@ -28,7 +28,12 @@ export class Lines {
     const { colours } = layer;
     if (colours.codes) {
       const { codes } = colours;
-      this.values = this.set.codedValues(colours.values!, asCodes(data[codes.data], codes.bits), new Float32Array(data[codes.table].slice().buffer), codes);
+      this.values = this.set.codedValues(
+        colours.values!,
+        asCodes(data[codes.data], codes.bits),
+        new Float32Array(data[codes.table].slice().buffer),
+        codes,
+      );
     }
     else if (colours.values !== undefined) this.values = this.set.pointValues(colours.values);
     if (colours.data !== undefined) this.colours = rows(gl, "rgba8", data[colours.data], "colours");
@@ -45,7 +50,8 @@ export class Lines {
   /** Give back all but the set. */
   release(): void {
     if (this.values) this.set.forget(this.values);
-    for (const texture of [this.colours, this.table, this.kept, this.chosen, this.opacities, this.keptPoints]) if (texture) this.gl.deleteTexture(texture);
+    for (const texture of [this.colours, this.table, this.kept, this.chosen, this.opacities, this.keptPoints])
+      if (texture) this.gl.deleteTexture(texture);
   }
 
   get byPoint(): boolean {

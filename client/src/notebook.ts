@@ -20,7 +20,14 @@ export function attachNotebook(renderer: Renderer, controls: Controls): void {
     const said = event.source === parent ? (event.data?.pvfiblets as Said | undefined) : undefined;
     if (!said) return;
     const { camera, picked } = said;
-    if (camera && isVector(camera.position) && isVector(camera.focal_point) && isVector(camera.up) && camera.view_angle > 0 && camera.parallel_scale > 0) {
+    if (
+      camera &&
+      isVector(camera.position) &&
+      isVector(camera.focal_point) &&
+      isVector(camera.up) &&
+      camera.view_angle > 0 &&
+      camera.parallel_scale > 0
+    ) {
       Object.assign(state, camera);
       const now = JSON.stringify(state);
       if (now !== last) renderer.change();

@@ -19,7 +19,8 @@ export function within({ at, size }: Region, place: readonly number[]): Vec {
 export function meets({ ball }: Region, a: Vec, b: Vec): boolean {
   const run = sub(b, a);
   if (ball) {
-    const t = Math.min(1, Math.max(0, -dot(a, run) / (dot(run, run) || 1))), nearest: Vec = [a[0] + t * run[0], a[1] + t * run[1], a[2] + t * run[2]];
+    const t = Math.min(1, Math.max(0, -dot(a, run) / (dot(run, run) || 1))),
+      nearest: Vec = [a[0] + t * run[0], a[1] + t * run[1], a[2] + t * run[2]];
     return dot(nearest, nearest) <= 1;
   }
   let enter = 0, leave = 1;

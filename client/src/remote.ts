@@ -33,7 +33,10 @@ export class Remote implements Parts {
         return await this.ask(begin, end);
       } catch (error) {
         if (!(error instanceof TypeError)) throw error; // a connection that breaks is a TypeError
-        if (!left) throw new Error(`${this.file} cannot be read: the connection to its server broke, or there is no server. Files beside a page need one; "python -m http.server" is enough.`);
+        if (!left)
+          throw new Error(
+            `${this.file} cannot be read: the connection to its server broke, or there is no server. Files beside a page need one; "python -m http.server" is enough.`,
+          );
         await new Promise((resolve) => setTimeout(resolve, 500));
       }
     }
@@ -47,7 +50,8 @@ export class Remote implements Parts {
       else this.whole = this.flow(answer);
       return;
     }
-    const size = Number(/\/(\d+)$/.exec(answer.headers.get("Content-Range") ?? "")?.[1] ?? this.bytes.length), part = new Uint8Array(await answer.arrayBuffer());
+    const size = Number(/\/(\d+)$/.exec(answer.headers.get("Content-Range") ?? "")?.[1] ?? this.bytes.length),
+      part = new Uint8Array(await answer.arrayBuffer());
     if (size !== this.bytes.length || part.length !== end - begin) throw this.changed(size);
     this.bytes.set(part, begin);
     this.had.push([begin, end]);
@@ -72,6 +76,8 @@ export class Remote implements Parts {
   }
 
   private changed(size: number): Error {
-    return new Error(`${this.file} has ${size} bytes, and this page was made with one of ${this.bytes.length}. Copy the page and its folder again.`);
+    return new Error(
+      `${this.file} has ${size} bytes, and this page was made with one of ${this.bytes.length}. Copy the page and its folder again.`,
+    );
   }
 }

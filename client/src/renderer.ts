@@ -95,8 +95,17 @@ export class Renderer {
 
   constructor(readonly canvas: HTMLCanvasElement, public scene: Scene, private data: Uint8Array[], private archives: Map<number, Archive>) {
     this.camera = new Camera(structuredClone(scene.camera));
-    const gl = canvas.getContext("webgl2", { alpha: false, antialias: false, depth: false, preserveDrawingBuffer: false, powerPreference: "high-performance" });
-    if (!gl) throw new GraphicsError("This browser has no WebGL 2, which the page draws with. Turn on graphics acceleration in its settings, or open the page in another browser.");
+    const gl = canvas.getContext("webgl2", {
+      alpha: false,
+      antialias: false,
+      depth: false,
+      preserveDrawingBuffer: false,
+      powerPreference: "high-performance",
+    });
+    if (!gl)
+      throw new GraphicsError(
+        "This browser has no WebGL 2, which the page draws with. Turn on graphics acceleration in its settings, or open the page in another browser.",
+      );
     this.gl = gl;
     canvas.addEventListener("webglcontextlost", (event) => {
       event.preventDefault();
@@ -140,9 +149,21 @@ export class Renderer {
   private fill(sets: Map<Uint8Array, FibletSet>, kept: Map<string, Surface | ImageSlice>): void {
     const { gl, scene } = this;
     scene.layers.forEach((layer) => {
-      if (layer.kind === "surface") this.surfaces.push((kept.get(JSON.stringify(layer)) as Surface) ?? new Surface(gl, layer, this.data));
-      else if (layer.kind === "image") this.images.push((kept.get(JSON.stringify(layer)) as ImageSlice) ?? new ImageSlice(gl, layer, this.data));
-      else this.lines.push(new Lines(gl, layer, this.lines.length, this.data, this.archives.get(layer.data)!, sets.get(this.data[layer.data])));
+      if (layer.kind === "surface")
+        this.surfaces.push((kept.get(JSON.stringify(layer)) as Surface) ?? new Surface(gl, layer, this.data));
+      else if (layer.kind === "image")
+        this.images.push((kept.get(JSON.stringify(layer)) as ImageSlice) ?? new ImageSlice(gl, layer, this.data));
+      else
+        this.lines.push(
+          new Lines(
+            gl,
+            layer,
+            this.lines.length,
+            this.data,
+            this.archives.get(layer.data)!,
+            sets.get(this.data[layer.data]),
+          ),
+        );
     });
     const budget = Math.min(1024, 128 * ((navigator as { deviceMemory?: number }).deviceMemory ?? 4)) * 2 ** 20;
     for (const lines of this.lines) lines.set.budget = budget / this.lines.length;
@@ -154,8 +175,10 @@ export class Renderer {
     const { data: old } = this, lines = this.lines.splice(0), surfaces = this.surfaces.splice(0), images = this.images.splice(0);
     const sets = new Map(lines.map((one) => [old[one.layer.data], one.set] as const));
     const same = ({ layer }: Surface | ImageSlice): boolean =>
-      (layer.kind === "image" ? [layer.pixels] : [layer.places, layer.triangles, layer.normals, layer.colours, layer.values, layer.edges?.sides])
-        .every((at) => at === undefined || old[at] === data[at]);
+      (layer.kind === "image"
+        ? [layer.pixels]
+        : [layer.places, layer.triangles, layer.normals, layer.colours, layer.values, layer.edges?.sides]
+      ).every((at) => at === undefined || old[at] === data[at]);
     this.frame = this.rest = null;
     this.scene = scene;
     this.data = data;
@@ -316,7 +339,8 @@ export class Renderer {
   /** Have the canvas as large as it is shown. */
   private fit(): void {
     const { gl, canvas } = this, ratio = window.devicePixelRatio || 1, most = gl.getParameter(gl.MAX_TEXTURE_SIZE) - 2;
-    const width = Math.min(most, Math.max(1, Math.round(canvas.clientWidth * ratio))), height = Math.min(most, Math.max(1, Math.round(canvas.clientHeight * ratio)));
+    const width = Math.min(most, Math.max(1, Math.round(canvas.clientWidth * ratio))),
+      height = Math.min(most, Math.max(1, Math.round(canvas.clientHeight * ratio)));
     if (width === this.width && height === this.height) return;
     canvas.width = this.width = width;
     canvas.height = this.height = height;
@@ -349,12 +373,30 @@ export class Renderer {
     const { gl, camera, scene } = this, moving = this.moving;
     this.dirty = false;
     const view = camera.view(), projection = camera.projection(this.width / this.height, scene.bounds);
-    const drawn: Drawn = { view, projection, parallel: camera.state.parallel, lights: (program) => this.setLights(program, view), planes: this.planes, ratio: this.ratio };
-    const frame: Frame = (this.frame = { jobs: [], next: 0, share: 1, drawn: 0, begun: performance.now(), shownAt: performance.now(), matrices: drawn, moving, through: new Set() });
+    const drawn: Drawn = {
+      view,
+      projection,
+      parallel: camera.state.parallel,
+      lights: (program) => this.setLights(program, view),
+      planes: this.planes,
+      ratio: this.ratio,
+    };
+    const frame: Frame = (this.frame = {
+      jobs: [],
+      next: 0,
+      share: 1,
+      drawn: 0,
+      begun: performance.now(),
+      shownAt: performance.now(),
+      matrices: drawn,
+      moving,
+      through: new Set(),
+    });
     this.rest = null;
     this.stale = false;
     const throughs = this.throughs(), visible = this.lines.filter(({ layer }) => layer.visible);
-    const sum = (jobs: Job[], count: (job: Job) => number): number => jobs.reduce((all, job) => all + job.lines.set.segments(count(job)), 0);
+    const sum = (jobs: Job[], count: (job: Job) => number): number =>
+      jobs.reduce((all, job) => all + job.lines.set.segments(count(job)), 0);
     const jobsOf = (some: Lines[]): Job[] => {
       frame.jobs = [];
       for (const lines of some) this.addJobs(frame, lines, lines.set.blocks);
@@ -363,7 +405,8 @@ export class Renderer {
     const many = sum(jobsOf(visible), ({ block }) => block.items) > this.few;
     const ordered = (jobs: Job[]): Job[] => {
       if (!many) return jobs;
-      const depth = ({ lines, block: { bounds: b } }: Job): number => apply(product(view, lines.model), [b[0] + b[1], b[2] + b[3], b[4] + b[5]].map((part) => part / 2) as Vec)[2];
+      const depth = ({ lines, block: { bounds: b } }: Job): number =>
+        apply(product(view, lines.model), [b[0] + b[1], b[2] + b[3], b[4] + b[5]].map((part) => part / 2) as Vec)[2];
       const order = new Map(jobs.map((job) => [job, depth(job)]));
       const likely = jobs.sort((a, b) => order.get(b)! - order.get(a)!).map((job): Job => ({ ...job, what: "likely" }));
       return moving ? likely : [...likely, ...likely.map((job): Job => ({ ...job, what: "others" }))];
@@ -375,7 +418,17 @@ export class Renderer {
       if (lines.layer.through!.all) jobs.push(...own.map((job): Job => ({ ...job, what: "behind" })));
     }
     frame.jobs = jobs;
-    if (moving) frame.share = Math.min(1, (this.rate * MOVING) / Math.max(sum(jobs, ({ lines, block, what }) => (what === "likely" ? (lines.set.likely(block), block.likelies) : block.items)), 1));
+    if (moving)
+      frame.share = Math.min(
+        1,
+        (this.rate * MOVING) /
+          Math.max(
+            sum(jobs, ({ lines, block, what }) =>
+              what === "likely" ? (lines.set.likely(block), block.likelies) : block.items,
+            ),
+            1,
+          ),
+      );
     if (!this.mixes()) {
       this.translucent?.release();
       this.translucent = null;
@@ -396,7 +449,9 @@ export class Renderer {
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.buffers.scene);
     gl.disable(gl.DEPTH_TEST);
     gl.bindVertexArray(null);
-    this.program("page/screen.vert", "page/background.frag").use().set({ bottom: scene.background[0], top: scene.background[1], height: this.height });
+    this.program("page/screen.vert", "page/background.frag")
+      .use()
+      .set({ bottom: scene.background[0], top: scene.background[1], height: this.height });
     gl.drawArrays(gl.TRIANGLES, 0, 3);
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.LEQUAL);
@@ -442,14 +497,28 @@ export class Renderer {
       const [x, y, z, w] = [0, 1, 2, 3].map((i) => clip[i + 4 * j] / largest);
       window.set([(this.width / 2) * (x + w), (this.height / 2) * (y + w), (z + w) / 2, w], 4 * j);
     }
-    this.frameBlock.write({ window_from_local: window, reference: lines.set.reference, half_line_width: wide ? width / 2 : 0, viewport: [this.width, this.height] }, ["reference"]);
+    this.frameBlock.write(
+      {
+        window_from_local: window,
+        reference: lines.set.reference,
+        half_line_width: wide ? width / 2 : 0,
+        viewport: [this.width, this.height],
+      },
+      ["reference"],
+    );
     this.frameBlock.bind();
     const planes = [...(lines.layer.planes ?? []), ...this.planes].slice(0, 8);
     if (planes.length) {
       const toWorld = product(lines.model, lines.set.toData), back = inverse(clip);
       const place = new Float64Array(32), tilts = new Float64Array(32);
       planes.forEach((plane, i) => {
-        const p = [0, 1, 2, 3].map((j) => plane[0] * toWorld[4 * j] + plane[1] * toWorld[4 * j + 1] + plane[2] * toWorld[4 * j + 2] + plane[3] * toWorld[4 * j + 3]);
+        const p = [0, 1, 2, 3].map(
+          (j) =>
+            plane[0] * toWorld[4 * j] +
+            plane[1] * toWorld[4 * j + 1] +
+            plane[2] * toWorld[4 * j + 2] +
+            plane[3] * toWorld[4 * j + 3],
+        );
         const size = Math.hypot(p[0], p[1], p[2]) || 1;
         p.forEach((value, j) => (place[4 * i + j] = value / size));
         if (back) for (let j = 0; j < 2; ++j) {
@@ -478,7 +547,9 @@ export class Renderer {
 
   /** How many pixels a length (mm) takes at most. */
   private pixelsOf(lines: Lines, drawn: Drawn, length: number): number {
-    const matrix = product(drawn.projection, product(drawn.view, lines.model)), b = lines.set.bounds, stretch = Math.hypot(...linear(lines.model));
+    const matrix = product(drawn.projection, product(drawn.view, lines.model)),
+      b = lines.set.bounds,
+      stretch = Math.hypot(...linear(lines.model));
     let nearest = Infinity;
     for (let i = 0; i < 8; ++i) nearest = Math.min(nearest, apply(matrix, [b[i & 1], b[2 + ((i >> 1) & 1)], b[4 + (i >> 2)]])[3]);
     return nearest > 0 ? (length * stretch * (this.height / 2) * drawn.projection[5]) / nearest : Infinity;
@@ -487,7 +558,10 @@ export class Renderer {
   private drawSlice(frame: Frame, quota: number): void {
     const { gl } = this;
     let aimed: Lines | null = null, program: Program | null = null, sprites = false, window: Mat = identity(), brush = 1;
-    const first = frame.jobs[frame.next], phase = first && this.phase(first), behind = first?.what === "behind", translucent = phase ? this.translucent : null;
+    const first = frame.jobs[frame.next],
+      phase = first && this.phase(first),
+      behind = first?.what === "behind",
+      translucent = phase ? this.translucent : null;
     if (translucent && !frame.through.has(first.lines)) {
       frame.through.add(first.lines);
       translucent.begin(first.lines, this.wide(first.lines) && first.lines.layer.through!.all, this.buffers.texels);
@@ -507,7 +581,8 @@ export class Renderer {
         const features = ["CLIPPING", "CLIPPING_DEPTH", "EDGES"];
         if (wide) features.push("WIDE_LINES");
         if (clipped) features.push("CLIP_PLANES");
-        if (lines.layer.cut && this.cut(lines.layer.cut, frame.matrices)) features.push("CLIP_REGION", `REGION ${expression(lines.layer.cut)}`);
+        if (lines.layer.cut && this.cut(lines.layer.cut, frame.matrices))
+          features.push("CLIP_REGION", `REGION ${expression(lines.layer.cut)}`);
         sprites = !wide && this.pixelsOf(lines, frame.matrices, lines.set.longestStep) <= LONGEST_SPRITE;
         if (sprites) features.push("SPRITES");
         if (lines.values) features.push("VALUES_STORED");
@@ -519,7 +594,10 @@ export class Renderer {
         if (lines.values) program.set({ shown_values: lines.shownValues.map((end) => end - lines.values!.reference) });
         program.uints({ layer: lines.index * 2 ** 28 });
       }
-      const chosen = what === "others" && far ? lines.set.look(block, window, brush, this.width, this.height, far) : lines.set.likely(block);
+      const chosen =
+        what === "others" && far
+          ? lines.set.look(block, window, brush, this.width, this.height, far)
+          : lines.set.likely(block);
       if (behind) translucent!.behind(lines);
       else if (translucent) translucent.nearest(lines);
       else gl.bindFramebuffer(gl.FRAMEBUFFER, this.buffers.texels);
@@ -530,9 +608,29 @@ export class Renderer {
         this.colour(program!.use(), lines);
         translucent!.paint(program!, lines, frame.matrices);
       }
-      program!.use().textures({ far_tiles: this.textures.far, items: lines.set.items, kept: lines.kept, kept_points: lines.keptPoints, value_texels: lines.values && lines.values.texture, value_table: lines.values && lines.values.table, point_colours: lines.byPoint ? lines.colours : null });
-      if (what === "all" || behind) this.sliceSize += lines.set.draw(block, program!, frame.share * block.items, sprites);
-      else this.sliceSize += block.items + lines.set.drawSome(block, program!, chosen, sprites, Math.ceil(frame.share * (what === "likely" ? block.likelies : block.items)));
+      program!
+        .use()
+        .textures({
+          far_tiles: this.textures.far,
+          items: lines.set.items,
+          kept: lines.kept,
+          kept_points: lines.keptPoints,
+          value_texels: lines.values && lines.values.texture,
+          value_table: lines.values && lines.values.table,
+          point_colours: lines.byPoint ? lines.colours : null,
+        });
+      if (what === "all" || behind)
+        this.sliceSize += lines.set.draw(block, program!, frame.share * block.items, sprites);
+      else
+        this.sliceSize +=
+          block.items +
+          lines.set.drawSome(
+            block,
+            program!,
+            chosen,
+            sprites,
+            Math.ceil(frame.share * (what === "likely" ? block.likelies : block.items)),
+          );
     }
     gl.disable(gl.BLEND);
     gl.depthMask(true);
@@ -551,7 +649,12 @@ export class Renderer {
   private colour(program: Program, lines: Lines): void {
     const { colours, through } = lines.layer, { texels } = this.textures;
     program.textures({ colours: lines.byPoint ? null : lines.colours, table: lines.table, opacities: lines.opacities ?? texels });
-    program.ints({ mode: MODES[colours.mode], logarithm: colours.log ? 1 : 0, by_streamline: lines.opacities ? 1 : 0, by_point: through?.by_point ? 1 : 0 });
+    program.ints({
+      mode: MODES[colours.mode],
+      logarithm: colours.log ? 1 : 0,
+      by_streamline: lines.opacities ? 1 : 0,
+      by_point: through?.by_point ? 1 : 0,
+    });
     program.set({ one_colour: colours.colour ?? [1, 1, 1], table_range: lines.tableRange });
   }
 
@@ -586,10 +689,13 @@ export class Renderer {
     gl.disable(gl.DEPTH_TEST);
     gl.bindVertexArray(null);
     if (finished && this.scene.antialias && this.lines.length) {
-      const narrower = (some: Lines[]): number => Math.max(0, ...some.map(({ layer }) => 1 - Math.min(1, layer.visible ? layer.line_width * this.ratio : 1)));
+      const narrower = (some: Lines[]): number =>
+        Math.max(0, ...some.map(({ layer }) => 1 - Math.min(1, layer.visible ? layer.line_width * this.ratio : 1)));
       gl.bindFramebuffer(gl.FRAMEBUFFER, b.shown);
       gl.viewport(0, 0, this.width + 2, this.height + 2);
-      const edges = this.program("page/screen.vert", "page/visible_edges.frag").use().textures({ texels: t.texels, depths: t.depths, drawn: t.drawn });
+      const edges = this.program("page/screen.vert", "page/visible_edges.frag")
+        .use()
+        .textures({ texels: t.texels, depths: t.depths, drawn: t.drawn });
       edges.ints({ first: 1 }).set({ narrower: narrower(this.lines.filter((lines) => !frame.through.has(lines))) });
       gl.drawArrays(gl.TRIANGLES, 0, 3);
       for (const lines of through) {
@@ -636,12 +742,16 @@ export class Renderer {
 
   /** Whether anything is shown that one looks through. */
   private mixes(): boolean {
-    const some = this.throughs().length || [...this.surfaces, ...this.images].some(({ layer, translucent }) => layer.visible && translucent);
+    const some =
+      this.throughs().length ||
+      [...this.surfaces, ...this.images].some(({ layer, translucent }) => layer.visible && translucent);
     return !!some && !!(this.bits ??= floatBits(this.gl));
   }
 
   private drawTranslucent(frame: Frame): void {
-    const { gl, translucent } = this, drawn = frame.matrices, some = this.surfaces.filter((surface) => surface.layer.visible && surface.translucent);
+    const { gl, translucent } = this,
+      drawn = frame.matrices,
+      some = this.surfaces.filter((surface) => surface.layer.visible && surface.translucent);
     const images = this.images.filter((image) => image.layer.visible && image.translucent);
     if (!some.length && !images.length && !frame.through.size) return;
     if (translucent) translucent.start();

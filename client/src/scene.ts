@@ -12,11 +12,11 @@ export interface Light {
 
 export interface Colours {
   mode: "direction" | "solid" | "streamline" | "value" | "point";
-  colour?: Vec;         // of "solid"
-  data?: number;        // of "streamline" and "point": RGBA for each
-  values?: string;      // of "value": a stored array of points, or with `codes` the name of one
-  codes?: { data: number; table: number; bits: 8 | 16; lo: number; hi: number; reference: number };  // of "value": codes of values that are not stored with the set
-  table?: string;       // base64, RGBA: entries, then below, above, NaN
+  colour?: Vec; // of "solid"
+  data?: number; // of "streamline" and "point": RGBA for each
+  values?: string; // of "value": a stored array of points, or with `codes` the name of one
+  codes?: { data: number; table: number; bits: 8 | 16; lo: number; hi: number; reference: number }; // of "value": codes of values that are not stored with the set
+  table?: string; // base64, RGBA: entries, then below, above, NaN
   clim?: [number, number];
   log?: boolean;
 }
@@ -61,9 +61,9 @@ export interface FibletLayer extends Layer {
   reflects: [number, number, number, number];
   sheen: Vec;
   through?: Through;
-  kept?: number;        // data: a byte for each streamline
-  chosen?: { data: number; colour: [number, number, number, number]; faded: [number, number, number, number] };  // a byte for each streamline; colours, and how much of them
-  cut?: Cut;            // by a region, besides planes
+  kept?: number; // data: a byte for each streamline
+  chosen?: { data: number; colour: [number, number, number, number]; faded: [number, number, number, number] }; // a byte for each streamline; colours, and how much of them
+  cut?: Cut; // by a region, besides planes
   kept_points?: number; // data: a bit for each point
   groups?: { name: string; data: number }[]; // data: uint32, streamlines
   controls?: Control[];
@@ -71,14 +71,14 @@ export interface FibletLayer extends Layer {
 
 export interface SurfaceLayer extends Layer {
   kind: "surface";
-  places: number;       // data: float32
-  triangles: number;    // data: uint32
-  normals?: number;     // data: float32
-  colours?: number;     // data: RGBA
-  edges?: { sides: number; colour: [number, number, number, number]; width: number };  // data: a byte for each corner, of triangles' own (shaders/page/surface.vert)
-  culled?: ("front" | "back")[];  // faces that are left out
-  values?: number;      // data: float32, through `table`
-  table?: string;       // base64, RGBA: entries, then below, above, NaN
+  places: number; // data: float32
+  triangles: number; // data: uint32
+  normals?: number; // data: float32
+  colours?: number; // data: RGBA
+  edges?: { sides: number; colour: [number, number, number, number]; width: number }; // data: a byte for each corner, of triangles' own (shaders/page/surface.vert)
+  culled?: ("front" | "back")[]; // faces that are left out
+  values?: number; // data: float32, through `table`
+  table?: string; // base64, RGBA: entries, then below, above, NaN
   clim?: [number, number];
   log?: boolean;
   colour: Vec;

@@ -15,7 +15,13 @@ export interface Drawn {
 }
 
 function planesOf(program: Program, planes: number[][], model: Mat): void {
-  const local = planes.slice(0, 6).map((p) => [0, 1, 2, 3].map((j) => p[0] * model[4 * j] + p[1] * model[4 * j + 1] + p[2] * model[4 * j + 2] + p[3] * model[4 * j + 3]));
+  const local = planes
+    .slice(0, 6)
+    .map((p) =>
+      [0, 1, 2, 3].map(
+        (j) => p[0] * model[4 * j] + p[1] * model[4 * j + 1] + p[2] * model[4 * j + 2] + p[3] * model[4 * j + 3],
+      ),
+    );
   program.ints({ plane_count: local.length });
   local.forEach((plane, i) => program.set({ [`planes[${i}]`]: plane }));
 }
@@ -69,7 +75,12 @@ export class Surface {
       parallel: drawn.parallel ? 1 : 0, opacity: layer.opacity, reflects: layer.reflects, sheen: layer.sheen,
       edge_width: layer.edges ? layer.edges.width * drawn.ratio : 0, edge_colour: layer.edges?.colour ?? [0, 0, 0, 0],
     });
-    program.ints({ smooth_normals: layer.normals === undefined ? 0 : 1, lighting: layer.lighting ? 1 : 0, by_value: this.table ? 1 : 0, logarithm: layer.log ? 1 : 0 });
+    program.ints({
+      smooth_normals: layer.normals === undefined ? 0 : 1,
+      lighting: layer.lighting ? 1 : 0,
+      by_value: this.table ? 1 : 0,
+      logarithm: layer.log ? 1 : 0,
+    });
     program.textures({ table: this.table }).set({ table_range: this.tableRange });
     drawn.lights(program);
     planesOf(program, [...(layer.planes ?? []), ...drawn.planes], this.model);
@@ -106,7 +117,8 @@ export class ImageSlice {
     this.texture = gl.createTexture()!;
     gl.bindTexture(gl.TEXTURE_2D, this.texture);
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, width, height, 0, gl.RGBA, gl.UNSIGNED_BYTE, data[layer.pixels]);
-    for (const name of ["TEXTURE_MIN_FILTER", "TEXTURE_MAG_FILTER"] as const) gl.texParameteri(gl.TEXTURE_2D, gl[name], layer.smooth ? gl.LINEAR : gl.NEAREST);
+    for (const name of ["TEXTURE_MIN_FILTER", "TEXTURE_MAG_FILTER"] as const)
+      gl.texParameteri(gl.TEXTURE_2D, gl[name], layer.smooth ? gl.LINEAR : gl.NEAREST);
     for (const name of ["TEXTURE_WRAP_S", "TEXTURE_WRAP_T"] as const) gl.texParameteri(gl.TEXTURE_2D, gl[name], gl.CLAMP_TO_EDGE);
   }
 
@@ -120,7 +132,15 @@ export class ImageSlice {
 
   draw(program: Program, drawn: Drawn): void {
     const { layer } = this;
-    program.use().set({ clip_from_data: floats(product(drawn.projection, drawn.view)), corner: layer.corner, across: layer.across, up: layer.up, opacity: layer.opacity });
+    program
+      .use()
+      .set({
+        clip_from_data: floats(product(drawn.projection, drawn.view)),
+        corner: layer.corner,
+        across: layer.across,
+        up: layer.up,
+        opacity: layer.opacity,
+      });
     program.textures({ pixels: this.texture });
     this.gl.bindVertexArray(null);
     this.gl.drawArrays(this.gl.TRIANGLE_STRIP, 0, 4);

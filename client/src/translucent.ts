@@ -60,7 +60,9 @@ export class Translucent {
     if (!held) {
       const texels = target(gl, gl.RGBA32UI, width, height), depths = target(gl, gl.DEPTH_COMPONENT32F, width, height);
       const places = wide ? target(gl, gl.R32UI, width, height) : null;
-      const sums = lines.layer.through!.all ? EDGES.concat(1).map(() => target(gl, this.bits === 32 ? gl.RGBA32F : gl.RGBA16F, width, height)) : [];
+      const sums = lines.layer.through!.all
+        ? EDGES.concat(1).map(() => target(gl, this.bits === 32 ? gl.RGBA32F : gl.RGBA16F, width, height))
+        : [];
       const nearest = framebuffer(gl, texels, depths);
       if (places) this.attach([places]);
       const behind = sums.length ? framebuffer(gl, sums[0], this.depths) : nearest;
@@ -100,13 +102,22 @@ export class Translucent {
     const { texels, depths, places } = this.held.get(lines)!, { layer } = lines, { through } = layer;
     const model = product(drawn.view, lines.model), across = new Float64Array(model), p = drawn.projection, b = lines.set.bounds;
     across.set([0, 0, 0], 12);
-    const back = layer.light === "line" ? inverse(across) : null, light = back ? apply(back, SHOULDER, 0).slice(0, 3) : [0, 0, 0], size = Math.hypot(...light) || 1;
+    const back = layer.light === "line" ? inverse(across) : null,
+      light = back ? apply(back, SHOULDER, 0).slice(0, 3) : [0, 0, 0],
+      size = Math.hypot(...light) || 1;
     let far = -Infinity;
     for (let i = 0; i < 8; ++i) far = Math.max(far, -apply(model, [b[i & 1], b[2 + ((i >> 1) & 1)], b[4 + (i >> 2)]])[2]);
-    program.textures({ texels, depths, places }).set({
-      slice_distances: drawn.parallel ? [(p[14] - 1) / p[10], 2 / p[10], 1, 0] : [p[14], 0, 1 + p[10], -2], slice_far: far, slice_edges: EDGES,
-      paint_light: light.map((part) => part / size), paint_opacity: through!.opacity, paint_unit: 1 / Math.max(this.absorbance(lines), 1e-12), sum_unit: this.unit(lines),
-    });
+    program
+      .textures({ texels, depths, places })
+      .set({
+        slice_distances: drawn.parallel ? [(p[14] - 1) / p[10], 2 / p[10], 1, 0] : [p[14], 0, 1 + p[10], -2],
+        slice_far: far,
+        slice_edges: EDGES,
+        paint_light: light.map((part) => part / size),
+        paint_opacity: through!.opacity,
+        paint_unit: 1 / Math.max(this.absorbance(lines), 1e-12),
+        sum_unit: this.unit(lines),
+      });
   }
 
   /** Of a weight of 1. */
@@ -140,7 +151,11 @@ export class Translucent {
   show(program: Program, lines: Lines, share: number): void {
     const { sums, summed } = this.held.get(lines)!, unit = this.unit(lines);
     program.textures(Object.fromEntries([0, 1, 2, 3].map((k) => [`sums${k}`, summed ? sums[k] : null])));
-    program.set({ opacity: lines.layer.through!.opacity, absorbance: this.absorbance(lines) / unit / share, least: summed ? unit / 2 : Infinity });
+    program.set({
+      opacity: lines.layer.through!.opacity,
+      absorbance: this.absorbance(lines) / unit / share,
+      least: summed ? unit / 2 : Infinity,
+    });
   }
 
   /** Put the mixture over what is opaque; a program that does so is in use. */
