@@ -8,7 +8,7 @@ from typing import Any
 
 from pvfiblets.cli.file_arguments import add_sampling_options
 from pvfiblets.cli.files import print_json, show_progress, which_per_point
-from pvfiblets.cli.pipes import add_image_options
+from pvfiblets.cli.pipes import add_image_options, add_space_option, add_surface_option
 from pvfiblets.codec.parameters import DEFAULT_ANGLE
 
 __all__ = ["add_options", "batch"]
@@ -61,6 +61,8 @@ def _common(parser: argparse.ArgumentParser, count: Any) -> None:
     old.add_argument("--resume", action="store_true", help="skip what an earlier run has finished")
     old.add_argument("--overwrite", action="store_true", help="do all again")
     add_image_options(parser)
+    add_space_option(parser)
+    add_surface_option(parser)
     add("--quiet", action="store_true", help="no progress bar")
     add("--json", action="store_true", help="print the result as one JSON object")
 

@@ -21,6 +21,8 @@ from pvfiblets.errors import sentence
 from pvfiblets.support import memory as limits
 from pvfiblets.support.nifti_space import chosen
 from pvfiblets.support.progress_bar import progress_bar
+from pvfiblets.support.surface_space import tkras_chosen
+from pvfiblets.support.vtk_space import unnamed
 from pvfiblets.support.whole_files import made_folder
 
 from .bids import filled
@@ -220,6 +222,9 @@ def _jobs(
 ) -> tuple[list[Job], dict[str, str]]:
     """Return what is to be done, and what cannot be begun, with why."""
     jobs, failed, images = [], {}, chosen()
+    space, tkras = unnamed(), tkras_chosen()
+    places = {"nifti": None if images == (None, "mm") else images, "space": space, "tkras": tkras}
+    chosen_places = {key: value for key, value in places.items() if value}
     for file in files:
         try:
             kind.check_source(file.path)
@@ -229,10 +234,13 @@ def _jobs(
             continue
         target = f"{file.stem}{options['to']}" if kind.check_file else ""
         rows = f".{kind.name}/{file.name}.parquet"
-        asked = _asked(kind.name, own | ({} if images == (None, "mm") else {"nifti": images}))
+        asked = _asked(kind.name, own | chosen_places)
         jobs.append(
-            Job(kind.name, str(file.path), file.name, target, rows, str(out), "", own, file.said, asked, size, images)
-        )
+            Job(
+                kind.name, str(file.path), file.name, target, rows, str(out), "", own, file.said, asked, size, images,
+                space, tkras,
+            )
+        )  # fmt: skip
     return jobs, failed
 
 

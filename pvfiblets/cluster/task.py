@@ -24,6 +24,8 @@ from typing import Any
 from pvfiblets.errors import EXPECTED, sentence
 from pvfiblets.support import memory
 from pvfiblets.support.nifti_space import Matrix, Units, nifti_space
+from pvfiblets.support.surface_space import as_stored
+from pvfiblets.support.vtk_space import Space, unnamed_as
 
 from .operations import OPERATIONS
 from .record import Entry, Output, checksum, fingerprint
@@ -60,6 +62,10 @@ class Job:
         Bytes that the process may have meanwhile.
     images : tuple
         What places images of NIfTI, as of :func:`pvfiblets.nifti_space`.
+    space : str or None
+        Of files of VTK that name none.
+    tkras : bool
+        Whether FreeSurfer's surfaces stay where their files have them.
     """
 
     operation: str
@@ -74,6 +80,8 @@ class Job:
     asked: str = ""
     memory: int | None = None
     images: tuple[Matrix | None, Units] = (None, "mm")
+    space: Space | None = None
+    tkras: bool = False
 
 
 def run(job: Job) -> Entry:
@@ -84,7 +92,8 @@ def run(job: Job) -> Entry:
     facts = (0, 0, "")
     with _TURN:
         try:
-            with _bounded(job.memory), nifti_space(job.images[0], units=job.images[1]):
+            images = nifti_space(job.images[0], units=job.images[1])
+            with _bounded(job.memory), images, unnamed_as(job.space), as_stored(job.tkras):
                 facts = (*fingerprint(Path(job.source)), checksum(Path(job.source)))
                 outputs = _done(job)
         except EXPECTED as problem:

@@ -272,6 +272,17 @@ def test_samples_count_what_reading_left_out_and_name_files_that_stay(to, tmp_pa
     assert not any(f"a{to}" in str(one.message) for one in told), "a batch writes to a name of its own first"
 
 
+def test_files_that_name_no_space_are_in_that_of_the_command(tmp_path):
+    source, out = tmp_path / "old.vtk", tmp_path / "out"
+    line = np.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]])
+    pv.lines_from_points(line).save(source)
+    command = ["batch", "convert", str(source), "-o", str(out), "--to", ".tck", "--workers", "1", "--quiet"]
+    assert main([*command, "--space", "LPS"]) == 0
+    np.testing.assert_allclose(nib.streamlines.load(out / "old.tck").streamlines[0], line * (-1, -1, 1))
+    assert main([*command, "--resume"]) == 0, "another space is another result"
+    np.testing.assert_allclose(nib.streamlines.load(out / "old.tck").streamlines[0], line)
+
+
 def test_memory_is_bounded_and_said(client, cohort, tmp_path):
     result = batch("density", cohort / name_of("01"), tmp_path, cluster=client, voxel=0.3, memory="1G")
     assert "says that it takes" in result.failed[name_of("01")]
