@@ -27,7 +27,7 @@ __all__ = ["LinesBehind"]
 
 
 class LinesBehind(Drawable[FibletStyle]):
-    """The part of a renderer that looks behind its picture. What it keeps is made when it is first asked for.
+    """Layers and sums of lines behind the nearest. Textures and programs are made when first needed.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The part of the study of halos that draws in PyVista windows, beside VTK's plain lines and points."""
+"""Halos in PyVista windows, beside VTK's plain lines and points."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The part of the study of tubes that measures solvers alone: errors and times of rays by numbers of iterations."""
+"""Solvers of tubes alone: errors and times of rays by numbers of iterations."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The part of the study of volumes that measures integrators: light from thin to stiff, and the bare formulae."""
+"""Integrators of volumes: light from thin to stiff, and the bare formulae."""
 
 from __future__ import annotations
 

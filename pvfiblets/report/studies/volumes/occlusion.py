@@ -1,4 +1,4 @@
-"""The part of the study of volumes that measures ambient occlusion: rays and what they cost, beside exact openness."""
+"""Ambient occlusion of volumes: rays and their cost, beside exact openness."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The part of the study of volumes that draws in PyVista windows: this program beside VTK's GPU mapper, by steps."""
+"""Volumes in PyVista windows: this program beside VTK's GPU mapper, by steps."""
 
 from __future__ import annotations
 
