@@ -37,11 +37,6 @@ class There(Visit):
             " && document.querySelector('#pv-there').style.visibility === 'visible')"
         )
 
-    def begin_again(self):
-        if self.state("there")["on"]:
-            self.in_step()  # else the camera of before would be told after that of the session
-        return super().begin_again()
-
     def rests(self):
         self.wait(self.draws, "a picture that the browser draws")
         agrees(self)

@@ -221,20 +221,58 @@ def test_the_camera_goes_both_ways_and_only_when_it_has_moved(scene, folder):
     desk = drawing(scene, folder)
     desk.drawing.report(True, CARD)
     desk.drawing.draws()
-    assert desk.page.there_camera == {"camera": scene.cameras.camera(), "from": ""}
+    assert desk.page.there_camera == {"camera": scene.cameras.camera(), "from": "", "turn": 1}
     moved = {**scene.cameras.camera(), "position": [300.0, 20.0, 10.0]}
-    desk.drawing.moved(moved, "one page", False)
+    desk.drawing.moved(moved, "one page", False, 1)
     assert scene.cameras.camera()["position"] == [300.0, 20.0, 10.0]
     desk.page.there_camera = {}
     desk.drawing.draws()
     assert desk.page.there_camera == {}  # the browser knows
-    desk.drawing.moved(moved, "one page", True)
+    desk.drawing.moved(moved, "one page", True, 1)
     assert desk.page.there_camera["from"] == "one page"  # others do not
     scene.cameras.view("axial")
     desk.drawing.draws()
-    assert desk.page.there_camera == {"camera": scene.cameras.camera(), "from": ""}
+    assert desk.page.there_camera == {"camera": scene.cameras.camera(), "from": "", "turn": 3}
     with pytest.raises(ValueError, match="position"):
-        desk.drawing.moved({**moved, "position": ["far", 0, 0]}, "one page", False)
+        desk.drawing.moved({**moved, "position": ["far", 0, 0]}, "one page", False, 3)
+
+
+def test_a_move_that_a_browser_made_before_it_knew_of_another_is_left_out(scene, folder):
+    scene.open("lines.fiblets")
+    desk = drawing(scene, folder)
+    desk.drawing.report(True, CARD)
+    desk.drawing.draws()
+    moved = {**scene.cameras.camera(), "position": [300.0, 20.0, 10.0]}
+    desk.drawing.moved(moved, "one page", False, 1)
+    scene.cameras.view("axial")
+    axial = scene.cameras.camera()
+    desk.drawing.moved(moved, "one page", False, 1)  # no page has been sent the view yet
+    assert scene.cameras.camera() == axial
+    desk.drawing.draws()
+    sent = dict(desk.page.there_camera)
+    desk.drawing.moved(moved, "one page", True, 1)  # on its way when the view was sent
+    assert scene.cameras.camera() == axial
+    assert desk.page.there_camera == sent
+    desk.drawing.moved(moved, "one page", True, sent["turn"])
+    desk.drawing.moved(sent["camera"], "another page", True, sent["turn"])
+    assert scene.cameras.camera() == moved
+    assert desk.page.there_camera["from"] == "one page"
+
+
+def test_a_browser_that_draws_again_is_sent_the_camera_again(scene, folder):
+    """Else a move that it made while the server drew would leave them apart: equal states are not sent."""
+    layer = scene.open("lines.fiblets")
+    desk = drawing(scene, folder)
+    desk.drawing.report(True, CARD)
+    desk.drawing.draws()
+    before = desk.page.there_camera
+    scene.set(layer.id, "halos", True)
+    assert not desk.drawing.draws()
+    desk.drawing.moved({**scene.cameras.camera(), "position": [300.0, 20.0, 10.0]}, "one page", True, before["turn"])
+    scene.set(layer.id, "halos", False)
+    assert desk.drawing.draws()
+    assert desk.page.there_camera["camera"] == before["camera"]
+    assert desk.page.there_camera != before
 
 
 def test_only_data_of_the_scene_can_be_fetched(scene, folder):

@@ -14,6 +14,7 @@
   let renderer = null, canvas = null, script = null, wanted = null, busy = false, broken = "", losses = 0;
   let data = new Map();
   let told = "", last = "", saidAt = 0, timer = 0, resting = true;
+  let turn = 0; // of the last camera from elsewhere: the server leaves out moves that were made before it
 
   // What there is to draw with --------------------------------------------------------------------
 
@@ -176,7 +177,7 @@
     saidAt = performance.now();
     if (at === told && resting) return;
     told = at;
-    call("there_camera", JSON.parse(at), me, resting);
+    call("there_camera", JSON.parse(at), me, resting, turn);
   };
 
   const follow = () => {
@@ -201,7 +202,9 @@
   for (const kind of ["pointerdown", "keydown", "click"]) window.addEventListener(kind, settle, true);
 
   const take = (moved) => {
-    if (!renderer || !moved?.camera || moved.from === me) return;
+    if (!renderer || !moved?.camera) return;
+    turn = moved.turn;
+    if (moved.from === me) return;
     Object.assign(renderer.camera.state, structuredClone(moved.camera));
     last = told = now();
     resting = true;

@@ -46,6 +46,8 @@ class BrowserDrawing(Actions):
         self._able = False
         self._trouble = ""
         self._camera: dict[str, Any] | None = None
+        self._turn = 0  # counts cameras that a browser has to take over
+        self._mover = ""  # the page whose camera the last of these is; none: the server
         self._said = ""
         self.on = False
         self.rests = True  # the camera, as far as the browser has said
@@ -63,19 +65,23 @@ class BrowserDrawing(Actions):
         self._camera = None  # a page that was reloaded knows of none
         self._app.stream.request()
 
-    def moved(self, camera: Any, origin: Any, rests: Any) -> None:
-        """Put the camera where a browser has moved it."""
-        if not self.on:
-            return
+    def moved(self, camera: Any, origin: Any, rests: Any, turn: Any) -> None:
+        """Put the camera where a browser has moved it, unless it was moved before by another that this one lacks."""
         app = self._app
+        mover = str(origin)[:40]
+        seen = turn == self._turn or mover == self._mover
+        if not (self.on and seen and app.scene.cameras.camera() == self._camera):
+            return
         app.scene.cameras.set_camera(camera)
         self._camera = app.scene.cameras.camera()
+        if mover != self._mover:
+            self._turn += 1
+            self._mover = mover
         self.rests = rests is True
         app.stream.leave()
         if self.rests:
             app.files.keep_soon()
-            with app.state:
-                app.page.there_camera = {"camera": self._camera, "from": str(origin)[:40]}
+            self._send_camera()
 
     # What the stream of pictures asks
 
@@ -117,8 +123,14 @@ class BrowserDrawing(Actions):
                 app.page.drawing = ""
             if camera != self._camera:
                 self._camera = camera
-                app.page.there_camera = {"camera": camera, "from": ""}
+                self._turn += 1
+                self._mover = ""
+                self._send_camera()
         self.on, self.rests, self._said = True, True, ""
+
+    def _send_camera(self) -> None:
+        with self._app.state:
+            self._app.page.there_camera = {"camera": self._camera, "from": self._mover, "turn": self._turn}
 
     def _leave(self, why: str) -> None:
         app, was = self._app, self.on
