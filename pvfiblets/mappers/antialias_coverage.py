@@ -72,6 +72,11 @@ class EdgeSmoothing:
         """Whether anything is shown that may cover some samples of a pixel and not the others: no drawable does."""
         return not all(_is_ours(prop) for prop in self._shown())
 
+    @property
+    def only_surfaces(self) -> bool:
+        """Whether all others are surfaces or volumes: VTK's lines and points are thinner without multisampling."""
+        return all(_is_ours(prop) or prop.IsA("vtkVolume") or _is_surface(prop) for prop in self._shown())
+
     def only_lines(self) -> list[Any]:
         """Return the mappers of all that is shown, if these are the engine's; else none."""
         shown = self._shown()
@@ -88,6 +93,16 @@ class EdgeSmoothing:
         self._noted.clear()
         if smoothers.get(self._address) is self:
             del smoothers[self._address]
+
+
+def _is_surface(prop: Any) -> bool:
+    mapper: Any = prop.GetMapper() if prop.IsA("vtkActor") else None
+    data = mapper.GetInput() if hasattr(mapper, "GetInput") else None
+    if data is None or not data.IsA("vtkPolyData") or data.GetNumberOfLines() or data.GetNumberOfVerts():
+        return False
+    look = prop.GetProperty()
+    whole = not (look.GetEdgeVisibility() or look.GetVertexVisibility())
+    return whole and look.GetRepresentationAsString() == "Surface"
 
 
 def _is_ours(prop: Any) -> bool:

@@ -32,7 +32,7 @@ from pvfiblets.engine.effects.sample_positions import sample_positions
 from pvfiblets.mappers.shifted_cameras import exact_wanted, note_depths, note_sample, shift, shifted_copy
 from pvfiblets.mappers.windows import Slot
 
-__all__ = ["SHOWN_FROM", "Refinement"]
+__all__ = ["SAMPLES", "SHOWN_FROM", "Refinement"]
 
 MIDDLE = (0.0, 0.0)
 
@@ -66,6 +66,8 @@ class Refinement:
     ----------
     due : bool
         Whether the next frame is to be the first sample, if nothing has changed.
+    state : hashable
+        What the picture that was drawn last is made of; None if that changes from frame to frame.
     seen : callable
         Says whether somebody looks at each frame, not at the last only.
     """
@@ -77,11 +79,11 @@ class Refinement:
         self.seen: Callable[[], bool] = lambda: False
         self._frame = _Frame.PLAIN
         self._name = _WHOLE
-        self._state: Hashable = None
+        self.state: Hashable = None
         self._left: list[tuple[float, float]] = []
         self._taken = 0
         self._spent = self._begun = 0.0
-        self._changed = True
+        self._changed = self._unknown = True
         self._exact = True
         self._painted = False
         self._shares: Any = None
@@ -97,17 +99,22 @@ class Refinement:
         return 0 if self._frame is _Frame.PLAIN else self._taken
 
     @property
+    def remaining(self) -> int:
+        """Samples that are not drawn yet."""
+        return len(self._left)
+
+    @property
     def few(self) -> bool:
         """Whether the picture that was drawn last would be better without its samples."""
         return bool(self._left) and 0 < self.taken < SHOWN_FROM
 
     def unfinished(self, state: Hashable) -> bool:
         """Say whether more frames are wanted of a state, of which one has been drawn."""
-        return state is not None and state == self._state and (bool(self._left) or not self._exact)
+        return state is not None and state == self.state and (bool(self._left) or not self._exact)
 
     def forget(self) -> None:
         """Begin anew with the next frame."""
-        self._state = None
+        self.state = None
 
     def sample_camera(self, renderer: Any) -> Any:
         """Return a copy of a renderer's camera, shifted as for the next sample of an unfinished picture; None if none.
@@ -133,7 +140,8 @@ class Refinement:
         """Decide what the frame is that a renderer is about to draw, and shift its camera for a sample."""
         due, self.due = self.due, False
         self._name, self._painted, self._begun = _WHOLE, False, time.perf_counter()
-        self._changed = state is None or state != self._state
+        self._unknown = state is None
+        self._changed = state is None or state != self.state
         self._frame = _Frame.PLAIN
         if self._changed:
             self._taken, self._spent = 0, 0.0
@@ -237,8 +245,8 @@ class Refinement:
             sums.show(colour, viewport)
             sums.forget_kept()
 
-    def end(self, renderer: Any, state: Hashable, *, widened: bool) -> None:
-        """Note what has been drawn."""
+    def end(self, renderer: Any, state: Hashable, *, widened: bool, complete: bool = False) -> None:
+        """Note what has been drawn; `complete`: a frame that had no state at its start may have one now."""
         self.put_back()
         note_sample(renderer, begun=False)
         self._exact = True
@@ -248,8 +256,10 @@ class Refinement:
             self._left = self._left[1:] if self._painted else []
             self._taken += self._painted
             self._spent += time.perf_counter() - self._begun
+        if complete and self._unknown and state is not None:
+            self._left = list(self.positions)
         note_depths(renderer, exact=self._exact)
-        self._state = state
+        self.state = state
 
 
 def _tile(renderer: Any) -> tuple[int, int]:

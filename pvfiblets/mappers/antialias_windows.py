@@ -8,9 +8,10 @@ import threading
 import time
 import warnings
 import weakref
-from contextlib import ExitStack
+from contextlib import ExitStack, nullcontext
 from typing import Any, Self
 
+from pvfiblets.mappers.scene_state import without_multisamples
 from pvfiblets.support.progress_bar import progress_bar
 
 __all__ = ["Finishing", "finish", "picture_of", "refine", "shown_pictures"]
@@ -22,10 +23,11 @@ shown_pictures: weakref.WeakSet[Any] = weakref.WeakSet()
 """All `pvfiblets.mappers.picture.Picture` that there are."""
 
 
-def refine(window: Any) -> bool:
+def refine(window: Any, *, cheaply: bool = False) -> bool:
     """Draw one more frame of the pictures of a window that want more samples or parts, or what it takes.
 
-    Nothing if none does; return whether another one is wanted.
+    Nothing if none does; return whether another one is wanted. `cheaply`: without VTK's own samples of each pixel as
+    far as these change nothing.
     """
     wanting = _unfinished(window)
     if any(picture.draw_part() for picture in wanting):
@@ -33,7 +35,9 @@ def refine(window: Any) -> bool:
     for picture in wanting:
         picture.refinement.due = True  # also where parts are wanted: views that stay as they were are not drawn
     if wanting:
-        window.Render()
+        multisampled = not cheaply or any(picture.needs_multisamples for picture in wanting)
+        with nullcontext() if multisampled else without_multisamples(window):
+            window.Render()
     return bool(_unfinished(window))
 
 
@@ -42,7 +46,7 @@ def finish(window: Any) -> None:
     wanting = _unfinished(window)
     total = sum(len(picture.refinement.positions) for picture in wanting)
     with Finishing(total) as finishing:
-        while refine(window) and finishing.reach(sum(picture.progress for picture in wanting)):
+        while refine(window, cheaply=True) and finishing.reach(sum(picture.progress for picture in wanting)):
             pass
         few = [picture for picture in wanting if finishing.stopped and picture.refinement.few]
         for picture in few:

@@ -28,7 +28,7 @@ from vtkmodules.vtkRenderingCore import vtkRenderer
 from pvfiblets.engine.effects.picture import Attachment, PictureEffects
 from pvfiblets.engine.effects.tone import Tone
 from pvfiblets.engine.errors import EngineError
-from pvfiblets.mappers.antialias_refinement import Refinement
+from pvfiblets.mappers.antialias_refinement import SAMPLES, Refinement
 from pvfiblets.mappers.antialias_windows import finish, shown_pictures
 from pvfiblets.mappers.lens_focus import FOLLOWED, DepthOfField, Focusing, lens_of
 from pvfiblets.mappers.overlays import Overlay
@@ -98,6 +98,7 @@ class Picture:
         self.paced: Callable[[], bool] = lambda: False
         self._job: _Job | None = None
         self._lacks_memory = False
+        self._fetched_in: Hashable = None  # a state in whose samples parts were fetched after all
         shown_pictures.add(self)
 
     @property
@@ -143,9 +144,7 @@ class Picture:
         renderer = self.renderer
         if self._refinement is None or renderer is None or renderer.GetRenderWindow() is None:
             return False
-        if self._streamed:
-            return self.fetching
-        return self._refinement.unfinished(self._state(renderer))
+        return self.fetching or self._refinement.unfinished(self._state(renderer))
 
     @property
     def progress(self) -> int:
@@ -185,6 +184,16 @@ class Picture:
             self.drawn()
         return job.share < 1.0
 
+    @property
+    def needs_multisamples(self) -> bool:
+        """Whether the next sample needs VTK's own samples of each pixel, or what lies over the picture does."""
+        refinement = self._refinement
+        assert refinement is not None
+        samples = len(refinement.positions)
+        if samples < SAMPLES or refinement.remaining < 2 or self.draws_at_once():
+            return True
+        return self._smoothing is None or not self._smoothing.only_surfaces
+
     def draws_at_once(self) -> bool:
         """Whether the samples that the picture wants next are drawn at once."""
         return bool(self._lines_at_once(self.renderer))
@@ -198,6 +207,11 @@ class Picture:
     def fetching(self) -> bool:
         """Whether what it wants are parts of a set."""
         return any(engine.unfinished for engine in self._streamed)
+
+    @property
+    def _resident(self) -> bool:
+        """Whether samples can be drawn without fetching parts."""
+        return all(engine.resident for engine in self._streamed)
 
     @property
     def _streamed(self) -> list[Any]:
@@ -437,7 +451,9 @@ class Picture:
             return
         if tuple(renderer.GetRenderWindow().GetTileScale()) == (1, 1):
             widened = self._smoothing is not None and self._smoothing.widened
-            refinement.end(renderer, self._state(renderer), widened=widened)
+            if self._streamed and not refinement.plain and not self._resident:
+                self._fetched_in = refinement.state
+            refinement.end(renderer, self._state(renderer), widened=widened, complete=bool(self._streamed))
             if self.drawn is not None:
                 self.drawn()
 
@@ -447,12 +463,13 @@ class Picture:
             return None
         if not _refinable(renderer) or in_motion(renderer) or not self.focusing.settled:
             return None
-        if self._streamed:  # each sample would fetch every part anew
+        if not self._resident:  # each sample would fetch parts anew
             return None
         interactor = renderer.GetRenderWindow().GetInteractor()
         follows = self._depth_of_field is not None and self._depth_of_field.focal_distance == "cursor"
         mouse = tuple(interactor.GetEventPosition()) if follows and interactor is not None else None
-        return scene_state(renderer), mouse
+        state = scene_state(renderer), mouse
+        return None if state == self._fetched_in else state
 
     def captured(self) -> None:
         """Finish the picture; called when the renderer has another camera: a copy, if somebody reads pictures."""

@@ -7,9 +7,13 @@ not in the next picture either. What lies over the picture, scalar bars and text
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
-__all__ = ["scene_state"]
+__all__ = ["scene_state", "without_multisamples"]
+
+_multisamples: dict[str, int] = {}
+"""Of windows that do without for a frame, what they have otherwise."""
 
 _SETTINGS = (
     "GetAmbient", "GetAutomaticLightCreation", "GetBackground", "GetBackground2", "GetBackgroundAlpha", "GetDraw",
@@ -28,13 +32,26 @@ def scene_state(renderer: Any) -> Hashable:
     window = renderer.GetRenderWindow()
     return (
         tuple(window.GetSize()),
-        (window.GetMultiSamples(), window.GetDPI()),
+        (_multisamples.get(window.GetAddressAsString(""), window.GetMultiSamples()), window.GetDPI()),
         _camera_state(renderer),
         tuple(_of(renderer, name) for name in _SETTINGS),
         tuple(_counted(_of(renderer, name)) for name in _PARTS),
         tuple(_counted(light) for light in _items(renderer.GetLights())),
         tuple(state for prop in _items(renderer.GetViewProps()) for state in _prop_states(prop)),
     )
+
+
+@contextmanager
+def without_multisamples(window: Any) -> Iterator[None]:
+    """Have a window draw one sample a pixel, which changes the state of none of its pictures."""
+    address, samples = window.GetAddressAsString(""), window.GetMultiSamples()
+    _multisamples[address] = samples
+    window.SetMultiSamples(0)
+    try:
+        yield
+    finally:
+        window.SetMultiSamples(samples)
+        del _multisamples[address]
 
 
 def _camera_state(renderer: Any) -> Hashable:

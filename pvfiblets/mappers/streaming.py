@@ -13,6 +13,7 @@ from typing import Any
 
 from pvfiblets.mappers.antialias_windows import picture_of
 from pvfiblets.mappers.scene import in_motion, streamed
+from pvfiblets.mappers.shifted_cameras import draws_sample
 
 __all__ = ["PATIENCE", "pace"]
 
@@ -24,6 +25,6 @@ def pace(engine: Any, renderer: Any) -> None:
     """Tell an engine of parts that is about to draw how long it may take."""
     picture = picture_of(renderer)
     engine.hurried = in_motion(renderer)
-    paced = picture is not None and picture.refinement is not None and picture.paced()
+    paced = picture is not None and picture.refinement is not None and picture.paced() and not draws_sample(renderer)
     engine.patience = PATIENCE if paced else None
     streamed.setdefault(renderer.GetAddressAsString(""), weakref.WeakSet()).add(engine)

@@ -292,6 +292,36 @@ def test_with_everything_that_draws_otherwise(plotter, how, tmp_path):
     assert np.abs(found - wanted).mean() < 0.3
 
 
+@pytest.mark.parametrize("added", [None, "outline", "edges", "points"])
+def test_samples_do_without_vtks_own_where_all_others_are_surfaces(scene, added):
+    window = scene.render_window
+    window.SetMultiSamples(4)
+    scene.picture.antialias = 16
+    if added is not None:
+        how = {"outline": {}, "edges": {"show_edges": True}, "points": {"style": "points"}}[added]
+        ball = pv.Sphere(radius=4.0)
+        scene.add_mesh(ball.outline() if added == "outline" else ball, reset_camera=False, **how)
+    drawn = []
+    scene.renderer.AddObserver("StartEvent", lambda *_: drawn.append(window.GetMultiSamples()))
+    scene.camera.azimuth += 3.0
+    scene.render()
+    found = shot(scene)
+    # The picture as it is; samples; the last of them, then the mean, with what lies over the picture.
+    assert drawn[0] == 4
+    assert drawn[1:16] == [4 if added else 0] * 15
+    assert set(drawn[16:]) == {4}
+    assert window.GetMultiSamples() == 4
+    assert scene.picture.samples == 16
+    wanted = mean_of_pictures(scene, 16)
+    if added:
+        assert np.abs(found - wanted).max() <= 1.0
+        return
+    window.SetMultiSamples(0)
+    exact = mean_of_pictures(scene, 64)
+    # Multisampled ones blur edges over two pixels.
+    assert np.sqrt(((found - exact) ** 2).mean()) < min(2.0, np.sqrt(((wanted - exact) ** 2).mean()))
+
+
 def gradient(folder):
     """Write a picture of slanted colours."""
     x, y = np.meshgrid(np.arange(60), np.arange(40))

@@ -9,6 +9,8 @@ from pvfiblets import compress
 from pvfiblets.codec.restrict import even_share
 from pvfiblets.engine.errors import EngineError
 from pvfiblets.engine.fiblets.data import memory_fit
+from pvfiblets.engine.fiblets.parts.streamed_renderer import StreamedRenderer
+from pvfiblets.engine.fiblets.renderer import FibletRenderer
 from pvfiblets.synthetic import brain_streamlines
 
 from .views import shot
@@ -75,6 +77,48 @@ def test_what_does_not_fit_is_drawn_part_by_part_as_if_it_did(plotter, too_large
     plotter.picture.antialias = "coverage"  # a set in parts is not drawn 16 times over
     np.testing.assert_array_equal(picture, shot(plotter))
     assert hits == [actor.pick_at(*at) for at in places]
+
+
+def test_a_set_whose_parts_are_all_there_is_refined_as_any_other(plotter, too_large, little_memory, monkeypatch):
+    plotter.picture.antialias = "refined"
+    monkeypatch.setattr(memory_fit, "free_memory", lambda ctx, gl: memory_fit.PICTURE_BYTES + 2_000_000)
+    monkeypatch.setattr(memory_fit.MemoryBudget, "fits", lambda *_: False)
+    actor = plotter.add_fiblets(too_large, fit="stream")
+    picture = shot(plotter)
+    parts = actor.explain()["parts"]
+    assert parts["there"] == parts["fetched"] == parts["total"] > 1
+    assert plotter.picture.samples == 16
+    # Whoever asks for one more frame at a time has the same.
+    interactor = plotter.iren.interactor
+    plotter.picture.pace_by_hand()
+    plotter.camera.azimuth += 5.0
+    plotter.render_window.SetDesiredUpdateRate(interactor.GetDesiredUpdateRate())
+    plotter.render()
+    plotter.camera.azimuth -= 5.0
+    plotter.render_window.SetDesiredUpdateRate(interactor.GetStillUpdateRate())
+    plotter.render()
+    while plotter.picture.refine():
+        assert not plotter.picture.fetching
+    assert plotter.picture.samples == 16
+    np.testing.assert_array_equal(plotter.screenshot(None, return_img=True), picture)
+    monkeypatch.undo()
+    plotter.remove_actor(actor)
+    plotter.picture.antialias = "refined"
+    plotter.add_fiblets(too_large, reset_camera=False)
+    monkeypatch.setattr(FibletRenderer, "layers_samples", lambda *_: False)
+    np.testing.assert_array_equal(picture, shot(plotter))
+
+
+def test_samples_end_where_parts_must_be_fetched_for_them(plotter, too_large, little_memory, monkeypatch):
+    """Such as for another view of the same window, which takes the memory."""
+    plotter.picture.antialias = "refined"
+    monkeypatch.setattr(StreamedRenderer, "resident", property(lambda one: not one.unfinished and next(answers)))
+    answers = iter([*[True] * 5, *[False] * 10_000])
+    actor = plotter.add_fiblets(too_large, fit="stream")
+    shot(plotter)
+    assert actor.share == 1.0
+    assert next(answers) is False
+    assert plotter.picture.samples < 16
 
 
 def test_a_moving_camera_fetches_nothing_and_a_resting_one_the_rest(plotter, too_large, little_memory):

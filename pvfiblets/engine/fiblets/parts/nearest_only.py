@@ -50,6 +50,11 @@ class NearestOnly(Drawable[FibletStyle]):
     def unfinished(self) -> bool:
         """Whether the last picture lacks parts that another one of the same view would show."""
 
+    @property
+    def resident(self) -> bool:
+        """Whether all parts of the last picture are there, so that another one of nearly the same view fetches none."""
+        return False
+
     def render(
         self, view: View, style: FibletStyle | None = None, *, outside: moderngl.Texture | None = None
     ) -> GBuffer:

@@ -157,7 +157,8 @@ def in_view(view: View, style: Style, box: Box | None) -> bool:
     corners = np.array([[box[i, 0], box[j, 1], box[k, 2], 1.0] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
     corners[:, :3] += style.reach * np.where(corners[:, :3] == box[0], -1.0, 1.0)
     x, y, z, w = view.model_view_projection @ corners.T
-    across, up = (1.0 + 2.0 * (style.half_width + 1.0) / size for size in view.size)
+    beside = 1.0 if style.exact else 1.5  # no sample of a pixel shows a part that its picture does not
+    across, up = (1.0 + 2.0 * (style.half_width + beside) / size for size in view.size)
     deep = np.abs(w) * 1e-6 + style.thickness * np.linalg.norm(view.model_view_projection[2:, :3])
     beyond = (x < -across * w, x > across * w, y < -up * w, y > up * w, z < -w - deep, z > w + deep)
     if any(side.all() for side in beyond):

@@ -133,6 +133,11 @@ class StreamedRenderer(NearestOnly):
         """Whether the last picture lacks parts that another one of the same view would show."""
         return not self.released and bool(self._left) and (self._begun is not None or self._waiting)
 
+    @property
+    def resident(self) -> bool:
+        """Whether all parts of the last picture are there."""
+        return not self.unfinished and self.share == 1.0 and all(number in self._there for number in self._in_view)
+
     def _draw(self, view: View, style: FibletStyle, outside: moderngl.Texture | None) -> GBuffer:
         if self.hurried or self._begun != (view, style):
             self._begin(view, style)
