@@ -133,7 +133,7 @@ class _AddRaycastVolume(Protocol):
         n_colors: int = 256, log_scale: bool = False, annotations: dict[float, str] | None = None,
         flip_scalars: bool = False, opacity: float | str | Sequence[float] | np.ndarray = "linear",
         opacity_unit_distance: float | None = None, thresholds: Any = None, peak: float | None = None,
-        smooth: float | Any = None, step: float = 0.5, filter: str = "trilinear", refine: str = "regula-falsi",
+        smooth: float | Any = None, step: float = 0.5, filter: str = "trilinear", refine: str = "exact",
         iterations: int = 5, integrator: str = "adaptive", jitter: bool = False, octree: bool = True,
         homogeneous: float = 0.0, recon: bool = True, sparse: int = 1, sparse_threshold: float = 0.05,
         stop: float = 0.999, interactive_quality: float | dict[str, Any] = 0.5, box: Any = None,

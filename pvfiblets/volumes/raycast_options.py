@@ -24,8 +24,8 @@ the least value, or the mean one."""
 PROJECTIONS = ("mip", "local-mip", "minimum", "average")
 """Modes that show one value of a ray."""
 
-REFINEMENTS = ("regula-falsi", "newton", "none")
-"""How the place of a crossing is refined (paper: equations 3 and 4)."""
+REFINEMENTS = ("exact", "regula-falsi", "newton", "none")
+"""How surfaces are found: in each cell of eight voxels, or between two steps (paper: equations 3 and 4)."""
 
 INTEGRATORS = ("adaptive", "preintegrated", "exponential", "riemann", "simpson", "romberg", "rk4")
 """How the rendering equation is integrated over a step."""
@@ -63,12 +63,13 @@ class RaycastOptions:
         Values that are there; what is lower or higher is empty in all modes but ``'isosurface'``.
     step : float
         Of a ray, in mean voxel spacings, above 0; :meth:`step_mm` says what it is of voxels that are far from cubes.
+        Surfaces that are found exactly take no steps (:attr:`exact`).
     jitter : bool
         Whether each ray starts at a place of its own within the first step: noise takes the place of rings.
     filter : str
         Of :data:`pvfiblets.volumes.volume.FILTERS`.
     refine : str
-        Of `REFINEMENTS`.
+        Of `REFINEMENTS`. ``'exact'`` is ``'regula-falsi'`` where the filter is another than ``'trilinear'``.
     iterations : int
         Steps of the refinement, 1 to 64.
     integrator : str
@@ -114,7 +115,7 @@ class RaycastOptions:
     step: float = 0.5
     jitter: bool = False
     filter: str = "trilinear"
-    refine: str = "regula-falsi"
+    refine: str = "exact"
     iterations: int = 5
     integrator: str = "adaptive"
     octree: bool = True
@@ -158,6 +159,11 @@ class RaycastOptions:
             if len(box) != 6 or not all(map(math.isfinite, box)) or any(box[k] > box[k + 1] for k in (0, 2, 4)):
                 raise ValueError(f"box is {self.box!r}; give (xmin, xmax, ymin, ymax, zmin, zmax) in voxels")
             object.__setattr__(self, "box", box)
+
+    @property
+    def exact(self) -> bool:
+        """Whether surfaces are found cell by cell: the field in one is a cubic along a ray where it is trilinear."""
+        return self.mode == "isosurface" and self.refine == "exact" and self.filter == "trilinear"
 
     @property
     def layered(self) -> bool:

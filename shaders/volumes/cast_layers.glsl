@@ -29,6 +29,54 @@ vec3 towards_viewer(Ray ray, float t) {
     return (dot(g, ray.d) > 0.0 ? -g : g) / size;
 }
 
+void add_surface(Ray ray, float at_t, int k, inout float hit, inout float value, inout vec4 light) {
+    vec4 colour = surface_colours[k];
+    if (colour.a <= 0.0) return;
+    if (light.a <= 0.0) {
+        hit = at_t;
+        value = isovalues[k];
+    }
+    vec3 lit = lit_surface(colour.rgb, at(ray, at_t), towards_viewer(ray, at_t));
+    light += (1.0 - light.a) * colour.a * vec4(lit, 1.0);
+}
+
+#if FEATURE_VOLUME_CELLS
+float shown_at, shown_value;
+vec4 shown_light;
+
+bool show_stretch(Ray ray, Stretch found) {
+    float last = -1.0;
+    int last_of = -1;
+    while (shown_light.a < opaque_from) {
+        float best = 2.0;
+        int best_of = -1;
+        for (int k = 0; k < isovalue_count; ++k) {
+            vec3 places = crossings(found.b - isovalues[k], (found.sides >> k & 1u) != 0u);
+            for (int i = 0; i < 3; ++i) {
+                if (places[i] < best && (places[i] > last || (places[i] == last && k > last_of))) {
+                    best = places[i];
+                    best_of = k;
+                }
+            }
+        }
+        if (best_of < 0) break;
+        last = best;
+        last_of = best_of;
+        add_surface(ray, place_of(found, best), best_of, shown_at, shown_value, shown_light);
+    }
+    return shown_light.a >= opaque_from;
+}
+
+void add_surfaces(Ray ray, float step, float start, inout float hit, inout float value, inout vec4 light) {
+    shown_at = hit;
+    shown_value = value;
+    shown_light = light;
+    walk_cells(ray, start);
+    hit = shown_at;
+    value = shown_value;
+    light = shown_light;
+}
+#else
 void add_surfaces(Ray ray, float step, float start, inout float hit, inout float value, inout vec4 light) {
     float t = start, before = value_at(at(ray, t));
     while (t < ray.last && light.a < opaque_from) {
@@ -56,21 +104,15 @@ void add_surfaces(Ray ray, float step, float start, inout float hit, inout float
                 last = best;
                 last_of = best_of;
                 float mu = isovalues[best_of], at_t = refined(ray, mu, t, before - mu, next, after - mu);
-                vec4 colour = surface_colours[best_of];
-                if (colour.a > 0.0) {
-                    if (light.a <= 0.0) {
-                        hit = at_t;
-                        value = mu;
-                    }
-                    vec3 lit = lit_surface(colour.rgb, at(ray, at_t), towards_viewer(ray, at_t));
-                    light += (1.0 - light.a) * colour.a * vec4(lit, 1.0);
-                }
+                add_surface(ray, at_t, best_of, hit, value, light);
             }
             before = after;
             t = next;
         } while (t < end && t < ray.last && light.a < opaque_from);
     }
 }
+
+#endif
 
 bool cast_ray(ivec2 pixel, Ray ray, float step, float start, out float hit, out float value) {
     vec4 light = vec4(0.0);

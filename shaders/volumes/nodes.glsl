@@ -4,11 +4,10 @@
 
 #if FEATURE_VOLUME_WHOLE
 // Without an octree there is something to see everywhere; rays are taken in the same pieces.
-float to_end_of_node(Ray ray, float t, float threshold, out float number) {
-    vec3 p = at(ray, t), low = vec3(clamp(ivec3(floor(p)), ivec3(0), ivec3(volume_shape) - 2) >> 3 << 3), high = low + 8.0;
-    vec3 out_of = (vec3(ray.d.x < 0.0 ? low.x : high.x, ray.d.y < 0.0 ? low.y : high.y, ray.d.z < 0.0 ? low.z : high.z) - p) * ray.inverse;
-    number = 3e38;
-    return max(min(out_of.x, min(out_of.y, out_of.z)), 0.0);
+float node_of(ivec3 cell, float threshold, out ivec3 low, out ivec3 high) {
+    low = cell >> 3 << 3;
+    high = low + 8;
+    return 3e38;
 }
 #else
 uniform samplerBuffer nodes;      // one number for each; a node is skipped if it is not above a threshold
@@ -17,12 +16,11 @@ uniform samplerBuffer means;      // of each: where its number is 2 it may be ta
 float mean_of_node;
 #endif
 
-// Mm from t to where that node ends, at least 0; number is the node's.
-float to_end_of_node(Ray ray, float t, float threshold, out float number) {
-    vec3 p = at(ray, t);
-    ivec3 leaf = clamp(ivec3(floor(p)), ivec3(0), ivec3(volume_shape) - 2) >> 3;
+// The number of the node of a cell, which is that of all from low to before high.
+float node_of(ivec3 cell, float threshold, out ivec3 low, out ivec3 high) {
+    ivec3 leaf = cell >> 3, node;
     int level = top_level;
-    ivec3 node;
+    float number;
     for (;;) {
         node = leaf >> level;
         ivec3 shape = octree_shapes[level];
@@ -35,8 +33,17 @@ float to_end_of_node(Ray ray, float t, float threshold, out float number) {
         if (number <= threshold || level == 0) break;
         --level;
     }
-    vec3 low = vec3(node << (level + 3)), high = low + float(8 << level);
-    vec3 out_of = (vec3(ray.d.x < 0.0 ? low.x : high.x, ray.d.y < 0.0 ? low.y : high.y, ray.d.z < 0.0 ? low.z : high.z) - p) * ray.inverse;
-    return max(min(out_of.x, min(out_of.y, out_of.z)), 0.0);
+    low = node << (level + 3);
+    high = low + (8 << level);
+    return number;
 }
 #endif
+
+// Mm from t to where the node there ends, at least 0; number is the node's.
+float to_end_of_node(Ray ray, float t, float threshold, out float number) {
+    vec3 p = at(ray, t);
+    ivec3 low, high;
+    number = node_of(clamp(ivec3(floor(p)), ivec3(0), ivec3(volume_shape) - 2), threshold, low, high);
+    vec3 out_of = (mix(vec3(high), vec3(low), lessThan(ray.d, vec3(0.0))) - p) * ray.inverse;
+    return max(min(out_of.x, min(out_of.y, out_of.z)), 0.0);
+}

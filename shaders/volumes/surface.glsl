@@ -1,4 +1,4 @@
-// The first surface on a ray.
+// The first surface on a ray: by cells where the field between voxels is linear, else, or where that is asked for, by steps.
 // Paper: Lesar 2015, section III.B: a linear search for a change of sign, then regula falsi (equation 3) or Newton (equation 4).
 //
 // Symbols
@@ -7,6 +7,33 @@
 // Regula falsi halves the weight of an end that stays twice (Illinois): it then converges where the field bends. A step of Newton
 // that leaves the bracket is replaced by a bisection.
 
+#if FEATURE_VOLUME_CELLS
+#include "volumes/cells.glsl"
+
+#if !FEATURE_VOLUME_LAYERS
+float shown_at, shown_value = 3e38;
+
+bool show_stretch(Ray ray, Stretch found) {
+    float best = 2.0;
+    for (int k = 0; k < isovalue_count; ++k) {
+        float place = crossings(found.b - isovalues[k], (found.sides >> k & 1u) != 0u).x;
+        if (place < best) {
+            best = place;
+            shown_value = isovalues[k];
+        }
+    }
+    shown_at = place_of(found, best);
+    return best <= 1.0;
+}
+
+bool find_surface(Ray ray, float step, float start, out float hit, out float value) {
+    walk_cells(ray, start);
+    hit = shown_at;
+    value = shown_value;
+    return value < 3e38;
+}
+#endif
+#else
 float refined(Ray ray, float value, float a, float psi_a, float b, float psi_b) {
 #if FEATURE_VOLUME_UNREFINED
     return b;
@@ -95,3 +122,4 @@ bool find_surface(Ray ray, float step, float start, out float hit, out float val
     }
     return false;
 }
+#endif

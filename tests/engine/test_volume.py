@@ -105,6 +105,50 @@ def test_surfaces(cast, matrix, dtype, refine):
     assert np.quantile(off / per_mm, 0.9 if dtype is np.uint8 else 0.98) < 5e-3  # mm
 
 
+def thin(shape, dtype):
+    """Numbers of no order: surfaces in nearly all cells, several times in many."""
+    numbers = np.random.default_rng(5).random(shape)
+    return RaycastVolume((numbers * (1.0 if dtype is np.float32 else 250)).astype(dtype), AFFINE)
+
+
+@pytest.mark.few(6)
+@pytest.mark.every("pair")
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16, np.float32])
+@pytest.mark.parametrize("made", [blobs, thin])
+@pytest.mark.parametrize("octree", [True, False])
+def test_cells_hide_no_surface(cast, matrix, dtype, made, octree):
+    volume = made((17, 12, 14), dtype)
+    values = tuple(share * top(volume) + 0.3e-3 * top(volume) for share in (0.62, 0.3, 0.94))
+    shown, _ = cast(volume, RaycastOptions(values=values, step=100.0, octree=octree), matrix)
+    through = reference.rays(matrix, SIZE, volume)
+    wanted = reference.isosurface(volume, values, through)
+    there = wanted.value >= 0
+    assert there.sum() > 200
+    per_mm = np.abs(through.depth(wanted.t + 1e-3) - wanted.depth) / 1e-3
+    off = np.abs(shown.depth - wanted.depth)
+    same = shown.there & there & (off <= 2e-3 * per_mm)
+    same &= np.isclose(shown.value, np.array(values)[wanted.value], rtol=1e-6)
+    # A ray may touch a surface, or a value that is a voxel's own.
+    assert (same | ~(shown.there | there)).mean() > 0.999
+
+
+def test_cells_show_translucent_surfaces_one_behind_the_other(cast, camera):
+    """A ball whose value falls from its middle: each ray through it meets both surfaces twice."""
+    at = np.stack(np.meshgrid(*[np.arange(25.0) - 12.0] * 3, indexing="ij"), axis=-1)
+    volume = RaycastVolume((20.0 - np.linalg.norm(at, axis=-1)).astype(np.float32), np.eye(4))
+    matrix = camera(SIZE, eye=(12.0, -200.0, 12.0), target=(12.0, 12.0, 12.0), near=10, far=400, height=30.0)
+    surfaces = ((1.0, 0.0, 0.0, 0.25), (0.0, 1.0, 0.0, 0.5))
+    casting = RaycastOptions(values=(11.0, 16.0), surfaces=surfaces, step=100.0)
+    shown, _ = cast(volume, casting, matrix)
+    y, x = (np.indices(SIZE[::-1]) + 0.5 - np.array(SIZE[::-1]).reshape(2, 1, 1) / 2) * 30.0 / SIZE[1]
+    beside = np.hypot(x, y)
+    inner, outer = beside < 3.5, (beside > 4.5) & (beside < 8.5)
+    assert inner.sum() > 20
+    np.testing.assert_allclose(shown.light[outer][:, 3], 1 - 0.75**2, atol=0.006)
+    np.testing.assert_allclose(shown.light[inner][:, 3], 1 - 0.75**2 * 0.5**2, atol=0.006)
+    assert not shown.there[beside > 9.5].any()
+
+
 @pytest.mark.parametrize("filter", ["nearest", "trilinear", "tricubic"])
 def test_filters(cast, camera, filter):  # noqa: A002
     volume = blobs()

@@ -284,7 +284,7 @@ CHANGED = {
         buffers="-masks, -offsets",
     ),
     "volume: local mip": What(features="VOLUME_LOCAL"),
-    "volume: surface": What(features="VOLUME_SURFACE", resolve="tube_normal"),
+    "volume: surface": What(features="VOLUME_CELLS, VOLUME_SURFACE", resolve="tube_normal"),
     "volume: gentle light": What(
         features="VOLUME_COMPOSITE, VOLUME_PREINTEGRATED",
         resolve="-colour_point_scalar, colour_point_rgba, own_light",
@@ -314,7 +314,7 @@ CHANGED = {
         modules="volumes.preintegration, volumes.steepness_kernels, engine.volumes.shading",
     ),
     "volume: translucent surfaces": What(
-        features="VOLUME_LAYERS, VOLUME_SHADED, VOLUME_SURFACE",
+        features="VOLUME_CELLS, VOLUME_LAYERS, VOLUME_SHADED, VOLUME_SURFACE",
         resolve="-colour_point_scalar, colour_point_rgba, own_light",
         buffers="-fibletTable",
         modules="engine.volumes.shading",
@@ -335,7 +335,7 @@ CHANGED = {
     ),
     "volume: ray occlusion": What(
         ran="volumes/ray_occlusion.frag, volumes/ray_occlusion_mean.frag",
-        features="VOLUME_SURFACE",
+        features="VOLUME_CELLS, VOLUME_SURFACE",
         resolve="ray_occlusion, tube_normal",
         passes="mean ray occlusion (effect), ray occlusion (effect)",
         buffers="mean ray occlusion (effect), ray occlusion (effect)",

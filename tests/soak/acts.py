@@ -323,7 +323,7 @@ TABLES: dict[str, dict[str, list[Any]]] = {
         "opacity_unit_distance": [None, 3.0],
         "step": [0.25, 0.5, 1.0],
         "filter": ["nearest", "trilinear", "tricubic"],
-        "refine": ["regula-falsi", "newton", "none"],
+        "refine": ["exact", "regula-falsi", "newton", "none"],
         "integrator": list(INTEGRATORS),
         "jitter": [True, False],
         "octree": [True, False],

@@ -41,7 +41,7 @@ _OF_MODE = {
 FEATURES_OF_FILTER = {"nearest": ["VOLUME_NEAREST"], "trilinear": [], "tricubic": ["VOLUME_TRICUBIC"]}
 _TAPS = {"tricubic": 8}
 """Look-ups of a sample, where there are several."""
-_OF_REFINEMENT = {"none": ["VOLUME_UNREFINED"], "regula-falsi": [], "newton": ["VOLUME_NEWTON"]}
+_OF_REFINEMENT = {"exact": [], "none": ["VOLUME_UNREFINED"], "regula-falsi": [], "newton": ["VOLUME_NEWTON"]}
 _OF_INTEGRATOR = {
     "adaptive": ["VOLUME_PREINTEGRATED"],  # and more where that does not do
     "preintegrated": ["VOLUME_PREINTEGRATED"],
@@ -269,7 +269,7 @@ class VolumeRenderer(Drawable[VolumeStyle]):
     def _features_of(self, casting: RaycastOptions, outside: bool) -> list[str]:
         features = [*_OF_MODE[casting.mode], *self.field_features(casting)]
         if casting.mode == "isosurface":
-            features += _OF_REFINEMENT[casting.refine]
+            features += ["VOLUME_CELLS"] if casting.exact else _OF_REFINEMENT[casting.refine]
             features += ["VOLUME_LAYERS"] if casting.layered else []
         if casting.mode == "composite":
             features += ["VOLUME_COLOURS"] if self._colours is not None else []
@@ -278,7 +278,8 @@ class VolumeRenderer(Drawable[VolumeStyle]):
             features += ["VOLUME_EXACT"] if self._tables.exact else []
             features += ["VOLUME_HOMOGENEOUS"] if self._nodes.takes_means else []
         features += [] if casting.octree else ["VOLUME_WHOLE"]
-        return [*features, *(["VOLUME_JITTER"] if casting.jitter else []), *(["SCENE_DEPTH"] if outside else [])]
+        jitter = casting.jitter and not casting.exact
+        return [*features, *(["VOLUME_JITTER"] if jitter else []), *(["SCENE_DEPTH"] if outside else [])]
 
     def _ray_target(self, name: str, size: tuple[int, int], style: VolumeStyle, *, marked: bool) -> RayTarget:
         """Return a target of that size and what the mode needs."""

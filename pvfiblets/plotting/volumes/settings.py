@@ -202,7 +202,8 @@ class VolumeSettings(Settings):
     )  # fmt: skip
     step: Setting[float] = Setting(
         0.5,
-        "Between two looks at the volume on a ray, in mean voxel spacings; opacity does not depend on it.",
+        "Between two looks at the volume on a ray, in mean voxel spacings; opacity does not depend on it, and surfaces "
+        "that are found exactly take no steps.",
         kind="float",
         where=CASTING,
         row=Row("Step", "Between two looks at the volume, voxels.", "Rays", limits=(0.05, 8.0)),
@@ -216,8 +217,10 @@ class VolumeSettings(Settings):
         row=Row("Between voxels", "Reconstruction between voxels.", "Rays"),
     )
     refine: Setting[str] = Setting(
-        "regula-falsi",
-        "How the place of a surface on its ray is refined.",
+        "exact",
+        'How surfaces are found. ``"exact"``, the default, misses none and takes no step: it solves the cubic that the '
+        'values of a cell make along a ray (filter ``"trilinear"``; with others it is ``"regula-falsi"``). The others '
+        "look between two steps, as the paper does.",
         kind="str",
         choices=REFINEMENTS,
         where=CASTING,

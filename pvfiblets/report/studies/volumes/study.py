@@ -40,7 +40,9 @@ DIFFERS = 4  # levels of 255: pixels farther from the default's are counted
 def settings(mode: str, quick: bool, spread: float) -> Iterator[tuple[str, str, dict[str, Any]]]:
     """Yield what is varied, how, and the fields of `RaycastOptions` that are not its defaults, the default first."""
     yield "default", "", {}
-    steps = QUICK_PICTURE_STEPS if quick else PICTURE_STEPS
+    steps: tuple[float, ...] = QUICK_PICTURE_STEPS if quick else PICTURE_STEPS
+    if mode == "isosurface":
+        steps = ()  # the default takes none
     yield from (("step", f"{step:g} voxels", {"step": step}) for step in steps if step != RaycastOptions.step)
     if mode == "isosurface":
         for name, (refine, counts) in REFINEMENTS.items():
