@@ -231,6 +231,17 @@ def test_a_copy_looks_the_same(plotter):
     twin.release()
 
 
+def test_one_surface_has_the_themes_colour_and_no_bar(plotter):
+    actor = shown(plotter, mode="isosurface", values=5.0)
+    assert actor.color == plotter.theme.color
+    assert not plotter.scalar_bars
+    actor.color = None
+    assert actor.color is None
+    for given in ({"values": [5, 8]}, {"values": 5.0, "cmap": "gray"}, {"values": 5.0, "clim": (0, 10)}):
+        assert plotter.add_raycast_volume(BALL, mode="isosurface", **given).color is None
+    assert plotter.add_raycast_volume(BALL, opacity=0.1).color is None
+
+
 TWO = {"mode": "isosurface", "values": [5, 8]}
 
 

@@ -34,6 +34,9 @@ if TYPE_CHECKING:
 MULTI_COLOURS = ("Reds", "Greens", "Blues", "Greys", "Oranges", "Purples")
 """Maps of blocks with ``multi_colors``, as of ``Plotter.add_volume``."""
 
+COLOURING = {"color", "cmap", "clim", "n_colors", "log_scale", "surface_colors", "scalar_bar_args"}
+"""Arguments that give surfaces colours, or a map of them."""
+
 
 @pv.register_plotter_component("raycast_volumes")
 class RaycastVolumesComponent(ActorRegistry["VolumeActor"]):
@@ -191,10 +194,18 @@ class RaycastVolumesComponent(ActorRegistry["VolumeActor"]):
         volume = as_raycast_volume(source, **where)
         if categories:
             settings["n_colors"] = len(np.unique(volume.values)) if categories is True else int(categories)
+        if _is_plain_surface(settings) and volume.colours is None:
+            settings["color"] = self._plotter.theme.color
         actor = VolumeActor(volume, settings=settings, given=(source, where), theme=self._plotter.theme)
         _warn_of_nothing(actor)
         tell_given(actor, {name: settings[name] for name in settings.named})
         return actor
+
+
+def _is_plain_surface(settings: Given) -> bool:
+    """Return True for one surface that is given no colours."""
+    alone = settings["mode"] == "isosurface" and np.size(settings["values"]) == 1
+    return alone and settings.named.isdisjoint(COLOURING)
 
 
 def _in_our_words(arguments: dict[str, Any]) -> dict[str, Any]:

@@ -130,7 +130,8 @@ class VolumeSettings(Settings):
     )
     color: Setting[Any] = Setting(
         None,
-        "One colour for all in place of the map; ``None`` for the map.",
+        "One colour for all in place of the map; ``None`` for the map. Where no colours are given, one surface has the "
+        "theme's colour, as a mesh without scalars.",
         kind=shared.COLOR_LIKE,
         header="color-like, optional",
         where=OWN,
