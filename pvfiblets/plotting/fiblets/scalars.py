@@ -16,7 +16,6 @@ import numpy as np
 from pvfiblets.codec.point_arrays import colour_columns
 from pvfiblets.engine.fiblets.data.sampled_volume import VolumeSource
 from pvfiblets.images.sources import as_image
-from pvfiblets.mappers.colouring import Mode
 from pvfiblets.query.bundles.bundle_list import group_colours, hidden_groups
 from pvfiblets.query.bundles.colours import distinct_colours
 from pvfiblets.query.measures.measures import COMPUTED, Distance, curvature_values, measure
@@ -88,7 +87,7 @@ class Scalars:
     """
 
     name: str
-    kind: Mode
+    kind: str
     values: np.ndarray | None = None
     range: tuple[float, float] = (0.0, 1.0)
     positive: float = 1e-6
