@@ -69,7 +69,8 @@ for pipeline in [found.name for found in plotter.fiblets.pipelines() if found.av
 _, _, colours = drawn("add_fiblets", style="density")
 assert (colours[:, 0] == colours[:, 1]).all() and (colours[:, 2] == 0).all() and colours.max() == 255
 for add, more, lines_of in (
-    ("add_spline_tubes", {"radius": 0.5, "lighting": False}, lambda a: tube_lines(a.mapper.tubes, a.mapper.colouring, 1000)),
+    ("add_spline_tubes", {"radius": 0.5, "lighting": False},
+     lambda a: tube_lines(a.mapper.tubes, a.mapper.colouring, 1000)),
     ("add_halo_lines", {"line_width": 0.5},
      lambda a: halo_lines(a.mapper.drawn, a.mapper.look, a.mapper.colouring, np.arange(1))),
 ):
