@@ -105,13 +105,7 @@ class Scalars:
         return COUNTED if self.kind == "pixel_count" else UNITS.get(self.name, self.name)
 
     def distinct(self, fiblets: FibletSet) -> int:
-        """Return how many different numbers there are, NaN not counted; at least 1.
-
-        Raises
-        ------
-        ValueError
-            If they come of the geometry at every point, as arc length and curvature do.
-        """
+        """Return how many different numbers there are, NaN not counted; at least 1."""
         if self.categories is not None:
             return max(len(self.categories), 1)
         if self.volume is not None:
