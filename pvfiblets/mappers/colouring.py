@@ -93,7 +93,7 @@ class Colouring:
         for name in ("below_color", "above_color"):
             if getattr(self, name) is not None:
                 self._set(name, _rgba(getattr(self, name), name))
-        if self.mode == "streamline_rgba":
+        if self.kind.numbers == "lines" and not self.kind.table:
             self._check_rgb()
         at_points = self.kind.numbers == "points"
         if at_points and self.kind.table and not self.source:
@@ -115,9 +115,9 @@ class Colouring:
         values = None if self.values is None else np.asarray(self.values)
         if values is None or values.ndim != 2 or values.shape[1] not in (3, 4):
             found = "nothing" if values is None else f"shape {values.shape}"
-            raise ValueError(f"streamline_rgba: values has {found}; expected (n_streamlines, 3 or 4)")
+            raise ValueError(f"{self.mode}: values has {found}; expected (n_streamlines, 3 or 4)")
         if values.dtype != np.uint8:
-            raise ValueError(f"streamline_rgba: values has dtype {values.dtype}; expected uint8")
+            raise ValueError(f"{self.mode}: values has dtype {values.dtype}; expected uint8")
         self._set("values", values)
 
     def _check_table(self) -> None:
@@ -125,11 +125,11 @@ class Colouring:
         if lut.ndim != 2 or lut.shape[1] != 4 or len(lut) < 1 or lut.dtype != np.uint8:
             raise ValueError(f"lut has shape {lut.shape} and dtype {lut.dtype}; expected (k, 4) uint8 with k >= 1")
         self._set("lut", lut)
-        if self.mode == "streamline_scalar":
+        if self.kind.numbers == "lines":
             values = None if self.values is None else np.asarray(self.values)
             if values is None or values.ndim != 1 or values.dtype.kind not in "biuf":
                 found = "nothing" if values is None else f"{values.dtype} of shape {values.shape}"
-                raise ValueError(f"streamline_scalar: values is {found}; expected (n_streamlines,)")
+                raise ValueError(f"{self.mode}: values is {found}; expected (n_streamlines,)")
             self._set("values", values)
             if self.clim is None:
                 self._set("clim", _finite_range(values, positive=self.log_scale))

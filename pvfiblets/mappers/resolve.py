@@ -25,7 +25,7 @@ from vtkmodules.vtkCommonCore import reference
 
 from pvfiblets.colour_modes import SHADERS
 from pvfiblets.engine.errors import EngineError
-from pvfiblets.engine.gl.shaders import decided, read_shader
+from pvfiblets.engine.gl.shaders import preprocess, read_shader
 
 FEATURES = (
     "gbuffer",
@@ -141,7 +141,7 @@ def _sections(feature: str, logarithm: bool = False) -> tuple[tuple[str, str, st
         elif sections:
             sections[-1][3].append(line)
     return tuple(
-        (stage, where, tag, decided("\n".join(lines), switches).strip("\n")) for stage, where, tag, lines in sections
+        (stage, where, tag, preprocess("\n".join(lines), switches).strip("\n")) for stage, where, tag, lines in sections
     )
 
 

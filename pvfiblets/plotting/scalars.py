@@ -150,23 +150,23 @@ class Numbers:
 def find_scalars(numbers: Numbers, choice: Any, rgb: bool | None = None) -> Scalars:
     """Find what ``scalars`` means."""
     if not isinstance(choice, str):
-        return of_lines(UNNAMED, choice, numbers.count, rgb, whole=numbers.whole)
+        return line_scalars(UNNAMED, choice, numbers.count, rgb, whole=numbers.whole)
     if (stored := numbers.at_points(choice)) is not None:
         return stored
     if choice in numbers.per_line:
-        return of_lines(choice, numbers.per_line[choice], numbers.count, rgb, whole=numbers.whole)
+        return line_scalars(choice, numbers.per_line[choice], numbers.count, rgb, whole=numbers.whole)
     if choice not in numbers.built_in:
         raise KeyError(numbers.missing(choice))
     found = numbers.built_in[choice]()
-    return found if isinstance(found, Scalars) else per_line(choice, found, numbers.count, whole=numbers.whole)
+    return found if isinstance(found, Scalars) else row_scalars(choice, found, numbers.count, whole=numbers.whole)
 
 
-def of_directions() -> dict[str, Callable[[], Scalars]]:
+def direction_scalars() -> dict[str, Callable[[], Scalars]]:
     """Return what is built in for all lines: colours of their directions."""
     return {name: lambda name=name: Scalars(name, name) for name in DIRECTIONS}  # type: ignore[misc]
 
 
-def listed(names: Iterable[Any]) -> str:
+def name_list(names: Iterable[Any]) -> str:
     """Return names as messages have them."""
     return ", ".join(repr(str(name)) for name in names) or "none"
 
@@ -196,7 +196,7 @@ def magnitudes(values: np.ndarray) -> np.ndarray:
     return np.asarray(np.linalg.norm(flat, axis=1))
 
 
-def of_lines(
+def line_scalars(
     name: str, values: Any, count: int, rgb: bool | None = None, *, whole: str = "streamline"
 ) -> Scalars:
     """Make :class:`Scalars` of numbers, colours, vectors or words, one per streamline."""
@@ -206,7 +206,7 @@ def of_lines(
     wide = values.ndim == 2 and values.shape[0] == count and values.shape[1] > 1 and values.dtype.kind in "buif"
     if wide and not are_colours(values, rgb):
         values = magnitudes(values)
-    return per_line(name, values, count, whole=whole)
+    return row_scalars(name, values, count, whole=whole)
 
 
 def _by_word(name: str, words: np.ndarray) -> Scalars:
@@ -214,18 +214,18 @@ def _by_word(name: str, words: np.ndarray) -> Scalars:
     texts = np.array([str(word) for word in words])
     known = np.unique(texts[texts != ""])
     numbers = np.where(texts == "", np.nan, np.searchsorted(known, texts))
-    found = per_line(name, numbers, len(words))
+    found = row_scalars(name, numbers, len(words))
     return replace(found, range=(-0.5, max(len(known), 1) - 0.5), categories=dict(enumerate(known.tolist())))
 
 
-def of_points(name: str, values: np.ndarray) -> Scalars:
+def point_scalars(name: str, values: np.ndarray) -> Scalars:
     """Make :class:`Scalars` of numbers at points, or of ``(n, 4)`` colours from 0 to 1."""
     if values.ndim == 2:
         return Scalars(name, "point_rgba", has_alpha=bool((values[:, 3] < 1.0).any()))
-    return Scalars(name, "point_scalar", **_ends(values))
+    return Scalars(name, "point_scalar", **_range_and_positive(values))
 
 
-def _ends(values: np.ndarray) -> dict[str, Any]:
+def _range_and_positive(values: np.ndarray) -> dict[str, Any]:
     """Return range and least positive number as `Scalars` has them."""
     finite = values[np.isfinite(values)] if values.dtype.kind == "f" else values
     if not len(finite):
@@ -235,7 +235,7 @@ def _ends(values: np.ndarray) -> dict[str, Any]:
     return {"range": (float(finite.min()), float(finite.max())), "positive": least}
 
 
-def per_line(name: str, values: Any, count: int, *, whole: str = "streamline") -> Scalars:
+def row_scalars(name: str, values: Any, count: int, *, whole: str = "streamline") -> Scalars:
     """Make :class:`Scalars` of one number, or one colour, per streamline, or whatever the ``whole`` is called.
 
     Colours are (n, 3) or (n, 4): uint8 from 0 to 255, or floats from 0 to 1.
@@ -250,7 +250,7 @@ def per_line(name: str, values: Any, count: int, *, whole: str = "streamline") -
         )
     if values.ndim == 1:
         numbers = values.astype(np.float64)
-        return Scalars(name, "streamline_scalar", numbers, **_ends(numbers))
+        return Scalars(name, "streamline_scalar", numbers, **_range_and_positive(numbers))
     if values.shape[1] not in (3, 4):
         raise ValueError(
             f"scalars {name!r} have {values.shape[1]} columns; expected 1 (numbers), or 3 or 4 "

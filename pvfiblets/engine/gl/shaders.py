@@ -38,7 +38,7 @@ from .bindings import BLOCKS, CONSTANTS
 from .gl_version import version_of
 from .uniform_struct import find_struct
 
-__all__ = ["EXTENDED", "FEATURES", "NEWEST", "Programs", "assemble", "decided", "read_shader", "switched_on"]
+__all__ = ["EXTENDED", "FEATURES", "NEWEST", "Programs", "assemble", "preprocess", "read_shader", "switched_on"]
 
 logger = logging.getLogger("pvfiblets.engine")
 
@@ -231,7 +231,7 @@ def assemble(
     return f"#version {max(version, int(line[0].split()[1]))}\n{switches}{head}{body}"
 
 
-def decided(text: str, features: Iterable[str]) -> str:
+def preprocess(text: str, features: Iterable[str]) -> str:
     """Return GLSL with its includes and without what features leave out, for programs that somebody else makes."""
     active, included = set(features), set[str]()
 

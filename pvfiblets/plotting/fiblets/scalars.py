@@ -17,10 +17,10 @@ from pvfiblets.plotting.scalars import (
     ORIENTATION,
     Numbers,
     Scalars,
+    direction_scalars,
     find_scalars,
-    listed,
-    of_directions,
-    per_line,
+    name_list,
+    row_scalars,
 )
 from pvfiblets.query.bundles.bundle_list import first_groups, group_colours
 from pvfiblets.query.bundles.colours import distinct_colours
@@ -58,10 +58,10 @@ def find_fiblet_scalars(
         )
     if isinstance(scalars, Distance):
         values = measure(fiblets, scalars)
-        return per_line(values.name, values.array(), fiblets.n_streamlines)
+        return row_scalars(values.name, values.array(), fiblets.n_streamlines)
     numbers = Numbers(
         "streamline", fiblets.n_streamlines, lambda name: _at_points(fiblets, name), fiblets.per_streamline,
-        {**of_directions(), **_built_in(fiblets)}, lambda name: missing_message(fiblets, name),
+        {**direction_scalars(), **_built_in(fiblets)}, lambda name: missing_message(fiblets, name),
     )  # fmt: skip
     return find_scalars(numbers, scalars, rgb)
 
@@ -80,7 +80,7 @@ def _built_in(fiblets: FibletSet) -> dict[str, Callable[[], Any]]:
 
     def measured(name: str) -> Scalars:
         values = fiblets.lengths() if name == "length" else measure(fiblets, name).array()
-        found = replace(per_line(name, values, count), rounding=rounding_of(fiblets, name))
+        found = replace(row_scalars(name, values, count), rounding=rounding_of(fiblets, name))
         return without_outliers(found) if name == "mean_curvature" else found
 
     def arc_length() -> Scalars:
@@ -132,7 +132,7 @@ def by_group(fiblets: FibletSet) -> Scalars:
     """
     if not fiblets.groups:
         raise KeyError("there are no groups to colour by; formats that keep groups are .trx and .fiblets")
-    found = per_line(GROUP, first_groups(fiblets), fiblets.n_streamlines)
+    found = row_scalars(GROUP, first_groups(fiblets), fiblets.n_streamlines)
     names = dict(enumerate(fiblets.groups))
     palette = tuple(group_colours(fiblets.groups, fiblets.per_group).values())
     return replace(found, range=(-0.5, len(names) - 0.5), categories=names, category_colours=palette)
@@ -159,8 +159,8 @@ def missing_message(fiblets: FibletSet | Streamlines, name: str) -> str:
 
     coded = isinstance(fiblets, FibletSet)
     return (
-        f"there is no array {name!r}. Per point: {listed(fiblets.per_point)}; "
-        f"per streamline: {listed(fiblets.per_streamline)}; built in: {listed(BUILT_IN)}"
+        f"there is no array {name!r}. Per point: {name_list(fiblets.per_point)}; "
+        f"per streamline: {name_list(fiblets.per_streamline)}; built in: {name_list(BUILT_IN)}"
         + (f". Per-point arrays of a file are kept only when asked for: per_point=[{name!r}]" if coded else "")
     )
 

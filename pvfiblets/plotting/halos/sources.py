@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -23,9 +24,9 @@ from pvfiblets.plotting.scalars import (
     Numbers,
     Scalars,
     are_colours,
+    direction_scalars,
     find_scalars,
-    of_directions,
-    of_points,
+    point_scalars,
 )
 
 ARC_LENGTH, LENGTH = "arc_length", "length"
@@ -154,12 +155,13 @@ def find_halo_scalars(held: Held) -> Scalars | None:
         return None
     built_in: dict[str, Any] = {}
     if isinstance(drawn, HaloLines):
-        built_in = {**of_directions(), LENGTH: lambda: line_lengths(drawn)}
-    numbers = Numbers(
-        "line", drawn.n_streamlines, lambda name: of_points(name, drawn.values[name]) if name in drawn.values else None,
-        held.line_values, built_in, lambda name: _missing("scalars", name, held),
-    )  # fmt: skip
-    return find_scalars(numbers, choice)
+        built_in = {**direction_scalars(), LENGTH: lambda: line_lengths(drawn)}
+
+    def at_points(name: str) -> Scalars | None:
+        return point_scalars(name, drawn.values[name]) if name in drawn.values else None
+
+    count, missing = drawn.n_streamlines, partial(_missing, "scalars", held=held)
+    return find_scalars(Numbers("line", count, at_points, held.line_values, built_in, missing), choice)
 
 
 def _with_arc_length(lines: HaloLines) -> HaloLines:

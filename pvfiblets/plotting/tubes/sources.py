@@ -17,10 +17,10 @@ from pvfiblets.plotting.scalars import (
     Numbers,
     Scalars,
     are_colours,
+    direction_scalars,
     find_scalars,
     magnitudes,
-    of_directions,
-    of_points,
+    point_scalars,
 )
 from pvfiblets.tubes.build import as_spline_tubes
 from pvfiblets.tubes.measures import ARC_LENGTH, RADIUS, node_slopes, tube_lengths, with_arc_length, with_radius
@@ -108,7 +108,7 @@ def find_tube_scalars(tubes: SplineTubes, scalars: Any) -> Scalars:
     missing = ". Only what was asked for as scalars is kept at nodes: give an array, or add the tubes with it"
     numbers = Numbers(
         "tube", tubes.n_tubes, lambda name: _at_nodes(name, tubes), tubes.tube_values,
-        {**of_directions(), LENGTH: lambda: tube_lengths(tubes)},
+        {**direction_scalars(), LENGTH: lambda: tube_lengths(tubes)},
         lambda name: _missing(name, **{"at nodes": tubes.values, "per tube": tubes.tube_values}) + missing,
     )  # fmt: skip
     return find_scalars(numbers, scalars)
@@ -119,7 +119,7 @@ def _at_nodes(name: str, tubes: SplineTubes) -> Scalars | None:
     if name not in tubes.values:
         return None
     values = tubes.values[name].values
-    return of_points(
+    return point_scalars(
         name, values if values.ndim == 2 else values[np.bincount(tubes.segments.ravel(), minlength=tubes.n_nodes) > 0]
     )
 
