@@ -345,6 +345,30 @@ def told_lines(source: Any) -> Any:
     return source if found is None else found
 
 
+def read_lines(source: Any) -> Any:
+    """Return the data of a file, or of an object of another library; anything else as it is."""
+    if not isinstance(source, (str, PathLike)):
+        return told_lines(source)
+    from pvfiblets.codec.files.open_lines import open_lines
+
+    return open_lines(source)
+
+
+def names_of(source: Any) -> tuple[list[str], list[str]]:
+    """Names of a source's data per point, and per line."""
+    if hasattr(source, "GetPointData"):
+        both = (source.GetPointData(), source.GetCellData())
+        arrays = [[data.GetAbstractArray(i) for i in range(data.GetNumberOfArrays())] for data in both]
+        per_point, per_line = ([a.GetName() for a in some if a is not None and a.GetName()] for some in arrays)
+        return per_point, per_line
+    return list(getattr(source, "per_point", ())), list(getattr(source, "per_streamline", ()))
+
+
+def has_name(source: Any, name: str) -> bool:
+    """Whether a source has data of that name."""
+    return any(name in names for names in names_of(source))
+
+
 def are_words(array: npt.NDArray[Any]) -> bool:
     """Say whether an array is one of texts."""
     return array.dtype.kind in "US" or (array.dtype.kind == "O" and _all_words(array))

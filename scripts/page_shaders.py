@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from pvfiblets.codec import direction_codebook, layout
+from pvfiblets.colour_modes import SHADERS
 from pvfiblets.engine.gl.shaders import FEATURES, assemble
 from pvfiblets.engine.gl.uniform_struct import find_struct
 
@@ -25,7 +26,9 @@ CLIENT = Path(__file__).resolve().parents[1] / "client" / "src"
 REPLACED = {
     "fiblets/data/culling.glsl": "page/data.glsl",
     "fiblets/data/decoding.glsl": "page/data.glsl",
-    "fiblets/gather/paint_colour.glsl": "page/paint_colour.glsl",
+    "colour/missing.glsl": "page/missing.glsl",
+    "fiblets/attributes/packed_colour.glsl": "page/packed_colour.glsl",
+    "fiblets/gather/line_opacity.glsl": "page/line_opacity.glsl",
 }
 ANY_FIBLETS = ("ANCHORS_LOW", "DIRECTION", "LATTICE", "WIDE_LATTICE")
 ANY_LINES = (
@@ -41,7 +44,8 @@ ANY_LINES = (
     "STREAMLINE_MASK",
 )
 NEAREST = (*ANY_LINES, "GATHER_SLICES")
-SUMS = (*NEAREST, "PAINT_ALPHA", "PAINT_LIGHT")
+COLOURS = ("TABLE_LOGARITHM", *(mode.feature for mode in SHADERS.values() if mode.reads != "colours"))
+SUMS = (*NEAREST, *COLOURS, "PAINT_ALPHA", "PAINT_LIGHT")
 ALWAYS = ("CLIPPING", "CLIPPING_DEPTH", "DIRECTION", "EDGES", "PAINT_ALPHA", "PAINT_LIGHT")
 """Switches that a page never has off, where a stage knows them."""
 STAGES: dict[str, tuple[str, ...]] = {
@@ -54,15 +58,15 @@ STAGES: dict[str, tuple[str, ...]] = {
     "page/tile_mask.frag": (),
     "page/far_tiles.frag": (),
     "page/tiles.vert": (),
-    "page/resolve.frag": (),
-    "page/through.frag": (),
+    "page/resolve.frag": COLOURS,
+    "page/through.frag": COLOURS,
     "page/mixed.frag": (),
     "page/visible_edges.frag": (),
     "effects/picture/antialias_coverage.frag": (),
     "page/copy.frag": (),
     "page/background.frag": (),
     "page/surface.vert": (),
-    "page/surface.frag": (),
+    "page/surface.frag": ("TABLE_LOGARITHM",),
     "page/image.vert": (),
     "page/image.frag": (),
 }

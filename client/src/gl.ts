@@ -184,10 +184,10 @@ export function rows(gl: GL, format: Format, data: Uint8Array | Uint16Array | Ui
   return texture;
 }
 
-/** A look-up table as shaders/page/table.glsl has it: its texture and its range. */
-export function lookUpTable(gl: GL, table: Uint8Array, clim: readonly number[], log: boolean): [WebGLTexture, number[]] {
+/** A look-up table as shaders/colour/table.glsl has it: its texture, entries and range. */
+export function lookUpTable(gl: GL, table: Uint8Array, clim: readonly number[], log: boolean): [WebGLTexture, number, number[]] {
   const n = table.length / 4 - 3, [low, high] = log ? clim.map((end) => Math.log10(end)) : clim;
-  return [rows(gl, "rgba8", table, "colours"), [low, high, n / Math.max(high - low, 1e-30), n]];
+  return [rows(gl, "rgba8", table, "colours"), n, [low, high, n / Math.max(high - low, 1e-30)]];
 }
 
 /** A texture that is drawn into. */

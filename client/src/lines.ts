@@ -13,7 +13,8 @@ export class Lines {
   values: PointValues | null = null;      // that the G-buffer holds
   colours: WebGLTexture | null = null;   // by streamline, or by point
   table: WebGLTexture | null = null;
-  tableRange: number[] = [0, 1, 1, 1];
+  tableSize = 1;
+  tableRange: number[] = [0, 1, 1];
   kept: WebGLTexture | null = null;
   chosen: WebGLTexture | null = null;
   opacities: WebGLTexture | null = null;
@@ -39,7 +40,7 @@ export class Lines {
     if (colours.data !== undefined) this.colours = rows(gl, "rgba8", data[colours.data], "colours");
     if (colours.table !== undefined) {
       const clim = colours.clim!.map((end) => end - (this.values?.reference ?? 0));
-      [this.table, this.tableRange] = lookUpTable(gl, fromBase64(colours.table), clim, !!colours.log);
+      [this.table, this.tableSize, this.tableRange] = lookUpTable(gl, fromBase64(colours.table), clim, !!colours.log);
     }
     if (layer.kept !== undefined) this.keep(data[layer.kept]);
     if (layer.chosen) this.chosen = rows(gl, "r8ui", data[layer.chosen.data], "streamlines");
@@ -55,7 +56,13 @@ export class Lines {
   }
 
   get byPoint(): boolean {
-    return this.layer.colours.mode === "point";
+    return this.layer.colours.mode === "point_packed";
+  }
+
+  /** Switches of shaders/colour. */
+  get colouring(): string[] {
+    const { mode, log } = this.layer.colours;
+    return [`COLOUR_${mode.toUpperCase()}`, ...(log ? ["TABLE_LOGARITHM"] : [])];
   }
 
   /** Draw those streamlines alone whose byte is not 0; null: all. */

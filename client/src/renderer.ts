@@ -24,7 +24,6 @@ const TILE = 16;       // pixels; shaders/page/tile_size.glsl
 const FAR_TILE = 4;    // pixels; shaders/page/far_tile_size.glsl
 const LONGEST_SPRITE = 40; // pixels; squares of more are not drawn by every device
 const FARTHEST = 0x3f800000;  // 1.0
-const MODES = { direction: 0, solid: 1, streamline: 2, value: 3, point: 4 };
 const LIGHTS = { none: 0, line: 1, illuminated: 2 };
 
 /**
@@ -456,10 +455,14 @@ export class Renderer {
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.LEQUAL);
     gl.depthMask(true);
-    const program = this.program("page/surface.vert", "page/surface.frag");
-    for (const surface of this.surfaces) if (surface.layer.visible && !surface.translucent) surface.draw(program, drawn);
+    for (const surface of this.surfaces)
+      if (surface.layer.visible && !surface.translucent) surface.draw(this.surfaceProgram(surface), drawn);
     const flat = this.program("page/image.vert", "page/image.frag");
     for (const image of this.images) if (image.layer.visible && !image.translucent) image.draw(flat, drawn);
+  }
+
+  private surfaceProgram({ layer }: Surface): Program {
+    return this.program("page/surface.vert", "page/surface.frag", layer.log ? ["TABLE_LOGARITHM"] : []);
   }
 
   private outside(matrix: Mat, b: Bounds): boolean {
@@ -590,6 +593,7 @@ export class Renderer {
         if (lines.kept) features.push("STREAMLINE_MASK");
         if (lines.keptPoints) features.push("POINT_MASK");
         if (wide && translucent && lines.layer.through!.all) features.push("GATHER_SLICES");
+        if (behind) features.push(...lines.colouring);
         program = this.program("page/segment.vert", behind ? "page/sum.frag" : "page/segment.frag", features).use();
         if (lines.values) program.set({ shown_values: lines.shownValues.map((end) => end - lines.values!.reference) });
         program.uints({ layer: lines.index * 2 ** 28 });
@@ -648,14 +652,17 @@ export class Renderer {
   /** Tell a program what colours lines. */
   private colour(program: Program, lines: Lines): void {
     const { colours, through } = lines.layer, { texels } = this.textures;
-    program.textures({ colours: lines.byPoint ? null : lines.colours, table: lines.table, opacities: lines.opacities ?? texels });
+    program.textures({
+      colour_list: lines.byPoint ? null : lines.colours,
+      colour_table: lines.table,
+      opacities: lines.opacities ?? texels,
+    });
     program.ints({
-      mode: MODES[colours.mode],
-      logarithm: colours.log ? 1 : 0,
+      colour_entries: lines.tableSize,
       by_streamline: lines.opacities ? 1 : 0,
       by_point: through?.by_point ? 1 : 0,
     });
-    program.set({ one_colour: colours.colour ?? [1, 1, 1], table_range: lines.tableRange });
+    program.set({ colour_solid: colours.colour ?? [1, 1, 1], colour_range: lines.tableRange, colour_reference: 0 });
   }
 
   /** Tell a program how the nearest lines look that some textures hold. */
@@ -679,9 +686,9 @@ export class Renderer {
     gl.bindVertexArray(null);
     this.findTiles(through);
     gl.bindFramebuffer(gl.FRAMEBUFFER, b.drawn);
-    const resolve = this.program("page/tiles.vert", "page/resolve.frag").use();
     for (const lines of this.lines) {
       if (!lines.layer.visible || frame.through.has(lines)) continue;
+      const resolve = this.program("page/tiles.vert", "page/resolve.frag", lines.colouring).use();
       this.light(resolve, lines, drawn, t.texels, t.depths);
       this.drawTiles(resolve);
     }
@@ -762,17 +769,15 @@ export class Renderer {
       gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
     }
     for (const lines of frame.through) {
-      const program = this.program("page/tiles.vert", "page/through.frag").use(), { texels, depths } = translucent!.of(lines)!;
+      const program = this.program("page/tiles.vert", "page/through.frag", lines.colouring).use(), { texels, depths } = translucent!.of(lines)!;
       this.light(program, lines, drawn, texels, depths);
       translucent!.show(program, lines, frame.share);
       this.drawTiles(program);
     }
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.LEQUAL);
-    if (some.length) {
-      const program = this.program("page/surface.vert", "page/surface.frag");
-      some.sort((a, b) => b.depth(drawn.view) - a.depth(drawn.view)).forEach((surface) => surface.draw(program, drawn));
-    }
+    some.sort((a, b) => b.depth(drawn.view) - a.depth(drawn.view));
+    for (const surface of some) surface.draw(this.surfaceProgram(surface), drawn);
     if (images.length) {
       const flat = this.program("page/image.vert", "page/image.frag");
       images.forEach((image) => image.draw(flat, drawn));

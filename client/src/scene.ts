@@ -11,11 +11,11 @@ export interface Light {
 }
 
 export interface Colours {
-  mode: "direction" | "solid" | "streamline" | "value" | "point";
+  mode: string; // a file of shaders/colour (pvfiblets/colour_modes.py)
   colour?: Vec; // of "solid"
-  data?: number; // of "streamline" and "point": RGBA for each
-  values?: string; // of "value": a stored array of points, or with `codes` the name of one
-  codes?: { data: number; table: number; bits: 8 | 16; lo: number; hi: number; reference: number }; // of "value": codes of values that are not stored with the set
+  data?: number; // of "streamline_rgba" and "point_packed": RGBA for each
+  values?: string; // of "point_scalar": a stored array of points, or with `codes` the name of one
+  codes?: { data: number; table: number; bits: 8 | 16; lo: number; hi: number; reference: number }; // of "point_scalar": codes of values that are not stored with the set
   table?: string; // base64, RGBA: entries, then below, above, NaN
   clim?: [number, number];
   log?: boolean;

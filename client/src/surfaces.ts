@@ -31,7 +31,8 @@ export class Surface {
   private buffers: WebGLBuffer[] = [];
   private count: number;
   private table: WebGLTexture | null = null;
-  private tableRange = [0, 1, 1, 1];
+  private tableSize = 1;
+  private tableRange = [0, 1, 1];
   readonly model: Mat;
 
   constructor(private gl: GL, readonly layer: SurfaceLayer, data: Uint8Array[]) {
@@ -51,7 +52,7 @@ export class Surface {
     if (layer.colours !== undefined) attribute(2, data[layer.colours], 4, gl.UNSIGNED_BYTE, true);
     if (layer.values !== undefined) {
       attribute(3, data[layer.values], 1, gl.FLOAT, false);
-      [this.table, this.tableRange] = lookUpTable(gl, fromBase64(layer.table!), layer.clim!, !!layer.log);
+      [this.table, this.tableSize, this.tableRange] = lookUpTable(gl, fromBase64(layer.table!), layer.clim!, !!layer.log);
     }
     if (layer.edges) attribute(4, data[layer.edges.sides], 1, gl.UNSIGNED_BYTE, false);
     const index = gl.createBuffer()!;
@@ -79,9 +80,9 @@ export class Surface {
       smooth_normals: layer.normals === undefined ? 0 : 1,
       lighting: layer.lighting ? 1 : 0,
       by_value: this.table ? 1 : 0,
-      logarithm: layer.log ? 1 : 0,
+      colour_entries: this.tableSize,
     });
-    program.textures({ table: this.table }).set({ table_range: this.tableRange });
+    program.textures({ colour_table: this.table }).set({ colour_range: this.tableRange, colour_reference: 0 });
     drawn.lights(program);
     planesOf(program, [...(layer.planes ?? []), ...drawn.planes], this.model);
     gl.bindVertexArray(this.array);

@@ -262,22 +262,7 @@ class Parameters:
 
     @classmethod
     def choose(cls, found: Survey, max_error: float | None = None) -> Parameters:
-        """Choose parameters for surveyed data.
-
-        Parameters
-        ----------
-        found : Survey
-            The data.
-        max_error : float, optional
-            Promise in mm. Default: a tenth of the median step; where steps vary or are coarse, no more than a 4000th of
-            the diagonal of the bounds as seen along any axis; where units differ, no more than a tenth of the steps
-            that are seen there. The finest that anchors hold if that is coarser.
-
-        Raises
-        ------
-        ValueError
-            If ``max_error`` is not a positive number, or finer than 32-bit anchors over these bounds can keep.
-        """
+        """Choose parameters for surveyed data; by default `_default_promise`, or what anchors hold."""
         if max_error is not None and not (math.isfinite(max_error) and max_error > 0.0):
             raise ValueError(f"max_error is {max_error}; a positive length in mm is needed")
         empty = found.n_points == 0

@@ -3,21 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
+from pvfiblets.colour_modes import MODES, ColourMode
+
 if TYPE_CHECKING:
     from pvfiblets.engine.fiblets.data.sampled_volume import VolumeSource
 
-Mode = Literal[
-    "orientation", "solid", "streamline_rgba", "streamline_scalar", "point_scalar", "point_rgba",
-    "point_packed", "pixel_count",
-]  # fmt: skip
-
-_POINT_COLOURS = ("point_rgba", "point_packed")
-_TABLE_MODES = ("streamline_scalar", "point_scalar", "pixel_count")
 _GREY = np.repeat(np.arange(256, dtype=np.uint8)[:, None], 4, axis=1) | np.array([0, 0, 0, 255], dtype=np.uint8)
 
 
@@ -41,15 +36,8 @@ class Colouring:
     Parameters
     ----------
     mode : str
-        ``'orientation'``: the absolute tangent in data coordinates as RGB.
-        ``'solid'``: `color`.
-        ``'streamline_rgba'``: `values`, one RGB or RGBA colour per streamline.
-        ``'streamline_scalar'``: `values`, one number per streamline, through `lut`.
-        ``'point_scalar'``: `source`, a number per point, through `lut`.
-        ``'point_rgba'``: `source`, an RGBA colour per point, of spline tubes and halos.
-        ``'point_packed'``: `source`, an RGB or RGBA colour per point, of fiblets.
-        ``'pixel_count'``: how many lines a pixel holds, through `lut`; of fiblets, with a
-        `pvfiblets.mappers.density.Density`.
+        One of `pvfiblets.colour_modes.MODES`. Numbers or colours of lines are in `values`, those of points are named by
+        `source`; `lut` is the table. ``'pixel_count'`` is of fiblets with a `pvfiblets.mappers.density.Density`.
     color : sequence of 3 floats, default (1, 1, 1)
         RGB between 0 and 1, for ``'solid'``.
     values : numpy.ndarray, optional
@@ -82,7 +70,7 @@ class Colouring:
         A field is missing for its mode or has a shape, type or range that cannot be drawn.
     """
 
-    mode: Mode = "orientation"
+    mode: str = "orientation"
     color: tuple[float, ...] = (1.0, 1.0, 1.0)
     values: npt.NDArray[Any] | None = None
     source: str | VolumeSource | None = None
@@ -98,23 +86,23 @@ class Colouring:
 
     def __post_init__(self) -> None:
         """Check the fields and bring them into one form."""
-        if self.mode not in get_args(Mode):
-            raise ValueError(f"mode is {self.mode!r}; expected one of {get_args(Mode)}")
+        if self.mode not in MODES:
+            raise ValueError(f"mode is {self.mode!r}; expected one of {tuple(MODES)}")
         self._set("color", _rgba(self.color, "color")[:3])
         self._set("nan_color", _rgba(self.nan_color, "nan_color"))
         for name in ("below_color", "above_color"):
             if getattr(self, name) is not None:
                 self._set(name, _rgba(getattr(self, name), name))
-        if self.mode == "streamline_rgba":
+        if self.kind.numbers == "lines" and not self.kind.table:
             self._check_rgb()
-        if self.mode == "point_scalar" and not self.source:
-            raise ValueError("mode 'point_scalar' needs source: the name of a per-point array, or a volume")
-        if self.mode in _POINT_COLOURS and not isinstance(self.source, str):
+        at_points = self.kind.numbers == "points"
+        if at_points and self.kind.table and not self.source:
+            raise ValueError(f"mode {self.mode!r} needs source: the name of a per-point array, or a volume")
+        if at_points and not self.kind.table and not isinstance(self.source, str):
             raise ValueError(f"mode {self.mode!r} needs source: the name of the points' colours, not {self.source!r}")
-        if self.mode in _TABLE_MODES:
+        if self.kind.table:
             self._check_table()
-        at_points = self.mode in ("point_scalar", "point_packed")
-        if self.opacity_source is not None and at_points and self.source != self.opacity_source:
+        if self.opacity_source is not None and self.kind.reads == "position" and self.source != self.opacity_source:
             raise ValueError(
                 f"opacities of points are {self.opacity_source!r}, but {self.source!r} colours points: one number at "
                 "points goes with a picture; colour by the same, or by streamline, or give one opacity per streamline"
@@ -127,9 +115,9 @@ class Colouring:
         values = None if self.values is None else np.asarray(self.values)
         if values is None or values.ndim != 2 or values.shape[1] not in (3, 4):
             found = "nothing" if values is None else f"shape {values.shape}"
-            raise ValueError(f"streamline_rgba: values has {found}; expected (n_streamlines, 3 or 4)")
+            raise ValueError(f"{self.mode}: values has {found}; expected (n_streamlines, 3 or 4)")
         if values.dtype != np.uint8:
-            raise ValueError(f"streamline_rgba: values has dtype {values.dtype}; expected uint8")
+            raise ValueError(f"{self.mode}: values has dtype {values.dtype}; expected uint8")
         self._set("values", values)
 
     def _check_table(self) -> None:
@@ -137,11 +125,11 @@ class Colouring:
         if lut.ndim != 2 or lut.shape[1] != 4 or len(lut) < 1 or lut.dtype != np.uint8:
             raise ValueError(f"lut has shape {lut.shape} and dtype {lut.dtype}; expected (k, 4) uint8 with k >= 1")
         self._set("lut", lut)
-        if self.mode == "streamline_scalar":
+        if self.kind.numbers == "lines":
             values = None if self.values is None else np.asarray(self.values)
             if values is None or values.ndim != 1 or values.dtype.kind not in "biuf":
                 found = "nothing" if values is None else f"{values.dtype} of shape {values.shape}"
-                raise ValueError(f"streamline_scalar: values is {found}; expected (n_streamlines,)")
+                raise ValueError(f"{self.mode}: values is {found}; expected (n_streamlines,)")
             self._set("values", values)
             if self.clim is None:
                 self._set("clim", _finite_range(values, positive=self.log_scale))
@@ -155,30 +143,37 @@ class Colouring:
         self._set("clim", (low, high))
 
     @property
+    def kind(self) -> ColourMode:
+        """What the mode is."""
+        return MODES[self.mode]
+
+    @property
+    def maps_on_gpu(self) -> bool:
+        """Whether shaders look numbers up in the table; those of lines are colours by then."""
+        return self.kind.table and self.kind.numbers != "lines"
+
+    @property
+    def reads_value(self) -> bool:
+        """Whether shaders read a number or a packed colour at points."""
+        return self.kind.reads == "position" or self.opacity_source is not None
+
+    @property
     def features(self) -> frozenset[str]:
         """Pieces of the resolve shader that it takes."""
-        names = {
-            "orientation": ["colour_orientation"],
-            "solid": ["colour_solid"],
-            "streamline_rgba": ["colour_streamline"],
-            "streamline_scalar": ["colour_streamline"],
-            "point_scalar": ["colour_point_scalar"],
-            "point_rgba": ["colour_point_rgba"],
-            "point_packed": ["colour_point_packed"],
-            "pixel_count": ["colour_point_scalar", "density_value"],
-        }[self.mode]
-        if self.mode in ("point_scalar", "pixel_count") and self.log_scale:
-            names = [*names, "scale_logarithm"]
-        if self.opacities is not None:
-            names = [*names, "opacity_streamline"]
-        if self.opacity_source is not None:
-            names = [*names, "opacity_value" if self.mode == "point_scalar" else "opacity_point"]
-        return frozenset(names)
+        wanted = {
+            f"colour_{self.kind.shader}": True,
+            "density_value": self.kind.numbers == "pixels",
+            "table_logarithm": self.maps_on_gpu and self.log_scale,
+            "point_value": self.reads_value,
+            "opacity_streamline": self.opacities is not None,
+            "opacity_value": self.opacity_source is not None,
+        }
+        return frozenset(name for name, on in wanted.items() if on)
 
     @property
     def point_source(self) -> str | VolumeSource | None:
         """Per-point value or colour that the engine must put into the G-buffer, if any."""
-        return self.source if self.mode in ("point_scalar", *_POINT_COLOURS) else self.opacity_source
+        return self.source if self.kind.numbers == "points" else self.opacity_source
 
     def table(self) -> npt.NDArray[np.uint8]:
         """Return the look-up table with its three special colours.
@@ -246,9 +241,9 @@ class Colouring:
 
     def streamline_colours(self) -> npt.NDArray[np.uint8] | None:
         """Return (n_streamlines, 4) uint8 RGBA, or None where the colour is not per streamline."""
-        if self.values is None or self.mode not in ("streamline_rgba", "streamline_scalar"):
+        if self.values is None or self.kind.numbers != "lines":
             return None
-        if self.mode == "streamline_scalar":
+        if self.kind.table:
             return self.map_values(self.values)
         if self.values.shape[1] == 4:
             return np.ascontiguousarray(self.values)
@@ -275,7 +270,7 @@ class Colouring:
                 f"there are {len(self.opacities)} opacities for {n_streamlines} streamlines; give one per streamline, "
                 "empty ones included"
             )
-        if "colour_streamline" not in self.features or self.values is None:
+        if self.kind.numbers != "lines" or self.values is None:
             return
         if len(self.values) != n_streamlines:
             raise ValueError(
@@ -287,11 +282,11 @@ class Colouring:
         """Whether some colour has an alpha below 1, so that VTK must use its translucent pass."""
         if self.opacities is not None or self.opacity_source is not None:
             return True
-        if self.mode == "streamline_rgba" and self.values is not None:
+        if self.kind.table:
+            return bool((self.table()[:, 3] < 255).any())
+        if self.kind.numbers == "lines" and self.values is not None:
             return self.values.shape[1] == 4 and bool((self.values[:, 3] < 255).any())
-        if self.mode in _POINT_COLOURS:
-            return self.has_alpha
-        return self.mode in _TABLE_MODES and bool((self.table()[:, 3] < 255).any())
+        return self.kind.numbers == "points" and self.has_alpha
 
 
 def _bytes(colour: tuple[float, ...]) -> npt.NDArray[np.uint8]:

@@ -102,4 +102,4 @@ class Density(ShaderEffect):
             program.SetUniformf("fibletMost", max(most, 1.0))
             program.SetUniformi("fibletHue", int(draw.colouring.mode == "orientation"))
         if draw.colouring.mode == "pixel_count" and self.most is None:
-            program.SetUniform3f("fibletTableRange", draw.colouring.scaled_range((draw.colouring.clim[0], most)))
+            program.SetUniform3f("colour_range", draw.colouring.scaled_range((draw.colouring.clim[0], most)))

@@ -16,9 +16,7 @@ from pvfiblets.mappers.blank_arrays import BlankArrays
 from pvfiblets.mappers.shader_effects import ShaderEffect
 
 _BESIDE = {
-    "colour_point_scalar": "layers_value",
-    "colour_point_packed": "layers_value",
-    "opacity_point": "layers_opacity",
+    "point_value": "layers_value",
     "tube_normal": "layers_normal",
     "tube_shading": "layers_across",
 }

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from functools import partial
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from pvfiblets.codec.point_arrays import colour_columns, packed_colours
+from pvfiblets.colour_modes import MODES
 from pvfiblets.mappers.line_data import COLOURS, RADIUS, STEPS, LineData, segment_ids
 
 if TYPE_CHECKING:
@@ -76,31 +80,19 @@ def fiblet_lines(
     decoded = fiblets.decompress(ids)
     lines = LineData(decoded.points, decoded.offsets, np.asarray(ids, np.int64))
     lines = lines.with_columns(**{name: rows for name, rows in decoded.per_point.items() if rows.ndim == 1})
-    if colouring is not None and colouring.mode != "solid":
-        lines = lines.with_columns(**{COLOURS: _fiblet_colours(lines, decoded, colouring)})
-    elif colouring is not None and colouring.translucent():
-        flat = np.tile(np.round(255.0 * np.array([*colouring.color, 1.0])), (len(lines.points), 1))
-        lines = lines.with_columns(**{COLOURS: _faded(flat, lines, colouring, decoded.per_point)})
+    lines = _coloured(lines, colouring, partial(_fiblet_values, lines, decoded), decoded.per_point)
     if filtering is not None and filtering.points is not None:
         lines = lines.kept(_point_flags(fiblets, filtering.points, ids))
     return lines
 
 
-def _fiblet_colours(lines: LineData, decoded: Streamlines, colouring: Colouring) -> npt.NDArray[np.uint8]:
-    if colouring.mode == "point_scalar":
-        source: Any = colouring.source
-        if not isinstance(source, str):
-            colours = colouring.map_values(source.at(lines.points))
-        elif source in decoded.per_point:
-            colours = colouring.map_values(decoded.per_point[source])
-        else:
-            colours = colouring.map_values(_measured(source, lines))
-    elif colouring.mode == "point_packed":
-        columns = colour_columns(decoded.per_point, str(colouring.source))
-        colours = packed_colours([decoded.per_point[name] for name in columns])
-    else:
-        colours = _by_line(lines, colouring)
-    return _faded(colours, lines, colouring, decoded.per_point)
+def _fiblet_values(lines: LineData, decoded: Streamlines, source: Any, *, colours: bool) -> npt.NDArray[Any]:
+    """Return numbers at points, or bytes of colours."""
+    if colours:
+        return packed_colours([decoded.per_point[name] for name in colour_columns(decoded.per_point, source)])
+    if not isinstance(source, str):
+        return np.asarray(source.at(lines.points))
+    return np.asarray(decoded.per_point[source]) if source in decoded.per_point else _measured(source, lines)
 
 
 def _measured(name: str, lines: LineData) -> npt.NDArray[Any]:
@@ -152,15 +144,12 @@ def tube_lines(tubes: Any, colouring: Colouring | None, budget: int) -> LineData
     offsets = np.concatenate([np.zeros(1, np.int64), np.cumsum(counts)])
     flat = spheres[keep]
     lines = LineData(flat[:, :3], offsets, owners[runs], {RADIUS: np.ascontiguousarray(flat[:, 3])})
-    if colouring is None or (colouring.mode == "solid" and not colouring.translucent()):
-        return lines
-    if colouring.mode == "point_scalar":
-        colours = colouring.map_values(_tube_values(tubes, str(colouring.source), segments)[keep])
-    elif colouring.mode == "point_rgba":
-        colours = _bytes(_tube_values(tubes, str(colouring.source), segments)[keep])
-    else:
-        colours = _by_line(lines, colouring)
-    return lines.with_columns(**{COLOURS: _faded(colours, lines, colouring, {})})
+
+    def values(source: Any, *, colours: bool) -> npt.NDArray[Any]:
+        found = _tube_values(tubes, source, segments)[keep]
+        return _bytes(found) if colours else found
+
+    return _coloured(lines, colouring, values)
 
 
 def _tube_values(tubes: Any, name: str, segments: npt.NDArray[np.int64]) -> npt.NDArray[np.float64]:
@@ -187,14 +176,12 @@ def halo_lines(drawn: Any, look: Any, colouring: Colouring | None, ids: npt.NDAr
     begins = np.cumsum(counts) - counts
     rows = np.arange(int(counts.sum())) + np.repeat(offsets[:-1][ids] - begins, counts)
     lines = LineData(points[rows], np.concatenate([begins, [len(rows)]]).astype(np.int64), np.asarray(ids, np.int64))
-    if colouring is not None and (colouring.mode != "solid" or colouring.translucent()):
-        if colouring.mode == "point_scalar":
-            colours = colouring.map_values(np.asarray(drawn.values[str(colouring.source)])[rows])
-        elif colouring.mode == "point_rgba":
-            colours = _bytes(np.asarray(drawn.values[str(colouring.source)], np.float64)[rows])
-        else:
-            colours = _by_line(lines, colouring)
-        lines = lines.with_columns(**{COLOURS: colours})
+
+    def values(source: Any, *, colours: bool) -> npt.NDArray[Any]:
+        found = np.asarray(drawn.values[source])[rows]
+        return _bytes(found.astype(np.float64)) if colours else found
+
+    lines = _coloured(lines, colouring, values)
     if look.filter_by is not None:
         values = np.asarray(drawn.values[look.filter_by])[rows]
         lines = lines.kept((values >= look.low) & (values <= look.high))
@@ -204,16 +191,25 @@ def halo_lines(drawn: Any, look: Any, colouring: Colouring | None, ids: npt.NDAr
 # Colours ---------------------------------------------------------------------------------------------
 
 
-def _by_line(lines: LineData, colouring: Colouring) -> npt.NDArray[np.uint8]:
-    """Colours of lines, or of their direction: that is also what stands for the number of lines in a pixel."""
-    of_lines = colouring.streamline_colours()
+def _coloured(
+    lines: LineData, colouring: Colouring | None, values: Any, per_point: Mapping[str, Any] = MappingProxyType({})
+) -> LineData:
+    """Return lines with the colours of their points; without where one opaque colour is that of all."""
+    if colouring is None or (colouring.mode == "solid" and not colouring.translucent()):
+        return lines
+    kind, of_lines = colouring.kind, colouring.streamline_colours()
     if of_lines is not None:
-        return of_lines[np.repeat(lines.ids, np.diff(lines.offsets))]
-    if colouring.mode == "solid":
-        return np.tile(np.round(255.0 * np.array([*colouring.color, 1.0])), (len(lines.points), 1)).astype(np.uint8)
-    colours = np.full((len(lines.points), 4), 255, np.uint8)
-    colours[:, :3] = np.round(255.0 * np.abs(lines.tangents()))
-    return colours
+        colours = of_lines[np.repeat(lines.ids, np.diff(lines.offsets))]
+    elif kind.numbers == "points":
+        found = values(colouring.source, colours=not kind.table)
+        colours = colouring.map_values(found) if kind.table else found
+    else:
+        # Directions stand for the number of lines in a pixel, too.
+        seen = kind.of_directions or MODES["orientation"].of_directions
+        own = colouring.color if colouring.mode == "solid" or seen is None else seen(lines.tangents())
+        colours = np.full((len(lines.points), 4), 255, np.uint8)
+        colours[:, :3] = np.round(255.0 * np.asarray(own))
+    return lines.with_columns(**{COLOURS: _faded(colours, lines, colouring, per_point)})
 
 
 def _faded(colours: npt.NDArray[Any], lines: LineData, colouring: Colouring, per_point: Any) -> npt.NDArray[np.uint8]:

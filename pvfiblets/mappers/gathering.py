@@ -16,6 +16,7 @@ from pvfiblets.mappers.blank_arrays import BlankArrays
 from pvfiblets.mappers.scene import others_opaque
 from pvfiblets.mappers.scene_depth import OutsideDepth
 from pvfiblets.mappers.scene_state import scene_state
+from pvfiblets.mappers.uniforms import colour_uniforms
 
 if TYPE_CHECKING:
     from pvfiblets.mappers.shader_effects import Draw
@@ -33,25 +34,17 @@ def paint_of(draw: Draw, *, lit: bool, opacity: float | None = None) -> Paint:
     if lit:
         to_light = np.linalg.inv(draw.frame.directions_to_view) @ _SHOULDER
         light = tuple(float(x) for x in to_light / (np.linalg.norm(to_light) or 1.0))
-    common: dict[str, Any] = {"light": light, "opacity": opacity, "version": colouring}
-    if opacity is not None:
-        common["opacities"] = textures.get("fibletOpacities")
-        common["value_opacity"] = colouring.opacity_source is not None
-    if colouring.mode == "orientation":
-        return Paint("direction", **common)
-    if colouring.mode == "solid":
-        return Paint("solid", color=tuple(colouring.color), **common)
-    if "fibletStreamlineColours" in textures:
-        return Paint("streamline", colours=textures["fibletStreamlineColours"], **common)
-    if colouring.mode == "point_packed":
-        return Paint("point", **common)
+    varied = opacity is not None
     return Paint(
-        "table",
-        colours=textures["fibletTable"],
-        entries=len(colouring.lut),
-        range=colouring.scaled_range(),
-        logarithm=colouring.log_scale,
-        **common,
+        colouring.mode,
+        textures={name: textures[name] for name in ("colour_list", "colour_table") if name in textures},
+        uniforms=colour_uniforms(colouring, draw.fiblets),
+        logarithm="table_logarithm" in colouring.features,
+        light=light,
+        opacity=opacity,
+        opacities=textures.get("fibletOpacities") if varied else None,
+        value_opacity=varied and colouring.opacity_source is not None,
+        version=colouring,
     )
 
 

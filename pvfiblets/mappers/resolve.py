@@ -5,9 +5,10 @@ The pieces live in ``shaders/resolve``, one file per feature. A file is prose fo
     //@ stage where TAG
 
 with ``stage`` ``vertex`` or ``fragment``, ``where`` ``before``, ``after`` or ``instead`` and ``TAG`` one
-of VTK's own tags (``//VTK::Color::Impl``) or a tag of another piece (``//pvfiblets::Scale::Impl``). With
+of VTK's own tags (``//VTK::Color::Impl``) or a tag of another piece (``//pvfiblets::Value::Impl``). With
 ``replace`` for ``where``, the rest of the line is GLSL that VTK itself has written for its tags, and the
-section takes its place wherever it stands.
+section takes its place wherever it stands. All ``colour_MODE`` are ``colour.glsl`` with that mode's file of
+``shaders/colour``; includes are pasted, and what ``table_logarithm`` switches is decided.
 `assemble` turns a set of features into replacements for a ``vtkShaderProperty``; a feature that is not
 asked for leaves no text behind.
 """
@@ -22,8 +23,9 @@ from typing import Any
 
 from vtkmodules.vtkCommonCore import reference
 
+from pvfiblets.colour_modes import SHADERS
 from pvfiblets.engine.errors import EngineError
-from pvfiblets.engine.gl.shaders import read_shader
+from pvfiblets.engine.gl.shaders import preprocess, read_shader
 
 FEATURES = (
     "gbuffer",
@@ -36,21 +38,15 @@ FEATURES = (
     "tube_normal",
     "layers_across",
     "layers_normal",
-    "colour_orientation",
-    "colour_solid",
-    "colour_streamline",
-    "colour_point_rgba",
-    "colour_point_packed",
-    "colour_point_scalar",
+    *(f"colour_{shader}" for shader in SHADERS),
+    "table_logarithm",
+    "point_value",
     "layers_value",
     "density_value",
     "opacity_streamline",
-    "opacity_point",
     "opacity_value",
-    "layers_opacity",
     "density",
     "slices_colour",
-    "scale_logarithm",
     "highlight",
     "illuminated",
     "line_light",
@@ -125,11 +121,15 @@ class _Edits:
 
 
 @cache
-def _sections(feature: str) -> tuple[tuple[str, str, str, str], ...]:
+def _sections(feature: str, logarithm: bool = False) -> tuple[tuple[str, str, str, str], ...]:
     """Return (stage, where, tag, text) of every section of a feature's file."""
-    path = f"resolve/{feature}.glsl"
+    if feature == "table_logarithm":
+        return ()
+    mode = feature.removeprefix("colour_")
+    path = f"resolve/{'colour' if mode in SHADERS else feature}.glsl"
+    switches = ("TABLE_LOGARITHM",) if logarithm else ()
     sections: list[tuple[str, str, str, list[str]]] = []
-    for number, line in enumerate(read_shader(path).splitlines(), start=1):
+    for number, line in enumerate(read_shader(path).replace("MODE", mode).splitlines(), start=1):
         if line.startswith("//@"):
             match = _SECTION.match(line.rstrip())
             if not match or match["stage"] not in _STAGES or match["where"] not in (*_PLACES, _REPLACE):
@@ -140,7 +140,9 @@ def _sections(feature: str) -> tuple[tuple[str, str, str, str], ...]:
             sections.append((match["stage"], match["where"], match["tag"], []))
         elif sections:
             sections[-1][3].append(line)
-    return tuple((stage, where, tag, "\n".join(lines).strip("\n")) for stage, where, tag, lines in sections)
+    return tuple(
+        (stage, where, tag, preprocess("\n".join(lines), switches).strip("\n")) for stage, where, tag, lines in sections
+    )
 
 
 def _has_piece(feature: str) -> bool:
@@ -162,7 +164,7 @@ def assemble(features: frozenset[str]) -> tuple[Replacement, ...]:
     for feature in (*FEATURES, *more):
         if feature not in features:
             continue
-        for stage, where, tag, text in _sections(feature):
+        for stage, where, tag, text in _sections(feature, "table_logarithm" in features):
             if where == _REPLACE:
                 result.append(Replacement(stage, tag, False, text))
                 continue

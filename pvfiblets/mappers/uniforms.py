@@ -9,27 +9,23 @@ if TYPE_CHECKING:
     from pvfiblets.mappers.scene import Frame
     from pvfiblets.mappers.windows import Slot
 
-__all__ = ["resolve_textures", "set_uniforms"]
+__all__ = ["colour_uniforms", "resolve_textures", "set_uniforms"]
 
 
 def resolve_textures(ctx: Any, slot: Slot, buffer: Any, colouring: Colouring) -> dict[str, Any]:
     """Return the textures of the G-buffer and of the colours by the names of their samplers."""
     textures = {"fibletDepthMap": buffer.depth, "fibletIdMap": buffer.ids}
-    features = colouring.features
     lists: dict[str, Any] = {}
-    if "colour_streamline" in features:
-        lists["fibletStreamlineColours"] = colouring.streamline_colours
-    elif "colour_point_scalar" in features:
+    if colouring.kind.numbers == "lines":
+        lists["colour_list"] = colouring.streamline_colours
+    if colouring.maps_on_gpu:
+        lists["colour_table"] = colouring.table
+    if colouring.reads_value:
         textures["fibletPositionMap"] = buffer.position
-        lists["fibletTable"] = colouring.table
-    elif "colour_point_packed" in features:
-        textures["fibletPositionMap"] = buffer.position
-    elif "colour_point_rgba" in features:
+    if colouring.kind.reads == "colours":
         textures["fibletColourMap"] = buffer.colours
-    if "opacity_streamline" in features:
+    if colouring.opacities is not None:
         lists["fibletOpacities"] = colouring.streamline_opacities
-    if "opacity_point" in features:
-        textures["fibletPositionMap"] = buffer.position
     for unused in set(slot.textures) - set(lists):
         slot.textures.pop(unused).release()
     for name, pixels in lists.items():
@@ -49,13 +45,22 @@ def set_uniforms(program: Any, frame: Frame, style: Any, fiblets: Any, colouring
     # VTK takes matrices column by column here.
     program.SetUniformMatrix4x4("fibletPixelToView", frame.pixel_to_view.T.ravel().tolist())
     program.SetUniformMatrix3x3("fibletDataToView", frame.directions_to_view.T.ravel().tolist())
-    if colouring.mode == "solid":
-        program.SetUniform3f("fibletColour", colouring.color)
-    if "colour_point_scalar" in colouring.features and colouring.lut is not None:
-        program.SetUniformi("fibletTableSize", len(colouring.lut))
-        reference = getattr(colouring.source, "reference", None)  # of an image
-        if reference is None:
-            reference = fiblets.value_reference(colouring.source)
-        program.SetUniform3f("fibletTableRange", colouring.scaled_range(reference=reference))
-        if colouring.log_scale:
-            program.SetUniformf("fibletTableReference", reference)
+    for name, value in colour_uniforms(colouring, fiblets).items():
+        if isinstance(value, tuple):
+            program.SetUniform3f(name, value)
+        elif isinstance(value, int):
+            program.SetUniformi(name, value)
+        else:
+            program.SetUniformf(name, value)
+
+
+def colour_uniforms(colouring: Colouring, fiblets: Any) -> dict[str, int | float | tuple[float, ...]]:
+    """Return the uniforms of ``shaders/colour`` by their names."""
+    if not colouring.maps_on_gpu or colouring.lut is None:
+        return {} if colouring.kind.numbers else {"colour_solid": tuple(colouring.color)}
+    reference = getattr(colouring.source, "reference", None)  # of an image
+    if reference is None:
+        reference = fiblets.value_reference(colouring.source)
+    found: dict[str, int | float | tuple[float, ...]] = {"colour_entries": len(colouring.lut)}
+    found["colour_range"] = colouring.scaled_range(reference=reference)
+    return {**found, "colour_reference": float(reference)} if colouring.log_scale else found

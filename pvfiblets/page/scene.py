@@ -161,7 +161,7 @@ def fiblet_layer(
         "name": name,
         "visible": True,
         "data": scene.add_blob(scene.once(("bytes", fiblets, keep), lambda: fiblet_bytes(fiblets, keep))),
-        "colours": colours or {"mode": "direction"},
+        "colours": colours or {"mode": "orientation"},
         "line_width": float(line_width),
         "light": light,
         "reflects": reflects,

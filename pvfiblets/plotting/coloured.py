@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from pvfiblets.mappers.colouring import Colouring
     from pvfiblets.mappers.engine_mapper import EngineMapper
-    from pvfiblets.plotting.fiblets.scalars import Scalars
+    from pvfiblets.plotting.scalars import Scalars
 
 
 class ColouredActor(Settings, pv.Actor):

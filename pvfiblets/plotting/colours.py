@@ -18,7 +18,7 @@ from pvfiblets.mappers.colouring import Colouring
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
-    from pvfiblets.plotting.fiblets.scalars import Scalars
+    from pvfiblets.plotting.scalars import Scalars
 
 MOST_COLOURS = 65536
 """Entries of a look-up table."""

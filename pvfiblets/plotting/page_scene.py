@@ -211,8 +211,7 @@ def _groups(scene: PageScene, fiblets: FibletSet, shown: npt.NDArray[np.bool_] |
 
 def _names(categories: Mapping[int, str], colouring: Colouring) -> list[dict[str, Any]]:
     """Return categories with their colours, as they are drawn."""
-    table = colouring.table()
-    colours = table[_entries(np.array(list(categories), float), colouring, len(table) - 3)][:, :3]
+    colours = colouring.map_values(list(categories))[:, :3]
     return [
         {"name": str(name), "colour": colour}
         for name, colour in zip(categories.values(), colours.tolist(), strict=True)
@@ -222,7 +221,7 @@ def _names(categories: Mapping[int, str], colouring: Colouring) -> list[dict[str
 def _controls(scene: PageScene, fiblets: Any, actor: Any, colouring: Colouring) -> list[dict[str, Any]]:
     """Return numbers of streamlines that a page can choose by: those that colour, and lengths where they come soon."""
     found: dict[str, Any] = {}
-    if colouring.mode == "streamline_scalar":
+    if colouring.kind.numbers == "lines" and colouring.kind.table:
         scalars = getattr(actor, "active_scalars", None)
         found[scalars.title if scalars is not None else "value"] = np.asarray(colouring.values, float)
     if fiblets.n_points <= _SOON and "length [mm]" not in found:
@@ -247,29 +246,27 @@ def _label(name: str, usual: str) -> str:
 
 def _colours(scene: PageScene, fiblets: Any, colouring: Colouring) -> tuple[Any, dict[str, Any], tuple[str, ...]]:
     """Return the set with what colours it, ``Colours`` of the page, and the arrays of points that it needs."""
-    mode = colouring.mode
-    if mode != "point_scalar" and colouring.opacity_source is not None:
-        _, said, _ = _colours(scene, fiblets, replace(colouring, opacity_source=None))
+    if not (colouring.kind.table and colouring.kind.numbers == "points") and colouring.opacity_source is not None:
+        _, colours, _ = _colours(scene, fiblets, replace(colouring, opacity_source=None))
         fiblets, values, keep = _values(scene, fiblets, colouring.opacity_source, False)
-        return fiblets, said | values, keep
-    if mode == "orientation":
-        return fiblets, {"mode": "direction"}, ()
-    if mode == "streamline_rgba":
-        return fiblets, {"mode": "streamline", "data": scene.add_blob(_rgba(np.asarray(colouring.values)))}, ()
-    if mode == "streamline_scalar":
-        table = colouring.table()
-        entries = table[_entries(np.asarray(colouring.values, float), colouring, len(table) - 3)]
-        return fiblets, {"mode": "streamline", "data": scene.add_blob(entries)}, ()
-    if mode == "point_scalar":
-        fiblets, said, keep = _values(scene, fiblets, colouring.source, colouring.log_scale)
-        said |= {"mode": "value", "table": encoded(colouring.table()), "clim": colouring.clim}
-        return fiblets, said | {"log": colouring.log_scale}, keep
-    if mode == "point_packed":
-        from pvfiblets.plotting.page_values import colours
+        return fiblets, colours | values, keep
+    kind = colouring.kind
+    said: dict[str, Any] = {"mode": kind.shader}
+    of_lines = colouring.streamline_colours()
+    if of_lines is not None:
+        return fiblets, {**said, "data": scene.add_blob(of_lines)}, ()
+    if kind.numbers == "points" and kind.table:
+        fiblets, values, keep = _values(scene, fiblets, colouring.source, colouring.log_scale)
+        table = {"table": encoded(colouring.table()), "clim": colouring.clim, "log": colouring.log_scale}
+        return fiblets, said | values | table, keep
+    if kind.numbers == "points":
+        from pvfiblets.plotting.page_values import colours as of_points
 
         source = str(colouring.source)
-        packed = scene.once(("colours", fiblets, source), lambda: colours(fiblets, source).tobytes())
-        return fiblets, {"mode": "point", "data": scene.add_blob(packed)}, ()
+        packed = scene.once(("colours", fiblets, source), lambda: of_points(fiblets, source).tobytes())
+        return fiblets, {**said, "data": scene.add_blob(packed)}, ()
+    if kind.of_directions is not None:
+        return fiblets, said, ()
     return fiblets, {"mode": "solid", "colour": colouring.color}, ()
 
 
@@ -292,25 +289,6 @@ def _values(
         **{key: getattr(values, key) for key in ("lo", "hi", "reference")},
     }
     return bare, said, ()
-
-
-def _rgba(values: npt.NDArray[Any]) -> npt.NDArray[np.uint8]:
-    full = np.full((len(values), 4), 255, np.uint8)
-    full[:, : values.shape[1]] = values
-    return full
-
-
-def _entries(values: npt.NDArray[np.float64], colouring: Colouring, n: int) -> npt.NDArray[np.int64]:
-    """Return rows of the table for values, by vtkLookupTable's rules (shaders/resolve/colour_point_scalar.glsl)."""
-    low, high, per_unit = colouring.scaled_range()
-    missing = np.isnan(values)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        scaled = np.where(values > 0.0, np.log10(values), -3e38) if colouring.log_scale else values
-        entries = np.clip(np.nan_to_num((scaled - low) * per_unit, nan=0.0), 0, n - 1).astype(np.int64)
-    entries[scaled < low] = n
-    entries[scaled > high] = n + 1
-    entries[missing] = n + 2
-    return entries
 
 
 def _background(renderer: Any) -> tuple[tuple[float, float, float], tuple[float, float, float]]:

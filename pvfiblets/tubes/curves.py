@@ -79,26 +79,7 @@ def derivative(controls: npt.ArrayLike, t: npt.ArrayLike) -> Array:
 
 
 def cubic(tubes: SplineTubes, segments: npt.ArrayLike, t: npt.ArrayLike) -> Array:
-    """Points of the Hermite cubics themselves, which the halves approximate.
-
-    Parameters
-    ----------
-    tubes : SplineTubes
-    segments : array_like of int
-        Indices of segments.
-    t : array_like
-        Parameters of the whole segment, 0 to 1; they broadcast with `segments`.
-
-    Returns
-    -------
-    numpy.ndarray
-        ``(..., 4)`` float64 ``x, y, z, r`` in mm. The radius may be negative, where its slopes ask for that.
-
-    Raises
-    ------
-    IndexError
-        If there is no such segment.
-    """
+    """``(..., 4)`` x, y, z, r (mm) of the Hermite cubics themselves, which the halves approximate; r may be below 0."""
     start, stop, slope, end_slope = _ends(tubes, segments)
     t = np.asarray(t, np.float64)[..., None]
     rest = 1.0 - t
@@ -241,19 +222,8 @@ def deviations(
 
 
 def deviation(tubes: SplineTubes, middle: float = MIDDLE, samples: int = 64) -> float:
-    """How far the surface shown may lie from the cubic tube's, in mm, at most.
-
-    Parameters
-    ----------
-    tubes, middle, samples
-        As for :func:`deviations`.
-
-    Returns
-    -------
-    float
-        The largest sum of a segment's two :func:`deviations`: two spheres are no further apart than their centres are
-        plus what their radii differ by. 0 without segments.
-    """
+    """How far the surface shown may lie from the cubic tube's, in mm, at most."""
+    # Two spheres are no further apart than their centres are plus what their radii differ by.
     return float(deviations(tubes, None, middle, samples).sum(axis=1).max(initial=0.0))
 
 

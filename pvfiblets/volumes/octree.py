@@ -108,26 +108,8 @@ class Octree:
 
 
 def build_octree(volume: RaycastVolume, margin: int = 1) -> Octree:
-    """Build a volume's octree.
-
-    Parameters
-    ----------
-    volume : RaycastVolume
-    margin : {1, 2}, default: 1
-        Voxels on each side of a cell that the reconstruction reads: 1 for nearest and trilinear, 2 for tricubic.
-
-    Returns
-    -------
-    Octree
-        With margin 1 the bounds are the least and the greatest voxel of each node's cells, in the volume's type. With
-        margin 2 they are widened by how far the cubic overshoots, which may be beyond that type's range: 8-bit volumes
-        have int16, 16-bit ones int32, and float32 ones float32, rounded outwards.
-
-    Raises
-    ------
-    ValueError
-        If the margin is another.
-    """
+    """Build a volume's octree for a reconstruction that reads `margin` voxels on each side of a cell."""
+    # A margin of 2 is the tricubic one: bounds are widened by how far cubics overshoot, beyond the volume's type.
     if margin not in (1, 2):
         raise ValueError(f"margin={margin!r}; expected 1 (nearest, trilinear) or 2 (tricubic)")
     # Slices across the axis along which neighbours lie farthest apart in memory are read as they lie.

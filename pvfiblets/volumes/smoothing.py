@@ -21,26 +21,7 @@ Floats = npt.NDArray[np.float32]
 
 
 def smoothed(volume: RaycastVolume, sigma: Any, unit: Literal["voxels", "mm"] = "voxels") -> RaycastVolume:
-    """Return a volume smoothed by a Gaussian.
-
-    Parameters
-    ----------
-    volume : RaycastVolume
-    sigma : float or array_like
-        Standard deviation, one or along each axis of the grid; 0 leaves an axis as it is.
-    unit : {'voxels', 'mm'}, default: 'voxels'
-        Of ``sigma``. In mm it is divided by the spacing along each axis of the grid.
-
-    Returns
-    -------
-    RaycastVolume
-        float32, at the same place; the volume itself where every ``sigma`` is 0.
-
-    Raises
-    ------
-    ValueError
-        If ``sigma`` is negative, not finite, or neither one nor three numbers, or there is no such unit.
-    """
+    """Return a float32 volume smoothed by a Gaussian; `sigma` is one number or one along each axis of the grid."""
     if unit not in ("voxels", "mm"):
         raise ValueError(f"the unit of sigma is {unit!r}; choose 'voxels' or 'mm'")
     deviations = _checked(sigma) / (volume.spacing if unit == "mm" else 1.0)

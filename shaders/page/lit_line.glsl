@@ -7,7 +7,11 @@
 #include "frame/tangent.glsl"
 #include "fiblets/attributes/tangent.glsl"
 #include "page/lights.glsl"
-#include "page/line_colour.glsl"
+// First what several modes share: a page switches between them after includes are pasted.
+#include "colour/rows.glsl"
+#include "page/missing.glsl"
+#include "page/rows.glsl"
+#include "colour/line_colour.glsl"
 
 uniform highp usampler2D texels;
 uniform highp sampler2D depths;
@@ -41,7 +45,7 @@ vec3 lit(ivec2 pixel, vec3 own, vec3 tangent) {
 vec4 lit_line(ivec2 pixel, uvec4 word) {
     uint streamline = word.x & 0x0FFFFFFFu;
     vec3 tangent = unpacked_tangent(word.y);
-    vec4 own = colour_of_line(streamline, tangent, word.w);
+    vec4 own = line_colour(streamline, tangent, uintBitsToFloat(word.w));
     if (chosen_colour.a + faded.a > 0.0) {
         uint is_chosen = texelFetch(chosen, texel(streamline), 0).r;
         vec4 mark = is_chosen != 0u ? chosen_colour : faded;

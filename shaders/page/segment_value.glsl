@@ -5,6 +5,7 @@
 #include "fiblets/segments/edges.glsl"
 #include "fiblets/segments/joint.glsl"
 #include "fiblets/attributes/tangent.glsl"
+#include "page/missing.glsl"
 #include "page/region.glsl"
 #define VARYING flat in
 #include "page/segment_varyings.glsl"
@@ -14,11 +15,9 @@ const bool SPRITES = false;
 #if FEATURE_VALUES_STORED
 uniform vec2 shown_values;     // least and greatest that is drawn; the first above the second: all
 
-bool none(float value) { return (floatBitsToUint(value) & 0x7FFFFFFFu) > 0x7F800000u; }
-
 float value_between(float t) {
     vec2 ends = seg_along.zw;
-    if (none(ends.x) || none(ends.y)) return t < 0.5 ? ends.x : ends.y;
+    if (is_missing(ends.x) || is_missing(ends.y)) return t < 0.5 ? ends.x : ends.y;
     return mix(ends.x, ends.y, t);
 }
 #endif

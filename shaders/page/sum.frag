@@ -9,6 +9,7 @@
 #version 430
 
 #include "page/segment_value.glsl"
+#include "colour/rows.glsl"
 #include "fiblets/gather/paint.glsl"
 
 uniform highp usampler2D texels;       // of the nearest lines, as segment.frag leaves them

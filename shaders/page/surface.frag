@@ -3,7 +3,7 @@
 #version 430
 
 #include "page/lights.glsl"
-#include "page/table.glsl"
+#include "colour/table.glsl"
 
 in vec3 view_place;
 in vec3 view_normal;
@@ -39,7 +39,7 @@ void main() {
     vec3 normal = smooth_normals == 1 ? normalize(view_normal) : normalize(cross(dFdx(view_place), dFdy(view_place)));
     vec3 sight = parallel == 1.0 ? vec3(0.0, 0.0, 1.0) : normalize(-view_place);
     if (dot(normal, sight) < 0.0) normal = -normal;
-    vec4 own = by_value == 1 ? of_value(own_value) : own_colour;
+    vec4 own = by_value == 1 ? table_colour(own_value) : own_colour;
     own.rgb *= 1.0 - edge;
     vec3 lit = lighting == 1 ? light_on_surface(own.rgb, normal, view_place, reflects, sheen) : own.rgb;
     colour = vec4(lit + edge * edge_colour.rgb, own.a * opacity);

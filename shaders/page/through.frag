@@ -34,7 +34,7 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     uvec4 word = nearest_line(pixel);
     vec4 line = lit_line(pixel, word);
-    float a = opacity * line.a * opacity_of(word.x & 0x0FFFFFFFu, word.w);
+    float a = opacity * line.a * opacity_of(word.x & 0x0FFFFFFFu, uintBitsToFloat(word.w));
     seen = a * line.rgb;
     seen_weight = a;
     reaching = 1.0 - a;

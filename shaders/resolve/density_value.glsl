@@ -1,7 +1,7 @@
-// How many lines a pixel holds, in place of a number at a point of the nearest (sums.glsl, colour_point_scalar.glsl).
+// How many lines a pixel holds, in place of a number at a point of the nearest (sums.glsl, colour.glsl).
 
-//@ fragment after //pvfiblets::Value::Impl
+//@ fragment after //pvfiblets::Number::Impl
   if (fibletSumShape.x > 0 || textureSize(fibletSumFloats, 0).x > 1)
   {
-    fibletValue = fibletWeightOf(fibletPixel, 0);
+    fibletNumber = fibletWeightOf(fibletPixel, 0);
   }

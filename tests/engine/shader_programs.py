@@ -14,6 +14,7 @@ from functools import cache
 
 import numpy as np
 
+from pvfiblets.colour_modes import SHADERS
 from pvfiblets.engine.effects.ambient_occlusion import BIAS, GAIN
 from pvfiblets.engine.effects.antialias_coverage import TILE as LINE_TILE
 from pvfiblets.engine.effects.halos import TILE as HALO_TILE
@@ -30,14 +31,14 @@ from pvfiblets.report.studies.tubes.tessellated import LEAST_SIDES, MOST_SIDES, 
 __all__ = ["EXCLUSIVE", "KINDS", "NEEDS", "Choice", "Kind", "preprocessed", "rows", "varied"]
 
 VALUES = ("VALUES_STORED", "VALUES_ARC_LENGTH", "VALUES_VOLUME")
-PAINTS = ("PAINT_DIRECTION", "PAINT_SOLID", "PAINT_STREAMLINE", "PAINT_TABLE", "PAINT_POINT")
+COLOURS = tuple(mode.feature for mode in SHADERS.values() if mode.reads != "colours")
 INTEGRATORS = (
     "VOLUME_PREINTEGRATED", "VOLUME_RIEMANN", "VOLUME_SIMPSON", "VOLUME_ROMBERG", "VOLUME_RK4",
 )  # fmt: skip
 # One of each line, or none.
 EXCLUSIVE = (
     VALUES,
-    PAINTS,
+    COLOURS,
     INTEGRATORS,
     ("CULL_PYRAMID", "CULL_COVERAGE"),
     ("ONE_SEGMENT", "CLIPPING"),
@@ -65,14 +66,15 @@ NEEDS: dict[str, tuple[tuple[str, ...], ...]] = {
     "SUBSAMPLES": (("WIDE_LINES",),),
     "SECOND_ROUND": (("CULL_PYRAMID",),),
     **dict.fromkeys(("GATHER_SLICES", "GATHER_OUTSIDE", "PAINTED"), (("GATHER",),)),
-    "PAINTED": tuple((source, "GATHER") for source in PAINTS),
-    **dict.fromkeys((*PAINTS, "PAINT_LIGHT", "PAINT_ALPHA"), (("PAINTED",),)),
-    "PAINT_TABLE": tuple((value, "PAINTED") for value in VALUES),
+    "PAINTED": tuple((source, "GATHER") for source in COLOURS),
+    **dict.fromkeys((*COLOURS, "PAINT_LIGHT", "PAINT_ALPHA"), (("PAINTED",),)),
+    "COLOUR_POINT_SCALAR": (("PAINT_VALUE", "PAINTED"),),
+    "PAINT_VALUE": tuple((value, "PAINTED") for value in VALUES),
     "VALUES_COLOUR": (("VALUES_STORED",),),
-    "PAINT_POINT": (("VALUES_COLOUR", "PAINTED"),),
-    "PAINT_LOGARITHM": (("PAINT_TABLE",),),
+    "COLOUR_POINT_PACKED": (("VALUES_COLOUR", "PAINT_VALUE", "PAINTED"),),
+    "TABLE_LOGARITHM": (("COLOUR_POINT_SCALAR",),),
     "PAINT_OPACITIES": (("PAINT_ALPHA",),),
-    "PAINT_VALUE_OPACITY": tuple((value, "PAINT_ALPHA") for value in VALUES),
+    "PAINT_VALUE_OPACITY": (("PAINT_VALUE", "PAINT_ALPHA"),),
     **dict.fromkeys(("VOLUME_CELLS", "VOLUME_UNREFINED", "VOLUME_NEWTON"), (("VOLUME_SURFACE",),)),
     **dict.fromkeys((*INTEGRATORS, "VOLUME_FINER", "VOLUME_HOMOGENEOUS"), (("VOLUME_COMPOSITE",),)),
     "VOLUME_SHADED": (("VOLUME_COMPOSITE",), ("VOLUME_LAYERS",)),

@@ -1,5 +1,7 @@
 """What all lines of a pixel add up to, against lines drawn by NumPy and blended one by one."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -56,7 +58,7 @@ def test_lines_are_counted_as_numpy_counts_them(gl, fabricate, random_lines, cam
 def test_all_pipelines_add_up_the_same(gl, fabricate, random_lines, camera):
     fiblets = fabricate(random_lines(200, seed=4), kind=2, per_fiblet=20)
     view = View(SIZE, camera(SIZE, eye=(30, -120, 40)))
-    for paint in (Paint(), Paint("direction", light=(-0.6, 0.0, 0.8))):
+    for paint in (Paint(), Paint("orientation", light=(-0.6, 0.0, 0.8))):
         sums = []
         for pipeline in PIPELINES:
             renderer = FibletRenderer(gl, fiblets, pipeline=pipeline)
@@ -94,7 +96,7 @@ def test_sums_are_those_of_streamlines_drawn_alone(gl, fabricate, camera, pipeli
     view = View(SIZE, camera(SIZE, eye=(0, -200, 60)))
     alone = one_by_one(renderer, fiblets, view, style)
     count = np.sum([p.drawn for p in alone], 0)
-    found = renderer.gather(view, style, Paint("direction")).read()[0]
+    found = renderer.gather(view, style, Paint("orientation")).read()[0]
     assert (count > (1 if style.half_width == 0 else 3)).sum() > 50
     wrong = found[..., 3] != count
     assert wrong.mean() < (0.0002 if style.half_width == 0 else 0.01)
@@ -188,8 +190,9 @@ def test_colours_of_streamlines_and_tables(gl, fabricate, camera):
     renderer = FibletRenderer(gl, fiblets)
     view = View(SIZE, camera(SIZE, eye=(0, 0, 200), up=(0, 1, 0)))
     picture = read(renderer.render(view, EVERY_POINT))
-    plain = renderer.gather(view, EVERY_POINT, Paint("streamline", colours=texture)).read()[0]
-    weighed = renderer.gather(view, EVERY_POINT, Paint("streamline", colours=texture, opacity=0.5)).read()[0]
+    paint = Paint("streamline_rgba", {"colour_list": texture})
+    plain = renderer.gather(view, EVERY_POINT, paint).read()[0]
+    weighed = renderer.gather(view, EVERY_POINT, replace(paint, opacity=0.5)).read()[0]
     for s, colour in enumerate(colours.astype(float)):
         here = picture.drawn & (picture.ids[..., 0] == s)
         assert here.sum() > 40
@@ -202,7 +205,9 @@ def test_colours_of_streamlines_and_tables(gl, fabricate, camera):
     mapped = gl.texture((7, 1), 4, table.tobytes(), alignment=1)
     style = FibletStyle(values="arc_length", tolerance=0.0)
     value = read(renderer.render(view, style)).position[..., 1]
-    paint = Paint("table", colours=mapped, entries=4, range=(0.0, 80.0, 4 / 80.0))
+    paint = Paint(
+        "point_scalar", {"colour_table": mapped}, {"colour_entries": 4, "colour_range": (0.0, 80.0, 4 / 80.0)}
+    )
     found = renderer.gather(view, style, paint).read()[0]
     drawn = picture.drawn
     expected = np.where(value > 80, 0, 10 * (1 + np.minimum(value // 20, 3)))

@@ -179,7 +179,7 @@ def test_what_needs_all_lines_says_so_and_nothing_stays_behind(made, camera, gl)
 def test_sums_are_those_of_the_whole_set(made, camera, brain, pipeline, sliced):
     whole, parts = made(pipeline)
     view = View(SIZE, camera(SIZE, **WHOLE_BRAIN))
-    for paint in (None, Paint("direction")):
+    for paint in (None, Paint("orientation")):
         for style in (FibletStyle(), FibletStyle(line_width=3.0)):
             found = parts.gather(view, style, paint, sliced=sliced)
             wanted = whole.gather(view, style, paint, sliced=sliced)

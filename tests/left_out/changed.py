@@ -27,23 +27,23 @@ TUBES = What(
 CHANGED = {
     "one colour": What(resolve="-colour_orientation, colour_solid"),
     "colours: per streamline": What(
-        resolve="-colour_orientation, -line_light, legend_colours, colour_streamline", buffers="fibletStreamlineColours"
+        resolve="-colour_orientation, -line_light, legend_colours, colour_streamline_rgba", buffers="colour_list"
     ),
     "colours: stored": What(
         features="VALUES_STORED",
-        resolve="-colour_orientation, -line_light, legend_colours, colour_point_scalar",
-        buffers="fibletTable, values",
+        resolve="-colour_orientation, -line_light, legend_colours, colour_point_scalar, point_value",
+        buffers="colour_table, values",
     ),
     "colours: arc length": What(
         features="VALUES_ARC_LENGTH",
-        resolve="-colour_orientation, -line_light, legend_colours, colour_point_scalar",
-        buffers="fibletTable, starts",
+        resolve="-colour_orientation, -line_light, legend_colours, colour_point_scalar, point_value",
+        buffers="colour_table, starts",
         modules="codec.arrays.decode_arrays, codec.decompress, codec.arrays.frame_arrays, codec.small_sets",
     ),
     "colours: curvature": What(
         features="VALUES_STORED",
-        resolve="-colour_orientation, -line_light, legend_colours, colour_point_scalar",
-        buffers="fibletTable, values",
+        resolve="-colour_orientation, -line_light, legend_colours, colour_point_scalar, point_value",
+        buffers="colour_table, values",
         packages="numba",
         modules="""
             codec.arrays.decode_arrays, codec.decompress, codec.arrays.frame_arrays, codec.jit, codec.small_sets,
@@ -52,11 +52,11 @@ CHANGED = {
     ),
     "colours: volume": What(
         features="VALUES_VOLUME",
-        resolve="-colour_orientation, -line_light, legend_colours, colour_point_scalar",
-        buffers="fibletTable, volume",
+        resolve="-colour_orientation, -line_light, legend_colours, colour_point_scalar, point_value",
+        buffers="colour_table, volume",
     ),
     "colours: logarithm": What(
-        resolve="-colour_orientation, -line_light, legend_colours, colour_streamline", buffers="fibletStreamlineColours"
+        resolve="-colour_orientation, -line_light, legend_colours, colour_streamline_rgba", buffers="colour_list"
     ),
     "wide lines": What(features="WIDE_LINES"),
     "wide lines, shaded": What(features="CROSS_LINE, WIDE_LINES", resolve="-line_light, tube_shading"),
@@ -68,7 +68,7 @@ CHANGED = {
     ),
     "opacity": What(
         ran="screen/triangle.vert, fiblets/compute/gather.comp, fiblets/gather/slice_keys.frag",
-        features="GATHER_SLICES, PAINTED, PAINT_DIRECTION, PAINT_LIGHT",
+        features="GATHER_SLICES, PAINTED, COLOUR_ORIENTATION, PAINT_LIGHT",
         resolve="layers_covered, layers_geometry, slices, slices_colour, sums",
         passes="gather",
         buffers="fibletSumFloats (none), gathered",
@@ -80,7 +80,7 @@ CHANGED = {
     "opacity, the nearest": What(),
     "density": What(
         ran="screen/triangle.vert, fiblets/compute/gather.comp, fiblets/gather/greatest.frag",
-        features="GATHER_WORDS, PAINTED, PAINT_DIRECTION",
+        features="GATHER_WORDS, PAINTED, COLOUR_ORIENTATION",
         resolve="-line_light, density, legend_colours, sums",
         passes="gather",
         buffers="fibletSumFloats (none), gathered",
@@ -94,7 +94,7 @@ CHANGED = {
         features="GATHER_WORDS",
         resolve="-line_light, -colour_orientation, colour_point_scalar, density_value, legend_colours, sums",
         passes="gather",
-        buffers="fibletSumFloats (none), fibletTable, gathered",
+        buffers="fibletSumFloats (none), colour_table, gathered",
         modules="""
             engine.fiblets.gather.gatherer, engine.fiblets.gather.gathering, engine.fiblets.gather.paint,
             mappers.density, mappers.gathering, mappers.scene_state
@@ -262,7 +262,9 @@ CHANGED = {
         modules="plotting.picture_component",
     ),
     "spline tubes: values": What(
-        features="TUBE_VALUES", resolve="-colour_solid, colour_point_scalar", buffers="fibletTable, values"
+        features="TUBE_VALUES",
+        resolve="-colour_solid, colour_point_scalar, point_value",
+        buffers="colour_table, values",
     ),
     "spline tubes: colours": What(
         features="TUBE_COLOURS", resolve="-colour_solid, colour_point_rgba", buffers="colours"
@@ -274,7 +276,9 @@ CHANGED = {
     "halo lines: bent": What(features="HALO_BENT"),
     "halo lines: filter": What(features="HALO_FILTER", buffers="filters"),
     "halo lines: values": What(
-        features="HALO_VALUES", resolve="-colour_solid, colour_point_scalar", buffers="fibletTable, values"
+        features="HALO_VALUES",
+        resolve="-colour_solid, colour_point_scalar, point_value",
+        buffers="colour_table, values",
     ),
     "halo lines: colours": What(features="HALO_COLOURS", resolve="-colour_solid, colour_point_rgba", buffers="colours"),
     "halo points": What(
@@ -287,36 +291,36 @@ CHANGED = {
     "volume: surface": What(features="VOLUME_CELLS, VOLUME_SURFACE", resolve="tube_normal"),
     "volume: gentle light": What(
         features="VOLUME_COMPOSITE, VOLUME_PREINTEGRATED",
-        resolve="-colour_point_scalar, colour_point_rgba, own_light",
-        buffers="-fibletTable, colours, segments",
+        resolve="-colour_point_scalar, -point_value, colour_point_rgba, own_light",
+        buffers="-colour_table, colours, segments",
         packages="numba",
         modules="volumes.preintegration, volumes.steepness_kernels",
     ),
     "volume: light": What(
         features="VOLUME_FINER, VOLUME_COMPOSITE, VOLUME_PREINTEGRATED",
-        resolve="-colour_point_scalar, colour_point_rgba, own_light",
-        buffers="-fibletTable, colours, segments, allowed_bends",
+        resolve="-colour_point_scalar, -point_value, colour_point_rgba, own_light",
+        buffers="-colour_table, colours, segments, allowed_bends",
         packages="numba",
         modules="volumes.preintegration, volumes.steepness_kernels",
     ),
     "volume: dense light": What(
         features="VOLUME_EXACT, VOLUME_FINER, VOLUME_COMPOSITE, VOLUME_PREINTEGRATED",
-        resolve="-colour_point_scalar, colour_point_rgba, own_light",
-        buffers="-fibletTable, colours, segments, allowed_bends, media",
+        resolve="-colour_point_scalar, -point_value, colour_point_rgba, own_light",
+        buffers="-colour_table, colours, segments, allowed_bends, media",
         packages="numba",
         modules="volumes.preintegration, volumes.steepness_kernels",
     ),
     "volume: shaded light": What(
         features="VOLUME_SHADED, VOLUME_EXACT, VOLUME_FINER, VOLUME_COMPOSITE, VOLUME_PREINTEGRATED",
-        resolve="-colour_point_scalar, colour_point_rgba, own_light",
-        buffers="-fibletTable, colours, segments, allowed_bends, media",
+        resolve="-colour_point_scalar, -point_value, colour_point_rgba, own_light",
+        buffers="-colour_table, colours, segments, allowed_bends, media",
         packages="numba",
         modules="volumes.preintegration, volumes.steepness_kernels, engine.volumes.shading",
     ),
     "volume: translucent surfaces": What(
         features="VOLUME_CELLS, VOLUME_LAYERS, VOLUME_SHADED, VOLUME_SURFACE",
-        resolve="-colour_point_scalar, colour_point_rgba, own_light",
-        buffers="-fibletTable",
+        resolve="-colour_point_scalar, -point_value, colour_point_rgba, own_light",
+        buffers="-colour_table",
         modules="engine.volumes.shading",
     ),
     "volume: minimum": What(features="VOLUME_MINIMUM"),

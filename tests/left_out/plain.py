@@ -32,9 +32,9 @@ PLAIN = {
     ),
     "volume: mip": What(
         ran="volumes/cast.frag, screen/triangle.vert",
-        resolve="colour_point_scalar, gbuffer, normal",
+        resolve="colour_point_scalar, point_value, gbuffer, normal",
         passes="rays",
-        buffers="fibletTable, gbuffer, nodes, rays, voxels",
+        buffers="colour_table, gbuffer, nodes, rays, voxels",
         modules="engine.volumes.renderer, plotting.volumes.actor, volumes.sources",
     ),
 }

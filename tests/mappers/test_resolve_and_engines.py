@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 from vtkmodules.vtkRenderingCore import vtkActor
 
+from pvfiblets.colour_modes import SHADERS
 from pvfiblets.mappers import EngineOptions, FibletMapper, resolve
 from pvfiblets.mappers.proxy import proxy_polydata
-
-COLOURS = ("colour_orientation", "colour_solid", "colour_streamline", "colour_point_rgba", "colour_point_scalar")
 
 
 def text(*features):
@@ -18,15 +17,16 @@ def text(*features):
 
 def test_a_feature_that_is_not_asked_for_leaves_nothing():
     plain = text("gbuffer", "normal", "colour_orientation")
-    for word in ("Table", "StreamlineColours", "PositionMap", "log(", "pvfiblets::"):
+    for word in ("colour_table", "colour_list", "PositionMap", "log(", "pvfiblets::", "FEATURE", "#include"):
         assert word not in plain
-    assert "log(" in text("gbuffer", "normal", "colour_point_scalar", "scale_logarithm")
+    assert "log(" in text("gbuffer", "normal", "colour_point_scalar", "table_logarithm")
+    assert "log(" not in text("gbuffer", "normal", "colour_point_scalar")
 
 
-@pytest.mark.parametrize("colour", COLOURS)
-def test_only_one_colour_is_assembled(colour):
-    composed = text("gbuffer", "normal", colour)
-    assert composed.count("diffuseColor = diffuseIntensity") == 1
+@pytest.mark.parametrize("mode", SHADERS)
+def test_only_one_colour_is_assembled(mode):
+    composed = text("gbuffer", "normal", f"colour_{mode}")
+    assert composed.count("diffuseColor = diffuseIntensity") == composed.count("vec4 line_colour(") == 1
 
 
 def test_vtks_tags_stay_where_pieces_only_add():
@@ -36,8 +36,8 @@ def test_vtks_tags_stay_where_pieces_only_add():
 
 
 def test_a_piece_without_its_place_is_refused():
-    with pytest.raises(ValueError, match="Scale::Impl"):
-        resolve.assemble(frozenset(["gbuffer", "scale_logarithm"]))
+    with pytest.raises(ValueError, match="Number::Impl"):
+        resolve.assemble(frozenset(["gbuffer", "density_value"]))
 
 
 def test_a_bad_section_names_file_and_line(monkeypatch):

@@ -73,8 +73,9 @@ def scene():
     assert fiblets.n_fiblets > 65_536
     table = np.repeat(np.arange(256, dtype=np.uint8)[:, None], 4, axis=1)
     table[:, 3] = 255
-    colours = {"mode": "value", "values": "x", "table": encoded(np.concatenate([table, table[:3]])), "clim": (-40, 40)}
-    fiblet_layer(scene, fiblets, colours={**colours, "log": False}, keep=("x",))
+    colours = {"mode": "point_scalar", "values": "x", "clim": (-40, 40), "log": False}
+    colours["table"] = encoded(np.concatenate([table, table[:3]]))
+    fiblet_layer(scene, fiblets, colours=colours, keep=("x",))
     return scene
 
 

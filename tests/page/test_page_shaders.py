@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from pvfiblets.colour_modes import SHADERS
 from tests.reference_compiler import complaints, link
 
 SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
@@ -56,8 +57,18 @@ def _switched(text, on):
 
 
 def _choices(*texts):
+    """Every choice of switches with one colour mode at most, and a table's scale with its mode alone."""
     free = sorted(set(re.findall(r"#define FEATURE_(\w+)", "".join(texts))))
-    return [set(chosen) for n in range(len(free) + 1) for chosen in itertools.combinations(free, n)]
+    colours = [name for name in free if name.startswith("COLOUR_")]
+    free = [name for name in free if name not in colours]
+    modes = [{colour} for colour in colours] or [set()]
+    some = [set(chosen) for n in range(len(free) + 1) for chosen in itertools.combinations(free, n)]
+    return [
+        chosen | mode
+        for chosen in some
+        for mode in modes
+        if not colours or "TABLE_LOGARITHM" not in chosen or "COLOUR_POINT_SCALAR" in mode
+    ]
 
 
 def test_every_choice_of_switches_compiles(stages, tmp_path):
@@ -88,7 +99,9 @@ def test_nothing_is_named_that_the_client_does_not_have(engine, stages):
     asked = set(re.findall(r'"((?:page|effects)/[\w/]+\.(?:vert|frag))"', text))
     assert asked == set(stages)
     free = set(re.findall(r"#define FEATURE_(\w+)", "".join(stages.values())))
-    assert {name for name in free if f'"{name}"' not in text} == set()
+    colours = {name for name in free if name.startswith("COLOUR_")}
+    assert colours == {mode.feature for mode in SHADERS.values() if mode.reads != "colours"}  # by lines.ts
+    assert {name for name in free - colours if f'"{name}"' not in text} == set()
 
 
 SHRUNK = {

@@ -9,8 +9,9 @@ import pyvista as pv
 
 import pvfiblets
 from pvfiblets import Streamlines, compress, regions
-from pvfiblets.plotting.fiblets.scalars import distinct_colours, find_scalars
+from pvfiblets.plotting.fiblets.scalars import find_fiblet_scalars
 from pvfiblets.plotting.fiblets.sources import as_fiblets
+from pvfiblets.query.bundles.colours import distinct_colours
 from pvfiblets.synthetic import brain_streamlines
 
 
@@ -112,7 +113,7 @@ def streamlines():
 
 def test_groups_are_labels(streamlines):
     fiblets = compress(streamlines)
-    found = find_scalars(fiblets, "group")
+    found = find_fiblet_scalars(fiblets, "group")
     expected = np.full(120, np.nan)
     expected[40:90] = 1
     expected[10:50] = 0  # the first group that a streamline is in
@@ -134,7 +135,7 @@ def test_groups_are_labels(streamlines):
     finally:
         plotter.close()
     with pytest.raises(KeyError, match="no groups"):
-        find_scalars(compress(Streamlines.from_list([np.zeros((3, 3))])), "group")
+        find_fiblet_scalars(compress(Streamlines.from_list([np.zeros((3, 3))])), "group")
 
 
 def test_thirty_groups_have_thirty_colours_before_any_bundle_has_its_own(streamlines):
@@ -161,7 +162,7 @@ def test_distance_of_points(streamlines):
     stored = fiblets.per_point[name]
     np.testing.assert_allclose(stored.values(), expected, atol=stored.max_error + 1e-4)
     assert stored.max_error < (stored.hi - stored.lo) / 250
-    assert find_scalars(fiblets, name).title == "distance [mm]"
+    assert find_fiblet_scalars(fiblets, name).title == "distance [mm]"
 
 
 def test_coding_error_is_that_of_every_point(streamlines):
@@ -171,7 +172,7 @@ def test_coding_error_is_that_of_every_point(streamlines):
     np.testing.assert_allclose(stored.values(), error, atol=stored.max_error + 1e-5)
     assert 0.0 < stored.hi <= 0.2
     with pytest.raises(KeyError, match="only while streamlines are compressed"):
-        find_scalars(compress(streamlines), "coding_error")
+        find_fiblet_scalars(compress(streamlines), "coding_error")
 
 
 def test_the_name_of_a_criterion_colours(streamlines):

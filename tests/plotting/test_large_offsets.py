@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
+from pvfiblets import Streamlines
 from pvfiblets.support.value_reference import relative, value_reference
 from pvfiblets.volumes import as_raycast_volume
 
@@ -57,6 +58,26 @@ def test_colours_of_fiblets_by_an_image(kind, steps):
     near, _ = picture(fiblets, scalars=(numbers, affine))
     far, actor = picture(fiblets, scalars=(numbers + type(numbers.flat[0])(10**8), affine))
     assert actor.clim == (1e8, 1e8 + steps)
+    assert (abs(near - far).max(-1) > 3).sum() == 0
+    assert len(np.unique(far.reshape(-1, 3), axis=0)) > 15
+
+
+@pytest.mark.parametrize("looks", [{"style": "density"}, {"opacity": 0.3}], ids=str)
+@pytest.mark.parametrize("kind", ["image", "array"])
+def test_colours_of_all_lines_of_a_pixel(kind, looks):
+    lines = [LINE + 0.02 * i for i in range(8)]
+    numbers = np.linspace(0, 64, 16**3).reshape(16, 16, 16).round()
+    affine = np.diag([0.2, 0.2, 0.2, 1.0])
+    affine[:3, 3] = -1.0
+
+    def drawn(offset):
+        values = [line[:, 2] + offset for line in lines]
+        image = kind == "image"
+        streamlines = Streamlines.from_list(lines, per_point=None if image else {"z": np.concatenate(values)})
+        scalars = (numbers + offset, affine) if image else "z"
+        return picture(lambda plotter, **more: plotter.add_fiblets(streamlines, scalars=scalars, **more), **looks)[0]
+
+    near, far = drawn(0.0), drawn(1e8)
     assert (abs(near - far).max(-1) > 3).sum() == 0
     assert len(np.unique(far.reshape(-1, 3), axis=0)) > 15
 

@@ -14,8 +14,9 @@ from scipy.ndimage import map_coordinates
 import pvfiblets as pf
 from pvfiblets.codec.compress import compress
 from pvfiblets.plotting import TubeActor
-from pvfiblets.plotting.tubes.scalars import tube_lengths, with_built_in
+from pvfiblets.plotting.tubes.sources import with_built_in
 from pvfiblets.tubes.build import as_spline_tubes
+from pvfiblets.tubes.measures import tube_lengths
 
 from .views import facing_shot
 

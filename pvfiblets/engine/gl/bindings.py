@@ -137,7 +137,7 @@ GATHERING = Scope(
     "lines added up",
     {
         "nearest_depth": 32, "nearest_owner": 33, "nearest_ids": 34, "nearest_position": 35, "outside_depth": 36,
-        "paint_colours": 37, "gathered": 38, "slice_keys": 39, "paint_opacities": 40,
+        "colours": 37, "gathered": 38, "slice_keys": 39, "paint_opacities": 40,
     },
 )  # fmt: skip
 FIBLET_ROUNDS = Scope("rounds of two-phase culling", {"first_round": 12, "seen": 13, "owner": 14})

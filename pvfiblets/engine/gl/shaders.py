@@ -3,7 +3,8 @@
 Sources live in the repository's ``shaders`` folder, which the wheel carries as ``pvfiblets/shaders``. In them:
 
 ``#include "fiblets/decode/record.glsl"``
-    Pastes that file, once per program. :func:`pvfiblets.codec.layout.glsl_source` writes ``"codec/layout.glsl"``, and
+    Pastes that file, once per program. :func:`pvfiblets.codec.layout.glsl_source` writes ``"codec/layout.glsl"``,
+    :func:`pvfiblets.colour_modes.glsl_source` ``"colour/line_colour.glsl"``, and
     :class:`.uniform_struct.UniformStruct` writes ``"uniforms/NAME.glsl"`` of the uniform block `NAME`. Below
     ``#if FEATURE_NAME`` a file is pasted only where that is on, so that no block that nobody packs is looked for.
 ``FEATURE_NAME``
@@ -29,6 +30,7 @@ from typing import Any
 import moderngl
 
 from ...codec import layout
+from ...colour_modes import SHADERS, glsl_source
 from ...support.cache_folder import is_first_time
 from ...support.version import __version__
 from ..errors import EngineError
@@ -36,7 +38,7 @@ from .bindings import BLOCKS, CONSTANTS
 from .gl_version import version_of
 from .uniform_struct import find_struct
 
-__all__ = ["EXTENDED", "FEATURES", "NEWEST", "Programs", "assemble", "read_shader", "switched_on"]
+__all__ = ["EXTENDED", "FEATURES", "NEWEST", "Programs", "assemble", "preprocess", "read_shader", "switched_on"]
 
 logger = logging.getLogger("pvfiblets.engine")
 
@@ -76,12 +78,9 @@ FEATURES: dict[str, str] = {
     "GATHER_OUTSIDE": "those that nothing else in the scene hides",
     "GATHER_WORDS": "sums in words, not in floats",
     "PAINTED": "their colours too",
-    "PAINT_DIRECTION": "the colours of directions",
-    "PAINT_SOLID": "one colour",
-    "PAINT_STREAMLINE": "a colour per streamline",
-    "PAINT_TABLE": "per-point values through a table",
-    "PAINT_POINT": "a colour per point",
-    "PAINT_LOGARITHM": "a table spread over logarithms",
+    **{mode.feature: mode.doc for mode in SHADERS.values()},
+    "TABLE_LOGARITHM": "a table spread over logarithms",
+    "PAINT_VALUE": "per-point values that colours or opacities read",
     "PAINT_LIGHT": "the light on lines",
     "PAINT_ALPHA": "opacities of their own",
     "PAINT_OPACITIES": "an opacity per streamline",
@@ -170,6 +169,8 @@ def read_shader(name: str) -> str:
     """Read one source file."""
     if name == "codec/layout.glsl":
         return layout.glsl_source()
+    if name == "colour/line_colour.glsl":
+        return glsl_source()
     if block := _UNIFORMS.fullmatch(name):
         return find_struct(block[1]).glsl
     packaged = resources.files("pvfiblets") / "shaders"
@@ -229,6 +230,24 @@ def assemble(
             switches += read_shader("fiblets/data/glsl330.glsl")
         return f"#version {version}\n{switches}{head}{body}"
     return f"#version {max(version, int(line[0].split()[1]))}\n{switches}{head}{body}"
+
+
+def preprocess(text: str, features: Iterable[str]) -> str:
+    """Return GLSL with its includes and without what features leave out, for programs that somebody else makes."""
+    active, included = set(features), set[str]()
+
+    def include(match: re.Match[str]) -> str:
+        if match[1] in included or _left_out(match.string, match.start(), active):
+            return ""
+        included.add(match[1])
+        return _INCLUDE.sub(include, read_shader(match[1]))
+
+    text, lines, at = _INCLUDE.sub(include, text), [], 0
+    for line in text.splitlines():
+        if not _CONDITION.match(line) and not _left_out(text, at, active):
+            lines.append(line)
+        at += len(line) + 1
+    return "\n".join(lines)
 
 
 def _left_out(text: str, place: int, active: set[str]) -> bool:

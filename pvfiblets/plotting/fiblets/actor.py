@@ -22,15 +22,17 @@ from pvfiblets.plotting.fiblets.filter_state import Choices
 from pvfiblets.plotting.fiblets.looks import PLAIN, look_of, settings_of
 from pvfiblets.plotting.fiblets.opacities import Opacities, find_opacities
 from pvfiblets.plotting.fiblets.pick_result import Picked, checked_box, everything, visible
-from pvfiblets.plotting.fiblets.scalars import Scalars, find_scalars, mean_direction, refuse_numbers
+from pvfiblets.plotting.fiblets.scalars import find_fiblet_scalars
 from pvfiblets.plotting.fiblets.selection import SelectableActor
 from pvfiblets.plotting.fiblets.settings import ALL, STYLES, THINNEST, TONES, WIDEST, FibletSettings
 from pvfiblets.plotting.fiblets.sources import as_fiblets, with_point_values
 from pvfiblets.plotting.linked_property import own_writes
 from pvfiblets.plotting.mapper_words import PlottedLines
+from pvfiblets.plotting.scalars import Scalars, refuse_numbers
 from pvfiblets.plotting.setting_places import OPTIONS
 from pvfiblets.plotting.settings import Given
 from pvfiblets.plotting.shading import BACKGROUND
+from pvfiblets.query.measures.even_sample import mean_direction
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
@@ -527,6 +529,6 @@ class FibletActor(FibletSettings, SelectableActor):
     def _find(self, fiblets: FibletSet, choice: str | np.ndarray | VolumeSource | None) -> Scalars | None:
         if choice is None and self._settings.color is not None:
             return None
-        found = find_scalars(fiblets, choice, self._rgb)
+        found = find_fiblet_scalars(fiblets, choice, self._rgb)
         refuse_numbers(found.title if found.mapped else None, self._rgb)
         return found

@@ -19,8 +19,8 @@ from pvfiblets.plotting.fiblets.profiles import Profile, values_of
 if TYPE_CHECKING:
     from os import PathLike
 
-    from pvfiblets.plotting.fiblets.scalars import Scalars
     from pvfiblets.plotting.fiblets.selection_overlay import SelectionOverlay
+    from pvfiblets.plotting.scalars import Scalars
     from pvfiblets.query.measures.table import Table
 
 MODES = ("replace", "add", "remove", "toggle")

@@ -20,9 +20,10 @@ from pvfiblets.invalid_points import Invalid, valid_points
 from pvfiblets.line_cells import NOT_LINES
 from pvfiblets.lines import refuse_words, rows_of
 from pvfiblets.other_libraries import EXPECTED, streamlines_of
-from pvfiblets.plotting.fiblets.scalars import UNNAMED, are_colours, magnitudes, refuse_unknown
+from pvfiblets.plotting.fiblets.scalars import refuse_unknown
 from pvfiblets.plotting.fiblets.volume_sources import as_volume
 from pvfiblets.plotting.same_names import Preference, with_preference
+from pvfiblets.plotting.scalars import UNNAMED, are_colours, magnitudes
 from pvfiblets.query.measures.measures import Distance, measure
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.support.addresses import path_of

@@ -13,8 +13,8 @@ from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.halos import HaloMapper, HaloOptions
 from pvfiblets.plotting.coloured import added_up
-from pvfiblets.plotting.halos.scalars import Held, coloured, filtered, find_scalars
 from pvfiblets.plotting.halos.settings import LOOKS, HaloLineSettings, HaloPointSettings
+from pvfiblets.plotting.halos.sources import Held, coloured, filtered, find_halo_scalars
 from pvfiblets.plotting.halos.style import LookSettings, Spacing
 from pvfiblets.plotting.line_opacities import LineActor
 from pvfiblets.plotting.mapper_words import PlottedLines
@@ -23,7 +23,7 @@ from pvfiblets.plotting.settings import Given
 from pvfiblets.streamlines import Streamlines
 
 if TYPE_CHECKING:
-    from pvfiblets.plotting.fiblets.scalars import Scalars
+    from pvfiblets.plotting.scalars import Scalars
 
 BACKGROUND = "background"
 
@@ -140,7 +140,7 @@ class HaloActor(LineActor):
     @scalars.setter
     def scalars(self, scalars: Any) -> None:
         held = coloured(self._held, scalars)
-        found = find_scalars(held)
+        found = find_halo_scalars(held)
         self._hold(held)
         self._colour_by(held.scalars, found)
 
@@ -244,7 +244,7 @@ class HaloActor(LineActor):
         return drawn
 
     def _find(self, drawn: Held, choice: Any) -> Scalars | None:
-        return find_scalars(replace(drawn, scalars=choice))
+        return find_halo_scalars(replace(drawn, scalars=choice))
 
     def _change(self, **settings: Any) -> None:
         """Change settings of the look; refused ones leave all as it was."""
@@ -268,7 +268,7 @@ class HaloActor(LineActor):
         lines = getattr(self._checked(drawn), "n_lines", None)
         of_lines = {name: values for name, values in self._held.line_values.items() if len(values) == lines}
         held = filtered(coloured(Held(drawn, line_values=of_lines), kept), self._looks.filter_by)
-        found = find_scalars(held)
+        found = find_halo_scalars(held)
         spacing = Spacing(drawn)
         look = self._looks.look(held.drawn, spacing)
         # Colours for another number of lines go first.

@@ -128,9 +128,9 @@ class HaloLinesComponent(PrintableComponent["HaloLineActor"]):
         """
         from pvfiblets.mappers.halos import HaloOptions
         from pvfiblets.plotting.colours import active_scalars
-        from pvfiblets.plotting.fiblets.scalars import refuse_numbers
         from pvfiblets.plotting.halos.actors import HaloLineActor
-        from pvfiblets.plotting.halos.scalars import as_lines
+        from pvfiblets.plotting.halos.sources import as_lines
+        from pvfiblets.plotting.scalars import refuse_numbers
 
         HaloOptions(**settings.at(OPTIONS))  # what is wrong with them is said before the slow part
         if scalars is None:
@@ -226,7 +226,7 @@ class HaloPointsComponent(PrintableComponent["HaloPointActor"]):
         from pvfiblets.mappers.halos import HaloOptions
         from pvfiblets.plotting.colours import active_scalars
         from pvfiblets.plotting.halos.actors import HaloPointActor
-        from pvfiblets.plotting.halos.scalars import as_points, read_points
+        from pvfiblets.plotting.halos.sources import as_points, read_points
 
         HaloOptions(**settings.at(OPTIONS))  # what is wrong with them is said before the slow part
         source = read_points(source)

@@ -16,12 +16,12 @@ from pvfiblets.plotting.line_opacities import LineActor
 from pvfiblets.plotting.mapper_words import PlottedLines
 from pvfiblets.plotting.setting_places import OPTIONS
 from pvfiblets.plotting.settings import Given
-from pvfiblets.plotting.tubes.scalars import find_tube_scalars, with_built_in, with_node_values
 from pvfiblets.plotting.tubes.settings import TubeSettings
+from pvfiblets.plotting.tubes.sources import find_tube_scalars, with_built_in, with_node_values
 from pvfiblets.tubes.spline_tubes import SplineTubes
 
 if TYPE_CHECKING:
-    from pvfiblets.plotting.fiblets.scalars import Scalars
+    from pvfiblets.plotting.scalars import Scalars
 
 
 _OUTLINE = {"color": "white", "width": 2.0, "tubes": None}

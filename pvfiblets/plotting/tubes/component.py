@@ -146,9 +146,9 @@ class SplineTubesComponent(ActorRegistry["TubeActor"]):
         """
         from pvfiblets.mappers.tubes import TubeOptions
         from pvfiblets.plotting.colours import active_scalars
-        from pvfiblets.plotting.fiblets.scalars import refuse_numbers
+        from pvfiblets.plotting.scalars import refuse_numbers
         from pvfiblets.plotting.tubes.actor import TubeActor
-        from pvfiblets.plotting.tubes.scalars import as_tubes
+        from pvfiblets.plotting.tubes.sources import as_tubes
 
         TubeOptions(**settings.at(OPTIONS))  # what is wrong with them is said before the slow part
         if scalars is None:

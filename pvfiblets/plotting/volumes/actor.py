@@ -14,9 +14,9 @@ from pvfiblets.mappers.volumes import VolumeMapper
 from pvfiblets.plotting.clipping import ClippedActor
 from pvfiblets.plotting.coloured import added_up
 from pvfiblets.plotting.colours import make_colouring, update_table
-from pvfiblets.plotting.fiblets.scalars import Scalars
 from pvfiblets.plotting.linked_property import is_own_write, own_writes
 from pvfiblets.plotting.mapper_words import NO_ATTRIBUTE, Plotted
+from pvfiblets.plotting.scalars import Scalars
 from pvfiblets.plotting.settings import Given, NoSetting
 from pvfiblets.plotting.volumes.blending import BLENDING, mode_of_blending
 from pvfiblets.plotting.volumes.opacity import (

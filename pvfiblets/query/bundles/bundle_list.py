@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
     from ...streamlines import Streamlines
 
-__all__ = ["Bundle", "Bundles", "group_colours", "hidden_groups", "own_colour"]
+__all__ = ["Bundle", "Bundles", "first_groups", "group_colours", "hidden_groups", "own_colour"]
 
 Ints = npt.NDArray[np.int64]
 Colour = tuple[float, float, float]
@@ -443,3 +443,13 @@ def _save(part: Any, path: Path) -> None:
     from ...formats import write
 
     write(path, part)
+
+
+def first_groups(fiblets: FibletSet) -> npt.NDArray[np.float64]:
+    """Return for each streamline the number of its first group that is shown, else of a hidden one; NaN without."""
+    numbers = np.full(fiblets.n_streamlines, np.nan)
+    hidden = hidden_groups(fiblets.per_group)
+    order = sorted(enumerate(fiblets.groups), key=lambda item: item[1] in hidden)
+    for index, name in reversed(order):
+        numbers[np.asarray(fiblets.groups[name])] = index
+    return numbers

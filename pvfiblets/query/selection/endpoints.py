@@ -15,7 +15,7 @@ from ...codec.layout import PAGE, unpack
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
 
-__all__ = ["anchor_points", "end_points", "similar_ends"]
+__all__ = ["anchor_points", "end_directions", "end_points", "similar_ends"]
 
 Ints = npt.NDArray[np.int64]
 Mask = npt.NDArray[np.bool_]
@@ -97,3 +97,11 @@ def similar_ends(fiblets: FibletSet, ids: Any, distance: float) -> Mask:
 
 
 _STRIDES = np.array([1, 1 << 21, 1 << 42], np.int64)
+
+
+def end_directions(fiblets: FibletSet) -> Floats:
+    """Return the absolute direction from end to end as colours, (n, 3) from 0 to 1; grey where there is none."""
+    ends = end_points(fiblets)
+    apart = np.abs(ends[:, 1] - ends[:, 0])
+    sizes = np.linalg.norm(apart, axis=1, keepdims=True)
+    return np.where(sizes > 0.0, apart / np.where(sizes > 0.0, sizes, 1.0), 0.5)

@@ -194,7 +194,7 @@ class MeasureActions(LineActions):
 
 def _profiles(found: list[Any], bundles: tuple[Bundle, ...], name: str) -> dict[str, Any]:
     """Return what the page shows of profiles."""
-    from pvfiblets.plotting.fiblets.scalars import UNITS
+    from pvfiblets.plotting.scalars import UNITS
 
     bands = [Band(one.bundle, bundle.color, one.mean, one.low, one.high)
              for one, bundle in zip(found, bundles, strict=True)]  # fmt: skip

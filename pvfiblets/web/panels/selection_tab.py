@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from pvfiblets.plotting.fiblets.scalars import UNITS
+from pvfiblets.plotting.scalars import UNITS
 from pvfiblets.web.actions import Actions
 from pvfiblets.web.panels.charts import profile_chart, short
 from pvfiblets.web.panels.csv_tables import profile_csv

@@ -32,7 +32,8 @@ def value_names(fiblets: Any) -> list[str]:
 
 
 def _line_scalars(fiblets: Any) -> Choices:
-    from pvfiblets.plotting.fiblets.scalars import COUNTED, DENSITY, ENDS, GROUP, ID, ORIENTATION, RANDOM, UNITS
+    from pvfiblets.plotting.fiblets.scalars import DENSITY, ENDS, GROUP, ID, RANDOM
+    from pvfiblets.plotting.scalars import COUNTED, ORIENTATION, UNITS
 
     found: list[tuple[Any, str]] = [(ORIENTATION, "orientation"), (None, "one colour")]
     colours = [
@@ -46,8 +47,8 @@ def _line_scalars(fiblets: Any) -> Choices:
 
 
 def _tube_scalars(tubes: Any) -> Choices:
-    from pvfiblets.plotting.fiblets.scalars import UNITS
-    from pvfiblets.plotting.tubes.scalars import BUILT_IN
+    from pvfiblets.plotting.scalars import UNITS
+    from pvfiblets.plotting.tubes.sources import BUILT_IN
 
     names = dict.fromkeys([*BUILT_IN, *tubes.values, *tubes.tube_values])
     return [(None, "one colour"), *((name, UNITS.get(name, name)) for name in names)]

@@ -16,7 +16,7 @@ LARGEST_AS_TUBES = 5_000_000  # points
 
 def read_tubes(place: Path) -> tuple[Any, dict[str, Any]]:
     """Return the spline tubes of a file, and its facts; ValueError if it has too many points for them."""
-    from pvfiblets.plotting.tubes.scalars import as_tubes
+    from pvfiblets.plotting.tubes.sources import as_tubes
 
     if place.suffix.lower() not in VTK_SUFFIXES:
         points = formats.info(place).get("points")

@@ -11,8 +11,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from pvfiblets.plotting.fiblets.looks import LOOKS, PLAIN, look_of, settings_of
-from pvfiblets.plotting.fiblets.scalars import ORIENTATION
 from pvfiblets.plotting.fiblets.settings import FibletSettings
+from pvfiblets.plotting.scalars import ORIENTATION
 from pvfiblets.plotting.settings import Settings, arguments
 from pvfiblets.plotting.slices.settings import MEANING, SliceSettings
 from pvfiblets.plotting.tubes.settings import TubeSettings

@@ -4,7 +4,7 @@
 //   opaque       r + 2^8 g + 2^16 b, channels in 0..255
 //   else         -1 - (r + 2^6 g + 2^12 b + 2^18 a), channels in 0..63
 //
-// shaders/resolve/colour_point_packed.glsl has unpacked_colour(), too.
+// shaders/colour/point_packed.glsl unpacks them.
 
 float packed_colour(vec4 c, bool opaque) {
     if (opaque) return dot(floor(255.0 * c.rgb + 0.5), vec3(1.0, 256.0, 65536.0));

@@ -52,7 +52,7 @@ void plot(Fragment fragment, Segment segment) {
     if (slice < 0) return;
 #if FEATURE_PAINTED
     float value = 0.0;
-#if FEATURE_PAINT_TABLE || FEATURE_PAINT_POINT || FEATURE_PAINT_VALUE_OPACITY
+#if FEATURE_PAINT_VALUE
     float t = along(fragment, segment), at = t * polyline.steps, whole = floor(clamp(at, 0.0, max(polyline.steps - 1.0, 0.0)));
     value = value_along(segment.index, t, uint(whole), at - whole);
 #endif

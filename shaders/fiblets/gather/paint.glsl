@@ -2,10 +2,10 @@
 // Sums of whole numbers do not depend on the order in which lines are drawn.
 //
 // Symbols
-//   c            colour, each channel in 0..1 (paint_colour.glsl), dimmed by the light that falls on the line
+//   c            colour, each channel in 0..1 (shaders/colour), dimmed by the light that falls on the line
 //   w            weight: 1 where all lines have the same opacity, else of its own (paint_weight.glsl)
 
-#include "fiblets/gather/paint_colour.glsl"
+#include "colour/line_colour.glsl"
 #if FEATURE_PAINT_ALPHA
 #include "fiblets/gather/paint_weight.glsl"
 #endif

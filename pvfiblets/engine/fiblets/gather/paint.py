@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
+from ....colour_modes import MODES
 from ...gl.bindings import GATHERING
 
 __all__ = ["Paint", "set_uniforms"]
@@ -20,18 +22,14 @@ class Paint:
 
     Parameters
     ----------
-    source : {'none', 'direction', 'solid', 'streamline', 'table', 'point'}
-        No colour; the absolute value of its direction; one colour; a colour per streamline; the style's per-point value
-        through a table, or as the colour that it is.
-    color : tuple of 3 floats
-        For ``'solid'``, 0 to 1.
-    colours : moderngl.Texture, optional
-        RGBA of 8 bits, row by row: of streamlines, or of a table with the colours of below, above and NaN at its end.
-    entries : int
-        Of the table, without these three.
-    range : tuple of 3 floats
-        Values of the table's ends and entries per unit; logarithms if ``logarithm``.
+    mode : str
+        One of `pvfiblets.colour_modes.MODES`; ``''``: no colour.
+    textures : mapping of str to moderngl.Texture
+        Those of ``shaders/colour`` by their samplers: ``colour_list`` or ``colour_table``.
+    uniforms : mapping of str to numbers
+        Those of ``shaders/colour``.
     logarithm : bool
+        Whether the table is spread over logarithms.
     light : tuple of 3 floats, optional
         Unit vector, data coordinates, to a light that dims lines which run towards it. None: colours as they are.
     opacity : float, optional
@@ -44,11 +42,9 @@ class Paint:
         Another one if the content of textures is another.
     """
 
-    source: str = "none"
-    color: tuple[float, ...] = (1.0, 1.0, 1.0)
-    colours: Any = None
-    entries: int = 0
-    range: tuple[float, float, float] = (0.0, 1.0, 1.0)
+    mode: str = ""
+    textures: Mapping[str, Any] = field(default_factory=dict)
+    uniforms: Mapping[str, Any] = field(default_factory=dict)
     logarithm: bool = False
     light: tuple[float, ...] | None = None
     opacity: float | None = None
@@ -59,11 +55,13 @@ class Paint:
     @property
     def features(self) -> tuple[str, ...]:
         """Keys of :data:`pvfiblets.engine.gl.shaders.FEATURES`."""
-        if self.source == "none":
+        if not self.mode:
             return ()
+        mode = MODES[self.mode]
         wanted = {
-            f"PAINT_{self.source.upper()}": True,
-            "PAINT_LOGARITHM": self.logarithm,
+            mode.feature: True,
+            "TABLE_LOGARITHM": self.logarithm,
+            "PAINT_VALUE": mode.reads == "position" or self.value_opacity,
             "PAINT_LIGHT": self.light is not None,
             "PAINT_ALPHA": self.opacity is not None,
             "PAINT_OPACITIES": self.opacities is not None,
@@ -78,21 +76,21 @@ class Paint:
 
     def bind(self, program: Any) -> None:
         """Bind textures, and set those uniforms that a program has."""
-        if self.colours is not None and "paint_colours" in program:
-            self.colours.use(GATHERING["paint_colours"])
-        if self.opacities is not None and "paint_opacities" in program:
-            self.opacities.use(GATHERING["paint_opacities"])
-        unit = self.absorbance
+        found = [(name, texture, GATHERING["colours"]) for name, texture in self.textures.items()]
+        found.append(("paint_opacities", self.opacities, GATHERING["paint_opacities"]))
+        units = {}
+        for name, texture, unit in found:
+            if texture is not None and name in program:
+                texture.use(unit)
+                units[name] = unit
+        absorbance = self.absorbance
         set_uniforms(
             program,
-            paint_colours=GATHERING["paint_colours"],
-            paint_opacities=GATHERING["paint_opacities"],
-            paint_solid=tuple(self.color[:3]),
-            paint_entries=self.entries,
-            paint_range=self.range,
+            **units,
+            **self.uniforms,
             paint_light=self.light,
             paint_opacity=self.opacity,
-            paint_unit=1.0 / unit if unit > 0.0 else 0.0,
+            paint_unit=1.0 / absorbance if absorbance > 0.0 else 0.0,
         )
 
 

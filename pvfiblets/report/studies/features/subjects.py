@@ -65,11 +65,11 @@ def _layers(drawn: Drawn, _buffer: Any, _camera: Camera, view: View) -> None:
     drawn.renderer.render_layers(view, drawn.style, LAYERS)
 
 
-def _summed(source: str, *, sliced: bool) -> Callable[..., None]:
+def _summed(mode: str, *, sliced: bool) -> Callable[..., None]:
     from pvfiblets.engine.fiblets.gather.paint import Paint
 
     def effect(drawn: Drawn, _buffer: Any, _camera: Camera, view: View) -> None:
-        drawn.renderer.gather(view, drawn.style, Paint(source), sliced=sliced)
+        drawn.renderer.gather(view, drawn.style, Paint(mode), sliced=sliced)
 
     return effect
 
@@ -102,9 +102,9 @@ def brain_subject(fiblets: Any) -> Subject:
         Feature("lines", f"tubes of {RADIUS:g} mm", style={"radius": RADIUS, "across": True}),
         Feature("lines", "every point", style={"tolerance": 0.0}),
         Feature("lines", f"{LAYERS} layers", effect=_layers),
-        Feature("lines", "all, counted", effect=_summed("none", sliced=False)),
-        Feature("lines", "all, their mean colours", effect=_summed("direction", sliced=False)),
-        Feature("lines", "all, in slices", effect=_summed("direction", sliced=True)),
+        Feature("lines", "all, counted", effect=_summed("", sliced=False)),
+        Feature("lines", "all, their mean colours", effect=_summed("orientation", sliced=False)),
+        Feature("lines", "all, in slices", effect=_summed("orientation", sliced=True)),
         Feature("values", "stored", style={"values": "height"}),
         Feature("values", "arc length", style={"values": "arc_length"}),
         Feature("values", "curvature", style={"values": "curvature"}),

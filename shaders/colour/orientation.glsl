@@ -1,6 +1,4 @@
 // Direction-encoded colour: |tangent| in data coordinates as red (left-right), green (back-front),
 // blue (down-up). The tangent is a unit vector, so the brightest channel is never below 0.57.
 
-//@ fragment after //VTK::Color::Impl
-  ambientColor = ambientIntensity * abs(fibletTangent);
-  diffuseColor = diffuseIntensity * abs(fibletTangent);
+vec4 line_colour(uint streamline, vec3 tangent, float value) { return vec4(abs(tangent), 1.0); }

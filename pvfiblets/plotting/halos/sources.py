@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -12,14 +13,24 @@ import numpy as np
 from pvfiblets.formats.attachments import is_values_file
 from pvfiblets.halos import HaloLines, HaloPoints
 from pvfiblets.halos.build import FILTER, SCALARS, as_halo_lines, as_halo_points
+from pvfiblets.halos.measures import arc_lengths, line_lengths
 from pvfiblets.images.sources import as_image, is_image
-from pvfiblets.lines import told_lines, with_values
+from pvfiblets.lines import has_name, read_lines, with_values
 from pvfiblets.plotting.fiblets.filter_state import unique_name
-from pvfiblets.plotting.fiblets.scalars import ORIENTATION, UNNAMED, Scalars, are_colours, of_streamlines
 from pvfiblets.plotting.same_names import Preference, with_preference
+from pvfiblets.plotting.scalars import (
+    DIRECTIONS,
+    UNNAMED,
+    Numbers,
+    Scalars,
+    are_colours,
+    direction_scalars,
+    find_scalars,
+    point_scalars,
+)
 
 ARC_LENGTH, LENGTH = "arc_length", "length"
-BUILT_IN = (ORIENTATION, ARC_LENGTH, LENGTH)
+BUILT_IN = (*DIRECTIONS, ARC_LENGTH, LENGTH)
 """Of lines. Points have nothing but what they were given."""
 
 Drawn: TypeAlias = HaloLines | HaloPoints
@@ -34,7 +45,7 @@ class Held:
     drawn : HaloLines or HaloPoints
         With all values at points that are needed.
     scalars : str or array, optional
-        What colours it, for :func:`find_scalars`.
+        What colours it, for :func:`find_halo_scalars`.
     filter_by : str, optional
         Which of its values filter.
     line_values : mapping of str to array
@@ -58,7 +69,7 @@ def as_lines(
     """Return the lines that a source means, and what colours and filters them."""
     if isinstance(source, HaloLines):
         return filtered(coloured(Held(source), scalars, rgb=rgb), filter_by)
-    source = with_preference(_read_lines(source), preference)
+    source = with_preference(read_lines(source), preference)
     if is_values_file(scalars, source):
         source, scalars = with_values(source, scalars)
     if is_values_file(filter_by, source):
@@ -137,45 +148,26 @@ def filtered(held: Held, filter_by: Any) -> Held:
     raise KeyError(_missing("filter_by", filter_by, held))
 
 
-def find_scalars(held: Held) -> Scalars | None:
+def find_halo_scalars(held: Held) -> Scalars | None:
     """Find the numbers or colours by which something is coloured."""
     choice, drawn = held.scalars, held.drawn
     if choice is None:
         return None
-    if not isinstance(choice, str):
-        return of_streamlines(UNNAMED, choice, drawn.n_streamlines, whole="line")
-    if choice in drawn.values:
-        return _at_points(choice, drawn.values[choice])
-    if choice in held.line_values:
-        return of_streamlines(choice, held.line_values[choice], drawn.n_streamlines, whole="line")
-    if isinstance(drawn, HaloLines) and choice == ORIENTATION:
-        return Scalars(ORIENTATION, "orientation")
-    if isinstance(drawn, HaloLines) and choice == LENGTH:
-        return of_streamlines(LENGTH, line_lengths(drawn), drawn.n_lines, whole="line")
-    raise KeyError(_missing("scalars", choice, held))
+    built_in: dict[str, Any] = {}
+    if isinstance(drawn, HaloLines):
+        built_in = {**direction_scalars(), LENGTH: lambda: line_lengths(drawn)}
 
+    def at_points(name: str) -> Scalars | None:
+        return point_scalars(name, drawn.values[name]) if name in drawn.values else None
 
-def line_lengths(lines: HaloLines) -> np.ndarray:
-    """Return the length of each line."""
-    along = np.concatenate([_along(lines), np.zeros(1)])
-    lengths = np.where(np.diff(lines.offsets) > 0, along[lines.offsets[1:] - 1], 0.0)
-    return np.asarray(lengths)
-
-
-def _along(lines: HaloLines) -> np.ndarray:
-    """``(n_points,)`` mm from the first point of each point's line."""
-    steps = np.zeros(lines.n_points)
-    if lines.n_points > 1:
-        steps[1:] = np.linalg.norm(np.diff(lines.points.astype(np.float64), axis=0), axis=1)
-    counts = np.diff(lines.offsets)
-    first = lines.offsets[:-1][counts > 0]
-    steps[first] = 0.0
-    total = np.cumsum(steps)
-    return np.asarray(total - np.repeat(total[first], counts[counts > 0]))
+    count, missing = drawn.n_streamlines, partial(_missing, "scalars", held=held)
+    return find_scalars(Numbers("line", count, at_points, held.line_values, built_in, missing), choice)
 
 
 def _with_arc_length(lines: HaloLines) -> HaloLines:
-    return lines if ARC_LENGTH in lines.values else replace(lines, values={**lines.values, ARC_LENGTH: _along(lines)})
+    if ARC_LENGTH in lines.values:
+        return lines
+    return replace(lines, values={**lines.values, ARC_LENGTH: arc_lengths(lines)})
 
 
 def _with(lines: HaloLines, name: str, numbers: np.ndarray) -> HaloLines:
@@ -196,17 +188,6 @@ def _columns(scalars: Any) -> int:
     return shape[1] if len(shape) == 2 else 1
 
 
-def _at_points(name: str, values: np.ndarray) -> Scalars:
-    if values.ndim == 2:
-        return Scalars(name, "point_rgba", has_alpha=bool((values[:, 3] < 1.0).any()))
-    finite = values[np.isfinite(values)] if values.dtype.kind == "f" else values
-    if not len(finite):
-        return Scalars(name, "point_scalar")
-    positive = finite[finite > 0]
-    least = float(positive.min()) if len(positive) else 1e-6
-    return Scalars(name, "point_scalar", None, (float(finite.min()), float(finite.max())), least)
-
-
 def _named(held: Held) -> Held:
     """Call numbers that came without a name what scalar bars call such; those of lines stay the array that they are."""
     if held.scalars is None or isinstance(held.scalars, str):
@@ -223,22 +204,13 @@ def _filter_name(filter_by: Any) -> str | None:
     return filter_by if filter_by is None or isinstance(filter_by, str) else FILTER
 
 
-def _read_lines(source: Any) -> Any:
-    """Return the data of a file, or of an object of another library; anything else as it is."""
-    if not isinstance(source, (str, os.PathLike)):
-        return told_lines(source)
-    from pvfiblets.codec.files.open_lines import open_lines
-
-    return open_lines(source)
-
-
 def _later(source: Any, what: Any) -> bool:
     """Whether numbers are computed of lines once these are there: by a name that no data has, or of an image."""
-    return _is_image(source, what) or (isinstance(what, str) and what in BUILT_IN and not _has(source, what))
+    return _is_image(source, what) or (isinstance(what, str) and what in BUILT_IN and not has_name(source, what))
 
 
 def _is_image(source: Any, what: Any) -> bool:
-    return is_image(what) and not (isinstance(what, str) and _has(source, what))
+    return is_image(what) and not (isinstance(what, str) and has_name(source, what))
 
 
 def _sampled(held: Held, what: Any) -> tuple[Held, Any]:
@@ -254,16 +226,9 @@ def _sampled(held: Held, what: Any) -> tuple[Held, Any]:
     return replace(held, drawn=replace(drawn, values={**drawn.values, name: values})), name
 
 
-def _has(source: Any, name: str) -> bool:
-    """Whether a source has numbers or words of that name."""
-    if hasattr(source, "GetPointData"):
-        return any(data.GetAbstractArray(name) is not None for data in (source.GetPointData(), source.GetCellData()))
-    return any(name in getattr(source, where, ()) for where in ("per_point", "per_streamline"))
-
-
 def _unknown(source: Any, names: tuple[Any, Any], error: ValueError) -> Exception:
     """Return the error of a name that is not there as PyVista has it; any other as it is."""
-    if any(isinstance(name, str) and not _has(source, name) for name in names):
+    if any(isinstance(name, str) and not has_name(source, name) for name in names):
         return KeyError(str(error))
     return error
 
@@ -272,7 +237,7 @@ def _missing(what: str, name: str, held: Held) -> str:
     """Say that there are no numbers ``name``, and which there are."""
     known: dict[str, Any] = {"at points": held.drawn.values}
     if isinstance(held.drawn, HaloLines):
-        known |= {"per line": held.line_values, "built in": BUILT_IN if what == "scalars" else BUILT_IN[1:]}
+        known |= {"per line": held.line_values, "built in": BUILT_IN if what == "scalars" else (ARC_LENGTH, LENGTH)}
     listed = [f"{title}: {', '.join(map(repr, names)) or 'none'}" for title, names in known.items()]
     return (
         f"{what} is {name!r}, and there are no such numbers; {'; '.join(listed)}. Of a source only what was asked for "
