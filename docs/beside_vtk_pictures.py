@@ -1,6 +1,6 @@
 """Makes docs/pictures/beside_vtk.jpg, four scenes as add_mesh draws them and as this package does, by their defaults.
 
-``python docs/beside_vtk_pictures.py``. The data are those of the folder that ``PVFIBLETS_DATA`` names, or of
+``python docs/beside_vtk_pictures.py``. The data come from the folder that ``PVFIBLETS_DATA`` names, or of
 ``../shared/data``: a bundle, a whole brain, the flow in a carotid artery; the vessel tree is made up.
 """
 
@@ -49,7 +49,8 @@ def flow() -> tuple[Callable[[Any], Any], Callable[[Any], Any]]:
     grid = pv.read(DATA / "vtk_carotid.vtk")
     fastest = grid.points[np.linalg.norm(grid["vectors"], axis=1).argmax()]
     lines = grid.streamlines(
-        "vectors", n_points=150, source_radius=8.0, source_center=tuple(fastest), max_length=300.0, max_step_length=0.5
+        "vectors", n_points=150, source_radius=8.0, source_center=tuple(fastest), max_length=300.0,
+max_step_length=0.5
     )
     lines["speed"] = np.linalg.norm(lines["vectors"], axis=1)
     more = {"scalars": "speed", "cmap": "viridis", "show_scalar_bar": False}
