@@ -49,8 +49,7 @@ def flow() -> tuple[Callable[[Any], Any], Callable[[Any], Any]]:
     grid = pv.read(DATA / "vtk_carotid.vtk")
     fastest = grid.points[np.linalg.norm(grid["vectors"], axis=1).argmax()]
     lines = grid.streamlines(
-        "vectors", n_points=150, source_radius=8.0, source_center=tuple(fastest), max_length=300.0,
-max_step_length=0.5
+        "vectors", n_points=150, source_radius=8.0, source_center=tuple(fastest), max_length=300.0, max_step_length=0.5
     )
     lines["speed"] = np.linalg.norm(lines["vectors"], axis=1)
     more = {"scalars": "speed", "cmap": "viridis", "show_scalar_bar": False}
