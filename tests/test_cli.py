@@ -371,7 +371,7 @@ def test_what_takes_more_memory_than_it_may_is_one_sentence(tmp_path, capsys):
     before = memory.limited_to()
     most = f"{memory.taken() // 2**20 + 300}M"
     said = fails(capsys, "convert", path, tmp_path / "a.fiblets", "--max-memory", most)
-    assert re.search(r"more memory than the [\d.]+ .B of --max-memory \(it says that it takes .*; give it more", said)
+    assert re.search(r"more memory than --max-memory, [\d.]+ .B \(it says that it takes .*; give a larger limit", said)
     assert memory.limited_to() == before
 
 
