@@ -292,10 +292,10 @@ def _refuse_collisions(jobs: list[Job], files: list[SourceFile]) -> None:
 
 def _refuse_old(record: Record, jobs: list[Job], out: Path) -> None:
     """Refuse to touch what an earlier run, or somebody else, has put there."""
-    remedy = "give --resume (resume=True) to skip what is finished, --overwrite (overwrite=True) to do all again"
+    remedy = "give --resume (resume=True) to skip finished files, --overwrite (overwrite=True) to repeat everything"
     if record.entries:
         done = sum(not entry.error for entry in record.entries.values())
-        raise ValueError(f"{out} holds an earlier run, {done} files of which are finished; {remedy}")
+        raise ValueError(f"{out} holds an earlier run with {done} finished files; {remedy}")
     for job in jobs:
         if job.target and os.path.lexists(out / job.target):
             raise ValueError(f"{out / job.target} is there already; {remedy}, or another folder")

@@ -267,7 +267,8 @@ def measure_error(streamlines: Streamlines, fiblets: FibletSet) -> CodingError:
     if len(streamlines) != fiblets.n_streamlines or (streamlines.n_points != fiblets.n_points and not resampled):
         raise ValueError(
             f"the fiblets hold {fiblets.n_streamlines} streamlines of {fiblets.n_points} points, the original "
-            f"{len(streamlines)} of {streamlines.n_points}: errors can be measured only against what was compressed"
+            f"{len(streamlines)} of {streamlines.n_points}: errors can be measured only against the compressed "
+            "streamlines"
         )
     offsets = np.asarray(streamlines.offsets, np.int64)
     if not resampled and not np.array_equal(offsets, fiblets.offsets()):

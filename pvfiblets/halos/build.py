@@ -215,7 +215,7 @@ def _points_of(source: Any) -> tuple[Array, _Rows, str]:
     if points.dtype.kind not in "fiub":
         raise TypeError(
             f"points with halos cannot be made from a {type(source).__name__}; give a data set with points, "
-            "Streamlines, a FibletSet or an (n, 3) array (np.concatenate(...) of a list of such)"
+            "Streamlines, a FibletSet or an (n, 3) array (np.concatenate(...) of a list of arrays)"
         )
     if points.size == 0 and points.ndim < 2:
         points = points.reshape(0, 3)

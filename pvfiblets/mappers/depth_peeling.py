@@ -88,7 +88,7 @@ class Layers(ShaderEffect):
 
     def __post_init__(self) -> None:
         if isinstance(self.count, bool) or int(self.count) != self.count or not 2 <= self.count <= MOST_LAYERS:
-            raise ValueError(f"{self.count!r} layers are asked for; give a whole number from 2 to {MOST_LAYERS}")
+            raise ValueError(f"{self.count!r} layers are not possible; give a whole number from 2 to {MOST_LAYERS}")
         object.__setattr__(self, "count", int(self.count))
 
     def make(self, ctx: Any) -> _Held:

@@ -70,7 +70,8 @@ def compare_file(
                 differs = int(np.flatnonzero(np.asarray(a.offsets) != np.asarray(b.offsets))[0]) - 1
                 raise ValueError(
                     f"streamline {(seen + differs) * every} has {a.counts[differs]} points in the original, "
-                    f"{b.counts[differs]} in the fiblets: errors can be measured only against what was compressed"
+                    f"{b.counts[differs]} in the fiblets: errors can be measured only against the compressed "
+                    "streamlines"
                 )
             tally.add(a, b)
             rest = _plain(rest, n, len(rest))

@@ -181,7 +181,7 @@ class Remote:
                 if len(piece) == file.bytes:  # a server that knows no ranges sends all
                     piece = piece[start:]
                 elif len(piece) != stop - start:
-                    raise FormatError(url, start, f"{len(piece)} bytes", f"the {stop - start} that were asked for")
+                    raise FormatError(url, start, f"{len(piece)} bytes", f"the requested {stop - start}")
                 out.write(piece)
                 found.update(piece)
             if found.hexdigest() != file.sha256:

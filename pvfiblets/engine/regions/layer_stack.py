@@ -68,7 +68,7 @@ class LayerStack:
         limit = int(ctx.info["GL_MAX_ARRAY_TEXTURE_LAYERS"])
         if layers > limit:
             raise EngineError(
-                f"cutting by this region takes {layers} layers along a pixel's ray, of which this OpenGL has {limit}; "
+                f"cutting by this region needs {layers} layers along a pixel's ray, and this OpenGL has {limit}; "
                 "cut by fewer or simpler shapes"
             )
         stand_ins: list[moderngl.Texture] = []  # moderngl attaches no layers; these give it the number of attachments

@@ -120,7 +120,7 @@ def similar(
     reach, n_points = check_distance(distance, "distance"), check_count(n_points)
     others = _others(data, like, n_points)
     if not len(others):
-        raise ValueError("there is nothing to be similar to: no streamline with points was given")
+        raise ValueError("no reference: give at least one streamline with points")
     chosen = None if ids is None else select_streamlines(len(data), ids)
     parts: list[tuple[Ints, Floats, Ints]] = []
     for numbers, lines in iter_resampled(data, n_points, chosen, progress, "comparing"):

@@ -254,7 +254,7 @@ class _Plain:
         there = ", ".join([*chunk.per_streamline, *chunk.per_point]) or "none"
         raise KeyError(
             f"{self._place} has no array {name!r} of single numbers; there are: {there}. Computed measures, such as "
-            "'curvature', are those of compressed sets"
+            "'curvature', need a compressed set"
         )
 
     def compile(self) -> None:

@@ -180,7 +180,7 @@ class MeasureActions(LineActions):
             raise ValueError(f"there is no {str(kind)[:40]!r} as {str(suffix)[:40]!r}")
         found = self._results.get(kind)
         if found is None or found.layer != self._layer.id:
-            raise ValueError("nothing was measured yet")
+            raise ValueError("measure first")
         if suffix != "parquet":
             return table_text(found.table, tabs=suffix == "tsv")
         with tempfile.TemporaryDirectory(prefix="pvfiblets-") as folder:
@@ -188,7 +188,7 @@ class MeasureActions(LineActions):
             try:
                 found.table.save(path)
             except ImportError as error:
-                raise ValueError("Parquet needs pyarrow where the server runs; take CSV or TSV") from error
+                raise ValueError("Parquet needs pyarrow where the server runs; choose CSV or TSV") from error
             return path.read_bytes()
 
 

@@ -26,7 +26,7 @@ ICONS = (
     ("brush", "mdi-brush", "Brush (N)"),
     ("erase", "mdi-eraser", "Erase (E)"),
     ("fill", "mdi-format-color-fill", "Fill (F)"),
-    ("outline", "mdi-vector-polygon", "Outline: draw around what is to be filled (U)"),
+    ("outline", "mdi-vector-polygon", "Outline: draw around the area to fill (U)"),
     ("sphere", "mdi-circle-outline", "Ball: drag from its middle outwards (J)"),
     ("grow", "mdi-auto-fix", "Grow over voxels of like values (W)"),
 )

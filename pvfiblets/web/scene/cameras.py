@@ -133,7 +133,7 @@ def check_camera(value: Any) -> dict[str, Any]:
         key: numbers(value[key], f"camera's {key}", 3) for key in ("position", "focal_point", "up")
     }
     if any(abs(part) > 1e12 for key in found for part in found[key]):
-        raise ValueError("the camera is more than 1e12 mm away; give a position nearer to what is looked at")
+        raise ValueError("the camera is more than 1e12 mm away; give a position nearer to the scene")
     ahead = np.subtract(found["focal_point"], found["position"])
     if not np.linalg.norm(np.cross(ahead, found["up"])) > 0.0:
         raise ValueError(f"the camera looks along {ahead.tolist()} and has {found['up']} up; give unlike directions")

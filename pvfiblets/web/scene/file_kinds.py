@@ -61,7 +61,7 @@ def kind_of(path: Path) -> str:
         suffix_of(path)
     except UnknownFormatError:
         known = ", ".join(dict.fromkeys([*suffixes(), *VOLUMES, *MESHES]))
-        raise UnknownFormatError(f"{path.name}: no layer can be made of such a file; there are {known}") from None
+        raise UnknownFormatError(f"{path.name}: this type of file cannot be opened; known types: {known}") from None
     return "tractogram"
 
 

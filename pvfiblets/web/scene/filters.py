@@ -249,7 +249,7 @@ def check_filters(
     known = [*value_names(data), *images]
     for name, limits in mapping(value.get("criteria") or {}, "criteria", (), known).items():
         if not isinstance(limits, (list, tuple)) or len(limits) != 2:
-            raise ValueError(f"the range of {name} is {shown(limits)}; give two numbers, of which one may be null")
+            raise ValueError(f"the range of {name} is {shown(limits)}; give two numbers; one may be null")
         criteria[name] = check_range(limits[0], limits[1], name)
     subset, regions = value.get("subset"), value.get("regions")
     return Filters(

@@ -161,7 +161,7 @@ class SceneSelection:
             return actor.fiblets, np.flatnonzero(actor.shown)
         if what == "all":
             return actor.fiblets, np.arange(actor.fiblets.n_streamlines)
-        raise ValueError(f"what is {shown(what)}; choose one of selected, shown, all")
+        raise ValueError(f"unknown set {shown(what)}; choose one of selected, shown, all")
 
     # Inside -------------------------------------------------------------------------------------
 

@@ -81,7 +81,7 @@ class Store:
             if layer.source.ids is not None:
                 ids, total = layer.source.ids, loaded.data.n_streamlines
                 if ids.highest >= total:
-                    raise ValueError(f"streamline {ids.highest} is asked for, of {total} in {loaded.name}")
+                    raise ValueError(f"streamline {ids.highest} does not exist; {loaded.name} has {total}")
                 loaded = replace(loaded, source=layer.source, data=loaded.data.extract(ids.array()))
             self.loaded[key] = loaded
         for volume in layer.volumes:
