@@ -109,7 +109,7 @@ class ActorLink:
             warnings.warn(f"actor.{name} changes nothing here: {_UNUSED[name][1]}", UserWarning, stacklevel=2)
 
     def check_alone(self, renderer: Any) -> None:
-        """Raise where actors share the mapper, as copies of an actor do: nobody says which of them is drawn."""
+        """Raise if actors share the mapper, as copies of an actor do: VTK does not say which one it draws."""
         props = renderer.GetViewProps()
         seen = renderer.GetAddressAsString(""), props.GetMTime()
         if seen == self._alone:
@@ -152,7 +152,7 @@ class ActorLink:
         self._tags = self._tags[0], actor.GetProperty().AddObserver("ModifiedEvent", _keep_surface)
 
     def modified(self) -> None:
-        """Tell those who render on demand; the mapper's own time would make VTK build its shaders anew."""
+        """Notify observers that render on demand; the mapper's own time would make VTK rebuild its shaders."""
         if self.actor is not None:
             self.actor.Modified()
 

@@ -180,7 +180,7 @@ def _tube_values(tubes: Any, name: str, segments: npt.NDArray[np.int64]) -> npt.
 
 
 def halo_lines(drawn: Any, look: Any, colouring: Colouring | None, ids: npt.NDArray[np.int64]) -> LineData:
-    """Return lines, or points as lines of one point, that have halos; without what is filtered."""
+    """Return lines with halos, or points as lines of one point, without filtered ones."""
     points = np.asarray(drawn.points)
     offsets = getattr(drawn, "offsets", np.arange(len(points) + 1))
     counts = np.diff(offsets)[ids]
@@ -205,7 +205,7 @@ def halo_lines(drawn: Any, look: Any, colouring: Colouring | None, ids: npt.NDAr
 
 
 def _by_line(lines: LineData, colouring: Colouring) -> npt.NDArray[np.uint8]:
-    """Colours of lines, or of their direction: that is also what stands for the number of lines in a pixel."""
+    """Colours of lines, or by direction, also in place of the number of lines in a pixel."""
     of_lines = colouring.streamline_colours()
     if of_lines is not None:
         return of_lines[np.repeat(lines.ids, np.diff(lines.offsets))]
