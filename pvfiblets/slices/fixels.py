@@ -68,7 +68,7 @@ class Fixels:
         return list(found)
 
     def numbers(self, given: Any) -> npt.NDArray[np.float32]:
-        """Return ``(n,)`` numbers of fixels: those of a name, read from the folder if need be, or an array."""
+        """Return ``(n,)`` numbers of fixels, by name (read from the folder if necessary) or from an array."""
         if not isinstance(given, str):
             found = np.asarray(given, np.float32)
             if found.shape != (len(self),):

@@ -51,7 +51,7 @@ def compare_file(
     part = coded
     if every > 1:
         bare = replace(coded, per_point={}, per_streamline={}, groups={}, per_group={})
-        # Steps and bounds, by which errors are measured, are those of the whole.
+        # Steps and bounds, the units of errors, belong to the whole set.
         part = replace(bare.extract(np.arange(0, len(coded), every)), bounds=coded.bounds)
     tally = ErrorTally(part, by_streamline=False)
     decoded = iter_chunks(part, max_points, np.float64)

@@ -58,7 +58,7 @@ class Connectome:
     counts : numpy.ndarray
         ``(n, n)`` int64 streamlines behind each number.
     labels : numpy.ndarray
-        ``(n,)`` int64, those that the atlas holds, rising.
+        ``(n,)`` int64, the labels of the atlas, rising.
     names : list of str
         Of the parcels.
     ends : numpy.ndarray

@@ -70,7 +70,7 @@ COMPUTED: dict[Kind, dict[str, str]] = {
     "streamline": {"length": "mm", "n_points": "", "mean_curvature": "1/mm", "end_distance": "mm"},
     "point": {"curvature": "1/mm", "arc_length": "mm", "coding_error": "mm"},
 }
-"""Units of the computed measures, by what has a value and by name."""
+"""Units of the computed measures, by kind (point or streamline) and name."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,7 +166,7 @@ def measure(
     try:
         return _measured(fiblets, what, original)
     except IndexError:
-        fiblets.verify()  # a damaged file says so itself; whatever else is wrong is raised as it is
+        fiblets.verify()  # raises for a damaged file; other errors pass
         raise
 
 

@@ -35,7 +35,7 @@ class AtlasActions(Actions):
     # What is shown
 
     def refresh(self) -> None:
-        """Show the labels of an image, and which of them are asked for."""
+        """Show the labels of an image, and the queried ones."""
         app = self._app
         images = self._images()
         if not images:

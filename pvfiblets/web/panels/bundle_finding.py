@@ -1,4 +1,4 @@
-"""Bundles that are found: streamlines like others, clusters, and those of models; in the tab Bundles."""
+"""Finding bundles in the tab Bundles: similar streamlines, clusters, and models."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class FindingActions(LineActions):
         super().__init__(app)
         self._open = False
         self._folders: list[str] | None = None
-        self._asked: tuple[str, Ids, np.ndarray] | None = None  # layer, what was found, and what it is like
+        self._asked: tuple[str, Ids, np.ndarray] | None = None  # layer, result, and the query's streamlines
 
     def refresh(self) -> None:
         """Show what can be done."""
@@ -59,7 +59,7 @@ class FindingActions(LineActions):
         self._app.later(self._similar(layer, self._like(layer), distance))
 
     def _like(self, layer: Any) -> np.ndarray:
-        """Return what is asked about; what was found is asked about by what it was found by."""
+        """Return the query's streamlines; a result is queried by its own query."""
         if layer.selected is not None:
             if self._asked is not None and self._asked[:2] == (layer.id, layer.selected):
                 return self._asked[2]

@@ -58,7 +58,7 @@ class BundleActions(LineActions):
         }  # fmt: skip
 
     def check(self, name: str, on: bool) -> None:
-        """Choose a bundle for what is done with several, or choose it no more."""
+        """Check or uncheck a bundle for actions on several."""
         known = [one.name for one in self._app.scene.bundles.of_layer(self._layer.id)]
         self._checked = [one for one in self._checked if one != name]
         if on is True and name in known:
@@ -73,7 +73,7 @@ class BundleActions(LineActions):
             self.refresh()
 
     def add(self, what: str) -> None:
-        """Make what is selected, or what is shown, a bundle."""
+        """Make a bundle of the selection or of the visible streamlines."""
         if what not in ("selected", "shown"):
             raise ValueError(f"choose selected or shown, not {str(what)[:40]!r}")
         self._app.scene.bundles.add_bundle(self._layer.id, what)

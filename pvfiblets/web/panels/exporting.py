@@ -31,9 +31,9 @@ if TYPE_CHECKING:
 __all__ = ["ExportActions"]
 
 PLACES = ("folder", "computer")
-KEPT = 4  # files that can be fetched; older ones are forgotten, and those of no folder removed
+KEPT = 4  # downloadable files; older ones are dropped, temporary ones removed
 LARGEST = 2048 * MEBIBYTE
-"""Bytes of a file that is for fetching only: it takes space that nobody sees."""
+"""Largest size of a temporary file for download, bytes."""
 BYTES_PER_POINT = 12
 """At least, in all formats but ``.fiblets``."""
 
@@ -210,7 +210,7 @@ class ExportActions(Actions):
         )
 
     def close(self) -> None:
-        """Remove what was only to be fetched; twice is harmless."""
+        """Remove files that were for download only; a second call has no effect."""
         self._files.clear()
         if self._folder is not None:
             self._folder.cleanup()

@@ -33,7 +33,7 @@ class RegionActions(LineActions):
         """Return a layer's regions for the panel."""
         try:
             join, rows = flat(layer.filters.regions)
-        except ValueError:  # nested, by a session file: they hold, and whoever edits them is told so
+        except ValueError:  # nested, from a session file: they apply, and editing them raises an error
             join, rows = "and", []
         bounds = self._app.plotter.bounds
         scene = self._app.scene
@@ -83,7 +83,7 @@ class RegionActions(LineActions):
     # What is done
 
     def add(self, kind: str) -> None:
-        """Add a region in the middle of what is shown, or beside the last one."""
+        """Add a region in the middle of the scene, or beside the last one."""
         if kind not in PLACED:
             raise ValueError(f"there is no region {kind!r}; choose sphere or box")
         layer, scene = self._layer, self._app.scene
@@ -122,7 +122,7 @@ class RegionActions(LineActions):
         self._edit(lambda rows: rows.pop(_index(rows, row)))
 
     def set_not(self, row: int, negated: bool) -> None:
-        """Ask for streamlines of which it is not so."""
+        """Invert a region's condition."""
         self._edit(lambda rows: rows[_index(rows, row)].update({"not": bool(negated)}))
 
     def set_how(self, row: int, how: str) -> None:

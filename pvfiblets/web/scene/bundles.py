@@ -220,7 +220,7 @@ class BundleSync:
         return list(data.groups if kept is None or kept[0] is not data else kept[1])
 
     def groups(self, state: State, sets: Mapping[Source, Any]) -> set[Source]:
-        """Give sets the groups that the document says; return the sources of those that have others now."""
+        """Apply the document's groups to the sets; return the sources of changed sets."""
         regrouped = set()
         for source, data in sets.items():
             wanted = state.bundles_of(source)

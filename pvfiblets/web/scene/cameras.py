@@ -20,7 +20,7 @@ VIEWS = tuple(DIRECTIONS)
 """Names of the directions that one can look from."""
 
 _LETTERS = (("R", "L"), ("A", "P"), ("S", "I"))
-NEAR = 6.0  # pixels within which a click means what is drawn there
+NEAR = 6.0  # pixels of tolerance of a click
 LARGEST_PICTURE = 64_000_000  # pixels
 
 
