@@ -77,7 +77,7 @@ class Field:
     Raises
     ------
     UniformStructError
-        If one of them is nothing of this kind.
+        If one of them has another type.
     """
 
     name: str

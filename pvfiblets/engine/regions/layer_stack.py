@@ -135,7 +135,7 @@ class Squares:
         return found
 
     def ask_later(self, name: str, rectangle: Rectangle, reads: DelayedRead, tag: object = None) -> None:
-        """Run a program on all squares of a rectangle, and have some reads get what it says."""
+        """Run a program on all squares of a rectangle, and pass its results to some reads."""
         framebuffer = self._run(name, rectangle)
         reads.start(framebuffer, framebuffer.viewport, 2, tag)
 

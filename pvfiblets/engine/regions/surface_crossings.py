@@ -248,7 +248,7 @@ class SurfaceLayers:
         return found
 
     def _learn(self, k: int) -> None:
-        """Take notice of what has come back of earlier pictures."""
+        """Read the results of earlier frames."""
         arrived, known = self._reads[k].arrived(), self._known[k]
         if arrived is not None and known is not None:
             found = _Found.of(arrived[1].reshape(-1, 2).T)

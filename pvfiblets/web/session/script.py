@@ -88,7 +88,7 @@ class _Writer(ViewWriter):
     # Parts ----------------------------------------------------------------------------------------
 
     def _placing(self) -> list[str]:
-        """Return the contexts that place images and surfaces as this process does, where it was told how."""
+        """Return the contexts that place images and surfaces as this process does."""
         found = []
         matrix, units = chosen()
         if matrix is not None or units != "mm":
