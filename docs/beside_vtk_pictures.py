@@ -1,6 +1,6 @@
 """Makes docs/pictures/beside_vtk.jpg, four scenes as add_mesh draws them and as this package does, by their defaults.
 
-``python docs/beside_vtk_pictures.py``. The data are those of the folder that ``PVFIBLETS_DATA`` names, or of
+``python docs/beside_vtk_pictures.py``. The data come from the folder that ``PVFIBLETS_DATA`` names, or of
 ``../shared/data``: a bundle, a whole brain, the flow in a carotid artery; the vessel tree is made up.
 """
 

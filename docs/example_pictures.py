@@ -45,7 +45,7 @@ PICTURES: dict[str, tuple[tuple[str, str], ...]] = {
 
 
 def main() -> None:
-    """Run the examples that are asked for, and write their pictures."""
+    """Run the named examples, and write their pictures."""
     parser = argparse.ArgumentParser(description=__doc__.partition(":")[0] + ".")
     parser.add_argument("picture", nargs="*", metavar="PICTURE", help=", ".join(PICTURES))
     parser.add_argument("--output", type=Path, default=HERE, help="folder")

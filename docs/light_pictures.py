@@ -1,8 +1,8 @@
 """Makes docs/pictures/light.jpg, the lights that lines could have side by side: ``python docs/light_pictures.py``.
 
 One picture of a brain is rendered, from its left, and lit by each formula in NumPy: the G-buffer tells the tangent of
-each pixel. The table that is printed says what each light leaves of the colours. The tracts are those of the folder
-that ``PVFIBLETS_DATA`` names, or of ``../shared/data``; where they are missing, made-up ones.
+each pixel. The table that is printed says what each light leaves of the colours. The tracts come from the folder that
+``PVFIBLETS_DATA`` names, or of ``../shared/data``; where they are missing, made-up ones.
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ LIGHTS: dict[str, Callable[[Array], Array]] = {
 
 
 def fiblets() -> pvfiblets.FibletSet:
-    """Return what is drawn."""
+    """Return the compressed tracts."""
     real = DATA / "wholebrain_eudx_0.5mm_fifth.tck"
     return pvfiblets.compress(pvfiblets.read(real) if real.is_file() else brain_streamlines(20_000))
 

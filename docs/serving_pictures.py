@@ -1,7 +1,7 @@
 """Makes the pictures of ``pvfiblets serve`` in docs/serving.md: ``python docs/serving_pictures.py [STATE…]``.
 
-A server is started as a user starts one, and its page is led into each state in Chromium. The tracts and the head are
-those of the folder that ``PVFIBLETS_DATA`` names, or of ``../shared/data``; where they are missing, made-up ones.
+A server is started as a user starts one, and its page is led into each state in Chromium. The tracts and the head
+come from the folder that ``PVFIBLETS_DATA`` names, or of ``../shared/data``; where they are missing, made-up ones.
 """
 
 from __future__ import annotations
@@ -585,7 +585,7 @@ def save(here: Visit, path: Path) -> None:
 
 
 def main() -> int:
-    """Make the pictures that were asked for."""
+    """Make the named pictures."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("states", nargs="*", metavar="STATE", help=f"of {', '.join(STATES)}; by default all")
     parser.add_argument("--output", type=Path, default=HERE / "pictures", help="folder")

@@ -21,7 +21,7 @@ def main(folder: Path) -> None:
     """Write one tractogram in every format, and compare and plot the sizes."""
     sizes = {}
     lines = pv.wrap(brain_streamlines(500).to_polydata())
-    lines.clear_data()  # points alone: some formats cannot hold bundles, and say so
+    lines.clear_data()  # points alone: some formats cannot hold bundles, and warn
     for suffix in (".tck", ".trk", ".trx", ".vtp", ".fiblets"):
         path = folder / f"lines{suffix}"
         lines.save(path)

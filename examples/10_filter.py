@@ -2,7 +2,7 @@
 Filter
 ======
 
-Choose streamlines: by numbers, by regions they pass through or end in, by group, at random; and save what is left.
+Choose streamlines: by numbers, by regions they pass through or end in, by group, at random; and save the result.
 
 Run it as ``python examples/10_filter.py [FOLDER]``.
 """

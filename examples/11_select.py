@@ -2,7 +2,7 @@
 Select
 ======
 
-Pick and select: what lies in an area of the picture, more of the same, drawn as tubes, measured along the way.
+Pick the streamlines in an area of the image, grow the selection, draw it as tubes, and measure along it.
 
 Run it as ``python examples/11_select.py [FOLDER]``. In a window, ``plotter.fiblets.enable_picking(mode="lasso")`` does
 with the mouse what ``pick_box`` does here.
@@ -36,7 +36,7 @@ def main(folder: Path) -> None:
     print(f"{len(seen.ids)} streamlines are seen in the box, {len(everything.ids)} lie under it")
 
     actor.select(seen.ids)
-    actor.grow_selection(8.0)  # those with ends within 8 mm of the ends of any
+    actor.grow_selection(8.0)  # adds streamlines with ends within 8 mm of selected ends
     actor.selection_style(color="gold", as_tubes=True, radius=0.8, dim=0.75)
     print(actor.selection_statistics("fa"))
     plotter.render()

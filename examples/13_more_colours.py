@@ -2,7 +2,7 @@
 More colours
 ============
 
-Colour by what lies around: a volume sampled on the GPU, a distance, the coding error; and look through layers.
+Colour by a volume sampled on the GPU, by a distance, by the coding error; and look through layers.
 
 Run it as ``python examples/13_more_colours.py [FOLDER]``.
 """

@@ -65,7 +65,7 @@ def vessel_tree(radius: float = 6.0, least: float = 0.45, seed: int = 3) -> pv.P
 
 
 def draw_whole(plotter: pv.Plotter, tree: pv.PolyData) -> None:
-    """Colour by radius; ambient occlusion says what lies behind what."""
+    """Colour by radius; ambient occlusion shows depth."""
     bar = {"title": "radius (mm)", "color": "white", "vertical": True, "position_x": 0.05, "position_y": 0.05}
     bar |= {"height": 0.3, "width": 0.06}
     actor = plotter.add_spline_tubes(tree, **SHAPE, scalars="radius", **COLOURS, scalar_bar_args=bar)

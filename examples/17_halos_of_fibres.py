@@ -39,7 +39,7 @@ def draw_chosen(folder: Path, chosen: Streamlines) -> None:
 
 
 def draw_filtered(folder: Path, brain: Streamlines) -> None:
-    """Draw all, then only where the FA is high, which shows what is inside; at last in colours by direction."""
+    """Draw all, then only high FA, which shows the inside; at last in colours by direction."""
     plotter = pv.Plotter(off_screen=True, window_size=(1400, 900), shape=(2, 2), border=False)
     plotter.set_background("white", all_renderers=True)
     settings = {

@@ -2,7 +2,7 @@
 Halos of air
 ============
 
-Air that turns about in an office, as ink on paper: where streams bundle, where they branch, what lies behind what.
+Air currents in an office, as ink on paper: bundles, branches and depth.
 
 Run it as ``python examples/18_halos_of_air.py [FOLDER]``. Pictures like figures 8 and 11 of Everts et al. 2009. The
 flow is made up; streamlines are VTK's. The second picture is for red-cyan glasses, red on the left eye.

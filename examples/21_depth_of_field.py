@@ -2,8 +2,8 @@
 Depth of field
 ==============
 
-Lead the eye with a lens: what is in focus is sharp, the rest is blurred and, if wanted, darker. Tone mapping brings out
-what lies in the dark.
+Lead the eye with a lens: the focus is sharp, the rest is blurred and optionally darker. Tone mapping brightens dark
+parts.
 
 Run it as ``python examples/21_depth_of_field.py [FOLDER]``. ``plotter.picture`` changes all that a renderer shows,
 whatever drew it: here vessels in a volume, balls of VTK's, and fiblets as tubes. Texts stay as they are.
@@ -71,7 +71,7 @@ def main(folder: Path) -> None:
     # With "cursor" instead, the mouse would choose.
     plotter.picture.depth_of_field = {"focal_distance": "center", "aperture": 9}
     plotter.picture.gamma = 1.25
-    plotter.add_text("focus on what is in the middle, and gamma 1.25", **TITLE)
+    plotter.add_text("focus on the middle, and gamma 1.25", **TITLE)
 
     plotter.screenshot(folder / "depth_of_field.png")
     print(f"{plotter.picture.focal_distance:.0f} mm from the camera is in focus")

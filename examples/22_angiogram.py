@@ -17,7 +17,7 @@ import pyvista as pv
 from pvfiblets.synthetic.vessels import vessel_tree
 
 EYE = (0.35, -1.0, 0.15)
-# Of light: what is thin is hardly there, and what is bright is solid.
+# Light: thin parts nearly vanish, bright parts are solid.
 LIGHT = {"opacity": [0, 0.02, 0.2, 0.7, 0.95, 1, 1], "opacity_unit_distance": 2.0, "cmap": "hot"}
 WAYS = {
     "surface": {"mode": "isosurface", "values": 70, "color": "#f2907c"},

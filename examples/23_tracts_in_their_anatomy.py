@@ -24,8 +24,8 @@ from pvfiblets.volumes import RaycastVolume, as_raycast_volume
 
 DATA = Path(os.environ.get("PVFIBLETS_DATA", Path(sys.argv[0]).resolve().parents[2] / "shared" / "data"))
 TEMPLATE = DATA / "nv_MNI152_2009_template.nii.gz"
-WINDOW = regions.Box((4, 120, -14, 160, 6, 120))  # what is cut out, mm: right, front and up
-FACES = regions.Box((1.5, 120, -16.5, 160, 3.5, 120)) - WINDOW  # what lies just behind the cut
+WINDOW = regions.Box((4, 120, -14, 160, 6, 120))  # the part cut out, mm: right, front and up
+FACES = regions.Box((1.5, 120, -16.5, 160, 3.5, 120)) - WINDOW  # the layer behind the cut
 
 
 def made_up_brain() -> RaycastVolume:

@@ -77,7 +77,7 @@ def draw_box(plotter: pv.Plotter, tree: RaycastVolume, path: np.ndarray) -> None
 
 
 def draw_inside(plotter: pv.Plotter, tree: RaycastVolume, path: np.ndarray, start: int) -> None:
-    """Stand in the vessel with a lamp; what is far away fades."""
+    """Stand in the vessel with a lamp; distant parts fade."""
     actor = plotter.add_raycast_volume(
         tree, mode="isosurface", values=LUMEN, color="#e8897a", smooth=0.8, step=0.25, show_scalar_bar=False
     )

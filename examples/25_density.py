@@ -37,7 +37,7 @@ def main(folder: Path) -> None:
     plotter.set_background("black", all_renderers=True)
     bar = {"color": "white", "n_labels": 2, "title_font_size": 16, "label_font_size": 14}
 
-    # Light adds up along rays: what is dense shines.
+    # Light adds up along rays: dense parts shine.
     plotter.subplot(0, 0)
     top = float(np.percentile(counts.values[counts.values > 0], 98))
     plotter.add_raycast_volume(

@@ -37,7 +37,7 @@ def main(folder: Path) -> None:
     plotter = pv.Plotter(off_screen=True, window_size=(1000, 1000), shape=(2, 2))
     plotter.set_background("black", all_renderers=True)
     workspace = plotter.slices.workspace(made_up_head(), thickness=1.5)
-    workspace.slices.layers[0].below = 15.0  # air would hide what lies behind it
+    workspace.slices.layers[0].below = 15.0  # air would occlude the slices behind it
     most = float(np.percentile(counts.values, 99.0))
     workspace.slices.add(directions, kind="direction", modulate=counts, clim=(0.0, most), below=0.3 * most, opacity=0.5)
     plotter.add_fiblets(fiblets[fiblets.groups["callosum"]], lighting=False)

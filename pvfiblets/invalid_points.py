@@ -47,8 +47,8 @@ def warn_of_far(points: Array, low: npt.NDArray[np.float64], high: npt.NDArray[n
     if off > wide / 4000.0 > 0.0:
         far = high if (high - most[1]).max() >= (most[0] - low).max() else low
         warnings.warn(
-            f"most points lie within {wide:.3g} mm of each other, but the farthest reach {far.tolist()}: what is drawn "
-            f"may be {off:.2g} mm off, more than half a pixel; leave out the lines that are far away",
+            f"most points lie within {wide:.3g} mm of each other, but the farthest reach {far.tolist()}: lines may "
+            f"be drawn {off:.2g} mm off, more than half a pixel; leave out the outlying lines",
             UserWarning,
             stacklevel=3,
         )

@@ -27,7 +27,7 @@ __all__ = [
 Ints = npt.NDArray[np.int64]
 
 _EXPECTED = (
-    "a PolyData with lines (or an UnstructuredGrid or MultiBlock of such), Streamlines, a FibletSet, a tractogram of "
+    "a PolyData with lines (or an UnstructuredGrid or MultiBlock of them), Streamlines, a FibletSet, a tractogram of "
     "nibabel, dipy or trx-python, an (n, 3) array, a list of them or (points, segments)"
 )
 

@@ -21,7 +21,7 @@ from pvfiblets.support.vtk_space import Space, space_of_dataset, to_ras
 __all__ = ["EXPECTED", "lines_of_grid", "streamlines_of"]
 
 EXPECTED = (
-    "a path, FibletSet, Streamlines, PolyData with lines, MultiBlock or UnstructuredGrid of such, a Tractogram or "
+    "a path, FibletSet, Streamlines, PolyData with lines, MultiBlock or UnstructuredGrid of them, a Tractogram or "
     "tractogram file of nibabel, a StatefulTractogram or Streamlines of dipy, a TrxFile, or a list of (n, 3) arrays"
 )
 
@@ -82,7 +82,7 @@ def _of_tractogram(tractogram: Any) -> Streamlines:
     affine = tractogram.affine_to_rasmm
     if affine is None:
         raise ValueError(
-            "the tractogram's affine_to_rasmm is None, so that nobody knows where its points are; set it, "
+            "the tractogram's affine_to_rasmm is None, so the position of its points is unknown; set it, "
             "numpy.eye(4) if they are in RAS+ mm"
         )
     if all(hasattr(held, "get_data") for held in (tractogram.streamlines, *tractogram.data_per_point.values())):

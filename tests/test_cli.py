@@ -371,7 +371,7 @@ def test_what_takes_more_memory_than_it_may_is_one_sentence(tmp_path, capsys):
     before = memory.limited_to()
     most = f"{memory.taken() // 2**20 + 300}M"
     said = fails(capsys, "convert", path, tmp_path / "a.fiblets", "--max-memory", most)
-    assert re.search(r"more memory than the [\d.]+ .B of --max-memory \(it says that it takes .*; give it more", said)
+    assert re.search(r"more memory than --max-memory, [\d.]+ .B \(it says that it takes .*; give a larger limit", said)
     assert memory.limited_to() == before
 
 
@@ -385,7 +385,7 @@ def test_the_limit_of_memory_has_one_word_and_its_older_one(command):
 def test_a_limit_of_memory_that_is_none_is_refused(tractogram, tmp_path, capsys):
     target = tmp_path / "a.fiblets"
     assert "'much' is no size of memory" in fails(capsys, "convert", tractogram[0], target, "--max-memory", "much")
-    assert "are needed to begin with" in fails(capsys, "info", tractogram[0], "--max-memory", "5M")
+    assert "are needed to start" in fails(capsys, "info", tractogram[0], "--max-memory", "5M")
     assert not target.exists()
 
 
@@ -395,7 +395,7 @@ def test_a_program_that_has_much_memory_can_run_a_command(tractogram, tmp_path, 
     monkeypatch.setattr(memory, "taken", lambda: 2 * memory.of_machine())
     assert main(["convert", str(tractogram[0]), str(tmp_path / "a.fiblets")]) == 0
     assert memory.limited_to() is None
-    assert "are needed to begin with" in fails(capsys, "info", tractogram[0], "--max-memory", "40%")
+    assert "are needed to start" in fails(capsys, "info", tractogram[0], "--max-memory", "40%")
 
 
 @pytest.mark.parametrize("points", [np.zeros((1, 3)), np.zeros((2, 3)), np.full((4, 3), 7.5), np.full((3, 3), 1e-310)])
@@ -522,7 +522,7 @@ WRONG = [
     ("convert empty.tck b.fiblets", "empty.tck, byte 0: found b'', expected the line 'mrtrix tracks'"),
     ("convert text.tck b.fiblets", "text.tck, byte 0: found b'hello', expected the line"),
     ("convert https://example.org/a.tck b.fiblets", "https://example.org/a.tck is an address; .*fetch the file first"),
-    ("convert a.trx https://example.org/b.tck", "https://example.org/b.tck is an address, and files are written here"),
+    ("convert a.trx https://example.org/b.tck", "https://example.org/b.tck is an address, but output must be"),
     ("screenshot https://example.org/a.tck -o a.png", "https://example.org/a.tck is an address; .*fetch the file"),
     ("convert a.trx b.fiblets --max-memory much", "'much' is no size of memory; give one such as 4G"),
     ("verify a.trx a.fiblets", "a.trx is no .fiblets file; give the compressed file first, then its original"),
@@ -688,7 +688,7 @@ def test_volumes_matrices_and_pictures_leave_clean(shell, files, tmp_path):
     ("data", "words", "says"),
     [
         (b"", ["info", "-"], "standard input is empty"),
-        (b"GIF89a", ["info", "-"], "of no format known by its first bytes; add --format"),
+        (b"GIF89a", ["info", "-"], "has no known first bytes; add --format"),
         (b"TRACK", ["info", "-"], "standard input"),
         (b"mrtrix tracks\n", ["convert", "-", "b.fiblets"], "standard input"),
         (b"TRACK", ["info", "-", "--format", "xyz"], "no format has this suffix"),
@@ -713,10 +713,10 @@ def test_what_cannot_be_is_one_sentence_without_temporary_names(shell, tmp_path,
 def test_terminals_are_neither_read_nor_filled_with_bytes(monkeypatch, capsys, files):
     monkeypatch.setattr(sys, "stdin", SimpleNamespace(isatty=lambda: True))
     assert main(["info", "-"]) == 1
-    assert "a terminal here" in capsys.readouterr().err
+    assert ", a terminal;" in capsys.readouterr().err
     monkeypatch.setattr(sys.stdout, "isatty", lambda: True, raising=False)
     assert main(["convert", str(files / "a.tck"), "-", "--format", "trk"]) == 1
-    assert "a terminal here" in capsys.readouterr().err
+    assert ", a terminal;" in capsys.readouterr().err
 
 
 @pytest.mark.more

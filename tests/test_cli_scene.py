@@ -272,7 +272,7 @@ def test_a_session_is_the_picture_of_the_page(files, tmp_path):
         (["lines.tck", "--clip", "sphere", "center=0,0,0", "radius=1", "of=tubes"], "of=tubes; choose of lines"),
         (["lines.tck", "--volumes", "mode=mip"], "--volumes is about volumes, and no FILE has any"),
         (["ball.vtp", "--subset", "0.5"], "--subset is about streamlines"),
-        (["lines.tck", "--criterion", "length", "20"], "two numbers, of which - is open"),
+        (["lines.tck", "--criterion", "length", "20"], "two numbers; - means unlimited"),
         (["lines.tck", "--include", "ends_in"], "and no shape"),
         (["lines.tck", "--include", "sphere", "center=0,0,0", "radius=5", "sampling=0.5"], "choose lines or points"),
         (["image.nii.gz", "--volumes", "moed=mip"], "moed"),

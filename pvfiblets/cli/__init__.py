@@ -1,6 +1,6 @@
 """The ``pvfiblets`` command: a module for each subcommand, begun by `main`.
 
-Nothing here computes or draws: commands check what was typed, call the package, and print. Start with ``command.py``.
+Nothing here computes or draws: commands check their arguments, call the package, and print. Start with ``command.py``.
 """
 
 from .command import main

@@ -1,4 +1,4 @@
-"""What ``pvfiblets batch`` asks and does."""
+"""The ``batch`` command."""
 
 from __future__ import annotations
 
@@ -16,25 +16,24 @@ __all__ = ["add_options", "batch"]
 _ABOUT = {
     "convert": "compress each file, or write it in another format",
     "verify": "check .fiblets files against their checksums, and against their originals",
-    "density": "write a volume of how many streamlines pass each voxel, or of more, for each file",
+    "density": "write a density map of each file: streamlines, lengths, directions or means per voxel",
     "select": "write the streamlines of each file that pass, end or stay in regions",
-    "profile": "put mean values along each bundle of each file into a table",
-    "connectome": "put each file's matrix of connections into a table",
+    "profile": "write a table of mean values along the bundles of each file",
+    "connectome": "write a table of the connectome matrix of each file",
     "sample": "write the values of an image along the streamlines of each file",
 }
-_REGION = "a region: sphere:X,Y,Z,R or box:XMIN,XMAX,YMIN,YMAX,ZMIN,ZMAX (mm), IMAGE, or IMAGE:LABEL,LABEL; may repeat"
+_REGION = "a region: sphere:X,Y,Z,R or box:XMIN,XMAX,YMIN,YMAX,ZMIN,ZMAX (mm), IMAGE, or IMAGE:LABEL,LABEL; repeatable"
 
 
 def add_options(parser: argparse.ArgumentParser, positive: Any, angle: Any, count: Any) -> None:
-    """Give a parser what ``batch`` takes; the checks of numbers are the command line's own."""
+    """Add the options of ``batch`` to a parser."""
     parser.description = (
-        "Do one thing to each FILE of a cohort, on all cores of this machine or on a cluster of dask's. Files go to "
-        "OUT, numbers to OUT/OPERATION.parquet, and what was done is written down in OUT/OPERATION.jsonl, so that "
-        "--resume skips it. In paths {subject}, {session}, {stem}, {folder} and other parts of a FILE's BIDS name "
-        "stand for themselves."
+        "Apply an operation to each FILE of a cohort, on all cores of this machine or on a dask cluster. Files go "
+        "to OUT, numbers to OUT/OPERATION.parquet, and a record of finished files to OUT/OPERATION.jsonl, for "
+        "--resume. Paths may contain {subject}, {session}, {stem}, {folder} and other parts of a FILE's BIDS name."
     )
     operations = parser.add_subparsers(
-        metavar="OPERATION", required=True, dest="operation", help="what to do to each file"
+        metavar="OPERATION", required=True, dest="operation", help="the operation for each file"
     )
     made = {name: operations.add_parser(name, help=about, description=f"{about[0].upper()}{about[1:]}.")
             for name, about in _ABOUT.items()}  # fmt: skip
@@ -47,19 +46,19 @@ def add_options(parser: argparse.ArgumentParser, positive: Any, angle: Any, coun
 def _common(parser: argparse.ArgumentParser, count: Any) -> None:
     add = parser.add_argument
     add("sources", metavar="FILE", nargs="+", help="tractograms, or patterns between quotes: 'sub-*/dwi/*.trk'")
-    add("-o", "--output", required=True, metavar="OUT", help="the folder for all that is made")
+    add("-o", "--output", required=True, metavar="OUT", help="output folder")
     add("--cluster", metavar="ADDRESS", help="dask's scheduler, tcp://HOST:PORT, or its file (default: this machine)")
-    add("--workers", type=count, metavar="N", help="processes of this machine (default: one a core)")
+    add("--workers", type=count, metavar="N", help="worker processes on this machine (default: one a core)")
     add(
         "--max-memory",
         "--memory",
         dest="memory",
         metavar="SIZE",
-        help="most that a worker may have, such as 4G (default: 80%% of this machine's, divided by the workers)",
+        help="memory limit of a worker, such as 4G (default: 80%% of this machine's, divided by the workers)",
     )
     old = parser.add_mutually_exclusive_group()
-    old.add_argument("--resume", action="store_true", help="skip what an earlier run has finished")
-    old.add_argument("--overwrite", action="store_true", help="do all again")
+    old.add_argument("--resume", action="store_true", help="skip files that an earlier run has finished")
+    old.add_argument("--overwrite", action="store_true", help="repeat everything")
     add_image_options(parser)
     add_space_option(parser)
     add_surface_option(parser)
@@ -71,26 +70,28 @@ def _convert(parser: argparse.ArgumentParser, positive: Any, angle: Any, count: 
     add = parser.add_argument
     add("--to", default=".fiblets", metavar="SUFFIX", help="format to write, such as .trk (default: %(default)s)")
     add("--step", type=positive, metavar="MM", help="resample to this distance")
-    add("--max-error", type=positive, metavar="MM", help="greatest error of any point")
-    add("--max-angle", type=angle, default=DEFAULT_ANGLE, metavar="DEG", help="greatest angle of directions, or none")
+    add("--max-error", type=positive, metavar="MM", help="error bound of every point")
+    add("--max-angle", type=angle, default=DEFAULT_ANGLE, metavar="DEG", help="error bound of directions, or none")
     add("--effort", choices=("fast", "high"), default="fast", help="high: slower, less mean error")
     add("--per-point", action="append", default=[], metavar="all|none|NAME", help="per-point arrays to keep")
-    add("--per-point-bits", type=int, choices=(8, 16), default=8, help="for each value kept, or more (default: 8)")
-    add("--exact", action=argparse.BooleanOptionalAction, default=None, help="keep every bit of the points, or none")
+    add("--per-point-bits", type=int, choices=(8, 16), default=8, help="bits of each kept value, or more (default: 8)")
+    add("--exact", action=argparse.BooleanOptionalAction, default=None, help="keep every bit of the points, or "
+                                                                             "compress them")
 
 
 def _verify(parser: argparse.ArgumentParser, positive: Any, angle: Any, count: Any) -> None:  # noqa: ARG001
-    parser.add_argument("--original", metavar="PATH", help="what each was made from: 'raw/{folder}/{stem}.trk'")
-    parser.add_argument("--max-angle", type=angle, default=DEFAULT_ANGLE, metavar="DEG", help="for directions, or none")
+    parser.add_argument("--original", metavar="PATH", help="the source of each file: 'raw/{folder}/{stem}.trk'")
+    parser.add_argument("--max-angle", type=angle, default=DEFAULT_ANGLE, metavar="DEG", help="bound of directions, "
+                                                                                              "or none")
 
 
 def _density(parser: argparse.ArgumentParser, positive: Any, angle: Any, count: Any) -> None:  # noqa: ARG001
     add = parser.add_argument
     grid = parser.add_mutually_exclusive_group(required=True)
-    grid.add_argument("--voxel", type=positive, nargs="+", metavar="MM", help="side of the voxels, or three")
-    grid.add_argument("--like", metavar="IMAGE", help="an image whose grid it is")
+    grid.add_argument("--voxel", type=positive, nargs="+", metavar="MM", help="side length of the voxels, or three")
+    grid.add_argument("--like", metavar="IMAGE", help="an image with the grid to use")
     add("--contrast", default="count", metavar="WHAT", help="count, length, direction, an array, or a file of values")
-    add("--weights", metavar="WHAT", help="of streamlines: a file of numbers, or the name of an array")
+    add("--weights", metavar="WHAT", help="weights of streamlines: a file of numbers, or the name of an array")
     add("--ends-only", action="store_true", help="count end points instead")
     add("--to", default=".nii.gz", metavar="SUFFIX", help=".nii, .nii.gz, .mif, .mif.gz or .vti (default: %(default)s)")
 
@@ -104,23 +105,24 @@ def _select(parser: argparse.ArgumentParser, positive: Any, angle: Any, count: A
     ):  # fmt: skip
         add(option, action="append", default=[], metavar="REGION", help=f"{what} {_REGION}")
     add("--sampling", choices=("lines", "points"), default="lines",
-        help="points: what lies between points does not count, as for MRtrix's tckedit (default: %(default)s)")
+        help="points: test the points only, as MRtrix's tckedit does (default: %(default)s)")
     add("--to", default=".fiblets", metavar="SUFFIX", help="format to write (default: %(default)s)")
 
 
 def _profile(parser: argparse.ArgumentParser, positive: Any, angle: Any, count: Any) -> None:  # noqa: ARG001
     parser.add_argument("--values", required=True, metavar="NAME|IMAGE",
-                        help="an array of points, curvature, arc_length, or an image that is sampled")  # fmt: skip
-    parser.add_argument("--positions", type=count, default=100, metavar="N", help="along it (default: %(default)s)")
+                        help="a per-point array, curvature, arc_length, or an image to sample")  # fmt: skip
+    parser.add_argument("--positions", type=count, default=100, metavar="N", help="places along a bundle (default: "
+                                                                                  "%(default)s)")
 
 
 def _connectome(parser: argparse.ArgumentParser, positive: Any, angle: Any, count: Any) -> None:  # noqa: ARG001
     add = parser.add_argument
-    add("--labels", required=True, metavar="IMAGE", help="of parcels: 'atlas/sub-{subject}.nii.gz'")
-    add("--weights", metavar="NAME|FILE", help="of streamlines, such as SIFT2's")
+    add("--labels", required=True, metavar="IMAGE", help="label image of parcels: 'atlas/sub-{subject}.nii.gz'")
+    add("--weights", metavar="NAME|FILE", help="weights of streamlines, such as SIFT2's")
     add("--contrast", default="count", metavar="NAME|FILE", help="count, length, or numbers by name or from a file")
-    add("--radius", type=float, default=4.0, metavar="MM", help="about an end (default: %(default)s)")
-    add("--statistic", choices=("sum", "mean", "min", "max"), help="of a pair's numbers")
+    add("--radius", type=float, default=4.0, metavar="MM", help="search radius about an end (default: %(default)s)")
+    add("--statistic", choices=("sum", "mean", "min", "max"), help="statistic of a pair's values")
 
 
 def _sample(parser: argparse.ArgumentParser, positive: Any, angle: Any, count: Any) -> None:  # noqa: ARG001
@@ -144,7 +146,7 @@ def batch(
     json: bool,
     **options: Any,
 ) -> int:
-    """Do one thing to many files; return 1 if any failed."""
+    """Apply an operation to many files; return 1 if any failed."""
     from pvfiblets.cluster import batch as run
 
     if "per_point" in options:

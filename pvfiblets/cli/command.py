@@ -1,8 +1,7 @@
 """The ``pvfiblets`` command.
 
-Exit codes: 0 when it did what was asked, 1 when it could not, with one plain sentence on standard
-error, 2 when it was called wrongly. With ``--json`` the result is one JSON object on standard
-output and nothing else.
+Exit codes: 0 on success; 1 on failure, with one sentence on standard error; 2 for wrong usage. With ``--json`` standard
+output is one JSON object.
 """
 
 from __future__ import annotations
@@ -64,7 +63,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 @contextmanager
 def _plain_warnings(pipes: Pipes) -> Iterator[None]:
-    """Print warnings that people are meant to read as one sentence each, without the place in the source."""
+    """Print user warnings as one sentence each, without the source location."""
 
     def show(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
         if category is UserWarning:
@@ -82,7 +81,7 @@ def _plain_warnings(pipes: Pipes) -> Iterator[None]:
 
 def make_parser() -> argparse.ArgumentParser:
     """Return the parser of the command line."""
-    parser = Parser(prog="pvfiblets", description="Compress, check and draw tractograms of any size.")
+    parser = Parser(prog="pvfiblets", description="Compress, check and render tractograms of any size.")
     parser.add_argument("--version", action=_Version)
     parser.add_argument("--debug", action="store_true", help="show the traceback of an error")
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
@@ -95,7 +94,8 @@ def make_parser() -> argparse.ArgumentParser:
     files.add_table(commands)
     files.add_profile(commands)
     files.add_sample(commands)
-    batch = commands.add_parser("batch", help="do one of these to each file of a cohort, on all cores or on a cluster")
+    batch = commands.add_parser("batch", help="apply one of these to each file of a cohort, on all cores or on a "
+                                              "cluster")
     add_batch_options(batch, positive, angle, count)
     scenes.add_screenshot(commands)
     scenes.add_show(commands)
@@ -104,63 +104,68 @@ def make_parser() -> argparse.ArgumentParser:
 
     gl = commands.add_parser(
         "gl",
-        help="say what this machine's OpenGL is, which pipelines can draw with it, and whether they draw right",
-        description="List the driver, its limits, and every pipeline: available, or why not. With --check, draw with "
-        "all of them, compare with the CPU, measure, and write one file to attach to a report of a bug; it ends with 1 "
-        "if anything differs or fails.",
+        help="print this machine's OpenGL and its pipelines, and check their output",
+        description="List the driver, its limits, and every pipeline: available, or the reason why not. With "
+                    "--check, render with all of them, compare with the CPU, time frames, and write one file to "
+                    "attach to a bug report; the exit code is 1 if anything differs or fails.",
     )
-    gl.add_argument("--check", action="store_true", help="draw with everything that there is, and compare")
+    gl.add_argument("--check", action="store_true", help="render with every pipeline and effect, and compare")
     gl.add_argument(
-        "-o", "--output", default="pvfiblets-check.zip", metavar="FILE", help="of --check (default: %(default)s)"
-    )
-    gl.add_argument(
-        "--segments", type=positive, nargs="*", metavar="N", help="sizes to measure speed at (default: 1e6 1e7 1e8)"
+        "-o", "--output", default="pvfiblets-check.zip", metavar="FILE", help="output of --check (default: %(default)s)"
     )
     gl.add_argument(
-        "--only", action="append", default=[], metavar="PART", help="parts of the check whose names begin like that"
+        "--segments", type=positive, nargs="*", metavar="N", help="numbers of segments to time (default: 1e6 1e7 1e8)"
+    )
+    gl.add_argument(
+        "--only", action="append", default=[], metavar="PART", help="run only the checks whose names begin with PART"
     )
     files.json_option(gl)
     gl.set_defaults(run="pvfiblets.cli.gl:gl")
 
     demo = commands.add_parser(
         "demo",
-        help="make, compress and draw a whole-brain-like tractogram, and print size and error",
-        description="Make a tractogram like a whole brain's, compress it, draw it, and print its size and error.",
+        help="make, compress and render a tractogram like a whole brain's, and print size and error",
+        description="Make a tractogram like a whole brain's, compress and render it, and print its size and error.",
     )
-    demo.add_argument("--output", default="pvfiblets-demo", metavar="FOLDER", help="for files (default: %(default)s)")
-    demo.add_argument("--streamlines", type=count, default=50_000, metavar="N", help="how many (default: %(default)s)")
-    demo.add_argument("--step", type=positive, default=0.5, metavar="MM", help="between points (default: %(default)s)")
-    demo.add_argument("--seed", type=int, default=0, metavar="N", help="another, another brain (default: %(default)s)")
+    demo.add_argument("--output", default="pvfiblets-demo", metavar="FOLDER", help="output folder (default: "
+                                                                                   "%(default)s)")
+    demo.add_argument("--streamlines", type=count, default=50_000, metavar="N", help="number of streamlines "
+                                                                                     "(default: %(default)s)")
+    demo.add_argument("--step", type=positive, default=0.5, metavar="MM", help="distance of points (default: "
+                                                                               "%(default)s)")
+    demo.add_argument("--seed", type=int, default=0, metavar="N", help="seed of the random numbers (default: "
+                                                                       "%(default)s)")
     files.json_option(demo)
     demo.set_defaults(run="pvfiblets.cli.pictures:demo")
 
     report = commands.add_parser(
         "report",
-        help="measure error against run time of every approximation in the program, beside its rivals",
-        description="Write report.json, a Markdown page and plots into DIR. All studies, unless --only names some.",
+        help="measure error against run time of every approximation and of other methods",
+        description="Write report.json, a Markdown page and plots into DIR. Default: all studies.",
     )
     report.add_argument(
         "--only", nargs="+", metavar="STUDY",
         help="codec, decode, tractograms, pixels, culling, tubes, volumes, halos, features, antialias, "
-        "translucency, query, stability; of speed alone, not among all studies: speed, lines, reading",
+        "translucency, query, stability; only by name, speed alone: speed, lines, reading",
     )  # fmt: skip
     report.add_argument(
         "--data", nargs="+", default=[], metavar="FILE",
-        help="tractograms to measure with, or folders of such (default: the folder that PVFIBLETS_DATA names)",
+        help="tractograms to measure, or folders of tractograms (default: the folder in PVFIBLETS_DATA)",
     )  # fmt: skip
-    report.add_argument("--quick", action="store_true", help="a little of each, in at most two minutes on two cores")
+    report.add_argument("--quick", action="store_true", help="a small part of each study, in at most two minutes on "
+                                                             "two cores")
     report.add_argument(
-        "--minutes", type=float, metavar="M", help="for measuring, shared among the studies (default: no limit)"
+        "--minutes", type=float, metavar="M", help="time limit, shared among the studies (default: none)"
     )
-    report.add_argument("--seed", type=int, default=0, metavar="N", help="of all made-up data (default: 0)")
+    report.add_argument("--seed", type=int, default=0, metavar="N", help="seed of synthetic data (default: 0)")
     report.add_argument("--from", dest="source", metavar="JSON", help="make page and plots again, without measuring")
-    report.add_argument("-o", "--output", required=True, metavar="DIR", help="the folder to write into")
+    report.add_argument("-o", "--output", required=True, metavar="DIR", help="output folder")
     report.set_defaults(run="pvfiblets.cli.report:report")
     return parser
 
 
 class _Version(argparse.Action):
-    """Print the versions that a report of a problem needs."""
+    """Print the versions for a bug report."""
 
     def __init__(self, option_strings: Sequence[str], **_: object) -> None:
         super().__init__(option_strings, dest=argparse.SUPPRESS, nargs=0, help="print the version")

@@ -1,4 +1,4 @@
-"""``--max-memory``: how much memory a command may take."""
+"""``--max-memory``, the memory limit of a command."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ def add_memory_option(parser: argparse.ArgumentParser) -> None:
         "--max-memory",
         default=HALF,
         metavar="SIZE",
-        help="most memory it may take, such as 4G or 25%% of this machine's (default: 50%%); files are read in parts, "
-        "and lines of millions of points lie on disk meanwhile, where TMPDIR says",
+        help="memory limit, such as 4G or 25%% of this machine's (default: 50%%). Files are read in parts; lines of "
+             "millions of points are buffered on disk, in TMPDIR",
     )
 
 
@@ -34,12 +34,12 @@ def bytes_of_file(text: str) -> int:
             raise ValueError
         return memory.parse(text)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is no size of a file; give one such as 2G or 500M") from None
+        raise argparse.ArgumentTypeError(f"{text!r} is no file size; give one such as 2G or 500M") from None
 
 
 @contextmanager
 def held_to(most: str | None) -> Iterator[None]:
-    """Let this process have as much memory meanwhile as ``--max-memory`` says.
+    """Limit the memory of this process to ``--max-memory``.
 
     By default it may take half of the machine's beyond what it has: a command that runs within a larger program, whose
     memory nobody limited, is not refused for that.
@@ -52,13 +52,13 @@ def held_to(most: str | None) -> Iterator[None]:
     chosen = most != HALF
     if not memory.CAN_LIMIT:
         if chosen:
-            raise FibletsError("--max-memory: only Linux can hold a program to a limit; leave it out")
+            raise FibletsError("--max-memory works on Linux only; leave it out")
         yield
         return
     has = memory.taken()
     size = memory.parse(most) + (0 if chosen else has) if chosen or memory.of_machine() else None
     if size is not None and size < (least := has + LEAST_MEMORY):
-        raise FibletsError(f"--max-memory {most}: {memory.shown(least)} are needed to begin with; give as much or more")
+        raise FibletsError(f"--max-memory {most}: {memory.shown(least)} are needed to start; give at least that")
     try:
         with memory.limited(size):
             yield
@@ -67,6 +67,6 @@ def held_to(most: str | None) -> Iterator[None]:
             raise
         why = f" ({' '.join(str(error).split())})" if str(error) else ""
         raise FibletsError(
-            f"this takes more memory than the {memory.shown(size)} of --max-memory{why}; give it more, or convert the "
-            "file to .trx, .trk or .tck where memory suffices: these are read in parts"
+            f"this needs more memory than --max-memory, {memory.shown(size)}{why}; give a larger limit, or convert "
+            "the file to .trx, .trk or .tck, which are read in parts"
         ) from error

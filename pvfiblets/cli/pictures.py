@@ -133,7 +133,7 @@ def fill(
         if len(paths) > 1:
             raise ValueError(f"{' '.join(paths)}: a session has all of its files; give it alone")
         if named := [name for name, value in said.items() if value not in (None, False, [])]:
-            raise ValueError(f"{paths[0]} says itself what is shown, and how: leave --{named[0].replace('_', '-')} out")
+            raise ValueError(f"{paths[0]} is a session with its own settings: leave --{named[0].replace('_', '-')} out")
         scene = open_session(plotter, paths[0])
         if view is not None:
             point_camera(plotter, view)

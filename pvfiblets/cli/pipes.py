@@ -28,41 +28,41 @@ _IN, _OUT = "standard input", "standard output"
 def add_format_option(
     parser: argparse.ArgumentParser, *, reads: Sequence[str], writes: str | None = None, usual: str | None = None
 ) -> None:
-    """Let a command take ``-`` for files, and be told the space of files that name none."""
-    which = "what - stands for, such as tck: standard input (default: its first bytes tell)"
+    """Add ``--format`` and ``--space``, and allow ``-`` for files."""
+    which = "format of -, such as tck: of standard input (default: detected from its first bytes)"
     if writes is not None:
-        which += f" or output ({f'default: {usual}' if usual else 'needed'}); of both, that of output comes last"
+        which += f" or output ({f'default: {usual}' if usual else 'needed'}); of both, the output's comes last"
     parser.add_argument("--format", action="append", default=[], metavar="SUFFIX", help=which)
     add_space_option(parser)
     parser.set_defaults(pipes=(tuple(reads), writes, usual))
 
 
 def add_space_option(parser: argparse.ArgumentParser) -> None:
-    """Let a command be told the space of files that name none."""
+    """Add ``--space``."""
     parser.add_argument(
         "--space", choices=("RAS", "LPS"), type=str.upper,
-        help="space of points in VTK's files that name none (default: RAS); DIPY wrote LPS up to 1.11",
+        help="space of points in VTK files that name none (default: RAS); DIPY wrote LPS up to 1.11",
     )  # fmt: skip
 
 
 def add_image_options(parser: argparse.ArgumentParser) -> None:
-    """Let a command be told what places the images of NIfTI that it reads."""
+    """Add ``--nifti-space`` and ``--nifti-units``."""
     parser.add_argument(
         "--nifti-space", choices=MATRICES,
-        help="what places NIfTI images: a matrix of theirs, or voxel sizes alone with the first axis to the left (LAS) "
-        "or right (RAS) (default: sform, else qform, else LAS)",
+        help="position of NIfTI images: by a matrix of the header, or by voxel sizes alone with the first axis to "
+             "the left (LAS) or right (RAS) (default: sform, then qform, then LAS)",
     )  # fmt: skip
     parser.add_argument(
         "--nifti-units", choices=UNITS, default="mm",
-        help="unit of their coordinates: mm, or the header's (xyzt_units) (default: %(default)s)",
+        help="unit of coordinates in NIfTI images: mm, or the header's (xyzt_units) (default: %(default)s)",
     )  # fmt: skip
 
 
 def add_surface_option(parser: argparse.ArgumentParser) -> None:
-    """Let a command leave FreeSurfer's surfaces where they are stored."""
+    """Add ``--tkras``."""
     parser.add_argument(
         "--tkras", action="store_true",
-        help="leave FreeSurfer's surfaces in its surface space (default: moved by c_ras to where tracts are)",
+        help="keep FreeSurfer's surfaces in its surface space (default: moved by c_ras to the space of tracts)",
     )  # fmt: skip
 
 
@@ -104,7 +104,7 @@ class Pipes:
                 self._stdout.flush()
 
     def renamed(self, text: str) -> str:
-        """Return a message that calls temporary files what they stand for."""
+        """Return a message with the user's names of temporary files."""
         for path, name in self._names.items():
             text = text.replace(path, name)
         return text
@@ -112,15 +112,16 @@ class Pipes:
     def _enter(self) -> None:
         target = self._options.get(self._writes or "")
         if isinstance(target, str) and is_url(target):
-            raise ValueError(f"{target} is an address, and files are written here only; give a path")
+            raise ValueError(f"{target} is an address, but output must be a local file; give a path")
         sources = [name for name in self._reads if _asks(self._options.get(name))]
         into = self._writes is not None and self._options[self._writes] == "-"
         if len(sources) + sum(_asks(self._options[name]) > 1 for name in sources) > 1:
             raise ValueError("- is given for two files, but there is one standard input; save one of them to a file")
         if len(self._formats) > len(sources) + into:
             raise ValueError(
-                f"--format {self._formats[0].lstrip('.')} says what - stands for, and "
-                + ("there is only one -; give one" if sources or into else "no file is -; names say it by their suffix")
+                f"--format {self._formats[0].lstrip('.')} sets the format of -, but "
+                + ("there is only one -; give one" if sources or into else "no file is -; a suffix sets the format "
+                                                                           "of a named file")
             )
         if not (sources or into):
             return
@@ -128,12 +129,12 @@ class Pipes:
         written = (given.pop() if given else self._usual) if into else None
         if into and written is None:
             raise ValueError(
-                "- is standard output here, whose format no name tells; add --format, such as --format tck"
+                "- is standard output, which has no suffix; add --format, such as --format tck"
             )
         if into and self._options.get("shards") is not None:
-            raise ValueError("--shards writes a folder, which standard output cannot be; give the folder's name")
+            raise ValueError("--shards writes a folder, not to standard output; give the folder's name")
         if into and self._stdout.isatty():
-            raise ValueError("- is standard output, a terminal here; send it to a file or another program (> or |)")
+            raise ValueError("- is standard output, a terminal; redirect it to a file or another program (> or |)")
         folder = Path(self._stack.enter_context(tempfile.TemporaryDirectory(prefix="pvfiblets-pipe-")))
         self._names[f"{folder}/"] = ""
         for name in sources:
@@ -158,16 +159,16 @@ def _asks(value: Any) -> int:
 def _spooled(folder: Path, suffix: str | None) -> Path:
     """Put standard input into a file with the suffix of its format."""
     if sys.stdin is None or sys.stdin.isatty():
-        raise ValueError("- is standard input, a terminal here; send a file or a program's output to it (< or |)")
+        raise ValueError("- is standard input, a terminal; redirect a file or a program's output to it (< or |)")
     path = folder / "standard-input"
     with naming_target(folder / _IN), path.open("wb") as file:
         shutil.copyfileobj(_binary(sys.stdin), file, 1 << 20)
         size = file.tell()
     if size == 0:
-        raise ValueError("standard input is empty; send a file or a program's output to it (< or |)")
+        raise ValueError("standard input is empty; redirect a file or a program's output to it (< or |)")
     suffix = suffix or suffix_by_content(path)
     if suffix is None:
-        raise ValueError("standard input is of no format known by its first bytes; add --format, such as --format trk")
+        raise ValueError("standard input has no known first bytes; add --format, such as --format trk")
     return path.rename(path.with_name(path.name + suffix))
 
 
@@ -177,7 +178,7 @@ def _binary(stream: Any) -> IO[bytes]:
 
 
 class _Renaming:
-    """A text stream that calls temporary files what they stand for."""
+    """A text stream with the user's names of temporary files."""
 
     def __init__(self, stream: Any, pipes: Pipes) -> None:
         self._stream, self._pipes = stream, pipes

@@ -19,7 +19,7 @@ def report(
     seed: int,
     source: str | None,
 ) -> None:
-    """Measure, or make page and plots of what was measured."""
+    """Measure, or make page and plots of earlier measurements."""
     folder = Path(output)
     if source is not None:
         if only or data or quick or minutes is not None or seed:

@@ -38,34 +38,35 @@ def add_options(parser: Any) -> None:
         )  # fmt: skip
     parser.add_argument(
         "--clip", metavar="WORD",
-        help="show only what is inside: plane normal=X,Y,Z origin=X,Y,Z (what the normal points to), slab normal=X,Y,Z "
+        help="keep the inside of a plane normal=X,Y,Z origin=X,Y,Z (the side that the normal points to), slab "
+             "normal=X,Y,Z "
         "origin=X,Y,Z thickness=MM, box bounds=X0,X1,Y0,Y1,Z0,Z1, sphere center=X,Y,Z radius=MM, or mesh path=FILE; "
-        "of=lines,volumes,meshes says what is cut (default: all). May be given several times",
+        "of=lines,volumes,meshes selects the objects to cut (default: all). Repeatable",
         **words,
     )  # fmt: skip
-    parser.add_argument("--clip-away", metavar="WORD", help="show only what is outside; words as of --clip", **words)
+    parser.add_argument("--clip-away", metavar="WORD", help="keep the outside; words as of --clip", **words)
     parser.add_argument(
         "--include", metavar="WORD",
-        help="only streamlines that pass through a shape of --clip, or labels path=FILE labels=N,N; passes, ends_in, "
-        "both_ends_in or stays_in before it says otherwise. With sampling=points, places between points do not count. "
-        "May be given several times: all must hold",
+        help="only streamlines that pass through a shape of --clip, or labels path=FILE labels=N,N; ends_in, "
+             "both_ends_in or stays_in before it replaces the default, passes. sampling=points tests the points "
+             "only. Repeatable: all must hold",
         **words,
     )  # fmt: skip
-    parser.add_argument("--exclude", metavar="WORD", help="no streamlines that do; words as of --include", **words)
+    parser.add_argument("--exclude", metavar="WORD", help="hide these streamlines; words as of --include", **words)
     parser.add_argument(
         "--criterion", metavar=("NAME", "VALUE"),
-        help="only streamlines, or parts of them, whose length, curvature, ..., array, or value of an image is between "
-        "two numbers; of these, - is open",
+        help="only streamlines, or parts of them, with length, curvature, ..., an array, or the value of an image "
+             "between two numbers; - means unlimited",
         **words,
     )  # fmt: skip
     parser.add_argument("--groups", nargs="+", metavar="NAME", help="only streamlines in these groups")
     parser.add_argument(
-        "--subset", metavar="AMOUNT", help="only a share below 1, a number of streamlines, or every=N of them"
+        "--subset", metavar="AMOUNT", help="a share below 1, a number of streamlines, or every=N"
     )
 
 
 def options_of(words: Words, option: str) -> dict[str, Any]:
-    """Return ``NAME=VALUE`` of all times that an option was given."""
+    """Return all ``NAME=VALUE`` of an option."""
     found: dict[str, Any] = {}
     for word in (word for group in words for word in group):
         name, equals, value = word.partition("=")
@@ -76,7 +77,7 @@ def options_of(words: Words, option: str) -> dict[str, Any]:
 
 
 def value_of(text: str) -> Any:
-    """Return what a word stands for: JSON, a number such as .5, a list between commas, or itself."""
+    """Parse a word: JSON, a number such as .5, a list between commas, or text."""
     try:
         return json.loads(text)
     except ValueError:
@@ -167,7 +168,7 @@ def _ends(words: Sequence[str]) -> tuple[float | None, float | None]:
         low, high = (None if word == "-" else float(word) for word in words[1:])
     except ValueError:
         raise ValueError(
-            f"--criterion has {' '.join(words)!r}; give a name and two numbers, of which - is open"
+            f"--criterion has {' '.join(words)!r}; give a name and two numbers; - means unlimited"
         ) from None
     return low, high
 

@@ -1,4 +1,4 @@
-"""Arguments of the commands that draw."""
+"""Arguments of the commands that render."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ def add_screenshot(commands: Any) -> None:
     """``screenshot``."""
     screenshot = commands.add_parser(
         "screenshot",
-        help="draw files into a PNG, without a display",
-        description="Draw FILEs off screen, as one scene, and write the picture.",
+        help="render files to a PNG, without a display",
+        description="Render FILEs off screen, as one scene, and write the image.",
     )
     _scene(screenshot)
-    screenshot.add_argument("-o", "--output", required=True, metavar="PNG", help="the picture to write, or -")
+    screenshot.add_argument("-o", "--output", required=True, metavar="PNG", help="output file, or -")
     screenshot.add_argument("--size", type=size, default=(1200, 900), metavar="WxH", help="pixels (default: 1200x900)")
-    screenshot.add_argument("--transparent", action="store_true", help="leave the background out")
+    screenshot.add_argument("--transparent", action="store_true", help="transparent background")
     add_format_option(screenshot, reads=["paths"], writes="output", usual="png")
     add_image_options(screenshot)
     add_surface_option(screenshot)
@@ -38,7 +38,7 @@ def add_show(commands: Any) -> None:
     show = commands.add_parser(
         "show",
         help="open files in a window",
-        description="Draw FILEs in a window, as one scene: the left button turns it, the wheel zooms, q closes it.",
+        description="Show FILEs in a window, as one scene: the left button turns it, the wheel zooms, q closes it.",
     )
     _scene(show)
     add_format_option(show, reads=["paths"])
@@ -51,14 +51,14 @@ def add_page(commands: Any) -> None:
     """``page``."""
     page = commands.add_parser(
         "page",
-        help="write files as a page that any browser draws by itself",
-        description="Write FILEs, as one scene, as an HTML page that draws them by itself: offline, without a server, "
-        "with the streamlines compressed in it. More than 64 MB of data lie in a folder beside it, which then needs a "
-        "web server.",
+        help="write files as an HTML page that renders in any browser",
+        description="Write FILEs, as one scene, as an HTML page that renders offline, without a server, and "
+                    "contains the compressed streamlines. More than 64 MB of data go to a folder beside it, which "
+                    "then needs a web server.",
     )
     _scene(page)
-    page.add_argument("-o", "--output", required=True, metavar="HTML", help="the page to write, or a folder")
-    page.add_argument("--title", help="of the page (default: the name of the first FILE)")
+    page.add_argument("-o", "--output", required=True, metavar="HTML", help="output file or folder")
+    page.add_argument("--title", help="title of the page (default: the name of the first FILE)")
     add_format_option(page, reads=["paths"])
     add_image_options(page)
     add_surface_option(page)
@@ -69,71 +69,73 @@ def add_serve(commands: Any) -> None:
     """``serve``."""
     parser = commands.add_parser("serve", help="explore files in a browser")
     parser.description = (
-        "Serve FILEs to browsers. This machine draws and sends pictures, or the browser draws; browsers need nothing "
-        "installed. By default "
-        "only this machine can connect, and must show a token that is printed to the terminal."
+        "Serve FILEs to browsers, which need nothing installed. This machine renders and sends images, or the "
+        "browser renders. By default only this machine can connect, with the token that is printed to the terminal."
     )
     add = parser.add_argument
     add("paths", metavar="FILE", nargs="*", help="tractograms of any format; a .tsf file colours the one before it")
-    add("--volume", action="append", default=[], metavar="F", help="a volume beside them; may be given several times")
-    add("--mesh", action="append", default=[], metavar="F", help="a mesh beside them; may be given several times")
-    add("--demo", action="store_true", help="open a made-up tractogram")
-    add("--host", default="127.0.0.1", help="where to listen (default: %(default)s, this machine only)")
-    add("--port", type=int, default=8080, metavar="N", help="0: any that is free (default: %(default)s)")
-    add("--root", default=".", metavar="DIR", help="the folder that browsers may open files from (default: this one)")
+    add("--volume", action="append", default=[], metavar="F", help="a volume to add; repeatable")
+    add("--mesh", action="append", default=[], metavar="F", help="a mesh to add; repeatable")
+    add("--demo", action="store_true", help="open a synthetic tractogram")
+    add("--host", default="127.0.0.1", help="address to listen at (default: %(default)s, this machine only)")
+    add("--port", type=int, default=8080, metavar="N", help="port; 0: any free port (default: %(default)s)")
+    add("--root", default=".", metavar="DIR", help="folder of the files that browsers may open (default: the "
+                                                   "current one)")
     add(
         "--token",
         default="auto",
         metavar="auto|none",
-        help="what a browser must show (default: auto, made anew; or the environment variable PVFIBLETS_TOKEN); none "
-        "only where nobody else can connect",
+        help="token that a browser must send (default: auto, a new one, or the environment variable "
+             "PVFIBLETS_TOKEN); none only if no other machine can connect",
     )
-    add("--token-file", metavar="FILE", help="a file with the token, which others cannot read; made if there is none")
-    add("--shared", action="store_true", help="all browsers see and steer the same view")
-    add("--limit", type=count, default=8, metavar="N", help="sessions at once (default: %(default)s)")
+    add("--token-file", metavar="FILE", help="private file with the token; made if it does not exist")
+    add("--shared", action="store_true", help="all browsers share one session")
+    add("--limit", type=count, default=8, metavar="N", help="number of sessions at once (default: %(default)s)")
     add(
         "--timeout",
         type=positive,
         default=300.0,
         metavar="SECONDS",
-        help="how long a session waits for its browser to come back (default: 300)",
+        help="time that a session waits for its browser to return (default: 300)",
     )
-    add("--upload", type=int, default=2048, metavar="MB", help="most in one upload (default: %(default)s)")
+    add("--upload", type=int, default=2048, metavar="MB", help="size limit of an upload (default: %(default)s)")
     add(
         "--max-memory",
         "--memory",
         dest="memory",
         default="auto",
         metavar="SIZE",
-        help="most that a session may have, such as 4G or 25%% of this machine's (default: 80%% divided by --limit, at "
-        "least 20%%)",
+        help="memory limit of a session, such as 4G or 25%% of this machine's (default: 80%% divided by --limit, at "
+             "least 20%%)",
     )
     _look(parser)
     _antialias(parser)
-    add("--codec", choices=("jpeg", "png", "webp"), default="jpeg", help="how pictures travel (default: %(default)s)")
+    add("--codec", choices=("jpeg", "png", "webp"), default="jpeg", help="coding of images (default: %(default)s)")
     add(
         "--draw",
         choices=("auto", "here", "there"),
         default="auto",
-        help="who draws: here this machine, there the browser where it can; auto: browsers with a graphics card, of "
-        "scenes that are sent within 64 MB (default: %(default)s)",
+        help="renderer: here, this machine; there, the browser if possible; auto, the browser if it has a graphics "
+             "card and the data fit into 64 MB (default: %(default)s)",
     )
-    add("--origin", action="append", default=[], metavar="URL", help="an address by which a proxy serves this server")
+    add("--origin", action="append", default=[], metavar="URL", help="public address of this server behind a proxy; "
+                                                                     "repeatable")
     add(
         "--proxy",
         action="append",
         default=[],
         metavar="ADDRESS",
-        help="a proxy that is believed when it says (X-Forwarded-For) for whom it asks; may be given several times",
+        help="address of a proxy with a trusted X-Forwarded-For header; repeatable",
     )
-    add("--cluster", metavar="ADDRESS", help="dask's scheduler, or its file, whose workers draw fiblets")
-    add("--connections", type=count, default=1000, metavar="N", help="connections at once (default: %(default)s)")
+    add("--cluster", metavar="ADDRESS", help="dask's scheduler, or its file; its workers render fiblets")
+    add("--connections", type=count, default=1000, metavar="N", help="number of connections at once (default: "
+                                                                     "%(default)s)")
     add(
         "--connections-by-address",
         type=count,
         default=100,
         metavar="N",
-        help="connections at once from one address (default: %(default)s)",
+        help="number of connections at once from one address (default: %(default)s)",
     )
     add_space_option(parser)
     add_image_options(parser)
@@ -145,10 +147,11 @@ def _scene(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "paths", metavar="FILE", nargs="+", help="tractograms, images (NIfTI, MGH, MIF, NRRD, MetaImage, .vti) and "
         "meshes (.vtp, .ply, .stl, .obj, .gii, lh.pial) of any format, a surface before its values (.annot, "
-        ".label.gii); or a session that `serve` saved, .json; or -"
+        ".label.gii); or a session saved by `serve`, .json; or -"
     )  # fmt: skip
     parser.add_argument(
-        "--view", choices=VIEWS, help="from where (default: oblique, or as a session says; coronal is from the front)"
+        "--view", choices=VIEWS, help="view direction (default: oblique, or that of the session; coronal is from "
+                                      "the front)"
     )
     parser.add_argument(
         "--scalars",
@@ -160,10 +163,10 @@ def _scene(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--cmap", help="colour map, such as viridis")
     parser.add_argument("--clim", type=float, nargs=2, metavar=("LOW", "HIGH"), help="range of the colour map")
     _look(parser)
-    parser.add_argument("--line-width", type=positive, metavar="PIXELS", help="of lines (default: 1)")
-    parser.add_argument("--opacity", type=float, metavar="SHARE", help="0 to 1 (default: 1)")
-    parser.add_argument("--background", metavar="COLOR", help="behind it all (default: black)")
-    parser.add_argument("--no-lighting", action="store_true", help="show pure colours")
+    parser.add_argument("--line-width", type=positive, metavar="PIXELS", help="width of lines (default: 1)")
+    parser.add_argument("--opacity", type=float, metavar="SHARE", help="opacity, 0 to 1 (default: 1)")
+    parser.add_argument("--background", metavar="COLOR", help="background colour (default: black)")
+    parser.add_argument("--no-lighting", action="store_true", help="show pure colours, without light")
     _antialias(parser)
     add_options(parser)
 
@@ -172,7 +175,7 @@ def _look(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--look",
         choices=LOOKS,
-        help="of lines: widths, light and shading that give a finished picture together; other options go before it",
+        help="preset of widths, light and shading of lines; other options override it",
     )
 
 
@@ -181,6 +184,6 @@ def _antialias(parser: argparse.ArgumentParser) -> None:
         "--antialias",
         type=antialias,
         metavar="HOW",
-        help="of edges: off, coverage, refined (16 samples a pixel where nothing moves) or a number of samples "
-        "(default: refined, or what the environment variable PVFIBLETS_ANTIALIAS says)",
+        help="antialiasing: off, coverage, refined (16 samples a pixel when idle) or a number of samples (default: "
+             "refined, or the environment variable PVFIBLETS_ANTIALIAS)",
     )

@@ -82,7 +82,7 @@ def serve(
         from pvfiblets.cluster.connection import connected
 
         with connected(cluster, 1, None):
-            pass  # whether anybody is there is said before a browser asks
+            pass  # a missing scheduler is reported before a browser connects
     named = token_file or (f"the environment variable {VARIABLE}" if os.environ.get(VARIABLE) else None)
     return _run(options, named)
 

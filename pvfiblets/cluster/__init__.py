@@ -5,7 +5,7 @@
 second run skips it. Numbers become one Parquet table (:mod:`.tables`), with the subject, the session and whatever else
 a BIDS name says in columns of their own (:mod:`.bids`). What can be done to a file stands in :mod:`.operations`.
 
-Nothing here is imported unless it is asked for: one machine that draws one file pays nothing for it.
+Nothing here is imported unless it is used.
 """
 
 from __future__ import annotations

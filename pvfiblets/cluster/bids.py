@@ -20,7 +20,7 @@ NAMES = {
     "rec": "reconstruction", "dir": "direction", "space": "space", "desc": "description", "atlas": "atlas",
     "seg": "segmentation", "hemi": "hemisphere", "res": "resolution", "den": "density", "param": "parameter",
 }  # fmt: skip
-"""Keys of BIDS, and what they mean; others stand for themselves."""
+"""Names of BIDS keys; other keys keep theirs."""
 _PAIR = re.compile(r"([a-zA-Z0-9]+)-([a-zA-Z0-9+.]+)")
 _FOLDER = re.compile(r"(sub|ses)-([a-zA-Z0-9]+)")
 

@@ -1,4 +1,4 @@
-"""One thing done to each file of a cohort, by as many workers as there are."""
+"""One operation on each file of a cohort, by the workers of a cluster."""
 
 from __future__ import annotations
 
@@ -122,7 +122,7 @@ def batch(
         Most that a worker may have, bytes or such as ``'4G'``. By default 80 % of this machine's memory, divided by the
         workers; none that is enforced on other clusters.
     resume : bool, default: False
-        Skip what an earlier run has finished: the same was asked of the same bytes, and what was made is there.
+        Skip files that an earlier run has finished: same bytes, same options, unchanged result.
     overwrite : bool, default: False
         Do all again, whatever is there.
     progress : bool, default: False
@@ -220,7 +220,7 @@ def _memory(given: int | str | None, workers: int, *, ours: bool) -> int | None:
 def _jobs(
     kind: Operation, files: list[SourceFile], out: Path, options: dict[str, Any], size: int | None
 ) -> tuple[list[Job], dict[str, str]]:
-    """Return what is to be done, and what cannot be begun, with why."""
+    """Return the tasks, and the files that cannot be processed, with the reason."""
     jobs, failed, images = [], {}, chosen()
     space, tkras = unnamed(), tkras_chosen()
     places = {"nifti": None if images == (None, "mm") else images, "space": space, "tkras": tkras}
@@ -254,7 +254,7 @@ def _own(value: Any, file: SourceFile) -> Any:
 
 
 def _absolute(text: str) -> str:
-    """A path, with or without labels behind a colon, as workers find it, who are in folders of their own."""
+    """A path, with or without labels behind a colon, made absolute for workers."""
     path, colon, labels = text.rpartition(":")
     for name, rest in ((text, ""), (path, colon + labels)):
         place = Path(name).expanduser()
@@ -265,7 +265,7 @@ def _absolute(text: str) -> str:
 
 
 def _asked(name: str, options: dict[str, Any]) -> str:
-    """Hash of what is asked: of the options, and of size and time of files that they name."""
+    """Hash of the request: the options, and size and time of files that they name."""
 
     def told(value: Any) -> Any:
         if isinstance(value, (list, tuple)):
@@ -292,10 +292,10 @@ def _refuse_collisions(jobs: list[Job], files: list[SourceFile]) -> None:
 
 def _refuse_old(record: Record, jobs: list[Job], out: Path) -> None:
     """Refuse to touch what an earlier run, or somebody else, has put there."""
-    remedy = "give --resume (resume=True) to skip what is finished, --overwrite (overwrite=True) to do all again"
+    remedy = "give --resume (resume=True) to skip finished files, --overwrite (overwrite=True) to repeat everything"
     if record.entries:
         done = sum(not entry.error for entry in record.entries.values())
-        raise ValueError(f"{out} holds an earlier run, {done} files of which are finished; {remedy}")
+        raise ValueError(f"{out} holds an earlier run with {done} finished files; {remedy}")
     for job in jobs:
         if job.target and os.path.lexists(out / job.target):
             raise ValueError(f"{out / job.target} is there already; {remedy}, or another folder")
@@ -345,7 +345,7 @@ def _entries(client: Client, jobs: list[Job], scratch: str) -> Iterator[Entry]:
 
 @contextmanager
 def _scratch(out: Path) -> Iterator[Path]:
-    """A folder that is gone afterwards, and those that killed runs of this machine left."""
+    """A temporary folder; also removes the folders of killed runs on this machine."""
     host = socket.gethostname()
     for old in out.glob(".batch-*"):
         match = _SCRATCH.fullmatch(old.name)

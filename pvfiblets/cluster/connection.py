@@ -26,7 +26,7 @@ ANSWER_WITHIN = 30.0  # seconds
 
 
 class ClusterError(FibletsError):
-    """There is no cluster where one is said to be, or what it needs is not installed."""
+    """The cluster is unreachable, or its packages are not installed."""
 
 
 def default_workers(n_files: int) -> int:

@@ -120,7 +120,7 @@ def select(
     stays_in: Sequence[str] = (),
     sampling: Sampling = "lines",
 ) -> Columns:
-    """Write the streamlines for which all conditions hold; regions as :func:`.query.region_text.parse_region`."""
+    """Write the streamlines that satisfy all conditions; regions as :func:`.query.region_text.parse_region`."""
     from pvfiblets.query.regions.region_text import parse_region
     from pvfiblets.query.selection import predicates
 
@@ -277,7 +277,7 @@ def _errors(result: dict[str, Any]) -> dict[str, float]:
 
 @dataclass(frozen=True)
 class Operation:
-    """An operation, what it makes, and what its options may be.
+    """An operation, its result, and its options.
 
     Attributes
     ----------
@@ -291,7 +291,7 @@ class Operation:
     paths : tuple of str
         Options that may be paths, in which names between braces stand for what a source's name says.
     needs : tuple of tuple of str
-        Options of which one must be given.
+        Options; exactly one must be given.
     """
 
     name: str
@@ -307,7 +307,7 @@ class Operation:
         return {name: p.default for name, p in found.items() if p.kind is p.KEYWORD_ONLY}
 
     def checked(self, options: dict[str, Any]) -> dict[str, Any]:
-        """Return all options, those that were not given with their default."""
+        """Return all options, with defaults."""
         known = self.defaults()
         strange = sorted(set(options) - set(known))
         if strange:

@@ -83,7 +83,7 @@ class Entry:
     name : str
         The source, below the folder that all sources have in common.
     asked : str
-        What was asked: a hash of the operation and its options.
+        Hash of the operation and its options.
     size, changed, sha256
         Of the source, as of :class:`Output`.
     outputs : tuple of Output
@@ -104,7 +104,7 @@ class Entry:
     extra: dict[str, Any] = field(default_factory=dict)
 
     def holds(self, source: Path, asked: str, folder: Path) -> bool:
-        """Whether nothing needs to be done: the same was asked of the same bytes, and what was made is there."""
+        """Return True if the task is finished: same bytes, same request, unchanged result."""
         if self.error or self.asked != asked:
             return False
         size, changed = fingerprint(source)
@@ -136,7 +136,7 @@ class Record:
                 self.entries[entry.name] = entry
 
     def begin(self, *, afresh: bool) -> None:
-        """Write what is known so far in whole lines, or nothing, and be ready to add to it."""
+        """Write the record in whole lines, and open it for appending."""
         if afresh:
             self.entries = {}
         with replacing(self.path) as file:

@@ -1,4 +1,4 @@
-"""Which files a batch is about, and what they have in common."""
+"""The files of a batch, and their common folder."""
 
 from __future__ import annotations
 

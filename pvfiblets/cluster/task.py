@@ -57,7 +57,7 @@ class Job:
     said : dict of str to str
         What the source's name says.
     asked : str
-        Hash of all that was asked.
+        Hash of the request.
     memory : int or None
         Bytes that the process may have meanwhile.
     images : tuple
@@ -144,6 +144,6 @@ def _bounded(size: int | None) -> Iterator[None]:
         return
     import pyarrow  # noqa: F401, ICN001 - which reserves a gigabyte that it does not use: before that is looked at
 
-    # What is reserved and not used is in nobody's way, and counts for the system all the same.
+    # The system counts reserved, unused memory too.
     with memory.limited(max(memory.taken() - memory.resident(), 0) + size):
         yield

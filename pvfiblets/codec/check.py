@@ -111,7 +111,7 @@ def _check_capsules(
     ranks: npt.NDArray[np.int64],
     ends: npt.NDArray[np.bool_],
 ) -> None:
-    """Decode the fiblets of one page, and see that culling is told the truth about each."""
+    """Decode the fiblets of one page, and check their culling bounds."""
     from .decompress import decode_fiblets
     from .kernels.capsule_kernels import leaving
 

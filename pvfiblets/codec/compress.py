@@ -90,7 +90,7 @@ def compress(
     error of about a hundredth of a step; any other line is kept point for point on a lattice, at two to four bytes a
     point. Which of the two is decided for every 60 points, so that the promise always holds.
 
-    Sets of less than a megabyte keep every bit of their points, and so do those that would take more bytes coded, such
+    Sets of less than a megabyte keep every bit of their points, and so do sets that would take more bytes coded, such
     as lines of two points (:mod:`pvfiblets.codec.exact`).
 
     Parameters
@@ -121,12 +121,12 @@ def compress(
         bytes a streamline remember it.
     per_point : sequence of str, or {'all', 'fit', 'none'}
         Names of per-point arrays to keep; 'fit' keeps them in their order, each that still
-        fits into 16 bytes a point. None by default: what is not asked for costs nothing. ``dropped`` names the others.
+        fits into 16 bytes a point. None by default. ``dropped`` names the others.
     per_point_bits : {8, 16}
         Bits for each of those values, or more where the bound needs them.
     max_value_error : float or dict of str to float, optional
         Largest difference of a kept value to its original, in the array's unit, for all arrays or by name. By default
-        1/255 of what lies between the array's 1st and 99th percentile, so that colours over that range move by a level
+        1/255 of the range from the array's 1st to its 99th percentile, so that colours over that range move by a level
         at most; of positive values over more than two decades, as much of their logarithms. Integers, categories,
         arrays of up to 255 different numbers and all values of exact sets are exact.
     exact : bool, optional
@@ -216,7 +216,7 @@ def grows(coded: RecordWriter, raw: int) -> bool:
 
 
 def is_plain(*choices: Any) -> bool:
-    """Whether ``step, max_error, max_angle, effort, order`` are as nobody chose them."""
+    """Return True if ``step, max_error, max_angle, effort, order`` are the defaults."""
     return choices == ("auto", None, DEFAULT_ANGLE, "fast", "input")
 
 

@@ -2,7 +2,7 @@
 
 A fiblet's points follow from its anchor by what its other words and codes say. Anchors are whole numbers, so that a
 copy whose anchors all moved by the same whole numbers decodes to the same points, moved: nothing is rounded again, the
-pieces of a streamline meet as before, and codes, first directions, capsules and end vectors are those of the original.
+pieces of a streamline meet as before, and codes, first directions, capsules and end vectors equal the original's.
 
 (A *turned* copy cannot share codes. A record holds the first direction, and the frame about it follows from that: the
 smallest rotation from X. Turning a direction does not turn that frame along with it but rolls it, for each fiblet of a

@@ -71,7 +71,7 @@ def decoding_arrays(fiblets: FibletSet) -> tuple[Any, ...]:
 
 
 def fixed(array: npt.NDArray[Any]) -> npt.NDArray[Any]:
-    """An array that cannot be written to, as those of mapped sets cannot: kernels are compiled once for either."""
+    """A read-only array, like the arrays of mapped sets: kernels are compiled once for both."""
     found = np.ascontiguousarray(array).view()
     found.flags.writeable = False
     return found
@@ -82,7 +82,7 @@ def _decoder(small: bool) -> Any:
         from .arrays.decode_arrays import decode
 
         return decode
-    from .kernels import decode_kernels  # numba loads only for what is worth it
+    from .kernels import decode_kernels  # numba loads only for large sets
 
     return decode_kernels.decode
 
@@ -96,7 +96,7 @@ def decompress(fiblets: FibletSet, ids: Any = None, dtype: npt.DTypeLike | None 
     try:
         return _decompress(fiblets, chosen, kind)
     except (IndexError, ValueError):
-        fiblets.verify()  # a damaged file says so itself; whatever else is wrong is raised as it is
+        fiblets.verify()  # raises for a damaged file; other errors pass
         raise
 
 
@@ -209,7 +209,7 @@ def _iterate(fiblets: FibletSet, max_points: int, kind: np.dtype[Any]) -> Iterat
         lengths[np.asarray(ids) - first_id] = per_rank
         rows = slice(first_point, first_point + int(counts.sum()))
         n_points = rows.stop - rows.start
-        long = n_points > max_points and is_long(n_points)  # one line, and more than was asked for
+        long = n_points > max_points and is_long(n_points)  # one line, longer than the limit
         points = _points(fiblets, which, counts, rows, kind, long)
         groups = {}
         for name, members in fiblets.groups.items():
@@ -287,7 +287,7 @@ def _iterate_out_of_order(fiblets: FibletSet, max_points: int, kind: np.dtype[An
 
 
 def _forget(fiblets: FibletSet, a: int, b: int, rows: slice) -> None:
-    """Give back the memory of what was read of a mapped file, up to the page of codes that fiblet ``b`` begins in."""
+    """Release the memory of the read part of a mapped file, up to the page of codes that fiblet ``b`` begins in."""
     for array in (fiblets.anchors, fiblets.decoding, fiblets.anchors_low):
         if array is not None:
             forget(array, a, b)

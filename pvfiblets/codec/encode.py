@@ -71,7 +71,7 @@ class Encoder(RecordWriter):
         self, points: npt.NDArray[np.floating], offsets: npt.NDArray[np.int64], compiled: bool
     ) -> ArrayCoder | CompiledCoder:
         if compiled:
-            from .compiled_coder import CompiledCoder  # numba loads only for what is worth it
+            from .compiled_coder import CompiledCoder  # numba loads only for large sets
 
             return CompiledCoder(points, offsets, self.parameters, self._bound(), self.effort)
         from .arrays.array_coder import ArrayCoder
@@ -160,7 +160,7 @@ def _code(
     end: npt.NDArray[np.uint8],
     left_out: npt.NDArray[np.bool_] | None = None,
 ) -> tuple[dict[str, npt.NDArray[Any]], npt.NDArray[np.uint8]]:
-    """Code slots; those `left_out` get a row and as many bytes as direction codes take, whatever these are."""
+    """Code slots; the slots `left_out` get a row and the bytes of direction codes, with any content."""
     m = len(slots)
     ok, shape, step = np.zeros(m, np.uint8), np.zeros(m, np.uint32), np.zeros(m, np.uint16)
     cap, radius, codes = np.zeros(m, np.uint8), np.zeros(m), np.zeros(n_points, np.uint8)

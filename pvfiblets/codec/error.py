@@ -36,12 +36,12 @@ class CodingError:
     max_steps, mean_steps, p999_steps : float
         The same in median steps (NaN where there is no step).
     streamline_max_mm, streamline_mean_mm : numpy.ndarray
-        ``(n_streamlines,)`` by streamline, NaN for those without points; empty where only a summary was asked for.
+        ``(n_streamlines,)`` by streamline, NaN for empty streamlines; empty in a summary.
     max_degrees, mean_degrees, p99_degrees : float
         Angle between true and drawn tangents (:mod:`.tangents`): largest, mean and 99th percentile over both ends of
         all segments longer than a 2000th of the bounds' diagonal. NaN where there is none.
     values : dict of str to dict
-        ``max`` and ``mean`` difference of the kept per-point arrays to what they were, in their units, as measured
+        ``max`` and ``mean`` difference of the kept per-point arrays from the originals, in their units, as measured
         when they were coded.
     """
 
@@ -122,7 +122,7 @@ class ErrorTally:
     def _add_parts(
         self, true: npt.NDArray[Any], drawn: npt.NDArray[Any], a: int, b: int, offsets: npt.NDArray[np.int64]
     ) -> None:
-        """Take in points ``[a, b)``, whole streamlines or parts of one, of which no more is held at a time."""
+        """Compare points ``[a, b)``, whole streamlines or parts of one; no more is held at a time."""
         for first, last in spans(b - a):
             first, last = a + first, a + last
             lead, more = first - max(first - 1, a), min(last + 1, b) - last  # tangents need a point on either side
@@ -138,7 +138,7 @@ class ErrorTally:
 
     def _distances(self, true: npt.NDArray[Any], drawn: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         """Distances of points in the set's own type, whose rounding is part of their error."""
-        from .kernels.error_kernels import distances  # numba loads only for those who measure
+        from .kernels.error_kernels import distances  # numba loads only when errors are measured
 
         distance = np.empty(len(true))
         distances(true, drawn, self._dtype == np.float32, distance)
@@ -251,7 +251,7 @@ def measure_error(streamlines: Streamlines, fiblets: FibletSet) -> CodingError:
     -------
     CodingError
         In mm, in steps, per streamline, and of directions in degrees. Of a set that keeps its points exactly these are
-        0, and what is drawn may be off by :attr:`.FibletSet.promise`: 2^-28 of the bounds' diagonal.
+        0, and drawn points may be off by :attr:`.FibletSet.promise`: 2^-28 of the bounds' diagonal.
 
     Raises
     ------
@@ -267,7 +267,8 @@ def measure_error(streamlines: Streamlines, fiblets: FibletSet) -> CodingError:
     if len(streamlines) != fiblets.n_streamlines or (streamlines.n_points != fiblets.n_points and not resampled):
         raise ValueError(
             f"the fiblets hold {fiblets.n_streamlines} streamlines of {fiblets.n_points} points, the original "
-            f"{len(streamlines)} of {streamlines.n_points}: errors can be measured only against what was compressed"
+            f"{len(streamlines)} of {streamlines.n_points}: errors can be measured only against the compressed "
+            "streamlines"
         )
     offsets = np.asarray(streamlines.offsets, np.int64)
     if not resampled and not np.array_equal(offsets, fiblets.offsets()):

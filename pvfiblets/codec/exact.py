@@ -1,6 +1,6 @@
 """Sets that keep every bit of their points, and are drawn from whole numbers that need no encoder.
 
-Coding pays by many points to a fiblet. Of small sets nobody counts the bytes, and lines of one or two points take more
+Coding pays by many points to a fiblet. Small sets are small in any case, and lines of one or two points take more
 bytes as fiblets than as numbers. Such sets hold their points as they came (:attr:`.FibletSet.exact`). What is drawn and
 culled by is made of the points when the set is made or opened, by NumPy alone: fiblets on a lattice so fine that a view
 cannot tell, 12 bytes a point (:data:`.layout.PLAIN_BYTES`). A file has the points only (`exact_file`).
@@ -24,7 +24,7 @@ from .record_writer import FibletChunk, RecordWriter, join
 
 __all__ = ["PlainWriter", "plain_records", "raw_bytes"]
 
-BLOCK_POINTS = 1 << 20  # of which records are made at a time
+BLOCK_POINTS = 1 << 20  # points per block of records
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -36,7 +36,7 @@ def raw_bytes(streamlines: Streamlines) -> int:
 
 
 def plain_records(streamlines: Streamlines, parameters: Parameters) -> dict[str, Any]:
-    """Make what is drawn of points that are kept exactly."""
+    """Make the records that draw exact points."""
     writer = PlainWriter(parameters)
     offsets = np.asarray(streamlines.offsets)
     chunks = []
@@ -94,13 +94,13 @@ class PlainWriter(RecordWriter):
 
 
 def _cut(offsets: Ints) -> tuple[Ints, Ints]:
-    """First points of fiblets of at most ``PLAIN_POINTS`` points, about as many in each; and their streamlines."""
+    """First points of fiblets of at most ``PLAIN_POINTS`` points, about equal in length; and their streamlines."""
     lengths = np.diff(offsets)
     lengths = lengths[lengths > 0]
     pieces = -(-lengths // PLAIN_POINTS)
     of = np.repeat(np.arange(len(lengths)), pieces)
     begins, firsts = np.cumsum(lengths) - lengths, np.cumsum(pieces) - pieces
-    number = np.arange(len(of)) - firsts[of]  # of a piece among those of its line
+    number = np.arange(len(of)) - firsts[of]  # of a piece in its line
     return begins[of] + number * lengths[of] // pieces[of], of
 
 

@@ -32,7 +32,7 @@ class Condition(Protocol):
     """A condition on streamlines, such as `pvfiblets.query.selection.predicates` makes; this room knows none itself."""
 
     def choose(self, fiblets: FibletSet, *, flags: Any = None) -> npt.NDArray[np.bool_]:
-        """Return the streamlines for which it holds, ``(n_streamlines,)`` bool."""
+        """Return the streamlines that satisfy it, ``(n_streamlines,)`` bool."""
 
 
 @dataclass(eq=False)
@@ -70,7 +70,7 @@ class FibletSet:
         order than their own; else None, and both are the same.
     exact : numpy.ndarray or None
         ``(n_points, 3)`` float32 or float64, mm, in the order of ranks: the points themselves, of a set that keeps
-        every bit of them (:mod:`pvfiblets.codec.exact`). Its records are what is drawn, and stand in no file.
+        every bit of them (:mod:`pvfiblets.codec.exact`). Its records are for drawing, and are not stored.
     per_point : dict of str to PointValues
         Values kept for every point, in the order of ranks (:meth:`in_coded_order`).
     per_streamline, groups, per_group : dict
@@ -579,7 +579,7 @@ class FibletSet:
         Parameters
         ----------
         **options
-            Of ``plotter.add_fiblets``, and those of plotters that :func:`pyvista.plot` takes.
+            Arguments of ``plotter.add_fiblets``, and of :func:`pyvista.plot`'s plotter.
         """
         from .. import plot
 
@@ -610,7 +610,7 @@ class FibletSet:
         UnknownFormatError
             If no format has this suffix, or it can only be read, such as ``.trk.gz``.
         ValueError
-            If shards are asked for of another format.
+            If shards are requested for another format.
         """
         from ..formats import registry
         from .files.fiblets_file import save

@@ -9,7 +9,7 @@ A process that was forked after numba had begun its threads has none of them, an
 ever. There the loops of parallel kernels run one after the other, on the one core that such a process is meant to use.
 
 They are kept in the user's folder for such things, by that key: another clone or installation of the same sources finds
-them compiled, and a package folder that nobody may write to is none the worse.
+them compiled, and a read-only package folder does no harm.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ NOTICED = 1.0  # seconds, after which one wonders
 
 
 class _Notice:
-    """Tells people who wait for a compiler why: once, when it has taken more than a second in all."""
+    """Reports a waiting compiler once, after more than a second in all."""
 
     def __init__(self) -> None:
         self._begun: list[float] = []  # of kernels that are being compiled, one for another

@@ -38,7 +38,7 @@ def _sources(folder: Path) -> list[Path]:
 
 @cache
 def kept_folder(digest: str) -> Path:
-    """Return the folder of the kernels of sources of some digest; of others, what nobody has used for a month goes."""
+    """Return the folder of the kernels for a digest of sources; remove other folders unused for a month."""
     home = cache_folder() / "kernels"
     folder = home / digest[:16]
     folder.mkdir(parents=True, exist_ok=True)
@@ -64,7 +64,7 @@ def is_filled(work: str, folder: Path = HOME) -> bool:
 
 
 def mark_filled(work: str, folder: Path = HOME) -> None:
-    """Remember that they are; a folder that nobody may write to is no error."""
+    """Remember that they are; a read-only folder is no error."""
     try:
         mark = _mark(work, folder)
         mark.parent.mkdir(parents=True, exist_ok=True)

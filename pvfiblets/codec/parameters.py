@@ -44,10 +44,10 @@ LEAST = float(np.finfo(np.float64).tiny) * 2.0**60  # mm, about 2.6e-290: what c
 STEP_BAND = 0.06  # steps within this of the median can be coded by direction; others vary too much for it
 SAMPLE = 1_000_000  # segment lengths kept at most; a median needs no more
 BLOCK_POINTS = 2_000_000
-MOST_CHUNKS = 64  # of which places are remembered before every other one goes
+MOST_CHUNKS = 64  # remembered places before every other one goes
 OF_VIEWS = 50_000  # segments that tell whether steps are even, and how long they are in a view
-SAMPLED = 4_000_000  # points of which segments are sampled at a time
-EXACT_BELOW = 1_000_000  # bytes of points: nobody counts those of smaller sets, which keep every bit by default
+SAMPLED = 4_000_000  # points per sample of segments
+EXACT_BELOW = 1_000_000  # bytes of points; smaller sets keep every bit by default
 EXACT_UP_TO = 1 << 30  # bytes of points up to which a set that coding would enlarge keeps every bit; opening reads all
 CUT_SHARE = 0.25  # of the promise that resampling may use up, and so leave to coding less
 BUDGET = 0.98  # decoded points may be rounded to float32 wherever that moves them by less than the rest
@@ -112,7 +112,7 @@ class Survey:
         self.lower, self.upper = np.minimum(self.lower, lower), np.maximum(self.upper, upper)
         self.longest = max(self.longest, longest)
         self.widest_end = max(self.widest_end, widest_end)
-        # The sample stays evenly taken: when it would overflow, every other length goes and half as many come then.
+        # The sample stays even: at overflow every other length goes, and sampling continues at half the rate.
         while self.n_points > self.stride * SAMPLE:
             self.sample = [part[::2].copy() for part in self.sample]
             self.stride *= 2
@@ -127,7 +127,7 @@ def _scan(
 ) -> tuple[Vector, Vector, float, float]:
     """Bounds, longest segment and widest end (mm) of streamlines that have points; bounds are infinite if one is."""
     if not small:
-        from .kernels.direction_kernels import scan  # numba loads only for what is worth it
+        from .kernels.direction_kernels import scan  # numba loads only for large sets
 
         parts = []
         for own, goes_on in _scanned(offsets):
@@ -190,7 +190,7 @@ def _segments(points: npt.NDArray[np.floating], offsets: npt.NDArray[np.int64], 
 
 
 def _moving(segments: Vector) -> Vector:
-    """Lengths of those that have one, mm."""
+    """Lengths of segments above 0, mm."""
     lengths = np.sqrt((segments**2).sum(axis=1))
     return lengths[lengths > 0.0]
 
@@ -308,7 +308,7 @@ class Parameters:
 
     @classmethod
     def of_exact(cls, found: Survey) -> Parameters:
-        """Choose parameters of a set that keeps its points exactly; what is drawn is as fine as int32 can count."""
+        """Choose parameters of an exact set; drawn points are as fine as int32."""
         empty = found.n_points == 0
         diagonal = 0.0 if empty else float(np.sqrt(((found.upper - found.lower) ** 2).sum()))
         return cls.choose(found, max(_finest(found), diagonal * DRAWN_SHARE))
@@ -343,7 +343,7 @@ def _default_promise(segments: Vector, step: float, extent: Vector) -> float:
 
     Direction codes err by some hundredths of a step, and where steps are constant a finer promise would take a second
     byte a point. Lattice codes err by all that they may: there a tenth of a long step shows. So it does in a view along
-    an axis whose unit hides those of the others, as metres do degrees.
+    an axis whose unit dominates the others, as metres do degrees.
     """
     segments = segments[:: max(1, len(segments) // OF_VIEWS)]
     moving, diagonal = _moving(segments), math.hypot(*extent)

@@ -41,7 +41,7 @@ def colour_columns(per_point: Mapping[str, Any], name: str) -> tuple[str, ...]:
 
 
 def unit_colours(name: str, colours: npt.ArrayLike) -> npt.NDArray[np.float32]:
-    """Return colours as floats from 0 to 1; what is no number is 0."""
+    """Return colours as floats from 0 to 1; NaN is 0."""
     given = np.asarray(colours)
     if given.ndim != 2 or given.shape[1] not in (3, 4):
         raise ValueError(f"colours {name!r} have the shape {given.shape}; expected 3 or 4 columns")

@@ -93,7 +93,7 @@ class PointValues:
 
     @property
     def nbytes(self) -> int:
-        """Bytes of the codes, beside which a table is small."""
+        """Bytes of codes that make a table comparatively small."""
         return int(self.codes.nbytes)
 
     def values(self, index: Any = slice(None)) -> Array:
@@ -275,7 +275,7 @@ class ValueSurvey:
 
 @dataclass(frozen=True)
 class _Scale:
-    """Values as numbers of steps, each of which is twice the bound wide there."""
+    """Values as numbers of steps, each twice the bound wide there."""
 
     lo: float
     hi: float

@@ -11,7 +11,7 @@ from ..support.progress_bar import progress_bar
 __all__ = ["Progress", "shown"]
 
 Progress: TypeAlias = bool | Callable[[str, float], None]
-"""Whether to show a bar; or what to call with what is being done and which share of it is, 0 to 1."""
+"""Whether to show a bar; or a function of the step's name and finished share, 0 to 1."""
 
 
 def shown(chunks: Iterable[Streamlines], total: int | None, what: str, progress: Progress) -> Iterator[Streamlines]:

@@ -107,7 +107,7 @@ def _product(a: Array, b: Array) -> Array:
 
 @dataclass(frozen=True)
 class DirectionPiece:
-    """A fiblet of kind DIRECTION: its words, its codes, and what they decode to."""
+    """A fiblet of kind DIRECTION: its words, its codes, and their decoded points."""
 
     shape: int
     step: int
@@ -242,7 +242,7 @@ def _turned(points: Array, anchor: Array, edge: float, turns: Turns, following: 
 def _halvings(
     points: Array, anchor: Array, h: float, turns: Turns | None, following: Array | None
 ) -> tuple[int, float]:
-    """Least halvings of the edge that turn no segment too far, and the excess; those of least excess if none does."""
+    """Least halvings of the edge that turn no segment too far, or of least excess, and the excess."""
     if turns is None:
         return 0, 0.0
     found, least = 0, np.inf

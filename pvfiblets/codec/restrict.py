@@ -127,7 +127,7 @@ class Restriction:
 
 @contextmanager
 def _damage_told(fiblets: FibletSet) -> Iterator[None]:
-    """Have a damaged file say so itself; whatever else is wrong is raised as it is."""
+    """Raise for a damaged file; other errors pass."""
     try:
         yield
     except (IndexError, ValueError):
@@ -171,7 +171,7 @@ class _Part:
 
 
 def parts_of(fiblets: FibletSet, keep: Mask) -> Iterator[_Part]:
-    """Go through the pages that hold anything to be taken; forget what was read of a mapped file."""
+    """Iterate over the pages with chosen fiblets, and release the read parts of a mapped file."""
     table, read = fiblets.pages, 0
     for page in range(len(table) - 1):
         # The page's last streamline may go on in the next one, whose first rank it then is.

@@ -25,7 +25,7 @@ SECONDS_A_POINT: dict[Work, float] = {"coding": 4e-6, "decoding": 0.2e-6}
 
 
 LOADING = 0.8  # seconds, of compiled kernels from disk
-COMPILING = 4.0  # seconds, for which kernels that nobody has compiled yet are done without
+COMPILING = 4.0  # seconds; work below that does not wait for uncompiled kernels
 
 
 @dataclass
@@ -57,6 +57,6 @@ def without_kernels(work: Work, points: int) -> Iterator[bool]:
 
 
 def prefer_kernels(work: Work) -> None:
-    """Do a work by kernels from now on if they were compiled before: whoever asks has loaded numba for others."""
+    """Use compiled kernels from now on, if they exist: numba is loaded already."""
     if is_filled(work):
         STATES[work].loaded = True

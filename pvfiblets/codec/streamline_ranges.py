@@ -91,7 +91,7 @@ def _find(fiblets: FibletSet, streamline: int) -> tuple[int, int, int, int]:
     ranks += begins[first : last + 1].repeat(PAGE)[: len(ranks)]
     mine = np.flatnonzero(ranks == rank) + at
     if not mine.size:
-        raise IndexError(f"streamline {streamline} has no fiblets")  # a damaged file says so when it is verified
+        raise IndexError(f"streamline {streamline} has no fiblets")  # verify() reports a damaged file
     counts = unpack("last", fiblets.decoding[mine]).astype(np.int64) + 1
     point = int(unpack("point", fiblets.decoding[mine[0]])) + int(fiblets.pages[mine[0] >> PAGE_BITS, 2])
     return int(mine[0]), len(mine), point, int(counts.sum())

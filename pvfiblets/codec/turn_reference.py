@@ -62,7 +62,7 @@ class Turns:
         return Turns(self.units[part], self.allowed[part], self.bends[part], self.first[part])
 
     def excess(self, decoded: Array, following: Array | None = None) -> float:
-        """Greatest ratio of a turn to what is allowed in a fiblet."""
+        """Greatest ratio of a turn to its bound in a fiblet."""
         points = decoded if following is None else np.concatenate([decoded, following[None]])
         worst = 0.0
         for i in range(len(points) - 1):

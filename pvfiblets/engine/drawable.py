@@ -6,7 +6,7 @@ what that was made of, and gives everything back. A new drawable derives from `D
 - a style, derived from :class:`pvfiblets.engine.view.Style`, as ``STYLE``,
 - a constructor that puts all it keeps on the GPU through :meth:`Drawable._keep`, inside :meth:`Drawable._making`,
 - :meth:`Drawable._draw`, which draws,
-- :meth:`Drawable._facts`, which says what nobody else knows.
+- :meth:`Drawable._facts`, which returns the drawable's own facts.
 """
 
 from __future__ import annotations
@@ -214,7 +214,7 @@ class Drawable(ABC, Generic[AnyStyle]):
         """Forget a picture that was left before its end."""
 
     def _outdate(self) -> None:
-        """Draw anew the next time, and leave the rest of what is being drawn in pieces."""
+        """Redraw the next time, and abort a drawing in pieces."""
         self._made = None
         self._attempt += 1
 

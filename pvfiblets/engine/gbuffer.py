@@ -36,7 +36,7 @@ __all__ = ["EMPTY", "GBuffer"]
 EMPTY = 0xFFFFFFFF
 
 RELIEF = {"across": "f2", "ink": "f2", "normal": "u4"}
-"""Type of the texture ``across`` by what it holds."""
+"""Type of the texture ``across`` by its contents."""
 
 
 class GBuffer:

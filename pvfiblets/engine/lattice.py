@@ -1,4 +1,4 @@
-"""Places as three integers of a lattice, by which points reach the shaders.
+"""Places as three integers of a lattice, the form of points in shaders.
 
 The lattice has 2^30 to 2^31 steps over the set's largest extent. Differences of integers are exact: however far from
 the origin a set lies, a segment is as exact as its own size in float32.

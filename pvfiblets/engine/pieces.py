@@ -1,4 +1,4 @@
-"""`Pieces`: one picture drawn piece by piece, so that who draws it can look after other things in between.
+"""`Pieces`: one frame drawn piece by piece, so that its caller can handle events in between.
 
 A drawing function that can be left between pieces is a generator: it yields where a piece ends and goes on when it is
 asked to. Meanwhile others may draw, into anything but this picture's own target, so what was bound is bound anew.

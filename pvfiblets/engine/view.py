@@ -36,7 +36,7 @@ class View:
         ax + by + cz + d >= 0 for all of them is there, and what lies behind a cut shows. They need not be
         normalised. None, or planes that nothing touches, cost nothing.
     region : Region, optional
-        Of the fiblets only what lies in it is there (:mod:`pvfiblets.regions`), data coordinates. None costs nothing.
+        Region that clips the fiblets (:mod:`pvfiblets.regions`), data coordinates. None costs nothing.
     waits : bool
         Whether drawing may wait until the GPU has said in how many layers a region's closed surfaces lie there. If not,
         as many are drawn as earlier pictures had: where a ray meets more, the picture lacks the farthest until the
@@ -91,7 +91,7 @@ class Style:
     Parameters
     ----------
     values : str or VolumeSource, optional
-        The value to write beside each pixel, of those that the drawable has. None costs nothing.
+        Name of the drawable's value to write for each pixel. None costs nothing.
     exact : bool
         Whether pixels show just what covers their middles. Otherwise what is thinner than a pixel is widened to one, or
         many of its pixels would be missed; the mean of many pictures, of other middles each, misses none.
@@ -121,7 +121,7 @@ class Style:
 
     @property
     def detail(self) -> float:
-        """Pixels by which the drawable may be simplified; 0 for not at all."""
+        """Error of simplification in pixels; 0 for none."""
         return 0.0
 
     @property

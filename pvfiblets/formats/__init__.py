@@ -47,7 +47,7 @@ __all__ = [
 ]
 
 DOUBLES = (".tck", ".vtk")
-"""Suffixes of formats whose points are float32 unless doubles are asked for."""
+"""Suffixes of formats with float32 points unless doubles are requested."""
 
 
 SPACED = (".vtk", ".vtp", ".fib", *registry.READ_BY_VTK)
@@ -124,7 +124,7 @@ def info(path: str | PathLike[str], *, space: str | None = None) -> dict[str, An
 
 
 def _space(place: str | Path, space: str | None) -> dict[str, Space]:
-    """Return what modules of formats without a fixed space are told of it."""
+    """Return the arguments for formats without a fixed space."""
     if space is None:
         return {}
     if suffix_of(place) not in SPACED:

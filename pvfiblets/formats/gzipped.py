@@ -16,9 +16,9 @@ from pvfiblets.support.memory import check_room, shown
 DENSEST = 1032
 """How many bytes of deflate's come out of one, at most."""
 SMALL = 64 << 20
-"""Bytes that are in nobody's way, however few they were."""
+"""Bytes that are always allowed."""
 ODD = 100
-"""Tractograms never inflate by as much: what does is made to."""
+"""Largest plausible ratio of inflation; larger ones are crafted."""
 
 
 def inflate(path: str, stream: gzip.GzipFile, n: int) -> bytes:
@@ -57,7 +57,7 @@ def inflated_size(path: str | PathLike[str]) -> int:
 
 
 def check_ratio(path: str | PathLike[str]) -> None:
-    """Refuse a tractogram that inflates as none does, for those who would have to wait for it."""
+    """Raise for an implausible ratio of inflation, before a long wait."""
     size, stated = Path(path).stat().st_size, inflated_size(path)
     if stated > max(ODD * size, SMALL):
         raise FibletsError(

@@ -1,4 +1,4 @@
-"""Which format a file is of, by its content: for what comes without a name, such as standard input."""
+"""The format of a file without a name, such as standard input, by its content."""
 
 from __future__ import annotations
 

@@ -34,7 +34,7 @@ _READ_BY_LIBRARIES = {**dict.fromkeys(READ_BY_VTK, "pvfiblets.formats.by_vtk"), 
 
 
 class UnknownFormatError(FibletsError, ValueError):
-    """A file name whose suffix no format claims, or a format that cannot do what was asked."""
+    """An unknown suffix, or a format without the requested operation."""
 
 
 def register(suffix: str, module_name: str) -> None:
@@ -58,7 +58,7 @@ def suffix_of(path: str | PathLike[str]) -> str:
     known = ", ".join(sorted((*_MODULES, *_READ_BY_LIBRARIES)))
     if is_trx_folder(path):
         return ".trx"
-    if os.path.isdir(path):  # noqa: PTH112 - of what is no path at all, too
+    if os.path.isdir(path):  # noqa: PTH112 - also for invalid paths
         raise UnknownFormatError(f"{fspath(path)} is a folder; give a file of one of {known}")
     raise UnknownFormatError(
         f"{fspath(path)}: no format has this suffix; rename the file or convert it to one of {known}"

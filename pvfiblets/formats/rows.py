@@ -123,7 +123,7 @@ def without_rows(rows: Array, leave_out: Ints, dtype: DTypeLike, *, long: bool =
         begin, end = np.searchsorted(leave_out, (first, last))
         block = rows[first:last]
         if block.dtype != kind:
-            with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is found and reported later
+            with np.errstate(over="ignore", invalid="ignore"):  # non-finite values are reported later
                 block = block.astype(kind)
         place = target[first - begin : last - end]
         source = block.view(row)[:, 0]
@@ -182,7 +182,7 @@ def finite(
 
 
 def _less(values: Array, rows: Ints) -> Array:
-    """Values less some rows; what is mapped stays on disk."""
+    """Values without some rows; mapped arrays stay on disk."""
     if not (is_long(len(values)) and isinstance(values, np.memmap)):
         return np.delete(values, rows, axis=0)
     flat = values.reshape(len(values), -1)

@@ -44,7 +44,7 @@ def scratch_array(shape: tuple[int, ...], dtype: DTypeLike) -> NDArray[Any]:
 
 
 def scratch_bytes(pieces: Iterable[bytes]) -> NDArray[np.uint8]:
-    """Put bytes on disk, of which nobody knows how many there will be, and map them."""
+    """Write an unknown number of bytes to disk, and map them."""
     size = 0
     with tempfile.TemporaryFile() as file:
         for piece in pieces:

@@ -395,7 +395,7 @@ def write(path: str | PathLike[str], streamlines: Streamlines, *, double: bool =
     write_rows(path, MAGIC_TRACKS, streamlines, streamlines.points, np.dtype("<f8" if double else "<f4"), fields)
     if changes:
         warnings.warn(
-            f"{path}: the points differ from those that its header describes; changed {', '.join(changes)}",
+            f"{path}: the points differ from the header's description; changed {', '.join(changes)}",
             UserWarning,
             stacklevel=3,
         )

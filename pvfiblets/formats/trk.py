@@ -107,7 +107,7 @@ class _MappedWords:
 
 
 class _InflatedWords:
-    """Words of a gzip stream; what lies before the last window's start is forgotten."""
+    """Words of a gzip stream; data before the last window are dropped."""
 
     def __init__(self, path: str, stream: gzip.GzipFile, order: str) -> None:
         self.path = path
@@ -135,7 +135,7 @@ class _InflatedWords:
         return words[: len(words) // 4 * 4].view(self._dtype)
 
     def _pieces(self, n: int) -> Iterator[bytes]:
-        """Take the next `n` bytes out of what is kept and of the stream."""
+        """Return the next `n` bytes from the buffer and the stream."""
         kept = bytes(self._kept[:n])
         del self._kept[:n]
         yield kept

@@ -141,7 +141,7 @@ def unrecorded_affine(sizes: NDArray[np.float64], voxel_order: str) -> NDArray[n
 def _sizes_of(
     path: str, sizes: NDArray[np.float64], affine: NDArray[np.float64], voxel_order: str
 ) -> NDArray[np.float64]:
-    """Voxel sizes along the axes of the header's order, by the affine, in place of those that are 0."""
+    """Voxel sizes along the header's axes; sizes of 0 are replaced by the affine's."""
     from nibabel import orientations as orient
 
     by_affine = np.sqrt((affine[:3, :3] ** 2).sum(axis=0))

@@ -52,8 +52,8 @@ def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
                 forget(array, 0, stop)
     if n_properties and (empty := int((streamlines.counts == 0).sum())):
         warnings.warn(
-            f"{path}: {empty} streamlines have no points, for which nibabel and DIPY refuse a .trk file of values per "
-            "streamline; write streamlines[streamlines.counts > 0], or .trx",
+            f"{path}: {empty} streamlines have no points, and nibabel and DIPY refuse a .trk file with these and "
+            "values per streamline; write streamlines[streamlines.counts > 0], or .trx",
             UserWarning,
             stacklevel=3,
         )

@@ -25,7 +25,7 @@ def write_with(writer: Any, path: str | PathLike[str], data: pyvista.PolyData, *
     with replacing(path, None if compressed else size) as file:
         writer.SetFileName(file.name)
         done = writer.Write()
-        with suppress(FileNotFoundError):  # VTK deletes what it cannot finish
+        with suppress(FileNotFoundError):  # VTK deletes unfinished files
             if done == 1 and not said and Path(file.name).stat().st_size > 0:
                 return
         _find_cause(file, size)

@@ -205,7 +205,7 @@ class XmlFile:
             source.compressed_sizes(self._blocks(element, source, promised)[0])
 
     def stated(self, element: Element, rows: int) -> int:
-        """Return how many bytes a DataArray says that it takes, or as many rows of it would."""
+        """Return the bytes that a DataArray declares, or the bytes of a number of its rows."""
         kind, form = element.attributes.get("type", ""), element.attributes.get("format", "ascii")
         size = np.dtype(_TYPES[kind]).itemsize if kind in _TYPES else 1
         promised = rows * max(1, element.count("NumberOfComponents")) * size
@@ -218,7 +218,7 @@ class XmlFile:
         return max(promised, (n - 1) * block + (last or block) if n else 0)
 
     def error(self, element: Element, found: str, expected: str) -> FormatError:
-        """Make the error that says what is wrong with an array."""
+        """Return the error of an invalid array."""
         name = element.attributes.get("Name", "")
         return FormatError(self.path, element.position, f"array {name!r} with {found}", expected)
 

@@ -120,7 +120,7 @@ def _piece(file: XmlFile, piece: Element) -> tuple[Streamlines, int]:
 
 
 def _arrays(file: XmlFile, holder: Element | None, rows: int | None) -> tuple[dict[str, Array], int]:
-    """Read the arrays of an element by name, and count those of text."""
+    """Read the arrays of an element by name, and count text arrays."""
     arrays: dict[str, Array] = {}
     if holder is None:
         return arrays, 0

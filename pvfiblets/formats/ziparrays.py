@@ -161,7 +161,7 @@ class ZipArrays:
             return self.archive.open(info)
 
     def stored(self, info: ZipInfo) -> tuple[MappedFile, int]:
-        """Return where an uncompressed file lies: what is mapped, and its first byte in it."""
+        """Return the map of an uncompressed file, and its first byte in it."""
         file, at = self.file, info.header_offset
         head = file.bytes(at, 30, f"the local header of {info.filename}")
         if head[:4] != b"PK\x03\x04":
@@ -243,7 +243,7 @@ class ArrayEntry:
             self._stream = None
 
     def expect(self, rows: int, what: str, source: str) -> None:
-        """Raise FormatError unless the array has as many rows as the header promises."""
+        """Raise FormatError unless the array has the header's number of rows."""
         if self.rows != rows:
             raise FormatError(
                 self._home.path,

@@ -1,4 +1,4 @@
-"""Lines and points with halos from whatever data there is, with the values that were asked for and no others."""
+"""Lines and points with halos from all kinds of sources, with the requested values."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ Array = npt.NDArray[Any]
 
 
 class LinesAndValues(NamedTuple):
-    """Lines with halos, and what is known of whole lines.
+    """Lines with halos, and the data of whole lines.
 
     Attributes
     ----------
     lines : HaloLines
-        Lines in the order of their source; ``lines.values`` holds what was asked for at their points.
+        Lines in the order of their source; ``lines.values`` holds the requested values at their points.
     line_values : mapping of str to ndarray
         ``(n_lines,)`` numbers or ``(n_lines, 4)`` float32 RGBA in 0..1: `scalars` that have a row for each line.
     """
@@ -118,7 +118,7 @@ class _Rows:
     def find(
         self, given: Any, what: str, unnamed: str, elsewhere: str = "", *, words: bool = False
     ) -> tuple[str, Array, bool]:
-        """Return the name of what was given, the array, and whether it has a row for each line, not each point."""
+        """Return the argument's name, the array, and whether its rows are lines instead of points."""
         if isinstance(given, str):
             if given in self.point_data:
                 return given, flat(self.point_data[given], f"{what} {given!r}", words=words), False
@@ -155,7 +155,7 @@ class _Lines:
         n = len(source.ids)
         # Most sources list their points line by line: then nothing need be copied.
         self.in_order = n == len(source.points) and bool((source.ids == np.arange(n)).all())
-        # Cells of two points that follow each other are one line, and what is known of cells is known of segments.
+        # Consecutive cells of two points are one line; their cell data belong to segments.
         self.joined = source.tube_of is not None and len(source.counts) != source.n_tubes
 
     def build(self, scalars: Any, rgb: bool | None, filter_by: Any) -> LinesAndValues:
@@ -198,7 +198,7 @@ class _Lines:
 
 
 def _points_of(source: Any) -> tuple[Array, _Rows, str]:
-    """Points, what is known of them, and what to say of data that is there but not at points."""
+    """Points, their data, and a message about data that are not at points."""
     if isinstance(source, HaloPoints):
         return source.points, _Rows(source.n_points, source.values), ""
     if hasattr(source, "decompress") and hasattr(source, "fiblet_points"):
@@ -215,7 +215,7 @@ def _points_of(source: Any) -> tuple[Array, _Rows, str]:
     if points.dtype.kind not in "fiub":
         raise TypeError(
             f"points with halos cannot be made from a {type(source).__name__}; give a data set with points, "
-            "Streamlines, a FibletSet or an (n, 3) array (np.concatenate(...) of a list of such)"
+            "Streamlines, a FibletSet or an (n, 3) array (np.concatenate(...) of a list of arrays)"
         )
     if points.size == 0 and points.ndim < 2:
         points = points.reshape(0, 3)

@@ -45,7 +45,7 @@ def as_displacement(given: Displacement) -> str | tuple[float, ...]:
     if isinstance(given, (bytes, dict, set)) or not hasattr(given, "__len__"):
         raise TypeError(
             f"displacement is a {type(given).__name__}; give one of {DISPLACEMENTS}, a table of 2 to {TABLE_SIZE} "
-            "numbers in 0..1, or a function of such numbers"
+            "numbers in 0..1, or a function of an array in 0..1"
         )
     return _table(given, "the table of the displacement has", None)
 
@@ -83,7 +83,7 @@ def _table(given: Any, what: str, size: int | None) -> tuple[float, ...]:
     if size is not None and table.ndim == 0:
         table = np.full(size, table)
     if table.ndim != 1 or (len(table) != size if size is not None else not 2 <= len(table) <= TABLE_SIZE):
-        expected = f"{size} numbers for an array of as many" if size is not None else f"2 to {TABLE_SIZE} numbers"
+        expected = f"{size} numbers for an array of that length" if size is not None else f"2 to {TABLE_SIZE} numbers"
         raise ValueError(f"{what} the shape {table.shape}, expected {expected}")
     good = (table >= -_ROUNDING) & (table <= 1.0 + _ROUNDING)
     if not good.all():

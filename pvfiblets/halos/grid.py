@@ -14,7 +14,7 @@ _TABLE = 20  # bits of the table of cells that are looked for: 1 MB, which stays
 
 
 class Grid:
-    """Cells around some places: what is nearer to a place than a cell is wide lies in one of the 27 around it.
+    """Grid of cells: neighbours within a cell's width of a place lie in the 27 cells around it.
 
     Parameters
     ----------

@@ -130,7 +130,7 @@ class Paths:
         return len(self.starts)
 
     def at(self, thing: Ints, where: Doubles) -> Doubles:
-        """Places by arc length; what lies outside its line is at the line's end."""
+        """Places by arc length, clamped to the line's ends."""
         first = np.searchsorted(self.reach, where, side="right") - 1
         # Where one line ends another begins, at the same arc length.
         first = np.clip(first, self.starts[thing], self.ends[thing] - 1)

@@ -13,7 +13,7 @@ from .neighbours import Cloud, Frame, Paths, distances
 __all__ = ["default_widths", "line_spacing", "point_spacing"]
 
 _ALONE = 1.0 / 60.0
-"""Spacing, by the diagonal of the bounds, of what has no neighbours."""
+"""Spacing of data without neighbours, as a share of the bounds' diagonal."""
 
 
 def line_spacing(lines: HaloLines, samples: int = 2000, seed: int = 0) -> float:
@@ -117,7 +117,7 @@ _POINTS = _Proportions(1500.0, 200.0, 10.0, 80.0, 27.0)
 
 
 def _median(found: npt.NDArray[np.float64], frame: Frame) -> float:
-    """The median in mm, or what stands for it."""
+    """The median in mm, or its default."""
     found = found[~np.isnan(found)]
     if 2 * np.count_nonzero(np.isfinite(found)) <= len(found):
         found = found[np.isfinite(found)]

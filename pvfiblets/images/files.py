@@ -14,7 +14,7 @@ _MIF = (".mif", ".mif.gz", ".mih")
 _NRRD = (".nrrd", ".nhdr")
 _METAIMAGE = (".mhd", ".mha")
 SUFFIXES = (*_NIFTI, *_MIF, *_NRRD, *_METAIMAGE, ".vti")
-"""Of files that say what they hold."""
+"""Suffixes of files with a header."""
 
 
 def stem_of(name: str) -> str:

@@ -125,7 +125,7 @@ def _numbers(path: Path, fields: dict[str, str], names: tuple[str, ...], n: int 
 
 
 def _affine(path: Path, fields: dict[str, str], n: int = 3) -> Array:
-    """Voxel indices to mm; n axes, of which the first three are of space."""
+    """Voxel indices to mm; the first three of n axes are spatial."""
     spacing = _numbers(path, fields, ("elementspacing", "elementsize"), n)
     directions = _numbers(path, fields, DIRECTIONS, n * n)
     origin = _numbers(path, fields, PLACES, n)

@@ -53,7 +53,7 @@ def named_files(path: Path) -> list[str]:
 
 
 def _split(line: str) -> tuple[str, int]:
-    """Return the name and the offset of what stands behind ``file:``."""
+    """Return the name and the offset after ``file:``."""
     named, _, offset = line.rpartition(" ") if re.search(r" \d+$", line) else (line, "", "0")
     return named.strip(), int(offset)
 

@@ -26,7 +26,7 @@ LABEL_INTENT = 1002
 """NIFTI_INTENT_LABEL."""
 
 FINE = 0.01
-"""Part of a step between two stored numbers by which scaled ones may be off."""
+"""Tolerance of scaled numbers, as a part of a stored step."""
 
 PIECE = 1 << 18  # bytes
 LIKELY = 8
@@ -121,5 +121,5 @@ def _inflated_size(path: Path, most: int) -> int:
             while size < most and (piece := stream.read(PIECE)):
                 size += len(piece)
     except (OSError, EOFError, zlib.error):
-        pass  # nibabel says so when it reads them
+        pass  # nibabel reports it
     return size

@@ -37,7 +37,7 @@ def numbers(
                 path,
                 None,
                 f"{found} bytes of data",
-                f"{needed} behind what is skipped, as the header's sizes and type say",
+                f"{needed} behind the skipped bytes, from the header's sizes and type",
             )
         return np.memmap(path, kind, "r", start, (count,))
     if packing == "ascii":

@@ -1,4 +1,4 @@
-"""Images of VTK, and those of its ``.vti`` files: its complaints become errors."""
+"""VTK images and ``.vti`` files: VTK's messages become errors."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ def _found(image: Any, name: str | None) -> tuple[Any, bool]:
 
 def _read(reader: Any, path: Path) -> Any:
     """Return what a VTK reader gives."""
-    with path.open("rb"):  # says plainly what is wrong with a path
+    with path.open("rb"):  # raises a clear error for a bad path
         pass
     complaints: list[str] = []
 

@@ -21,10 +21,10 @@ from pvfiblets.mappers.windows import weak
 VTK_SURFACE = 2
 
 _UNUSED = {
-    "backface_prop": ("GetBackfaceProperty", "what is drawn has no backs; prop says how it looks from all sides"),
-    "texture": ("GetTexture", "what is drawn has no texture coordinates; give colours as scalars"),
+    "backface_prop": ("GetBackfaceProperty", "there are no back faces; prop applies to all sides"),
+    "texture": ("GetTexture", "there are no texture coordinates; give colours as scalars"),
 }
-"""By PyVista's name: how VTK calls it, and what to say of it."""
+"""By PyVista's name: VTK's method, and the warning."""
 
 
 class ActorLink:
@@ -109,7 +109,7 @@ class ActorLink:
             warnings.warn(f"actor.{name} changes nothing here: {_UNUSED[name][1]}", UserWarning, stacklevel=2)
 
     def check_alone(self, renderer: Any) -> None:
-        """Raise where actors share the mapper, as copies of an actor do: nobody says which of them is drawn."""
+        """Raise if actors share the mapper, as copies of an actor do: VTK does not say which one it draws."""
         props = renderer.GetViewProps()
         seen = renderer.GetAddressAsString(""), props.GetMTime()
         if seen == self._alone:
@@ -139,7 +139,7 @@ class ActorLink:
         if found:
             warnings.warn(
                 "a replacement of the vertex shader changes nothing here, neither camera distortion nor maximum "
-                "intensity projection: what is drawn is computed pixel by pixel, and stays undistorted",
+                "intensity projection: the image is computed pixel by pixel and stays undistorted",
                 UserWarning,
                 stacklevel=2,
             )
@@ -152,7 +152,7 @@ class ActorLink:
         self._tags = self._tags[0], actor.GetProperty().AddObserver("ModifiedEvent", _keep_surface)
 
     def modified(self) -> None:
-        """Tell those who render on demand; the mapper's own time would make VTK build its shaders anew."""
+        """Notify observers that render on demand; the mapper's own time would make VTK rebuild its shaders."""
         if self.actor is not None:
             self.actor.Modified()
 
@@ -207,7 +207,7 @@ def _keep_surface(actor_property: Any, event: str) -> None:
         undone.append("culling")
     if undone and event:  # not what a theme or a property brings with it
         warnings.warn(
-            f"prop.{' and prop.'.join(undone)} changes nothing here: what is drawn has no facets",
+            f"prop.{' and prop.'.join(undone)} changes nothing here: lines, tubes, halos and volumes have no facets",
             UserWarning,
             stacklevel=2,
         )

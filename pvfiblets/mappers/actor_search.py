@@ -19,7 +19,7 @@ from pvfiblets.mappers.scene import actors_in, items_of, renderers_of
 
 __all__ = ["actor_of"]
 
-# Of what has a window or shows a renderer: vtkRenderWindowInteractor, vtkWindowToImageFilter and the like.
+# Methods of objects with a window or a renderer: vtkRenderWindowInteractor, vtkWindowToImageFilter and others.
 _LEADS = ("GetRenderWindow", "GetInput", "GetRenderer")
 
 
@@ -43,7 +43,7 @@ def _is_drawn(renderer: vtkRenderer) -> bool:
 def _actors() -> Iterator[vtkActor]:
     """Yield the actors that Python or a renderer that it leads to has; some more than once."""
     seen: set[str] = set()
-    # By type(): isinstance asks objects for their class, which those of others may refuse; a dead weakref.proxy does.
+    # By type(): isinstance reads the object's __class__, which may raise, as for a dead weakref.proxy.
     for held in [held for held in gc.get_objects() if issubclass(type(held), vtkObjectBase)]:
         if isinstance(held, vtkProp):
             yield from actors_in(held)

@@ -51,7 +51,7 @@ def draw_ahead(window: Any, *, refining: bool = False) -> Iterator[None]:
 
 
 def _mappers(renderer: Any) -> Iterator[FibletMapper]:
-    """Yield those of a renderer that it shows."""
+    """Yield the visible ones of a renderer."""
     for prop in items_of(renderer.GetViewProps()):
         for actor in actors_in(prop) if prop.GetVisibility() else ():
             mapper = actor.GetMapper()

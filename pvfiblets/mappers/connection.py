@@ -32,7 +32,7 @@ class Connection:
     proxy: vtkPolyData | None = None
     """The triangles."""
     input: VtkInput | None = None
-    """The filter behind which the user's data are; None where nobody has connected any."""
+    """The filter with the user's data; None without a connection."""
 
     def __init__(self, mapper: vtkMapper) -> None:
         self._mapper = weak(mapper)
@@ -57,7 +57,7 @@ class Connection:
 
     @contextmanager
     def _own_change(self) -> Iterator[None]:
-        """Open, what is connected is not a user's; VTK's own methods are called, not the mapper's overrides."""
+        """Connect internal data meanwhile, with VTK's own methods instead of the mapper's overrides."""
         self._connecting = True
         try:
             yield
@@ -66,7 +66,7 @@ class Connection:
         self._port = _BASE.GetInputConnection(self._mapper.Get(), 0, 0)
 
     def changed(self) -> None:
-        """Put the filter between what was connected now and VTK."""
+        """Put the filter between the new connection and VTK."""
         mapper: Any = self._mapper.Get()
         there = bool(_BASE.GetNumberOfInputConnections(mapper, 0))
         port = _BASE.GetInputConnection(mapper, 0, 0) if there else None
@@ -102,7 +102,7 @@ class Connection:
             _BASE.SetInputData(mapper, data)
 
     def end_reading(self) -> None:
-        """Connect what was connected before; twice is harmless."""
+        """Restore the earlier connection; a second call has no effect."""
         before, self._settings = self._settings, None
         if before is None:
             return

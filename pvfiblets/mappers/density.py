@@ -29,7 +29,7 @@ class Density(ShaderEffect):
 
     With a colouring of mode ``'pixel_count'`` the number of lines in a pixel goes through its table. With any other,
     a pixel has the mean colour of its lines (of directions, at full brightness), the more of it the more lines there
-    are, over what is behind them.
+    are, over the background.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ class Density(ShaderEffect):
     thin : bool, default True
         Whether lines are a pixel wide whatever their width, so that each takes the pixels that it runs through once.
     most : float, optional
-        Lines in a pixel of full brightness, or of the table's last colour; those of the picture's fullest pixel by
+        Lines in a pixel of full brightness, or of the table's last colour; the number in the frame's fullest pixel by
         default.
     tone : {'log', 'sqrt', 'linear'}
         How brightness grows with n of m lines: log(1 + n) / log(1 + m), sqrt(n / m), n / m.
@@ -68,7 +68,7 @@ class Density(ShaderEffect):
 
     @property
     def features(self) -> frozenset[str]:
-        """Pieces of the resolve; those of the table are its colouring's."""
+        """Pieces of the resolve; the colouring adds its table's."""
         return frozenset({"sums", "density"} if self.bright else {"sums"})
 
     @property
@@ -92,7 +92,7 @@ class Density(ShaderEffect):
         return textures
 
     def set_uniforms(self, kept: Sums, program: Any, draw: Draw) -> None:
-        """Say how to read the sums, and what is most."""
+        """Set the uniforms that read the sums, and their maximum."""
         kept.set_uniforms(program)
         most = kept.most if self.most is None else self.most
         if self.most is None and self.found is not None and kept.held is not None:

@@ -36,12 +36,12 @@ class _Held:
         self.count = 1
 
     def layers(self, draw: Any, count: int) -> dict[str, Any]:
-        """Return texture arrays by what they hold."""
+        """Return texture arrays by their contents."""
         self._engine, self.count = draw.engine, count
         return dict(draw.engine.render_layers(draw.view, draw.style, count).arrays)
 
     def empty(self) -> dict[str, Any]:
-        """Return what samplers of arrays may look at where there is nothing; no other kind of texture will do."""
+        """Return an empty texture array for unused samplers."""
         self.count = 1
         self._drop_layers()
         return {name: self.blank(name) for name in ("depth", "ids", "position")}
@@ -51,7 +51,7 @@ class _Held:
         return self._empty.of(name, *_EMPTY[name])
 
     def explain(self) -> dict[str, list[dict[str, Any]]]:
-        """Return ``passes``, of which there are none of its own, and ``buffers``, name and bytes."""
+        """Return ``passes`` (none) and ``buffers``, name and bytes."""
         return {"passes": [], "buffers": self._empty.buffers()}
 
     def _drop_layers(self) -> None:
@@ -86,7 +86,7 @@ class Layers(ShaderEffect):
 
     def __post_init__(self) -> None:
         if isinstance(self.count, bool) or int(self.count) != self.count or not 2 <= self.count <= MOST_LAYERS:
-            raise ValueError(f"{self.count!r} layers are asked for; give a whole number from 2 to {MOST_LAYERS}")
+            raise ValueError(f"{self.count!r} layers are not possible; give a whole number from 2 to {MOST_LAYERS}")
         object.__setattr__(self, "count", int(self.count))
 
     def make(self, ctx: Any) -> _Held:
@@ -115,7 +115,7 @@ def layers_of(effects: Iterable[Any]) -> int:
 
 
 def with_layers(features: frozenset[str]) -> frozenset[str]:
-    """Return the pieces of the resolve, with those that layers need beside others."""
+    """Return the pieces of the resolve, including those for layers."""
     if "layers" not in features:
         return features
     return features | {piece for other, piece in _BESIDE.items() if other in features}

@@ -169,7 +169,7 @@ def _tube_values(tubes: Any, name: str, segments: npt.NDArray[np.int64]) -> npt.
 
 
 def halo_lines(drawn: Any, look: Any, colouring: Colouring | None, ids: npt.NDArray[np.int64]) -> LineData:
-    """Return lines, or points as lines of one point, that have halos; without what is filtered."""
+    """Return lines with halos, or points as lines of one point, without filtered ones."""
     points = np.asarray(drawn.points)
     offsets = getattr(drawn, "offsets", np.arange(len(points) + 1))
     counts = np.diff(offsets)[ids]

@@ -80,14 +80,14 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
     Parameters
     ----------
     drawn : Any
-        What to draw; it has ``n_streamlines``, ``n_points``, ``bounds`` and ``promise``. None for what is connected by
-        ``SetInputConnection`` or ``SetInputData``, which goes before what was given whenever it is called.
+        What to draw; it has ``n_streamlines``, ``n_points``, ``bounds`` and ``promise``. None for the data connected by
+        ``SetInputConnection`` or ``SetInputData``, which replaces the argument when it is called.
     colouring : Colouring, optional
         Where the colours come from; None leaves them to ``vtkMapper``'s own settings and to the actor's property.
     options : Options
         What can be chosen about drawing.
     renderer_factory : callable
-        Takes a moderngl context, what is drawn, and as keywords those options that are not the defaults; returns
+        Takes a moderngl context, the data, and as keywords the options that differ from the defaults; returns
         the engine's renderer.
     **made_with
         Further keywords of the factory.
@@ -103,7 +103,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
 
     _NAME: ClassVar[str]
 
-    # What a shallow copy takes over beside what is drawn.
+    # Attributes that a shallow copy takes over beside the data.
     COPIED: ClassVar[tuple[str, ...]] = ("_options", "_factory", "_made_with", "_colouring", "_follows", "_effects")
 
     # Whether the engine knows where the edges run of what each pixel shows.
@@ -140,7 +140,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
 
     @property
     def _has_edges(self) -> bool:
-        """Whether edges of the picture are those of the nearest lines, and known."""
+        """Whether the edges of the nearest lines are known."""
         return self._HAS_EDGES and all(getattr(effect, "smooth_edges", True) for effect in self._effects.values())
 
     # What is drawn, and how
@@ -159,12 +159,12 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
 
     @property
     def _empty(self) -> bool:
-        """Whether there is nothing to draw, and so no bounds."""
+        """Whether the data are empty, and so without bounds."""
         return not (self._drawn.n_streamlines and self._drawn.n_points)
 
     @property
     def _extent(self) -> Any:
-        """Bounds of what is drawn, mm."""
+        """Bounds of the data, mm."""
         return thickened(self._drawn.bounds, self._thickness)
 
     def _set_proxy(self) -> None:
@@ -412,18 +412,18 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
     def _outside(
         self, context: WindowContext, slot: Slot, renderer: vtkRenderer, viewport: tuple[int, int, int, int]
     ) -> Any:
-        """Return the depth of what was drawn before, as keys; None where it may not be looked at."""
+        """Return the depth of earlier objects, as keys; None if it cannot be read."""
         actor = self.actor
         if not self._sums_up and actor is not None and others_before(renderer, actor):
             return slot.outside_depth(context.ctx).copy(viewport)
         return None
 
     def _style(self, renderer: vtkRenderer, pixel_scale: float) -> Style:
-        """Return the style without values; a width is as many pixels times ``pixel_scale`` wide."""
+        """Return the style without values; widths are multiplied by ``pixel_scale``."""
         raise NotImplementedError
 
     def _narrower(self, pixel_scale: float) -> float:  # noqa: ARG002
-        """Return the pixels by which lines are thinner than they are drawn."""
+        """Return the difference of drawn and true line widths in pixels."""
         return 0.0
 
     def _widened(self, style: Any, frame: Frame) -> bool:  # noqa: ARG002
@@ -451,13 +451,13 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
 
     @property
     def _sums_up(self) -> bool:
-        """Whether a pixel shows more than the nearest of what is drawn."""
+        """Whether a pixel shows more than the nearest line."""
         return self._layers > 1 or any(getattr(effect, "translucent", False) for effect in self._effects.values())
 
     # VTK's pipeline
 
     def _begin(self) -> None:
-        """Find the actor that VTK is about to draw, and follow what has been set since the last draw."""
+        """Find the actor that VTK is about to draw, and apply changes since the last draw."""
         self._link.find()
         if self._connection.input is not None and not self.is_readable:
             self._connection.input.follow()
@@ -477,11 +477,11 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         raise NotImplementedError
 
     def _user_input(self) -> VtkInput | None:
-        """Return the filter behind which a user's data are, unless VTK reads real lines."""
+        """Return the filter with the user's data, unless VTK reads real lines."""
         return None if self.is_readable else self._connection.input
 
     def GetInputConnection(self, port: int, index: int) -> Any:  # noqa: N802 - VTK's name
-        """Return what was connected."""
+        """Return the connection."""
         found = self._user_input()
         return super().GetInputConnection(port, index) if found is None else found.GetInputConnection(port, index)
 
@@ -516,7 +516,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         super().SetArrayComponent(component)
 
     def GetArrayComponent(self) -> int:  # noqa: N802 - VTK's name
-        """Return what was set: VTK itself sets 0 where it finds no such array in what it draws."""
+        """Return the set value: VTK itself sets 0 where its data lack the array."""
         return self._component
 
     def ColorByArrayComponent(self, array: str | int, component: int) -> None:  # noqa: N802 - VTK's name
@@ -563,7 +563,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         return None
 
     def _selects_lines(self) -> bool:
-        """Whether VTK's selection is to find lines, not the actor: of what is no wider than they are."""
+        """Whether VTK's selection finds lines instead of the actor."""
         return False
 
     def _readable_data(self, budget: int, *, colours: bool, segments: bool) -> vtkPolyData:
@@ -616,13 +616,13 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         return [slot.renderer for slot in slots if slot.renderer is not None]
 
     def explain(self) -> dict[str, Any]:
-        """Return what is active: the engine's passes, features and buffers, and the resolve's.
+        """Return the active passes, features and buffers of the engine and of the resolve.
 
         Returns
         -------
         dict
             Keys of the engine's ``explain`` per window in ``windows``; ``features``: pieces of the resolve
-            shader; ``textures``: name and bytes of the mapper's own textures and those of its effects.
+            shader; ``textures``: name and bytes of the textures of the mapper and its effects.
         """
         windows, textures = [], []
         for context in contexts_with(self):
@@ -675,7 +675,7 @@ class CutMapper(EngineMapper[AnyOptions]):
 
     @property
     def region(self) -> Any:
-        """`pvfiblets.regions.Region` in world mm outside of which nothing is drawn; None for none."""
+        """`pvfiblets.regions.Region` in world mm that clips the drawing; None for none."""
         return self._region
 
     @region.setter

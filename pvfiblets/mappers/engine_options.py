@@ -1,4 +1,4 @@
-"""How what a mapper shows is drawn: what it asks of an engine, and which engine it asks."""
+"""Options of a mapper's engine, and the choice of the engine."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pvfiblets.engine.gl.capabilities import AUTO, check_choices
 
 @dataclass(frozen=True)
 class Options:
-    """Choices about drawing, which a renderer is made with, but for those that are a part of the style."""
+    """Options that a renderer is made with, without its style's."""
 
     NOT_MADE_WITH: ClassVar[frozenset[str]] = frozenset()
 
@@ -25,7 +25,7 @@ class Options:
         """Raise where a value is unknown."""
 
     def changed(self) -> dict[str, Any]:
-        """Return those that are not the defaults, as keyword arguments of a renderer."""
+        """Return the options that differ from the defaults, as keyword arguments of a renderer."""
         return {
             field.name: getattr(self, field.name)
             for field in fields(self)

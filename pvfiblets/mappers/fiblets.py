@@ -36,13 +36,13 @@ class FibletMapper(CutMapper[EngineOptions]):
         What to draw. Without it, each line cell of the PolyData that ``SetInputConnection`` or ``SetInputData``
         connects is a streamline.
     colouring : Colouring, optional
-        When left out, fiblets are coloured by orientation, and what is connected as by any ``vtkMapper``: by its
+        By default fiblets are coloured by orientation, and connected data as by any ``vtkMapper``: by its
         active scalars, or in the colour of the actor's property.
     line_width : float, optional
         Pixels of the window, above 0; that of the actor's property when left out. Lines thinner than a pixel are drawn
         a pixel wide, and fainter where edges are smoothed (`pvfiblets.mappers.antialias_coverage`).
     compression : mapping, optional
-        Arguments of `pvfiblets.compress` for what is connected.
+        Arguments of `pvfiblets.compress` for connected data.
     options : EngineOptions, optional
         Pipeline and culling; the defaults suit every machine.
     renderer_factory : callable, optional
@@ -89,7 +89,7 @@ class FibletMapper(CutMapper[EngineOptions]):
 
     @property
     def fiblets(self) -> Any:
-        """The `FibletSet` that is drawn; None where nothing is connected, or has not been asked for yet."""
+        """The drawn `FibletSet`; None without a connection, or before its first use."""
         return self._drawn
 
     def set_fiblets(self, fiblets: Any) -> None:
@@ -118,7 +118,7 @@ class FibletMapper(CutMapper[EngineOptions]):
 
     @property
     def detail(self) -> float:
-        """Pixels of the window by which lines may be off (`FibletStyle.tolerance`); 0 draws every point."""
+        """Error of lines in pixels of the window (`FibletStyle.tolerance`); 0 draws every point."""
         return self._detail
 
     @detail.setter
@@ -145,7 +145,7 @@ class FibletMapper(CutMapper[EngineOptions]):
 
     @property
     def filtering(self) -> Any:
-        """`pvfiblets.engine.fiblets.data.filter_textures.Filter` of what is there to be drawn; None for everything."""
+        """`pvfiblets.engine.fiblets.data.filter_textures.Filter` of the visible fiblets; None for all."""
         return self._filtering
 
     @filtering.setter
@@ -305,7 +305,7 @@ class FibletMapper(CutMapper[EngineOptions]):
     def pick_at(
         self, x: float, y: float, *, renderer: vtkRenderer | None = None, tolerance: int = 2
     ) -> tuple[int, float] | None:
-        """Return the streamline nearest to a pixel of what was drawn last.
+        """Return the streamline nearest to a pixel of the last frame.
 
         Parameters
         ----------

@@ -101,7 +101,7 @@ class Sums:
         return found
 
     def _depth(self, draw: Draw) -> Any:
-        """Return the depth of what is opaque in the scene, or None where it cannot be had."""
+        """Return the depth of the scene's opaque objects, or None if it cannot be read."""
         if self._outside is None:
             self._outside = OutsideDepth(self._ctx)
         viewport = draw.frame.viewport
@@ -114,7 +114,7 @@ class Sums:
         program.SetUniform2i("fibletSumShape", (0, 0) if held is None or not held.words else held.shape)
 
     def explain(self) -> dict[str, list[dict[str, Any]]]:
-        """Return ``passes``, of which the engine tells, and ``buffers``, name and bytes."""
+        """Return the engine's ``passes``, and ``buffers``, name and bytes."""
         return {"passes": [], "buffers": self._blank.buffers()}
 
     def _drop(self) -> None:

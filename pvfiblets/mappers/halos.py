@@ -112,10 +112,10 @@ class HaloMapper(EngineMapper[HaloOptions]):
         What to draw. Without it, the lines of the PolyData that ``SetInputConnection`` or ``SetInputData`` connects, or
         its points, if it has no lines.
     look : HaloStyle, optional
-        Widths and depths, and what else shows. When left out, widths of what is connected follow the distance between
+        Widths, depths and other settings. By default the widths of connected data follow the distance between
         its lines.
     colouring : Colouring, optional
-        Of lines and points. When left out, they are black, and what is connected is coloured as by any ``vtkMapper``:
+        Of lines and points. By default they are black, and connected data are coloured as by any ``vtkMapper``:
         by its active scalars, or in the colour of the actor's property.
     halo_color : tuple of 3 floats, optional
         RGB between 0 and 1; None for the renderer's background. When left out, halos are white, and around what is
@@ -123,7 +123,7 @@ class HaloMapper(EngineMapper[HaloOptions]):
     options : HaloOptions, optional
         What does not show.
     renderer_factory : callable, optional
-        Takes a moderngl context, what is drawn, and as keywords those options that are not the defaults; returns a
+        Takes a moderngl context, the data, and as keywords the options that differ from the defaults; returns a
         renderer as of `pvfiblets.engine.halos`.
 
     Notes
@@ -211,7 +211,7 @@ class HaloMapper(EngineMapper[HaloOptions]):
     def pick_at(
         self, x: float, y: float, *, renderer: vtkRenderer | None = None, tolerance: int = 2
     ) -> tuple[int, float] | int | None:
-        """Return the line or point nearest to a pixel of what was drawn last.
+        """Return the line or point nearest to a pixel of the last frame.
 
         Parameters
         ----------
@@ -220,7 +220,7 @@ class HaloMapper(EngineMapper[HaloOptions]):
         renderer : vtkRenderer, optional
             Which renderer's picture to look into; by default the one that was drawn last.
         tolerance : int, default 2
-            How many pixels away it may be. Halos hide what is behind them, and are nothing that is found.
+            Largest distance in pixels. Halos occlude objects behind them, and are never picked.
 
         Returns
         -------

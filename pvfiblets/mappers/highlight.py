@@ -44,7 +44,7 @@ class _Bits:
         return self.texture
 
     def explain(self) -> dict[str, list[dict[str, Any]]]:
-        """Return ``passes``, of which there are none, and ``buffers``, name and bytes."""
+        """Return ``passes`` (none) and ``buffers``, name and bytes."""
         size = 0 if self.texture is None else 4 * self.texture.width * self.texture.height
         return {"passes": [], "buffers": [{"name": "fibletChosenMap", "bytes": size}]}
 

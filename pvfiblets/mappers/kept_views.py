@@ -120,12 +120,12 @@ class KeptViews:
             self._left.pop().SetDraw(True)
 
     def _comparable(self, window: Any) -> bool:
-        """Say whether a frame is one of those that follow each other on the window, whole and for nobody else."""
+        """Return True for an ordinary frame of the window: no tile, no stereo, no selection."""
         whole = tuple(window.GetTileScale()) == (1, 1) and not window.GetStereoRender()
         return whole and all(one.GetSelector() is None for one in items_of(window.GetRenderers()))
 
     def _state(self, renderer: Any) -> Hashable:
-        """Return what a view shows, with all that lies over it; None where that cannot be said."""
+        """Return the state of a view with its overlays; None if it is unknown."""
         box = renderer.GetViewport()
         others = (one for one in items_of(self._window.Get().GetRenderers()) if one not in self._renderers)
         above = [one for one in others if one.GetDraw() and _overlap(box, one.GetViewport())]
@@ -149,7 +149,7 @@ def _overlap(a: tuple[float, ...], b: tuple[float, ...]) -> bool:
 
 
 def _letters(renderer: Any) -> Hashable:
-    """Return what lies over a renderer's picture, texts and colour bars; None for charts, which count no changes."""
+    """Return a renderer's overlays, texts and colour bars; None for charts, which count no changes."""
     found = []
     for prop in items_of(renderer.GetViewProps()):
         if prop.IsA("vtkContextActor"):

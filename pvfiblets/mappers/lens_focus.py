@@ -1,4 +1,4 @@
-"""What a camera's lens is set to: a distance that is given, or one that follows what is seen at a place."""
+"""Focus of a camera's lens: a fixed distance, or one that follows the nearest surface at a pixel."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ FOLLOWED = ("cursor", "center")
 """Places in the picture whose depth may be the one in focus."""
 
 APERTURE = 0.06
-"""Of the height that is seen at the distance in focus: the lens's diameter where none is asked for."""
+"""Default diameter of the lens, as a share of the visible height at the distance in focus."""
 
 NEAR_CURSOR = 2
 """Pixels around the mouse in which things are looked for: lines are thin."""
 
 SETTLED = 1e-3
-"""Share of a distance by which a focus that follows may still be off when it counts as arrived."""
+"""Relative error at which a moving focus counts as arrived."""
 
 LONGEST = 0.1
 """Seconds that count as passed at most: a focus that has rested starts slowly, too."""
@@ -129,7 +129,7 @@ class Focusing:
         return Focus(self.distance, float(aperture), blur, float(wanted.darkening))
 
     def _follow(self, seen: float | None, smooth: float) -> None:
-        """Move the distance in focus towards what is seen now; None leaves it on its way to the last."""
+        """Move the focus towards the current surface; None continues to the last one."""
         now = self.clock()
         passed, self._moved = now - self._moved, now
         if seen is not None:
@@ -155,7 +155,7 @@ def lens_of(renderer: Any, size: tuple[int, int]) -> Projection:
 def _seen_at(
     place: str, renderer: Any, effects: PictureEffects, lens: Projection, samples: float, *, wait: bool
 ) -> float | None:
-    """Return the distance (mm) of what is nearest at a place; None where nothing is, and in tiles.
+    """Return the distance (mm) of the nearest surface at a pixel; None over the background, and in tiles.
 
     Without waiting for the GPU, it is that of a picture before; None if nothing new is known of any.
     """

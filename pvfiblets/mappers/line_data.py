@@ -45,7 +45,7 @@ class LineData:
     offsets : numpy.ndarray
         ``(k + 1,)`` int64: line ``i`` is ``points[offsets[i]:offsets[i + 1]]``.
     ids : numpy.ndarray
-        ``(k,)`` int64: of which streamline a line is a part.
+        ``(k,)`` int64: the streamline of each line.
     columns : mapping of str to numpy.ndarray
         Arrays with a row for each point.
     """
@@ -61,7 +61,7 @@ class LineData:
         return np.repeat(np.arange(len(self.ids)), np.diff(self.offsets))
 
     def tangents(self) -> Floats:
-        """Return ``(n, 3)`` unit directions at the points: the mean of those of the segments beside; 0 for none."""
+        """Return ``(n, 3)`` unit directions at the points: the mean over the adjacent segments; 0 without any."""
         points, owners = np.asarray(self.points, np.float64), self.owners
         steps = np.diff(points, axis=0)
         sizes = np.linalg.norm(steps, axis=1)
@@ -75,7 +75,7 @@ class LineData:
         return np.divide(sums, lengths, out=np.zeros_like(sums), where=lengths > 0.0)
 
     def kept(self, points: Flags) -> LineData:
-        """Return the segments both points of which are kept, and lines of one point that is."""
+        """Return the segments with both points kept, and kept lines of one point."""
         if points.all():
             return self
         owners = self.owners
@@ -85,7 +85,7 @@ class LineData:
         return self._runs(rows, np.zeros(len(rows)), begins[points])
 
     def inside(self, contains: Callable[[Floats], Flags]) -> LineData:
-        """Return what lies within a region, cut at its boundary; one that a segment leaves and enters is not found."""
+        """Return the lines within a region, cut at its boundary; one that a segment leaves and enters is not found."""
         within = contains(np.asarray(self.points, np.float64))
         if within.all():
             return self

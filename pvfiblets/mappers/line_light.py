@@ -1,4 +1,4 @@
-"""The light that falls on lines unless another is asked for, by which their colours stay what they are."""
+"""The default light on lines, which preserves their colours."""
 
 from __future__ import annotations
 
@@ -26,6 +26,6 @@ class LineLight(ShaderEffect):
 
 
 class LegendColours(ShaderEffect):
-    """Colours as they are, whatever the lights: those that a scalar bar or a legend explains."""
+    """Unlit colours, for scalar bars and legends."""
 
     features = frozenset({"legend_colours"})

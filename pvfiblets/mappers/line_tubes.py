@@ -56,7 +56,7 @@ class _Blank:
         return self._texture
 
     def explain(self) -> dict[str, list[dict[str, Any]]]:
-        """Return ``passes``, of which there are none, and ``buffers``, name and bytes."""
+        """Return ``passes`` (none) and ``buffers``, name and bytes."""
         held = [] if self._texture is None else [{"name": "fibletAcrossMap (blank)", "bytes": 2}]
         return {"passes": [], "buffers": held}
 
@@ -71,7 +71,7 @@ class _Blank:
 class TubeShading(ShaderEffect):
     """A `pvfiblets.mappers.shader_effects.MapperEffect` by which lights fall on wide lines as on round tubes.
 
-    Only the light changes: depths stay those of flat lines, which face the viewer. Lines one pixel wide look as they
+    Only the light changes: depths stay flat. Lines one pixel wide look as they
     did, and tubes have their own normals. It costs two bytes for each pixel.
     """
 
@@ -83,7 +83,7 @@ class TubeShading(ShaderEffect):
         return {"across": True}
 
     def make(self, ctx: Any) -> _Blank:
-        """Make what stands for the engine's texture where there are no wide lines."""
+        """Make a substitute for the engine's texture where there are no wide lines."""
         return _Blank(ctx)
 
     def prepare(self, kept: _Blank, draw: Draw) -> Mapping[str, Any]:

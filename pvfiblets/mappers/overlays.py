@@ -1,4 +1,4 @@
-"""Drawing what lies over a picture after VTK's render passes, where one of them changes the finished picture.
+"""Drawing of overlays after VTK's render passes, if one of these changes the finished frame.
 
 PyVista has VTK's ambient occlusion and eye-dome lighting change a picture that scalar bars and texts are in already.
 Effects on the picture belong after those passes and before the texts, which VTK has no place for. So the texts are kept
@@ -12,7 +12,7 @@ from typing import Any
 __all__ = ["Overlay"]
 
 LAST = ("vtkSSAOPass", "vtkEDLShading")
-"""Passes that leave the depth of what they have changed in VTK's framebuffer."""
+"""Passes that leave the depth of their result in VTK's framebuffer."""
 
 
 class Overlay:

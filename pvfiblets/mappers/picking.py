@@ -201,7 +201,7 @@ def nearest_pixel(
 def pick_area(
     layers: Sequence[Layer], polygon: npt.ArrayLike, *, renderer: Any = None, tolerance: float = 0.0
 ) -> Hits | None:
-    """Return what is seen in an area of the window, pixel by pixel.
+    """Return the visible objects in an area of the window, pixel by pixel.
 
     Notes
     -----

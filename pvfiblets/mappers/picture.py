@@ -205,7 +205,7 @@ class Picture:
 
     @property
     def fetching(self) -> bool:
-        """Whether what it wants are parts of a set."""
+        """Whether a set has parts that are not drawn yet."""
         return any(engine.unfinished for engine in self._streamed)
 
     @property
@@ -251,7 +251,7 @@ class Picture:
 
     @property
     def settings(self) -> Hashable:
-        """All that is done to what is drawn; None if that changes from frame to frame."""
+        """State of all effects; None if it changes from frame to frame."""
         focus = self._depth_of_field
         if focus is not None and (focus.focal_distance in FOLLOWED or not self.focusing.settled):
             return None
@@ -333,7 +333,7 @@ class Picture:
             del error  # held here it would keep itself, and VTK's objects in its frames, for Python's collector
 
     def explain(self) -> dict[str, Any]:
-        """Return what the effects cost: ``buffers``, name and bytes of what they keep on the GPU."""
+        """Return the cost of the effects: ``buffers``, name and bytes of each GPU buffer."""
         slots = [] if self._prop is None else [c.slot(self._prop) for c in contexts_with(self._prop)]
         kept = [("picture", slot.renderer) for slot in slots if slot.renderer is not None]
         kept += [(name, sums) for slot in slots for name, (_, sums) in slot.effects.items()]
@@ -410,7 +410,7 @@ class Picture:
         self._overlay.hold(renderer)
 
     def _draw_around(self, renderer: Any) -> None:
-        """Copy what lies around a tile, if effects look there; the tile itself is drawn after that."""
+        """Copy the surroundings of a tile for effects that read them, before the tile is drawn."""
         self._margin = None
         if self._depth_of_field is None:
             return
@@ -435,7 +435,7 @@ class Picture:
             self._inside = False
 
     def end(self) -> None:
-        """Draw what has been put off; called when the renderer has drawn."""
+        """Draw the postponed overlays; called after the renderer."""
         renderer = self.renderer
         if renderer is None:
             return
@@ -482,14 +482,14 @@ class Picture:
             finish(window)
 
     def stored(self, step: Callable[[], None]) -> None:
-        """Take a step of a frame; what it raises, VTK would swallow: see `raise_pending`."""
+        """Take a step of a frame, and keep its error, which VTK would swallow: see `raise_pending`."""
         try:
             step()
         except Exception as error:  # noqa: BLE001
             self._error = error
 
     def paint(self) -> None:
-        """Change the picture; called when all but what lies over it is drawn."""
+        """Apply the effects; called when everything but the overlays is drawn."""
         renderer, prop = self.renderer, self._prop
         if renderer is None or prop is None or renderer.GetSelector() is not None:
             return
@@ -529,7 +529,7 @@ class Picture:
     def _paint_effects(
         self, context: WindowContext, slot: Slot, colour: Attachment, viewport: tuple[int, int, int, int]
     ) -> None:
-        """Change colours and focus; of what lies beside a tile, take a copy."""
+        """Apply tones and depth of field; copy the surroundings of a tile."""
         renderer, wanted = self.renderer, self._depth_of_field
         if slot.renderer is None:
             slot.renderer = PictureEffects(context.ctx)

@@ -1,4 +1,4 @@
-"""A prop that calls Python between a renderer's picture and what lies over it, and the framebuffer bound there."""
+"""A prop that calls Python between a renderer's image and its overlays, and the framebuffer bound there."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ class Painted(Protocol):
         """Change the picture."""
 
     def stored(self, step: Callable[[], None]) -> None:
-        """Take a step, and keep what it raises."""
+        """Take a step, and keep its error."""
 
 
 class PictureProp(vtkContextActor):
-    """The prop that calls Python when VTK comes to what lies over the picture."""
+    """The prop that calls Python when VTK reaches the overlays."""
 
     def hang(self, picture: Painted) -> None:
         """Call a picture, which is not kept alive."""

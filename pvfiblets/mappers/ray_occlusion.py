@@ -34,7 +34,7 @@ class RayOcclusion(ShaderEffect):
     samples : int, default 32
         Rays of each pixel, 1 to 2048: the error falls faster than the inverse of their number's square root.
     radius : float, optional
-        mm: what is farther away does not count. By default a 20th of the diagonal of the data's bounds.
+        mm: farther geometry does not count. By default a 20th of the diagonal of the data's bounds.
     strength : float, default 1.0
         0 to 1.
     seed : int, default 0

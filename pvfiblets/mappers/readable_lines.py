@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 __all__ = ["MOST_POINTS", "LineReading", "readable", "reading_of"]
 
 MOST_POINTS = 2_000_000
-"""Points that exporters and pickers are given at most: some 60 MB, of which a .gltf or .obj file takes 100 MB."""
+"""Most points for exporters and pickers: some 60 MB, or 100 MB as a .gltf or .obj file."""
 
 _CELLS = 1  # vtkDataObject.FIELD_ASSOCIATION_CELLS; 0 are points
 
@@ -235,7 +235,7 @@ def readable_mapper(mapper: EngineMapper[Any]) -> Iterator[None]:
 
 
 def _tell(readings: list[LineReading], counts: list[int | None], total: int, most: int) -> None:
-    """Warn of what is not as in the picture."""
+    """Warn of differences from the frame."""
     depth = 5
     if total > most:
         warnings.warn(

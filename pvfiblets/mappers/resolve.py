@@ -199,7 +199,7 @@ def install(shader_property: Any, replacements: tuple[Replacement, ...]) -> None
 
 
 def vertex_replacements(shader_property: Any) -> Iterator[tuple[str, bool, str]]:
-    """Yield tag, whether it comes first, and text of those of a ``vtkShaderProperty``, by whomever."""
+    """Yield tag, whether it comes first, and text of each replacement of a ``vtkShaderProperty``."""
     for index in range(shader_property.GetNumberOfShaderReplacements()):
         name, first, text, every = reference(""), reference(False), reference(""), reference(False)
         shader_property.GetNthShaderReplacement(index, name, first, text, every)
@@ -208,7 +208,7 @@ def vertex_replacements(shader_property: Any) -> Iterator[tuple[str, bool, str]]
 
 
 def uninstall(shader_property: Any, replacements: tuple[Replacement, ...]) -> None:
-    """Take the replacements out again; those of others stay."""
+    """Remove these replacements; others stay."""
     for edit in replacements:
         if edit.stage == "vertex":
             shader_property.ClearVertexShaderReplacement(edit.original, edit.first)

@@ -27,7 +27,7 @@ streamed: dict[str, WeakSet[Any]] = {}
 vtkRenderer."""
 
 USUAL_DPI = 72
-"""Dots per inch of a vtkRenderWindow that nobody has changed."""
+"""Default dots per inch of a vtkRenderWindow."""
 
 # 1 - window depth = w stands in the third place: NDC depth is 2 * depth - 1 = 1 - 2 * w.
 _FROM_COMPLEMENT = np.array([[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, -2.0, 1.0], [0.0, 0.0, 0.0, 1.0]])
@@ -183,12 +183,12 @@ def hurry(window: Any, pixels: float, share: float = 1.0) -> None:
 
 
 def slack(renderer: vtkRenderer) -> float:
-    """Return what :func:`hurry` allows in a renderer's window, drawn pixels; 0 where nobody is in a hurry."""
+    """Return the error in drawn pixels that :func:`hurry` allows in a renderer's window; 0 by default."""
     return _hasty.get(renderer.GetRenderWindow().GetAddressAsString(""), (0.0, 1.0))[0] if _hasty else 0.0
 
 
 def wanted_share(window: Any) -> float:
-    """Return the share of the streamlines that :func:`hurry` asks for in a window; 1 where nobody is in a hurry."""
+    """Return the share of the streamlines that :func:`hurry` requests in a window; 1 by default."""
     return _hasty.get(window.GetAddressAsString(""), (0.0, 1.0))[1] if _hasty else 1.0
 
 
@@ -215,7 +215,7 @@ def renderers_of(prop: vtkProp) -> Iterator[vtkRenderer]:
 
 
 def items_of(collection: Any) -> list[Any]:
-    """Return what is in a ``vtkCollection``."""
+    """Return the items of a ``vtkCollection``."""
     return [collection.GetItemAsObject(index) for index in range(collection.GetNumberOfItems())]
 
 
@@ -231,7 +231,7 @@ def actors_in(prop: vtkProp) -> Iterator[vtkActor]:
 def others_before(renderer: vtkRenderer, actor: vtkProp) -> bool:
     """Say whether VTK has drawn something opaque before an actor, whose depth may be looked at.
 
-    Not while VTK selects: what it draws then is not what the user sees.
+    False while VTK selects, which draws an invisible frame.
     """
     if renderer.GetSelector() is not None:
         return False

@@ -24,7 +24,7 @@ _SETTINGS = (
 )  # fmt: skip
 _PARTS = ("GetBackgroundTexture", "GetEnvironmentTexture", "GetPass", "GetRightBackgroundTexture", "GetSSAOKernelSize")
 _OVER = ("vtkActor2D", "vtkContextActor")
-"""Classes of what is drawn over the picture."""
+"""Classes of overlays."""
 
 
 def scene_state(renderer: Any) -> Hashable:

@@ -83,7 +83,7 @@ class MapperEffect(Protocol):
         ...
 
     def make(self, ctx: Any) -> GpuResource | None:
-        """Make what it keeps on the GPU of a window; another effect of the same name and class takes that over."""
+        """Make its GPU resources for a window; another effect of the same name and class reuses them."""
         ...
 
     def prepare(self, kept: Any, draw: Draw) -> Mapping[str, Any]:
@@ -119,7 +119,7 @@ class ShaderEffect:
 
     @property
     def looks_at_pixel(self) -> bool:
-        """Whether it needs nothing but the G-buffer's pixel."""
+        """Whether it needs only the G-buffer's pixel."""
         return type(self).prepare is ShaderEffect.prepare
 
     def make(self, ctx: Any) -> Any:  # noqa: ARG002 - as of all effects

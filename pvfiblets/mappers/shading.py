@@ -90,7 +90,7 @@ class AmbientOcclusion(ShaderEffect):
     Parameters
     ----------
     radius : float, optional
-        mm: what is farther away does not count. By default 16 times the distance between lines, but at least 8 pixels,
+        mm: farther geometry does not count. By default 16 times the distance between lines, but at least 8 pixels,
         and at most a 20th of the diagonal of the data's bounds.
     samples : int, default 16
         Pixels looked at around each, 1 to 256.
@@ -161,7 +161,8 @@ class DepthCue(ShaderEffect):
     color : tuple of 3 floats, optional
         RGB between 0 and 1; by default the renderer's background.
     range : tuple of 2 floats, optional
-        Distances in mm at which fading begins and ends. By default those of the nearest and the farthest corner of the
+        Distances in mm at which fading begins and ends. By default the distances of the nearest and the farthest
+        corner of the
         data's bounds, as the camera sees them.
 
     Raises

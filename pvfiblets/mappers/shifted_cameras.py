@@ -29,7 +29,7 @@ _samples: set[str] = set()
 
 
 def shift(camera: Any, size: tuple[int, int], by: tuple[float, float]) -> Callable[[], None]:
-    """Have a camera show what lies some pixels beside its window."""
+    """Shift a camera's window by some pixels."""
     kept, address = camera.GetWindowCenter(), camera.GetAddressAsString("")
     first = address not in _cameras
     _set_centre(camera, size, by)
@@ -85,12 +85,12 @@ def draws_sample(renderer: Any) -> bool:
 
 
 def note_depths(renderer: Any, *, exact: bool) -> None:
-    """Note whether the depths that a renderer has left in its window are those of its camera unshifted."""
+    """Note whether a renderer's depths belong to its unshifted camera."""
     (_renderers.discard if exact else _renderers.add)(renderer.GetAddressAsString(""))
 
 
 def with_exact_depths(window: Any) -> Any:
-    """Return a window once its depths are those of cameras unshifted: drawn again if they are not."""
+    """Return a window with the depths of unshifted cameras, redrawn if necessary."""
     found = window.GetRenderers()
     shown = {found.GetItemAsObject(index).GetAddressAsString("") for index in range(found.GetNumberOfItems())}
     if shown & _renderers:
@@ -103,5 +103,5 @@ def with_exact_depths(window: Any) -> Any:
 
 
 def exact_wanted(renderer: Any) -> bool:
-    """Say whether a renderer is asked for depths of its camera unshifted."""
+    """Return True if a renderer must provide the depths of its unshifted camera."""
     return renderer.GetAddressAsString("") in _exact

@@ -1,4 +1,4 @@
-"""How far apart lines lie: what halos, occlusion and tubes go by where nobody says how wide they are to be."""
+"""Distance between lines, the default scale of halos, occlusion and tubes."""
 
 from __future__ import annotations
 

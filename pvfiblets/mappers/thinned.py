@@ -16,13 +16,13 @@ from pvfiblets.mappers.scene import wanted_share
 __all__ = ["LEAST_FIBLETS", "thinned_engine"]
 
 LEAST_FIBLETS = 20_000
-"""Fiblets of a set of which nothing is left out: it is drawn in no time, and each of its lines may count."""
+"""Smaller sets are never thinned: they are fast, and each of their lines may count."""
 
 
 def thinned_engine(
     context: Any, slot: Any, fiblets: Any, filtering: Any, make: Callable[..., Any], least: int | None = None
 ) -> Any:
-    """Return the engine that draws as many streamlines as the window asks for."""
+    """Return the engine that draws the share of streamlines that the window requests."""
     least = LEAST_FIBLETS if least is None else least
     if fiblets.n_fiblets < least or hasattr(slot.renderer, "patience"):
         return slot.renderer

@@ -80,10 +80,10 @@ class TubeMapper(EngineMapper[TubeOptions]):
         What to draw. Without it, tubes around the lines of the PolyData that ``SetInputConnection`` or
         ``SetInputData`` connects.
     colouring : Colouring, optional
-        When left out, tubes are white, and what is connected is coloured as by any ``vtkMapper``: by its active
+        By default tubes are white, and connected data are coloured as by any ``vtkMapper``: by their active
         scalars, or in the colour of the actor's property.
     shape : mapping, optional
-        Arguments of `pvfiblets.tubes.build.as_spline_tubes` for what is connected, such as ``radius``: a number (mm),
+        Arguments of `pvfiblets.tubes.build.as_spline_tubes` for connected data, such as ``radius``: a number (mm),
         or the name of an array.
     options : TubeOptions, optional
         How rays are cast.
@@ -140,7 +140,7 @@ class TubeMapper(EngineMapper[TubeOptions]):
     def pick_at(
         self, x: float, y: float, *, renderer: vtkRenderer | None = None, tolerance: int = 2
     ) -> tuple[int, float] | None:
-        """Return the place of the tubes nearest to a pixel of what was drawn last.
+        """Return the position on the tubes nearest to a pixel of the last frame.
 
         Parameters
         ----------

@@ -72,10 +72,10 @@ class VolumeMapper(CutMapper[Options]):
     volume : RaycastVolume, optional
         What to draw. Without it, the image that ``SetInputConnection`` or ``SetInputData`` connects.
     casting : RaycastOptions, optional
-        How; the greatest value on each ray (``'mip'``) of what is connected when left out.
+        Options of the rays; by default the greatest value on each ray (``'mip'``) of connected data.
     colouring : Colouring, optional
-        Of surfaces and peaks: ``'solid'``, or ``'point_scalar'`` of any source, whose values are those of the volume.
-        When left out, white, and peaks in what is connected by look-up table and scalar range of ``vtkMapper``,
+        Of surfaces and peaks: ``'solid'``, or ``'point_scalar'`` of any source, with the values of the volume.
+        By default white, and peaks of connected data by look-up table and scalar range of ``vtkMapper``,
         surfaces in the colour of the actor's property. Light has the colours of its transfer function.
     renderer_factory : callable, optional
         Takes a moderngl context and the volume; returns a renderer as of `pvfiblets.engine.volumes`.
@@ -86,7 +86,7 @@ class VolumeMapper(CutMapper[Options]):
         Whether the scene's lights shine on light through the volume, as the actor's property reflects them. Takes
         effect with the next frame.
     lit_surfaces : bool
-        Whether they shine on translucent surfaces, of which `casting` has several. All others are shaded by VTK.
+        Whether they light translucent surfaces, if `casting` has several. VTK shades all others.
     coarser : InteractiveQuality or None
         How rays are cast instead while an interactor moves the camera. Takes effect with the next frame.
 

@@ -35,7 +35,7 @@ class VtkInput(VTKPythonAlgorithmBase):
         self.executing = False
 
     def RequestData(self, _request: Any, inputs: Any, outputs: Any) -> int:  # noqa: N802 - VTK's name
-        """Have the mapper take what is connected, if that or how it is shown has changed."""
+        """Read the connected data, if they or their settings have changed."""
         mapper: Any = self._mapper.Get()
         if mapper is None:
             return 1
@@ -74,7 +74,7 @@ class VtkInput(VTKPythonAlgorithmBase):
             self.Modified()
 
     def retry(self) -> None:
-        """Follow what was set of a mapper that shows nothing, which VTK does not even begin to draw."""
+        """Apply the settings of an empty mapper, which VTK does not draw."""
         if self._failed:
             self.follow()
 

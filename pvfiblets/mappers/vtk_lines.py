@@ -139,7 +139,7 @@ def _check_kind(data: Any, noun: str) -> None:
 
 
 def _lines_of(data: Any, noun: str) -> tuple[npt.NDArray[Any], npt.NDArray[np.int64], npt.NDArray[np.int64]]:
-    """Return the points of a PolyData, those of all its lines by their numbers, and where each line begins."""
+    """Return the points of a PolyData, the point numbers of its lines, and the start of each line."""
     _check_kind(data, noun)
     lines = data.GetLines()
     if not lines.GetNumberOfCells():

@@ -123,7 +123,7 @@ _done: set[str] = set()
 
 
 def override() -> None:
-    """Have VTK's pickers and exporters know this package, those of the modules that are loaded; twice is harmless."""
+    """Register this package with the loaded VTK pickers and exporters; a second call has no effect."""
     if not _done:
         vtkPicker.override(_Picker)
         vtkPointPicker.override(_PointPicker)

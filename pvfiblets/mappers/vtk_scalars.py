@@ -93,7 +93,7 @@ def paint_of(mapper: Any, data: Any) -> Paint | None:
     name = array.GetName() or "scalars"
     if kind not in (POINTS, CELLS) or not array.IsA("vtkDataArray"):
         what = "an array of words" if kind in (POINTS, CELLS) else "field data"
-        raise ValueError(f"{name!r} is {what}, by which lines cannot be coloured; choose numbers of points or cells")
+        raise ValueError(f"{name!r} is {what}, which cannot colour lines; choose numbers of points or cells")
     table = _table_of(mapper, array)
     direct = mapper.GetColorMode() == DIRECT or (
         mapper.GetColorMode() == DEFAULT and array.GetDataType() == VTK_UNSIGNED_CHAR

@@ -72,9 +72,9 @@ class Slot:
     versions : dict
         Name to the object the texture was made from.
     drawn : dict
-        Address of a vtkRenderer to what was last drawn for it (see ``FibletMapper.pick_at``).
+        Address of a vtkRenderer to its last frame (see ``FibletMapper.pick_at``).
     effects : dict
-        Name of an effect to its class and what it keeps on the GPU (`pvfiblets.mappers.shader_effects`).
+        Name of an effect to its class and its GPU resources (`pvfiblets.mappers.shader_effects`).
     thinned : dict
         Share of the streamlines to a renderer of these, for frames in a hurry (`pvfiblets.mappers.thinned`).
     """

@@ -125,7 +125,7 @@ class PageScene:
     def plain(self) -> dict[str, Any]:
         """Return all but the blobs as JSON has it."""
         if not self.layers or not np.isfinite(self.bounds).all():
-            raise ValueError("there is nothing that a page could show; add streamlines or surfaces first")
+            raise ValueError("a page needs streamlines or surfaces; add some first")
         return {
             "title": self.title,
             "background": self.background,

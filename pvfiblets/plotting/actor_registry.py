@@ -20,7 +20,7 @@ from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
 from vtkmodules.vtkRenderingCore import vtkPicker
 
 from pvfiblets.antialias import default_antialias
-from pvfiblets.plotting import exports, transparent, visible_picking  # noqa: F401 - of which plotters are to know
+from pvfiblets.plotting import exports, transparent, visible_picking  # noqa: F401 - registers them with plotters
 from pvfiblets.plotting.call_signature import document
 from pvfiblets.plotting.scalar_bar_labels import label_format
 from pvfiblets.plotting.settings import Given, Setting, Settings
@@ -94,7 +94,7 @@ CAMERA_REACH = 2.0**53
 
 
 def _warn_of_distance(actor: Any) -> None:
-    """Tell those who see nothing, as with ``add_mesh``, that the scene is too large for PyVista's camera."""
+    """Warn, as ``add_mesh`` does, that the scene is too large for PyVista's camera."""
     reach = max(map(abs, actor.GetBounds() or (0.0,)))
     if CAMERA_REACH <= reach < float("inf"):
         warnings.warn(
@@ -166,15 +166,15 @@ class ActorRegistry(Generic[A]):
         return actor
 
     def _make(self, *source: Any, **own: Any) -> A:
-        """Return an actor; its doc and its arguments are those of ``add``."""
+        """Add an actor; same arguments and doc as ``add``."""
         raise NotImplementedError
 
     def _check_known(self, own: dict[str, Any]) -> None:
-        """Refuse arguments that are none, before they are said of a function that nobody called."""
+        """Raise a TypeError for unknown arguments, in the name of the called function."""
         self._refuse([name for name in own if name not in self.OWN])
 
     def _refuse(self, unknown: Sequence[str]) -> None:
-        """Refuse arguments that are none; those of ``add_mesh`` with what to do instead."""
+        """Raise a TypeError for unknown arguments; for arguments of ``add_mesh`` it names the replacement."""
         if unknown:
             name = unknown[0]
             if isinstance(getattr(self._SETTINGS, name, None), Setting):
@@ -235,7 +235,7 @@ class ActorRegistry(Generic[A]):
         if label is not None:
             self._set_label(actor, label, renderer)
         if actor.scalars_title is not None or self._plotter.mapper is None:
-            self._plotter.mapper = actor.mapper  # of which `add_scalar_bar` makes one, as after `add_mesh`
+            self._plotter.mapper = actor.mapper  # for `add_scalar_bar`, as after `add_mesh`
         self._bars[actor.memory_address] = _Bar(bool(show_scalar_bar), dict(scalar_bar_args or {}))
         try:
             self._update_bar(actor)
@@ -274,7 +274,7 @@ class ActorRegistry(Generic[A]):
         self._plotter.add_on_render_callback(self._raise_pending)
 
     def _observe(self, renderer: Any) -> set[str]:
-        """Have changes of a renderer's actors noticed; return the addresses of those of ours that it shows."""
+        """Observe a renderer's actors; return the addresses of this package's actors in it."""
         address = renderer.GetAddressAsString("")
         if address not in self._renderers:
             # `Renderer.add_actor`, `remove_actor` and their kin end in Modified(): no other sign is given.
@@ -288,7 +288,7 @@ class ActorRegistry(Generic[A]):
         self._smooth(renderer)
 
     def _meet_vtk(self) -> None:
-        """Have the plotter's picker find actors: it was made before VTK could be told of them."""
+        """Make the plotter's picker find actors: it is older than VTK's hook."""
         interactor = getattr(getattr(self._plotter, "iren", None), "interactor", None)
         picker = None if interactor is None else interactor.GetPicker()
         if len(self._actors) == 1 and isinstance(picker, vtkPicker):
@@ -297,7 +297,7 @@ class ActorRegistry(Generic[A]):
             follow(picker)
 
     def _actors_changed(self, _renderer: Any, _event: str) -> None:
-        """Follow actors into other renderers, and give back the GPU memory of those that are in none of them."""
+        """Follow actors into other renderers, and release the GPU memory of removed ones."""
         for actor in self:
             showing = [one for one, _, _ in self._renderers.values() if one.HasViewProp(actor)]
             for renderer in showing:
@@ -309,9 +309,9 @@ class ActorRegistry(Generic[A]):
                     self._smooth(renderer)
 
     def _smooth(self, renderer: Any) -> None:
-        """Have edges smoothed, by default, in what shows an actor of ours; nothing is loaded where they are not."""
+        """Smooth edges by default where an actor of this package is shown; load nothing elsewhere."""
         if default_antialias() != "off":
-            import_module("pvfiblets.plotting.picture_component")  # Qt's plotters know what is imported only
+            import_module("pvfiblets.plotting.picture_component")  # Qt's plotters have only imported components
             self._plotter.picture.follow(renderer)
 
     def _forget(self, actor: A) -> None:
@@ -369,7 +369,7 @@ class ActorRegistry(Generic[A]):
             self._write_labels(actor, state)
             return
         if state.title is not None:
-            # PyVista's own way when an actor goes; it removes a bar once nobody else uses it.
+            # PyVista does this for a removed actor; it removes an unused bar.
             bars = self._plotter.scalar_bars
             bars._remove_mapper_from_plotter(actor)  # noqa: SLF001
             # But not one that was given a place, both x and y.
@@ -384,7 +384,7 @@ class ActorRegistry(Generic[A]):
         self._write_labels(actor, state)
 
     def _write_labels(self, actor: A, state: _Bar) -> None:
-        """Give numbers as many digits as tell them apart, unless the user says how they are written."""
+        """Set the digits that distinguish the numbers, unless the user sets a format."""
         if "fmt" in state.arguments or self._plotter.theme.font.fmt is not None or state.title is None:
             return
         table = actor.mapper.lookup_table
@@ -392,7 +392,7 @@ class ActorRegistry(Generic[A]):
         self._plotter.scalar_bars[state.title].SetLabelFormat(form or vtkScalarBarActor().GetLabelFormat())
 
     def _small_names(self, actor: A) -> dict[str, Any]:
-        """Return sizes of fonts by which names beside a bar take less than half of the window."""
+        """Return font sizes that keep names beside a bar within half of the window."""
         table = actor.mapper.lookup_table
         names = [table.GetAnnotation(i) for i in range(table.GetNumberOfAnnotatedValues())]
         width, height = self._plotter.window_size

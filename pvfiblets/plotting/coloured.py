@@ -33,7 +33,7 @@ class ColouredActor(Settings, pv.Actor):
     # What to say of the property's line width, where it is not drawn.
     _WIDTH: ClassVar[str] = ""
 
-    # The property that holds what is drawn.
+    # Name of the property with the data.
     _DATA: ClassVar[str]
 
     _mapper: EngineMapper[Any]
@@ -76,15 +76,15 @@ class ColouredActor(Settings, pv.Actor):
         raise NotImplementedError
 
     def _as_polydata(self) -> pv.PolyData:
-        """Return what is drawn as lines."""
+        """Return the data as lines."""
         raise NotImplementedError
 
-    def _draw_source(self, source: Any) -> None:  # noqa: ARG002 - of those that can
+    def _draw_source(self, source: Any) -> None:  # noqa: ARG002 - for subclasses
         """Draw other data from the next picture on."""
-        raise AttributeError(f"this mapper's dataset is made of what is drawn; set actor.{self._DATA} to draw others")
+        raise AttributeError(f"this mapper makes its dataset itself; set actor.{self._DATA} for other data")
 
     def _find(self, drawn: Any, choice: Any) -> Scalars | None:
-        """Return the numbers or colours that a choice means for what is drawn; ``None`` for one colour."""
+        """Return the numbers or colours of a choice of scalars; ``None`` for one colour."""
         raise NotImplementedError
 
     def _be_like(self, other: Self, deep: bool) -> None:
@@ -102,8 +102,8 @@ class ColouredActor(Settings, pv.Actor):
 
     def __reduce_ex__(self, _protocol: Any) -> Any:
         raise TypeError(
-            f"a {type(self).__name__} cannot be pickled, as VTK's actors cannot; pickle what it draws "
-            f"(actor.{self._DATA}) and add that to a plotter where it is unpickled"
+            f"a {type(self).__name__} cannot be pickled, like all VTK actors; pickle its data (actor.{self._DATA}) "
+            "and add these to a plotter again"
         )
 
     # What a component asks ----------------------------------------------------------------------
@@ -136,7 +136,7 @@ class ColouredActor(Settings, pv.Actor):
         return pv.Color(self._mean_colour(self._scalars))
 
     def _mean_colour(self, scalars: Scalars) -> Any:
-        """Return what stands for many colours; a grey that shows on black and on white where none is known."""
+        """Return one colour for many; by default a grey that is visible on black and on white."""
         if scalars.values is None or not len(scalars.values):
             return "#808080"
         return [float(part) for part in scalars.values[:, :3].mean(axis=0) / 255.0]
@@ -219,14 +219,14 @@ class ColouredActor(Settings, pv.Actor):
             self._bar()
 
     def _keep_table(self) -> bool:
-        """Have what was written to the look-up table as settings; say whether there was something."""
+        """Read changes of the look-up table into the settings; return True if there were any."""
         found = self._linked_table.settings()
         for name, value in found.items():
             setattr(self._settings, name, value)
         return bool(found)
 
     def _table_touched(self) -> None:
-        """Show it at once, as far as it can be: before a picture VTK asks what is translucent."""
+        """Apply it at once where possible: VTK checks translucency before a frame."""
         if self._scalars is None or not self._scalars.mapped:
             return
         try:
@@ -280,7 +280,7 @@ class ColouredActor(Settings, pv.Actor):
     # The property -------------------------------------------------------------------------------
 
     def SetProperty(self, prop: Any) -> None:  # noqa: N802 - VTK's name
-        """Have another property, and take over what it says."""
+        """Replace the property, and apply its values."""
         super().SetProperty(prop)
         self._linked_property.watch(prop, self._take_property)
         self._take_property()
@@ -328,7 +328,7 @@ def added_up(report: dict[str, Any]) -> dict[str, Any]:
 
 
 def _sum(windows: list[dict[str, Any]], count: str) -> int | None:
-    """Add what the engines of some windows counted; None where none of them knows."""
+    """Add the counts of some windows' engines; None without any."""
     counts = [window.get("fiblets", {}).get(count) for window in windows]
     known = [number for number in counts if number is not None]
     return sum(known) if known else None

@@ -33,7 +33,7 @@ def cut_surface(surface: Any, region: Any) -> pv.PolyData:
 
     region = as_region(region)
     if surface.GetNumberOfPolys() + surface.GetNumberOfStrips() == 0:
-        raise ValueError(f"the surface has {surface.n_points} points and no faces; there is nothing to cut")
+        raise ValueError(f"the surface has {surface.n_points} points and no faces, so it cannot be cut")
     whole = surface if surface.is_all_triangles else surface.triangulate()
     names = list(whole.point_data.keys())
     columns = [np.asarray(whole.point_data[name], np.float64).reshape(whole.n_points, -1) for name in names]

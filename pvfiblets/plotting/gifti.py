@@ -77,7 +77,7 @@ def _of_metadata(place: Path, corners: Array, points: Any, image: Any) -> Placed
     middle = numbers_of([said[name] for name in names])
     if middle is None:
         found = ", ".join(f"{name} {said[name]!r}" for name in names)
-        raise FormatError(place, None, f"the metadata {found}", "three finite mm; or none of them, for points in place")
+        raise FormatError(place, None, f"the metadata {found}", "three finite mm, or none for points in place")
     axes = [numbers_of([said.get(f"VolGeom{axis}_{way}") for way in "RAS"]) for axis in "XYZ"]
     known = [one for one in axes if one is not None]
     return in_scanner_space(place, corners, middle, known if len(known) == len(axes) else None)

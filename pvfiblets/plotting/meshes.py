@@ -87,7 +87,7 @@ def _read(place: Path, space: str | None = None, tkras: bool | None = None) -> t
         return found, {"space": placed.space, "space_from": placed.space_from, "moved": placed.moved}
     mesh = pv.read(place)
     if isinstance(mesh, pv.DataSet) and not mesh.n_points:
-        raise ValueError(f"{place} holds no points: there is nothing to draw; check what wrote it")
+        raise ValueError(f"{place} has no points to draw; check the program that wrote it")
     named, given = space_of_file(place, mesh), None if space is None else checked(space)
     of_vtk = place.name.lower().endswith(OF_VTK)
     taken = named or ((given or unnamed()) if of_vtk else None)

@@ -105,7 +105,7 @@ class PageView:
     def picked(self, picked: Picked | None) -> None:
         if self.state is None:
             raise RuntimeError(
-                "the page cannot be told what is picked without anywidget: pip install pvfiblets[notebook]"
+                "picks need anywidget: pip install pvfiblets[notebook]"
             )
         if picked is not None and picked.name not in self._names:
             raise ValueError(f"picked has the name {picked.name!r}; the page shows {sorted(self._names)}")

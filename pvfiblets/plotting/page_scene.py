@@ -139,7 +139,7 @@ def _add_fiblets(
     effects = mapper.effects
     unable += [f"{effect} of {name!r}" for effect in effects if effect not in (*_SHOWN_EFFECTS, _OPACITY)]
     if len(getattr(actor, "picking_layers", ())) > 1:
-        unable.append(f"the width or the tubes of what is selected of {name!r}")
+        unable.append(f"the width or the tubes of the selection of {name!r}")
     filtering = mapper.filtering
     fiblets, colours, keep = _colours(scene, fiblets, mapper.colouring)
     through = _through(scene, actor, mapper)

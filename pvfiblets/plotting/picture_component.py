@@ -1,4 +1,4 @@
-"""``plotter.picture``: effects on everything that a renderer shows.
+"""``plotter.picture``: effects on the finished image of a renderer.
 
 PyVista finds this module by an entry point and imports it when a plotter is first asked for that name.
 """
@@ -27,13 +27,13 @@ TONE = ("operator", "exposure", "white")
 """Settings of :attr:`PictureComponent.tone`; the other changes of colours are attributes of their own."""
 
 OPERATOR = "aces"
-"""Of a tone that says nothing else."""
+"""Default operator."""
 
 TICK = 15  # ms between pictures while the focus is on its way
 
 
 class _ToneMapping(Place):
-    """A field of the tone of the active renderer's picture, which checks it."""
+    """A field of the active renderer's tone, which checks it."""
 
     def read(self, actor: Any, setting: Setting[Any]) -> Any:
         return getattr(actor._picture().tone, setting.field)  # noqa: SLF001 - of the class that it is part of
@@ -43,13 +43,13 @@ class _ToneMapping(Place):
 
 
 def _seconds(name: str, value: Any) -> float | None:
-    """Return a limit of time; None for none."""
+    """Return a time limit, or None."""
     return None if value is None else number(name, value, 0.0, None, "seconds")
 
 
 @pv.register_plotter_component("picture")
 class PictureComponent:
-    """Smooth edges, depth of field, tone mapping, brightness, contrast and gamma of what the active renderer shows.
+    """Smooth edges, depth of field, tone mapping, brightness, contrast and gamma of the active renderer.
 
     They work on the finished picture of any actors, fiblets, tubes, halos, volumes and meshes alike, and leave scalar
     bars, texts and other things that lie over it as they are. Each effect is off, and costs nothing, until it is set;
@@ -84,17 +84,17 @@ class PictureComponent:
 
     antialias: Setting[str | int] = Setting(
         "refined",
-        """How edges are smoothed.
+        """Smoothing of edges.
 
-        ``"off"``: not at all. ``"coverage"``: by the share of each pixel that lines and tubes cover; a picture is drawn
-        once. ``"refined"``, the default where the renderer shows something of this package: as soon as nothing moves or
-        changes, 16 pictures are drawn whose pixels lie a part of a pixel apart, and their mean is shown; after that
-        nothing is drawn. Screenshots, and frames of movies, are the finished picture. Meanwhile, and while something
-        moves, ``"coverage"``. A number from 2 to 256: so many pictures.
+        ``"off"``: none. ``"coverage"``: by the share of each pixel that lines and tubes cover, in one frame.
+        ``"refined"``, the default where the renderer shows an object of this package: when nothing changes, 16 samples
+        are drawn, shifted by parts of a pixel, and their mean is shown; then nothing is drawn. Screenshots and frames
+        of movies are finished images. Until then, and while something moves, ``"coverage"``. A number from 2 to 256:
+        that number of samples.
 
-        Everything in the scene is refined, meshes too, and every effect; picking, depths and ids are those of the
-        picture without it. A still picture takes as many times longer as it has samples: `antialias_seconds` limits
-        that. The environment variable ``PVFIBLETS_ANTIALIAS`` names another default.
+        Everything in the scene is refined, meshes too, and every effect; picks, depths and ids come from the
+        unsmoothed frame. A still image takes longer by the number of its samples; `antialias_seconds` limits
+        that. The environment variable ``PVFIBLETS_ANTIALIAS`` sets another default.
         """,
         kind="str | int",
         where=OWN,
@@ -102,10 +102,10 @@ class PictureComponent:
     )
     antialias_seconds: Setting[float | None] = Setting(
         None,
-        """Seconds for which the samples of a still picture may be drawn, or ``None``, the default, for no limit.
+        """Time limit of a still image's samples, seconds, or ``None``, the default, for no limit.
 
-        As many as then are there make the picture, one at least. With a limit, pictures of slow scenes differ from
-        machine to machine.
+        The image is then the mean of the samples so far, at least one. With a limit, images of slow scenes differ
+        between machines.
         """,
         kind="float | None",
         where=OWN,
@@ -114,12 +114,12 @@ class PictureComponent:
 
     @property
     def samples(self) -> int:
-        """Pictures that the one that was drawn last is the mean of: 1 unless ``antialias`` has refined it."""
+        """Number of samples of the last frame: 1 unless ``antialias`` has refined it."""
         refinement = self._picture().refinement
         return 1 if refinement is None else max(refinement.taken, 1)
 
     def refine(self) -> bool:
-        """Draw one more sample of the plotter's resting pictures, or more parts of sets larger than GPU memory.
+        """Draw one more accumulation sample of the plotter's idle frames, or more parts of sets larger than GPU memory.
 
         Of scenes of nothing but lines, all samples are drawn at once, part by part.
 
@@ -136,23 +136,23 @@ class PictureComponent:
 
     @property
     def fetching(self) -> bool:
-        """Whether a picture lacks parts of a set that does not fit into GPU memory; :meth:`refine` draws more of it."""
+        """Whether the frame lacks parts of a set larger than GPU memory; :meth:`refine` draws more of it."""
         return any(picture.fetching for picture in self._pictures.values())
 
     def pace_by_hand(self) -> None:
-        """Draw no samples by itself from now on: somebody calls :meth:`refine`."""
+        """Draw no samples automatically from now on; the caller calls :meth:`refine`."""
         self._pacer.by_hand = True
         self._pacer.release()
 
     @property
     def depth_of_field(self) -> dict[str, Any] | bool:
-        """Blur of what is out of focus, as a lens has it.
+        """Blur outside the focus of a lens.
 
         Set it to ``True`` for the defaults, to a dict of what shall differ from them, or to ``False`` or ``None`` for
         off; read, it is the dict of all settings, or ``False``.
 
         ``focal_distance``: mm from the camera to what is in focus; ``None``, the default, is the camera's focal point.
-        ``"cursor"`` is what is nearest under the mouse, live; ``"center"`` what is nearest in the middle.
+        ``"cursor"`` is the nearest surface under the mouse, live; ``"center"`` the nearest in the middle.
         ``aperture`` (mm): diameter of the lens: the wider, the more is blurred. ``None``, the default, is 6 % of the
         height that is seen at the distance in focus. ``darkening`` (0): 0 to 1, the share of light that things lose
         where they are blurred most. ``max_blur`` (16): pixels, 1 to 64; no point is blurred to a greater radius.
@@ -169,12 +169,12 @@ class PictureComponent:
 
     @property
     def focal_distance(self) -> float | None:
-        """Distance (mm) from the camera to what was in focus in the last picture; ``None`` before the first."""
+        """Distance (mm) in focus in the last frame, from the camera; ``None`` before the first."""
         return self._picture().focal_distance
 
     @property
     def tone(self) -> dict[str, Any] | bool:
-        """Tone mapping: how bright colours are kept from being cut off.
+        """Tone mapping, which keeps bright colours from being clipped.
 
         Set it to ``True`` for the defaults, to a dict of what shall differ from them, or to ``False`` or ``None`` for
         off; read, it is the dict of all settings, or ``False``.
@@ -196,7 +196,7 @@ class PictureComponent:
         self._set_tone(**(new if given is None else new | {"operator": OPERATOR} | given))
 
     brightness: Setting[float] = Setting(
-        0.0, "What is added to colours in 0 to 1, after tone mapping: -1 to 1, 0 for nothing.", where=_ToneMapping()
+        0.0, "Constant added to colours in 0 to 1, after tone mapping: -1 to 1, 0 for none.", where=_ToneMapping()
     )
     contrast: Setting[float] = Setting(
         1.0,
@@ -208,19 +208,19 @@ class PictureComponent:
     )
 
     def reset(self) -> None:
-        """Show the active renderer as it is drawn: all effects off. Edges stay as smooth as they are."""
+        """Switch all effects of the active renderer off, except the smoothing of edges."""
         picture = self._picture()
         picture.depth_of_field, picture.tone = None, Tone()
         self._keep()
 
     def explain(self) -> dict[str, Any]:
-        """Return what the effects on the active renderer keep on the GPU: ``buffers``, name and bytes of each."""
+        """Return the GPU buffers of the active renderer's effects: ``buffers``, name and bytes of each."""
         return self._picture().explain()
 
     # Smooth edges
 
     def follow(self, renderer: Any) -> None:
-        """Be told that a renderer shows something of this package, or does so no more."""
+        """Update whether a renderer shows an object of this package."""
         self._smooth_as_set(renderer)
 
     def _read_antialias(self) -> str | int:
@@ -240,7 +240,7 @@ class PictureComponent:
         self._smooth_as_set(renderer)
 
     def _smooth_as_set(self, renderer: Any) -> None:
-        """Have a renderer's edges smoothed as it was set; by default, if something of this package is in it."""
+        """Apply the antialiasing of a renderer; by default, if it shows an object of this package."""
         address = renderer.GetAddressAsString("")
         value = self._antialias.get(address)
         if value is None:
@@ -261,7 +261,7 @@ class PictureComponent:
 
     @contextmanager
     def sampled_once(self) -> Iterator[None]:
-        """Have pictures drawn with one sample a pixel meanwhile."""
+        """Draw frames with one sample a pixel meanwhile."""
         refined = [(picture, picture.refinement) for picture in self._pictures.values() if picture.refinement]
         for picture, _ in refined:
             picture.refinement = None
@@ -272,13 +272,13 @@ class PictureComponent:
                 picture.refinement = refinement
 
     def _unfinished(self) -> tuple[bool, int]:
-        """Say whether samples or parts are wanted, and how many samples the picture has that has most."""
+        """Return whether samples or parts are missing, and the largest number of samples of a renderer."""
         pictures = [picture for picture in self._pictures.values() if picture.unfinished]
         taken = [picture.refinement.taken + picture.fetching for picture in pictures if picture.refinement]
         return bool(pictures), max(taken, default=0)
 
     def _drawn(self) -> None:
-        """Be told that a renderer has drawn a frame."""
+        """Note that a renderer has drawn a frame."""
         self._pacer.frame_drawn()
 
     def _seen(self) -> bool:
@@ -304,7 +304,7 @@ class PictureComponent:
         return picture
 
     def _keep(self) -> None:
-        """Have errors raised by what renders, and the mouse watched as long as a focus follows it."""
+        """Raise errors from rendering, and observe the mouse while a focus follows it."""
         if any(picture.on for picture in self._pictures.values()):
             # Registered current here, since `clear_on_render_callbacks` drops what others registered.
             self._plotter.add_on_render_callback(self._rendered)
@@ -334,12 +334,12 @@ class PictureComponent:
             interactor.RemoveObserver(tag)
 
     def _following(self) -> list[Picture]:
-        """Pictures whose focus moves without anybody setting it."""
+        """Renderers whose focus moves by itself."""
         kept = [(picture, picture.depth_of_field) for picture in self._pictures.values()]
         return [picture for picture, wanted in kept if wanted is not None and isinstance(wanted.focal_distance, str)]
 
     def _heard(self, event: str) -> None:
-        """Render where the focus moves and nobody else renders: not while the mouse turns the camera."""
+        """Render if the focus moves and nothing else renders, as while the mouse turns the camera."""
         interactor = self._interactor()
         style = interactor.GetInteractorStyle()
         if style is not None and hasattr(style, "GetState") and style.GetState() != 0:
@@ -374,7 +374,7 @@ class PictureComponent:
 
 
 def _wanted(picture: Picture) -> Any:
-    """Return what a picture's depth of field is to focus on."""
+    """Return the focus of a renderer's depth of field."""
     settings = picture.depth_of_field
     return None if settings is None else settings.focal_distance
 

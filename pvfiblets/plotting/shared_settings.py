@@ -1,4 +1,4 @@
-"""Settings that several drawables have, each said once; a drawable's own body of settings names those that it has."""
+"""Settings that several drawables share; each drawable's settings class lists its own."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ def bounds_size(data: Any) -> float:
 
 
 def by_numbers(settings: Any) -> bool:
-    """Whether numbers colour, as the other settings are."""
+    """Return True if the settings colour by numbers."""
     return settings["scalars"] not in (None, "orientation", "ends", "random")
 
 
 def _colour_map(name: str, value: Any) -> Any:
-    """Return a colour map; a name that is none is refused, whether numbers colour now or later."""
+    """Return a colour map; raise ValueError for an unknown name, even if no numbers colour yet."""
     if isinstance(value, str):
         from pyvista.plotting.colors import get_cmap_safe
 
@@ -75,7 +75,7 @@ def _colour(name: str, value: Any) -> Any:
 
 
 def _annotations(name: str, value: Any) -> Any:
-    """Return words of a scalar bar by their values."""
+    """Return the labels of a scalar bar by their values."""
     if value is None:
         return None
     good = isinstance(value, dict) and all(isinstance(at, Real) and isinstance(word, str) for at, word in value.items())
@@ -85,15 +85,15 @@ def _annotations(name: str, value: Any) -> Any:
 
 
 def color(doc: str) -> Setting[Any]:
-    """Return the one colour of some drawable that numbers may colour, too."""
+    """Return the setting of a drawable's single colour."""
     return Setting(
         None,
-        "One colour for all; setting it puts scalars out of use.",
+        "One colour for all; setting it switches scalars off.",
         argument=doc,
         kind=COLOR_LIKE,
         header="color-like, optional",
         where=OWN,
-        row=Row("Colour", "Of all, where nothing else colours it.", type="colour", default="#ffffff",
+        row=Row("Colour", "Colour of the whole layer.", type="colour", default="#ffffff",
                 matters=lambda settings: settings["scalars"] is None),
     )  # fmt: skip
 
@@ -102,25 +102,25 @@ CMAP: Setting[Any] = Setting(
     None,
     "Colour map, as for :meth:`pyvista.Plotter.add_mesh`.",
     argument="Colour map; the theme's by default. A :class:`pyvista.LookupTable` brings its range and its colours "
-    "of what lies outside.",
+             "of values outside.",
     kind=COLORMAP,
     header="str, list, colormap or LookupTable, optional",
     where=COLOURS,
     check=_colour_map,
     read=lambda actor: actor._theme.cmap if actor._settings.cmap is None else actor._settings.cmap,  # noqa: SLF001
-    row=Row("Map", "Colours from the low end of the range to the high one.", type="choice",
-            choices=[(None, "usual"), *MAPS], matters=by_numbers),
+    row=Row("Map", "Colours from the low to the high end of the range.", type="choice",
+            choices=[(None, "default"), *MAPS], matters=by_numbers),
 )  # fmt: skip
 
 CLIM_ROW = Row(
-    "Range", "Values of the first and the last colour; empty: all of the data's.", type="range", optional=True,
+    "Range", "Values of the first and the last colour; empty: the range of the data.", type="range", optional=True,
     read=lambda actor: list(actor.clim), matters=by_numbers,
 )  # fmt: skip
 
 CLIM: Setting[tuple[float, float]] = Setting(
     None,
     "Values of the first and the last colour; ``None`` sets the range of the data.\n\n"
-    "Once set it stays, other scalars or not.",
+    "It stays when the scalars change.",
     argument="Values of the first and the last colour; the range of the data by default.",
     kind=LIMITS,
     header="float or (float, float), optional",
@@ -138,8 +138,8 @@ N_COLORS: Setting[int] = Setting(
 LOG_SCALE: Setting[bool] = Setting(
     False,
     "Whether the colours spread over the logarithm of the values.",
-    argument="Spread the colours over the logarithm of the values. Between points the value is interpolated, not its "
-    "logarithm (as VTK does): colour, scalar bar, pick and filter then agree.",
+    argument="Spread the colours over the logarithm of the values. Between points the value is interpolated (VTK "
+             "interpolates its logarithm), so colour, scalar bar, pick and filter agree.",
     kind="bool",
     where=COLOURS,
     check=truth,
@@ -154,7 +154,7 @@ NAN_COLOR: Setting[Any] = Setting(
     where=COLOURS,
     check=_colour,
     read=lambda actor: actor.lookup_table.nan_color,
-    row=Row("Without a value", "Colour of what has no value.", type="colour", optional=True,
+    row=Row("Without a value", "Colour of missing values.", type="colour", optional=True,
             read=lambda actor: actor.nan_color.hex_rgb, matters=by_numbers),
 )  # fmt: skip
 
@@ -178,7 +178,7 @@ ABOVE_COLOR: Setting[Any] = Setting(
 
 ANNOTATIONS: Setting[dict[float, str] | None] = Setting(
     None,
-    "Words that the scalar bar writes beside values; ``None`` for those of labels, if there are any.",
+    "Texts beside values of the scalar bar; ``None`` uses the names of labels, if any.",
     kind="dict[float, str] | None",
     header="dict of float to str, optional",
     where=COLOURS,
@@ -189,10 +189,10 @@ FLIP_SCALARS = Argument(False, "Reverse the colour map.", kind="bool", where=COL
 
 
 def opacity(of: str) -> Setting[float]:
-    """Return the opacity of some drawable; ``of`` says what of it."""
+    """Return the opacity setting of a drawable; ``of`` begins its argument's description."""
     return Setting(
         None,
-        "From 0, not to be seen, to 1. Anything else that is set is taken by ``opacity_by``.",
+        "From 0, invisible, to 1. Other values are passed to ``opacity_by``.",
         argument=f"{of} The theme's by default. Or what ``actor.opacity_by`` takes: "
         '``"linear"``, ``"sigmoid"`` and the like, opacities along the colour map; numbers from 0 to 1 for that, or '
         "one per line.",
@@ -200,36 +200,36 @@ def opacity(of: str) -> Setting[float]:
         header="float, str or array_like, optional",
         where=OWN,
         check=number_or_more,
-        row=Row("Opacity", "From 0, not to be seen, to 1.", type="number", default=1.0, limits=(0.0, 1.0)),
+        row=Row("Opacity", "From 0, invisible, to 1.", type="number", default=1.0, limits=(0.0, 1.0)),
     )
 
 
 def opacity_by() -> Setting[Any]:
-    """Return the opacities of tubes or halos beside one for all."""
+    """Return the setting of tubes' or halos' opacities by numbers."""
     return Setting(
         None,
-        "Opacities beside ``opacity``, which they are times.\n\n"
+        "Opacities by numbers, multiplied by ``opacity``.\n\n"
         "``None`` for none; the name of a transfer function (``'linear'``, ``'geom'``, ``'sigmoid'``, with\n"
         "``_r`` reversed) along the colour map, or numbers from 0 to 1 for that, the lowest first; or\n"
-        "numbers from 0 to 1, one per line, or the name of an array of such.",
+        "numbers from 0 to 1, one per line, or the name of an array of them.",
         argument=False,
         where=LATER,
     )
 
 
 def number_or_more(name: str, value: Any) -> Any:
-    """Return a number from 0 to 1 as a float; what else there is is looked at when it is set."""
+    """Return a number from 0 to 1 as a float; other values are checked when they are set."""
     if value is None or isinstance(value, (str, list, tuple)) or getattr(value, "ndim", 0) > 0:
         return value
     return number(name, value, 0.0, 1.0)
 
 
 def lighting(what: str, default: bool | None) -> Setting[bool]:
-    """Return the setting of light on some drawable, with which it is made."""
+    """Return a drawable's setting of light."""
     kind = "bool" if default is False else "bool | None"
     return Setting(
         default,
-        "Whether the scene's lights shade what is drawn.",
+        "Whether the scene's lights shade the drawable.",
         argument=what,
         kind=kind,
         where=PROPERTY,
@@ -240,13 +240,13 @@ def lighting(what: str, default: bool | None) -> Setting[bool]:
 
 AMBIENT_OCCLUSION: Setting[dict[str, Any] | bool] = Setting(
     False,
-    "Darkness where others stand over a line or tube.\n\n"
-    "``radius`` (mm): what is farther does not darken; ``None``, the default, is 16 times the\n"
+    "Darkness where other geometry occludes a line or tube.\n\n"
+    "``radius`` (mm): largest distance of darkening geometry; ``None``, the default, is 16 times the\n"
     "distance between lines, at least 8 pixels, and at most a 20th of the data's diagonal, which it\n"
     "is of tubes. ``samples`` (16): pixels looked at around each. ``strength`` (1.0): 0 to 1.",
     argument=False,
     where=Effect("pvfiblets.mappers.shading:AmbientOcclusion"),
-    row=Row("Ambient occlusion", "Darken what others stand over.", "Shading"),
+    row=Row("Ambient occlusion", "Darken occluded places.", "Shading"),
 )
 
 DEPTH_CUE: Setting[dict[str, Any] | bool] = Setting(
@@ -254,15 +254,15 @@ DEPTH_CUE: Setting[dict[str, Any] | bool] = Setting(
     "Fading with the distance from the viewer.\n\n"
     "``strength`` (0.7): share of the colour at the far end. ``color``: ``None``, the default, is\n"
     "the background's. ``range``: distances (mm) at which fading begins and ends; ``None``, the\n"
-    "default, are those of the nearest and the farthest part of the data's bounds.",
+    "default, uses the nearest and the farthest part of the data's bounds.",
     argument=False,
     where=Effect("pvfiblets.mappers.shading:DepthCue"),
-    row=Row("Depth cue", "Let what is far away fade.", "Shading"),
+    row=Row("Depth cue", "Fade distant parts.", "Shading"),
 )
 
 
 class Common(Settings):
-    """Arguments of every ``add_...``, which say how an actor comes into the plotter."""
+    """Arguments of every ``add_...``: how an actor is added to the plotter."""
 
     name = Argument(None, "Replaces the actor of the same name.", kind="str | None")
     label = Argument(None, "For :meth:`pyvista.Plotter.add_legend`.", kind="str | None")
@@ -277,4 +277,4 @@ class Common(Settings):
         None, "From data to world coordinates.", kind="TransformLike | None", header="transform-like, optional"
     )
     reset_camera = Argument(None, "As for :meth:`pyvista.Plotter.add_mesh`.", kind="bool | None")
-    render = Argument(True, "Render at once if the window is shown already.", kind="bool")
+    render = Argument(True, "Render at once if the window is open.", kind="bool")

@@ -24,8 +24,8 @@ def _enable(plotter: Any, original: Any, arguments: tuple[Any, ...], named: dict
 
     if not through and any(map(shows_engine, plotter.renderers)):
         warnings.warn(
-            f"PyVista's {original.__name__} of what is visible finds triangles, not lines; "
-            "plotter.fiblets.enable_picking(mode='box') finds the streamlines that are seen in a rectangle, and "
+            f"PyVista's {original.__name__} finds triangles, not lines; "
+            "plotter.fiblets.enable_picking(mode='box') finds the visible streamlines in a rectangle, and "
             "enable_rectangle_through_picking all that run through it",
             UserWarning,
             stacklevel=4,

@@ -6,13 +6,13 @@ import pyvista as pv
 
 __all__ = ["why_not"]
 
-_FACETS = "what is drawn has no facets"
-_POINTS = "what is drawn are no points"
+_FACETS = "lines, tubes, halos and volumes have no facets"
+_POINTS = "lines, tubes, halos and volumes are no points"
 
 _WORDS = {
     "backface_params": f"{_FACETS}, and so no backs",
     "component": "give one column as scalars (array[:, 0]); a name maps vectors by their magnitude",
-    "copy_mesh": "what is drawn is a copy in any case; actor.update(data) has it follow",
+    "copy_mesh": "the data are copied in any case; actor.update(data) updates them",
     "edge_color": _FACETS,
     "edge_opacity": _FACETS,
     "emissive": _POINTS,

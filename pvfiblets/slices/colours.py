@@ -72,7 +72,7 @@ def outlines(codes: npt.NDArray[Any], width: int = 1) -> Mask:
 
 
 def blend(under: Floats | None, colours: Floats, visible: Mask, opacity: float, how: str) -> Floats:
-    """Lay a layer over, or add it to, what is there."""
+    """Blend a layer over the others, or add it."""
     share = np.where(visible, colours[..., 3] * np.float32(opacity), np.float32(0.0))[..., None]
     top = np.concatenate([colours[..., :3] * share, share], axis=-1)
     if under is None:

@@ -68,7 +68,7 @@ class Fixels:
         return list(found)
 
     def numbers(self, given: Any) -> npt.NDArray[np.float32]:
-        """Return ``(n,)`` numbers of fixels: those of a name, read from the folder if need be, or an array."""
+        """Return ``(n,)`` numbers of fixels, by name (read from the folder if necessary) or from an array."""
         if not isinstance(given, str):
             found = np.asarray(given, np.float32)
             if found.shape != (len(self),):
@@ -157,7 +157,7 @@ def read_fixels(path: Path) -> tuple[Fixels, Array, str] | None:
     if numbers is None:
         return fixels, affine, name
     if len(numbers) != n:
-        raise FormatError(path, None, f"the shape {numbers.shape}", f"({n}, m, 1): as many rows as there are fixels")
+        raise FormatError(path, None, f"the shape {numbers.shape}", f"({n}, m, 1): a row for each fixel")
     rows = numbers[..., 0].astype(np.float32)
     columns = {name if k == 0 else f"{name} {k + 1}": column for k, column in enumerate(rows.T)}
     return Fixels(counts, first, fixels.directions, columns, fixels.folder, name), affine, name

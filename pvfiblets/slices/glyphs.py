@@ -112,7 +112,7 @@ def _normalised(radii: Array, each: bool) -> Array:
 
 
 def lines_of_peaks(image: SliceImage, voxels: Ints, size: float, longest: float | None) -> Glyphs:
-    """Return two ends of each peak; those that are zero, or no numbers, are left out."""
+    """Return two ends of each peak; zero and NaN peaks are left out."""
     vectors = image.values[tuple(voxels.T)].astype(np.float64).reshape(len(voxels), -1, 3)
     length = np.linalg.norm(vectors, axis=-1)
     which, peak = np.nonzero(length > 0.0)

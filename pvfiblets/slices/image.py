@@ -22,7 +22,7 @@ KINDS = ("scalars", "rgb", "direction", "labels")
 """What the numbers of a voxel may mean."""
 
 SAMPLED = 1_000_000
-"""Voxels of which percentiles are taken; of larger images every n-th."""
+"""Number of voxels for percentiles; of larger images every n-th."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,7 +91,7 @@ class SliceImage:
 
     @cached_property
     def corners(self) -> Array:
-        """``(8, 3)`` mm: those of the voxels' outer faces."""
+        """``(8, 3)`` mm: corners of the voxels' outer faces."""
         ends = [(-0.5, n - 0.5) for n in self.shape]
         at = np.stack(np.meshgrid(*ends, indexing="ij"), axis=-1).reshape(-1, 3)
         return at @ self.affine[:3, :3].T + self.affine[:3, 3]

@@ -1,4 +1,4 @@
-"""Axes that vectors and tensors of images are given in: the scanner's, or those of FSL."""
+"""Axes of vectors and tensors of images: the scanner's, or FSL's."""
 
 from __future__ import annotations
 

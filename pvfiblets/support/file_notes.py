@@ -13,7 +13,7 @@ _notes: dict[tuple[str, int], list[str]] = {}
 
 
 def note(path: str | os.PathLike[str], text: str) -> None:
-    """Warn about a file, unless the same was said of it as it is now."""
+    """Warn about a file, once for each state of it."""
     texts = _notes.setdefault(_key(path), [])
     while len(_notes) > _MOST:
         _notes.pop(next(iter(_notes)))

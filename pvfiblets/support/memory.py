@@ -1,4 +1,4 @@
-"""How much memory this process may have, what is left of it, and refusals before it is taken.
+"""Memory limit of this process, remaining memory, and checks before allocations.
 
 The limit is on what Linux calls data: private memory that can be written to. Address space (``RLIMIT_AS``) is no
 measure here: mapped files, compilers of shaders and stacks of threads reserve far more of it than they ever use.
@@ -64,7 +64,7 @@ class TooLargeError(FibletsError, MemoryError):
     Parameters
     ----------
     needed : int or None
-        How many bytes it says that it takes, if it says so.
+        Declared number of bytes, if any.
 
     Attributes
     ----------
@@ -109,7 +109,7 @@ def free_host_memory() -> int | None:
         limit = (_GROUP / "memory.max").read_text(encoding="ascii").strip()
         if limit != "max":
             used = int((_GROUP / "memory.current").read_text(encoding="ascii"))
-            # Files in memory count as used and are let go when memory is asked for.
+            # Cached files count as used but are released on demand.
             files = re.search(r"^file (\d+)$", (_GROUP / "memory.stat").read_text(encoding="ascii"), re.MULTILINE)
             found.append(max(int(limit) - used + (0 if files is None else int(files[1])), 0))
     except (OSError, ValueError):
@@ -180,7 +180,7 @@ def taken() -> int:
 
 
 def resident() -> int:
-    """Return how many bytes of memory this process uses: of what it has taken, and of files."""
+    """Return the memory of this process in bytes: allocated, and of files."""
     text = Path("/proc/self/status").read_text(encoding="ascii", errors="replace")
     match = re.search(r"^VmRSS:\s+(\d+) kB$", text, re.MULTILINE)
     return 0 if match is None else 1024 * int(match[1])
@@ -194,7 +194,7 @@ def room() -> int | None:
 
 def check_room(needed: int) -> None:
     """Refuse what says that it takes more memory than is left; what says less may be lying."""
-    # What is as small as this is taken: it is in nobody's way, and to ask costs more.
+    # Small allocations are not checked: the check costs more.
     if needed > RESERVE // 4 and (left := room()) is not None and needed + RESERVE > left:
         raise TooLargeError(needed, max(left - RESERVE, 0))
 

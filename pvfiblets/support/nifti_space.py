@@ -28,7 +28,7 @@ MATRICES: tuple[Matrix, ...] = get_args(Matrix)
 UNITS: tuple[Units, ...] = get_args(Units)
 
 DIFFERENT = 0.1
-"""Part of a voxel by which a corner of the image may differ between two matrices that count as equal."""
+"""Tolerance of equal matrices: distance of an image's corners, in voxels."""
 
 _MM = {"meter": 1000.0, "micron": 0.001}
 _SIDES = {

@@ -1,4 +1,4 @@
-"""A bar of how far work has come; who wants none neither loads nor needs the library that draws it."""
+"""A progress bar. Without one, tqdm is not imported."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ __all__ = ["progress_bar"]
 
 
 class _NoBar:
-    """Takes what a bar is told, and shows nothing."""
+    """A progress bar that shows nothing."""
 
     total: float | None = None
 

@@ -10,7 +10,7 @@ from typing import Any, Protocol, TypeVar
 
 
 class _Read(Protocol):
-    """What a source was read as: it knows how much of what was left out."""
+    """Summary of a source with the counts of dropped data."""
 
     @property
     def dropped(self) -> Mapping[str, int]: ...

@@ -317,11 +317,11 @@ class SplineTubes:
             chosen = np.flatnonzero(chosen)
         chosen = chosen.astype(np.int64).reshape(-1)
         if len(chosen) and (chosen.min() < 0 or chosen.max() >= self.n_tubes):
-            raise IndexError(f"tubes {chosen.min()} to {chosen.max()} were asked for, but there are {self.n_tubes}")
+            raise IndexError(f"tubes {chosen.min()} to {chosen.max()} do not exist; there are {self.n_tubes} tubes")
         new = np.full(self.n_tubes, -1, np.int64)
         new[chosen] = np.arange(len(chosen))
         if len(chosen) != np.count_nonzero(new >= 0):
-            raise IndexError("a tube was asked for more than once; give each index once")
+            raise IndexError("a tube is repeated; give each index once")
         keep = np.flatnonzero(new[self.tubes] >= 0)
         keep = keep[np.argsort(new[self.tubes[keep]], kind="stable")]
         nodes, segments = np.unique(self.segments[keep], return_inverse=True)

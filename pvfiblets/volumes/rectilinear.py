@@ -13,7 +13,7 @@ MOST_TIMES = 4
 """Planes of the even grid along an axis, in those of the uneven one, at most."""
 
 EVEN = 1e-6
-"""Part of the mean distance by which planes may be off and still count as even."""
+"""Tolerance of even planes, as a part of the mean distance."""
 
 Array = npt.NDArray[np.float64]
 
@@ -39,7 +39,7 @@ def evenly(values: npt.NDArray[Any], axes: tuple[Array, Array, Array]) -> tuple[
 
 
 def _along(values: npt.NDArray[Any], axis: int, at: Array, wanted: Array) -> npt.NDArray[np.float32]:
-    """Values at places along an axis, linear between those that are known."""
+    """Values at places along an axis, interpolated linearly."""
     below = np.clip(np.searchsorted(at, wanted, side="right") - 1, 0, len(at) - 2)
     share = ((wanted - at[below]) / (at[below + 1] - at[below])).astype(np.float32)
     shape = [-1 if k == axis else 1 for k in range(3)]

@@ -154,7 +154,7 @@ def _of_image(image: Image) -> Found:
 
 
 def _thick(values: Any, colours: Any, affine: Any) -> tuple[Any, Any, Array]:
-    """Give what has one voxel along an axis the thickness of this voxel: rays are cast between the middles of two."""
+    """Double a single voxel along an axis: rays are cast between the middles of two."""
     place = np.array(affine, np.float64)
     if np.ndim(values) != 3 or np.size(values) == 0:
         return values, colours, place
@@ -268,7 +268,7 @@ def _at_points(cells: npt.NDArray[Any], dims: tuple[int, int, int]) -> npt.NDArr
 
 
 def _placed(own: Any, spacing: Any, origin: Any, direction: Any, affine: Any) -> Array:
-    """A source's affine with what was given in place of its parts."""
+    """A source's affine, with arguments in place of its parts."""
     if affine is not None:
         if not (spacing is None and origin is None and direction is None):
             raise ValueError("affine says spacing, origin and direction too; give either it or those")

@@ -40,7 +40,7 @@ PLACES = 4080
 """Least number of pieces of the finer table that light is calculated from: 16 for each of 255."""
 
 KEPT = 8
-"""Pre-integrated tables that are kept, for whoever comes back: each takes a moment, and some colours need two."""
+"""Number of cached pre-integrated tables: each takes a moment, and some colours need two."""
 
 ALLOWED = 1e-3
 """Difference of light between a stretch and its halves up to which ``'adaptive'`` does not halve it again."""
@@ -63,7 +63,7 @@ class Transfer:
     clim : tuple of float
         ``(low, high)``: values of the first and last entry.
     unit : float, default: 1
-        mm of which the table gives the opacity. :meth:`over` takes the volume's mean voxel spacing.
+        Length of the table's opacity, mm. :meth:`over` uses the volume's mean voxel spacing.
 
     Raises
     ------
@@ -222,7 +222,7 @@ class Transfer:
         ndarray
             ``(n, n, 4)`` float32: for the value at the step's front, first, and back, second, each evenly over
             ``clim``, the RGB, multiplied by opacity, and the opacity. n is at least 256, and such that each entry of
-            the table is among the values. Not to be written to: it is kept for the next who asks for it.
+            the table is among the values. Read-only: it is cached.
 
         Raises
         ------

@@ -166,7 +166,7 @@ class RaycastVolume:
 
 
 def _checked_values(given: Any) -> tuple[npt.NDArray[Any], float]:
-    """Numbers of a type that is kept, on three axes, and what was subtracted; still with NaN and infinities."""
+    """Numbers of a supported type, on three axes, and the subtracted reference; still with NaN and infinities."""
     values = np.asarray(given)  # of a memory map still only a view
     if values.dtype.names is not None:
         what = ", ".join(values.dtype.names)
@@ -225,7 +225,7 @@ def _finite(values: npt.NDArray[Any]) -> tuple[npt.NDArray[Any], npt.NDArray[np.
 
 
 def _range(values: npt.NDArray[Any]) -> tuple[float, float]:
-    """Least and greatest finite value, slab by slab: what is not finite would be copied; (0, 0) without any."""
+    """Least and greatest finite value, slab by slab to avoid a copy; (0, 0) without any."""
     low, high = np.inf, -np.inf
     for slab in _slabs(values):
         finite = slab[np.isfinite(slab)] if slab.dtype.kind == "f" else slab

@@ -368,7 +368,7 @@ class Explorer(TrameApp):
             if self.browser.on:
                 self.page.frame = "drawn by this browser"
                 if self.browser.rests and self.page.tab == "info":
-                    self.stream.settle()  # counts are those of the server's last picture
+                    self.stream.settle()  # counts belong to the server's last frame
                     self._show_info()
             elif milliseconds is not None and not self.stream.moving:
                 self.page.frame = f"{milliseconds:.0f} ms a frame"

@@ -29,15 +29,15 @@ class Beside(Actions):
     def __init__(self, app: Any) -> None:
         super().__init__(app)
         self._stop = threading.Event()
-        self._doing = ""  # what is done beside, for people
+        self._doing = ""  # name of the background work, for people
         self._working = asyncio.Lock()
         self._waiting: list[str] = []  # for their turn, for people
-        self.tell: Callable[[str], None] = lambda _: None  # told what is being opened, "" after it
+        self.tell: Callable[[str], None] = lambda _: None  # called with the opened file's name, "" after it
 
     async def beside(self, name: str, work: Work, what: str, *, cancellable: bool = True) -> Any:
         """Do what takes long in a thread of its own, with progress; the page goes on.
 
-        One thing at a time: what comes meanwhile waits for its turn, and the page names it.
+        One task at a time: others wait, and the page names them.
         """
         app = self._app
         loop = asyncio.get_running_loop()
@@ -71,7 +71,7 @@ class Beside(Actions):
                     app.page.job = {}
 
     def cancel(self) -> None:
-        """Stop what is being opened or written, as soon as it asks; what waits has its turn then."""
+        """Cancel the running task at its next check; the next one begins then."""
         self._stop.set()
         if self._app.page.job:
             text = f"{self._doing}: stopping"
@@ -84,7 +84,7 @@ class Beside(Actions):
 
     @contextlib.asynccontextmanager
     async def _turn(self, name: str) -> AsyncIterator[None]:
-        """Wait until nothing else is done; the page says so."""
+        """Wait for the running task; the page shows that."""
         if len(self._waiting) >= MOST_WAITING:
             raise ValueError(f"{name}: {MOST_WAITING} others wait for their turn; wait until some of them are done")
         self._waiting.append(name)

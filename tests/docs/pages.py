@@ -66,15 +66,6 @@ pyvista.global_theme.window_size = (512, 384)
 GIVEN = {
     "README.md": BRAIN + """
 pvfiblets.write("brain.trk", brain_streamlines(400, seed=1, fa=True))
-pvfiblets.write("brain.tck", brain_streamlines(400, seed=1))
-closed_mesh = pv.Sphere(radius=60)
-centrelines = pv.Spline([(0, 0, 0), (9, 2, 0), (9, 9, 4)], 20)
-centrelines["radius"] = [1.0 + 0.02 * i for i in range(20)]
-ids = [1, 2, 3]
-import nibabel, numpy as np
-numbers = np.random.default_rng(0).integers(0, 1200, (12, 12, 12)).astype(np.int16)
-for name in ("T1", "angiogram"):
-    nibabel.save(nibabel.Nifti1Image(numbers, np.diag([12.0, 12.0, 12.0, 1.0])), f"{name}.nii.gz")
 """,
     "docs/exploring.md": BRAIN + """
 import numpy as np
@@ -100,8 +91,7 @@ affine = np.array([[6.0, 1, 0, -80], [-1, 6, 0, -90], [0, 0, 6, -50], [0, 0, 0, 
 nibabel.save(nibabel.Nifti1Image(np.zeros((28, 32, 24), np.int16), affine), "T1.nii.gz")
 np.savetxt("sift2.txt", np.linspace(0, 2, 400))
 """,
-    "docs/effects.md": "",
-    "docs/seeing-inside.md": BRAIN + """
+    "docs/effects.md": BRAIN + """
 pvfiblets.write("brain.trk", brain_streamlines(400, seed=1))
 """,
     "docs/pages.md": BRAIN + """

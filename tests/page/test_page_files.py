@@ -92,7 +92,7 @@ def test_much_data_lies_beside_the_page(fiblets, tmp_path):
 
 
 def test_nothing_to_show_and_wrong_names_are_errors(fiblets, tmp_path):
-    with pytest.raises(ValueError, match="nothing that a page could show"):
+    with pytest.raises(ValueError, match="a page needs streamlines or surfaces"):
         write_page(PageScene("Empty"), tmp_path / "figure.html")
     scene = PageScene("Lines")
     fiblet_layer(scene, fiblets)

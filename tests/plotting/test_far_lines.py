@@ -26,6 +26,6 @@ def test_a_line_so_far_away_that_the_others_show_steps_is_told_once(plotter: pf.
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         draw(plotter, kind, 10.0)
-    with pytest.warns(UserWarning, match=r"most points .* reach \[1000000.*leave out the lines") as said:
+    with pytest.warns(UserWarning, match=r"most points .* reach \[1000000.*leave out the outlying lines") as said:
         draw(plotter, kind, 1e8)
     assert len(said) == 1

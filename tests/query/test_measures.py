@@ -174,7 +174,7 @@ def test_what_is_refused(whole):
         measure(whole, np.zeros(72))
     with pytest.raises(ValueError, match="one number for each of the 73 streamlines"):
         measure(whole, np.zeros((73, 3)))
-    with pytest.raises(ValueError, match="give it as original="):
+    with pytest.raises(ValueError, match="pass these as original="):
         measure(whole, "coding_error")
     with pytest.raises(ValueError, match="the original has 72 streamlines"):
         measure(whole, "coding_error", original=LINES[:72])

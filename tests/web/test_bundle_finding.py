@@ -182,14 +182,14 @@ def test_without_dipy_the_page_says_so(desk, monkeypatch):
         (lambda desk: desk.finding.similar("8"), "pick a streamline"),
         (lambda desk: desk.finding.cluster("wide"), "'wide' is not a number"),
         (lambda desk: desk.finding.cluster("0"), "distance is 0.0; give a finite number of mm from 0.1"),
-        (lambda desk: desk.finding.recognise(""), "holds no tractograms|dipy"),
+        (lambda desk: desk.finding.recognise(""), "has no tractograms|dipy"),
         (lambda desk: desk.bundles.move(1), "boxes first"),
-        (lambda desk: desk.measuring.fetch("profile", "csv"), "nothing was measured"),
+        (lambda desk: desk.measuring.fetch("profile", "csv"), "measure first"),
         (lambda desk: desk.measuring.fetch("profile", "exe"), "no 'profile' as 'exe'"),
     ],
 )
 def test_what_makes_no_sense_is_refused(desk, act, says):
-    if says.startswith("holds"):
+    if says.startswith("has no tractograms"):
         for file in [*desk.confined.root.glob("*.trk"), *desk.confined.root.glob("*.fiblets")]:
             file.unlink()
         for file in [*desk.confined.root.glob("*.vtp")]:

@@ -207,7 +207,7 @@ def test_what_was_measured_goes_when_its_bundles_change(desk):
     desk.scene.bundles.remove_bundles(layer, ["far"])
     desk.measuring.refresh()
     assert not desk.page.measures["table"]
-    with pytest.raises(ValueError, match="nothing was measured"):
+    with pytest.raises(ValueError, match="measure first"):
         desk.measuring.fetch("table", "csv")
 
 

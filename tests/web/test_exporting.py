@@ -100,7 +100,7 @@ def test_what_is_too_large_to_fetch_is_not_kept(desk, monkeypatch):
     monkeypatch.setattr(exporting, "LARGEST", 1000)
     with pytest.raises(ValueError, match="save the file in the served folder"):
         export(desk, ".trk", to="computer")
-    with pytest.raises(ValueError, match="too many to fetch"):
+    with pytest.raises(ValueError, match="too many to download"):
         export(desk, ".fiblets", to="computer")
     assert list(Path(desk.exports._folder.name).iterdir()) == []
     assert desk.page.download == {}

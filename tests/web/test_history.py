@@ -293,7 +293,7 @@ def test_layers_share_a_region_and_lose_it_again(desk, scene, lines):
     assert {layer.filters.regions["of"][0]["region"]["radius"] for layer in scene.layers} == {5.0}
     desk.regions.set_layers(0, [ids[0]])
     assert scene.layer(other.id).filters.regions is None
-    with pytest.raises(ValueError, match="one layer at least"):
+    with pytest.raises(ValueError, match="at least one layer"):
         desk.regions.set_layers(0, [])
 
 

@@ -150,7 +150,7 @@ def test_what_a_session_may_have_is_chosen_checked_and_said(monkeypatch, tmp_pat
     assert chosen_memory("auto", 8) is None
     with pytest.raises(ValueError, match="--max-memory 'lots' is no size of memory; give one such as 4G"):
         chosen_memory("lots", 8)
-    with pytest.raises(ValueError, match=r"--max-memory 100 MB: a session needs 640 MB .* give as much or more"):
+    with pytest.raises(ValueError, match=r"--max-memory 100 MB: a session needs 640 MB .* give at least that"):
         Options(root=str(tmp_path), token=None, memory=100 << 20).checked()
     monkeypatch.setattr("pvfiblets.web.server.options.CAN_LIMIT", False)
     with pytest.raises(ValueError, match="--max-memory: this system cannot"):

@@ -95,8 +95,8 @@ def compress_file(
         Called with the coded set before it is written, unless it keeps every bit: what it keeps with the set, as
         :func:`pvfiblets.regions.index_of` does, is in the file.
     progress : bool or callable
-        Show a progress bar; or call this with what is being done and which share of it is, from 0 to 1 (0 while that
-        cannot be told). What it raises stops the work.
+        Show a progress bar; or call this with the name of the step and its finished share, from 0 to 1 (0 while it
+        is unknown). An exception stops the work.
 
     Returns
     -------

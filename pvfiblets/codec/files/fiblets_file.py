@@ -147,7 +147,7 @@ def is_sharded(path: str | PathLike[str]) -> bool:
 
 
 def open_fiblets(path: str | PathLike[str], kind: type[FibletSet]) -> FibletSet:
-    """Map a ``.fiblets`` file; shards of a folder or an address (:mod:`.shards`) are read when they are asked for."""
+    """Map a ``.fiblets`` file; shards of a folder or an address (:mod:`.shards`) are read at first use."""
     if is_sharded(path):
         from ..shards.unread_set import UnreadSet
 

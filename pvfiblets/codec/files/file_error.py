@@ -51,7 +51,7 @@ def compare_file(
     part = coded
     if every > 1:
         bare = replace(coded, per_point={}, per_streamline={}, groups={}, per_group={})
-        # Steps and bounds, by which errors are measured, are those of the whole.
+        # Steps and bounds, the units of errors, belong to the whole set.
         part = replace(bare.extract(np.arange(0, len(coded), every)), bounds=coded.bounds)
     tally = ErrorTally(part, by_streamline=False)
     decoded = iter_chunks(part, max_points, np.float64)
@@ -70,7 +70,8 @@ def compare_file(
                 differs = int(np.flatnonzero(np.asarray(a.offsets) != np.asarray(b.offsets))[0]) - 1
                 raise ValueError(
                     f"streamline {(seen + differs) * every} has {a.counts[differs]} points in the original, "
-                    f"{b.counts[differs]} in the fiblets: errors can be measured only against what was compressed"
+                    f"{b.counts[differs]} in the fiblets: errors can be measured only against the compressed "
+                    "streamlines"
                 )
             tally.add(a, b)
             rest = _plain(rest, n, len(rest))

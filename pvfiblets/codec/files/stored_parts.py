@@ -1,4 +1,4 @@
-"""A set as it is stored: in one, or in shards that are asked one after the other."""
+"""A stored set: one file, or shards that are read one after the other."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A compressed file checked against its checksums and against what it was made from."""
+"""Check a compressed file against its checksums and its source."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def verified(
     max_angle: float | None = DEFAULT_ANGLE,
     progress: Progress = False,
 ) -> dict[str, Any]:
-    """Check a file's every byte and, given what it was made from, measure all of its points and directions."""
+    """Check every byte of a file and, with its source, measure all points and directions."""
     if Path(path).suffix.lower() != ".fiblets":
         raise ValueError(f"{path} is no .fiblets file; give the compressed file first, then its original")
     verify_file(path)
@@ -51,7 +51,7 @@ def verified(
             raise VerificationError(f"{path} was not made from {original} as it is: {mismatch}") from mismatch
         result.update(original=fspath(original), **error.summary())
         result["kept"] = bool(error.max_mm <= result["promise_mm"])
-        # Files do not say which angle they were made for, so that this is told and fails nothing.
+        # Files do not record their bound of angles, so this is reported without failing.
         result["directions_kept"] = max_angle is None or not error.max_degrees > max_angle
         result["dropped"] = dict(dropped)  # of the original, by reading it
     return result

@@ -1,4 +1,4 @@
-"""Which shard each streamline belongs to: near ones to the same, and none larger than was asked.
+"""The shard of each streamline: neighbours share a shard, and no shard exceeds the size limit.
 
 Streamlines are put in the order in which a Hilbert curve through space visits the middles of them (the first point of
 their middle fiblet), and the shards are consecutive stretches of that order. A streamline lies in one shard as a whole,

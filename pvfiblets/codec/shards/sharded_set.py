@@ -1,4 +1,4 @@
-"""ShardedSet: a set whose shards are fetched and mapped when they are asked for."""
+"""ShardedSet: a set whose shards are fetched and mapped at first use."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class ShardedSet:
         OSError
             If an address cannot be reached.
         ImportError
-            If fsspec, or what it needs for this sort of address, is not installed.
+            If fsspec, or its package for this type of address, is not installed.
         """
         store = store_at(place, cache, **options)
         try:
@@ -141,7 +141,7 @@ class ShardedSet:
         return self._store.name
 
     def __getstate__(self) -> dict[str, Any]:
-        return {**self.__dict__, "_ids": {}}  # whoever is sent a set reads its own
+        return {**self.__dict__, "_ids": {}}  # a receiver reads its own
 
     def _opened(self, shard: Shard, kind: type[FibletSet]) -> FibletSet:
         part = kind.open(self._store.local(shard.fiblets))
@@ -228,7 +228,7 @@ class ShardedSet:
     def iter_chunks(self, max_points: int = 2_000_000) -> Iterator[Streamlines]:
         """Decode all streamlines in their order, at most `max_points` points at a time but for a single one of more.
 
-        Points lie within :attr:`bounds`, as those that :func:`pvfiblets.read` gives.
+        Points lie within :attr:`bounds`, as in the result of :func:`pvfiblets.read`.
         """
         share = max(int(max_points * len(self) / max(self.n_points, 1)), 1)
         for start in range(0, len(self), share):
@@ -241,7 +241,7 @@ class ShardedSet:
         Raises
         ------
         FormatError
-            Naming what is damaged.
+            If a shard is damaged; the message names it.
         """
         seen = np.zeros(len(self), bool)
         for number in range(len(self.shards)):

@@ -1,7 +1,7 @@
 """Where the files of a sharded set lie: a folder here, or anywhere that fsspec reaches, kept in a cache.
 
 What is far away is fetched a file at a time, when it is first asked for, and kept on disk under its checksum, so that
-a changed set never meets files of before. The cache has a size; what was not used for longest goes first. A lost
+a changed set never meets files of before. The cache has a size; the least recently used files go first. A lost
 connection is tried again, from the byte where it broke.
 """
 
@@ -105,7 +105,7 @@ class Cache:
         return path
 
     def make_room(self, needed: int) -> None:
-        """Remove what was not used for longest until so many bytes more fit.
+        """Remove the least recently used files until the given number of bytes fits.
 
         A set that has a file mapped goes on reading it: its name goes, its bytes stay until it is closed.
         """
@@ -123,7 +123,7 @@ class Cache:
                 break
             try:
                 path.unlink()
-            except OSError:  # Windows keeps what is mapped
+            except OSError:  # Windows keeps mapped files
                 continue
             left += size
 
@@ -144,7 +144,7 @@ class Remote:
     Raises
     ------
     ImportError
-        If fsspec, or what it needs for this sort of address, is not installed.
+        If fsspec, or its package for this type of address, is not installed.
     """
 
     def __init__(self, url: str, cache: Cache, wait: Callable[[float], None] = time.sleep, **options: Any) -> None:
@@ -181,7 +181,7 @@ class Remote:
                 if len(piece) == file.bytes:  # a server that knows no ranges sends all
                     piece = piece[start:]
                 elif len(piece) != stop - start:
-                    raise FormatError(url, start, f"{len(piece)} bytes", f"the {stop - start} that were asked for")
+                    raise FormatError(url, start, f"{len(piece)} bytes", f"the requested {stop - start}")
                 out.write(piece)
                 found.update(piece)
             if found.hexdigest() != file.sha256:

@@ -2,7 +2,7 @@
 
 What is known from the manifest and from the first shard is told at once. What is asked streamline by streamline is
 asked of one shard after the other. Drawing takes shards as parts (:mod:`pvfiblets.engine.fiblets.parts.shard_parts`).
-Only who asks for records of the whole, such as ``anchors``, has all shards put together in memory, if they fit.
+Records of the whole, such as ``anchors``, join all shards in memory, if they fit.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ Ints = npt.NDArray[np.int64]
 
 
 class UnreadSet(FibletSet):
-    """A set in shards, as whoever takes a :class:`.FibletSet` wants it.
+    """A set in shards with the interface of :class:`.FibletSet`.
 
     Parameters
     ----------
@@ -168,7 +168,7 @@ class UnreadSet(FibletSet):
     def per_point(self) -> dict[str, PointValues]:  # type: ignore[override]
         """Values of points, whose codes are read when somebody reads them."""
         return {
-            # No array, but one for whoever calls NumPy with it.
+            # No array, but NumPy functions take it as one.
             name: replace(stored, codes=CodesOfShards(self, name, stored.codes.dtype))  # type: ignore[arg-type]
             for name, stored in self._first.per_point.items()
         }
@@ -244,7 +244,7 @@ class UnreadSet(FibletSet):
         return renumbered(concatenate(found), np.concatenate(places), len(chosen), self.dropped)
 
     def decompress(self, ids: npt.ArrayLike | None = None, *, dtype: npt.DTypeLike | None = None) -> Streamlines:
-        """Decode to points; see :meth:`.FibletSet.decompress`. Only the streamlines that are asked for are read."""
+        """Decode to points; see :meth:`.FibletSet.decompress`. Only the requested streamlines are read."""
         wanted = select_streamlines(self.n_streamlines, slice(None) if ids is None else ids)
         once, again = np.unique(wanted, return_inverse=True)
         part = replace(self.extract(once), bounds=self.bounds)

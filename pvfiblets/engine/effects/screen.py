@@ -85,7 +85,7 @@ class ScreenEffect:
             array.render(moderngl.TRIANGLES, vertices=3)
 
     def explain(self) -> dict[str, list[Any]]:
-        """Say what it is made of."""
+        """Return its parts."""
         sizes = {"f1": 1, "u1": 1, "f2": 2, "f4": 4, "u4": 4}
         buffers: list[dict[str, object]] = [
             {"name": f"{name} (effect)", "bytes": texture.width * texture.height * sizes[texture.dtype]}

@@ -26,7 +26,7 @@ class Tone:
     operator : str
         One of `OPERATORS`.
     exposure : float
-        Factor of what was drawn; above 0.
+        Factor of the drawn colours; above 0.
     white : float, optional
         What the exposed picture's white becomes white from, for ``'reinhard'`` and ``'hable'``: above 0. The exposure
         (so that white stays white), and 11.2, by default.

@@ -59,7 +59,7 @@ class BindingError(ValueError):
 
 
 class Scope(Mapping[str, int]):
-    """Numbers by the names of what is bound there.
+    """Binding numbers by name.
 
     Parameters
     ----------
@@ -218,7 +218,7 @@ BLOCKS = Scope(
     },
     first=0, last=11,
 )  # fmt: skip
-"""Of uniform blocks, of which OpenGL promises twelve to a stage."""
+"""Largest number of uniform blocks: OpenGL guarantees twelve to a stage."""
 
 CONSTANTS = {
     **{f"storage_{name}": number for name, number in STORAGE.items()},

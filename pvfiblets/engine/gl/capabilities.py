@@ -118,11 +118,11 @@ class Capabilities:
     software : bool
         Whether OpenGL runs on the CPU.
     atomics64 : str or None
-        The extension by which depth and id fit into one atomic word, if there is one.
+        The extension for depth and id in one atomic word, if any.
     extensions : tuple of str
         Sorted.
     limits : dict
-        Integers by OpenGL's names; those of missing extensions are left out.
+        Integers by OpenGL's names, without missing extensions.
     """
 
     version: str

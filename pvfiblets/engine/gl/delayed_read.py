@@ -1,4 +1,4 @@
-"""`DelayedRead`: numbers of a picture that come back some pictures later, so that nobody waits for the GPU.
+"""`DelayedRead`: numbers of a frame that are read some frames later, without waiting for the GPU.
 
 What is read goes into a buffer on the GPU, behind it a fence; once the GPU has passed that, the buffer is read at no
 cost. There are a few such buffers, in turn: where all are still on their way, the newest picture is not read at all.
@@ -66,7 +66,7 @@ class DelayedRead:
         return True
 
     def _buffer(self, size: int) -> moderngl.Buffer:
-        """Return a buffer that nobody uses, large enough."""
+        """Return an unused buffer of sufficient size."""
         while self._free:
             buffer = self._free.pop()
             if buffer.size >= size:

@@ -9,7 +9,7 @@ __all__ = ["FUNCTIONS", "INTEGERS", "RETURNS"]
 
 _UINT, _INT, _POINTER = ctypes.c_uint, ctypes.c_int, ctypes.c_void_p
 
-# Name: types of the arguments, and what is needed beyond OpenGL 3.3.
+# Name: types of the arguments, and requirements beyond OpenGL 3.3.
 FUNCTIONS: dict[str, tuple[tuple[Any, ...], int | str]] = {
     "glActiveTexture": ((_UINT,), 330),
     "glAttachShader": ((_UINT, _UINT), 330),

@@ -67,7 +67,7 @@ class MeshProgram:
     sources : mapping of str to str
         GLSL by moderngl's names: ``task_shader``, ``mesh_shader``, ``fragment_shader``.
     blocks : mapping of str to int
-        Bindings of uniform blocks; those that it lacks are passed over.
+        Bindings of uniform blocks; missing ones are skipped.
 
     Raises
     ------

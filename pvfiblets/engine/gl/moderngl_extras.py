@@ -80,7 +80,7 @@ class Uniform(NamedTuple):
 class BufferTexture:
     """A buffer that shaders read with ``texelFetch`` on a ``(u)samplerBuffer``.
 
-    Made by :meth:`GLExtras.texture_buffer`. It holds no copy: what is written to the buffer is what shaders read.
+    Made by :meth:`GLExtras.texture_buffer`. It holds no copy: shaders read the buffer itself.
     Release it before the buffer.
 
     Attributes
@@ -301,7 +301,7 @@ class GLExtras:
     def clear_words(self, buffer: moderngl.Buffer, offset: int = 0, size: int | None = None) -> None:
         """Fill a buffer, or a part of it, with zeros on the GPU (OpenGL 4.3).
 
-        moderngl's ``clear`` maps the buffer, and so waits until nobody draws with it any more.
+        moderngl's ``clear`` maps the buffer, and so waits for draws that use it.
         """
         size = buffer.size - offset if size is None else size
         internal, pixels, number = _LEVEL_FORMATS["u4", 1]

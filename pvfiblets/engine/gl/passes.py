@@ -62,7 +62,7 @@ class Passes:
         self._clock[name] = (self.clock() - started) * 1e3
 
     def clock(self) -> float:
-        """Return seconds, without those of :meth:`away`."""
+        """Return seconds, without the time in :meth:`away`."""
         return time.perf_counter() - self._away
 
     @contextlib.contextmanager
@@ -92,7 +92,7 @@ GROUP_SIZE = 64
 
 @contextlib.contextmanager
 def nowhere(ctx: moderngl.Context, gl: GLExtras) -> Iterator[None]:
-    """Draw into a pixel that nobody looks at: no drawing call runs without a target, not even one that only counts."""
+    """Draw into an unused pixel: every drawing call needs a target, even one that only counts."""
     with gl.framebuffers_kept():
         pixel = ctx.renderbuffer((1, 1))
         target = ctx.framebuffer([pixel])

@@ -13,21 +13,21 @@ from .moderngl_extras import GLExtras
 __all__ = ["CallClock", "PictureClock", "TimestampClock", "Which"]
 
 Which: TypeAlias = tuple[int, bool]
-"""What a picture was: whoever times it knows."""
+"""Label of a frame, chosen by the caller."""
 
 _TIMESTAMP, _RESULT, _AVAILABLE = 0x8E28, 0x8866, 0x8867
 
 
 class PictureClock(Protocol):
-    """Times what is drawn inside a ``with`` statement."""
+    """Times the drawing inside a ``with`` statement."""
 
     @contextmanager
     def timed(self, what: Which) -> Iterator[None]:
-        """Time a picture, and remember what it was."""
+        """Time a frame, and remember its label."""
         ...
 
     def finished(self) -> list[tuple[Which, float]]:
-        """Return what was timed and has ended since the last call, and its seconds, in order."""
+        """Return the labels and seconds of frames that ended since the last call, in order."""
         ...
 
     def release(self) -> None:
@@ -50,13 +50,13 @@ class CallClock:
 
     @contextmanager
     def timed(self, what: Which) -> Iterator[None]:
-        """Time a picture, and remember what it was."""
+        """Time a frame, and remember its label."""
         begin = self._clock()
         yield
         self._found.append((what, self._clock() - begin))
 
     def finished(self) -> list[tuple[Which, float]]:
-        """Return what was timed since the last call, and its seconds."""
+        """Return the labels and seconds since the last call."""
         found, self._found = self._found, []
         return found
 
@@ -79,7 +79,7 @@ class TimestampClock:
 
     @contextmanager
     def timed(self, what: Which) -> Iterator[None]:
-        """Time a picture, and remember what it was."""
+        """Time a frame, and remember its label."""
         names = (ctypes.c_uint * 2)()
         self._gl.function("glGenQueries")(2, names)
         self._running.append((what, names[0], names[1]))
@@ -88,7 +88,7 @@ class TimestampClock:
         self._gl.function("glQueryCounter")(names[1], _TIMESTAMP)
 
     def finished(self) -> list[tuple[Which, float]]:
-        """Return what was timed and has ended since the last call, and its seconds, in order."""
+        """Return the labels and seconds of frames that ended since the last call, in order."""
         found = []
         while self._running and self._ask(self._running[0][2], _AVAILABLE):
             what, first, last = self._running.pop(0)

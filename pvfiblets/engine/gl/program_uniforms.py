@@ -1,4 +1,4 @@
-"""Uniforms of programs, set where they change: a program keeps what it was told, and a call for each takes its time."""
+"""Uniforms of programs, set where they change: a program keeps their values, and each call takes time."""
 
 from __future__ import annotations
 

@@ -47,7 +47,7 @@ class Query:
         return self._glo
 
     def value(self) -> int:
-        """Wait for the commands, and return what they took or drew; 0 before there were any, and after `release`."""
+        """Wait for the commands, and return their time or count; 0 before any, and after `release`."""
         if not self._glo or not self._measured:
             return 0
         found = ctypes.c_uint64(0)

@@ -1,4 +1,4 @@
-"""GLSL assembly: includes, feature switches and constants, strictly, and programs cached by what they are made of.
+"""GLSL assembly: includes, feature switches and constants, strictly, and programs cached by their parts.
 
 Sources live in the repository's ``shaders`` folder, which the wheel carries as ``pvfiblets/shaders``. In them:
 
@@ -68,14 +68,14 @@ FEATURES: dict[str, str] = {
     "REGION_FIELDS": "closed surfaces and labels in that region, by their distance fields",
     "STREAMLINE_MASK": "some streamlines only",
     "POINT_MASK": "some points only",
-    "PEEL": "what lies behind an earlier layer",
+    "PEEL": "surfaces behind an earlier layer",
     "TUBES": "lines of a width in millimetres, with a surface",
     "CROSS_LINE": "where across a wide line a pixel lies",
     "SUBSAMPLES": "sixteen samples of a pixel, side by side",
     "EDGES": "where the edges run of what a pixel shows",
     "GATHER": "all lines of a pixel, not the nearest",
     "GATHER_SLICES": "those behind the nearest, by how far behind it they are",
-    "GATHER_OUTSIDE": "those that nothing else in the scene hides",
+    "GATHER_OUTSIDE": "lines that nothing else in the scene occludes",
     "GATHER_WORDS": "sums in words, not in floats",
     "PAINTED": "their colours too",
     **{mode.feature: mode.doc for mode in SHADERS.values()},
@@ -271,7 +271,7 @@ def switched_on(*sources: str) -> frozenset[str]:
 
 @cache
 def tell_of_compiling(renderer: str, version: str) -> None:
-    """Say why a first picture on this machine takes some seconds: drivers keep what they have compiled."""
+    """Report why a first frame takes some seconds: drivers cache compiled programs."""
     if is_first_time(f"shaders of {__version__} {renderer} {version}"):
         logger.warning("compiling shaders for %s: once per machine, some seconds", renderer)
 
@@ -301,7 +301,7 @@ class Programs:
 
     @contextmanager
     def noting(self) -> Iterator[set[str]]:
-        """Give a set to which the features of all programs are added that are asked for meanwhile.
+        """Yield a set that collects the features of all programs requested meanwhile.
 
         They are read from the programs' text: what a caller switches on and no stage looks at is not among them.
         """
@@ -339,7 +339,7 @@ class Programs:
         return self._programs[source]
 
     def has_compute(self, name: str, features: Iterable[str] = ()) -> bool:
-        """Whether the program of a stage with some features on was asked for before."""
+        """Return True if a stage with these features was requested before."""
         return (name, frozenset(features)) in self._requests
 
     def screen(self, name: str, features: Iterable[str] = ()) -> tuple[moderngl.Program, moderngl.VertexArray]:

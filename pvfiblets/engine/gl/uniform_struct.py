@@ -77,7 +77,7 @@ class Field:
     Raises
     ------
     UniformStructError
-        If one of them is nothing of this kind.
+        If one of them has another type.
     """
 
     name: str
@@ -93,7 +93,7 @@ class Field:
                 "uvec4, mat3 or mat4, or an array such as vec4[6]"
             )
         if not self.doc or "\n" in self.doc:
-            raise UniformStructError(f"{self.name}: say in one line what it is; its doc is {self.doc!r}")
+            raise UniformStructError(f"{self.name}: describe it in one line; its doc is {self.doc!r}")
 
 
 class _Layout:

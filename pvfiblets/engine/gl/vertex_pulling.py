@@ -37,7 +37,7 @@ class PulledShapes:
     corners : int
         Vertices of one shape.
     first : str
-        The uniform that is told the number of a call's first shape.
+        The uniform with the number of a call's first shape.
     """
 
     def __init__(

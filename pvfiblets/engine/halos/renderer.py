@@ -111,7 +111,7 @@ class HaloRenderer(HitDrawable[HaloDrawStyle]):
             self._vertices = self._keep(Vertices(ctx, self._gl, drawn))
             self._blocks = self._keep(HaloBlocks(ctx, self._vertices.origin, self._vertices.scale, drawn.bounds))
             self._n = self._vertices.n_items
-            # Lists are of whole items; what is beyond the last quad draws nothing.
+            # Lists have whole items; entries beyond the last quad draw nothing.
             self._shapes = self._keep(PulledShapes(ctx, self._n_lists << ITEM_SHIFT))
             listable = 0 if _flat(drawn.bounds) else self._n
             self._make_listing(culling, listable, self._n_lists, cull="halos/cull.comp", shift=ITEM_SHIFT)
@@ -175,7 +175,7 @@ class HaloRenderer(HitDrawable[HaloDrawStyle]):
     def _render(
         self, program: moderngl.Program, target: HitTarget, listing: Listing | None, commands: moderngl.Buffer | None
     ) -> None:
-        """Draw all quads, or those that are listed."""
+        """Draw all quads, or the listed ones."""
         target.hits_buffer.use()
         self._prepare(program)
         self._ctx.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)

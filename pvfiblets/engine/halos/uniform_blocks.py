@@ -38,7 +38,7 @@ HALOS_BLOCK = UniformStruct(
     Field("halo_line_reach", "float", "reach of w_line / 2"),
     Field("halo_border_reach", "float", "reach of (w_strip - w_line) / 2, the halo on either side of a line"),
     Field("halo_least_half_width", "float", "pixels of half the least width that a line is drawn with"),
-    Field("halo_own_least_half_width", "float", "the same between its edges, at most as much"),
+    Field("halo_own_least_half_width", "float", "the same between its edges, at most that value"),
     Field("halo_place_scale", "float", "mm per integer of a place"),
     Field("halo_displacement", "float", "d_max"),
     Field("halo_depth_per_mm", "float", "1 - depth falls by this per mm, and"),

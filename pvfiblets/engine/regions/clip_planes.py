@@ -31,7 +31,7 @@ SIDES = {
 
 
 def check_region(region: Region) -> None:
-    """Refuse what has no crossings along a ray."""
+    """Raise for regions without crossings along a ray."""
     if any(leaf.kind == LABELS for leaf in region.leaves):
         raise ValueError(
             "a label volume cannot cut, as it has no surface to cut at: use it to filter streamlines, or cut by a "

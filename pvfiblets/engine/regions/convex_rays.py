@@ -112,7 +112,7 @@ class RegionSignature:
 
     @property
     def far(self) -> bool:
-        """Whether the region holds what lies outside of all leaves."""
+        """Whether the region contains the outside of all leaves."""
         stack: list[bool] = []
         for word in self.program:
             if word >= 0:

@@ -68,7 +68,7 @@ class LayerStack:
         limit = int(ctx.info["GL_MAX_ARRAY_TEXTURE_LAYERS"])
         if layers > limit:
             raise EngineError(
-                f"cutting by this region takes {layers} layers along a pixel's ray, of which this OpenGL has {limit}; "
+                f"cutting by this region needs {layers} layers along a pixel's ray, and this OpenGL has {limit}; "
                 "cut by fewer or simpler shapes"
             )
         stand_ins: list[moderngl.Texture] = []  # moderngl attaches no layers; these give it the number of attachments
@@ -135,7 +135,7 @@ class Squares:
         return found
 
     def ask_later(self, name: str, rectangle: Rectangle, reads: DelayedRead, tag: object = None) -> None:
-        """Run a program on all squares of a rectangle, and have some reads get what it says."""
+        """Run a program on all squares of a rectangle, and pass its results to some reads."""
         framebuffer = self._run(name, rectangle)
         reads.start(framebuffer, framebuffer.viewport, 2, tag)
 

@@ -256,7 +256,7 @@ class RegionIntervals:
         return program, array
 
     def _stack_of(self, size: tuple[int, int], layers: int) -> LayerStack:
-        """Make room for layers of a size; what is there is lost where it grows."""
+        """Make room for layers of a size; growth loses the contents."""
         held = self._stack
         if held is None or held.size != size or held.layers < layers:
             self._drop_stack()

@@ -81,7 +81,7 @@ class _Found(NamedTuple):
         faces, crossings = said
         if faces.max() > MOST:
             raise EngineError(
-                f"a ray crosses more than {MOST} faces of a surface, more than can be told apart; cut by a simpler one"
+                f"a ray crosses more than {MOST} faces of a surface, the limit; cut by a simpler surface"
             )
         return cls(int(faces.max() + 1) // 2, int(np.abs(crossings).max()), bool((crossings < 0.0).any()))
 
@@ -248,7 +248,7 @@ class SurfaceLayers:
         return found
 
     def _learn(self, k: int) -> None:
-        """Take notice of what has come back of earlier pictures."""
+        """Read the results of earlier frames."""
         arrived, known = self._reads[k].arrived(), self._known[k]
         if arrived is not None and known is not None:
             found = _Found.of(arrived[1].reshape(-1, 2).T)

@@ -1,4 +1,4 @@
-"""What can be chosen about the drawing of spline tubes, and what it is by default."""
+"""Options of drawing spline tubes, with defaults."""
 
 from __future__ import annotations
 

@@ -129,7 +129,7 @@ class TubeRenderer(HitDrawable[TubeStyle]):
         return target.buffer
 
     def _render(self, rounds: list[tuple[list[str], int]], target: HitTarget, commands: moderngl.Buffer | None) -> None:
-        """Draw all segments, or those that are listed."""
+        """Draw all segments, or the listed ones."""
         target.hits_buffer.use()
         for chosen, sides in rounds:
             program = self._silhouettes.program(chosen)

@@ -41,7 +41,7 @@ class SolverProbe:
     hollow : bool
         Look for exits where a ray begins inside.
     clock : callable
-        Seconds, by which drawing is timed.
+        Clock of drawing, in seconds.
 
     Attributes
     ----------

@@ -23,7 +23,7 @@ SPLINES_BLOCK = UniformStruct(
     Field("tube_place_scale", "float", "mm per integer of a place"),
     Field("tube_control_share", "float", "c"),
     Field("tube_least_over_w", "float", "mm, over W, of half the least width that a tube is drawn with"),
-    Field("tube_own_least_over_w", "float", "the same between its edges, at most as much"),
+    Field("tube_own_least_over_w", "float", "the same between its edges, at most that value"),
     Field("tube_by_length", "int", "1 where derivatives are by length, 0 where by a segment's parameter"),
     Field("tube_search_steps", "int", "of a root search"),
     Field("tube_segments", "int", "of all tubes"),

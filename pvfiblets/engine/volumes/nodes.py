@@ -37,7 +37,7 @@ class NodeList:
     levels : numpy.ndarray
         (n_levels, 4) int64: nodes along each axis, and place of the first.
     skipped : float
-        Share of the leaves in which there is nothing to see; 0 of peaks, for which it depends on the ray.
+        Share of invisible leaves; 0 for peaks, where it depends on the ray.
     takes_means : bool
         Whether nodes that are even are taken as their mean: where it was asked for, and there are enough of them.
     octree : dict
@@ -86,7 +86,7 @@ class NodeList:
         self.skipped = float(np.mean(numbers[0] == SKIP)) if looked_into else 0.0
         self._put("nodes", numbers)
         visited = np.count_nonzero(numbers[0] != SKIP) if looked_into else 0
-        own = self._volume.colours is not None  # of which nothing is known by nodes
+        own = self._volume.colours is not None  # unknown to nodes
         even = np.count_nonzero(numbers[0] == HOMOGENEOUS) if _may_take_means(casting) and not own else 0
         self.takes_means = bool(even > 0 and even >= WORTH * visited)
         if self.takes_means:

@@ -159,7 +159,7 @@ class VolumeRenderer(Drawable[VolumeStyle]):
         return target.buffer
 
     def _serves(self, outside: moderngl.Texture | None) -> bool:
-        """Rays end at what is outside."""
+        """Set the opaque depths that end rays."""
         return outside is None
 
     def _cast_sparsely(
@@ -211,7 +211,7 @@ class VolumeRenderer(Drawable[VolumeStyle]):
         *,
         tested: bool = False,
     ) -> None:
-        """Cast a ray for every pixel of a picture, or those that pass the test of depth."""
+        """Cast a ray for every pixel of a frame, or for pixels that pass the depth test."""
         program, array = self._programs.screen("volumes/cast.frag", features)
         self._voxels.bind(program)
         if "outside" in program and outside is not None:

@@ -45,7 +45,7 @@ RAYCAST_BLOCK = UniformStruct(
     Field("u_from_voxels", "vec4", "U is its dot product with (voxels, 1)"),
     Field("w_from_voxels", "vec4", "W likewise"),
     Field("ray_planes", f"vec4[{MAX_PLANES}]", "kept where they are not negative: near, far, the caller's"),
-    Field("box_low", "vec3", "corner of what is there, in voxels"),
+    Field("box_low", "vec3", "corner of the visible box, in voxels"),
     Field("ray_step", "float", "mm"),
     Field("box_high", "vec3", "the opposite corner"),
     Field("opaque_from", "float", "opacity at which a ray ends"),

@@ -79,7 +79,7 @@ class FibletActor(FibletSettings, SelectableActor):
     name : str, optional
         Under which the plotter knows the actor.
     theme : pyvista theme, optional
-        Gives what is not given.
+        Source of defaults.
     progress : bool, default: False
         Show a progress bar while copying to the GPU.
     """
@@ -100,7 +100,7 @@ class FibletActor(FibletSettings, SelectableActor):
         self._fiblets, self._rgb = fiblets, given["rgb"]
         self._style = STYLES[0]
         self._tone = TONES[0]
-        self._transparency: str | int | None = None  # until it is told
+        self._transparency: str | int | None = None  # until it is set
         self._choices = Choices()
         mapper = PlottedMapper(fiblets, options=EngineOptions(**given.at(OPTIONS)), progress=progress)
         super().__init__(mapper, scalars, given, name=name, theme=theme)
@@ -171,13 +171,13 @@ class FibletActor(FibletSettings, SelectableActor):
         return twin
 
     def explain(self) -> dict[str, Any]:
-        """Return what is active for this actor and what it costs, over all windows that show it.
+        """Return the active features of this actor and their cost, over all windows that show it.
 
         Returns
         -------
         dict
             ``passes``: name and milliseconds of the last redraw; ``features``: pieces of the
-            shaders in use; ``buffers``: name and bytes of what lies on the GPU; ``gpu_bytes``:
+            shaders in use; ``buffers``: name and bytes of each GPU buffer; ``gpu_bytes``:
             their sum; ``fiblets_total``; ``pipeline``; ``culling``; ``share``: how many of the
             streamlines are drawn; ``fiblets``: of the last redraw ``total``, ``in_frustum``,
             ``drawn`` and ``visible``, ``None`` where not known; ``streamlines``: ``total`` and
@@ -227,7 +227,7 @@ class FibletActor(FibletSettings, SelectableActor):
             Two opposite corners ``(x0, y0, x1, y1)``: pixels, counted from the lower left corner of
             the window; those on the edges belong to it.
         through : bool, default: False
-            Hidden ones too. Else only those that are seen: the ids are those of the picture.
+            Occluded ones too. Otherwise only visible ones, with the ids of the frame.
         renderer : pyvista.Renderer, optional
             The subplot to look into; the one drawn last by default.
 
@@ -345,7 +345,7 @@ class FibletActor(FibletSettings, SelectableActor):
         """How many of the streamlines are drawn: 1.0 for all; ``None`` before the first picture.
 
         Less only where memory does not suffice for all, and ``fit`` is ``"sample"``; or it is ``"stream"``, and parts
-        of what is in view have not been drawn yet: then of these.
+        in view have not been drawn yet: then of the drawn ones.
         """
         return self._mapper.share
 
@@ -491,7 +491,7 @@ class FibletActor(FibletSettings, SelectableActor):
         if transparency is not None and transparency != ALL:
             try:
                 _layers(transparency)
-            except (TypeError, ValueError) as error:  # what is no number is refused by it
+            except (TypeError, ValueError) as error:  # it refuses other types
                 raise ValueError(
                     f"transparency is {transparency!r}; give 'all', 'layers', a number of layers from 2 to 64, or None"
                 ) from error
@@ -499,7 +499,7 @@ class FibletActor(FibletSettings, SelectableActor):
         self._see_through()
 
     def _see_through(self) -> None:
-        """Bring in step what shows behind the nearest line; nothing where nothing shows through."""
+        """Update the lines behind the nearest one; none if nothing is translucent."""
         effect: Any = None
         if _DENSITY in self._mapper.effects or self._transparency is None:
             pass

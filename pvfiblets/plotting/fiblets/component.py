@@ -109,7 +109,7 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
             voxel; ``nan_color`` shows outside of it.
         per_point : iterable of str, or {'all', 'fit', 'none'}
             Per-point arrays of ``source`` to keep besides ``scalars``, for criteria and other colours: by default
-            those that fit into 16 bytes a point. They take no GPU memory until they colour.
+            the arrays that fit into 16 bytes a point. They take no GPU memory until they colour.
         max_error : float, optional
             Greatest distance (mm) of a drawn from a given point; by default as :func:`pvfiblets.compress` has it.
         progress : bool, default: False
@@ -146,7 +146,7 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
         from pvfiblets.plotting.fiblets.actor import FibletActor
         from pvfiblets.plotting.fiblets.sources import as_fiblets
 
-        EngineOptions(**settings.at(OPTIONS))  # what is wrong with them is said before the slow part
+        EngineOptions(**settings.at(OPTIONS))  # errors are raised before the slow part
         fiblets, scalars = as_fiblets(
             source, scalars=scalars, per_point=per_point, max_error=max_error, progress=progress,
             rgb=settings["rgb"], opacity=settings["opacity"], preference=preference, **options,
@@ -186,21 +186,21 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
         font_size: int = 18,
         color: Any = None,
     ) -> None:
-        """Pick streamlines with the mouse; what was enabled before is disabled.
+        """Pick streamlines with the mouse; replaces earlier picking.
 
         Parameters
         ----------
         callback : callable, optional
-            Called with a :class:`~pvfiblets.plotting.fiblets.pick_result.Picked` for each actor of which
-            something was picked, and not at all where there is nothing.
+            Called with a :class:`~pvfiblets.plotting.fiblets.pick_result.Picked` for each actor with
+            picked streamlines; not called otherwise.
         mode : {"click", "box", "lasso"}
             ``"click"``: the streamline nearest to the mouse; dragging still turns the camera.
-            ``"box"`` and ``"lasso"``: all within what is drawn with the left button, after the
+            ``"box"`` and ``"lasso"``: all within the shape drawn with the left button, after the
             ``r`` key has been pressed, which is PyVista's key for rectangles, until it is pressed
             again. A click picks then, too.
         through : bool, default: False
-            Everything under the mouse or the area, hidden streamlines too. Else only what is seen:
-            the ids are those of the picture. Opaque actors in front do hide streamlines;
+            Everything under the mouse or the area, occluded streamlines too. Otherwise only visible ones:
+            with the ids of the frame. Opaque actors in front do occlude streamlines;
             translucent ones do not.
         button : {"left", "right"}
             That clicks.
@@ -210,7 +210,7 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
             Say beside the mouse which streamline is under it, where along it, its value and its
             groups; or what a function of a :class:`Picked` says.
         select : bool, default: True
-            Select what is picked (:meth:`FibletActor.select`): with Shift it is added, with Control
+            Select the result (:meth:`FibletActor.select`): with Shift it is added, with Control
             it changes sides. Nothing picked and no key held: nothing is selected.
         start : bool, default: False
             Draw areas at once, without the ``r`` key.
@@ -240,7 +240,7 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
         picking.begin(start=start, show_message=show_message, font_size=font_size, color=color)
 
     def disable_picking(self) -> None:
-        """Undo :meth:`enable_picking`; what is selected stays. Twice is harmless."""
+        """Undo :meth:`enable_picking`; the selection stays. A second call has no effect."""
         if self._picking is not None:
             self._picking.stop()
             self._picking = None
@@ -263,7 +263,7 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
 
         Parameters
         ----------
-        actor : FibletActor or sequence of such, optional
+        actor : FibletActor or sequence of FibletActor, optional
             What is cut; all fiblet actors by default.
         normal : str or (3,) array, default: "z"
             ``"x"``, ``"y"``, ``"z"``, or a direction.
@@ -317,7 +317,7 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
 
         Parameters
         ----------
-        actor : FibletActor or sequence of such, optional
+        actor : FibletActor or sequence of FibletActor, optional
             What is cut; all fiblet actors by default.
         normal : str or (3,) array, default: "x"
             What it points to stays.
@@ -417,12 +417,12 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
 
         Parameters
         ----------
-        actor : FibletActor or sequence of such, optional
+        actor : FibletActor or sequence of FibletActor, optional
             What is cut; all fiblet actors by default.
         bounds : (6,) array, optional
-            Of the box, mm; those of the actors by default.
+            Bounds of the box, mm; by default of the actors.
         invert : bool, default: False
-            Keep what is outside.
+            Keep the outside.
         name : str, optional
             Of the cut.
         interaction_event : str, default: "always"
@@ -458,10 +458,10 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
         ----------
         mesh : pyvista.PolyData
             Closed; concave ones cut as exactly as convex ones.
-        actor : FibletActor or sequence of such, optional
+        actor : FibletActor or sequence of FibletActor, optional
             What is cut; all fiblet actors by default.
         invert : bool, default: False
-            Keep what is outside.
+            Keep the outside.
         name : str, optional
             Of the cut.
         color : color-like, default: "white"
@@ -493,7 +493,7 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
         return widget, shown
 
     def clear_widgets(self) -> None:
-        """Take all slabs and cutting widgets away, and what they cut."""
+        """Remove all slabs and cutting widgets, with their cuts."""
         for remove in list(self._removals.values()):
             remove()
         self._removals.clear()
@@ -502,7 +502,7 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
     def _cut_actors(self, actor: Any) -> list[FibletActor]:
         actors = list(self) if actor is None else list(actor) if isinstance(actor, Sequence) else [actor]
         if not actors:
-            raise ValueError("there is nothing to cut: this plotter has no fiblets; add_fiblets() first")
+            raise ValueError("this plotter has no fiblets to cut; add_fiblets() first")
         return actors
 
     def _new_name(self, name: str | None, stem: str) -> str:
@@ -572,7 +572,7 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
         Raises
         ------
         ValueError
-            If there is nothing to show, or the name has another ending.
+            If the plotter is empty, or the name has another ending.
         OSError
             If it cannot be written.
 
@@ -597,7 +597,7 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
         """Return the page of `export_page` for a notebook's cell, which keeps it: it needs no kernel later.
 
         ``plotter.show(jupyter_backend="fiblets")`` shows it, too. While there is a kernel, and anywidget is installed
-        (``pip install pvfiblets[notebook]``), page and plotter have one camera, and the view tells what was picked.
+        (``pip install pvfiblets[notebook]``), page and plotter share one camera, and the view reports picks.
 
         Parameters
         ----------
@@ -614,7 +614,7 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
         Raises
         ------
         ValueError
-            If there is nothing to show, or more than 64 MB of data.
+            If the plotter is empty, or has more than 64 MB of data.
         """
         from pvfiblets.plotting.notebook_view import page_view
 

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 
 class FilteredActor(ClippedActor):
-    """Actor of fiblets that shows what is chosen of them; other choices begin as of the next render."""
+    """Actor of fiblets with filters; changes apply from the next render on."""
 
     _mapper: FibletMapper
     _fiblets: FibletSet
@@ -60,14 +60,14 @@ class FilteredActor(ClippedActor):
         keep_nan: bool = False,
         name: str | None = None,
     ) -> str:
-        """Show only what has values in a range.
+        """Show only streamlines or segments with values in a range.
 
         Parameters
         ----------
         what : str, array, Distance or image
             ``"length"``, ``"n_points"``, ``"mean_curvature"``, ``"end_distance"`` or any number
             per streamline: streamlines are shown or not. ``"curvature"``, ``"arc_length"`` or any
-            number per point: of a streamline those segments are shown both points of which are in
+            number per point: a streamline's segments are shown if both points are in
             range. An array with one number per streamline, or per point; or
             :class:`pvfiblets.regions.Distance` to a region or a point (mm); or an image, whose
             values at the points count: a path, ``(array, affine)``, an image of nibabel or an
@@ -75,7 +75,7 @@ class FilteredActor(ClippedActor):
         range : (float, float)
             Least and greatest value that is shown; infinite ends, and None, are open.
         keep_nan : bool, default: False
-            Whether to show what has no value.
+            Whether to show missing values.
         name : str, optional
             Replaces the criterion of the same name. By default that of the values; the same array
             or distance again changes its range, another one is one more criterion.
@@ -88,7 +88,7 @@ class FilteredActor(ClippedActor):
         Raises
         ------
         KeyError
-            If there are no such values; the message lists those that there are.
+            If the values do not exist; the message lists the existing ones.
         ValueError
             If the range is none, or an array has the wrong length.
         """
@@ -121,7 +121,7 @@ class FilteredActor(ClippedActor):
     # Regions ------------------------------------------------------------------------------------
 
     def include(self, condition: Any, *, name: str | None = None) -> str:
-        """Show only streamlines for which a condition holds.
+        """Show only streamlines that satisfy a condition.
 
         Parameters
         ----------
@@ -141,7 +141,7 @@ class FilteredActor(ClippedActor):
         return self._add_condition(as_predicate(condition, as_region), name, "include")
 
     def include_painted(self, live: Any, *, name: str | None = None, **how: Any) -> str:
-        """Show only streamlines that lie to painted regions as is said, and ask again after each stroke.
+        """Show only streamlines that satisfy conditions on painted regions, updated after each stroke.
 
         Parameters
         ----------
@@ -189,7 +189,7 @@ class FilteredActor(ClippedActor):
         return follow_painted(self, live, name, how)
 
     def exclude(self, condition: Any, *, name: str | None = None) -> str:
-        """Hide streamlines for which a condition holds; parameters and result as for :meth:`include`."""
+        """Hide streamlines that satisfy a condition; parameters and result as for :meth:`include`."""
         return self._add_condition(~as_predicate(condition, as_region), name, "exclude")
 
     @property
@@ -202,7 +202,7 @@ class FilteredActor(ClippedActor):
         self._choose(conditions=without(self._choices.conditions, name, "condition"))
 
     def streamlines_where(self, condition: Any) -> np.ndarray:
-        """Return the streamlines for which a condition holds.
+        """Return the streamlines that satisfy a condition.
 
         Parameters
         ----------
@@ -212,7 +212,7 @@ class FilteredActor(ClippedActor):
         Returns
         -------
         numpy.ndarray
-            (n_streamlines,) bool, shown or not. The GPU is asked where it can be, and gives the
+            (n_streamlines,) bool, True if it holds. Computed on the GPU where possible, with the
             same answer.
         """
         return select(self._fiblets, as_predicate(condition, as_region), flags=self._mapper.region_flags)
@@ -252,7 +252,7 @@ class FilteredActor(ClippedActor):
 
     @property
     def bundles(self) -> Bundles:
-        """The groups as an ordered list; what is changed there shows: who is hidden, and colours by ``"group"``.
+        """The groups as an ordered list; changes of visibility, and of colours by ``"group"``, are shown.
 
         Streamlines in no bundle stay shown whichever bundles are hidden.
         """
@@ -320,7 +320,7 @@ class FilteredActor(ClippedActor):
 
 
 def _same(a: Any, b: Any) -> bool:
-    """Whether two criteria are of the same values: arrays by identity, distances by what they are to, files by path."""
+    """Return True if two criteria have the same values: arrays by identity, distances by target, files by path."""
     from pvfiblets.query.measures.measures import Distance
 
     if isinstance(a, tuple) and isinstance(b, tuple):  # an array and its affine

@@ -123,7 +123,7 @@ LOOKS: dict[str, Look] = {
     ),
     "density": Look("light that adds up where lines lie on each other", PLAIN | {"style": "density"}),
     "ink": Look(
-        "a drawing in black or white, whose gaps show what lies behind",
+        "a drawing in black or white, with gaps between near and far lines",
         PLAIN | {"line_width": WIDTH, "style": "ink", "halos": {"color": "background"}, "depth_cue": {"strength": 0.5}},
     ),
     "studio": Look(

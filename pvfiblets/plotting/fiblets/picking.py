@@ -44,7 +44,7 @@ class MousePicking:
         select: bool,
     ) -> None:
         if callback is not None and not callable(callback):
-            raise TypeError(f"callback is a {type(callback).__name__}; give a function of what was picked")
+            raise TypeError(f"callback is a {type(callback).__name__}; give a function that takes the result")
         if mode not in MODES:
             raise ValueError(f"mode is {mode!r}; choose one of {', '.join(MODES)}")
         if button not in BUTTONS:
@@ -92,7 +92,7 @@ class MousePicking:
 
     def _found(self, corners: np.ndarray, click: bool, selecting: str) -> None:
         if self.tooltip is not None and self.tooltip.remove():
-            self._plotter.render()  # or what it covered would count as hidden
+            self._plotter.render()  # or covered lines would count as occluded
         results = self._pick(corners, click, self._through)
         if self._selects:
             self._select(results, selecting)
@@ -114,7 +114,7 @@ class MousePicking:
         self._rested = now + _REST * (now - began)
 
     def _pick(self, corners: np.ndarray, click: bool, through: bool) -> list[Picked]:
-        """Return what lies under a click or in an area, one entry for each actor."""
+        """Return the picks under a click or in an area, one entry for each actor."""
         x, y = corners[0]
         renderer = self._plotter.iren.interactor.FindPokedRenderer(round(x), round(y))
         if renderer is None:

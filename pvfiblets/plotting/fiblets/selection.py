@@ -56,7 +56,7 @@ class SelectionStyle:
 
 
 class SelectableActor(FilteredActor):
-    """Actor of fiblets some of which are selected."""
+    """Actor of fiblets with a selection."""
 
     _selected: np.ndarray | None = None
     _selection_style = SelectionStyle()
@@ -95,11 +95,11 @@ class SelectableActor(FilteredActor):
         ----------
         ids : array_like, slice or Picked
             Numbers (negative ones count from the end), a mask ``(n_streamlines,)`` of bool, a slice,
-            or what was picked.
+            or a pick.
         mode : {"replace", "add", "remove", "toggle"}
             What becomes of the present selection.
         as_tubes : bool, optional
-            Whether what is selected is drawn as tubes from now on, see :meth:`selection_style`.
+            Whether the selection is drawn as tubes from now on, see :meth:`selection_style`.
         radius : float, optional
             Of the tubes, mm.
 
@@ -134,7 +134,7 @@ class SelectableActor(FilteredActor):
             self.select(ids, mode="remove")
 
     def invert_selection(self) -> None:
-        """Select what is not selected, and the other way round."""
+        """Invert the selection."""
         nothing = np.zeros(self._fiblets.n_streamlines, np.bool_)
         self._select(~(nothing if self._selected is None else self._selected))
 
@@ -171,7 +171,7 @@ class SelectableActor(FilteredActor):
         radius: float = _AS_BEFORE,
         silhouette: Any = _AS_BEFORE,
     ) -> SelectionStyle:
-        """Change how selected streamlines stand out; what is not given stays as it is.
+        """Change the style of selected streamlines; omitted arguments stay unchanged.
 
         Parameters
         ----------
@@ -410,7 +410,7 @@ class SelectableActor(FilteredActor):
         }
 
     def _reselect(self) -> None:
-        """Follow other fiblets: ids of as many streamlines stay, else nothing is selected."""
+        """Follow other fiblets: the selection stays if the number of streamlines is the same."""
         if self._selected is not None and len(self._selected) != self._fiblets.n_streamlines:
             self._selected = None
         self._show_selection()

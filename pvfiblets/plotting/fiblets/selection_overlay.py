@@ -40,7 +40,7 @@ SHADES = ("ambient_occlusion", "depth_cue")
 
 
 class _OfAll:
-    """An effect that takes its defaults from the whole of which a part is drawn."""
+    """An effect that takes its defaults from the whole set instead of the drawn part."""
 
     def __init__(self, effect: Any, whole: FibletSet) -> None:
         self._effect, self._whole = effect, whole
@@ -64,7 +64,7 @@ class _Splines:
     ids : numpy.ndarray
         ``(n,)`` int64 streamlines.
     kept : numpy.ndarray or None
-        The owner's mask of streamlines, of which `ids` are.
+        The owner's mask of streamlines, which contains `ids`.
     values : str or None
         Name of the per-point value that they are coloured by.
     """
@@ -163,7 +163,7 @@ class SelectionOverlay:
                 self._leave(address)
 
     def before_picture(self, renderer: Any) -> None:
-        """Leave if the owner has left, else do as it does. VTK lists what it draws after this."""
+        """Remove itself if the owner is gone, otherwise copy its state, before VTK lists its actors."""
         self.leave_with_owner()
         if renderer.GetAddressAsString("") in self._renderers:
             self.follow()

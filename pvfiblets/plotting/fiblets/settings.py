@@ -1,4 +1,4 @@
-"""What can be set of fiblets: properties of the actor, arguments of ``add_fiblets``, rows of the page."""
+"""Settings of fiblets: properties of the actor, arguments of ``add_fiblets``, rows of the page."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from pvfiblets.plotting.setting_places import COLOURS, LATER, MAPPER, OPTIONS, O
 from pvfiblets.plotting.settings import Row, Setting, Settings, number, truth
 
 STYLES = ("surface", "halo", "ink", "density")
-"""What :attr:`FibletSettings.style` may be."""
+"""Values of :attr:`FibletSettings.style`."""
 
 TONES = ("log", "sqrt", "linear")
-"""What :attr:`FibletSettings.density_tone` may be."""
+"""Values of :attr:`FibletSettings.density_tone`."""
 
 ALL = "all"
-"""Of :attr:`FibletSettings.transparency`."""
+"""Default of :attr:`FibletSettings.transparency`."""
 
 
 def _radii(data: Any) -> tuple[float, float]:
@@ -31,7 +31,7 @@ def _clim_span(actor: Any) -> tuple[float, float]:
 
 
 THINNEST, WIDEST = 1e-3, 64.0
-"""Pixels of lines; a property of VTK's may ask for less and for more."""
+"""Limits of line widths, pixels; a VTK property may exceed them."""
 
 
 def _line_width(name: str, width: Any) -> float:
@@ -50,16 +50,15 @@ class FibletSettings(Settings):
 
     look: Setting[str | None] = Setting(
         None,
-        "Name of settings that give a finished picture together; ``None`` where they are no look.\n\n"
-        "``'plain'``: thin lines in gentle light. ``'illuminated'``: lines that shine and lie in each\n"
-        "other's shade. ``'tubes'``: round tubes. ``'glass'``: lines through which one sees all others.\n"
-        "``'density'``: light that adds up where lines lie on each other. ``'ink'``: a drawing in black or\n"
-        "white, whose gaps show what lies behind. ``'studio'``: thick tubes in soft shade, which fade with\n"
-        "the distance.\n\n"
-        "Setting it sets line width, style, tubes, opacity, light and shading, no colours; widths follow\n"
-        "the distance between lines. Change any of these afterwards.",
-        argument='Settings that give a finished picture together: ``"plain"``, ``"illuminated"``, ``"tubes"``, '
-        '``"glass"``, ``"density"``, ``"ink"`` or ``"studio"``. Other arguments go before it.',
+        "Preset of widths, light and shading; ``None`` if the settings are no preset.\n\n"
+        "``'plain'``: thin lines in gentle light. ``'illuminated'``: shining lines that shade each other.\n"
+        "``'tubes'``: round tubes. ``'glass'``: translucent lines. ``'density'``: light that adds up where\n"
+        "lines overlap. ``'ink'``: a drawing in black or white, with gaps between near and far lines.\n"
+        "``'studio'``: thick tubes in soft shade that fade with the distance.\n\n"
+        "Setting it sets line width, style, tubes, opacity, light and shading, but no colours; widths\n"
+        "follow the distance between lines. Each can be changed afterwards.",
+        argument='Preset of widths, light and shading: ``"plain"``, ``"illuminated"``, ``"tubes"``, '
+        '``"glass"``, ``"density"``, ``"ink"`` or ``"studio"``. Other arguments override it.',
         kind="str | None",
         header='{"plain", "illuminated", "tubes", "glass", "density", "ink", "studio"}, optional',
         where=LATER,
@@ -69,8 +68,8 @@ class FibletSettings(Settings):
     rgb: Setting[bool | None] = Setting(
         None,
         "Whether scalars of 3 or 4 columns are colours.\n\n"
-        "``True``: they are, uint8 from 0 to 255 or floats from 0 to 1. ``False``: their magnitude is mapped.\n"
-        "``None``: colours where they can be such. Those of other widths are mapped by magnitude.",
+        "``True``: colours, uint8 from 0 to 255 or floats from 0 to 1. ``False``: their magnitude is mapped.\n"
+        "``None``: colours if the values allow it. Other numbers of columns are mapped by magnitude.",
         argument="Whether scalars of 3 or 4 columns are colours (True) or vectors, whose magnitude is mapped (False); "
         "by default colours where they are uint8, or floats from 0 to 1.",
         kind="bool | None",
@@ -87,31 +86,31 @@ class FibletSettings(Settings):
     flip_scalars = shared.FLIP_SCALARS
     categories: Setting[bool] = Setting(
         False,
-        "Whether there are as many colours as different values, instead of ``n_colors``.",
+        "Whether each different value has its own colour, instead of ``n_colors`` colours.",
         kind="bool",
         where=COLOURS,
         check=truth,
     )
     opacity: Setting[float] = Setting(
         None,
-        "From 0, not to be seen, to 1. Anything else that is set is taken by ``opacity_by``.",
-        argument="Of all streamlines, from 0, not to be seen, to 1; the theme's by default. Or what "
+        "From 0, invisible, to 1. Other values are passed to ``opacity_by``.",
+        argument="Of all streamlines, from 0, invisible, to 1; the theme's by default. Or a value of "
         '``actor.opacity_by`` takes: ``"linear"``, ``"sigmoid"`` and the like, opacities along the colour map; '
         "numbers from 0 to 1, or the name of an array with them, one per streamline or per point.",
         kind=shared.OPACITIES,
         header="float, str or array_like, optional",
         where=OWN,
         check=shared.number_or_more,
-        row=Row("Opacity", "From 0, not to be seen, to 1.", type="number", default=1.0, limits=(0.0, 1.0)),
+        row=Row("Opacity", "From 0, invisible, to 1.", type="number", default=1.0, limits=(0.0, 1.0)),
     )
     opacity_by: Setting[Any] = Setting(
         None,
-        "Opacities beside ``opacity``, which they are times.\n\n"
+        "Opacities by numbers, multiplied by ``opacity``.\n\n"
         "``None`` for none; as in :meth:`pyvista.Plotter.add_mesh` the name of a transfer function\n"
         "(``'linear'``, ``'geom'``, ``'sigmoid'``, with ``_r`` reversed) along the colour map, from its first\n"
         "colour to the last, or numbers from 0 to 1 for that; or numbers from 0 to 1, one per streamline\n"
-        "or one per point, or the name of an array of such. Opacities of points and another number that\n"
-        "colours points do not go together.",
+        "or one per point, or the name of an array of them. Opacities per point and colours by another\n"
+        "number per point exclude each other.",
         argument=False,
         where=LATER,
         row=Row("Fades by", "Opacity along the colour map.", type="choice", optional=True,
@@ -121,23 +120,23 @@ class FibletSettings(Settings):
     )  # fmt: skip
     transparency: Setting[str | int | None] = Setting(
         ALL,
-        "What an ``opacity`` below 1 shows behind the nearest line.\n\n"
-        "``\"all\"``: all lines, in no order that one could see: the nearest as it is, the others in\n"
-        "four slices by how far behind it they are, mixed within a slice. Costs one drawing of all\n"
-        "streamlines in view, and 64 bytes of GPU memory a pixel. ``\"layers\"``: the four nearest, each\n"
-        "with its own colour, light and depth, blended in order. A number from 2 to 64: as many. What\n"
-        "lies behind the last does not show; a layer costs a drawing, and 44 bytes a pixel. ``None``:\n"
-        "the nearest alone, through which one sees the rest of the scene. Opaque actors pay for none.",
+        "Lines that show behind the nearest one where ``opacity`` is below 1.\n\n"
+        "``\"all\"``: all lines: the nearest exactly, the others in four slices by distance behind it,\n"
+        "mixed within a slice. Costs one more pass over all streamlines in view, and 80 bytes of GPU\n"
+        "memory a pixel. ``\"layers\"``: the four nearest, each with its own colour, light and depth,\n"
+        "blended in order. A number from 2 to 64: that number of layers. Lines behind the last layer are\n"
+        "invisible; a layer costs a pass, and 44 bytes a pixel. ``None``: the nearest alone, over the rest\n"
+        "of the scene. Opaque actors pay for none of these.",
         kind="str | int | None",
         header='{"all", "layers", None} or int, default: "all"',
         where=LATER,
-        row=Row("Seen through", "What shows behind the nearest line, with opacity below 1.", type="choice",
-                choices=[("all", "all lines"), ("layers", "the next lines"), (None, "what is behind all lines")],
+        row=Row("See-through", "Lines that show behind the nearest one, with opacity below 1.", type="choice",
+                choices=[("all", "all lines"), ("layers", "the next lines"), (None, "only the rest of the scene")],
                 matters=lambda s: s["opacity"] < 1.0),
     )  # fmt: skip
     line_width: Setting[float] = Setting(
         None,
-        "Width in pixels.",
+        "Width of lines, pixels.",
         kind="float | None",
         where=OWN,
         check=_line_width,
@@ -146,22 +145,22 @@ class FibletSettings(Settings):
     )  # fmt: skip
     style: Setting[str] = Setting(
         STYLES[0],
-        "``'surface'``, lines in their colours, ``'halo'``, black lines in white halos, ``'ink'``, black on a\n"
-        "light background and white on a dark one, in halos of the background's colour, or ``'density'``, all\n"
-        "lines that lie on each other.\n\n"
+        "``'surface'``: lines in their colours. ``'halo'``: black lines in white halos. ``'ink'``: black on a\n"
+        "light background and white on a dark one, in halos of the background's colour. ``'density'``: sums\n"
+        "of overlapping lines.\n\n"
         "``'halo'`` and ``'ink'`` are drawings in ink (Everts et al. 2009), ``'halo'`` best on white:\n"
-        "all lines are of one colour and without light, and have default halos. Colours and\n"
-        "``lighting`` stay as they are and come back with ``'surface'``, which takes halos away.\n\n"
-        "``'density'`` adds up light: a pixel has the mean colour of all streamlines in it, the\n"
-        "brighter the more there are (``density_tone``), over what is behind them. The second number of\n"
-        "``clim`` is how many have full brightness; without, as many as the fullest pixel of the\n"
-        "picture holds. Lines are a pixel wide, without light. With ``scalars=\"density\"`` a colour map and a\n"
-        "scalar bar tell streamlines per pixel.",
-        argument="``\"density\"`` adds up light where streamlines lie on each other, ``\"halo\"`` draws black lines in "
-        "white halos, ``\"ink\"`` such as suit the background.",
+        "all lines have one colour, no light, and default halos. Colours and ``lighting`` are kept and\n"
+        "return with ``'surface'``, which removes the halos.\n\n"
+        "``'density'`` adds up light: a pixel has the mean colour of all its streamlines, at a brightness\n"
+        "that grows with their number (``density_tone``), over the background. The second number of\n"
+        "``clim`` is the number at full brightness, by default that of the fullest pixel. Lines are a pixel\n"
+        "wide, without light. With ``scalars=\"density\"`` a colour map and a scalar bar show streamlines per\n"
+        "pixel.",
+        argument="``\"density\"`` adds up light where streamlines overlap, ``\"halo\"`` draws black lines in "
+        "white halos, ``\"ink\"`` lines and halos in colours that suit the background.",
         choices=STYLES,
         where=LATER,
-        row=Row("Style", "Ink: lines in one colour, in halos that show depth.", "Lines",
+        row=Row("Style", "Ink: lines of one colour, with halos that show depth.", "Lines",
                 choices=[("surface", "coloured lines"), ("halo", "ink and halos"), ("ink", "ink on any ground"),
                          ("density", "density")]),
     )  # fmt: skip
@@ -180,8 +179,8 @@ class FibletSettings(Settings):
     tube_radius: Setting[float | None] = Setting(
         None,
         "Radius (mm) of tubes in place of lines of ``line_width`` pixels; ``None``, the default, for lines.\n\n"
-        "Tubes are exact bodies: each pixel shows the point of the surface that it sees, they cut into\n"
-        "each other and into meshes, and ends are round. Those thinner than a pixel are a pixel wide.",
+        "Tubes are exact bodies: each pixel shows its point of the surface, tubes intersect each other and\n"
+        "meshes, and ends are round. Tubes thinner than a pixel are a pixel wide.",
         argument=False,
         where=LATER,
         check=_tube_radius,
@@ -189,10 +188,9 @@ class FibletSettings(Settings):
     )
     tube_shading: Setting[bool] = Setting(
         False,
-        "Whether light falls on lines wider than a pixel as on round tubes.\n\n"
-        "Only the light changes: their depth stays that of flat lines. ``illuminated`` goes before it.\n"
-        "Nothing to be seen without ``lighting``. The same as ``prop.render_lines_as_tubes``, which\n"
-        "the theme may set.",
+        "Whether lines wider than a pixel are lit as round tubes.\n\n"
+        "Only the light changes; the depth stays flat. ``illuminated`` overrides it.\n"
+        "It needs ``lighting``. The same as ``prop.render_lines_as_tubes``, which the theme may set.",
         argument=False,
         where=LATER,
         check=truth,
@@ -200,26 +198,25 @@ class FibletSettings(Settings):
                 matters=lambda s: s["line_width"] > 1.0 and s["tube_radius"] is None),
     )  # fmt: skip
     lighting = shared.lighting(
-        "Shade the lines by the scene's lights; the theme's by default. Light leaves at least 0.6 of every colour, "
-        "and all of those that numbers stand for: they match their scalar bar.",
+        "Shade the lines by the scene's lights; the theme's by default. Light keeps at least 0.6 of every colour; "
+        "colours of a scalar bar stay unchanged and match the bar.",
         None,
     )
     illuminated: Setting[bool] = Setting(
         False,
-        "Whether each light is reflected as by a thin cylinder, whichever side it comes from.\n\n"
-        "Light and shade are as strong as these lights make them (Zöckler et al. 1996; Mallo et al.\n"
-        "2005). Off, they are gentle, and leave colours that numbers stand for as they are. Nothing\n"
-        "to be seen without ``lighting``.",
+        "Whether lines reflect every light as thin cylinders.\n\n"
+        "Light and shade have their full strength (Zöckler et al. 1996; Mallo et al. 2005), from any side.\n"
+        "Off, they are gentle, and colours of a scalar bar stay unchanged. It needs ``lighting``.",
         argument=False,
         where=Switch("pvfiblets.mappers.shading:Illuminated"),
-        row=Row("Cylinders", "Reflect lights as thin cylinders do, from whichever side.", "Shading",
+        row=Row("Cylinders", "Reflect lights as thin cylinders do.", "Shading",
                 matters=lambda s: s["lighting"]),
     )  # fmt: skip
     ambient_occlusion = shared.AMBIENT_OCCLUSION
     depth_cue = shared.DEPTH_CUE
     halos: Setting[dict[str, Any] | bool] = Setting(
         False,
-        "Gaps that lines cut into what is behind them, the wider the farther it is behind.\n\n"
+        "Gaps that lines cut into objects behind them, wider with the distance.\n\n"
         "Depth-dependent halos of Everts et al. 2009.\n\n"
         "``width`` (mm): from a line's edge to its halo's, at most 24 pixels; ``None``, the default,\n"
         "is half the distance between lines, but from 1.25 to 5 pixels. ``depth`` (mm): by how much\n"
@@ -228,56 +225,56 @@ class FibletSettings(Settings):
         "``'background'`` for the renderer's.",
         argument=False,
         where=Effect("pvfiblets.mappers.shading:Halos"),
-        row=Row("Halos", "Gaps around lines, the wider the farther behind things are.", "Shading",
+        row=Row("Halos", "Gaps around lines, wider where other objects are farther behind.", "Shading",
                 matters=lambda s: s["style"] == STYLES[0]),
     )  # fmt: skip
     detail: Setting[float] = Setting(
         0.0,
-        "Pixels by which drawn lines may be off, so that less is drawn of what is far away.\n\n"
-        "0, the default, draws every point: what is shown is exact. 0.5 draws fiblets whose points all\n"
-        "lie within half a pixel of a straight line as one segment; seen from far, a frame then takes 5\n"
-        "to 30 % less time, and a pixel in fifty shows another streamline.",
+        "Error of distant lines in pixels, to draw fewer segments.\n\n"
+        "0, the default, draws every point exactly. 0.5 draws fiblets whose points all lie within half a\n"
+        "pixel of a straight line as one segment; seen from far, a frame then takes 5 to 30 % less time,\n"
+        "and a pixel in fifty shows another streamline.",
         argument=False,
         where=MAPPER,
         check=lambda name, value: number(name, value, 0.0, 64.0),
-        row=Row("Detail", "Pixels by which lines may be off where that saves time; 0: exact.", "Drawing", "number",
+        row=Row("Detail", "Error of distant lines in pixels; 0: exact, larger: faster.", "Drawing", "number",
                 limits=(0.0, 4.0)),
     )  # fmt: skip
     pipeline: Setting[str] = Setting(
         "auto",
-        'How fiblets become pixels; ``"auto"`` takes the fastest that the plotter\'s OpenGL has, and '
+        'Rendering method; ``"auto"`` is the fastest of the plotter\'s OpenGL. '
         "``plotter.fiblets.pipelines()`` lists all.",
         kind="str",
         where=OPTIONS,
     )
     culling: Setting[str | None] = Setting(
         "auto",
-        'How fiblets behind others are found out. ``"two-phase"`` changes no pixel; ``"auto"`` is that where '
-        'frames are measured to take less time by it, and none elsewhere; ``"coverage"`` may lose '
-        "some for a frame after the camera jumped; ``None`` draws all that the camera may see.",
+        'Occlusion culling. ``"two-phase"`` changes no pixel; ``"auto"`` is two-phase where measured frames are '
+        'faster with it, otherwise none; ``"coverage"`` may lose lines for a frame after the camera jumped; '
+        "``None`` draws all fiblets in the view frustum.",
         kind="str | None",
         choices=("auto", "two-phase", "coverage", None),
         where=OPTIONS,
-        row=Row("Culling", "How hidden lines are left out; the picture is the same but for coverage, the paper's.",
+        row=Row("Culling", "Method that skips occluded lines; only coverage, the paper's, changes the image.",
                 "Drawing", choices=[("auto", "auto"), ("two-phase", "two-phase"), ("coverage", "coverage"),
                                     (None, "none")]),
     )  # fmt: skip
     fit: Setting[str | None] = Setting(
         None,
-        "Where the fiblets need more GPU memory than there is: ``None`` refuses, ``\"sample\"`` draws a share "
-        "of the streamlines, ``\"stream\"`` all of them, part by part: while the camera moves a share, and what is "
-        "there.",
+        "Method for sets larger than the GPU memory: ``None`` raises an error, ``\"sample\"`` draws a share "
+        "of the streamlines, ``\"stream\"`` all of them, part by part; while the camera moves a share, and the loaded "
+        "parts.",
         kind="str | None",
         choices=(None, "sample", "stream"),
         where=OPTIONS,
-        row=Row("Too large", "What to do where GPU memory does not suffice for all.", "Drawing",
-                choices=[(None, "say so"), ("sample", "draw a share"), ("stream", "draw part by part")]),
+        row=Row("Too large", "Method for sets larger than the GPU memory.", "Drawing",
+                choices=[(None, "show an error"), ("sample", "draw a share"), ("stream", "draw part by part")]),
     )  # fmt: skip
     cluster: Setting[Any] = Setting(
         None,
-        "A ``distributed.Client``, or the address of a scheduler, whose workers draw the fiblets, each a part of them, "
-        "by their own graphics cards; ``None`` draws here. A set that is mapped from a ``.fiblets`` file is read by "
-        "each worker under that name.",
+        "A ``distributed.Client``, or the address of a scheduler. Its workers draw the fiblets, each a part of them, "
+        "with their own graphics cards; ``None`` draws here. Each worker reads a mapped ``.fiblets`` file itself, "
+        "under the same path.",
         kind="Any",
         where=OPTIONS,
     )

@@ -86,7 +86,7 @@ class HaloLinesComponent(PrintableComponent["HaloLineActor"]):
             ``"length"``, an array, or an image. Where there is no number (NaN), nothing shows.
         rgb : bool, optional
             Whether ``scalars`` of three or four columns are colours, or vectors to be mapped by their magnitude. By
-            default those of uint8 are, and those whose name ends in ``"_rgb"`` or ``"_rgba"``.
+            default uint8 columns are, and arrays with names that end in ``"_rgb"`` or ``"_rgba"``.
         preference : {'point', 'cell'}, default: 'point'
             Which array a name means that both points and lines (cells) have; the other is called ``"NAME (line)"`` or
             ``"NAME (point)"``.
@@ -121,7 +121,7 @@ class HaloLinesComponent(PrintableComponent["HaloLineActor"]):
         >>> actor = pl.add_halo_lines(np.transpose(knot), line_width=0.05, strip_width=0.4, tapering=False)
         >>> actor.max_displacement = 1.0
 
-        Only what is high, of lines that thin out below:
+        Only high values; lines taper below:
 
         >>> actor.filter_by = np.sin(3 * t)
         >>> actor.threshold = 0.0
@@ -132,7 +132,7 @@ class HaloLinesComponent(PrintableComponent["HaloLineActor"]):
         from pvfiblets.plotting.halos.sources import as_lines
         from pvfiblets.plotting.scalars import refuse_numbers
 
-        HaloOptions(**settings.at(OPTIONS))  # what is wrong with them is said before the slow part
+        HaloOptions(**settings.at(OPTIONS))  # errors are raised before the slow part
         if scalars is None:
             scalars = active_scalars(source, settings["color"], rgb)
         held = as_lines(source, scalars=scalars, rgb=rgb, filter_by=filter_by, preference=preference)
@@ -185,7 +185,7 @@ class HaloPointsComponent(PrintableComponent["HaloPointActor"]):
         Parameters
         ----------
         source : DataSet, array, Streamlines, HaloPoints or path
-            Points in mm: those of any dataset, or an ``(n, 3)`` array.
+            Points in mm: of any dataset, or an ``(n, 3)`` array.
         scalars : str, array or image, optional
             What colours the points, not their halos: the name of point data of ``source``, the active scalars of a
             data set of VTK's by default unless there is a ``color``; or an array with one number or one colour (3 or 4
@@ -228,7 +228,7 @@ class HaloPointsComponent(PrintableComponent["HaloPointActor"]):
         from pvfiblets.plotting.halos.actors import HaloPointActor
         from pvfiblets.plotting.halos.sources import as_points, read_points
 
-        HaloOptions(**settings.at(OPTIONS))  # what is wrong with them is said before the slow part
+        HaloOptions(**settings.at(OPTIONS))  # errors are raised before the slow part
         source = read_points(source)
         if scalars is None:
             scalars = active_scalars(source, settings["color"], rgb, points=True)

@@ -1,4 +1,4 @@
-"""What can be set of lines and points with halos: properties of actors, arguments of ``add_halo_...``."""
+"""Settings of lines and points with halos: properties of actors, arguments of ``add_halo_...``."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ if TYPE_CHECKING:
     from pvfiblets.plotting.halos.style import Threshold
 
 WIDTH_CUE = 0.5
-"""Share by which the farthest lines are thinner, by default."""
+"""Default reduction of the width of the farthest lines."""
 
 
 class _Looks(Place):
-    """A field of the actor's `LookSettings`, which check it; read as it is drawn."""
+    """A field of the actor's `LookSettings`, which check it; reading returns the value in use."""
 
     def read(self, actor: Any, setting: Setting[Any]) -> Any:
         return getattr(actor.look, setting.field)
@@ -51,14 +51,14 @@ class HaloSettings(Settings):
 
     max_displacement: Setting[float] = Setting(
         None,
-        "By how many mm the edge of a halo lies behind its line or point; ``None`` sets what suits the data.\n\n"
-        "Lines that cross with less between them have narrower halos, those side by side none.",
+        "Depth (mm) of a halo's edge behind its line or point; ``None`` fits the data.\n\n"
+        "Lines that cross at a smaller distance have narrower halos; lines side by side have none.",
         kind="float | None",
         where=LOOKS,
     )
     displacement: Setting[Any] = Setting(
         "linear",
-        "How far back a halo lies between its line and its edge, as shares of ``max_displacement``.\n\n"
+        "Depth profile of a halo from its line to its edge, as shares of ``max_displacement``.\n\n"
         '``"linear"``, ``"square"``, ``"square root"``; 2 to 64 numbers in 0..1 at equally spaced places\n'
         "from the axis to the edge; or a function of an array of places in 0..1.",
         kind="Displacement",
@@ -68,14 +68,14 @@ class HaloSettings(Settings):
     )
     width_cue: Setting[float] = Setting(
         WIDTH_CUE,
-        "By which share the farthest in the data are thinner than the nearest, 0 to 1; halos keep their width.",
+        "Reduction of the width from the nearest to the farthest data, 0 to 1; halos keep their width.",
         kind="float",
         where=LOOKS,
     )
     threshold: Setting[Threshold] = Setting(
         None,
-        "The least number of ``filter_by`` that shows, or the least and the greatest, ``None`` for no end.\n\n"
-        "Changing it costs a redraw, and nothing is copied to the GPU.",
+        "Least visible value of ``filter_by``, or least and greatest; ``None`` for no limit.\n\n"
+        "A change costs a redraw and copies nothing to the GPU.",
         kind="Threshold",
         header="float or (float, float), optional",
         where=LOOKS,
@@ -83,16 +83,16 @@ class HaloSettings(Settings):
     )
     color: Setting[Any] = Setting(
         None,
-        "One colour for all; black, or white with ``light_on_dark``, where none was given.\n\n"
-        "Setting it puts scalars out of use; ``None`` sets that default.",
-        argument="One colour for all, black by default. ``scalars`` go before it.",
+        "One colour for all; by default black, or white with ``light_on_dark``.\n\n"
+        "Setting it switches scalars off; ``None`` sets the default.",
+        argument="One colour for all, black by default. ``scalars`` override it.",
         kind=shared.COLOR_LIKE,
         header="color-like, optional",
         where=OWN,
     )
     halo_color: Setting[Any] = Setting(
         None,
-        "Colour of the halos: white, or black with ``light_on_dark``, where none was given.\n\n"
+        "Colour of the halos; by default white, or black with ``light_on_dark``.\n\n"
         '``"background"``: that of the renderer, be it a gradient from below to above. ``None`` sets\n'
         "the default.",
         kind=shared.COLOR_LIKE,
@@ -101,7 +101,7 @@ class HaloSettings(Settings):
     )
     light_on_dark: Setting[bool] = Setting(
         False,
-        "White in black halos instead of black in white ones; colours that were given stay.\n\n"
+        "White in black halos instead of black in white ones; explicit colours stay.\n\n"
         'The background is the plotter\'s: ``plotter.set_background("black")``.',
         kind="bool",
         where=OWN,
@@ -116,24 +116,24 @@ class HaloSettings(Settings):
     above_color = shared.ABOVE_COLOR
     annotations = shared.ANNOTATIONS
     flip_scalars = shared.FLIP_SCALARS
-    opacity = shared.opacity("Of all and its halos; what lies behind the nearest does not show through.")
+    opacity = shared.opacity("Of lines and halos together; only the nearest surface is visible.")
     opacity_by = shared.opacity_by()
     lighting = shared.lighting("Shade by the scene's lights.", False)
     smooth: Setting[bool] = Setting(
         True,
-        "Whether lines and points turn into their halos gradually, over a pixel.",
+        "Whether lines and points blend into their halos over a pixel.",
         kind="bool",
         where=LOOKS,
     )
     min_width: Setting[float] = Setting(
         1.0,
-        "Pixels of the window that a line or point takes at least; 0 leaves it as it is.",
+        "Least width of a line or point in pixels of the window; 0 for no minimum.",
         kind="float",
         where=LOOKS,
     )
     culling: Setting[str | None] = Setting(
         "two-phase",
-        "How those behind others are found out, where there are many; the picture is the same.",
+        "Occlusion culling of large sets; the image is the same.",
         kind="str | None",
         choices=("two-phase", None),
         where=OPTIONS,
@@ -145,19 +145,19 @@ class HaloLineSettings(HaloSettings):
 
     line_width: Setting[float] = Setting(
         None,
-        "Width (mm) of the lines; ``None`` sets what suits the data.",
+        "Width (mm) of the lines; ``None`` fits the data.",
         kind="float | None",
         where=LOOKS,
     )
     strip_width: Setting[float] = Setting(
         None,
-        "Width (mm) of a line with the halos on both its sides; ``None`` sets what suits ``line_width``.",
+        "Width (mm) of a line with the halos on both its sides; ``None`` fits ``line_width``.",
         kind="float | None",
         where=LOOKS,
     )
     tapering: Setting[Any] = Setting(
         True,
-        "How ends of lines narrow: over so many vertices, which go so far along the mask, up to 0.5.\n\n"
+        "Tapering of ends: number of vertices, and their share of the mask, up to 0.5.\n\n"
         "The mask is as wide as the strip from 0.2 on. ``True`` sets the paper's (2, 0.2), ``False``\n"
         "(0, 0.2): square ends.",
         kind="bool | tuple[int, float]",
@@ -166,14 +166,14 @@ class HaloLineSettings(HaloSettings):
         read=lambda actor: (actor.look.n_tapered, actor.look.t_tapered),
     )
     n_tapered: Setting[int] = Setting(
-        2, "Vertices over which ends of lines narrow; 0 leaves them square.", argument=False, where=_Tapering(0)
+        2, "Number of vertices of a tapered end; 0 for square ends.", argument=False, where=_Tapering(0)
     )
     t_tapered: Setting[float] = Setting(
-        0.2, "How far along the mask those vertices go.", argument=False, where=_Tapering(1)
+        0.2, "Share of the mask at a tapered end.", argument=False, where=_Tapering(1)
     )
     filter_taper: Setting[float] = Setting(
         None,
-        "Length (mm) over which lines narrow where the filter ends them; ``None`` sets two mean segments.",
+        "Length (mm) of tapered ends at a filter's cut; ``None`` sets two mean segments.",
         kind="float | None",
         where=LOOKS,
     )
@@ -184,14 +184,14 @@ class HaloPointSettings(HaloSettings):
 
     point_size: Setting[float] = Setting(
         None,
-        "Diameter of the points, mm; ``None`` sets what suits the data.",
+        "Diameter of the points, mm; ``None`` fits the data.",
         kind="float | None",
         where=LOOKS,
         field="line_width",
     )
     halo_size: Setting[float] = Setting(
         None,
-        "Diameter of a point with its halo, mm; ``None`` sets what suits ``point_size``.",
+        "Diameter of a point with its halo, mm; ``None`` fits ``point_size``.",
         kind="float | None",
         where=LOOKS,
         field="strip_width",

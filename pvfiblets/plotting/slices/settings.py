@@ -95,31 +95,31 @@ class SliceSettings(Settings):
         header='str, list, colormap or LookupTable, default: "gray"',
         where=LAYER,
         check=lambda _name, value: CMAP.check(value),
-        row=Row("Map", "Colours from the low end of the window to the high one.", type="choice",
+        row=Row("Map", "Colours from the low to the high end of the window.", type="choice",
                 choices=[("gray", "gray"), *(one for one in MAPS if one[0] != "gray")], matters=_of("scalars")),
     )
     clim: Setting[tuple[float, float]] = Setting(
         None,
-        "Values of the first and the last colour, the window; ``None`` sets that of ``percentiles``.",
-        argument="Values of the first and the last colour, the window; those of ``percentiles`` by default. Of "
-        "direction-coded images, weights of black and of full colour.",
+        "Values of the first and the last colour, the window; ``None`` uses ``percentiles``.",
+        argument="Values of the first and the last colour, the window; by default from ``percentiles``. For "
+                 "direction-coded images, weights of black and of full colour.",
         kind=LIMITS,
         header="float or (float, float), optional",
         where=LAYER,
         check=_window,
         read=lambda layer: layer.window,
-        row=Row("Window", "Values of the first and the last colour; empty: those of the percentages.", type="range",
+        row=Row("Window", "Values of the first and the last colour; empty: from the percentages.", type="range",
                 optional=True, read=lambda layer: list(layer.window), span=_reach,
                 matters=_of("scalars", "direction")),
     )
     percentiles: Setting[tuple[float, float]] = Setting(
         (1.0, 99.0),
-        "Percentages of the voxels, those of 0 left out, below both ends of the window, where ``clim`` says none.",
+        "Percentiles of the non-zero voxels at both ends of the window, without ``clim``.",
         kind="tuple[float, float]",
         header="(float, float), default: (1, 99)",
         where=LAYER,
         check=_percentiles,
-        row=Row("Per cent", "Of the voxels, those of 0 left out, below both ends of a window that says no numbers.",
+        row=Row("Per cent", "Percentiles of the non-zero voxels at both ends of the window, if it has no numbers.",
                 type="range", default=[1.0, 99.0], limits=(0.0, 100.0), resets=("clim",), matters=_of("scalars")),
     )
     log_scale: Setting[bool] = Setting(

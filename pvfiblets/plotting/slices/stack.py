@@ -64,8 +64,8 @@ class SliceStack:
     def __setattr__(self, name: str, value: Any) -> None:
         if not name.startswith("_") and name != "name" and not isinstance(getattr(type(self), name, None), property):
             raise AttributeError(
-                f"slices have no {name!r} to set: there are position, voxel, frame, visible and user_matrix; colours "
-                "and opacity are those of slices.layers[0]"
+                f"slices have no {name!r} to set: there are position, voxel, frame, visible and user_matrix; "
+                "colours and opacity belong to slices.layers[0]"
             )
         object.__setattr__(self, name, value)
 

@@ -93,7 +93,7 @@ class SplineTubesComponent(ActorRegistry["TubeActor"]):
             Which array a name means that both points and lines (cells) have, here and in criteria; the other is
             called ``"NAME (line)"`` or ``"NAME (point)"``.
         tangents : str or array, optional
-            ``(n_points, 3)`` derivatives of the positions, or the name of such point data. By
+            ``(n_points, 3)`` derivatives of the positions, or the name of point data. By
             default they are found from the points.
         method : {"finite", "catmull-rom", "natural"}, default: "finite"
             How derivatives that are not given are found: by differences with regard to length,
@@ -105,7 +105,7 @@ class SplineTubesComponent(ActorRegistry["TubeActor"]):
             from 0 to 1. By default by parameter where ``tangents`` are given, else by length.
         rgb : bool, optional
             Whether ``scalars`` of three or four columns are colours, or vectors to be mapped by their magnitude. By
-            default those of uint8 are, and those whose name ends in ``"_rgb"`` or ``"_rgba"``.
+            default uint8 columns are, and arrays with names that end in ``"_rgb"`` or ``"_rgba"``.
 
         Returns
         -------
@@ -150,7 +150,7 @@ class SplineTubesComponent(ActorRegistry["TubeActor"]):
         from pvfiblets.plotting.tubes.actor import TubeActor
         from pvfiblets.plotting.tubes.sources import as_tubes
 
-        TubeOptions(**settings.at(OPTIONS))  # what is wrong with them is said before the slow part
+        TubeOptions(**settings.at(OPTIONS))  # errors are raised before the slow part
         if scalars is None:
             scalars = active_scalars(source, settings["color"], rgb)
         tubes, choice = as_tubes(

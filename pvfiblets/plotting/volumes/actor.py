@@ -88,11 +88,11 @@ class VolumeActor(VolumeSettings, ClippedActor):
     settings : mapping, optional
         Arguments of ``plotter.add_raycast_volume`` that are settings, by name.
     given : tuple of object and dict, optional
-        Of what the volume was made, and what was said of it, for :meth:`update`.
+        The volume's source and arguments, for :meth:`update`.
     name : str, optional
         Under which the plotter knows the actor.
     theme : pyvista theme, optional
-        Gives what is not given.
+        Source of defaults.
 
     Notes
     -----
@@ -157,11 +157,11 @@ class VolumeActor(VolumeSettings, ClippedActor):
         Parameters
         ----------
         source : ImageData, array, (array, affine), nibabel image, RaycastVolume or path, optional
-            As for ``plotter.add_raycast_volume``. By default what was added or given last, read anew: of an image or
+            As for ``plotter.add_raycast_volume``. By default the last source, read again: of an image or
             array that was written to in place.
         **where
-            Of :func:`pvfiblets.volumes.as_raycast_volume`, such as ``scalars`` and ``spacing``. By default what was
-            said of the source before.
+            Of :func:`pvfiblets.volumes.as_raycast_volume`, such as ``scalars`` and ``spacing``. By default the
+            earlier arguments.
 
         Raises
         ------
@@ -277,13 +277,13 @@ class VolumeActor(VolumeSettings, ClippedActor):
         return self._mapper.pick_at(x, y)
 
     def explain(self) -> dict[str, Any]:
-        """Return what is active for this actor and what it costs, over all windows that show it.
+        """Return the active features of this actor and their cost, over all windows that show it.
 
         Returns
         -------
         dict
             ``passes``: name and milliseconds of the last redraw; ``features``: pieces of the
-            shaders in use; ``buffers``: name and bytes of what lies on the GPU; ``gpu_bytes``:
+            shaders in use; ``buffers``: name and bytes of each GPU buffer; ``gpu_bytes``:
             their sum; ``mode``; ``voxels_total``; ``nodes`` of the octree, and ``skipped``: the
             share of its leaves with nothing to see; ``octree``: its ``bytes``, their ``share`` of
             the volume's, and ``ms`` that building it took. ``None`` before the first picture;
@@ -511,7 +511,7 @@ class VolumeActor(VolumeSettings, ClippedActor):
         opacity = float(self.opacity) if surface and is_number(self.opacity) else 1.0
         with own_writes():
             self.prop.lighting = self._lit and surface
-            if opacity != self._see_through:  # what was set of the property itself stays
+            if opacity != self._see_through:  # an opacity set on the property itself stays
                 self._see_through = self.prop.opacity = opacity
             self.prop.color = "white" if self._settings.color is None else self._settings.color
 

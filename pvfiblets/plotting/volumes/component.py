@@ -127,7 +127,7 @@ class RaycastVolumesComponent(ActorRegistry["VolumeActor"]):
         multi_colors : bool, default: False
             Of a MultiBlock: a map of colours of its own for each block.
         categories : bool or int, default: False
-            ``add_volume``'s word for as many ``n_colors`` as there are values, or so many.
+            ``add_volume``'s name for ``n_colors``: True for a colour per value, or a number.
         preference : {"point", "cell"}, optional
             Which of an image's arrays is meant if points and cells both have one of the name ``scalars``; that of the
             points by default.
@@ -144,7 +144,7 @@ class RaycastVolumesComponent(ActorRegistry["VolumeActor"]):
         TypeError
             If ``source`` or ``opacity`` is of an unknown kind.
         ValueError
-            If an argument has no meaning: the message names it and what was expected. So do 2-D and
+            If an argument is invalid: the message names it and the expected values. So do 2-D and
             empty images, affines that flatten space, limits in the wrong order, and opacities
             outside 0 to 1.
 
@@ -209,7 +209,7 @@ def _is_plain_surface(settings: Given) -> bool:
 
 
 def _in_our_words(arguments: dict[str, Any]) -> dict[str, Any]:
-    """Return arguments of which those of ``add_volume``'s that have other names here have these."""
+    """Return the arguments, with ``add_volume``'s arguments under their names here."""
     found = dict(arguments)
     for theirs, ours in (("colormap", "cmap"), ("rng", "clim")):
         if theirs in found:

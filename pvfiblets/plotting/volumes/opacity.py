@@ -112,6 +112,6 @@ def value_limits(given: Any) -> tuple[float, float]:
     ends = (given, None) if is_number(given) else given
     fine = isinstance(ends, (Sequence, np.ndarray)) and not isinstance(ends, str) and len(ends) == 2
     if not fine or not all(end is None or is_number(end) for end in ends):
-        raise ValueError(f"thresholds is {given!r}; give (low, high), of which one may be None")
+        raise ValueError(f"thresholds is {given!r}; give (low, high); one may be None")
     low, high = ends
     return -math.inf if low is None else float(low), math.inf if high is None else float(high)

@@ -1,4 +1,4 @@
-"""What can be set of volumes: properties of the actor, arguments of ``add_raycast_volume``, rows of the page."""
+"""Settings of volumes: properties of the actor, arguments of ``add_raycast_volume``, rows of the page."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pvfiblets.volumes.raycast_options import INTEGRATORS, MODES, PROJECTIONS, R
 from pvfiblets.volumes.volume import FILTERS
 
 _MODES_SHOWN = ("light", "surface", "greatest value", "first peak", "least value", "mean value")
-_MISSING = "volumes that rays are cast through have no {name}: "
+_MISSING = "ray-cast volumes have no {name}: "
 _CURVES = ("linear", "linear_r", "geom", "geom_r", "sigmoid", "sigmoid_3", "sigmoid_5", "sigmoid_7", "sigmoid_10",
            "sigmoid_20", "foreground")  # fmt: skip
 
@@ -23,7 +23,7 @@ SURFACE, LIGHT = "isosurface", "composite"
 
 
 class _Casting(Place):
-    """A field of the actor's `RaycastOptions`, which check it."""
+    """A field of the actor's `RaycastOptions`, which checks it."""
 
     def read(self, actor: Any, setting: Setting[Any]) -> Any:
         return getattr(actor.casting, setting.field)
@@ -33,7 +33,7 @@ class _Casting(Place):
 
 
 class _Chosen(Own):
-    """What the casting is made from: kept as given, read as what it amounts to."""
+    """A source of the ray casting options: stored as given, read as the resulting value."""
 
     def write(self, actor: Any, setting: Setting[Any], value: Any) -> None:
         actor._choose(setting.field, value)  # noqa: SLF001
@@ -89,20 +89,20 @@ class VolumeSettings(Settings):
 
     mode: Setting[str] = Setting(
         "composite",
-        "What a ray shows.\n\n"
-        '``"isosurface"``: the first of the surfaces of ``values``. ``"composite"``: the light of all\n'
-        'that it passes through. ``"mip"``: the greatest value. ``"local-mip"``: the first peak of at\n'
+        "Mode of the rays.\n\n"
+        '``"isosurface"``: the first surface of ``values``. ``"composite"``: all light on the ray.\n'
+        '``"mip"``: the greatest value. ``"local-mip"``: the first peak of at\n'
         'least ``peak``, or the greatest value where there is none. ``"minimum"``: the least value.\n'
         '``"average"``: the mean of all. ``add_volume`` calls them ``blending``.',
         kind="str",
         choices=MODES,
         where=CASTING,
-        row=Row("Mode", "What a ray through the volume shows.", default="isosurface",
+        row=Row("Mode", "Mode of the rays through the volume.", default="isosurface",
                 choices=list(zip(MODES, _MODES_SHOWN, strict=True))),
     )  # fmt: skip
     values: Setting[Any] = Setting(
         None,
-        "Where surfaces are, up to eight; ``None`` sets the middle of the volume's values.",
+        "Values of surfaces, up to eight; ``None`` sets the middle of the volume's values.",
         kind="float | Any",
         header="float or list of float, optional",
         where=CHOSEN,
@@ -111,19 +111,19 @@ class VolumeSettings(Settings):
     )  # fmt: skip
     surface_opacities: Setting[Any] = Setting(
         None,
-        "How opaque each of the surfaces of ``values`` is, 0 to 1: rays then pass through all that they meet.\n\n"
-        "One number is of all of them. ``None`` shows the first surface of each ray, which ``opacity``\n"
-        "makes translucent where that is one number.",
+        "Opacity of each surface of ``values``, 0 to 1; rays pass through translucent surfaces.\n\n"
+        "One number for all of them. ``None`` shows the first surface of each ray, which ``opacity``\n"
+        "makes translucent if it is one number.",
         kind="float | Any",
         header="float or list of float, optional",
         where=CHOSEN,
-        row=Row("Surfaces' opacity", "Of each surface, 0 to 1; empty: rays end at the first.", type="numbers",
+        row=Row("Surfaces' opacity", "Opacity of each surface, 0 to 1; empty: rays end at the first.", type="numbers",
                 optional=True, span=lambda _actor: (0.0, 1.0), read=lambda actor: list(actor.surface_opacities or ()),
                 matters=_mode("isosurface")),
     )  # fmt: skip
     surface_colors: Setting[Any] = Setting(
         None,
-        "A colour for each of the surfaces of ``values``; ``None`` has that of the map, or ``color``.",
+        "A colour for each surface of ``values``; ``None`` uses the map, or ``color``.",
         kind="Sequence[ColorLike] | None",
         header="list of color-like, optional",
         where=CHOSEN,
@@ -135,17 +135,17 @@ class VolumeSettings(Settings):
         kind=shared.COLOR_LIKE,
         header="color-like, optional",
         where=OWN,
-        row=Row("Colour", "One for all, in place of the map.", type="colour", optional=True),
+        row=Row("Colour", "One colour for all, in place of the map.", type="colour", optional=True),
     )
     cmap = shared.CMAP.but(
-        argument_doc="Colour map; the theme's by default. Surfaces have the colour of their value.",
-        row=Row("Map", "Colours from the low end of the range to the high one.", type="choice", default="gray",
+        argument_doc="Colour map; the theme's by default. Surfaces have the colour of their value in it.",
+        row=Row("Map", "Colours from the low to the high end of the range.", type="choice", default="gray",
                 choices=shared.MAPS, matters=lambda s: s["color"] is None),
     )  # fmt: skip
     clim = shared.CLIM.but(row=replace(shared.CLIM_ROW, span=_values_span, matters=None))
     n_colors = shared.N_COLORS.but(argument_doc="Number of colours in the map, between which light is linear.")
     log_scale = shared.LOG_SCALE.but(
-        __doc__="Whether colours spread over the logarithm of the values; opacities do not, as in ``add_volume``.",
+        __doc__="Whether colours, but not opacities, spread over the logarithm of the values, as in ``add_volume``.",
         argument_doc="Spread colours, and not opacities, over the logarithm of the values, as ``add_volume`` does.",
         row=Row(
             "Logarithmic", "Spread the colours over the logarithm of the values.", matters=lambda s: s["color"] is None
@@ -155,33 +155,33 @@ class VolumeSettings(Settings):
     flip_scalars = shared.FLIP_SCALARS
     opacity: Setting[Any] = Setting(
         "linear",
-        "How opaque values are, from the low end of ``clim`` to the high one.\n\n"
+        "Opacity of values, from the low to the high end of ``clim``.\n\n"
         'A name as for :meth:`pyvista.Plotter.add_volume` (``"linear"``, ``"sigmoid"``, ...), numbers\n'
-        "from 0 to 1, or one number for all. Of light it is the opacity of ``opacity_unit_distance``\n"
-        "mm; of peaks, that of the pixel. One number makes surfaces translucent, all else does not\n"
-        "touch them. A :class:`pyvista.LookupTable` as ``cmap`` that has opacities of its own has those in\n"
-        "place of ``\"linear\"``.",
+        "from 0 to 1, or one number for all. For light it is the opacity of ``opacity_unit_distance``\n"
+        "mm, for peaks the opacity of the pixel. One number makes surfaces translucent; lists and\n"
+        "names do not affect them. Own opacities of a :class:`pyvista.LookupTable` as ``cmap``\n"
+        "replace ``\"linear\"``.",
         kind="float | str | Sequence[float] | np.ndarray",
         header='str, float or list of float, default: "linear"',
         where=CHOSEN,
-        row=Row("Opacity", "How opaque values are, from the low end of the range to the high one.", type="choice",
+        row=Row("Opacity", "Opacity of values, from the low to the high end of the range.", type="choice",
                 choices=[(name, name.replace("_", " ")) for name in _CURVES],
                 matters=_mode("composite", *PROJECTIONS)),
     )  # fmt: skip
     opacity_unit_distance: Setting[float] = Setting(
         None,
-        "Length, mm, of which ``opacity`` says how opaque it is; ``None`` sets the volume's mean spacing.",
+        "Length, mm, that ``opacity`` refers to; ``None`` sets the volume's mean spacing.",
         kind="float | None",
         where=CHOSEN,
-        row=Row("Opaque over", "mm of which the opacity is; empty: a voxel.", optional=True, limits=_unit_limits,
+        row=Row("Opaque over", "Length of the opacity, mm; empty: a voxel.", optional=True, limits=_unit_limits,
                 read=lambda actor: actor.opacity_unit_distance, matters=_mode("composite")),
     )  # fmt: skip
     thresholds: Setting[Any] = Setting(
         None,
-        '(low, high): values that are there, in all modes but ``"isosurface"``; either may be ``None``.',
+        '(low, high): range of visible values, in all modes but ``"isosurface"``; either may be ``None``.',
         header="(float, float), optional",
         where=CHOSEN,
-        row=Row("Only values", "Values that are there; empty: all.", type="range", optional=True, span=_values_span,
+        row=Row("Only values", "Range of visible values; empty: all.", type="range", optional=True, span=_values_span,
                 matters=_mode("composite", *PROJECTIONS)),
     )  # fmt: skip
     peak: Setting[float] = Setting(
@@ -194,7 +194,7 @@ class VolumeSettings(Settings):
     )  # fmt: skip
     smooth: Setting[Any] = Setting(
         None,
-        "Standard deviation of a Gaussian that the volume is smoothed with first, voxels; ``None`` for none.",
+        "Standard deviation of a Gaussian that first smooths the volume, voxels; ``None`` for none.",
         kind="float | Any",
         header="float or (float, float, float), optional",
         where=OWN,
@@ -203,11 +203,11 @@ class VolumeSettings(Settings):
     )  # fmt: skip
     step: Setting[float] = Setting(
         0.5,
-        "Between two looks at the volume on a ray, in mean voxel spacings; opacity does not depend on it, and surfaces "
-        "that are found exactly take no steps.",
+        "Distance of samples on a ray, in mean voxel spacings; opacity does not depend on it, and exact surfaces need "
+        "none.",
         kind="float",
         where=CASTING,
-        row=Row("Step", "Between two looks at the volume, voxels.", "Rays", limits=(0.05, 8.0)),
+        row=Row("Step", "Distance of samples on a ray, voxels.", "Rays", limits=(0.05, 8.0)),
     )
     filter: Setting[str] = Setting(
         "trilinear",
@@ -219,62 +219,61 @@ class VolumeSettings(Settings):
     )
     refine: Setting[str] = Setting(
         "exact",
-        'How surfaces are found. ``"exact"``, the default, misses none and takes no step: it solves the cubic that the '
-        'values of a cell make along a ray (filter ``"trilinear"``; with others it is ``"regula-falsi"``). The others '
-        "look between two steps, as the paper does.",
+        'Search for surfaces. ``"exact"``, the default, solves for the crossings of the cubic that the values of a '
+        'cell make along a ray, where the filter is ``"trilinear"``; with other filters it is ``"regula-falsi"``. The '
+        "others search between samples, as the paper does.",
         kind="str",
         choices=REFINEMENTS,
         where=CASTING,
-        row=Row("Refine surfaces", "How a surface's place is found.", "Rays", matters=_mode("isosurface")),
+        row=Row("Refine surfaces", "Refinement of a surface's position.", "Rays", matters=_mode("isosurface")),
     )
-    iterations: Setting[int] = Setting(5, "Steps of that refinement, 1 to 64.", kind="int", where=CASTING)
+    iterations: Setting[int] = Setting(5, "Steps of the refinement, 1 to 64.", kind="int", where=CASTING)
     integrator: Setting[str] = Setting(
         "adaptive",
-        'How light is added up over a step. ``"adaptive"``, the default, is within a hundredth of the exact '
-        'light however dense and steep opacities are: by its own values each step is taken as by ``"preintegrated"``, '
+        'Integration of light over a step. ``"adaptive"``, the default, is within a hundredth of the exact '
+        'light at any density and steepness of opacities: each step is taken as by ``"preintegrated"``, '
         "in parts where values bend, or halved until its halves agree.",
         kind="str",
         choices=INTEGRATORS,
         where=CASTING,
-        row=Row("Integrator", "How light is added up over a step.", "Rays", matters=_mode("composite")),
+        row=Row("Integrator", "Integration of light over a step.", "Rays", matters=_mode("composite")),
     )
     jitter: Setting[bool] = Setting(
         False,
-        "Whether each ray starts at a place of its own in its first step: noise instead of rings.",
+        "Whether each ray starts at a random place in its first step: noise instead of rings.",
         kind="bool",
         where=CASTING,
         row=Row("Jitter", "Noise in place of rings.", "Rays"),
     )
     octree: Setting[bool] = Setting(
         True,
-        "Whether parts with nothing to see are skipped; the picture is the same.",
+        "Whether invisible parts are skipped; the image is the same.",
         kind="bool",
         where=CASTING,
     )
     homogeneous: Setting[float] = Setting(
         0.0,
-        "Difference of values up to which parts of the volume are taken as their mean; 0 for none.",
+        "Difference of values up to which a part of the volume counts as its mean; 0 for none.",
         kind="float",
         where=CASTING,
     )
     recon: Setting[bool] = Setting(
         True,
-        "Whether parts in which colour and opacity are the same for all values are taken as one, where there are "
-        "enough of them for rays to be faster by it.",
+        "Whether parts of one colour and opacity are taken in one step, if there are enough of them to be faster.",
         kind="bool",
         where=CASTING,
     )
     sparse: Setting[int] = Setting(
         1,
-        "Pixels along each axis for which there is one ray at first. Those between have rays only where what "
-        "the first ones found differs, so that thinner things may be missed.",
+        "Distance of the first rays, pixels along each axis. Pixels between them have rays only where the first "
+        "ones differ, so thin objects may be missed.",
         kind="int",
         choices=(1, 2, 4),
         where=CASTING,
     )
     sparse_threshold: Setting[float] = Setting(
         0.05,
-        "Difference between those rays from which on pixels between have their own, 0 to 1.",
+        "Difference of rays above which pixels between them have their own, 0 to 1.",
         kind="float",
         where=CASTING,
     )
@@ -286,31 +285,31 @@ class VolumeSettings(Settings):
     )
     interactive_quality: Setting[float | dict[str, Any]] = Setting(
         0.5,
-        'How well the volume is drawn while the camera moves, 0 to 1, or ``{"step": factor, "sparse": pixels}``.\n\n'
-        "1: as at rest. 0.5: steps twice as long, and a ray for every second pixel at first; light\n"
-        "whose steps are integrated beforehand keeps its step. As soon as the camera rests, there is\n"
-        "one more picture, with all as it is set. What counts is that the window wants the rate of\n"
-        "an interactor that is being used.",
+        'Quality while the camera moves, 0 to 1, or ``{"step": factor, "sparse": pixels}``.\n\n'
+        "1: as when idle. 0.5: steps twice as long, and a ray for every second pixel at first; light\n"
+        "whose steps are integrated beforehand keeps its step. When the camera stops, there is\n"
+        "one more frame, at full quality. The camera counts as moving while the window requests the\n"
+        "update rate of an active interactor.",
         kind="float | dict[str, Any]",
         header="float or dict, default: 0.5",
         where=OWN,
     )
     box: Setting[Any] = Setting(
         None,
-        "(xmin, xmax, ymin, ymax, zmin, zmax) in voxels of what is there; ``None`` for all.",
+        "(xmin, xmax, ymin, ymax, zmin, zmax) of the visible part, in voxels; ``None`` for all.",
         header="(float, float, float, float, float, float), optional",
         where=CASTING,
     )
     lighting = shared.lighting("Shade surfaces by the scene's lights; the theme's by default.", None).but(
-        __doc__="Whether the scene's lights shade surfaces; ``shade`` has them shade light, and peaks are not shaded.",
+        __doc__="Whether the scene's lights shade surfaces; ``shade`` is for light, and peaks are not shaded.",
         where=OWN,
     )
     shade: Setting[bool] = Setting(
         False,
         "Whether the scene's lights shade light by the gradient of the values, as ``add_volume``'s ``shade``.\n\n"
         "Both sides of a gradient are lit. Where values hardly change, by less than a 50th of ``clim``\n"
-        "from voxel to voxel, light goes over into its own colours: noise casts no shadows. Six more\n"
-        "looks at the volume for each step.",
+        "from voxel to voxel, light keeps its own colours, so noise has no shading. It takes six more\n"
+        "samples of the volume for each step.",
         kind="bool",
         where=OWN,
         check=truth,
@@ -318,35 +317,35 @@ class VolumeSettings(Settings):
     )
     ambient: Setting[float] = Setting(
         None,
-        "Share of its colour that surfaces, and light with ``shade``, have without any lamp; the theme's by default.",
+        "Share of the colour of surfaces, and of light with ``shade``, without any lamp; the theme's by default.",
         kind="float | None", where=REFLECTION, check=_up_to(1.0),
     )  # fmt: skip
     diffuse: Setting[float] = Setting(
         None,
-        "Share of its colour that they have in full light; the theme's by default, 1.",
+        "Share of the colour in full light; the theme's by default, 1.",
         kind="float | None", where=REFLECTION, check=_up_to(1.0),
     )  # fmt: skip
     specular: Setting[float] = Setting(
         None,
-        "Strength of reflections of the lamps themselves; the theme's by default, 0.",
+        "Strength of highlights; the theme's by default, 0.",
         kind="float | None", where=REFLECTION, check=_up_to(1.0),
     )  # fmt: skip
     specular_power: Setting[float] = Setting(
         None,
-        "How small those are, 0 to 128; the theme's by default.",
+        "Sharpness of highlights, 0 to 128; the theme's by default.",
         kind="float | None", where=REFLECTION, check=_up_to(128.0),
     )  # fmt: skip
     ambient_occlusion = shared.AMBIENT_OCCLUSION
     depth_cue = shared.DEPTH_CUE
     ray_occlusion: Setting[dict[str, Any] | bool] = Setting(
         False,
-        "Darkness where the volume stands over its own surfaces, by rays through it (Lesar 2015, equation 10).\n\n"
-        "Unlike ``ambient_occlusion``, which knows the pixels alone, it sees what is hidden or beside\n"
-        "the picture, and does not change as the camera turns; it costs ``samples`` rays a pixel.\n\n"
-        "``samples`` (32): rays of each pixel, 1 to 2048. ``radius`` (mm): what is farther does not\n"
+        "Darkness where the volume occludes its own surfaces, by rays through it (Lesar 2015, equation 10).\n\n"
+        "Unlike ``ambient_occlusion``, which reads only pixels, it includes hidden surfaces and those outside\n"
+        "the frame, and does not change as the camera turns; it costs ``samples`` rays a pixel.\n\n"
+        "``samples`` (32): rays of each pixel, 1 to 2048. ``radius`` (mm): farther geometry does not\n"
         "darken; ``None``, the default, is a 20th of the data's diagonal. ``strength`` (1.0): 0 to 1.\n"
-        "``seed`` (0): the same picture with the same seed is the same to the last bit. ``smooth``\n"
-        "(``True``): mean over neighbouring pixels of the same piece of surface, in place of grain.",
+        "``seed`` (0): equal seeds give equal frames, to the last bit. ``smooth``\n"
+        "(``True``): mean over neighbouring pixels of the same surface, in place of grain.",
         kind="bool | dict[str, Any]",
         header="bool or dict, default: False",
         where=Effect("pvfiblets.mappers.ray_occlusion:RayOcclusion"),

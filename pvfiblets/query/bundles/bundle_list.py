@@ -231,7 +231,7 @@ class Bundles:
         """
         parts = [self._known(name) for name in names]
         if not parts:
-            raise ValueError("there is nothing to merge; give the names of bundles")
+            raise ValueError("no bundles to merge; give the names of bundles")
         if into not in parts or keep:
             self._free(into)
         ids = np.unique(np.concatenate([self.ids(name) for name in parts]))

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 __all__ = ["Cluster", "Clusters", "clusters"]
 
 Ints = npt.NDArray[np.int64]
-ROOM = 1024  # clusters that memory is asked for at first
+ROOM = 1024  # clusters with memory at first
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +71,7 @@ class Clusters:
     Attributes
     ----------
     labels : numpy.ndarray
-        ``(n_streamlines,)`` int32: number of each one's cluster, -1 for those in none.
+        ``(n_streamlines,)`` int32: number of each one's cluster, or -1.
     counts : numpy.ndarray
         ``(n_clusters,)`` int64.
     centroids : numpy.ndarray
@@ -135,7 +135,7 @@ class Clusters:
         """
         kept = np.flatnonzero(self.counts >= at_least)
         kept = kept[np.argsort(-self.counts[kept], kind="stable")]
-        numbers = np.full(len(self) + 1, -1, np.int32)  # the last for those in none
+        numbers = np.full(len(self) + 1, -1, np.int32)  # the last for unclustered ones
         numbers[kept] = np.arange(len(kept))
         return Clusters(numbers[self.labels], self.counts[kept], self.centroids[kept], self.threshold)
 
@@ -152,7 +152,7 @@ class Clusters:
         return {name.format(cluster.number + 1): cluster.ids for cluster in self.by_size(at_least)}
 
     def colors(self) -> npt.NDArray[np.uint8]:
-        """Return a colour for each streamline, ``(n_streamlines, 3)`` uint8, for ``scalars=``; grey for those in none.
+        """Return a colour for each streamline, ``(n_streamlines, 3)`` uint8, for ``scalars=``; grey outside clusters.
 
         Clusters of following numbers have colours that are far apart.
         """
@@ -190,7 +190,7 @@ def clusters(
     ids : array_like, optional
         Streamlines to cluster, in this order; all by default, in their own.
     progress : bool or callable
-        Show a progress bar; or call this with what is being done and which share of it is, from 0 to 1. What it raises
+        Show a progress bar; or call this with the name of the step and its finished share, from 0 to 1. What it raises
         ends the work.
 
     Returns

@@ -60,7 +60,7 @@ def recognise(
     align : bool, default: True
         Move the streamlines that are looked at onto the model first.
     refine : bool, default: True
-        Look again, beginning with what was found.
+        Search again, beginning with the result.
     cluster_threshold : float, default: 15.0
         mm: clusters of the whole brain.
     n_points : int, default: 20
@@ -88,7 +88,7 @@ def recognise(
 
     Notes
     -----
-    dipy needs the points themselves: twelve bytes for each, and as much again for its own copy.
+    dipy needs the points themselves: twelve bytes for each, and twelve for its own copy.
     """
     try:
         from dipy.segment.bundles import RecoBundles

@@ -37,7 +37,7 @@ class Similar:
     n_streamlines : int
         Of the whole set.
     distance : float
-        mm that was asked for.
+        Requested distance, mm.
     """
 
     ids: Ints
@@ -87,7 +87,7 @@ def similar(
         A set is decoded a chunk at a time.
     like : array_like, Streamlines or list of array_like
         The others: numbers of streamlines (or a mask, a slice) of `data`; or lines of their own: ``Streamlines``, an
-        array ``(n, 3)`` or a list of such, mm.
+        array ``(n, 3)`` or a list of them, mm.
     distance : float, default: 10.0
         mm: MDF distance from the nearest of the others, at most.
     n_points : int, default: 12
@@ -95,7 +95,7 @@ def similar(
     ids : array_like, optional
         Streamlines to look among; all by default.
     progress : bool or callable
-        Show a progress bar; or call this with what is being done and which share of it is, from 0 to 1. What it raises
+        Show a progress bar; or call this with the name of the step and its finished share, from 0 to 1. What it raises
         ends the work.
 
     Returns
@@ -120,7 +120,7 @@ def similar(
     reach, n_points = check_distance(distance, "distance"), check_count(n_points)
     others = _others(data, like, n_points)
     if not len(others):
-        raise ValueError("there is nothing to be similar to: no streamline with points was given")
+        raise ValueError("no reference: give at least one streamline with points")
     chosen = None if ids is None else select_streamlines(len(data), ids)
     parts: list[tuple[Ints, Floats, Ints]] = []
     for numbers, lines in iter_resampled(data, n_points, chosen, progress, "comparing"):

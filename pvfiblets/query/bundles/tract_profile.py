@@ -46,7 +46,7 @@ class TractProfile:
     Attributes
     ----------
     mean, std : numpy.ndarray
-        ``(n,)`` float64: weighted mean, and standard deviation over what was averaged; NaN where nothing has a value.
+        ``(n,)`` float64: weighted mean, and standard deviation of the averaged values; NaN without values.
     low, high : numpy.ndarray
         ``(n,)`` float64: ends of the band in which the true mean lies with some confidence, by Student's distribution.
     position : numpy.ndarray
@@ -212,7 +212,7 @@ def average_profiles(profiles: Iterable[TractProfile], *, confidence: float = 0.
     Parameters
     ----------
     profiles : iterable of TractProfile
-        Of the same value, at as many places.
+        Of the same value, at the same number of places.
     confidence : float, default: 0.95
         Of the band, by Student's distribution over the subjects.
     bundle : str, optional
@@ -263,7 +263,7 @@ def _banded(rows: Floats, weight: Floats, confidence: float) -> tuple[Floats, Fl
         share = share / total
         mean = np.where(there, rows * share, 0.0).sum(axis=0)
         squares = np.where(there, share * (np.where(there, rows, 0.0) - mean) ** 2, 0.0).sum(axis=0)
-        # As many streamlines of equal weight would tell as much (Kish 1965).
+        # Effective number of streamlines of equal weight (Kish 1965).
         many = 1.0 / (share**2).sum(axis=0)
         std = np.sqrt(squares * many / (many - 1.0))
         error = std / np.sqrt(many)

@@ -58,7 +58,7 @@ class Connectome:
     counts : numpy.ndarray
         ``(n, n)`` int64 streamlines behind each number.
     labels : numpy.ndarray
-        ``(n,)`` int64, those that the atlas holds, rising.
+        ``(n,)`` int64, the labels of the atlas, rising.
     names : list of str
         Of the parcels.
     ends : numpy.ndarray
@@ -295,7 +295,7 @@ def _given_ends(given: Any, source: Any, atlas: Image, radius: float, progress: 
     if ends.shape != (len(source), 2):
         raise ValueError(f"ends have the shape {ends.shape}; give two labels for each of {len(source):,} streamlines")
     if not np.isin(ends[ends != 0], atlas.labels).all():
-        raise ValueError("ends hold labels that the volume does not hold; give those of end_labels() for it")
+        raise ValueError("ends have labels that the volume lacks; pass end_labels() of this volume")
     return ends
 
 

@@ -195,7 +195,7 @@ def add_up(
 def count_visits(n: int, voxel: Any, item: Any, owner: Any, visitor: Any, counts: Any) -> None:
     """Add to ``counts`` the voxels that each owner visits; ``owner`` (of each item) never falls from call to call.
 
-    ``visitor`` (n_voxels,) says who visited a voxel last, from 1 on.
+    ``visitor`` (n_voxels,) is the last visitor of a voxel, from 1 on.
     """
     for r in range(n):
         v = voxel[r]

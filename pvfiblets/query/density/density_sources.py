@@ -36,7 +36,7 @@ Floats = npt.NDArray[np.float64]
 Wanted = str | Distance | Values | npt.ArrayLike | None
 
 CHUNK = 1 << 19  # points decoded together
-ANY = 1 << 62  # streamlines, where nobody knows how many
+ANY = 1 << 62  # an unknown number of streamlines
 
 
 @dataclass(frozen=True)
@@ -110,7 +110,7 @@ def as_source(source: Any, weights: Any, wanted: Wanted) -> Source:
 
 
 class _Compressed:
-    """A compressed set: what has points, in the order in which it is coded."""
+    """A compressed set: streamlines with points, in coded order."""
 
     def __init__(self, fiblets: FibletSet, weights: Any, wanted: Wanted) -> None:
         self._fiblets = fiblets
@@ -254,7 +254,7 @@ class _Plain:
         there = ", ".join([*chunk.per_streamline, *chunk.per_point]) or "none"
         raise KeyError(
             f"{self._place} has no array {name!r} of single numbers; there are: {there}. Computed measures, such as "
-            "'curvature', are those of compressed sets"
+            "'curvature', need a compressed set"
         )
 
     def compile(self) -> None:
@@ -276,7 +276,7 @@ def _is_per_point(rows: npt.NDArray[Any], n_lines: int, n_points: int) -> bool:
 
 
 def _weights(given: Any, arrays: Mapping[str, npt.NDArray[Any]], n: int) -> Floats:
-    """Weights as ``(n,)`` float64, or an error that names what is wrong with them."""
+    """Weights as ``(n,)`` float64; raise an error for invalid ones."""
     rows = given
     if isinstance(given, str):
         if given not in arrays:

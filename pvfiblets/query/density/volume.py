@@ -13,7 +13,7 @@ array            mean of the values, linear between points, in the same way     
 ===============  ============================================================================  ====
 
 Sources: Calamante et al. 2010, "Track-density imaging (TDI): super-resolution white matter imaging using whole-brain
-track-density mapping"; the directions are those of Pajevic and Pierpaoli 1999, section "absolute value RGB".
+track-density mapping"; the directions follow Pajevic and Pierpaoli 1999, section "absolute value RGB".
 
 Every segment is cut at the faces of the voxels that it crosses (:mod:`.density_kernels`), so that lengths are exact up
 to the rounding of float64, whatever the step. Points are decoded, cut and added up chunk by chunk: besides the map
@@ -79,7 +79,7 @@ def density(
     ends_only : bool, default: False
         Count end points instead: a streamline has two, of a single point one; means are over end points.
     progress : bool or callable, default: False
-        Show a progress bar; or call this with what is being done and which share of it is, 0 to 1.
+        Show a progress bar; or call this with the name of the step and its finished share, 0 to 1.
 
     Returns
     -------
@@ -181,7 +181,7 @@ class _Sums:
 
     @property
     def share_outside(self) -> float:
-        """Share of what was to be added up that lies outside the grid."""
+        """Share of the sum that lies outside the grid."""
         return max(1.0 - self._within / self._all, 0.0) if self._all > 0.0 else 0.0
 
     def result(self) -> npt.NDArray[Any]:
@@ -234,7 +234,7 @@ class Visits:
 
 
 def _pieces(grid: VoxelGrid, u: Any, line: Any, lengths: Any) -> Iterator[tuple[float, int, Any, Any, Any, Any]]:
-    """Cut segments at the faces of voxels: mm within the grid, how many pieces, and what they are, block by block."""
+    """Cut segments at the faces of voxels: mm within the grid, number of pieces, and the pieces, block by block."""
     from . import density_kernels as kernels
 
     counts = np.empty(len(u), np.int64)
@@ -248,7 +248,7 @@ def _pieces(grid: VoxelGrid, u: Any, line: Any, lengths: Any) -> Iterator[tuple[
 
 
 def _tiles() -> int:
-    """Power of two, of as many threads as there are or a little more."""
+    """Number of threads, rounded up to a power of two."""
     import numba
 
     return 1 << (numba.get_num_threads() - 1).bit_length()

@@ -19,7 +19,7 @@ __all__ = ["VoxelGrid", "grid_about", "grid_like"]
 Array = npt.NDArray[np.float64]
 
 MOST = 1 << 40
-"""Voxels beyond which no machine's memory is asked."""
+"""Largest number of voxels."""
 
 
 @dataclass(frozen=True, eq=False)

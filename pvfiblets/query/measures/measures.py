@@ -70,7 +70,7 @@ COMPUTED: dict[Kind, dict[str, str]] = {
     "streamline": {"length": "mm", "n_points": "", "mean_curvature": "1/mm", "end_distance": "mm"},
     "point": {"curvature": "1/mm", "arc_length": "mm", "coding_error": "mm"},
 }
-"""Units of the computed measures, by what has a value and by name."""
+"""Units of the computed measures, by kind (point or streamline) and name."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,7 +166,7 @@ def measure(
     try:
         return _measured(fiblets, what, original)
     except IndexError:
-        fiblets.verify()  # a damaged file says so itself; whatever else is wrong is raised as it is
+        fiblets.verify()  # raises for a damaged file; other errors pass
         raise
 
 
@@ -298,7 +298,7 @@ class Curvatures:
         bears = np.concatenate(self._bears)
         short = bears[bears < self._promise * SLACK]
         if 0.0 < self._fine < self._promise * SLACK:
-            why, needed = "needs chords longer than those of the points themselves", self._fine
+            why, needed = "needs chords longer than the segments", self._fine
         elif len(short) > UNCERTAIN * len(bears):
             why = f"is lost in {len(short)} of {len(bears)} streamlines, which are too short or too bent"
             needed = max(float(np.quantile(short, UNCERTAIN)), 0.01 * self._promise)
@@ -384,12 +384,12 @@ def _distance(fiblets: FibletSet, what: Distance) -> Values:
 
 def _coding_error(fiblets: FibletSet, original: Streamlines | None) -> npt.NDArray[np.float32]:
     if original is None:
-        raise ValueError("'coding_error' is a distance to what was compressed; give it as original=")
+        raise ValueError("'coding_error' is a distance to the compressed streamlines; pass these as original=")
     if len(original) != fiblets.n_streamlines or not np.array_equal(original.offsets, fiblets.offsets()):
         raise ValueError(
             f"the original has {len(original)} streamlines of {original.n_points} points, the fiblets "
-            f"{fiblets.n_streamlines} of {fiblets.n_points}, or they differ in the points of some streamline: errors "
-            "can be measured only against what was compressed"
+            f"{fiblets.n_streamlines} of {fiblets.n_points}, or they differ in the points of some streamline: "
+            "errors can be measured only against the compressed streamlines"
         )
     # What was left out of the source has no rank, and neither has a streamline without points.
     given = fiblets.rank_to_id

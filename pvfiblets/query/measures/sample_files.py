@@ -84,7 +84,7 @@ def _write_numbers(target: Path, values: npt.NDArray[np.float64]) -> None:
         text = TextIOWrapper(file, encoding="utf-8")
         text.writelines(f"{value!r}\n" for value in values.tolist())
         text.flush()
-        text.detach()  # the file is closed by who opened it
+        text.detach()  # the caller closes the file
 
 
 def _write_lines(target: str, data: Any, name: str, values: npt.NDArray[np.float64], *, per_point: bool) -> None:

@@ -1,4 +1,4 @@
-"""A row for each streamline: how long it is, where it ends, and what is known of it."""
+"""A row for each streamline: length, ends, groups and values."""
 
 from __future__ import annotations
 
@@ -112,7 +112,7 @@ def _text(target: Path | None) -> Iterator[TextIO]:
         text = TextIOWrapper(file, encoding="utf-8", newline="")
         yield text
         text.flush()
-        text.detach()  # the file is closed by who opened it
+        text.detach()  # the caller closes the file
 
 
 def check_parquet(path: str | PathLike[str]) -> None:
@@ -134,7 +134,7 @@ def table(
     images: Mapping[str, Any] | None = None,
     weights: PointWeights = "length",
 ) -> Table:
-    """Return what is known of each streamline.
+    """Return a table with a row for each streamline.
 
     Parameters
     ----------
@@ -153,7 +153,7 @@ def table(
         Columns ``streamline`` (its number), ``n_points``, ``length``, ``end_distance`` (mm) and ``mean_curvature``
         (1/mm) as `pvfiblets.query.measures.measures` has them; ``start_x`` to ``end_z``, its first and last point
         (mm; NaN
-        without points); ``groups``, the names of those that it is in, with a semicolon between, if there are any
+        without points); ``groups``, the names of its groups, with a semicolon between, if there are any
         groups; every per-streamline array; and the mean along the streamline of every per-point array and image,
         ``mean_NAME``, NaN where no point has a value. Arrays of several columns are ``NAME[0]``, ``NAME[1]`` and so on.
 

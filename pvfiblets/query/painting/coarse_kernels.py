@@ -20,7 +20,7 @@ from .walk_kernels import ANY, CHANGED, HERE
 __all__ = ["ADDED", "ALL_FLAGS", "GONE", "OPEN", "REMOVED", "SAME", "SURE", "close_parts", "settle"]
 
 ADDED, REMOVED, ALL_FLAGS = 0, 1, 2
-"""What is asked: of voxels that came in, or that went, whether it is passed; of any, all flags."""
+"""Query: of added or removed voxels, whether they are passed; otherwise all flags."""
 SAME, SURE, GONE, OPEN = 0, 1, 2, 3
 """Nothing changes for a fiblet; it passes now; it does no more; it must be decoded."""
 BLOCK, FEW = 256, 16

@@ -20,7 +20,7 @@ def are_compiled() -> bool:
 
 
 def compile_all() -> None:
-    """Compile all of them, or load those that were compiled before."""
+    """Compile or load all kernels."""
     from ...codec.compress import compress
     from .live import LiveRegions
     from .painter import RegionPainter

@@ -42,7 +42,7 @@ Mask = npt.NDArray[np.bool_]
 class LiveRegion:
     """Streamlines of one region of voxels, which changes.
 
-    Takes a byte for each fiblet and four for each streamline; nine once :meth:`flags` have been asked for.
+    Takes a byte for each fiblet and four for each streamline; nine after the first call of :meth:`flags`.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ class LiveRegion:
     seconds : float
         That the last change took.
     looked_at, decoded : int
-        Fiblets near what it changed, and those of them that had to be decoded.
+        Fiblets near the change, and the decoded ones among them.
     """
 
     def __init__(self, fiblets: FibletSet, grid: VoxelGrid) -> None:
@@ -63,7 +63,7 @@ class LiveRegion:
         self.mask = np.zeros(grid.n_voxels, np.uint8)
         self._states = np.zeros(fiblets.n_fiblets, np.uint8)  # in the order of the index
         self._any = np.zeros(fiblets.n_streamlines, np.int32)
-        self._out, self._ends = np.empty(0, np.int32), np.empty(0, np.uint8)  # of whom flags have been asked for
+        self._out, self._ends = np.empty(0, np.int32), np.empty(0, np.uint8)  # with computed flags
         self._bases = np.ascontiguousarray(fiblets.pages[:, 0])
         ids = fiblets.rank_to_id
         self._ids = np.empty(0, np.int64) if ids is None else np.array(ids, np.int64)
@@ -239,7 +239,7 @@ class LiveRegions:
             held.change(stroke.voxels, stroke.after == label)
 
     def region(self, name: str) -> LiveRegion:
-        """Return what is known of one region; the first time, all of it is looked at."""
+        """Return the state of one region; the first call computes all of it."""
         label = self.painter.label(name)
         if label not in self._held:
             held = self._held[label] = LiveRegion(self.fiblets, self.painter.grid)
@@ -266,7 +266,7 @@ class LiveRegions:
         Parameters
         ----------
         include, exclude : iterable of str
-            Regions that are all passed, and of which none is.
+            Regions that streamlines must pass, and regions that they must miss.
         ends_in : iterable of str
             Regions in each of which an end lies.
         stays_in : str, optional

@@ -73,7 +73,7 @@ class RegionPainter:
     labels : numpy.ndarray
         ``(i, j, k)`` uint16, 0 for no region; changed by strokes only.
     listeners : list of callable
-        Called with each :class:`Stroke`, those of undoing too.
+        Called with each :class:`Stroke`, undo included.
     """
 
     def __init__(self, like: Any) -> None:
@@ -138,7 +138,7 @@ class RegionPainter:
         path : array_like
             ``(3,)`` or ``(n, 3)`` mm: where the brush is, or the way along which it is drawn.
         radius : float
-            mm: voxels whose centres lie within it of the path are painted, and those that hold its corners.
+            mm: voxels with centres within it of the path are painted, and the voxels of its corners.
         plane : {0, 1, 2}, optional
             A brush of two dimensions: only the voxels of one slice, that of the path's first position along this axis.
 
@@ -343,7 +343,7 @@ class RegionPainter:
         return stroke
 
     def apply(self, stroke: Stroke) -> Stroke:
-        """Have voxels as a stroke leaves them, as whoever keeps strokes of its own does; there is no step to undo."""
+        """Apply a stroke's voxels without a step to undo, for callers with their own history."""
         self.labels.reshape(-1)[stroke.voxels] = stroke.after
         for listener in list(self.listeners):
             listener(stroke)

@@ -49,7 +49,7 @@ Array = npt.NDArray[np.float64]
 _PLANE, _SLAB, _BOX, _SPHERE, _SURFACE, _LABELS = range(6)
 _AND, _OR, _NOT = -1, -2, -3
 _EPS = 16.0 * 2.0**-52
-"""Relative to what is added up: what float64 may lose in a ball's centre, in a position within it, and in between."""
+"""Relative float64 error of a ball's centre, a position in it, and their distance."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,7 +143,7 @@ def classify(region: Region, centres: npt.ArrayLike, radii: npt.ArrayLike) -> np
     Raises
     ------
     ValueError
-        If there are not as many radii as centres, or one is below 0.
+        If the numbers of radii and centres differ, or a radius is below 0.
     """
     places = np.ascontiguousarray(positions(centres))
     given = np.asarray(radii, np.float64)

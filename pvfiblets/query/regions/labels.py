@@ -25,7 +25,7 @@ Flags = npt.NDArray[np.bool_]
 
 
 class Volume:
-    """Chosen voxels, and what is made of them when first asked for.
+    """Chosen voxels, and data derived from them at first use.
 
     Parameters
     ----------

@@ -78,7 +78,7 @@ class Bounds:
 
     @property
     def empty(self) -> bool:
-        """Whether there is nothing within."""
+        """Whether the region is empty."""
         return not bool((self.low <= self.high).all())
 
     def __and__(self, other: Bounds) -> Bounds:

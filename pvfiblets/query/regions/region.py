@@ -36,7 +36,7 @@ MAX_STACK = 6
 
 
 class Region:
-    """A part of space; see the module for what it is made of. Immutable; equal and hashed by content.
+    """A part of space; see the module for its parts. Immutable; equal and hashed by content.
 
     Surfaces and label volumes count as equal if they are the same object's data, placed alike.
 
@@ -173,7 +173,7 @@ class Region:
 
         An expression's bounds hold it, though not always tightly.
         """
-        stack: list[tuple[Bounds, Bounds]] = []  # of the region, and of what lies outside of it
+        stack: list[tuple[Bounds, Bounds]] = []  # of the region, and of its complement
         for op in self._program:
             if op >= 0:
                 stack.append(self._leaves[op].extents())

@@ -147,7 +147,7 @@ class Shape(Region):
         raise NotImplementedError
 
     def extents(self) -> tuple[Bounds, Bounds]:
-        """Return bounds of the shape and of what lies outside of it."""
+        """Return bounds of the shape and of its complement."""
         raise NotImplementedError
 
     def __eq__(self, other: object) -> bool:

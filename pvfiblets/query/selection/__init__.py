@@ -1,4 +1,4 @@
-"""Which streamlines: those that pass, end or stay in regions, lie under an area of the screen, or end like others.
+"""Selecting streamlines: by regions they pass, end or stay in, by an area of the screen, or by similar ends.
 
-What a region is is said in ``query/regions``. Start with ``predicates.py`` and ``passing.py``.
+``query/regions`` defines regions. Start with ``predicates.py`` and ``passing.py``.
 """

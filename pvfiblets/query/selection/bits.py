@@ -37,7 +37,7 @@ class Criterion:
     lo, hi : float
         Infinite ends are no ends.
     keep_nan : bool
-        Whether what has no value is kept.
+        Whether streamlines without a value are kept.
 
     Raises
     ------
@@ -105,7 +105,7 @@ def _kept(values: npt.NDArray[Any], criterion: Criterion) -> Mask:
 
 
 def streamline_mask(fiblets: FibletSet, criteria: Iterable[Criterion | tuple[Any, ...]]) -> Mask:
-    """Streamlines for which every criterion holds."""
+    """Streamlines that satisfy every criterion."""
     mask = np.ones(fiblets.n_streamlines, bool)
     for criterion in map(as_criterion, criteria):
         values = criterion.values
@@ -127,7 +127,7 @@ def streamline_mask(fiblets: FibletSet, criteria: Iterable[Criterion | tuple[Any
 
 
 def stretch(words: Words, first: int, last: int) -> Words:
-    """Return bits first..last of a row as a row of their own; zeros stand for what is behind its end."""
+    """Return bits first..last of a row as a row of their own; zeros follow its end."""
     begin, shift = divmod(first, 32)
     piece = np.asarray(words[begin : -(-last // 32) + 1], np.uint32)
     if not shift:

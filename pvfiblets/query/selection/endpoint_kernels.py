@@ -19,7 +19,7 @@ BLOCK = 256  # streamlines a thread looks at in one go
 def find_similar(
     ends: Any, pairs: Any, keys: Any, starts: Any, low: Any, edge: float, distance: float, found: Any
 ) -> None:
-    """Say which streamlines have their two ends near those of some pair."""
+    """Return the streamlines with both ends near the ends of a pair."""
     squares = distance * distance
     for block in numba.prange((len(found) + BLOCK - 1) // BLOCK):
         for s in range(block * BLOCK, min((block + 1) * BLOCK, len(found))):

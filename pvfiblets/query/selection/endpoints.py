@@ -33,7 +33,7 @@ def anchor_points(fiblets: FibletSet, which: Ints) -> Floats:
 
 
 def end_points(fiblets: FibletSet) -> Floats:
-    """First and last point of every streamline, without decoding what lies between."""
+    """First and last point of every streamline, without decoding the rest."""
     if in_parts(fiblets):
         ends: Floats = of_streamlines(fiblets, end_points, np.nan, (2, 3))
         return ends
@@ -51,7 +51,7 @@ def end_points(fiblets: FibletSet) -> Floats:
                     forget(array, a, b)
             forget(fiblets.codes, int(fiblets.pages[page, 1]), int(fiblets.pages[page + 1, 1]))
     except IndexError:
-        fiblets.verify()  # a damaged file says so itself; whatever else is wrong is raised as it is
+        fiblets.verify()  # raises for a damaged file; other errors pass
         raise
     if fiblets.rank_to_id is None:
         return ranked

@@ -94,7 +94,7 @@ def region_flags(
                 rows = which[i : i + FIBLETS]
                 test.take(balls, rows, ranks, flags[part])
     except IndexError:
-        fiblets.verify()  # a damaged file says so itself; whatever else is wrong is raised as it is
+        fiblets.verify()  # raises for a damaged file; other errors pass
         raise
     flags[~wanted] = 0
     if fiblets.rank_to_id is None:

@@ -1,4 +1,4 @@
-"""What is asked of streamlines: conditions on where they lie, joined by ``&``, ``|`` and ``~``.
+"""Conditions on the position of streamlines, joined by ``&``, ``|`` and ``~``.
 
 A streamline is the line through its decoded points: it passes a region that it crosses between two of them, however
 far apart they are (`segments`). With ``sampling="points"`` only the points count, as for MRtrix's ``tckedit``.
@@ -58,7 +58,7 @@ class Predicate:
         raise TypeError("a condition is neither true nor false; join conditions with &, | and ~, not with and, or, not")
 
     def conditions(self) -> Iterator[Condition]:
-        """Yield what it is made of."""
+        """Yield its parts."""
         raise NotImplementedError
 
     def holds(self, flags: Callable[[Condition], Flags]) -> Mask:
@@ -66,7 +66,7 @@ class Predicate:
         raise NotImplementedError
 
     def choose(self, fiblets: FibletSet, *, flags: FlagsOf | None = None) -> Mask:
-        """Return the streamlines of a set for which it holds; see :func:`select`."""
+        """Return the streamlines of a set that satisfy it; see :func:`select`."""
         return select(fiblets, self, flags=flags)
 
 
@@ -170,7 +170,7 @@ def passes(region: Region, *, sampling: Sampling = "lines") -> Predicate:
 
 
 def stays_in(region: Region, *, sampling: Sampling = "lines") -> Predicate:
-    """Streamlines all of which lies in the region; parameters and errors as for :func:`passes`."""
+    """Streamlines entirely in the region; parameters and errors as for :func:`passes`."""
     return Condition(_region(region, "stays_in"), ALL, sampling=check_sampling(sampling))
 
 
@@ -198,7 +198,7 @@ def ends_in(region: Region, which: Ends = "any") -> Predicate:
 
 
 def select(fiblets: FibletSet, predicate: Predicate, *, flags: FlagsOf | None = None) -> Mask:
-    """Choose the streamlines for which a condition holds."""
+    """Return the streamlines that satisfy a condition."""
     if not isinstance(predicate, Predicate):
         hint = "; ask passes(region), ends_in(region) or stays_in(region)" if isinstance(predicate, Region) else ""
         raise TypeError(f"a {type(predicate).__name__} is no condition on streamlines{hint}")

@@ -32,7 +32,7 @@ Ints = npt.NDArray[np.int64]
 
 FIBLETS = 1 << 20  # whose capsules are tried together
 DECODED = 1 << 14  # that are decoded together
-SAMPLES = 17  # places on a segment at which a region is asked
+SAMPLES = 17  # tested places on a segment
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +82,7 @@ def under_polygon(
     planes: npt.ArrayLike | None = None,
     region: Region | None = None,
 ) -> Under:
-    """Find the streamlines of which some part lies under an area of the screen, hidden ones too."""
+    """Find the streamlines under an area of the screen, occluded ones too."""
     corners, transform = checked_polygon(polygon), np.array(matrix, np.float64)
     width, height = (float(n) for n in size)
     if transform.shape != (4, 4) or not np.isfinite(transform).all():
@@ -113,7 +113,7 @@ def under_polygon(
         ranks, depths, places = (np.concatenate(columns) for columns in zip(*parts, strict=True))
         return _nearest(fiblets, ranks, depths, places)
     except IndexError:
-        fiblets.verify()  # a damaged file says so itself; whatever else is wrong is raised as it is
+        fiblets.verify()  # raises for a damaged file; other errors pass
         raise
 
 
@@ -183,7 +183,7 @@ def _unit(spaces: Array) -> Array:
 def _candidates(
     fiblets: FibletSet, spaces: Array, streamlines: npt.NDArray[np.bool_] | None, region: Region | None
 ) -> Iterator[tuple[Ints, Region | None]]:
-    """Fiblets that may be hit, and the region if it must be asked for each of their places."""
+    """Fiblets that may be hit, and the region if each of their places must be tested."""
     p, low = fiblets.parameters, fiblets.anchors_low
     lower = np.zeros((1, 3), np.uint16) if low is None else low
     held = fiblets.anchors, lower, fiblets.reach, fiblets.ends, fiblets.pages[:, 0]

@@ -35,7 +35,7 @@ class AtlasActions(Actions):
     # What is shown
 
     def refresh(self) -> None:
-        """Show the labels of an image, and which of them are asked for."""
+        """Show the labels of an image, and the queried ones."""
         app = self._app
         images = self._images()
         if not images:
@@ -58,7 +58,7 @@ class AtlasActions(Actions):
         """The image whose labels are listed: the one that was chosen here, or the highest."""
         images = self._images()
         if not images:
-            raise ValueError("no image is shown as labels; open one as slices and set what its numbers are")
+            raise ValueError("no image is shown as labels; open one as slices and set Numbers are to labels")
         return next((one for one in images if one.id == self._image), images[-1])
 
     def _rows(self, layer: Any) -> list[dict[str, Any]]:
@@ -80,7 +80,7 @@ class AtlasActions(Actions):
         scene, chosen = self._app.scene, self._app.page.chosen
         lines = [layer for layer in scene.layers if layer.kind in LINES]
         if not lines:
-            raise ValueError("there are no streamlines to ask for; open a tractogram first")
+            raise ValueError("there are no streamlines; open a tractogram first")
         return next((layer for layer in lines if layer.id == chosen), lines[0])
 
     def _counted(self) -> str:
@@ -129,7 +129,7 @@ class AtlasActions(Actions):
             raise ValueError(f"{image.name} has no label {str(label)[:40]}")
         path = image.source.path
         if path is None:
-            raise ValueError("labels of a demonstration are in no file to ask; open one")
+            raise ValueError("labels of the demonstration have no file; open a label file")
         join, rows = flat(lines.filters.regions)
         asked = [row for row in rows if _is_label(row, path)]
         same = [row for row in asked if row["region"]["labels"] == [label]]
@@ -238,7 +238,7 @@ def build(app: Any) -> None:
                 "{{ atlas.counted }}", classes="pv-value", style="flex: 1",
             )  # fmt: skip
             v3.VBtn("Clear", size="x-small", variant="tonal", classes="text-none", click=atlas.clear)
-        html.Div("Click one label to ask for its streamlines, two for what connects them.",
+        html.Div("Click one label for its streamlines, two for the streamlines between them.",
                  classes="pv-small px-3 pt-1", v_if="!atlas.asked.length")  # fmt: skip
         with html.Div(style="max-height: 34vh; overflow: auto", classes="px-2 pt-1", id="atlas-rows"):
             with html.Div(

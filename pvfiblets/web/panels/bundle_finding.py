@@ -1,4 +1,4 @@
-"""Bundles that are found: streamlines like others, clusters, and those of models; in the tab Bundles."""
+"""Finding bundles in the tab Bundles: similar streamlines, clusters, and models."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class FindingActions(LineActions):
         super().__init__(app)
         self._open = False
         self._folders: list[str] | None = None
-        self._asked: tuple[str, Ids, np.ndarray] | None = None  # layer, what was found, and what it is like
+        self._asked: tuple[str, Ids, np.ndarray] | None = None  # layer, result, and the query's streamlines
 
     def refresh(self) -> None:
         """Show what can be done."""
@@ -59,7 +59,7 @@ class FindingActions(LineActions):
         self._app.later(self._similar(layer, self._like(layer), distance))
 
     def _like(self, layer: Any) -> np.ndarray:
-        """Return what is asked about; what was found is asked about by what it was found by."""
+        """Return the query's streamlines; a result is queried by its own query."""
         if layer.selected is not None:
             if self._asked is not None and self._asked[:2] == (layer.id, layer.selected):
                 return self._asked[2]
@@ -81,7 +81,7 @@ class FindingActions(LineActions):
         selected = app.scene.layer(layer.id).selected
         self._asked = (layer.id, selected, like) if selected is not None else None
         of = f"{len(like):,}" if some is like else f"an even {COMPARED:,} of the {len(like):,}"
-        app.say(f"{len(found):,} streamlines run within {distance:g} mm of {of} that were asked about.", "success")
+        app.say(f"{len(found):,} streamlines run within {distance:g} mm of {of} reference streamlines.", "success")
 
     # Clusters
 
@@ -112,7 +112,7 @@ class FindingActions(LineActions):
             raise ValueError("recognising bundles needs dipy, which is not installed: pip install dipy")
         models = {entry.name: entry.path for entry in self._app.confined.listing(folder) if _is_lines(entry)}
         if not models:
-            raise ValueError(f"{str(folder)[:80]!r} holds no tractograms; choose a folder with one for each bundle")
+            raise ValueError(f"{str(folder)[:80]!r} has no tractograms; choose a folder with one for each bundle")
         self._app.later(self._recognise(self._layer, models))
 
     async def _recognise(self, layer: Any, models: dict[str, str]) -> None:
@@ -177,9 +177,9 @@ def build(app: Any) -> None:
     with html.Div(v_if="finding.open", id="find"):
         for name, label, key, act, button, hint in (
             ("similar", "More like this", "like_mm", finding.similar, "Select",
-             "Select all that run as near to what is selected, or to the bundles chosen (mean distance, MDF)"),
+             "Select all streamlines within this distance of the selection or the chosen bundles (MDF)"),
             ("clusters", "Clusters", "cluster_mm", finding.cluster, "Make",
-             "Bundles of streamlines that run as near to the mean line of theirs (QuickBundles)"),
+             "Make bundles of streamlines within this distance of their mean line (QuickBundles)"),
         ):  # fmt: skip
             with html.Div(classes="pv-row", data_find=name, title=hint):
                 html.Label(label)
@@ -191,7 +191,7 @@ def build(app: Any) -> None:
                             data_bundle=name)  # fmt: skip
         with html.Div(
             v_if="finding.dipy && finding.folders.length", classes="pv-row", data_find="models",
-            title="Bundles that run as those of a folder of models do (RecoBundles, by dipy)",
+            title="Bundles that match a folder of models (RecoBundles, by dipy)",
         ):  # fmt: skip
             html.Label("Models")
             with html.Div(classes="pv-pair"):

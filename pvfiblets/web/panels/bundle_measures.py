@@ -36,7 +36,7 @@ KINDS = ("profile", "table")
 
 @dataclass(frozen=True, eq=False)
 class _Result:
-    """What was measured, and of which bundles of which layer."""
+    """Measurements, with their layer and bundles."""
 
     layer: str
     bundles: tuple[Bundle, ...]
@@ -56,7 +56,7 @@ class MeasureActions(LineActions):
     # What is shown
 
     def refresh(self) -> None:
-        """Show what can be measured, and what was, as long as it is so."""
+        """Show the possible measures, and earlier results as long as they are valid."""
         page, scene = self._app.page, self._app.scene
         if not self._open or not page.chosen or page.chosen_kind not in LINES:
             page.measures = {"open": self._open, "values": [], "value": "", "profile": {}, "table": {}}
@@ -155,7 +155,7 @@ class MeasureActions(LineActions):
         self._app.later(self._measure("table", layer, fiblets, work))
 
     def _of(self) -> tuple[Bundle, ...]:
-        """Return the bundles to measure, those of no streamlines left out."""
+        """Return the bundles to measure, without empty ones."""
         there = self._app.scene.bundles.of_layer(self._layer.id)
         chosen = self._app.bundles.chosen()
         found = tuple(one for one in there if (one.name in chosen if chosen else one.visible) and len(one.ids))
@@ -180,7 +180,7 @@ class MeasureActions(LineActions):
             raise ValueError(f"there is no {str(kind)[:40]!r} as {str(suffix)[:40]!r}")
         found = self._results.get(kind)
         if found is None or found.layer != self._layer.id:
-            raise ValueError("nothing was measured yet")
+            raise ValueError("measure first")
         if suffix != "parquet":
             return table_text(found.table, tabs=suffix == "tsv")
         with tempfile.TemporaryDirectory(prefix="pvfiblets-") as folder:
@@ -188,7 +188,7 @@ class MeasureActions(LineActions):
             try:
                 found.table.save(path)
             except ImportError as error:
-                raise ValueError("Parquet needs pyarrow where the server runs; take CSV or TSV") from error
+                raise ValueError("Parquet needs pyarrow where the server runs; choose CSV or TSV") from error
             return path.read_bytes()
 
 

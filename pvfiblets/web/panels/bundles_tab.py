@@ -58,7 +58,7 @@ class BundleActions(LineActions):
         }  # fmt: skip
 
     def check(self, name: str, on: bool) -> None:
-        """Choose a bundle for what is done with several, or choose it no more."""
+        """Check or uncheck a bundle for actions on several."""
         known = [one.name for one in self._app.scene.bundles.of_layer(self._layer.id)]
         self._checked = [one for one in self._checked if one != name]
         if on is True and name in known:
@@ -73,9 +73,9 @@ class BundleActions(LineActions):
             self.refresh()
 
     def add(self, what: str) -> None:
-        """Make what is selected, or what is shown, a bundle."""
+        """Make a bundle of the selection or of the visible streamlines."""
         if what not in ("selected", "shown"):
-            raise ValueError(f"a bundle is made of what is selected or shown, not of {str(what)[:40]!r}")
+            raise ValueError(f"choose selected or shown, not {str(what)[:40]!r}")
         self._app.scene.bundles.add_bundle(self._layer.id, what)
 
     def chosen(self) -> list[str]:
@@ -167,8 +167,8 @@ def build(app: Any) -> None:
     with html.Div(v_if="bundles.layer"):
         with html.Div(classes="px-3 pt-2", style="display: flex; flex-wrap: wrap; gap: 6px"):
             for what, title, hint in (
-                ("selected", "Selected", "A bundle of what is selected"),
-                ("shown", "Shown", "A bundle of what filters and regions leave"),
+                ("selected", "Selected", "Make a bundle of the selection"),
+                ("shown", "Shown", "Make a bundle of the visible streamlines"),
             ):
                 v3.VBtn(
                     title, size="small", variant="tonal", classes="text-none", prepend_icon="mdi-plus", title=hint,
@@ -176,7 +176,7 @@ def build(app: Any) -> None:
                     disabled=("!bundles.selected",) if what == "selected" else False,
                 )  # fmt: skip
         html.Div(
-            "No bundles yet. Make one of what is selected, or of what filters and regions leave.",
+            "No bundles yet. Make one of the selection, or of the visible streamlines.",
             v_if="!bundles.count", classes="pv-small px-3 pt-2",
         )  # fmt: skip
         with html.Div(v_if="bundles.count"):
@@ -204,9 +204,9 @@ def build(app: Any) -> None:
                 for what, title, hint, least in (
                     ("only", "Show only", "Hide all others", 1),
                     ("select", "Select", "Select their streamlines", 1),
-                    ("merge", "Merge", "Join them into the one that was chosen first", 2),
-                    ("subtract", "Subtract", "Take the others out of the one that was chosen first", 2),
-                    ("remove", "Remove", "Take them off the list; streamlines stay", 1),
+                    ("merge", "Merge", "Merge them into the first chosen", 2),
+                    ("subtract", "Subtract", "Remove the others' streamlines from the first chosen", 2),
+                    ("remove", "Remove", "Remove from the list; streamlines stay", 1),
                 ):
                     v3.VBtn(
                         title, size="x-small", variant="tonal", classes="text-none", title=hint, data_bundle_act=what,

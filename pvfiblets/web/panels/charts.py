@@ -41,7 +41,7 @@ class Band:
     name, color : str
         What it is of, and how it is drawn.
     mean, low, high : numpy.ndarray, shape (n,)
-        Values; those that are not finite leave a gap.
+        Values; non-finite ones leave a gap.
     """
 
     name: str
@@ -103,7 +103,7 @@ def profiles_chart(positions: ArrayLike, bands: Sequence[Band], title: str = "va
         f"{_label(left + (width - left) / 2, height - 3.0, WAY, 'middle')}"
         f'<g transform="rotate(-90 10 {middle:g})">{_label(10.0, middle + 3.0, named, "middle")}</g>'
     )
-    # Under the pointer: what is there, as browsers show it.
+    # Tooltips with the values under the pointer.
     step = (width - left - 6.0) / max(len(x) - 1, 1)
     told = "".join(
         f'<rect x="{float(across(a)) - step / 2:.1f}" y="0" width="{step:.2f}" height="{height - bottom:g}" '

@@ -40,7 +40,7 @@ class CutActions(Actions):
         ]
 
     def add(self, kind: str) -> None:
-        """Add a cut in the middle of what is shown."""
+        """Add a cut in the middle of the scene."""
         self._app.scene.filters.add_clip(kind)
 
     def add_file(self, place: Mapping[str, Any]) -> None:

@@ -59,7 +59,7 @@ def _written(head: Sequence[str], rows: Iterable[Sequence[Any]], between: str = 
 
 
 def _cell(value: Any) -> Any:
-    """Return what is written of a value: spreadsheets take a name that begins like a formula for one."""
+    """Return the text of a value, safe from formulas in spreadsheets."""
     if isinstance(value, str) and value.startswith(_FORMULA):
         return f"'{value}"
     return "" if value is None else value

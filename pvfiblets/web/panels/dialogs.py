@@ -9,20 +9,20 @@ from pvfiblets.web.server.access import LARGEST_SESSION
 
 KEYS = (
     ("1 2 3 4", "axial, coronal, sagittal, oblique"),
-    ("0", "look from the other side"),
+    ("0", "view from the other side"),
     ("R", "show everything"),
     ("5", "parallel or perspective"),
     ("Esc", "turn, move and zoom with the pointer"),
-    ("P B L", "pick, box, lasso; with Shift what is hit is added"),
+    ("P B L", "pick, box, lasso; with Shift add to the selection"),
     ("M", "measure between two points"),
     ("X", "slices, or the 3-D view alone"),
     ("arrows  Page Up Down", "in a pane: move the cross-hair, go through slices"),
     ("N E F U J W", "on slices: brush, erase, fill, outline, ball, grow"),
-    ("comma, full stop", "volumes of an image of several"),
+    ("comma, full stop", "previous, next volume of an image"),
     ("V", "show or hide the chosen layer"),
     ("Del", "remove the chosen layer"),
     ("Ctrl+Z  Ctrl+Y", "undo, redo"),
-    ("O S C", "open a file, sessions, save the picture"),
+    ("O S C", "open a file, sessions, save the image"),
     ("T", "light or dark"),
     ("[  ]", "left and right side"),
     ("?", "this list"),
@@ -132,7 +132,7 @@ def _files(app: Any) -> None:
                         )  # fmt: skip
             html.Div("No files that can be opened here.", v_if="!entries.length", classes="pv-small pa-4")
             html.Div(
-                "No file here has that in its name.",
+                "No matching file.",
                 v_if=f"entries.length && !{LISTED}.length",
                 classes="pv-small pa-4",
             )
@@ -151,14 +151,14 @@ def _files(app: Any) -> None:
 def _sessions(app: Any) -> None:
     with _dialog("session", "Session", 460):
         with v3.VCardText():
-            html.Div("A session file keeps layers, camera, cuts, filters and selections; the data stays where it is.",
+            html.Div("A session file stores layers, camera, cuts, filters and selections, but no data.",
                      classes="pv-small mb-3")  # fmt: skip
             with html.Div(classes="d-flex flex-wrap", style="gap: 8px"):
                 v3.VBtn("Save", color="primary", classes="text-none", data_action="save-session", click=SAVE)
                 with html.Label(classes="v-btn v-btn--density-default v-btn--size-default v-btn--variant-tonal px-4 "
                                 "text-none", style=LABEL, **{"for": "pv-session"}):  # fmt: skip
                     html.Span("Load…")
-            html.Div("Or in the served folder, beside the data; it is opened there like any other file.",
+            html.Div("Or save it in the served folder, and open it like any other file.",
                      classes="pv-small mt-4 mb-1")  # fmt: skip
             with html.Form(
                 classes="pv-pair", v_on_submit_prevent=(app.files.store_session, "[$event.target[0].value]")
@@ -194,7 +194,7 @@ def _picture(app: Any) -> None:
             with html.Span(classes="pv-pair pv-value"):
                 html.Input(type="checkbox", id="picture-transparent")
                 html.Span("transparent")
-        html.Div("Lines and letters are as large beside the picture as on the page. Large pictures take a while.",
+        html.Div("Lines and letters keep their size relative to the image. Large images take a while.",
                  classes="pv-small px-3 pt-2")  # fmt: skip
         with html.Div(classes="d-flex justify-end pt-2 px-3"):
             v3.VBtn("Save", color="primary", classes="text-none", data_action="save-picture")
@@ -230,7 +230,7 @@ def _rename(app: Any) -> None:
 
 def _end() -> None:
     with _dialog("end", "Close this session?", 420):
-        v3.VCardText("What was not saved is lost; another browser can have its place.")
+        v3.VCardText("Unsaved changes are lost; the place becomes free for another browser.")
         with html.Form(method="post", action="/end", classes="d-flex justify-end pa-3", style="gap: 8px"):
             v3.VBtn("Cancel", variant="text", classes="text-none", click="dialog = ''")
             v3.VBtn("Close", type="submit", color="primary", classes="text-none", data_action="end-session")

@@ -31,9 +31,9 @@ if TYPE_CHECKING:
 __all__ = ["ExportActions"]
 
 PLACES = ("folder", "computer")
-KEPT = 4  # files that can be fetched; older ones are forgotten, and those of no folder removed
+KEPT = 4  # downloadable files; older ones are dropped, temporary ones removed
 LARGEST = 2048 * MEBIBYTE
-"""Bytes of a file that is for fetching only: it takes space that nobody sees."""
+"""Largest size of a temporary file for download, bytes."""
 BYTES_PER_POINT = 12
 """At least, in all formats but ``.fiblets``."""
 
@@ -95,7 +95,7 @@ class ExportActions(Actions):
         app, to = self._app, self._app.page.export_to
         points = fiblets.n_points * len(ids) // max(fiblets.n_streamlines, 1)
         if to == "computer" and suffix != ".fiblets" and points * BYTES_PER_POINT > LARGEST:
-            raise ValueError(f"about {points:,} points are too many to fetch; save the file in the served folder")
+            raise ValueError(f"about {points:,} points are too many to download; save the file in the served folder")
         original, why = original_of(app.scene, layer, ids)
         held = _Held(fiblets, ids, original, why)
         app.later(self._write(held, stem, suffix, temporary=to == "computer"))
@@ -130,7 +130,8 @@ class ExportActions(Actions):
                 app.say(f"{name} was not written: cancelled.")
                 return
             if temporary and done["bytes"] > LARGEST:
-                raise ValueError(f"{name} has {done['bytes']:,} bytes, too many to fetch; save it in the served folder")
+                raise ValueError(f"{name} has {done['bytes']:,} bytes, too many to download; save it in the served "
+                                 "folder")
             if target.exists():  # since its name was found to be free
                 target = self._free(stem, suffix)
                 name = target.name
@@ -152,7 +153,7 @@ class ExportActions(Actions):
         if what == "selected":
             having = [layer for layer in scene.layers if layer.selected is not None]
             if not having:
-                raise ValueError("nothing is selected; pick streamlines first, or export those that are shown")
+                raise ValueError("nothing is selected; pick streamlines first, or export the visible ones")
             return next((layer for layer in having if layer.id == chosen), having[0])
         if not chosen or scene.layer(chosen).kind not in LINES:
             raise ValueError("choose a tractogram first")
@@ -209,7 +210,7 @@ class ExportActions(Actions):
         )
 
     def close(self) -> None:
-        """Remove what was only to be fetched; twice is harmless."""
+        """Remove files that were for download only; a second call has no effect."""
         self._files.clear()
         if self._folder is not None:
             self._folder.cleanup()

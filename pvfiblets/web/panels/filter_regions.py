@@ -33,7 +33,7 @@ class RegionActions(LineActions):
         """Return a layer's regions for the panel."""
         try:
             join, rows = flat(layer.filters.regions)
-        except ValueError:  # nested, by a session file: they hold, and whoever edits them is told so
+        except ValueError:  # nested, from a session file: they apply, and editing them raises an error
             join, rows = "and", []
         bounds = self._app.plotter.bounds
         scene = self._app.scene
@@ -83,7 +83,7 @@ class RegionActions(LineActions):
     # What is done
 
     def add(self, kind: str) -> None:
-        """Add a region in the middle of what is shown, or beside the last one."""
+        """Add a region in the middle of the scene, or beside the last one."""
         if kind not in PLACED:
             raise ValueError(f"there is no region {kind!r}; choose sphere or box")
         layer, scene = self._layer, self._app.scene
@@ -122,7 +122,7 @@ class RegionActions(LineActions):
         self._edit(lambda rows: rows.pop(_index(rows, row)))
 
     def set_not(self, row: int, negated: bool) -> None:
-        """Ask for streamlines of which it is not so."""
+        """Invert a region's condition."""
         self._edit(lambda rows: rows[_index(rows, row)].update({"not": bool(negated)}))
 
     def set_how(self, row: int, how: str) -> None:
@@ -148,7 +148,7 @@ class RegionActions(LineActions):
         """Choose the layers that a region is used for."""
         region = self._region(row)
         if not isinstance(chosen, list) or not chosen:
-            raise ValueError("a region is used by one layer at least; remove it instead")
+            raise ValueError("a region needs at least one layer; remove it instead")
         _, rows = flat(self._layer.filters.regions)
         self._app.scene.regions.share_region(region, rows[row]["how"], rows[row]["not"], chosen)
 
@@ -164,7 +164,7 @@ class RegionActions(LineActions):
     def drag(self, row: int, handle: str, place: Any) -> None:
         """Drag a handle to a place in the picture: shares from its upper left."""
         if not isinstance(place, list) or len(place) != 2:
-            raise ValueError("a place in the picture is two numbers")
+            raise ValueError("a position in the frame needs two numbers")
         where = [number(part, -1.0, 2.0) for part in place]
         self._change(row, lambda region: dragged(region, handle, where, self._sight()))
 
@@ -172,7 +172,7 @@ class RegionActions(LineActions):
         """Have the next click on the picture say where a region is."""
         region = self._region(row)
         if region["kind"] not in PLACED:
-            raise ValueError("a region of a file lies where the file says")
+            raise ValueError("a region of a file cannot be moved")
         page = self._app.page
         page.placing, page.placing_name, page.tool = row, title(region), "place"
 
@@ -182,7 +182,7 @@ class RegionActions(LineActions):
         with hidden_distances(app.plotter):
             found = app.scene.cameras.place_at(x, y, tolerance=NEAR)
         if found is None:
-            app.say("There is nothing there; click on a streamline, a slice or a surface.")
+            app.say("No object there; click on a streamline, a slice or a surface.")
             return
 
         def change(region: Row) -> Row:
@@ -247,7 +247,7 @@ def flat(condition: Any) -> tuple[str, list[Row]]:
         negated = part.get("op") == "not"
         inner = part["of"][0] if negated else part
         if "op" in inner:
-            raise ValueError("these regions are nested deeper than this panel shows; they stay as they are")
+            raise ValueError("these regions are nested too deeply for this panel; they stay unchanged")
         rows.append({**inner, "not": negated, "region": dict(inner["region"])})
     return join, rows
 

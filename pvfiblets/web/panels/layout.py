@@ -41,7 +41,7 @@ html, body { overflow: hidden !important; overscroll-behavior: none }
 }
 .pv-cells { position: relative; aspect-ratio: 1; max-width: 460px; cursor: crosshair; touch-action: pan-y }
 .pv-cells img { width: 100%; height: 100%; display: block; image-rendering: pixelated; user-select: none }
-@media (max-width: 759.9px) { .pv-cells { max-width: min(460px, 33vh) } } /* what it tells stays in view */
+@media (max-width: 759.9px) { .pv-cells { max-width: min(460px, 33vh) } } /* its text stays in view */
 @media (pointer: coarse) {
   :is(.pv-bundles, .pv-matrix) .v-btn--size-x-small:not(.v-btn--icon) { height: 36px; padding-inline: 12px }
   :is(.pv-bundles, .pv-matrix) .v-btn--size-x-small.v-btn--icon { width: 36px; height: 36px }

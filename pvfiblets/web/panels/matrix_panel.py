@@ -96,7 +96,7 @@ class MatrixActions(LineActions):
         return {**usual, **self._form}
 
     def _told(self, matrix: Matrix | None, found: Connectome | None) -> dict[str, Any]:
-        """Return what is said of the matrix."""
+        """Return the description of the matrix."""
         if matrix is None or found is None:
             return {"n": 0, "said": "", "low": "", "high": "", "log": self._logarithmic, "cell": ""}
         layer = self._app.scene.layer(matrix.layer)
@@ -130,7 +130,7 @@ class MatrixActions(LineActions):
         self._app.page.matrix_image = "" if found is None else matrix_image(found.matrix, self._logarithmic)
 
     def at(self, row: Any, column: Any) -> str:
-        """Return what a cell holds, for who points at it."""
+        """Return the text of a cell, for the pointer."""
         found = self._connectome(self._app.scene.state.matrix)
         if found is None:
             return ""

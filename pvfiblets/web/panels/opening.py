@@ -102,7 +102,7 @@ class FileActions(SessionActions):
             said = sentence(error).replace(f"{app.confined.root}{os.sep}", "")  # where it lies is the server's affair
             raise ValueError(f"{name} was not opened: {said}") from error
         lines = [one.id for one in app.scene.layers if one.kind in LINES]
-        if layer.kind in LINES or app.page.chosen not in lines:  # what is explored stays chosen
+        if layer.kind in LINES or app.page.chosen not in lines:  # the chosen tractogram stays chosen
             app.page.chosen = layer.id
         app.refresh()
         for text in loaded.facts.get("notes", ()):
@@ -153,7 +153,7 @@ class FileActions(SessionActions):
         app.page.dialog = "open"
 
     def take(self, path: str, folder: bool) -> None:
-        """Open what was chosen in the file browser."""
+        """Open the file chosen in the file browser."""
         app = self._app
         if folder is True:
             self.browse(path, self._for)
@@ -194,7 +194,7 @@ class FileActions(SessionActions):
         app.page.marked = marked
 
     def take_marked(self) -> None:
-        """Open what was chosen, one after the other: values after the tractograms that they are of."""
+        """Open the chosen files, one after the other: values after their tractograms."""
         app = self._app
         marked, app.page.marked, app.page.dialog = app.page.marked, [], ""
         if len(marked) == 1:
@@ -250,7 +250,7 @@ class FileActions(SessionActions):
         return web.Response(text="stored")
 
     async def _open_upload(self, target: Path, held: contextlib.ExitStack, space: Space | None) -> None:
-        """Open what was uploaded; what cannot be opened, or ends this process, is not kept."""
+        """Open an upload; a file that cannot be opened, or ends this process, is removed."""
         with held:
             try:
                 await self.open(self._app.confined.relative(target), space=space)

@@ -26,13 +26,13 @@ ICONS = (
     ("brush", "mdi-brush", "Brush (N)"),
     ("erase", "mdi-eraser", "Erase (E)"),
     ("fill", "mdi-format-color-fill", "Fill (F)"),
-    ("outline", "mdi-vector-polygon", "Outline: draw around what is to be filled (U)"),
+    ("outline", "mdi-vector-polygon", "Outline: draw around the area to fill (U)"),
     ("sphere", "mdi-circle-outline", "Ball: drag from its middle outwards (J)"),
     ("grow", "mdi-auto-fix", "Grow over voxels of like values (W)"),
 )
 SUFFIXES = (".nii.gz", ".nii")
 AT_ONCE = ("fill", "outline", "sphere", "grow")
-"""Tools of which one list of places is all."""
+"""Tools that need one list of places."""
 
 
 class PaintActions(Actions):
@@ -106,7 +106,7 @@ class PaintActions(Actions):
             app.later(self._compile())
 
     async def _compile(self) -> None:
-        """Compile what tells streamlines of regions before the first stroke asks, and say so."""
+        """Compile the kernels of painted regions before the first stroke, with a message."""
         work = lambda *_: kernels.compile_all()  # noqa: E731
         await self._app.files.beside("regions", work, "compiling, once", cancellable=False)
 
@@ -186,7 +186,7 @@ class PaintActions(Actions):
         app.stream.request()
 
     def end(self) -> None:
-        """End a stroke: what comes next is another step to undo."""
+        """End a stroke: the next one is another step to undo."""
         self._app.history.held = False
         self._pane = self._last = None
         self._app.refresh()

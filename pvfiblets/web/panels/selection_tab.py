@@ -79,7 +79,7 @@ class SelectionActions(Actions):
     # The tab
 
     def refresh(self) -> None:
-        """Show what is selected."""
+        """Show the selection."""
         scene, page = self._app.scene, self._app.page
         page.measured = [one.text for one in scene.state.measurements]
         count = scene.selection.count()
@@ -159,6 +159,6 @@ class SelectionActions(Actions):
         self._app.scene.selection.deselect()
 
     def as_layer(self) -> None:
-        """Add a layer of what is selected."""
+        """Add a layer of the selection."""
         self._app.page.chosen = self._app.scene.keep_selection(self._owner().id).id
         self._app.refresh()

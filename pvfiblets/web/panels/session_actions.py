@@ -108,7 +108,7 @@ class SessionActions(Beside):
         self._app.later(self._restore())
 
     async def _restore(self) -> None:
-        self._restoring = True  # what is kept stays, even if reading it ends this process
+        self._restoring = True  # the kept session stays, even if reading it ends this process
         try:
             content = self._app.notes.restored()
             if self._starting is not None:

@@ -39,7 +39,7 @@ class SliceActions(Actions):
     # What is shown
 
     def refresh(self) -> None:
-        """Show how slices are looked at, and what is under the cross-hair."""
+        """Show the settings of slices, and the values under the cross-hair."""
         app = self._app
         workspace, page = app.scene.slicing.workspace, app.page
         volumes = [layer.name for layer in app.scene.layers if layer.kind == "volume"]
@@ -60,7 +60,7 @@ class SliceActions(Actions):
         }  # fmt: skip
 
     def _series(self) -> list[dict[str, Any]]:
-        """Return the images of several volumes, of which one is shown: times, directions, components."""
+        """Return the images of several volumes: times, directions, components."""
         scene, found = self._app.scene, []
         for layer in scene.layers:
             last = scene.data(layer).data.n_volumes - 1 if layer.kind == "image" else 0
@@ -75,7 +75,7 @@ class SliceActions(Actions):
         self.changed()
 
     def changed(self) -> None:
-        """Show what has changed, in the tab and in the picture."""
+        """Show the changes, in the tab and in the frame."""
         with self._app.state:
             self.refresh()
         self._app.stream.request()
@@ -252,7 +252,7 @@ def layout_menu(app: Any) -> None:
 
 
 def over() -> None:
-    """Build what lies over the picture: lines between views, and what is under the cross-hair."""
+    """Build the overlays: lines between views, and the values under the cross-hair."""
     with html.Div(v_if="slicing.shown && slicing.layout !== '3d'", classes="pv-told", id="pv-told"):
         html.Div("{{ slicing.position.join('  ') }} mm")
         html.Div("{{ row[0] }}: {{ row[1] }}", v_for="(row, i) in slicing.values.slice(0, 6)", key="i",

@@ -57,7 +57,7 @@ class SlideActions(Actions):
             app.page.held = held
 
     def release(self) -> None:
-        """Take note that a slider was let go: what it does next is another step to undo."""
+        """Note that a slider was released: its next move is another step to undo."""
         self._app.history.held = False
         if self._timer is not None:
             self._settle()

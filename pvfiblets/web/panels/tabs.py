@@ -84,8 +84,8 @@ def _clip(app: Any) -> None:
             click=(app.files.browse, "['', 'clip']"), data_cut="mesh",
         )  # fmt: skip
     html.Div(
-        "Add a plane, a box or another shape; what is on its other side is hidden. A cut goes through all tractograms "
-        "until other layers are chosen for it.",
+        "Add a plane, a box or another shape, which hides its other side. A cut applies to all tractograms, or to "
+        "the layers chosen for it.",
         v_if="!clips.length", classes="pv-small px-3",
     )  # fmt: skip
     with html.Div(v_for="clip in clips", key="clip.id", data_clip=("clip.id",)):
@@ -194,8 +194,8 @@ def _regions(app: Any) -> None:
                 title="A closed mesh, or a volume of labels", click=(app.files.browse, "['', 'region']"),
                 data_region="file")  # fmt: skip
     html.Div(
-        "Add a sphere or a box, drag it where it belongs or place it by a click; only streamlines through it stay. "
-        "“not” keeps those that miss it.",
+        "Add a sphere or a box, and drag it or place it by a click; only streamlines through it stay visible. “not” "
+        "keeps streamlines outside it.",
         v_if="!filters.regions.length", classes="pv-small px-3",
     )  # fmt: skip
     with html.Div(v_if="filters.regions.length", classes="pv-pair px-3 pb-1"):
@@ -221,7 +221,7 @@ def _regions(app: Any) -> None:
                 v_if="r.kind === 'sphere' || r.kind === 'box'", size="x-small", variant=(
                     "tool === 'place' && placing === i ? 'flat' : 'tonal'",), classes="text-none",
                 click=(regions.begin_placing, "[i]"), prepend_icon="mdi-target", data_action="place",
-                title="Put it on what is clicked next: a streamline, a slice or a surface",
+                title="Move it to the next click: on a streamline, a slice or a surface",
             ):  # fmt: skip
                 html.Span("Place")
             with v3.VBtn(icon=True, size="x-small", variant="text", aria_label="Remove", click=(regions.drop, "[i]")):
@@ -230,7 +230,7 @@ def _regions(app: Any) -> None:
             v3.VBtn(
                 "not", size="x-small", variant=("r.not ? 'flat' : 'outlined'",), color=("r.not ? 'error' : ''",),
                 classes="text-none", click=(regions.set_not, "[i, !r.not]"), style="min-width: 36px",
-                title="Keep those of which this is not so",
+                title="Invert: keep all other streamlines",
             )  # fmt: skip
             v3.VSelect(
                 items=("filters.hows",), model_value=("r.how",), density="compact", variant="outlined",

@@ -1,6 +1,6 @@
 """Layers as actors of a plotter: made, brought in step with their documents, and taken away.
 
-An actor is told of the settings that differ and of nothing else; nothing is compressed or copied to the GPU anew.
+Only changed settings are passed to an actor; nothing is compressed or copied to the GPU anew.
 """
 
 from __future__ import annotations
@@ -128,7 +128,7 @@ def _selection_style(settings: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def filter_as(actor: Any, old: Filters, new: Filters, load: Load, ends: Ends, colours: Colours) -> None:
-    """Bring what is shown of a tractogram in step with filters that were checked."""
+    """Apply checked filters to a tractogram's actor."""
     for name in old.criteria:
         if name not in new.criteria:
             actor.remove_criterion(name)
@@ -193,7 +193,7 @@ def split_cuts(layer: Layer, clips: Sequence[Clip]) -> tuple[Planes, list[Clip]]
 
 
 def cut(actor: Any, layer: Layer, clips: Sequence[Clip], load: Load, whole: Any = None) -> None:
-    """Cut an actor by those of the clips that are for its layer, and by nothing else."""
+    """Apply exactly the clips of its layer to an actor."""
     mine = [clip for clip in clips if clip.cuts(layer)]
     if layer.kind not in (*LINES, "volume"):
         from vtkmodules.vtkCommonDataModel import vtkPlane

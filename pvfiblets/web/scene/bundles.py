@@ -59,8 +59,9 @@ class SceneBundles:
             ids = Ids.of(what)
         if not len(ids):
             raise ValueError("a bundle of no streamlines; show or select some first")
-        if ids.highest >= self.scene.data(layer).data.n_streamlines:
-            raise ValueError(f"streamline {ids.highest} is asked for, of {self.scene.data(layer).data.n_streamlines}")
+        total = self.scene.data(layer).data.n_streamlines
+        if ids.highest >= total:
+            raise ValueError(f"streamline {ids.highest} does not exist; there are {total}")
         there = self.of_layer(layer_id)
         if name is None:
             given = free_name(f"bundle {len(there) + 1}", [one.name for one in there])
@@ -80,7 +81,7 @@ class SceneBundles:
             if not len(ids):
                 raise ValueError(f"the bundle {shown(name)} has no streamlines")
             if ids.highest >= total:
-                raise ValueError(f"streamline {ids.highest} is asked for, of {total}")
+                raise ValueError(f"streamline {ids.highest} does not exist; there are {total}")
             free = free_name(text(name, "name of a bundle", LONGEST), [one.name for one in there])
             made.append(Bundle(free, ids, hex_colour(colours[len(there)])))
             there.append(made[-1])
@@ -219,7 +220,7 @@ class BundleSync:
         return list(data.groups if kept is None or kept[0] is not data else kept[1])
 
     def groups(self, state: State, sets: Mapping[Source, Any]) -> set[Source]:
-        """Give sets the groups that the document says; return the sources of those that have others now."""
+        """Apply the document's groups to the sets; return the sources of changed sets."""
         regrouped = set()
         for source, data in sets.items():
             wanted = state.bundles_of(source)

@@ -20,7 +20,7 @@ VIEWS = tuple(DIRECTIONS)
 """Names of the directions that one can look from."""
 
 _LETTERS = (("R", "L"), ("A", "P"), ("S", "I"))
-NEAR = 6.0  # pixels within which a click means what is drawn there
+NEAR = 6.0  # pixels of tolerance of a click
 LARGEST_PICTURE = 64_000_000  # pixels
 
 
@@ -133,7 +133,7 @@ def check_camera(value: Any) -> dict[str, Any]:
         key: numbers(value[key], f"camera's {key}", 3) for key in ("position", "focal_point", "up")
     }
     if any(abs(part) > 1e12 for key in found for part in found[key]):
-        raise ValueError("the camera is more than 1e12 mm away; give a position nearer to what is looked at")
+        raise ValueError("the camera is more than 1e12 mm away; give a position nearer to the scene")
     ahead = np.subtract(found["focal_point"], found["position"])
     if not np.linalg.norm(np.cross(ahead, found["up"])) > 0.0:
         raise ValueError(f"the camera looks along {ahead.tolist()} and has {found['up']} up; give unlike directions")

@@ -132,7 +132,7 @@ class Canvas:
             self._live.pop(key).close()
 
     def used(self, painting: Painting | None) -> tuple[tuple[str, str], ...]:
-        """Return names and uses of regions that filter: those that have voxels."""
+        """Return names and uses of regions with voxels, the ones that filter."""
         if painting is None or self.painter is None:
             return ()
         used = [one for one in painting.regions if one.use]
@@ -152,7 +152,7 @@ class Canvas:
         return mask
 
     def live(self, fiblets: Any) -> LiveRegions:
-        """Return what is known of a set's streamlines and the regions."""
+        """Return the state of a set's streamlines and the regions."""
         assert self.painter is not None
         if id(fiblets) not in self._live:
             self._live[id(fiblets)] = LiveRegions(fiblets, self.painter)

@@ -1,4 +1,4 @@
-"""Which kind of layer a file is for, by its suffix, and by what is in it where a suffix stands for several."""
+"""The kind of layer of a file, by its suffix, and by its content for ambiguous suffixes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ __all__ = [
 ]  # fmt: skip
 
 MESHES = (".ply", ".stl", ".obj", ".vtu", ".vtp", ".vtk", ".off", ".glb", ".gltf", *GIFTI, *FREESURFER)
-"""Suffixes of surfaces; those of VTK's formats may hold lines instead."""
+"""Suffixes of surfaces; files of VTK's formats may hold lines instead."""
 
 OF_VERTICES = (*OF_GIFTI, *OF_FREESURFER)
 """Suffixes of files with a number or a label for each vertex of a surface."""
@@ -61,7 +61,7 @@ def kind_of(path: Path) -> str:
         suffix_of(path)
     except UnknownFormatError:
         known = ", ".join(dict.fromkeys([*suffixes(), *VOLUMES, *MESHES]))
-        raise UnknownFormatError(f"{path.name}: no layer can be made of such a file; there are {known}") from None
+        raise UnknownFormatError(f"{path.name}: this type of file cannot be opened; known types: {known}") from None
     return "tractogram"
 
 

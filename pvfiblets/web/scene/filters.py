@@ -78,7 +78,7 @@ class SceneFilters:
         self.scene.become(replace(self.scene.state, clips=clips), f"no cut by {clip.name}")
 
     def usual_shape(self, kind: str) -> dict[str, Any]:
-        """Return a shape in the middle of what is shown, for a panel to begin with."""
+        """Return a shape in the middle of the scene, the panel's default."""
         b = list(visible_bounds(self.scene.plotter))
         for k in (0, 2, 4):
             if b[k] == b[k + 1]:  # flat
@@ -125,7 +125,7 @@ class SceneFilters:
         *,
         image: Source | None = None,
     ) -> None:
-        """Show only what has values in a range; those of an `image` at the points get the criterion's name."""
+        """Filter by a range of values; values of an `image` at the points get the criterion's name."""
         layer = self.scene.lines_layer(layer_id)
         limits = check_range(low, high, criterion)
         images = layer.filters.images
@@ -168,7 +168,7 @@ class SceneFilters:
         self.filter_by(layer, "subset", ("subset", layer_id), subset=subset)
 
     def set_regions(self, layer_id: str, condition: Mapping[str, Any] | None) -> None:
-        """Show only streamlines for which a condition of `pvfiblets.web.session.shapes` holds; ``None`` for all."""
+        """Show only streamlines that satisfy a condition of `pvfiblets.web.session.shapes`; ``None`` for all."""
         layer = self.scene.lines_layer(layer_id)
         regions = None if condition is None else check_condition(condition)
         # Only what a slider does many times over is one step: other numbers of the same shapes.
@@ -249,7 +249,7 @@ def check_filters(
     known = [*value_names(data), *images]
     for name, limits in mapping(value.get("criteria") or {}, "criteria", (), known).items():
         if not isinstance(limits, (list, tuple)) or len(limits) != 2:
-            raise ValueError(f"the range of {name} is {shown(limits)}; give two numbers, of which one may be null")
+            raise ValueError(f"the range of {name} is {shown(limits)}; give two numbers; one may be null")
         criteria[name] = check_range(limits[0], limits[1], name)
     subset, regions = value.get("subset"), value.get("regions")
     return Filters(

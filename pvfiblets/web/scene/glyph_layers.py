@@ -17,7 +17,7 @@ _BY_NUMBERS, _LONG = "glyph_colour", "glyph_length"
 
 
 def _kinds(image: Any) -> Choices:
-    """Return which glyphs an image can be shown by: as many numbers as it has per voxel."""
+    """Return the kinds of glyphs that fit an image's numbers per voxel."""
     n = image.n_volumes
     found: list[tuple[Any, str]] = [(None, "none")]
     if image.fixels is not None:

@@ -81,37 +81,37 @@ def _table(
 
 def _scalars(choices: Any, default: Any, *, volumes: bool = False) -> Property:
     """Return the row of what colours."""
-    return own("scalars", "choice", "Colour by", "What the colours stand for.", default=default, choices=choices,
+    return own("scalars", "choice", "Colour by", "Data shown as colours.", default=default, choices=choices,
                resets=("clim", "log_scale"), volumes=volumes)  # fmt: skip
 
 
 own = Property.own
-_BAR = own("show_bar", "bool", "Colour bar", "Show which colour stands for which value.", default=True,
+_BAR = own("show_bar", "bool", "Colour bar", "Show the values of the colours.", default=True,
            matters=shared.by_numbers)  # fmt: skip
 
 TRACTOGRAM = _table(
     FibletSettings,
     [
-        own("look", "choice", "Look", "Widths, light and shading that give a finished picture together.", "Look",
+        own("look", "choice", "Look", "Preset of widths, light and shading.", "Look",
             "plain",
-            choices=[(None, "my own"), *((name, name) for name in LOOKS)]),
+            choices=[(None, "custom"), *((name, name) for name in LOOKS)]),
         _scalars(_line_scalars, "orientation", volumes=True),
     ],
     {
         "log_scale": [_BAR],
         "halos": [
-            own("selection_color", "colour", "Selected", "Colour of what is selected; empty: its own.", "Selection",
+            own("selection_color", "colour", "Selected", "Colour of the selection; empty: unchanged.", "Selection",
                 optional=True),
-            own("selection_dim", "number", "Dim the others", "How much of the others' colours gives way.", "Selection",
+            own("selection_dim", "number", "Dim the others", "Dimming of all other streamlines.", "Selection",
                 0.8, limits=(0.0, 1.0)),
-            own("selection_as_tubes", "bool", "As tubes", "Draw what is selected as tubes.", "Selection", False),
-            own("selection_radius", "number", "Radius", "Of these tubes, mm.", "Selection", 0.5, limits=(1e-6, 1e6),
-                matters=lambda s: s["selection_as_tubes"]),
+            own("selection_as_tubes", "bool", "As tubes", "Draw the selection as tubes.", "Selection", False),
+            own("selection_radius", "number", "Radius", "Radius of selected tubes, mm.", "Selection", 0.5,
+                limits=(1e-6, 1e6), matters=lambda s: s["selection_as_tubes"]),
         ],
         "fit": [
-            own("share", "text", "Drawn", "How many of the streamlines that are shown fit the GPU's memory.", "Drawing",
+            own("share", "text", "Drawn", "Share of the visible streamlines that fit into GPU memory.", "Drawing",
                 read_only=True, read=lambda actor: "" if actor.share is None else f"{actor.share:.1%}"),
-            own("promise", "text", "Error promise", "No point is drawn farther than this from where it was.", "Drawing",
+            own("promise", "text", "Error bound", "Largest distance of a drawn point from its original.", "Drawing",
                 read_only=True, read=lambda actor: f"{actor.fiblets.promise:.3g} mm"),
         ],
     },
@@ -144,7 +144,7 @@ IMAGE = _table(
         "interpolation": [own(MEANING, "choice", "Numbers are", "What the numbers of the image mean.", "Drawing",
                               "scalars", choices=_meanings, resets=("clim", "below", "above", "index"))],
         "outline": list(GLYPH_ROWS),
-        "cmap": [own(VECTORS, "choice", "Axes", "Of vectors: right, front and up, or those of FSL.", "Drawing",
+        "cmap": [own(VECTORS, "choice", "Axes", "Axes of vectors: right, front and up, or FSL's.", "Drawing",
                      "scanner", choices=[("scanner", "scanner's"), ("fsl", "FSL's")],
                      matters=lambda settings: settings[MEANING] == "direction" or settings[GLYPHS] == "peaks"),
                  own("modulate", "choice", "Bright by", "An image by whose values directions are bright, such as FA.",

@@ -23,7 +23,7 @@ _KEPT = 64  # histograms
 
 
 class LayerQueries:
-    """What can be asked of a scene's layers; nothing changes."""
+    """Read-only queries of a scene's layers."""
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
@@ -55,7 +55,7 @@ class LayerQueries:
         return [{"name": name, "title": UNITS.get(name, name)} for name in names]
 
     def histogram(self, layer_id: str, array: str | Source | None = None, bins: int = 64) -> dict[str, Any]:
-        """Return how often which values are there; those of an image are taken at the points of lines."""
+        """Return a histogram of values; an image's values are sampled at the points of lines."""
         layer = self.scene.layer(layer_id)
         count = whole(bins, "bins", 1, 4096)
         known = [entry["name"] for entry in self.arrays(layer_id)]

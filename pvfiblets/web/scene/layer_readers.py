@@ -1,4 +1,4 @@
-"""What layers draw, read from files: tubes, surfaces, volumes and images of slices, and what is said of them."""
+"""Reading the data of layers: tubes, surfaces, volumes and images of slices, with their descriptions."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def read_colours(place: Path) -> Any:
 
 
 def volume_facts(volume: Any) -> dict[str, Any]:
-    """Return what is said of a volume, in JSON's types or nearly."""
+    """Return the description of a volume, in JSON types or similar."""
     return {
         "voxels": list(volume.shape),
         "spacing_mm": volume.spacing,

@@ -1,4 +1,4 @@
-"""What can be set of each kind of layer, and what an actor is told for it.
+"""Settings of each kind of layer, and the arguments of actors for them.
 
 `TABLES` has the properties of each kind. Panels are drawn from them (:func:`describe`), what browsers send is checked
 by them (:func:`check`), and `looks` says what the settings mean for an actor, live and in scripts alike, so that both
@@ -89,7 +89,7 @@ LOOK = "look"
 """A property of lines that stands for others: their actor is told of these, of effects as the look has them."""
 
 PERCENTILES = (1.0, 99.0)
-"""Of voxels other than 0: the window with which volumes begin, as slices do."""
+"""Percentiles of non-zero voxels: the default window of volumes, as of slices."""
 FEW = 64  # numbers; a volume of no more is one of labels
 
 RADIUS_SCALE = "radius_scale"
@@ -118,7 +118,7 @@ def beginning(kind: str, data: Any) -> dict[str, Any]:
 def _window(volume: Any) -> tuple[float, float] | None:
     """Return between which values a volume's colours begin, a few very bright voxels left out; ``None`` for all.
 
-    Volumes of few numbers are tables of labels or masks, of which all are seen.
+    Volumes of few numbers are labels or masks, with all values visible.
     """
     import numpy as np
 
@@ -143,7 +143,7 @@ def check(kind: str, name: Any, value: Any, data: Any, volumes: Choices = ()) ->
 def changed(kind: str, settings: Mapping[str, Any], name: str, value: Any, data: Any = None) -> dict[str, Any]:
     """Return settings with one changed that was checked, and with those that it resets or, a look, sets.
 
-    Data are asked for their line widths where looks come into it.
+    The line widths of the data are needed for looks.
     """
     found = {**settings, name: value}
     if name == LOOK and value is not None:

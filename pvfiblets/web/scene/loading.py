@@ -47,7 +47,7 @@ __all__ = ["Cancelled", "Files", "Loaded", "Watch"]
 MOST_REMEMBERED = 16  # exports whose points are not coded again
 
 Progress = Callable[[str, float], None]
-"""Told what is being done, and which share of it is, from 0 to 1."""
+"""Called with the step's name and its finished share, from 0 to 1."""
 Cancel = Callable[[], bool]
 """Whether to stop."""
 Stamp = tuple[int, int]
@@ -55,12 +55,12 @@ Stamp = tuple[int, int]
 
 
 class Cancelled(Exception):  # noqa: N818 - not an error: somebody wanted it
-    """A load was stopped by who asked for it; nothing has changed."""
+    """A load was cancelled; nothing has changed."""
 
 
 @dataclass(frozen=True, eq=False)
 class Loaded:
-    """What a layer draws, and what is known of it.
+    """Data of a layer, and their description.
 
     Attributes
     ----------
@@ -75,7 +75,7 @@ class Loaded:
     error : dict or None
         ``error_mm`` and ``error_steps``, where compressing it here measured them.
     kept : tuple of str
-        Per-point arrays that were asked to be kept, for scripts.
+        Kept per-point arrays, for scripts.
     stamps : dict
         Of the files that it was read from, as documents name them: time of the last change and size.
     """
@@ -91,7 +91,7 @@ class Loaded:
 
 
 class Files:
-    """Where a scene's files are, and what was made of them.
+    """A scene's files, and the temporary files made from them.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ class Files:
             from pvfiblets.web.scene.references import check_references
 
             if not found.name.lower().endswith((*suffixes(), *VOLUMES, *MESHES, *VALUES, *TABLES, ".json")):
-                # Some formats name files that nobody here could find before their reader opens them.
+                # Some formats name files that cannot be known before their reader opens them.
                 raise UnknownFormatError(f"{found.name}: such files are not opened here; convert it to .vtp or .nii")
             check_references(found, [self.root, *self.allowed])
         return found
@@ -151,7 +151,7 @@ class Files:
             self._coded.pop(next(iter(self._coded)))
 
     def spooled(self, save: Callable[[Path], Any]) -> Any:
-        """Return the fiblets of a file that is written here and goes when nobody needs it."""
+        """Return the fiblets of a temporary file, which is removed when unused."""
         from pvfiblets.codec.fibletset import FibletSet
 
         if self._folder is None:
@@ -161,7 +161,7 @@ class Files:
             save(target)
             fiblets = FibletSet.open(target)
         finally:
-            with contextlib.suppress(OSError):  # it stays mapped; Windows keeps the name until nobody needs it
+            with contextlib.suppress(OSError):  # it stays mapped; Windows keeps the name until it is unused
                 target.unlink(missing_ok=True)
         return fiblets
 
@@ -261,7 +261,7 @@ class Files:
         return Loaded("tractogram", source, name, fiblets, facts, error, kept, {source.path or "": stamp})
 
     def close(self) -> None:
-        """Remove what was made of files; twice is harmless."""
+        """Remove the temporary files; a second call has no effect."""
         if self._folder is not None:
             self._folder.cleanup()
             self._folder = None
@@ -280,7 +280,7 @@ class Watch:
         self._progress, self._cancel = progress, cancel
 
     def __call__(self, what: str, share: float) -> None:
-        """Say what is being done; :class:`Cancelled` if it is to stop."""
+        """Report progress; raise :class:`Cancelled` if it was cancelled."""
         if self._cancel is not None and self._cancel():
             raise Cancelled("stopped; all is as it was")
         if self._progress is not None:

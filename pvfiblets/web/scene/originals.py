@@ -56,7 +56,7 @@ class Original:
             watch("reading the source", 0.7 * min(first / (last + 1), 1.0) if last >= 0 else 0.7)
             if first > last:
                 return
-        raise ValueError(f"{self.path.name} has {first:,} streamlines now; streamline {last} was asked for")
+        raise ValueError(f"{self.path.name} has {first:,} streamlines now; streamline {last} does not exist")
 
     def _attached(self) -> dict[str, tuple[str, Any]]:
         counts = np.concatenate([chunk.counts for chunk in formats.iter_chunks(self.path)])

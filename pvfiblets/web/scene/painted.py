@@ -167,7 +167,7 @@ class ScenePainting:
             painting = _on(loaded)
         elif image.shape != painting.shape or not np.allclose(image.affine, painting.matrix, atol=1e-4):
             raise ValueError(
-                f"{loaded.name} has {image.shape} voxels that lie elsewhere than those that are painted, "
+                f"{loaded.name} has {image.shape} voxels on another grid than the painted regions, "
                 f"{painting.shape}; remove these regions first"
             )
         if len(painting.regions) + len(found) > MOST_REGIONS:

@@ -1,4 +1,4 @@
-"""What a property of a layer is: its type, what it may be, and how it is described to whoever draws a panel of it."""
+"""Properties of layers: type, allowed values, and description for a panel."""
 
 from __future__ import annotations
 

@@ -98,7 +98,7 @@ def _of_gltf(place: Path) -> list[str]:
         for text in texts:
             json.loads(text, object_pairs_hook=collect)
     except (ValueError, RecursionError):
-        raise FormatError(place, None, "what is no JSON", "a glTF file, or a .glb file of version 2") from None
+        raise FormatError(place, None, "invalid JSON", "a glTF file, or a .glb file of version 2") from None
     found: list[str] = []
     for uri in named:
         if isinstance(uri, str) and uri[:5].lower() == "data:":

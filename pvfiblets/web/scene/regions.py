@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = ["SceneRegions"]
 
-SHARE = 0.06  # of the longest side of what is shown: half the width of a new region
+SHARE = 0.06  # of the scene's longest side: half the width of a new region
 APART = 3.0  # half widths between the middles of a region and of the next
 
 

@@ -20,7 +20,7 @@ FONTS = (13, 11, 9)
 SMALLEST_NAMES = 7
 BAR = 15.0  # width of the colours; all of these are pixels at 72 to an inch
 GAP = 12.0  # between what belongs to two bars
-LEFT, RIGHT, BOTTOM = 48.0, 8.0, 34.0  # what is left free: the tools, the edge, and the line at the bottom
+LEFT, RIGHT, BOTTOM = 48.0, 8.0, 34.0  # free margins: the tools, the edge, and the line at the bottom
 MIDDLE = 14.0  # half the height that the letters at the sides take
 HIGHEST = 0.3  # of the height of the picture
 SHORTEST = 28.0  # of the colours
@@ -68,7 +68,7 @@ class Place:
     labels : int
         How many numbers.
     gap : int
-        Pixels between colours and title, besides those that VTK leaves.
+        Pixels between colours and title, in addition to VTK's.
     """
 
     title: str
@@ -84,7 +84,7 @@ class Place:
 
 
 def arrange(wanted: Sequence[Wanted], size: tuple[int, int], scale: float, measure: Measure) -> list[Place | None]:
-    """Return a place for each bar, the first at the right; ``None`` for those that there is no room for."""
+    """Return a place for each bar, the first at the right; ``None`` without room."""
     kept = list(range(len(wanted)))
     while kept:
         for font in FONTS:
@@ -171,7 +171,7 @@ def _column(
 
 
 def _shortened(text: str, limit: float, font: int, measure: Measure) -> str:
-    """Return a text that is at most so wide, or as much of it as anybody needs to guess the rest."""
+    """Return a text shortened to a width."""
     if measure(text, font) <= limit:
         return text
     kept = len(text)

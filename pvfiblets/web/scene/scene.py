@@ -60,12 +60,12 @@ __all__ = ["Change", "Scene"]
 MOST_LAYERS = 64
 MOST_VALUES = 64  # files of values of one layer
 LONGEST_NAME = 1024
-"""Characters of a layer's name: a file's, and what it is a part of."""
+"""Largest number of characters of a layer's name."""
 
 
 @dataclass(frozen=True)
 class Change:
-    """What listeners are told.
+    """A change, as listeners receive it.
 
     Attributes
     ----------
@@ -74,7 +74,7 @@ class Change:
     key : tuple or None
         Changes of one key that follow each other at once are one, as a slider's are.
     whole : bool
-        They are one however long they pause, as those of a drag.
+        They are one step however long they pause, like the moves of a drag.
     """
 
     what: str
@@ -84,7 +84,7 @@ class Change:
 
 @dataclass(frozen=True)
 class _Drawn:
-    """An actor, and what it is in step with."""
+    """An actor, and the state applied to it."""
 
     actor: Any
     layer: Layer
@@ -136,7 +136,7 @@ class Scene:
         self.canvas = Canvas(self.slicing)
         self._listeners: list[Callable[[Change], None]] = []
         self._used = 0
-        self._measured: tuple[Measurement, ...] = ()  # those in the picture
+        self._measured: tuple[Measurement, ...] = ()  # drawn ones
 
     # The document -------------------------------------------------------------------------------
 
@@ -343,7 +343,7 @@ class Scene:
         return [self.files.load(source) for source in sources]
 
     def add_loaded_demo(self, loaded: Sequence[Loaded]) -> list[Layer]:
-        """Add what was made up: tracts, and a head that is not visible at first."""
+        """Add synthetic data: tracts, and a head that is hidden at first."""
         tracts, head = [self.add(one) for one in loaded]
         self.show(head.id, False)
         return [tracts, self.layer(head.id)]
@@ -390,7 +390,7 @@ class Scene:
         self.change(replace(layer, settings=settings), f"{name} of {layer.name}", ("set", layer_id, name))
 
     def keep_selection(self, layer_id: str) -> Layer:
-        """Add a layer of what is selected of another, drawn on its own."""
+        """Add a layer of another layer's selection."""
         layer = self.lines_layer(layer_id)
         if layer.selected is None:
             raise ValueError(f"nothing of {layer.name!r} is selected; pick streamlines first")
@@ -468,7 +468,7 @@ class Scene:
         self.become(replace(self._state, background=background), "background", ("background",))
 
     def close(self) -> None:
-        """Take all layers away and remove what was made of files; twice is harmless."""
+        """Remove all layers and temporary files; a second call has no effect."""
         self._listeners.clear()
         self.become(State(background=self._state.background))
         self.bars.close()

@@ -1,4 +1,4 @@
-"""Choosing streamlines of a scene: by pixel, box or lasso; and what is to be known and done with those chosen."""
+"""Selecting streamlines of a scene by pixel, box or lasso, and the selection's statistics and actions."""
 
 from __future__ import annotations
 
@@ -58,14 +58,14 @@ class SceneSelection:
     def select_box(
         self, x0: float, y0: float, x1: float, y1: float, *, mode: str = "replace", through: bool = False
     ) -> int:
-        """Select what lies in a rectangle of the last picture; ``through``: hidden streamlines too."""
+        """Select the streamlines in a rectangle of the last frame; ``through``: occluded ones too."""
         from pvfiblets.plotting.fiblets.pick_result import checked_box
 
         box = numbers([x0, y0, x1, y1], "box", 4)
         return self._area(checked_box(box), mode, through, "select a box")
 
     def select_polygon(self, points: Any, *, mode: str = "replace", through: bool = False) -> int:
-        """Select what lies in a polygon of the last picture, ``(k, 2)`` pixels; see :meth:`select_box`."""
+        """Select the streamlines in a polygon of the last frame, ``(k, 2)`` pixels; see :meth:`select_box`."""
         fine = isinstance(points, (list, tuple, np.ndarray)) and 3 <= len(points) <= _LONGEST_LASSO
         if not fine:
             raise ValueError(f"the lasso is {shown(points)}; give 3 to {_LONGEST_LASSO} pixels")
@@ -161,7 +161,7 @@ class SceneSelection:
             return actor.fiblets, np.flatnonzero(actor.shown)
         if what == "all":
             return actor.fiblets, np.arange(actor.fiblets.n_streamlines)
-        raise ValueError(f"what is {shown(what)}; choose one of selected, shown, all")
+        raise ValueError(f"unknown set {shown(what)}; choose one of selected, shown, all")
 
     # Inside -------------------------------------------------------------------------------------
 
@@ -251,7 +251,7 @@ def _rows(layer: Layer, actor: Any, ids: np.ndarray) -> list[dict[str, Any]]:
 
 
 def _values(actor: Any, ids: np.ndarray) -> tuple[np.ndarray, str | None]:
-    """Return a number for each streamline, NaN for none, and what it is of."""
+    """Return a number for each streamline, NaN for none, and its name."""
     from pvfiblets.plotting.fiblets.pick_result import point_values
 
     nothing = np.full(len(ids), np.nan)

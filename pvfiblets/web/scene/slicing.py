@@ -271,7 +271,7 @@ class Slicing:
     # Layers
 
     def add(self, layer: Layer, image: LabelledImage, colours: Colours) -> Any:
-        """Show an image above those that are there; return its layer of the stack.
+        """Show an image above the others; return its layer of the stack.
 
         ``colours`` gives the image that a direction-coded one is as bright as.
         """
@@ -333,7 +333,7 @@ class Slicing:
             self.close()
 
     def add_painted(self, image: Any, opacity: float) -> None:
-        """Show what is painted above all images."""
+        """Show the painted regions above all images."""
         self.painted = self.workspace.slices.add(image, kind="labels", name="painted", opacity=opacity)
 
     def remove_painted(self) -> None:

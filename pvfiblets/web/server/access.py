@@ -32,7 +32,7 @@ class RefusedError(Exception):
     status : int
         The HTTP status.
     reason : str
-        What the browser and the log are told: no secrets, no paths of the server.
+        Message for the browser and the log: no secrets, no paths of the server.
     """
 
     def __init__(self, status: int, reason: str) -> None:
@@ -101,7 +101,7 @@ class Access:
 
     @property
     def asks(self) -> bool:
-        """Whether a token is asked for."""
+        """Whether a token is required."""
         return self._token is not None
 
     def is_token(self, text: str | None) -> bool:

@@ -184,7 +184,7 @@ class Connection(web.RequestHandler):
         exc: BaseException | None = None,
         message: str | None = None,
     ) -> web.StreamResponse:
-        """Answer what is no HTTP, without a traceback; a mistake of this program has one, in the log."""
+        """Respond to invalid HTTP without a traceback; log the traceback of an internal error."""
         if status >= 500:
             return super().handle_error(request, status, exc, message)
         if request.writer.output_size > 0:

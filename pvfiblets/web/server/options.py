@@ -123,8 +123,8 @@ class Options:
             raise ValueError("--max-memory: this system cannot hold a process to it; leave it out")
         if self.memory is not None and self.memory < SMALLEST_MEMORY:
             raise ValueError(
-                f"--max-memory {shown(self.memory)}: a session needs {shown(SMALLEST_MEMORY)} before it opens anything "
-                "large; give as much or more"
+                f"--max-memory {shown(self.memory)}: a session needs {shown(SMALLEST_MEMORY)} before it opens "
+                "anything large; give at least that"
             )
         check_look("--look", self.look)
         if self.codec not in CODECS:

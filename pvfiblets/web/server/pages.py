@@ -35,7 +35,7 @@ input { flex: 1; min-width: 0 }
 # A session begins when this connects. Whoever only fetches pages starts nothing.
 BEGIN = """
 const say = (text) => { document.getElementById("said").textContent = text };
-if (!navigator.cookieEnabled) say("This page needs cookies, by which the server knows whose scene is whose.");
+if (!navigator.cookieEnabled) say("This page needs cookies, to find your session.");
 else {
   const socket = new WebSocket(`${location.protocol.replace("http", "ws")}//${location.host}/begin`);
   let told = false;

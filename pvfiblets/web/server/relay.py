@@ -111,7 +111,7 @@ class Relay:
             raise RefusedError(502, "the session does not answer") from error
         except TimeoutError:  # of the reader; of the session's process it is a ClientError
             place = request.path.split("/")[1]  # and no more: names of downloads are secrets
-            logger.warning("gave up /%.40s for %s, who did not read it for %g s", place, request.remote, UNREAD)
+            logger.warning("closed /%.40s: client %s read nothing for %g s", place, request.remote, UNREAD)
             if request.transport is not None:
                 request.transport.abort()
             return response if response is not None else web.Response(status=408)

@@ -179,7 +179,7 @@ class Filters:
         An expression of :mod:`pvfiblets.web.session.shapes`: ``{"how": "passes", "region": {...}}``, joined by
         ``{"op": "and" | "or" | "not", "of": [...]}``.
     connection : mapping or None
-        ``{"labels": path, "pair": [label, label], "radius": mm}``: those that connect two parcels of a label volume,
+        ``{"labels": path, "pair": [label, label], "radius": mm}``: streamlines between two parcels of a label volume,
         as :func:`pvfiblets.connectome` has it.
     """
 
@@ -213,7 +213,7 @@ class Layer:
         Where its data comes from.
     visible : bool
     settings : mapping of str to JSON values
-        All properties that can be set (:mod:`pvfiblets.web.scene.layers`), those at their defaults included.
+        All settable properties (:mod:`pvfiblets.web.scene.layers`), defaults included.
     filters : Filters
     selected : Ids or None
         Streamlines that are selected.
@@ -262,7 +262,7 @@ class Clip:
         Which side stays: of a plane, that which the normal points to.
     enabled : bool
     layers : tuple of str or None
-        Ids of those that are cut; ``None`` for all that are lines, be they added later.
+        Ids of cut layers; ``None`` for all layers of lines, later ones included.
     """
 
     id: str
@@ -377,7 +377,7 @@ class State:
 
 
 def free_name(name: str, taken: Collection[str], kept: int | None = None) -> str:
-    """Return a name, with a number behind it, or behind as many letters of it as are kept, if that is taken."""
+    """Return a name, shortened and numbered if it is taken."""
     numbered = (f"{name[:kept]} {k}" for k in range(2, len(taken) + 3))
     return name if name not in taken else next(found for found in numbered if found not in taken)
 

@@ -31,7 +31,7 @@ __all__ = [
 
 
 class SessionError(FibletsError, ValueError):
-    """A session cannot be taken over; the message says what is wrong with it, and the scene is as it was."""
+    """A session cannot be opened; the message states the error, and the scene is unchanged."""
 
 
 def to_dict(scene: Scene, folder: Path | None = None) -> dict[str, Any]:

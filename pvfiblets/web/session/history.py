@@ -1,6 +1,6 @@
 """What a user did to a scene, to be undone and done again.
 
-A step is the document before it and after it; documents share what they have in common, so that a step costs little.
+A step is the document before it and after it; documents share equal parts, so a step costs little.
 The camera is no part of them.
 """
 
@@ -46,7 +46,7 @@ class History:
     Attributes
     ----------
     held : bool
-        A slider is held: what it changes is one step, however long that takes.
+        A slider is held: its changes are one step, however long that takes.
     """
 
     def __init__(
@@ -78,11 +78,11 @@ class History:
         return len(self._done)
 
     def undo(self) -> str | None:
-        """Take the last step back; return what it was, None if there is none."""
+        """Undo the last step; return its name, or None."""
         return self._move(self._done, self._undone, back=True)
 
     def redo(self) -> str | None:
-        """Do again what was undone last; return what it was, None if there is nothing."""
+        """Redo the last undone step; return its name, or None."""
         return self._move(self._undone, self._done, back=False)
 
     def clear(self) -> None:

@@ -38,7 +38,7 @@ MOST_VOXELS = 1 << 28
 
 @dataclass(frozen=True)
 class Painted:
-    """A region: its name, its number in the volume, its colour (``#rrggbb``), and what it is used for, of `USES`."""
+    """A region: its name, its number in the volume, its colour (``#rrggbb``), and its use, of `USES`."""
 
     name: str
     label: int
@@ -99,7 +99,7 @@ class Painting:
 
 
 def path_between(now: Strokes | None, wanted: Strokes | None) -> tuple[list[Stroke], list[Stroke]]:
-    """Return the strokes to take back, the last first, and those to do then, the first first."""
+    """Return the strokes to undo, the last first, and the strokes to redo, the first first."""
     back: list[Stroke] = []
     on: list[Stroke] = []
     while now is not wanted:

@@ -61,7 +61,7 @@ def read_session(
 ) -> Prepared:
     """Return the document and the camera of a session whose files are read and found to fit.
 
-    Parameters and errors as of :func:`.files.prepare`; what is wrong is said by whatever finds it.
+    Parameters and errors as of :func:`.files.prepare`.
     """
     if not isinstance(data, Mapping):
         raise ValueError(f"it is {shown(data)} and no object")
@@ -202,7 +202,7 @@ def _layer_from_dict(value: Any, reading: _Reading) -> Layer:
         bundles = reading.bundles.get(source)
         groups = reading.own(source, data) if bundles is None else [str(one["name"]) for one in bundles]
         filters = check_filters(value["filters"], data, groups, paths, reading.sampled)
-        if filters.connection is not None:  # here, where nobody waits for a picture
+        if filters.connection is not None:  # here, where no frame waits for it
             path, radius = filters.connection["labels"], filters.connection["radius"]
             store.end_labels(data, path, radius, reading.progress, reading.cancel)
         if filters.regions is not None:
@@ -217,7 +217,7 @@ def _layer_from_dict(value: Any, reading: _Reading) -> Layer:
 
 
 def _listed(value: Any, reading: _Reading) -> dict[Source, list[Any]]:
-    """Return bundles by their source, of which no more is known yet than that they have names."""
+    """Return bundles by their source, with checked names only."""
     if not isinstance(value, list) or len(value) > MOST_LAYERS:
         raise ValueError(f"bundles are {shown(value)}; give a list of {MOST_LAYERS} at most")
     found: dict[Source, list[Any]] = {}

@@ -88,7 +88,7 @@ class _Writer(ViewWriter):
     # Parts ----------------------------------------------------------------------------------------
 
     def _placing(self) -> list[str]:
-        """Return the contexts that place images and surfaces as this process does, where it was told how."""
+        """Return the contexts that place images and surfaces as this process does."""
         found = []
         matrix, units = chosen()
         if matrix is not None or units != "mm":
@@ -297,7 +297,7 @@ class _Writer(ViewWriter):
             radius, pair = filters.connection["radius"], filters.connection["pair"]
             self._lines += [
                 f"ends = np.sort(end_labels({name}.fiblets, {parcels}, {radius}), axis=1)",
-                f"{name}.include((ends == {pair}).all(axis=1))  # those that connect two parcels",
+                f"{name}.include((ends == {pair}).all(axis=1))  # between two parcels",
             ]
 
     def _parcels(self, path: str) -> str:

@@ -1,4 +1,4 @@
-"""Collecting the lines of a script, what they import, and the names in it; and lines of cameras, bars and distances."""
+"""Collecting the lines, imports and names of a script; and lines of cameras, bars and distances."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def names_in(script: str) -> set[str]:
 
 
 class ScriptWriter:
-    """Collects lines, and what they need to be imported; ``names`` are variables of layers, by their ids."""
+    """Collects lines and their imports; ``names`` are variables of layers, by their ids."""
 
     def __init__(self, scene: Scene, names: Mapping[str, str]) -> None:
         self._scene = scene
@@ -105,7 +105,7 @@ class ScriptWriter:
 
 
 class ViewWriter(ScriptWriter):
-    """Writes what lies over the picture, and from where it is seen."""
+    """Writes overlays and the camera."""
 
     def _measurements(self) -> None:
         found = self._scene.state.measurements

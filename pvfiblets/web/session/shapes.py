@@ -12,7 +12,7 @@ A *shape* is one of::
 A *condition* on streamlines is ``{"how": how, "region": shape}`` with one of `HOWS`, or
 ``{"op": "and" | "or" | "not", "of": [conditions]}``. All positions are mm. The shape of a condition may have a
 ``"name"``: layers with one of the same name share it. ``passes`` and ``stays_in`` may have ``"sampling": "points"``:
-what lies between a streamline's points does not count.
+only a streamline's points are tested.
 """
 
 from __future__ import annotations

@@ -56,7 +56,7 @@ class Store:
 
     @contextmanager
     def with_new(self, loaded: Loaded) -> Iterator[None]:
-        """Keep what was read, unless what is done with it fails: then all is as it was."""
+        """Keep the loaded data, unless their use fails: then undo it."""
         before = self.loaded.copy()
         self.put(loaded)
         try:
@@ -66,7 +66,7 @@ class Store:
             raise
 
     def put(self, loaded: Loaded) -> None:
-        """Keep what was read; what was of that place before gives way."""
+        """Keep the loaded data, in place of earlier data of that source."""
         self.loaded.pop(("colours", loaded.source), None)  # of the file as it was
         self.loaded[loaded.kind, loaded.source] = loaded
 
@@ -81,7 +81,7 @@ class Store:
             if layer.source.ids is not None:
                 ids, total = layer.source.ids, loaded.data.n_streamlines
                 if ids.highest >= total:
-                    raise ValueError(f"streamline {ids.highest} is asked for, of {total} in {loaded.name}")
+                    raise ValueError(f"streamline {ids.highest} does not exist; {loaded.name} has {total}")
                 loaded = replace(loaded, source=layer.source, data=loaded.data.extract(ids.array()))
             self.loaded[key] = loaded
         for volume in layer.volumes:

@@ -33,7 +33,7 @@ PACKED = 1
 
 
 class BrowserDrawing(Actions):
-    """Whether the browser of an application draws, and what it is told."""
+    """Client-side rendering of an application: whether the browser renders, and its messages."""
 
     def __init__(self, app: Any) -> None:
         super().__init__(app)
@@ -86,7 +86,7 @@ class BrowserDrawing(Actions):
     # What the stream of pictures asks
 
     def draws(self) -> bool:
-        """Tell the browser what has changed, if it can draw that, and return whether it draws everything."""
+        """Send changes to the browser, if it can draw them; return True if it draws everything."""
         if self._asked == "here" or not (self._able or self._trouble):
             return False
         why = self._trouble
@@ -147,7 +147,7 @@ class BrowserDrawing(Actions):
     # What browsers fetch
 
     async def send_script(self, _: Any) -> Any:
-        """Answer a browser that fetches what it draws with."""
+        """Respond to a browser that fetches the scene's data."""
         from aiohttp import web
 
         return web.FileResponse(Path(page.__file__).with_name("page.js"), headers={"Content-Type": "text/javascript"})

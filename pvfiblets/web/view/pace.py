@@ -25,7 +25,7 @@ class Level(NamedTuple):
     size : float
         Share of the width and of the height that is drawn.
     off : float
-        Drawn pixels by which lines may be off.
+        Error of lines in drawn pixels.
     share : float
         Of the streamlines of large sets.
     cost : float

@@ -48,7 +48,7 @@ class SentScene:
     blobs : dict of str to bytes
         Its data, by their names.
     pixels : set of str
-        Names of those that are pixels of slices, which are worth to be packed on their way.
+        Names of slices' pixels, which are sent compressed.
     """
 
     content: dict[str, Any]
@@ -75,7 +75,7 @@ class SentScenes:
         self._names: dict[int, tuple[bytes, str]] = {}
 
     def make(self, most: int = MOST) -> SentScene | str:
-        """Return the scene as it is now, or what of it a browser cannot draw: '' where there is nothing to draw."""
+        """Return the current scene, or its part that a browser cannot draw: '' for an empty scene."""
         scene = self._scene
         if (found := _views(scene) or _too_large(scene, most)) is not None:
             return found
@@ -103,7 +103,7 @@ class SentScenes:
         return SentScene(content, dict(zip(names, page.blobs, strict=True)), pixels)
 
     def _name(self, blob: bytes) -> str:
-        """Return what some bytes are called; of those that are kept it is not worked out again."""
+        """Return the name of some bytes, cached for kept ones."""
         found = self._names.get(id(blob))
         if found is None or found[0] is not blob:
             found = self._names[id(blob)] = blob, hashlib.blake2b(blob, digest_size=24).hexdigest()
@@ -111,7 +111,7 @@ class SentScenes:
 
 
 def add_all(page: PageScene, plotter: Any) -> list[str]:
-    """Have a page show what a plotter shows but for measured distances, and return what it cannot."""
+    """Set a page to a plotter's scene without measured distances; return its unsupported parts."""
     from pvfiblets.plotting import page_scene  # PyVista is loaded by then
 
     return page_scene.add_all(page, plotter, controls=False, besides=names_of(plotter))[0]

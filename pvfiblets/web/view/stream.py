@@ -35,16 +35,16 @@ from pvfiblets.web.view.touch import Fingers
 
 logger = logging.getLogger("pvfiblets.web")
 
-LARGEST_WINDOW = 4096  # pixels along each side of what is drawn at once
+LARGEST_WINDOW = 4096  # pixels along each side of one drawing
 REST = 0.25  # seconds without an event after which the camera is at rest
 FASTEST = 1.0 / 60.0  # seconds from frame to frame, at least
 UNSENT = 4  # messages that may wait for the network before drawing waits for them
 PATIENCE = 10.0  # seconds that it does: of browsers that share a view, one may have gone to sleep
-HEAVY = 0.5  # seconds of a frame beyond which samples wait until nobody has acted for a while
+HEAVY = 0.5  # seconds of a frame beyond which samples wait for a pause of events
 RESTS = 3.0  # so many frames long,
 LONGEST_REST = 8.0  # but no longer than these seconds
 HEARD = 0.002  # seconds between samples, in which events are heard
-SO_FAR = 0.5  # seconds between pictures of what is there so far of a set whose parts are fetched
+SO_FAR = 0.5  # seconds between partial frames of a set whose parts are fetched
 
 
 class PictureStream:
@@ -113,7 +113,7 @@ class PictureStream:
         self._moved = 0.0
         self._size = (300, 300)  # of the whole picture
         self._scale = 1.0  # its pixels for one of the page
-        self._level = LEVELS[0]  # of what is drawn now
+        self._level = LEVELS[0]  # of the current frame
         self._pace = Pace()
         self._seen: dict[Level, tuple[Any, ...]] = {}  # from where each level saw the scene last
         self._sharp = (plotter.render_window.GetMultiSamples(), plotter.render_window.GetDPI())
@@ -305,7 +305,7 @@ class PictureStream:
         """Draw and send a frame, and what follows it when the camera rests."""
         moving = self.moving
         if not moving and not await self._ahead():
-            return  # what has happened asks for a frame of its own
+            return  # the event requests its own frame
         pixels = self._draw(self._pace.choose() if moving else LEVELS[0])
         self._after()
         coarse = moving and self.codec != "png"
@@ -350,9 +350,9 @@ class PictureStream:
     async def _refine(self) -> None:
         """Draw the samples of the picture at rest and send it, unless something happens meanwhile.
 
-        Where parts of a set are fetched, what is there so far is sent now and then.
+        While parts of a set are fetched, partial frames are sent now and then.
         """
-        # Nobody is heard while a sample is drawn: where that takes long, they come when nobody has acted for a while.
+        # No event is handled while a sample is drawn: slow samples wait for a pause of events.
         picture = self._plotter.picture
         heavy = self.times[-1] if self.times and self.times[-1] > HEAVY and not picture.fetching else 0.0
         await self._wanted_within(max(REST, min(RESTS * heavy, LONGEST_REST)))
@@ -368,7 +368,7 @@ class PictureStream:
             await self._send(self._read(), self.still_quality)
 
     async def _practise(self) -> None:
-        """Draw a frame of a moving camera that nobody sees, where it would be the first of its kind.
+        """Draw an invisible frame of a moving camera, to compile its programs in advance.
 
         Programs are compiled and a share of a large set is copied to the GPU before somebody drags, not meanwhile.
         """
@@ -398,13 +398,13 @@ class PictureStream:
 
     @property
     def _pixels(self) -> tuple[int, int]:
-        """Width and height of what is drawn now."""
+        """Width and height of the current frame."""
         width, height = self._size
         return max(round(width * self._level.size), 16), max(round(height * self._level.size), 16)
 
     @property
     def _dpi(self) -> int:
-        """Pixels to an inch of what is drawn now."""
+        """Pixels per inch of the current frame."""
         return max(1, round(self._sharp[1] * self._scale * self._level.size))
 
     def _resize(self, level: Level) -> None:
@@ -425,7 +425,7 @@ class PictureStream:
             )
 
     async def _frame_without(self, renderer: Any) -> None:
-        """Draw and send all other views; what is picked afterwards is of a picture that has yet to be drawn."""
+        """Draw and send all other views; later picks need a new frame."""
         coarse = self.moving
         renderer.SetDraw(False)
         try:

@@ -89,7 +89,7 @@ def _pair(positions: Mapping[str, Mapping[str, float]]) -> _Pair | None:
 
 
 def _follow_in(pane: Any, before: _Pair, now: _Pair) -> None:
-    """Zoom and move a slice so that what was between the fingers stays there."""
+    """Zoom and move a slice so that the point between the fingers stays there."""
     place = pane.position_at(before.x, before.y)
     if min(before.distance, now.distance) >= LEAST:
         pane.zoom *= min(max(now.distance / before.distance, 1.0 / MOST), MOST)
@@ -105,7 +105,7 @@ def _zoom(camera: Any, times: float) -> None:
 
 
 def _shift(camera: Any, across: float, up: float, height: int) -> None:
-    """Move the camera so that what lies in the focal plane goes with the fingers."""
+    """Move the camera so that the focal plane follows the fingers."""
     ahead = np.subtract(camera.focal_point, camera.position)
     distance = float(np.linalg.norm(ahead))
     half = math.tan(math.radians(camera.view_angle) / 2.0) * distance

@@ -112,7 +112,7 @@ def test_the_picture_follows_the_list(fiblets):
         (lambda b: b.add("z", [99]), IndexError, "99"),
         (lambda b: b.add("z", [1], color=(2, 3)), ValueError, "no colour"),
         (lambda b: b.rename("a", "b"), ValueError, "already"),
-        (lambda b: b.merge([], "x"), ValueError, "nothing to merge"),
+        (lambda b: b.merge([], "x"), ValueError, "no bundles to merge"),
         (lambda b: b.merge(["a", "b"], "c"), ValueError, "already"),
         (lambda b: b.reorder(["a", "a"]), ValueError, "twice"),
         (lambda b: b.export("bundles.tck"), ValueError, "keep no groups"),

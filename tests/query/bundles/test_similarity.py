@@ -133,7 +133,7 @@ def test_clusters_are_limited_and_sorted_and_become_groups(lines):
         (lambda f: f.clusters(5.0, max_clusters=0), "max_clusters is 0"),
         (lambda f: f.clusters(5.0, ids=[1, 1]), "twice"),
         (lambda f: f.similar([0], float("nan")), "distance is nan"),
-        (lambda f: f.similar([]), "nothing to be similar to"),
+        (lambda f: f.similar([]), "no reference"),
         (lambda f: f.similar(np.zeros((0, 3))), "without points"),
     ],
 )

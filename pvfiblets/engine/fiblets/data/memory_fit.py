@@ -181,7 +181,7 @@ class MemoryBudget:
         records, values = sum(plan.nbytes for plan in plans), sum(plan.values for plan in plans)
         marks = self.limits.visibility_bytes(int(fiblets.n_fiblets))
         parts = {"records and codes": records + SHARED_BYTES, "marks": marks, "values of points": values}
-        rooms = [] if self.largest is None else [(self.largest, "as was asked for")]
+        rooms = [] if self.largest is None else [(self.largest, "as requested")]
         if self.video is not None:
             parts["a picture"] = PICTURE_BYTES
             rooms.append((self.video, "of the machine's own" if self.shared else "by the driver's word"))

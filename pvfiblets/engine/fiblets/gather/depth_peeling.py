@@ -221,7 +221,7 @@ class Layers:
     ) -> LayeredBuffer:
         """Return the layers of a picture, drawn unless they are there."""
         if not 2 <= count <= MOST_LAYERS:
-            raise ValueError(f"{count} layers are asked for; give 2 to {MOST_LAYERS}")
+            raise ValueError(f"{count} layers are not possible; give 2 to {MOST_LAYERS}")
         if self._held is not None and self._drawn == (nearest.generation, count):
             return self._held
         self._drawn = None
