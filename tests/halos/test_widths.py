@@ -59,7 +59,7 @@ def test_what_lies_outside_counts_as_the_nearer_end_and_functions_may_round():
      ([0, 0.5, -0.1], "-0.1 at 1, expected 0 to 1"), ([0, np.nan], "nan at 1, expected"),
      (["a", "b"], "expected numbers"), ([[1], [1, 2]], "expected numbers"),
      (lambda x: 2 * x, "function gives .* expected 0 to 1"),
-     (lambda x: x[:5], r"function gives the shape \(5,\), expected 64 numbers for an array of as many"),
+     (lambda x: x[:5], r"function gives the shape \(5,\), expected 64 numbers for an array of that length"),
      (lambda x: x / (x - x), "function gives nan at 0"), (lambda x: None, "function gives"),
      (lambda x: "dark", "function gives 'dark', expected numbers")],
 )  # fmt: skip
