@@ -21,6 +21,8 @@ layout(local_size_x = {{ group_size }}) in;
 #include "frame/groups.glsl"
 #include "fiblets/compute/visibility_bits.glsl"
 
+uniform uint seed_words;  // of so many groups of 32, one has its seed drawn as if it had been seen; 0: none
+
 void main() {
     uint word = group_index() * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
     uint first = word * 32u;
@@ -43,6 +45,7 @@ void main() {
     }
     word = ((chunk_first >> 5u) + word) * WORDS;
     uint before = visibility_bits[word + SEEN];
+    if (seed_words != 0u && word / WORDS % seed_words == 0u) before |= 0x01010101u;
     for (uint part = 0u; part <= REST; part += CLASSES) {
         uint these = shown & (part == 0u ? before : ~before & (part == PREDICTED ? likely : ~likely));
 #if FEATURE_ONE_CLASS
