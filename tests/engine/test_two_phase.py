@@ -336,13 +336,13 @@ def test_a_line_seen_from_its_end(both, fabricate, camera, monkeypatch, honest):
 def test_the_first_picture_begins_with_an_even_share(both, onion, camera, monkeypatch, several):
     """Nothing is known of a last picture; a share of all is drawn first, and hides much of the others."""
     monkeypatch.setattr(compute, "SEED_OF", onion.n_fiblets // several)
-    pair = both(onion)
-    pair.draw(View((400, 300), camera((400, 300), **orbit(0.0, 110.0, 30.0))), FibletStyle(3.0))
+    pair, size = both(onion), (80, 60)
+    pair.draw(View(size, camera(size, **orbit(0.0, 110.0, 30.0))), FibletStyle(3.0))
     everything, first = planned(pair.whole), planned(pair.culled, unseen=False)
     assert everything.sum() == onion.n_fiblets
     assert first.sum() == pytest.approx(onion.n_fiblets / 8 / several, rel=0.3)
-    assert planned(pair.culled).sum() < (0.45 if several == 1 else 0.35) * onion.n_fiblets
-    pair.draw(View((400, 300), camera((400, 300), **orbit(90.0, 110.0, 30.0))), FibletStyle(3.0))
+    assert planned(pair.culled).sum() < (0.6 if several == 1 else 0.85) * onion.n_fiblets
+    pair.draw(View(size, camera(size, **orbit(90.0, 110.0, 30.0))), FibletStyle(3.0))
     assert planned(pair.culled, unseen=False).sum() < first.sum()
 
 

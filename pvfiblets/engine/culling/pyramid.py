@@ -25,8 +25,8 @@ SMALLEST = 8
 
 
 PREDICTION_LEVEL = 4
-"""Level by which it is predicted what will show, squares of 32 pixels. Finer levels draw less early, but leave more to be
-tested."""
+"""Level by which it is predicted what will show, squares of 32 pixels. Finer levels draw less early, but leave
+more to be tested."""
 
 
 class _Levels:

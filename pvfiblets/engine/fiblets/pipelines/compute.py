@@ -76,8 +76,8 @@ TUBES_BY_RASTER = True
 takes is not known beforehand, and OpenGL's rasteriser has no such limit."""
 
 SEED_OF = 1 << 23
-"""Fiblets of which every eighth is drawn first where nothing is known of a last picture; fewer of more. They hide most of
-the others: of 7.4 million fiblets 1.5 million are drawn instead of all."""
+"""Fiblets of which every eighth is drawn first where nothing is known of a last picture; fewer of more. They hide most
+of the others: of 7.4 million fiblets 1.5 million are drawn instead of all."""
 
 READ_LISTS = True
 """Whether software OpenGL compiles programs of classes when they first have fiblets."""
