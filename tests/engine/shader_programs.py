@@ -275,7 +275,7 @@ def _fiblets():
             never=("TEXTURE_DATA", "PER_PRIMITIVE", "INT64_ATOMICS", *(() if gathers else GATHERED)),
             needs=classes,
         )
-    for stage in ("arguments", "clear", "count", "cull", "measure", "occlude", "plan", "query", "refine"):
+    for stage in ("clear", "count", "cull", "measure", "occlude", "plan", "query", "refine"):
         needs = FREE if stage == "query" else {**FREE, "REGION_FIELDS": (("CLIP_REGION",),), "TUBES": ()}
         kinds[f"compute {stage}"] = Kind(
             {"comp": f"fiblets/compute/{stage}.comp"}, never=("TEXTURE_DATA", "INT64_ATOMICS"), needs=needs

@@ -9,7 +9,7 @@ MEASURING = "codec.arrays.decode_arrays, codec.decompress, codec.arrays.frame_ar
 
 # The hardware's rasteriser in place of compute shaders.
 HARDWARE = """
-    -fiblets/compute/arguments.comp, -fiblets/compute/clear.comp, -fiblets/compute/cull.comp,
+    -fiblets/compute/clear.comp, -fiblets/compute/cull.comp,
     -fiblets/compute/depth.comp, -fiblets/compute/resolve_owner.comp, -fiblets/compute/plan.comp,
     -fiblets/compute/resolve_ties.comp, fiblets/hardware_raster/survivors.vert
 """

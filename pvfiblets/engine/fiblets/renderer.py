@@ -220,8 +220,7 @@ class FibletRenderer(LinesBehind):
             self._ctx,
             self._gl,
             self._programs,
-            self._fiblets.n_fiblets,
-            len(self._chunks),
+            [chunk.n_fiblets for chunk in self._chunks],
             self._limits,
             self._alike,
         )

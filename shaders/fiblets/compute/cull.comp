@@ -22,8 +22,19 @@ layout(local_size_x = {{ group_size }}) in;
 #include "fiblets/compute/visibility_bits.glsl"
 
 uniform uint seed_words;  // of so many groups of 32, one has its seed drawn as if it had been seen; 0: none
+uniform uint slots;       // of arguments
+
+// Empties the lists of the chunk's last picture.
+void empty_lists() {
+    uint lengths = list_at(CLASSES), arguments = all_arguments_at();
+    for (uint i = gl_LocalInvocationIndex; i < ROUNDS * CLASSES; i += gl_WorkGroupSize.x) visibility_bits[lengths + i] = 0u;
+    for (uint i = gl_LocalInvocationIndex; i < 4u * ROUNDS * CLASSES * slots; i += gl_WorkGroupSize.x) {
+        visibility_bits[arguments + i] = (i & 3u) == 1u || (i & 3u) == 2u ? 1u : 0u;
+    }
+}
 
 void main() {
+    if (group_index() == 0u) empty_lists();
     uint word = group_index() * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
     uint first = word * 32u;
     if (first >= chunk_fiblets) return;
@@ -43,23 +54,19 @@ void main() {
         if (predicted_visible(c)) likely |= 1u << i;
 #endif
     }
-    word = ((chunk_first >> 5u) + word) * WORDS;
-    uint before = visibility_bits[word + SEEN];
-    if (seed_words != 0u && word / WORDS % seed_words == 0u) before |= 0x01010101u;
-    for (uint part = 0u; part <= REST; part += CLASSES) {
-        uint these = shown & (part == 0u ? before : ~before & (part == PREDICTED ? likely : ~likely));
+    uint before = marks(SEEN, word);
+    if (seed_words != 0u && ((chunk_first >> 5) + word) % seed_words == 0u) before |= 0x01010101u;
+    set_marks(ROUND_LOW, word, shown & (before | ~likely));
+    set_marks(ROUND_HIGH, word, shown & ~before);
 #if FEATURE_ONE_CLASS
-        visibility_bits[word + part] = these;
-        for (uint which = 1u; which < CLASSES; ++which) visibility_bits[word + part + which] = 0u;
+    set_marks(CLASS_LOW, word, 0u);
+    set_marks(CLASS_HIGH, word, 0u);
 #else
-        uint inside = these & ~crossing & ~crossing_depth;
-        visibility_bits[word + part] = inside & ~single;
-        visibility_bits[word + part + 1u] = these & crossing & ~crossing_depth;
-        visibility_bits[word + part + 2u] = these & crossing_depth;
-        visibility_bits[word + part + 3u] = inside & single;
+    single &= ~crossing & ~crossing_depth;
+    set_marks(CLASS_LOW, word, crossing & ~crossing_depth | single);
+    set_marks(CLASS_HIGH, word, crossing_depth | single);
 #endif
-    }
-    visibility_bits[word + CANDIDATES] = 0u;
-    visibility_bits[word + SEEN] = 0u;
-    visibility_bits[word + TIED] = 0u;
+    set_marks(CANDIDATES, word, 0u);
+    set_marks(SEEN, word, 0u);
+    set_marks(TIED, word, 0u);
 }

@@ -5,7 +5,7 @@ follows its last one, so that no shader looks into another chunk. What culling r
 apart from what decoding reads (words, codes).
 
 Budget, bytes per fiblet: anchors 8, radius 2, words 12, codes 58 when full, and the bits and lists by which the passes
-tell each other what to draw, 2.4: 82.4, or 1.37 per point. A streamline's end vector takes 4 bytes more.
+tell each other what to draw, 2.9: 82.9, or 1.38 per point. A streamline's end vector takes 4 bytes more.
 
 What shaders count in 32 bits. Within a chunk: fiblets, bytes of codes, and points. A buffer of less than 2^31 bytes
 holds less than 2^31 / 12 fiblets, and n fiblets of N points have at least n (N - 2) bytes of codes: less than

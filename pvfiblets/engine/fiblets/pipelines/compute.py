@@ -3,7 +3,7 @@
 =============  =================================================================================================
 pass           what it does
 =============  =================================================================================================
-clear          empties depth, owners and lists
+clear          empties depth and owners
 cull           plans the drawing: which fiblets can show, which were seen last time, which others will probably show by
                the last picture's depth, of which class they are
 visible        draws the depth of those seen last time with imageAtomicMin; marks those that came nearest somewhere
@@ -28,15 +28,17 @@ Where the driver has atomics of 64 bits (GL_NV_shader_atomic_int64), the depth p
 no more need of.
 
 Each round of drawing takes its fiblets from lists that the GPU made, by indirect dispatches: the CPU issues the same
-calls whatever there is to draw.
+calls whatever there is to draw. A chunk is as large as buffers may be. Where it has more fiblets than one call may
+draw (:mod:`pvfiblets.engine.gl.work_limits`), its arguments have several slots, a call for each; those that a list does
+not need have no work groups.
 
 The sources are in ``shaders/fiblets/compute``; what a program includes is decided by features.
 """
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Generator, Iterator, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import moderngl
@@ -52,7 +54,7 @@ from ...gl.program_uniforms import set_uniforms
 from ...gl.shaders import EXTENDED, Programs
 from ...pieces import Pieces, finish
 from ..data.chunks import Chunk, storage_buffer
-from .constants import GROUP_WORDS, VISIBILITY_WORDS
+from .constants import CLASSES, GROUP_WORDS, LIST_SHARE, VISIBILITY_WORDS
 from .draw_request import DrawRequest
 from .segment_shares import segment_shares
 
@@ -61,9 +63,9 @@ if TYPE_CHECKING:
 
 __all__ = ["CLASSES", "ComputePipeline"]
 
-CLASSES = 4
 ROUNDS = 6
 ARGUMENT_BYTES = 16
+RANGE_BYTES = 256  # no driver aligns ranges of storage buffers to more
 SEEN, PREDICTED, REST, CANDIDATES, TIED, TESTED = range(ROUNDS)
 
 
@@ -83,6 +85,34 @@ READ_LISTS = True
 """Whether software OpenGL compiles programs of classes when they first have fiblets."""
 
 
+@dataclass(frozen=True)
+class MarkRange:
+    """Where what the passes note of a chunk's fiblets lies in its buffer: ``visibility_bits.glsl`` has the same."""
+
+    begin: int  # bytes
+    end: int
+    lengths: int
+    slots: int  # calls that draw a class of a round
+
+    @classmethod
+    def at(cls, begin: int, n_fiblets: int, slot_groups: int) -> MarkRange:
+        """Lay one out that begins so many bytes into the buffer."""
+        words = -(-n_fiblets // 32)
+        slots = max(-(-words // (GROUP_WORDS * slot_groups)), 1)
+        lengths = begin + 4 * (VISIBILITY_WORDS * words + CLASSES * -(-n_fiblets // LIST_SHARE))
+        end = lengths + ROUNDS * CLASSES * (4 + slots * ARGUMENT_BYTES)
+        return cls(begin, end + -end % RANGE_BYTES, lengths, slots)
+
+    def length_at(self, number: int, part: int = 0) -> int:
+        """Byte of the length of a class's list in a round."""
+        return self.lengths + 4 * (number * CLASSES + part)
+
+    def arguments_at(self, number: int, part: int) -> int:
+        """Byte of a class's arguments in a round."""
+        first = self.lengths + 4 * ROUNDS * CLASSES
+        return first + (number * CLASSES + part) * self.slots * ARGUMENT_BYTES
+
+
 class ComputePipeline:
     """Draws chunks into a G-buffer.
 
@@ -90,11 +120,12 @@ class ComputePipeline:
     ----------
     ctx : moderngl.Context
     programs : Programs
-    n_fiblets : int
-        In all chunks.
-    n_chunks : int
+    sizes : sequence of int
+        Fiblets of each chunk.
     max_groups : int
         Work groups per axis of a dispatch.
+    most : int
+        Fiblets that one call may draw.
     alike : int, optional
         Fiblets of a set whose pictures these shall equal in every bit, as this is a part of it: which programs draw
         goes by their number, and rounding differs from program to program.
@@ -111,9 +142,9 @@ class ComputePipeline:
         self,
         ctx: moderngl.Context,
         programs: Programs,
-        n_fiblets: int,
-        n_chunks: int,
+        sizes: Sequence[int],
         max_groups: int,
+        most: int,
         alike: int | None = None,
     ) -> None:
         self._ctx = ctx
@@ -125,15 +156,17 @@ class ComputePipeline:
         self._shares = [(0, MAX_POINTS)]
         self._raster: GeometryPipeline | None = None
         self.planned = False
-        self._one_class = (n_fiblets if alike is None else alike) <= FEW
-        self._words = -(-n_fiblets // 32)
-        self._seed_words = -(-n_fiblets // SEED_OF)
-        self._round_arguments = n_chunks * CLASSES
-        self._list_base = self._words * VISIBILITY_WORDS
-        self._argument_base = self._list_base + self._words * CLASSES
-        size = self._argument_base + ROUNDS * self._round_arguments * ARGUMENT_BYTES // 4
+        self._n_fiblets = sum(sizes)
+        self._one_class = (self._n_fiblets if alike is None else alike) <= FEW
+        self._seed_words = -(-self._n_fiblets // SEED_OF)
+        self._slot_groups = max(min(most // (32 * GROUP_WORDS), max_groups), 1)
+        self._marks: list[MarkRange] = []
+        end = 0
+        for size in sizes:
+            self._marks.append(MarkRange.at(end, size, self._slot_groups))
+            end = self._marks[-1].end
         self._own: dict[str, moderngl.Buffer] = {}
-        self._own["visibility_bits"] = storage_buffer(ctx, np.zeros(size, np.uint32), "visibility_bits")
+        self._own["visibility_bits"] = storage_buffer(ctx, np.zeros(end // 4, np.uint32), "visibility_bits")
 
     @property
     def buffers(self) -> dict[str, Any]:
@@ -163,8 +196,6 @@ class ComputePipeline:
         target, occlusion, passes = request.target, request.occlusion, request.passes
         with passes.timed("clear"):
             clear = self._program("clear", self._int64)
-            count = ROUNDS * self._round_arguments * ARGUMENT_BYTES // 4
-            set_uniforms(clear, argument_base=self._argument_base, argument_count=count)
             dispatch(clear, target.size[1], self._max_groups)
         with passes.timed("cull"):
             features = self._planning(request)
@@ -205,7 +236,6 @@ class ComputePipeline:
         for name, index in IMAGES.items():
             if (texture := getattr(target, name)) is not None:
                 texture.bind_to_image(index, read=True, write=True)
-        self._own["visibility_bits"].bind_to_storage_buffer(STORAGE["visibility_bits"])
         if self._int64:
             self._bind_nearest(8 * target.size[0] * target.size[1])
 
@@ -222,13 +252,10 @@ class ComputePipeline:
         self._drop_raster()
         if self._software:
             self._shares = segment_shares(request.line_width, request.segment)
-        self._own["visibility_bits"].bind_to_storage_buffer(STORAGE["visibility_bits"])
         request.gather.bind_images()
         with request.passes.timed("gather"):
             if request.gather.own is None:
                 request.gather.target.clear(self._gl)
-            size = ROUNDS * self._round_arguments * ARGUMENT_BYTES
-            self._gl.clear_words(self._own["visibility_bits"], 4 * self._argument_base, size)
             features = self._planning(request)
             finish(self._run("cull", features, request, seed_words=0))
             self._barrier()
@@ -243,7 +270,7 @@ class ComputePipeline:
         from .geometry import GeometryPipeline
 
         if self._raster is None:
-            self._raster = GeometryPipeline(self._ctx, self._gl, self._programs, 32 * self._words)
+            self._raster = GeometryPipeline(self._ctx, self._gl, self._programs, self._n_fiblets)
         return self._raster
 
     def _bind_nearest(self, size: int) -> None:
@@ -263,8 +290,13 @@ class ComputePipeline:
             return
         with request.passes.timed("owners" if marking else "split"):
             split = self._program("split", ())
-            set_uniforms(split, marking=int(marking))
+            set_uniforms(split, marking=0)
             dispatch(split, request.target.size[1], self._max_groups)
+            for index, chunk in enumerate(request.chunks if marking else ()):
+                chunk.bind_block()
+                self.bind_marks(index)
+                set_uniforms(split, marking=1)
+                dispatch(split, request.target.size[1], self._max_groups)
             self._barrier()
 
     def _planning(self, request: DrawRequest) -> list[str]:
@@ -284,24 +316,15 @@ class ComputePipeline:
             | moderngl.FRAMEBUFFER_BARRIER_BIT
         )
 
-    def _set_round(self, program: moderngl.ComputeShader, number: int, **uniforms: object) -> int:
-        """Tell a program of which round it is, and where lists and arguments stand; return the word of the latter."""
-        at = self._argument_base + number * self._round_arguments * ARGUMENT_BYTES // 4
-        places = {"list_base": self._list_base, "list_length": self._words, "argument_base": at}
-        set_uniforms(program, drawing=number, **places, **uniforms)
-        return at
-
     def _plan(self, number: int, chunks: Sequence[Chunk], refined: bool = False) -> None:
-        """List what a round has to draw."""
+        """List what a round has to draw, and write the arguments of the calls that do."""
         plan = self._program("plan", ())
-        self._set_round(plan, number, refined=int(refined))
-        for chunk in chunks:
+        set_uniforms(plan, drawing=number, refined=int(refined), slot_groups=self._slot_groups)
+        for index, chunk in enumerate(chunks):
             chunk.bind_block()
+            self.bind_marks(index)
+            set_uniforms(plan, slots=self._marks[index].slots)
             dispatch(plan, -(-chunk.n_fiblets // (32 * GROUP_SIZE)), self._max_groups)
-        self._barrier()
-        arguments = self._program("arguments", ())
-        self._set_round(arguments, number, list_count=self._round_arguments, max_groups=self._max_groups)
-        arguments.run(1)
         self._barrier()
 
     def _round(
@@ -327,13 +350,13 @@ class ComputePipeline:
         classes = [(part, [*features, *self._int64]) for part, features in request.classes(one=self._one_class)]
         name = f"fiblets/compute/{stage}.comp"
         made = all(self._programs.has_compute(name, each) for _, each in classes)
-        size = self._round_arguments * ARGUMENT_BYTES  # 0 without fiblets
-        if made or not (READ_LISTS and self._software and size):
+        if made or not (READ_LISTS and self._software and self._marks):
             return classes
         self._ctx.memory_barrier(moderngl.BUFFER_UPDATE_BARRIER_BIT)
-        lists = self._own["visibility_bits"].read(size, offset=4 * self._argument_base + number * size)
-        lengths = np.frombuffer(lists, np.uint32).reshape(-1, CLASSES, ARGUMENT_BYTES // 4)[..., -1]
-        return [one for one in classes if one[0] == 0 or lengths[:, one[0]].any()]
+        held = self._own["visibility_bits"]
+        lengths = [held.read(4 * CLASSES, offset=of.length_at(number)) for of in self._marks]
+        longest = np.frombuffer(b"".join(lengths), np.uint32).reshape(-1, CLASSES).max(axis=0)
+        return [one for one in classes if one[0] == 0 or longest[one[0]] > 0]
 
     def _run_listed(
         self,
@@ -347,7 +370,7 @@ class ComputePipeline:
         """Run a program for each class of fiblets, chunk by chunk, of which each is bound once."""
         listed = self._own["visibility_bits"]
 
-        def tell(program: moderngl.ComputeShader) -> int:
+        def tell(program: moderngl.ComputeShader) -> None:
             request.kept.bind(program)
             if request.peel is not None:
                 request.peel.bind(program)
@@ -355,19 +378,22 @@ class ComputePipeline:
                 request.gather.bind(program)
             if number == TESTED and request.occlusion is not None:
                 request.occlusion.bind(program)
-            return 4 * self._set_round(program, number, **uniforms)
+            set_uniforms(program, drawing=number, **uniforms)
 
-        runs = [(program, part, tell(program) + ARGUMENT_BYTES * part) for program, part in parts]
-        for index in range(len(request.chunks)):
+        for program, _ in parts:
+            tell(program)
+        for index, marks in enumerate(self._marks):
             self._bind_chunk(index, request)
-            for program, part, at in runs:
+            for program, part in parts:
                 set_uniforms(program, part=part)  # which some have in common
-                place = at + index * CLASSES * ARGUMENT_BYTES
+                at = marks.arguments_at(number, part)
                 if pieces is None:
-                    program.run_indirect(listed, place)
+                    for slot in range(marks.slots):
+                        set_uniforms(program, first_group=slot * self._slot_groups)
+                        program.run_indirect(listed, at + slot * ARGUMENT_BYTES)
                     continue
-                entries = int.from_bytes(listed.read(4, offset=place + 12), sys.byteorder)
-                for _ in self._in_pieces(stage, program, -(-entries // GROUP_WORDS), request, pieces):
+                words = np.frombuffer(listed.read(marks.slots * ARGUMENT_BYTES, offset=at), np.uint32)
+                for _ in self._in_pieces(stage, program, int(words[::4].sum()), request, pieces):
                     yield
                     tell(program)
                     set_uniforms(program, part=part)
@@ -412,6 +438,7 @@ class ComputePipeline:
         tell()
         for index, chunk in enumerate(request.chunks):
             self._bind_chunk(index, request)
+            set_uniforms(program, slots=self._marks[index].slots)
             groups = -(-chunk.n_fiblets // (32 * GROUP_SIZE))
             if pieces is None:
                 dispatch(program, groups, self._max_groups)
@@ -423,7 +450,14 @@ class ComputePipeline:
 
     def _bind_chunk(self, index: int, request: DrawRequest) -> None:
         request.chunks[index].bind_storage()
+        self.bind_marks(index)
         request.kept.bind_chunk(index)
+
+    def bind_marks(self, chunk: int) -> None:
+        """Bind what the passes note of a chunk's fiblets (``visibility_bits.glsl``)."""
+        of = self._marks[chunk]
+        held = self._own["visibility_bits"]
+        held.bind_to_storage_buffer(STORAGE["visibility_bits"], of.begin, of.end - of.begin)
 
     def _in_pieces(
         self, stage: str, program: moderngl.ComputeShader, groups: int, request: DrawRequest, pieces: Pieces

@@ -7,9 +7,11 @@ from ...view import MAX_CLIP_PLANES
 from ..data.filter_textures import MASK_BITS
 
 __all__ = [
+    "CLASSES",
     "CONSTANTS",
     "GREATEST_SIDE",
     "GROUP_WORDS",
+    "LIST_SHARE",
     "SHARES",
     "TASK_FIBLETS",
     "TASK_ROUNDS",
@@ -18,8 +20,11 @@ __all__ = [
     "VISIBILITY_WORDS",
 ]
 
+CLASSES = 4
 GROUP_WORDS = 8
-VISIBILITY_WORDS = 15
+VISIBILITY_WORDS = 7
+LIST_SHARE = 8
+"""A list has room for one of so many of a chunk's fiblets."""
 
 SHARES = {"line": 60, "valued_line": 30, "cut_line": 30, "cut_valued_line": 20, "capsule": 12, "valued_capsule": 10,
           "cut_capsule": 9}
@@ -40,6 +45,8 @@ TASK_FIBLETS = THREADS * TASK_ROUNDS
 CONSTANTS = {
     "group_size": GROUP_SIZE,
     "group_words": GROUP_WORDS,
+    "classes": CLASSES,
+    "list_share": LIST_SHARE,
     "visibility_words": VISIBILITY_WORDS,
     "mask_bits": MASK_BITS,
     "max_clip_planes": MAX_CLIP_PLANES,
