@@ -39,7 +39,7 @@ EXCLUSIVE = (
     VALUES,
     PAINTS,
     INTEGRATORS,
-    ("CULL_PYRAMID", "CULL_COVERAGE"),
+    ("CULL_PYRAMID", "CULL_COVERAGE", "CLUSTERS"),
     ("ONE_SEGMENT", "CLIPPING"),
     ("ONE_SEGMENT", "LEVEL_OF_DETAIL"),
     ("GATHER", "PEEL", "EDGES"),
@@ -275,7 +275,8 @@ def _fiblets():
             never=("TEXTURE_DATA", "PER_PRIMITIVE", "INT64_ATOMICS", *(() if gathers else GATHERED)),
             needs=classes,
         )
-    for stage in ("clear", "count", "cull", "measure", "occlude", "plan", "query", "refine"):
+    choosing = "choose_predicted", "choose_rest", "clusters"
+    for stage in (*choosing, "clear", "count", "cull", "measure", "occlude", "plan", "query", "refine"):
         needs = FREE if stage == "query" else {**FREE, "REGION_FIELDS": (("CLIP_REGION",),), "TUBES": ()}
         kinds[f"compute {stage}"] = Kind(
             {"comp": f"fiblets/compute/{stage}.comp"}, never=("TEXTURE_DATA", "INT64_ATOMICS"), needs=needs

@@ -15,12 +15,8 @@ def kind(name):
 
 def visibility_words(renderer):
     """(kinds, words) of all chunks."""
-    pipeline, kinds = renderer._pipeline, CONSTANTS["visibility_words"]
-    buffer, found = pipeline.buffers["visibility_bits"], []
-    for chunk, marks in zip(renderer._chunks, pipeline._marks, strict=True):
-        words = buffer.read(4 * kinds * -(-chunk.n_fiblets // 32), offset=marks.begin)
-        found.append(np.frombuffer(words, "<u4").reshape(kinds, -1))
-    return np.concatenate(found, axis=1)
+    pipeline = renderer._pipeline
+    return np.concatenate([pipeline.read_marks(chunk) for chunk in range(len(renderer._chunks))], axis=1)
 
 
 def bits(words, n_fiblets):

@@ -200,6 +200,16 @@ CHANGED = {
         buffers="occlusion",
         modules="engine.culling.pyramid",
     ),
+    "culling: two-phase, clusters": What(
+        ran="""
+            fiblets/compute/choose_predicted.comp, fiblets/compute/choose_rest.comp, fiblets/compute/clusters.comp,
+            fiblets/compute/refine.comp, culling/pyramid_reduce.frag, screen/triangle.vert
+        """,
+        features="CLUSTERS",
+        passes="predicted, last picture, occlusion, pyramid, refine",
+        buffers="clusters, occlusion",
+        modules="engine.culling.pyramid, engine.fiblets.data.clusters",
+    ),
     "culling: coverage": What(
         ran="""
             fiblets/compute/occlude.comp, culling/coverage_dilate.frag, culling/coverage_grid.frag,

@@ -1,27 +1,18 @@
 // Lists the fiblets that a round of drawing has to draw, class by class, and writes the arguments of the dispatches that do.
 //
 // One invocation per 32 fiblets. A work group claims its places in each list with one atomic. Lists come out in any order:
-// no pass depends on it. Arguments only grow: who claims places sees to it that there are groups for them.
+// no pass depends on it.
 
 #version 430
 layout(local_size_x = {{ group_size }}) in;
 
 #include "frame/groups.glsl"
 #include "fiblets/compute/visibility_bits.glsl"
+#include "fiblets/compute/claims.glsl"
 
 uniform uint refined;      // 1: the rest are those that refine.comp kept
-uniform uint slots;        // dispatches of a class
-uniform uint slot_groups;  // work groups of one
-
 shared uint counts[CLASSES];
 shared uint starts[CLASSES];
-
-void want_groups(uint which, uint first, uint end) {
-    uint at = arguments_at(which, slots);
-    for (uint slot = first / slot_groups; slot * slot_groups < end; ++slot) {
-        atomicMax(visibility_bits[at + 4u * slot], min(end - slot * slot_groups, slot_groups));
-    }
-}
 
 void main() {
     uint word = group_index() * gl_WorkGroupSize.x + gl_LocalInvocationIndex, round = 0u, low = 0u, high = 0u;
@@ -44,10 +35,7 @@ void main() {
     barrier();
     if (gl_LocalInvocationIndex < CLASSES && counts[gl_LocalInvocationIndex] > 0u) {
         uint which = gl_LocalInvocationIndex;
-        uint start = atomicAdd(visibility_bits[length_at(which)], counts[which]), end = start + counts[which];
-        starts[which] = start;
-        if (end <= list_room()) want_groups(which, start / {{ group_size }}u, (end + {{ group_size }}u - 1u) / {{ group_size }}u);
-        else if (start <= list_room()) want_groups(which, 0u, (chunk_words() + {{ group_words }}u - 1u) / {{ group_words }}u);
+        starts[which] = claim(which, counts[which], {{ group_size }}u);
     }
     barrier();
     for (uint which = 0u; which < CLASSES; ++which) {

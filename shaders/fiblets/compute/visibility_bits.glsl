@@ -16,12 +16,12 @@
 
 layout(std430, binding = {{ storage_visibility_bits }}) buffer VisibilityBits { uint visibility_bits[]; };
 
-const uint KINDS = {{ visibility_words }}u, CLASSES = {{ classes }}u, ROUNDS = 6u;
+const uint KINDS = {{ visibility_words }}u, CLASSES = {{ classes }}u, ROUNDS = {{ rounds }}u;
 const uint ROUND_LOW = 0u, ROUND_HIGH = 1u, CLASS_LOW = 2u, CLASS_HIGH = 3u, CANDIDATES = 4u, SEEN = 5u, TIED = 6u, KEPT = TIED;
 
 // What a pass works on: the plan's three rounds, candidates, fiblets whose pixels are to be written again, or those of the
-// rest that refine.comp tests. pvfiblets/engine/fiblets/pipelines/compute.py numbers them the same.
-const uint DRAW_SEEN = 0u, DRAW_PREDICTED = 1u, DRAW_REST = 2u, DRAW_CANDIDATES = 3u, DRAW_TIED = 4u, TEST_REST = 5u;
+// rest that refine.comp tests. Two more list clusters. pvfiblets/engine/fiblets/pipelines/compute.py numbers them the same.
+const uint DRAW_SEEN = 0u, DRAW_PREDICTED = 1u, DRAW_REST = 2u, DRAW_CANDIDATES = 3u, DRAW_TIED = 4u, TEST_REST = 5u;  // 6, 7: of clusters
 
 uniform uint drawing;          // which of these
 

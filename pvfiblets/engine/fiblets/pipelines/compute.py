@@ -43,18 +43,19 @@ from typing import TYPE_CHECKING, Any
 
 import moderngl
 import numpy as np
+import numpy.typing as npt
 
 from ....codec.layout import MAX_POINTS
 from ...errors import EngineError
-from ...gl.bindings import IMAGES, STORAGE
+from ...gl.bindings import CLUSTER_STORAGE, CULLING, IMAGES, STORAGE
 from ...gl.gl_version import version_of
 from ...gl.moderngl_extras import GLExtras
 from ...gl.passes import GROUP_SIZE, dispatch, is_software
 from ...gl.program_uniforms import set_uniforms
 from ...gl.shaders import EXTENDED, Programs
 from ...pieces import Pieces, finish
-from ..data.chunks import Chunk, storage_buffer
-from .constants import CLASSES, GROUP_WORDS, LIST_SHARE, VISIBILITY_WORDS
+from ..data.chunks import CLUSTER, Chunk, storage_buffer
+from .constants import CLASSES, GROUP_WORDS, LIST_SHARE, ROUNDS, VISIBILITY_WORDS
 from .draw_request import DrawRequest
 from .segment_shares import segment_shares
 
@@ -63,10 +64,9 @@ if TYPE_CHECKING:
 
 __all__ = ["CLASSES", "ComputePipeline"]
 
-ROUNDS = 6
 ARGUMENT_BYTES = 16
 RANGE_BYTES = 256  # no driver aligns ranges of storage buffers to more
-SEEN, PREDICTED, REST, CANDIDATES, TIED, TESTED = range(ROUNDS)
+SEEN, PREDICTED, REST, CANDIDATES, TIED, TESTED, LAST_LEFT, NOW_LEFT = range(ROUNDS)
 
 
 FEW = 2048
@@ -91,6 +91,8 @@ class MarkRange:
 
     begin: int  # bytes
     end: int
+    words: int  # of a kind of bits
+    room: int  # fiblets of a list
     lengths: int
     slots: int  # calls that draw a class of a round
 
@@ -99,9 +101,10 @@ class MarkRange:
         """Lay one out that begins so many bytes into the buffer."""
         words = -(-n_fiblets // 32)
         slots = max(-(-words // (GROUP_WORDS * slot_groups)), 1)
-        lengths = begin + 4 * (VISIBILITY_WORDS * words + CLASSES * -(-n_fiblets // LIST_SHARE))
+        room = -(-n_fiblets // LIST_SHARE)
+        lengths = begin + 4 * (VISIBILITY_WORDS * words + CLASSES * room)
         end = lengths + ROUNDS * CLASSES * (4 + slots * ARGUMENT_BYTES)
-        return cls(begin, end + -end % RANGE_BYTES, lengths, slots)
+        return cls(begin, end + -end % RANGE_BYTES, words, room, lengths, slots)
 
     def length_at(self, number: int, part: int = 0) -> int:
         """Byte of the length of a class's list in a round."""
@@ -168,6 +171,24 @@ class ComputePipeline:
         self._own: dict[str, moderngl.Buffer] = {}
         self._own["visibility_bits"] = storage_buffer(ctx, np.zeros(end // 4, np.uint32), "visibility_bits")
 
+    def list_lengths(self) -> npt.NDArray[np.uint32]:
+        """Return how long the lists of the last picture were, by chunk, round and class; it waits for the GPU."""
+        self._ctx.memory_barrier(moderngl.BUFFER_UPDATE_BARRIER_BIT)
+        held, size = self._own["visibility_bits"], 4 * ROUNDS * CLASSES
+        words = b"".join(held.read(size, offset=of.lengths) for of in self._marks)
+        return np.frombuffer(words, np.uint32).reshape(-1, ROUNDS, CLASSES)
+
+    def list_room(self, chunk: int) -> int:
+        """Return how many fiblets fit into a chunk's list; longer rounds go through the bits."""
+        return self._marks[chunk].room
+
+    def read_marks(self, chunk: int) -> npt.NDArray[np.uint32]:
+        """Return a chunk's bits, by kind and 32 fiblets (``visibility_bits.glsl``); it waits for the GPU."""
+        of, kinds = self._marks[chunk], VISIBILITY_WORDS
+        self._ctx.memory_barrier(moderngl.BUFFER_UPDATE_BARRIER_BIT)
+        words = self._own["visibility_bits"].read(4 * kinds * of.words, offset=of.begin)
+        return np.frombuffer(words, np.uint32).reshape(kinds, -1)
+
     @property
     def buffers(self) -> dict[str, Any]:
         """``visibility_bits`` (``visibility_bits.glsl``); ``nearest``: a word a pixel, with 64-bit atomics.
@@ -199,8 +220,11 @@ class ComputePipeline:
             dispatch(clear, target.size[1], self._max_groups)
         with passes.timed("cull"):
             features = self._planning(request)
-            predicting = occlusion is not None and occlusion.predicts
-            if predicting and occlusion is not None:
+            clustered = self._clustered(request)
+            predicting = occlusion is not None and occlusion.predicts and not clustered
+            if clustered:
+                features.append("CLUSTERS")
+            elif predicting and occlusion is not None:
                 features.append(occlusion.feature)
             yield from self._run("cull", features, request, pieces, looks=predicting, seed_words=seed)
             self._barrier()
@@ -212,12 +236,17 @@ class ComputePipeline:
         if occlusion is not None and occlusion.halfway:
             if occlusion.predicts:
                 with passes.timed("predicted"):
+                    if clustered:
+                        yield from self._choose("choose_predicted", LAST_LEFT, request, pieces)
                     yield from self._round("depth", PREDICTED, request, pieces)
             self._split(request, marking=False)
             with passes.timed("pyramid"):
                 occlusion.build(target)
             with passes.timed("occlusion"):
-                yield from self._test("occlude", request, pieces)
+                if clustered:
+                    yield from self._choose("choose_rest", NOW_LEFT, request, pieces)
+                else:
+                    yield from self._test("occlude", request, pieces)
             with passes.timed("refine"):
                 yield from self._refine(request, pieces)
         with passes.timed("depth"):
@@ -376,7 +405,7 @@ class ComputePipeline:
                 request.peel.bind(program)
             if request.gather is not None:
                 request.gather.bind(program)
-            if number == TESTED and request.occlusion is not None:
+            if number in (TESTED, LAST_LEFT, NOW_LEFT) and request.occlusion is not None:
                 request.occlusion.bind(program)
             set_uniforms(program, drawing=number, **uniforms)
 
@@ -384,6 +413,7 @@ class ComputePipeline:
             tell(program)
         for index, marks in enumerate(self._marks):
             self._bind_chunk(index, request)
+            self._bind_clusters(number, request.chunks[index])
             for program, part in parts:
                 set_uniforms(program, part=part)  # which some have in common
                 at = marks.arguments_at(number, part)
@@ -398,6 +428,7 @@ class ComputePipeline:
                     tell(program)
                     set_uniforms(program, part=part)
                     self._bind_chunk(index, request)
+                    self._bind_clusters(number, request.chunks[index])
 
     def _test(self, stage: str, request: DrawRequest, pieces: Pieces | None) -> Generator[None, None, None]:
         """Run a pass over all fiblets that looks at the occlusion's texture."""
@@ -414,6 +445,38 @@ class ComputePipeline:
         self._plan(TESTED, request.chunks)
         parts = [(program, part) for part, _ in request.classes(one=self._one_class)]
         yield from self._run_listed("refine", parts, TESTED, request, pieces)
+        self._barrier()
+
+    @staticmethod
+    def _clustered(request: DrawRequest) -> bool:
+        """Whether the chunks have clusters, and there are depth pyramids to test them against."""
+        halfway = request.occlusion is not None and request.occlusion.halfway
+        return halfway and all("clusters" in chunk.buffers for chunk in request.chunks)
+
+    @staticmethod
+    def _bind_clusters(number: int, chunk: Chunk) -> None:
+        if number in (LAST_LEFT, NOW_LEFT):
+            chunk.buffers["clusters"].bind_to_storage_buffer(CLUSTER_STORAGE["clusters"])
+
+    def _choose(
+        self, stage: str, number: int, request: DrawRequest, pieces: Pieces | None
+    ) -> Generator[None, None, None]:
+        """Put the fiblets of clusters that a pyramid does not hide into a round, as a stage wants them."""
+        assert request.occlusion is not None
+        clusters = self._program("clusters", [*request.decoding, *request.tubes, request.occlusion.feature])
+        request.occlusion.bind(clusters)
+        if number == LAST_LEFT:
+            set_uniforms(clusters, pyramid=CULLING["last"])
+        set_uniforms(clusters, drawing=number, slot_groups=self._slot_groups)
+        for index, chunk in enumerate(request.chunks):
+            chunk.bind_block()
+            self.bind_marks(index)
+            self._bind_clusters(number, chunk)
+            set_uniforms(clusters, slots=self._marks[index].slots)
+            dispatch(clusters, -(-chunk.n_fiblets // (CLUSTER * GROUP_SIZE)), self._max_groups)
+        self._barrier()
+        program = self._program(stage, [*self._planning(request), request.occlusion.feature])
+        yield from self._run_listed(stage, [(program, 0)], number, request, pieces)
         self._barrier()
 
     def _run(

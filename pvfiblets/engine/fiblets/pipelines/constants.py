@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ...gl.passes import GROUP_SIZE
 from ...view import MAX_CLIP_PLANES
+from ..data.chunks import CLUSTER, CLUSTER_BIAS, CLUSTER_STEP
 from ..data.filter_textures import MASK_BITS
 
 __all__ = [
@@ -12,6 +13,7 @@ __all__ = [
     "GREATEST_SIDE",
     "GROUP_WORDS",
     "LIST_SHARE",
+    "ROUNDS",
     "SHARES",
     "TASK_FIBLETS",
     "TASK_ROUNDS",
@@ -21,6 +23,8 @@ __all__ = [
 ]
 
 CLASSES = 4
+ROUNDS = 8
+GROUP_CLUSTERS = 4
 GROUP_WORDS = 8
 VISIBILITY_WORDS = 7
 LIST_SHARE = 8
@@ -46,6 +50,11 @@ CONSTANTS = {
     "group_size": GROUP_SIZE,
     "group_words": GROUP_WORDS,
     "classes": CLASSES,
+    "rounds": ROUNDS,
+    "group_clusters": GROUP_CLUSTERS,
+    "cluster_size": CLUSTER,
+    "cluster_bias": CLUSTER_BIAS,
+    "cluster_step": CLUSTER_STEP,
     "list_share": LIST_SHARE,
     "visibility_words": VISIBILITY_WORDS,
     "mask_bits": MASK_BITS,

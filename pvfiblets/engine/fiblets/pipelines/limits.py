@@ -45,6 +45,8 @@ class Limits:
         Of one buffer of records, and with that of one call (:mod:`pvfiblets.engine.gl.work_limits`).
     call : int
         Fiblets of one call, where a buffer has several.
+    clustered : bool
+        Whether chunks have clusters (:mod:`pvfiblets.engine.fiblets.data.clusters`).
     """
 
     buffer_bytes: int
@@ -53,6 +55,7 @@ class Limits:
     marked_by: str
     fiblets: int
     call: int = LARGEST
+    clustered: bool = False
 
     def visibility_bytes(self, n_fiblets: int) -> int:
         """Bytes of those marks."""
