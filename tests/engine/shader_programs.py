@@ -281,6 +281,7 @@ def _fiblets():
         kinds[f"compute {stage}"] = Kind(
             {"comp": f"fiblets/compute/{stage}.comp"}, never=("TEXTURE_DATA", "INT64_ATOMICS"), needs=needs
         )
+    kinds["pyramid"] = Kind({"comp": "culling/pyramid_reduce.comp"})
     for stage in ("clear", "depth", "split"):
         kinds[f"compute {stage}, 64 bits"] = Kind(
             {"comp": f"fiblets/compute/{stage}.comp"},

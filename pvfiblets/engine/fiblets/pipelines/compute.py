@@ -242,6 +242,7 @@ class ComputePipeline:
             self._split(request, marking=False)
             with passes.timed("pyramid"):
                 occlusion.build(target)
+                self._bind(request)  # it takes image units
             with passes.timed("occlusion"):
                 if clustered:
                     yield from self._choose("choose_rest", NOW_LEFT, request, pieces)
