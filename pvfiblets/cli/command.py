@@ -142,7 +142,7 @@ def make_parser() -> argparse.ArgumentParser:
     report.add_argument(
         "--only", nargs="+", metavar="STUDY",
         help="codec, decode, tractograms, pixels, culling, tubes, volumes, halos, features, antialias, "
-        "translucency, query, stability; of speed alone, not among all studies: speed, lines, reading",
+        "translucency, query, stability; of speed alone, not among all studies: speed, lines, reading, work",
     )  # fmt: skip
     report.add_argument(
         "--data", nargs="+", default=[], metavar="FILE",
