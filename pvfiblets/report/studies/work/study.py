@@ -44,8 +44,8 @@ class WorkStudy:
         "before, from outside.",
         "Fiblets are counted, and the same on every driver; so are calls, but for pyramids, which software draws and "
         "cards compute by two dispatches, and for what cards with 64-bit atomics leave out. Bytes follow from the "
-        "layouts, each read or written once. *H100*: these bytes at 3.35 TB/s and 5 µs a dispatch, an estimate. *here*: milli"
-        "seconds of this machine. *lanes*: the share of lanes that have a fiblet, in subgroups of 8, 32 and 64.",
+        "layouts, each read or written once. *H100*: these bytes at 3.35 TB/s and 5 µs a dispatch, an estimate. "
+        "*here*: this machine. *lanes*: the share of lanes that have a fiblet, in subgroups of 8, 32 and 64.",
     )
 
     def run(self, options: Options) -> Iterator[Record]:
