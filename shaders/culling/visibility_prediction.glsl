@@ -5,14 +5,19 @@
 // first, the depth so far would be full of them. Points of a fiblet are compared with the last picture's depth pyramid as
 // if the camera had not moved, at a level coarse enough to take in what lies a little behind. Whether the prediction is good
 // decides how long a picture takes, not what it shows.
+//
+// A square with an empty pixel hides nothing. There a finer level decides: else all that lies behind the silhouette would be drawn.
 
 #include "culling/bounds.glsl"
 #include "frame/project.glsl"
 
 const int PREDICTION_POINTS = 5;
+const int OPEN_FINER = 3;      // levels
 
 uniform usampler2D last_pyramid;
 uniform int prediction_level;  // of the pyramid; -1: there is no last picture
+
+uint last_farthest(ivec2 pixel, int level) { return texelFetch(last_pyramid, pixel >> (level + 1), level).x; }
 
 bool predicted_visible(Capsule c) {
     if (prediction_level < 0) return false;
@@ -28,8 +33,9 @@ bool predicted_visible(Capsule c) {
 #if FEATURE_TUBES
         s.z = to_window(c - front).z;
 #endif
-        ivec2 at = ivec2(clamp(s.xy, vec2(0.0), viewport - 1.0)) >> (prediction_level + 1);
-        any = any || s.z <= float(texelFetch(last_pyramid, at, prediction_level).x) / 4294967296.0;
+        ivec2 at = ivec2(clamp(s.xy, vec2(0.0), viewport - 1.0));
+        uint key = last_farthest(at, prediction_level), finer = last_farthest(at, max(prediction_level - OPEN_FINER, 0));
+        any = any || s.z <= float(key == 0xFFFFFFFFu ? finer : key) / 4294967296.0;
     }
     return any;
 }

@@ -40,7 +40,7 @@ EXCLUSIVE = (
     VALUES,
     COLOURS,
     INTEGRATORS,
-    ("CULL_PYRAMID", "CULL_COVERAGE"),
+    ("CULL_PYRAMID", "CULL_COVERAGE", "CLUSTERS"),
     ("ONE_SEGMENT", "CLIPPING"),
     ("ONE_SEGMENT", "LEVEL_OF_DETAIL"),
     ("GATHER", "PEEL", "EDGES"),
@@ -278,11 +278,13 @@ def _fiblets():
             never=("TEXTURE_DATA", "PER_PRIMITIVE", "INT64_ATOMICS", *(() if gathers else GATHERED)),
             needs=classes,
         )
-    for stage in ("arguments", "clear", "count", "cull", "measure", "occlude", "plan", "query", "refine"):
+    choosing = "choose_predicted", "choose_rest", "clusters"
+    for stage in (*choosing, "clear", "count", "cull", "measure", "occlude", "plan", "query", "refine"):
         needs = FREE if stage == "query" else {**FREE, "REGION_FIELDS": (("CLIP_REGION",),), "TUBES": ()}
         kinds[f"compute {stage}"] = Kind(
             {"comp": f"fiblets/compute/{stage}.comp"}, never=("TEXTURE_DATA", "INT64_ATOMICS"), needs=needs
         )
+    kinds["pyramid"] = Kind({"comp": "culling/pyramid_reduce.comp"})
     for stage in ("clear", "depth", "split"):
         kinds[f"compute {stage}, 64 bits"] = Kind(
             {"comp": f"fiblets/compute/{stage}.comp"},

@@ -94,7 +94,7 @@ def test_fewer_programs_are_compiled(gl, fabricate, random_lines, camera, monkey
         renderer.render(View(SIZE, camera(SIZE)), FibletStyle())
         compiled[few] = len(renderer._programs._programs)
         renderer.release()
-    assert compiled == {0: 4 + 3 * 3, 10**6: 4 + 3}
+    assert compiled == {0: 3 + 3 * 3, 10**6: 3 + 3}
 
 
 def test_software_compiles_what_draws_something(gl, fabricate, random_lines, camera, monkeypatch):
@@ -114,5 +114,5 @@ def test_software_compiles_what_draws_something(gl, fabricate, random_lines, cam
     for one in renderers:
         one.release()
     (every, some), later = counts
-    assert every == 4 + 3 * 3
+    assert every == 3 + 3 * 3
     assert some < later[1] <= later[0] == every

@@ -9,11 +9,12 @@ from pvfiblets.codec import layout
 from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View
 from pvfiblets.engine.fiblets.data import upload
 from pvfiblets.engine.fiblets.data.chunks import CHUNK_BLOCK, plan_chunks, storage_buffer
-from pvfiblets.engine.fiblets.pipelines import CONSTANTS, limits
+from pvfiblets.engine.fiblets.pipelines import CONSTANTS, compute, limits
 from pvfiblets.engine.fiblets.pipelines.compute import ARGUMENT_BYTES, CLASSES, ROUNDS
 from pvfiblets.engine.gl import passes, shaders
 from pvfiblets.engine.gl.bindings import BLOCKS
 from pvfiblets.engine.gl.shaders import assemble
+from pvfiblets.engine.gl.work_limits import WorkLimits
 from tests.drivers import MESH
 
 from .imagined import imagined
@@ -148,10 +149,13 @@ def test_more_groups_than_an_axis_has_are_folded(gl):
 
 
 def indirect(made):
-    """(n, 4) arguments of all indirect dispatches: groups along x, y and z, length of the list."""
-    buffer = made._pipeline.buffers["visibility_bits"]
-    size = ROUNDS * len(made._chunks) * CLASSES * ARGUMENT_BYTES
-    return np.frombuffer(buffer.read(size, offset=4 * made._pipeline._argument_base), "<u4").reshape(-1, 4)
+    """Of each chunk, (rounds * classes, slots, 4) arguments of indirect dispatches: groups along x, y and z, and 0."""
+    buffer, found = made._pipeline.buffers["visibility_bits"], []
+    for marks in made._pipeline._marks:
+        size = ROUNDS * CLASSES * marks.slots * ARGUMENT_BYTES
+        words = np.frombuffer(buffer.read(size, offset=marks.arguments_at(0, 0)), "<u4")
+        found.append(words.reshape(-1, marks.slots, 4))
+    return found
 
 
 @pytest.fixture(scope="module")
@@ -186,10 +190,41 @@ def test_pictures_do_not_depend_on_limits(gl, several_pages, camera, name, culli
         view = View(SIZE, camera(SIZE, eye=eye))
         assert_same(read(pieces.render(view, style)), read(whole.render(view, style)))
     if name == "compute":
-        assert (indirect(pieces)[:, 1] > 1).any(), "lists too should be folded"
-        assert (indirect(whole)[:, 1] <= 1).all()
+        assert any((slots[:, 1, 0] > 0).any() for slots in indirect(pieces)), "lists too should be cut"
+        assert all(slots[..., 0].max() <= 16 for slots in indirect(pieces))
+        assert [slots.shape[1] for slots in indirect(whole)] == [1]
     whole.release()
     pieces.release()
+
+
+def test_lists_are_cut_into_calls_of_few_fiblets(gl, several_pages, camera, monkeypatch):
+    """One chunk, drawn by many calls: no picture shows it, and no call has more fiblets than it may have."""
+    pictures = []
+    for most in (1 << 31, 1000):
+        monkeypatch.setattr(WorkLimits, "of", classmethod(lambda cls, ctx, most=most: cls(1 << 20, 1 << 62, most)))
+        made = FibletRenderer(gl, several_pages)
+        views = [View(SIZE, camera(SIZE, eye=eye)) for eye in ((0, -260, 60), (40, -250, 60), (0, -60, 10))]
+        pictures.append([read(made.render(view, FibletStyle())) for view in views])
+        slots = indirect(made)[0]
+        assert len(made._chunks) == 1
+        assert slots.shape[1] == (1 if most > 1000 else -(-made._fiblets.n_fiblets // 768))
+        made.release()
+    assert slots[..., 0].max() == 1000 // 256
+    for one, other in zip(*pictures, strict=True):
+        assert_same(one, other)
+
+
+@pytest.mark.parametrize("share", [8, 100_000])
+def test_pictures_do_not_depend_on_the_room_of_lists(gl, several_pages, camera, monkeypatch, share):
+    """Where fiblets do not fit into a list, groups go through the bits."""
+    view, style = View(SIZE, camera(SIZE, eye=(0, -260, 60))), FibletStyle()
+    expected = draw(gl, several_pages, view, style, culling=None)
+    monkeypatch.setitem(CONSTANTS, "list_share", share)
+    monkeypatch.setattr(compute, "LIST_SHARE", share)
+    made = FibletRenderer(gl, several_pages)
+    made.render(View(SIZE, camera(SIZE, eye=(40, -250, 60))), style)
+    assert_same(read(made.render(view, style)), expected)
+    made.release()
 
 
 def test_one_work_group_an_axis_less_is_an_error(gl, several_pages, camera):

@@ -6,6 +6,7 @@ import pytest
 from pvfiblets import Streamlines, compress
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
 from pvfiblets.engine.culling import DepthPyramid
+from pvfiblets.engine.fiblets.pipelines import compute
 from pvfiblets.engine.gl import shaders
 from pvfiblets.synthetic import brain_streamlines
 
@@ -329,3 +330,26 @@ def test_a_line_seen_from_its_end(both, fabricate, camera, monkeypatch, honest):
     assert (pictures[0][1].ids[pictures[0][1].drawn][:, 0] < len(wall)).all()
     assert (pictures[1][1].ids[pictures[1][1].drawn][:, 0] >= len(wall)).any()
     assert bool(differences(*pictures[1])) is not honest
+
+
+@pytest.mark.parametrize("several", [1, 4])
+def test_the_first_picture_begins_with_an_even_share(both, onion, camera, monkeypatch, several):
+    """Nothing is known of a last picture; a share of all is drawn first, and hides much of the others."""
+    monkeypatch.setattr(compute, "SEED_OF", onion.n_fiblets // several)
+    pair, size = both(onion), (80, 60)
+    pair.draw(View(size, camera(size, **orbit(0.0, 110.0, 30.0))), FibletStyle(3.0))
+    everything, first = planned(pair.whole), planned(pair.culled, unseen=False)
+    assert everything.sum() == onion.n_fiblets
+    assert first.sum() == pytest.approx(onion.n_fiblets / 8 / several, rel=0.3)
+    assert planned(pair.culled).sum() < (0.6 if several == 1 else 0.85) * onion.n_fiblets
+    pair.draw(View(size, camera(size, **orbit(90.0, 110.0, 30.0))), FibletStyle(3.0))
+    assert planned(pair.culled, unseen=False).sum() < first.sum()
+
+
+def test_what_an_empty_square_of_the_last_picture_shows_is_not_all_drawn_early(gl, camera):
+    """Behind a silhouette, finer squares predict: of a ball of lines most is hidden, and is not drawn."""
+    renderer = FibletRenderer(gl, shells(0.45), culling="two-phase")
+    for angle in (0.0, 1.14, 2.28):
+        renderer.render(View((400, 300), camera((400, 300), **orbit(angle, 110.0, 30.0))), FibletStyle(3.0))
+    assert planned(renderer).sum() < 3.5 * owning(renderer).sum()
+    renderer.release()

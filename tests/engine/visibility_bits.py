@@ -7,20 +7,16 @@ import numpy as np
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS
 from pvfiblets.engine.gl.shaders import assemble
 
-CLASSES = 4
 
-
-def column(name):
-    """Number of a word of ``visibility_bits.glsl`` by its name there."""
-    return int(re.search(rf"\b{name} = (\d+)u", assemble("fiblets/compute/clear.comp", (), CONSTANTS))[1])
+def kind(name):
+    """Number of a kind of bits by its name in ``visibility_bits.glsl``."""
+    return int(re.search(rf"\b{name} = (\d+)u", assemble("fiblets/compute/plan.comp", (), CONSTANTS))[1])
 
 
 def visibility_words(renderer):
-    """(n, words) of each 32 fiblets."""
-    buffer = renderer._pipeline.buffers["visibility_bits"]
-    words = CONSTANTS["visibility_words"]
-    count = -(-renderer._fiblets.n_fiblets // 32)
-    return np.frombuffer(buffer.read(4 * words * count), "<u4").reshape(count, words)
+    """(kinds, words) of all chunks."""
+    pipeline = renderer._pipeline
+    return np.concatenate([pipeline.read_marks(chunk) for chunk in range(len(renderer._chunks))], axis=1)
 
 
 def bits(words, n_fiblets):
@@ -31,10 +27,11 @@ def bits(words, n_fiblets):
 def planned(renderer, *, seen=True, unseen=True):
     """(n_fiblets,) bool: drawn in the last picture, those seen in the one before and those not seen in it."""
     words = visibility_words(renderer)
-    columns = [*(range(CLASSES) if seen else ()), *(range(CLASSES, column("CANDIDATES")) if unseen else ())]
-    return bits(np.bitwise_or.reduce(words[:, columns], axis=1), renderer._fiblets.n_fiblets)
+    low, high = words[kind("ROUND_LOW")], words[kind("ROUND_HIGH")]
+    found = (low & ~high if seen else low & 0) | (high if unseen else high & 0)
+    return bits(found, renderer._fiblets.n_fiblets)
 
 
 def owning(renderer):
     """(n_fiblets,) bool: may own a pixel of the last picture."""
-    return bits(visibility_words(renderer)[:, column("SEEN")], renderer._fiblets.n_fiblets)
+    return bits(visibility_words(renderer)[kind("SEEN")], renderer._fiblets.n_fiblets)

@@ -9,7 +9,7 @@ MEASURING = "codec.arrays.decode_arrays, codec.decompress, codec.arrays.frame_ar
 
 # The hardware's rasteriser in place of compute shaders.
 HARDWARE = """
-    -fiblets/compute/arguments.comp, -fiblets/compute/clear.comp, -fiblets/compute/cull.comp,
+    -fiblets/compute/clear.comp, -fiblets/compute/cull.comp,
     -fiblets/compute/depth.comp, -fiblets/compute/resolve_owner.comp, -fiblets/compute/plan.comp,
     -fiblets/compute/resolve_ties.comp, fiblets/hardware_raster/survivors.vert
 """
@@ -199,6 +199,16 @@ CHANGED = {
         passes="predicted, last picture, occlusion, pyramid, refine",
         buffers="occlusion",
         modules="engine.culling.pyramid",
+    ),
+    "culling: two-phase, clusters": What(
+        ran="""
+            fiblets/compute/choose_predicted.comp, fiblets/compute/choose_rest.comp, fiblets/compute/clusters.comp,
+            fiblets/compute/refine.comp, culling/pyramid_reduce.frag, screen/triangle.vert
+        """,
+        features="CLUSTERS",
+        passes="predicted, last picture, occlusion, pyramid, refine",
+        buffers="clusters, occlusion",
+        modules="engine.culling.pyramid, engine.fiblets.data.clusters",
     ),
     "culling: coverage": What(
         ran="""

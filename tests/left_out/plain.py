@@ -5,7 +5,7 @@ from .what import What
 PLAIN = {
     "plain": What(
         ran="""
-            fiblets/compute/arguments.comp, fiblets/compute/clear.comp, fiblets/compute/cull.comp,
+            fiblets/compute/clear.comp, fiblets/compute/cull.comp,
             fiblets/compute/depth.comp, fiblets/compute/resolve_owner.comp, fiblets/compute/plan.comp,
             fiblets/compute/resolve_ties.comp
         """,

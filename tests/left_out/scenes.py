@@ -155,6 +155,15 @@ def chosen_as_tubes(scene):
     scene.actor.select([3])
 
 
+def clustered(scene):
+    """A set with clusters, which otherwise only large ones have."""
+    from pvfiblets.engine.fiblets.data import chunks
+
+    chunks.CLUSTERED = 0
+    scene.brain(culling="two-phase")
+    yield
+
+
 def outlined(scene):
     scene.actor.selection_style(silhouette=True)
     scene.actor.select([3])
@@ -199,6 +208,7 @@ SCENES = {
     "detail": setting(detail=0.5),
     "culling: none": made("brain", culling=None),
     "culling: two-phase": made("brain", culling="two-phase"),
+    "culling: two-phase, clusters": clustered,
     "culling: coverage": made("brain", culling="coverage"),
     "pipeline: geometry": made("brain", pipeline="geometry"),
     "pipeline: tessellation": made("brain", pipeline="tessellation"),

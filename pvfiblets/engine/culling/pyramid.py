@@ -1,8 +1,8 @@
 """Depth pyramids of two-phase culling: the farthest depth of ever larger squares of pixels.
 
 Level k of the texture holds the greatest depth key of squares of 2^(k+1) pixels. Sides are powers of two, so that a
-square's four parts are whole; what lies outside the picture is never read. Made by drawing, not by compute, so that
-every pipeline has it: OpenGL 3.3 suffices.
+square's four parts are whole; what lies outside the picture is never read. Made by compute shaders, six levels at once,
+or, before OpenGL 4.3 and by software, to which barriers are dear, by drawing.
 """
 
 from __future__ import annotations
@@ -13,7 +13,9 @@ import moderngl
 
 from ..gbuffer import GBuffer
 from ..gl.bindings import CULLING
+from ..gl.gl_version import version_of
 from ..gl.moderngl_extras import GLExtras
+from ..gl.passes import is_software
 from ..gl.program_uniforms import set_uniforms
 from ..gl.shaders import Programs
 from ..view import Style, View
@@ -24,22 +26,26 @@ SMALLEST = 8
 """Pixels of the smallest level's longer side: larger squares hide nothing that smaller ones do not."""
 
 
+COMPUTE = 430
+AT_ONCE, TILE = 6, 64
+"""Levels that a dispatch makes, and the side of its work groups' squares."""
+
 PREDICTION_LEVEL = 4
-"""Level by which it is predicted what will show, squares of 32 pixels: on made-up brains of 60 and of 600 million
-segments the finer ones draw less early, and more in all."""
+"""Level by which it is predicted what will show, squares of 32 pixels. Finer levels draw less early, but leave
+more to be tested."""
 
 
 class _Levels:
-    """A texture of all levels, and a framebuffer for each."""
+    """A texture of all levels, and a framebuffer for each if they are drawn."""
 
-    def __init__(self, ctx: moderngl.Context, gl: GLExtras, size: tuple[int, int]) -> None:
+    def __init__(self, ctx: moderngl.Context, gl: GLExtras, size: tuple[int, int], drawn: bool) -> None:
         sides = tuple(max(1 << (n - 1).bit_length() >> 1, 1) for n in size)
         self.count = max(1, (max(sides) // SMALLEST).bit_length())
         self.texture = ctx.texture((sides[0], sides[1]), 1, dtype="u4")
         self.texture.filter = moderngl.NEAREST, moderngl.NEAREST
         gl.add_levels(self.texture, self.count)
         self.framebuffers = []
-        for level in range(self.count):
+        for level in range(self.count if drawn else 0):
             framebuffer = ctx.framebuffer([self.texture])
             gl.attach_level(framebuffer, self.texture, level)
             self.framebuffers.append(framebuffer)
@@ -80,6 +86,7 @@ class DepthPyramid:
         self._ctx = ctx
         self._gl = gl
         self._programs = programs
+        self._computes = version_of(ctx) >= COMPUTE and not is_software(ctx)
         self._size = (0, 0)
         self._now: _Levels | None = None
         self._last: _Levels | None = None
@@ -89,7 +96,7 @@ class DepthPyramid:
     def _resize(self, size: tuple[int, int]) -> None:
         if size != self._size:
             self.release()
-            self._now = _Levels(self._ctx, self._gl, size)
+            self._now = _Levels(self._ctx, self._gl, size, not self._computes)
             self._size = size
 
     def before(self, target: GBuffer, view: View, style: Style) -> None:  # noqa: ARG002 - as of all kinds
@@ -98,7 +105,7 @@ class DepthPyramid:
         self.predicts = target.generation > 0
         if self.predicts:
             if self._last is None:
-                self._last = _Levels(self._ctx, self._gl, target.size)
+                self._last = _Levels(self._ctx, self._gl, target.size, not self._computes)
             self._build(self._last, target)
 
     def forget(self) -> None:
@@ -114,18 +121,44 @@ class DepthPyramid:
         self._build(self._now, target)
 
     def _build(self, levels: _Levels, target: GBuffer) -> None:
+        if self._computes:
+            self._compute(levels, target)
+        else:
+            self._draw(levels, target)
+
+    def _compute(self, levels: _Levels, target: GBuffer) -> None:
+        """Make six levels by a dispatch. Leaves image units bound."""
+        width, height = target.size
+        for first in range(0, levels.count, AT_ONCE):
+            made = min(AT_ONCE, levels.count - first)
+            features = self._bind_scene(first)
+            (target.depth if first == 0 else levels.texture).use(CULLING["occlusion"])
+            program = self._programs.compute("culling/pyramid_reduce.comp", features)
+            set_uniforms(
+                program, source=CULLING["occlusion"], source_level=max(first - 1, 0), outside=CULLING["outside"],
+                last=(width - 1, height - 1), levels=made,
+            )  # fmt: skip
+            for unit in range(made):
+                levels.texture.bind_to_image(unit, read=False, write=True, level=first + unit)
+            width, height = -(-width // TILE), -(-height // TILE)
+            program.run(width, height)
+            self._ctx.memory_barrier(moderngl.TEXTURE_FETCH_BARRIER_BIT)
+
+    def _bind_scene(self, level: int) -> list[str]:
+        """Bind the scene's depth where a level is made of it; return the features of its program."""
+        if level or self.outside is None:
+            return []
+        self.outside.use(CULLING["outside"])
+        return ["SCENE_DEPTH"]
+
+    def _draw(self, levels: _Levels, target: GBuffer) -> None:
+        """Make level after level by drawing."""
         with self._gl.framebuffers_kept():  # one of ours must not stay bound when it is released
             self._ctx.enable_only(moderngl.NOTHING)
             width, height = target.size
             for level, framebuffer in enumerate(levels.framebuffers):
-                outside = self.outside if level == 0 else None
-                if level == 0 or (level == 1 and self.outside is not None):
-                    features = ["SCENE_DEPTH"] if outside else []
-                    program, array = self._programs.screen("culling/pyramid_reduce.frag", features)
-                    set_uniforms(program, source=CULLING["occlusion"])
-                if outside is not None:
-                    outside.use(CULLING["outside"])
-                    set_uniforms(program, outside=CULLING["outside"])
+                program, array = self._programs.screen("culling/pyramid_reduce.frag", self._bind_scene(level))
+                set_uniforms(program, source=CULLING["occlusion"], outside=CULLING["outside"])
                 if level == 0:
                     target.depth.use(CULLING["occlusion"])
                 else:

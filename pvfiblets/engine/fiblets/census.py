@@ -19,7 +19,7 @@ import moderngl
 import numpy as np
 
 from ..gbuffer import EMPTY, GBuffer
-from ..gl.bindings import BLOCKS, COUNT_STORAGE, STORAGE
+from ..gl.bindings import BLOCKS, COUNT_STORAGE
 from ..gl.moderngl_extras import GLExtras
 from ..gl.passes import GROUP_SIZE, dispatch, nowhere
 from ..gl.queries import Query
@@ -55,31 +55,31 @@ class Census:
         self._max_groups = max_groups
 
     def count(
-        self, chunks: Sequence[Chunk], features: Sequence[str], marks: moderngl.Buffer | None, kept: Visibility
+        self, chunks: Sequence[Chunk], features: Sequence[str], marked: ComputePipeline | None, kept: Visibility
     ) -> tuple[int, int | None]:
         """Count fiblets in the view volume, and those drawn; the uniform blocks are bound already."""
         if self._max_groups:
-            return self._by_compute(chunks, features, marks, kept)
+            return self._by_compute(chunks, features, marked, kept)
         return self._by_query(chunks, features, kept), None
 
     def _by_compute(
-        self, chunks: Sequence[Chunk], features: Sequence[str], marks: moderngl.Buffer | None, kept: Visibility
+        self, chunks: Sequence[Chunk], features: Sequence[str], marked: ComputePipeline | None, kept: Visibility
     ) -> tuple[int, int | None]:
         program = self._programs.compute("fiblets/compute/count.comp", features)
         counts = storage_buffer(self._ctx, np.zeros(2, np.uint32), "counts")
-        program["marked"] = int(marks is not None)
-        if marks is not None:
-            marks.bind_to_storage_buffer(STORAGE["visibility_bits"])
+        program["marked"] = int(marked is not None)
         kept.bind(program)
         for index, chunk in enumerate(chunks):
             chunk.bind_storage()
             kept.bind_chunk(index)
+            if marked is not None:
+                marked.bind_marks(index)
             counts.bind_to_storage_buffer(COUNT_STORAGE["fiblet_counts"])  # in the place of per-point values
             dispatch(program, -(-chunk.n_fiblets // (32 * GROUP_SIZE)), self._max_groups)
         self._ctx.memory_barrier(moderngl.ALL_BARRIER_BITS)
         in_view, drawn = np.frombuffer(counts.read(8), "<u4").tolist()
         counts.release()
-        return in_view, drawn if marks is not None else None
+        return in_view, drawn if marked is not None else None
 
     def _by_query(self, chunks: Sequence[Chunk], features: Sequence[str], kept: Visibility) -> int:
         program = self._programs.render(
@@ -131,8 +131,6 @@ def count_fiblets(
     culled: bool,
 ) -> dict[str, int | None]:
     """Count fiblets of the last picture; uniform blocks and camera are those of it."""
-    marks = None
-    if isinstance(pipeline, ComputePipeline) and pipeline.planned:
-        marks = pipeline.buffers["visibility_bits"]
-    in_frustum, drawn = census.count(chunks, [*features, *kept.culling], marks, kept)
+    marked = pipeline if isinstance(pipeline, ComputePipeline) and pipeline.planned else None
+    in_frustum, drawn = census.count(chunks, [*features, *kept.culling], marked, kept)
     return no_counts(total, in_frustum, drawn if culled else in_frustum, census.visible(target))

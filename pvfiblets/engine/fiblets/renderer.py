@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Generator
 from contextlib import nullcontext
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +22,7 @@ from ..gl.picture_clock import CallClock, TimestampClock
 from ..pieces import Pieces, finish
 from ..view import Style, View
 from .census import Census, count_fiblets, no_counts
+from .data import chunks
 from .data.chunks import Chunk
 from .data.filter_textures import Filter
 from .data.memory_fit import MemoryBudget
@@ -129,7 +131,9 @@ class FibletRenderer(LinesBehind):
         self._known_times: dict[str, tuple[float, int]] = {}
         self._query: RegionQuery | None = None
         self._choice: CullingChoice | None = None
-        self._limits = limits = Limits.of(ctx, self._gl, pipeline, max_buffer_bytes, max_groups)
+        limits = Limits.of(ctx, self._gl, pipeline, max_buffer_bytes, max_groups)
+        two_phase = pipeline == "compute" and culling in ("two-phase", "auto")
+        self._limits = limits = replace(limits, clustered=two_phase and fiblets.n_fiblets >= chunks.CLUSTERED)
         with self._making():
             whole = fiblets if whole is None else whole
             room = MemoryBudget.of(ctx, self._gl, limits, max_total_bytes)
@@ -220,8 +224,7 @@ class FibletRenderer(LinesBehind):
             self._ctx,
             self._gl,
             self._programs,
-            self._fiblets.n_fiblets,
-            len(self._chunks),
+            [chunk.n_fiblets for chunk in self._chunks],
             self._limits,
             self._alike,
         )

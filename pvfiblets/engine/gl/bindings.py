@@ -17,6 +17,7 @@ __all__ = [
     "ANSWER_STORAGE",
     "BETWEEN_ROUNDS",
     "BLOCKS",
+    "CLUSTER_STORAGE",
     "CONSTANTS",
     "COUNT_STORAGE",
     "CROSSINGS",
@@ -197,6 +198,7 @@ STORAGE = _storage(
 """Storage buffers of a chunk and of a picture. Passes that need no bits or no values bind their own buffers there."""
 
 MEASURE_STORAGE = _storage("measures of fiblets", measures=STORAGE["visibility_bits"])
+CLUSTER_STORAGE = _storage("clusters of fiblets", clusters=STORAGE["values"])
 COUNT_STORAGE = _storage("counts of fiblets", fiblet_counts=STORAGE["values"])
 ANSWER_STORAGE = _storage("answers about fiblets", answers=STORAGE["visibility_bits"], lists=STORAGE["values"])
 ITEM_STORAGE = _storage("items", seen=0, listed=1, counts=2, commands=3)
@@ -224,7 +226,7 @@ CONSTANTS = {
     **{f"storage_{name}": number for name, number in STORAGE.items()},
     **{
         f"storage_{name}": number
-        for name, number in {**ANSWER_STORAGE, **MEASURE_STORAGE, **COUNT_STORAGE}.items()
+        for name, number in {**ANSWER_STORAGE, **MEASURE_STORAGE, **COUNT_STORAGE, **CLUSTER_STORAGE}.items()
     },
     **{f"items_{name}": number for name, number in ITEM_STORAGE.items()},
     **{f"image_{name}": number for name, number in {**IMAGES, **SUM_IMAGES}.items()},

@@ -53,6 +53,7 @@ FEATURES: dict[str, str] = {
     "LEVEL_OF_DETAIL": "far fiblets as one segment, among others",
     "ONE_SEGMENT": "far fiblets as one segment, none but these",
     "ONE_CLASS": "few fiblets, all drawn by one program",
+    "CLUSTERS": "fiblets found through clusters of neighbours",
     "CULL_PYRAMID": "fiblets hidden behind a depth pyramid",
     "CULL_COVERAGE": "fiblets hidden behind a coverage buffer",
     "INT64_ATOMICS": "depth and fiblet in one word of 64 bits",

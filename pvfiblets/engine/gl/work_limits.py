@@ -15,7 +15,9 @@ of its own    NVIDIA GTX 1650                 3        700 million         8 tho
 ============  ==============================  =======  ==================  ==========================
 
 A call has fiblets of 60 segments for 0.7 s, if all are in view and none is hidden; or samples along rays for half a
-second. Software has no such limits: nobody takes a processor for hung.
+second. The compute pipeline cuts its lists for integrated cards into calls of a tenth of a second: there a buffer is as
+large as it may be, and calls without work cost next to nothing. Software has no such limits: nobody takes a processor
+for hung.
 """
 
 from __future__ import annotations
@@ -40,10 +42,13 @@ class WorkLimits(NamedTuple):
         To be decoded and drawn.
     samples : int
         Along rays through volumes, of all pixels.
+    listed : int
+        Fiblets of one of several calls that share the drawing of a list.
     """
 
     fiblets: int
     samples: int
+    listed: int = 1 << 31
 
     @classmethod
     def of(cls, ctx: moderngl.Context) -> WorkLimits:
@@ -73,8 +78,8 @@ class WorkLimits(NamedTuple):
                 framebuffer.scissor = None  # type: ignore[assignment]  # none, to moderngl
 
 
-INTEGRATED = WorkLimits(1 << 20, 500_000_000)
-DISCRETE = WorkLimits(1 << 23, 4_000_000_000)
+INTEGRATED = WorkLimits(1 << 20, 500_000_000, 1 << 17)
+DISCRETE = WorkLimits(1 << 23, 4_000_000_000, 1 << 23)
 SOFTWARE = WorkLimits(1 << 31, 1 << 62)
 
 _DISCRETE = re.compile(

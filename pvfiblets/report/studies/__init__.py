@@ -33,12 +33,13 @@ MODULES = {
     "query": "pvfiblets.report.studies.query.study",
     "speed": "pvfiblets.report.studies.speed.study",
     "lines": "pvfiblets.report.studies.speed.lines",
+    "work": "pvfiblets.report.studies.work.study",
     "reading": "pvfiblets.report.studies.speed.reading",
     "stability": "pvfiblets.report.studies.stability.study",
 }
 
 
-ONLY_NAMED = ("speed", "lines", "reading")
+ONLY_NAMED = ("speed", "lines", "reading", "work")
 """Studies that compare no approximations, and take hours and gigabytes: a report of all is without them."""
 
 

@@ -1,9 +1,8 @@
-// One bit per fiblet, and how a work group shares out the fiblets whose bit is set.
+// How work groups share out the fiblets of a round.
 //
-// A group of {{ group_size }} invocations serves {{ group_words }} entries of a list of groups of 32 fiblets. Invocation t takes the set bits
-// number t, t + {{ group_size }}, ...: lanes stay full however few fiblets a cull left over.
-//
-// The including pass defines bits_of(word), `word` counted over all chunks
+// A group of {{ group_size }} invocations takes as many entries of its class's list: no lane is idle but in the last group. If the list was too
+// short for the fiblets, there are many: then a group serves {{ group_words }} words of bits, and invocation t takes the set bits number t,
+// t + {{ group_size }}, ...
 
 #include "frame/groups.glsl"
 #include "fiblets/compute/nth_bit.glsl"
@@ -12,15 +11,16 @@ const uint NO_FIBLET = 0xFFFFFFFFu;
 
 uniform uint part;  // class of fiblets
 
-uint bits_of(uint word);
-
 // The k-th fiblet of this group, or NO_FIBLET.
 uint nth_fiblet(uint k) {
-    uint before = chunk_first >> 5u, entry = group_index() * {{ group_words }}u;
-    uint end = min(entry + {{ group_words }}u, visibility_bits[argument_of(chunk_number, part) + 3u]);
-    for (; entry < end; ++entry) {
-        uint word = visibility_bits[list_entry(part, before, entry)];
-        uint bits = bits_of(before + word), here = uint(bitCount(bits));
+    uint count = visibility_bits[length_at(part)], group = group_index();
+    if (count <= list_room()) {
+        uint entry = group * gl_WorkGroupSize.x + k;
+        return k < gl_WorkGroupSize.x && entry < count ? visibility_bits[list_at(part) + entry] : NO_FIBLET;
+    }
+    uint word = group * {{ group_words }}u, end = min(word + {{ group_words }}u, chunk_words());
+    for (; word < end; ++word) {
+        uint bits = in_round(word) & of_class(word, part), here = uint(bitCount(bits));
         if (k < here) return word * 32u + nth_bit(bits, k);
         k -= here;
     }

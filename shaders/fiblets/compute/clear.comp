@@ -1,4 +1,4 @@
-// Empties the G-buffer's depth, the owner of every pixel, and the lengths of all lists. With atomics of 64 bits depth and
+// Empties the G-buffer's depth and the owner of every pixel. With atomics of 64 bits depth and
 // owners come later (fiblets/compute/split.comp), and their words are emptied.
 
 #version 430
@@ -10,7 +10,6 @@ layout(local_size_x = {{ group_size }}) in;
 
 #include "frame/blocks.glsl"
 #include "frame/groups.glsl"
-#include "fiblets/compute/visibility_bits.glsl"
 #if FEATURE_INT64_ATOMICS
 #include "fiblets/compute/nearest.glsl"
 #endif
@@ -18,13 +17,8 @@ layout(local_size_x = {{ group_size }}) in;
 layout(r32ui, binding = {{ image_depth }}) writeonly uniform uimage2D depth_image;
 layout(r32ui, binding = {{ image_owner }}) writeonly uniform uimage2D owner_image;
 
-uniform uint argument_count;  // words
-
 void main() {
     uint row = group_index();
-    if (row == 0u) {
-        for (uint i = gl_LocalInvocationIndex; i < argument_count; i += gl_WorkGroupSize.x) visibility_bits[argument_base + i] = 0u;
-    }
     if (row >= uint(viewport.y)) return;
     for (uint x = gl_LocalInvocationIndex; x < uint(viewport.x); x += gl_WorkGroupSize.x) {
 #if FEATURE_INT64_ATOMICS

@@ -20,9 +20,7 @@ void main() {
     if (first >= chunk_fiblets) return;
     uint inside = 0u, these = 0u, count = min(32u, chunk_fiblets - first);
     for (uint i = 0u; i < count; ++i) inside += outside_view(first + i, capsule_of(first + i)) ? 0u : 1u;
-    if (marked != 0) {
-        for (uint which = 0u; which < CLASSES; ++which) these += uint(bitCount(planned((chunk_first >> 5u) + word, which)));
-    }
+    if (marked != 0) these = uint(bitCount(planned(word)));
     atomicAdd(in_view, inside);
     atomicAdd(drawn, these);
 }

@@ -7,6 +7,8 @@
 //     those that the caller's planes or region may touch, or some points of which are not to be shown. Class 3 are those of class 0 that are drawn as one segment.
 //   - Where there is ONE_CLASS, it has all fiblets, and its program what any of them needs.
 //
+// With FEATURE_CLUSTERS only those seen in the last picture are tested; choose.glsl finds the others through their clusters.
+//
 // One invocation per 32 fiblets. What it writes is the plan of the drawing passes: which fiblets were seen in the last
 // picture (drawn first, so that most others lose at their first look at the depth image), which others will probably show
 // (two-phase culling only: culling/visibility_prediction.glsl), and of which class they are.
@@ -14,49 +16,53 @@
 #version 430
 layout(local_size_x = {{ group_size }}) in;
 
-#include "culling/criteria.glsl"
+#include "fiblets/compute/classes.glsl"
 #if FEATURE_CULL_PYRAMID
 #include "culling/visibility_prediction.glsl"
 #endif
 #include "frame/groups.glsl"
 #include "fiblets/compute/visibility_bits.glsl"
 
+uniform uint seed_words;  // of so many groups of 32, one has its seed drawn as if it had been seen; 0: none
+uniform uint slots;       // of arguments
+
+// Empties the lists of the chunk's last picture.
+void empty_lists() {
+    uint lengths = list_at(CLASSES), arguments = all_arguments_at();
+    for (uint i = gl_LocalInvocationIndex; i < ROUNDS * CLASSES; i += gl_WorkGroupSize.x) visibility_bits[lengths + i] = 0u;
+    for (uint i = gl_LocalInvocationIndex; i < 4u * ROUNDS * CLASSES * slots; i += gl_WorkGroupSize.x) {
+        visibility_bits[arguments + i] = (i & 3u) == 1u || (i & 3u) == 2u ? 1u : 0u;
+    }
+}
+
 void main() {
+    if (group_index() == 0u) empty_lists();
     uint word = group_index() * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
     uint first = word * 32u;
     if (first >= chunk_fiblets) return;
-    uint shown = 0u, crossing = 0u, crossing_depth = 0u, single = 0u, likely = 0u, count = min(32u, chunk_fiblets - first);
-    for (uint i = 0u; i < count; ++i) {
-        Capsule c = capsule_of(first + i);
-        bool outside = false, partly = false;
-        float edges = above_planes(c, 0, 4, outside), depths = above_planes(c, 4, 6, outside);
-        if (!outside && !fails_criteria(first + i, c, partly)) shown |= 1u << i;
-        if (partly) crossing_depth |= 1u << i;
-        if (edges < c.r + plane_rounding) crossing |= 1u << i;
-        if (depths < c.r + plane_rounding) crossing_depth |= 1u << i;
-#if FEATURE_LEVEL_OF_DETAIL
-        if (is_one_segment(c)) single |= 1u << i;
+    uint shown = 0u, low = 0u, high = 0u, likely = 0u, before = marks(SEEN, word);
+    if (seed_words != 0u && ((chunk_first >> 5) + word) % seed_words == 0u) before |= 0x01010101u;
+#if FEATURE_CLUSTERS
+    uint tested = before;
+#else
+    uint tested = 0xFFFFFFFFu;
 #endif
+    if (chunk_fiblets - first < 32u) tested &= (1u << (chunk_fiblets - first)) - 1u;
+    for (; tested != 0u; tested &= tested - 1u) {
+        uint i = uint(findLSB(tested)), which;
+        Capsule c = capsule_of(first + i);
+        if (can_show(first + i, c, which)) shown |= 1u << i;
+        low |= (which & 1u) << i;
+        high |= (which >> 1) << i;
 #if FEATURE_CULL_PYRAMID
         if (predicted_visible(c)) likely |= 1u << i;
 #endif
     }
-    word = ((chunk_first >> 5u) + word) * WORDS;
-    uint before = visibility_bits[word + SEEN];
-    for (uint part = 0u; part <= REST; part += CLASSES) {
-        uint these = shown & (part == 0u ? before : ~before & (part == PREDICTED ? likely : ~likely));
-#if FEATURE_ONE_CLASS
-        visibility_bits[word + part] = these;
-        for (uint which = 1u; which < CLASSES; ++which) visibility_bits[word + part + which] = 0u;
-#else
-        uint inside = these & ~crossing & ~crossing_depth;
-        visibility_bits[word + part] = inside & ~single;
-        visibility_bits[word + part + 1u] = these & crossing & ~crossing_depth;
-        visibility_bits[word + part + 2u] = these & crossing_depth;
-        visibility_bits[word + part + 3u] = inside & single;
-#endif
-    }
-    visibility_bits[word + CANDIDATES] = 0u;
-    visibility_bits[word + SEEN] = 0u;
-    visibility_bits[word + TIED] = 0u;
+    set_marks(ROUND_LOW, word, shown & (before | ~likely));
+    set_marks(ROUND_HIGH, word, shown & ~before);
+    set_marks(CLASS_LOW, word, low & shown);
+    set_marks(CLASS_HIGH, word, high & shown);
+    set_marks(CANDIDATES, word, 0u);
+    set_marks(SEEN, word, 0u);
+    set_marks(TIED, word, 0u);
 }

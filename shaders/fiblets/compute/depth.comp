@@ -30,8 +30,6 @@ bool won;
 
 #include "fiblets/compute/bits.glsl"
 
-uint bits_of(uint word) { return visibility_word(word, part + CLASSES * drawing); }
-
 void start_segment(uint segment, vec3 to, vec3 delta, vec3 ahead) {}
 #if FEATURE_TUBES
 vec3 shown_normal(Hit hit) { return hit.normal; }
@@ -69,7 +67,7 @@ void main() {
 #else
         won = false;
         draw_fiblet(f);
-        if (won) atomicOr(visibility_bits[((chunk_first + f) >> 5) * WORDS + CANDIDATES], 1u << (f & 31u));
+        if (won) mark(CANDIDATES, f);
 #endif
     }
 }

@@ -38,8 +38,6 @@ vec3 shown_normal(Hit hit) { return hit.normal; }
 
 uint owner;
 
-uint bits_of(uint word) { return visibility_word(word, part + CLASSES * drawing); }
-
 void plot(Fragment fragment, Segment segment) {
 #if FEATURE_WIDE_LINES
     if (fragment.s >= 1.0 && !segment.piece.cap || fragment.s <= 0.0 && !segment.piece.start) return;

@@ -18,23 +18,20 @@ bool out_of_sight(Capsule c) {
 #endif
 }
 
-void test_plan(uint word, uint first) {
-    uint tested = 0u, kept = 0u;
-    for (uint which = 0u; which < CLASSES; ++which) tested |= visibility_bits[word + which];
-    for (uint rest = tested; rest != 0u; rest &= rest - 1u) {
-        uint i = uint(findLSB(rest));
-        if (!out_of_sight(capsule_of(first + i))) kept |= 1u << i;
-    }
-    for (uint which = 0u; which < CLASSES; ++which) visibility_bits[word + which] &= kept;
-}
-
 void main() {
     uint word = group_index() * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
-    uint first = word * 32u;
+    uint first = word * 32u, gone = 0u;
     if (first >= chunk_fiblets) return;
-    word = ((chunk_first >> 5u) + word) * WORDS;
+    uint low = marks(ROUND_LOW, word), high = marks(ROUND_HIGH, word);
 #if FEATURE_CULL_COVERAGE
-    test_plan(word, first);
+    uint tested = low | high;
+#else
+    uint tested = low & high;
 #endif
-    test_plan(word + REST, first);
+    for (uint rest = tested; rest != 0u; rest &= rest - 1u) {
+        uint i = uint(findLSB(rest));
+        if (out_of_sight(capsule_of(first + i))) gone |= 1u << i;
+    }
+    set_marks(ROUND_LOW, word, low & ~gone);
+    set_marks(ROUND_HIGH, word, high & ~gone);
 }

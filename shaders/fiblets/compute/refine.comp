@@ -7,12 +7,10 @@ layout(local_size_x = {{ group_size }}) in;
 #include "fiblets/compute/visibility_bits.glsl"
 #include "fiblets/compute/bits.glsl"
 
-uint bits_of(uint word) { return visibility_word(word, REST + part); }
-
 void main() {
     for (uint k = gl_LocalInvocationIndex;; k += gl_WorkGroupSize.x) {
         uint f = nth_fiblet(k);
         if (f == NO_FIBLET) break;
-        if (!hidden_in_pieces(capsule_of(f))) atomicOr(visibility_bits[((chunk_first + f) >> 5) * WORDS + KEPT], 1u << (f & 31u));
+        if (!hidden_in_pieces(capsule_of(f))) mark(KEPT, f);
     }
 }

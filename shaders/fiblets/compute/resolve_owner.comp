@@ -16,8 +16,6 @@ layout(local_size_x = {{ group_size }}) in;
 #include "fiblets/compute/bits.glsl"
 #include "fiblets/attributes/pixel.glsl"
 
-uint bits_of(uint word) { return taken_again(word, part); }
-
 layout(r32ui, binding = {{ image_depth }}) readonly uniform uimage2D depth_image;
 layout(r32ui, binding = {{ image_owner }}) coherent uniform uimage2D owner_image;
 layout(rg32ui, binding = {{ image_ids }}) writeonly uniform uimage2D ids_image;
@@ -53,8 +51,7 @@ void main() {
         kept = tied = false;
         begin_pixels(f);
         draw_fiblet(f);
-        uint word = (owner >> 5) * WORDS, bit = 1u << (f & 31u);
-        if (kept) atomicOr(visibility_bits[word + SEEN], bit);
-        if (tied) atomicOr(visibility_bits[word + TIED], bit);
+        if (kept) mark(SEEN, f);
+        if (tied) mark(TIED, f);
     }
 }

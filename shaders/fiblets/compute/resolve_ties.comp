@@ -11,8 +11,6 @@ layout(local_size_x = {{ group_size }}) in;
 #include "fiblets/compute/bits.glsl"
 #include "fiblets/attributes/pixel.glsl"
 
-uint bits_of(uint word) { return taken_again(word, part); }
-
 layout(r32ui, binding = {{ image_depth }}) readonly uniform uimage2D depth_image;
 layout(r32ui, binding = {{ image_owner }}) readonly uniform uimage2D owner_image;
 layout(rg32ui, binding = {{ image_ids }}) writeonly uniform uimage2D ids_image;

@@ -16,7 +16,7 @@ layout(local_size_x = {{ group_size }}) in;
 layout(r32ui, binding = {{ image_depth }}) writeonly uniform uimage2D depth_image;
 layout(r32ui, binding = {{ image_owner }}) writeonly uniform uimage2D owner_image;
 
-uniform uint marking;
+uniform uint marking;  // 1: owners in the chunk are marked, and nothing else is done
 
 void main() {
     uint row = group_index();
@@ -24,13 +24,16 @@ void main() {
     for (uint x = gl_LocalInvocationIndex; x < uint(viewport.x); x += gl_WorkGroupSize.x) {
         uint at = pixel_index(ivec2(x, row));
         uint key = key_of(nearest[at]), fiblet = fiblet_of(nearest[at]);
-        imageStore(depth_image, ivec2(x, row), uvec4(key));
-        imageStore(owner_image, ivec2(x, row), uvec4(fiblet));
-        if (marking == 0u || key == 0xFFFFFFFFu) continue;
+        if (marking == 0u) {
+            imageStore(depth_image, ivec2(x, row), uvec4(key));
+            imageStore(owner_image, ivec2(x, row), uvec4(fiblet));
+            continue;
+        }
+        if (key == 0xFFFFFFFFu) continue;
         if (x > 0u && fiblet_of(nearest[at - 1u]) == fiblet) continue;
-        uint mark = (fiblet >> 5) * WORDS, bit = 1u << (fiblet & 31u);
-        if ((visibility_bits[mark + SEEN] & bit) != 0u) continue;
-        atomicOr(visibility_bits[mark + SEEN], bit);
-        atomicOr(visibility_bits[mark + CANDIDATES], bit);
+        uint f = fiblet - chunk_first;
+        if (f >= chunk_fiblets || (marks(SEEN, f >> 5) & 1u << (f & 31u)) != 0u) continue;
+        mark(SEEN, f);
+        mark(CANDIDATES, f);
     }
 }

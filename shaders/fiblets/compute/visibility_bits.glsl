@@ -1,45 +1,64 @@
-// What the passes of one picture tell each other about fiblets, in one buffer, because OpenGL promises no more than eight
-// storage buffers to a shader: {{ visibility_words }} words for 32 fiblets, a bit for each; behind them, lists of those groups of 32 that have
-// something to draw; behind these, the lists' lengths as the arguments of indirect dispatches.
+// What the passes of one picture tell each other about the fiblets of a chunk, in one buffer, because OpenGL promises no more than
+// eight storage buffers to a shader. Each chunk has a range of its own, so that no driver's limit of a block limits the set.
 //
-//   words 0..3   plan: seen in the last picture. By class: inside the view volume, crossing its sides, crossing more;
-//                and, inside, those drawn as one segment
-//   words 4..7   plan: not seen in it, but probably not hidden; the same four classes
-//   words 8..11  plan: the others
-//   word 12      candidates: came nearest in some pixel, or tied
-//   word 13      seen: may own a pixel
-//   word 14      tied: wrote a pixel that another fiblet may have written too; before that, of the others: not hidden
-//
-// Lists: of each class, as many words as there are groups of 32, a chunk's at its own first. Arguments: of each round of
-// drawing, chunk and class, four words: work groups along x and y, 1, length of the list.
+//   bits         {{ visibility_words }} kinds, of each a word for 32 fiblets
+//     ROUND_LOW, ROUND_HIGH   plan: the round of drawing, 1 and up; 0: not drawn. 1: seen in the last picture, 2: not seen in it,
+//                             but probably not hidden, 3: the others
+//     CLASS_LOW, CLASS_HIGH   plan: the class (fiblets/compute/cull.comp)
+//     CANDIDATES   came nearest in some pixel, or tied
+//     SEEN         may own a pixel
+//     TIED         wrote a pixel that another fiblet may have written too; before that, of the others: not hidden (KEPT)
+//   lists        of each class, the fiblets that a round has to draw: one in {{ list_share }} of the chunk's at most
+//   lengths      of the lists, by round and class. One of more fiblets than fit is not used: groups go through the bits
+//   arguments    of indirect dispatches, four words each, by round, class and slot. A slot is as much as one dispatch may draw
+
+#include "uniforms/Chunk.glsl"
 
 layout(std430, binding = {{ storage_visibility_bits }}) buffer VisibilityBits { uint visibility_bits[]; };
 
-const uint WORDS = {{ visibility_words }}u, CLASSES = 4u, PREDICTED = 4u, REST = 8u, CANDIDATES = 12u, SEEN = 13u, TIED = 14u, KEPT = TIED;
+const uint KINDS = {{ visibility_words }}u, CLASSES = {{ classes }}u, ROUNDS = {{ rounds }}u;
+const uint ROUND_LOW = 0u, ROUND_HIGH = 1u, CLASS_LOW = 2u, CLASS_HIGH = 3u, CANDIDATES = 4u, SEEN = 5u, TIED = 6u, KEPT = TIED;
 
-// What a pass works on: the plan's three parts, candidates, fiblets whose pixels are to be written again, or those of the
-// rest that refine.comp tests. pvfiblets/engine/fiblets/pipelines/compute.py numbers them the same.
-const uint DRAW_SEEN = 0u, DRAW_PREDICTED = 1u, DRAW_REST = 2u, DRAW_CANDIDATES = 3u, DRAW_TIED = 4u, TEST_REST = 5u;
+// What a pass works on: the plan's three rounds, candidates, fiblets whose pixels are to be written again, or those of the
+// rest that refine.comp tests. Two more list clusters. pvfiblets/engine/fiblets/pipelines/compute.py numbers them the same.
+const uint DRAW_SEEN = 0u, DRAW_PREDICTED = 1u, DRAW_REST = 2u, DRAW_CANDIDATES = 3u, DRAW_TIED = 4u, TEST_REST = 5u;  // 6, 7: of clusters
 
 uniform uint drawing;          // which of these
-uniform uint list_base;        // where lists start
-uniform uint list_length;      // groups of 32 in all chunks
-uniform uint argument_base;    // where the arguments of this round start
 
-uint visibility_word(uint word, uint part) { return visibility_bits[word * WORDS + part]; }
+uint chunk_words() { return (chunk_fiblets + 31u) >> 5; }
 
-// Fiblets of a class that are in the plan.
-uint planned(uint word, uint which) {
-    return visibility_word(word, which) | visibility_word(word, PREDICTED + which) | visibility_word(word, REST + which);
+uint mark_at(uint kind, uint word) { return kind * chunk_words() + word; }
+
+uint marks(uint kind, uint word) { return visibility_bits[mark_at(kind, word)]; }
+
+void set_marks(uint kind, uint word, uint bits) { visibility_bits[mark_at(kind, word)] = bits; }
+
+void mark(uint kind, uint f) { atomicOr(visibility_bits[mark_at(kind, f >> 5)], 1u << (f & 31u)); }
+
+// Fiblets that are in the plan.
+uint planned(uint word) { return marks(ROUND_LOW, word) | marks(ROUND_HIGH, word); }
+
+// Fiblets of a round.
+uint in_round(uint word) {
+    if (drawing == DRAW_CANDIDATES) return marks(CANDIDATES, word) & planned(word);
+    if (drawing == DRAW_TIED) return marks(TIED, word) & planned(word);
+    uint low = marks(ROUND_LOW, word), high = marks(ROUND_HIGH, word);
+    return drawing == DRAW_SEEN ? low & ~high : drawing == DRAW_PREDICTED ? high & ~low : low & high;
 }
 
-// Of a class, those fiblets that the passes after the first draw.
-uint taken_again(uint word, uint which) {
-    return visibility_word(word, drawing == DRAW_CANDIDATES ? CANDIDATES : TIED) & planned(word, which);
+uint of_class(uint word, uint which) {
+    uint low = marks(CLASS_LOW, word), high = marks(CLASS_HIGH, word);
+    return ((which & 1u) != 0u ? low : ~low) & ((which & 2u) != 0u ? high : ~high);
 }
 
-// Where entry k of a class's list stands; `before`: groups of 32 in earlier chunks.
-uint list_entry(uint which, uint before, uint k) { return list_base + which * list_length + before + k; }
+uint list_room() { return (chunk_fiblets + {{ list_share }}u - 1u) / {{ list_share }}u; }
 
-// Where the arguments of a chunk's class start.
-uint argument_of(uint chunk, uint which) { return argument_base + 4u * (chunk * CLASSES + which); }
+// Where a class's list starts.
+uint list_at(uint which) { return KINDS * chunk_words() + which * list_room(); }
+
+// Where a class's length in this round is.
+uint length_at(uint which) { return list_at(CLASSES) + drawing * CLASSES + which; }
+
+// Where all arguments start, and those of a class in this round.
+uint all_arguments_at() { return list_at(CLASSES) + ROUNDS * CLASSES; }
+uint arguments_at(uint which, uint slots) { return all_arguments_at() + 4u * (drawing * CLASSES + which) * slots; }

@@ -5,7 +5,8 @@ follows its last one, so that no shader looks into another chunk. What culling r
 apart from what decoding reads (words, codes).
 
 Budget, bytes per fiblet: anchors 8, radius 2, words 12, codes 58 when full, and the bits and lists by which the passes
-tell each other what to draw, 2.4: 82.4, or 1.37 per point. A streamline's end vector takes 4 bytes more.
+tell each other what to draw, 2.9: 82.9, or 1.38 per point. Clusters of large sets take 4.2 bytes more, a streamline's
+end vector 4.
 
 What shaders count in 32 bits. Within a chunk: fiblets, bytes of codes, and points. A buffer of less than 2^31 bytes
 holds less than 2^31 / 12 fiblets, and n fiblets of N points have at least n (N - 2) bytes of codes: less than
@@ -47,6 +48,14 @@ CHUNK_BLOCK = UniformStruct(
     Field("value_bits", "uint", "of a stored per-point value; 32 of one that is no code"),
     Field("value_table", "uint", "words before the codes: what each code means"),
 )
+
+
+CLUSTER = 64
+CLUSTER_BIAS, CLUSTER_STEP = 32768.0, 2.0
+"""Fiblets of a cluster (:mod:`.clusters`), and what its box counts in."""
+
+CLUSTERED = 1 << 21
+"""Fiblets of a set that has clusters: fewer are tested one by one in as little time."""
 
 
 @dataclass(frozen=True)
@@ -127,20 +136,22 @@ class Chunk:
         self._binding.clear()
 
 
-def plan_chunks(fiblets: FibletSet, max_buffer_bytes: int, max_fiblets: int | None = None) -> list[ChunkPlan]:
+def plan_chunks(
+    fiblets: FibletSet, max_buffer_bytes: int, max_fiblets: int | None = None, *, clustered: bool = False
+) -> list[ChunkPlan]:
     """Group pages so that no buffer of a group is larger than a limit."""
     n_pages = len(fiblets.pages) - 1
     plans = []
     begin = 0
     while begin < n_pages:
-        plan = _plan(fiblets, begin, begin + 1)
+        plan = _plan(fiblets, begin, begin + 1, clustered)
         if (largest := _largest(plan)) > max_buffer_bytes:
             raise EngineError(
                 f"page {begin} of the fiblets needs a buffer of {largest} bytes; buffers are limited to "
                 f"{max_buffer_bytes} here"
             )
         while plan.pages[1] < n_pages:
-            longer = _plan(fiblets, begin, plan.pages[1] + 1)
+            longer = _plan(fiblets, begin, plan.pages[1] + 1, clustered)
             if _largest(longer) > max_buffer_bytes or longer.fiblets[1] - longer.fiblets[0] > (max_fiblets or math.inf):
                 break
             plan = longer
@@ -149,7 +160,7 @@ def plan_chunks(fiblets: FibletSet, max_buffer_bytes: int, max_fiblets: int | No
     return plans
 
 
-def _plan(fiblets: FibletSet, begin: int, end: int) -> ChunkPlan:
+def _plan(fiblets: FibletSet, begin: int, end: int, clustered: bool) -> ChunkPlan:
     """Plan pages ``begin`` to ``end`` as one chunk."""
     # Sums of NumPy's 32-bit integers would wrap where those of Python do not.
     (rank, code, point), (last_rank, last_code, last_point) = (
@@ -167,6 +178,8 @@ def _plan(fiblets: FibletSet, begin: int, end: int) -> ChunkPlan:
     }
     if fiblets.anchors_low is not None:
         sizes["anchors_low"] = 6 * (n + 1)
+    if clustered:
+        sizes["clusters"] = 4 * (3 * -(-n // CLUSTER) + n)
     widest = max((values.drawn_bytes for values in fiblets.per_point.values()), default=0)
     tables = max((values.table_bytes for values in fiblets.per_point.values()), default=0)
     if any(name.endswith("[2]") and colour_columns(fiblets.per_point, name[:-3]) for name in fiblets.per_point):

@@ -105,7 +105,7 @@ class MemoryBudget:
 
     def fitted(self, fiblets: FibletSet, fit: str | None, most: float = 1.0) -> Fitted:
         """Plan a set, or what fits of it."""
-        plans = plan_chunks(fiblets, self.limits.buffer_bytes, self.limits.fiblets)
+        plans = self._plans(fiblets)
         if most >= 1.0 and (refusal := self._refusal(fiblets, plans)) is None:
             return Fitted(fiblets, plans, 1.0)
         if fit != "sample":
@@ -117,12 +117,16 @@ class MemoryBudget:
             fraction = _fraction_of(part, fiblets)
             if fraction <= limit:
                 taken = part.make()
-                plans = plan_chunks(taken, self.limits.buffer_bytes, self.limits.fiblets)
+                plans = self._plans(taken)
                 if (refusal := self._refusal(taken, plans)) is not None:
                     raise refusal
                 return Fitted(taken, plans, part.n_ranks / fiblets.n_ranks)
             share *= 0.98 * limit / fraction
         raise GPUMemoryError(f"not one streamline fits: {self._said(fiblets, plans)}")
+
+    def _plans(self, fiblets: FibletSet) -> list[ChunkPlan]:
+        limits = self.limits
+        return plan_chunks(fiblets, limits.buffer_bytes, limits.fiblets, clustered=limits.clustered)
 
     def _refusal(self, fiblets: FibletSet, plans: list[ChunkPlan]) -> EngineError | None:
         """Why a set does not fit."""
@@ -153,11 +157,11 @@ class MemoryBudget:
 
     def needed(self, fiblets: FibletSet) -> int:
         """Bytes of all buffers that a set needs."""
-        return self._buffers(fiblets, plan_chunks(fiblets, self.limits.buffer_bytes, self.limits.fiblets))
+        return self._buffers(fiblets, self._plans(fiblets))
 
     def fits(self, fiblets: FibletSet) -> bool:
         """Say whether a set fits as a whole, as far as can be known beforehand."""
-        return self._refusal(fiblets, plan_chunks(fiblets, self.limits.buffer_bytes, self.limits.fiblets)) is None
+        return self._refusal(fiblets, self._plans(fiblets)) is None
 
     @property
     def room(self) -> int | None:

@@ -76,6 +76,10 @@ def upload_chunk(
     }
     if (low := fiblets.anchors_low) is not None:
         arrays["anchors_low"] = _with_next(low, first, last)
+    if "clusters" in plan.sizes:
+        from .clusters import cluster_words
+
+        arrays["clusters"] = cluster_words(fiblets, first, last)
     before = _points_before(fiblets, first)
     if max(before, last) >= 2**32:
         raise EngineError(f"fiblet {first} is {before} points into its streamline; shaders count less than 2^32")

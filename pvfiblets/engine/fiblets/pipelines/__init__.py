@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ..data.measures import ComputeMeasurer, FeedbackMeasurer, Measurer
@@ -24,12 +25,15 @@ def make_pipeline(
     ctx: moderngl.Context,
     gl: GLExtras,
     programs: Programs,
-    n_fiblets: int,
-    n_chunks: int,
+    sizes: Sequence[int],
     limits: Limits,
     alike: int | None = None,
 ) -> Pipeline:
-    """Make a pipeline by its name, which the context must support; its programs are those of `alike` fiblets."""
+    """Make a pipeline for chunks of so many fiblets, by a name that the context must support.
+
+    Its programs are those of `alike` fiblets.
+    """
+    n_fiblets = sum(sizes)
     if name in ("mesh", "mesh-serial"):
         from .mesh import MeshPipeline
 
@@ -42,7 +46,7 @@ def make_pipeline(
         from .geometry import GeometryPipeline
 
         return GeometryPipeline(ctx, gl, programs, n_fiblets)
-    return ComputePipeline(ctx, programs, n_fiblets, n_chunks, limits.groups, alike)
+    return ComputePipeline(ctx, programs, sizes, limits.groups, limits.call, alike)
 
 
 def make_measurer(name: str, ctx: moderngl.Context, gl: GLExtras, programs: Programs, limits: Limits) -> Measurer:

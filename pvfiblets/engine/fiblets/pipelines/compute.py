@@ -3,7 +3,7 @@
 =============  =================================================================================================
 pass           what it does
 =============  =================================================================================================
-clear          empties depth, owners and lists
+clear          empties depth and owners
 cull           plans the drawing: which fiblets can show, which were seen last time, which others will probably show by
                the last picture's depth, of which class they are
 visible        draws the depth of those seen last time with imageAtomicMin; marks those that came nearest somewhere
@@ -28,31 +28,34 @@ Where the driver has atomics of 64 bits (GL_NV_shader_atomic_int64), the depth p
 no more need of.
 
 Each round of drawing takes its fiblets from lists that the GPU made, by indirect dispatches: the CPU issues the same
-calls whatever there is to draw.
+calls whatever there is to draw. A chunk is as large as buffers may be. Where it has more fiblets than one call may
+draw (:mod:`pvfiblets.engine.gl.work_limits`), its arguments have several slots, a call for each; those that a list does
+not need have no work groups.
 
 The sources are in ``shaders/fiblets/compute``; what a program includes is decided by features.
 """
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Generator, Iterator, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import moderngl
 import numpy as np
+import numpy.typing as npt
 
 from ....codec.layout import MAX_POINTS
 from ...errors import EngineError
-from ...gl.bindings import IMAGES, STORAGE
+from ...gl.bindings import CLUSTER_STORAGE, CULLING, IMAGES, STORAGE
 from ...gl.gl_version import version_of
 from ...gl.moderngl_extras import GLExtras
 from ...gl.passes import GROUP_SIZE, dispatch, is_software
 from ...gl.program_uniforms import set_uniforms
 from ...gl.shaders import EXTENDED, Programs
 from ...pieces import Pieces, finish
-from ..data.chunks import Chunk, storage_buffer
-from .constants import GROUP_WORDS, VISIBILITY_WORDS
+from ..data.chunks import CLUSTER, Chunk, storage_buffer
+from .constants import CLASSES, GROUP_WORDS, LIST_SHARE, ROUNDS, VISIBILITY_WORDS
 from .draw_request import DrawRequest
 from .segment_shares import segment_shares
 
@@ -61,10 +64,9 @@ if TYPE_CHECKING:
 
 __all__ = ["CLASSES", "ComputePipeline"]
 
-CLASSES = 4
-ROUNDS = 6
 ARGUMENT_BYTES = 16
-SEEN, PREDICTED, REST, CANDIDATES, TIED, TESTED = range(ROUNDS)
+RANGE_BYTES = 256  # no driver aligns ranges of storage buffers to more
+SEEN, PREDICTED, REST, CANDIDATES, TIED, TESTED, LAST_LEFT, NOW_LEFT = range(ROUNDS)
 
 
 FEW = 2048
@@ -75,8 +77,43 @@ TUBES_BY_RASTER = True
 """Whether tubes are left to the pipeline `geometry` where software OpenGL draws: how many pixels a tube near the camera
 takes is not known beforehand, and OpenGL's rasteriser has no such limit."""
 
+SEED_OF = 1 << 23
+"""Fiblets of which every eighth is drawn first where nothing is known of a last picture; fewer of more. They hide most
+of the others: of 7.4 million fiblets 1.5 million are drawn instead of all."""
+
 READ_LISTS = True
 """Whether software OpenGL compiles programs of classes when they first have fiblets."""
+
+
+@dataclass(frozen=True)
+class MarkRange:
+    """Where what the passes note of a chunk's fiblets lies in its buffer: ``visibility_bits.glsl`` has the same."""
+
+    begin: int  # bytes
+    end: int
+    words: int  # of a kind of bits
+    room: int  # fiblets of a list
+    lengths: int
+    slots: int  # calls that draw a class of a round
+
+    @classmethod
+    def at(cls, begin: int, n_fiblets: int, slot_groups: int) -> MarkRange:
+        """Lay one out that begins so many bytes into the buffer."""
+        words = -(-n_fiblets // 32)
+        slots = max(-(-words // (GROUP_WORDS * slot_groups)), 1)
+        room = -(-n_fiblets // LIST_SHARE)
+        lengths = begin + 4 * (VISIBILITY_WORDS * words + CLASSES * room)
+        end = lengths + ROUNDS * CLASSES * (4 + slots * ARGUMENT_BYTES)
+        return cls(begin, end + -end % RANGE_BYTES, words, room, lengths, slots)
+
+    def length_at(self, number: int, part: int = 0) -> int:
+        """Byte of the length of a class's list in a round."""
+        return self.lengths + 4 * (number * CLASSES + part)
+
+    def arguments_at(self, number: int, part: int) -> int:
+        """Byte of a class's arguments in a round."""
+        first = self.lengths + 4 * ROUNDS * CLASSES
+        return first + (number * CLASSES + part) * self.slots * ARGUMENT_BYTES
 
 
 class ComputePipeline:
@@ -86,11 +123,12 @@ class ComputePipeline:
     ----------
     ctx : moderngl.Context
     programs : Programs
-    n_fiblets : int
-        In all chunks.
-    n_chunks : int
+    sizes : sequence of int
+        Fiblets of each chunk.
     max_groups : int
         Work groups per axis of a dispatch.
+    most : int
+        Fiblets that one call may draw.
     alike : int, optional
         Fiblets of a set whose pictures these shall equal in every bit, as this is a part of it: which programs draw
         goes by their number, and rounding differs from program to program.
@@ -107,9 +145,9 @@ class ComputePipeline:
         self,
         ctx: moderngl.Context,
         programs: Programs,
-        n_fiblets: int,
-        n_chunks: int,
+        sizes: Sequence[int],
         max_groups: int,
+        most: int,
         alike: int | None = None,
     ) -> None:
         self._ctx = ctx
@@ -121,14 +159,35 @@ class ComputePipeline:
         self._shares = [(0, MAX_POINTS)]
         self._raster: GeometryPipeline | None = None
         self.planned = False
-        self._one_class = (n_fiblets if alike is None else alike) <= FEW
-        self._words = -(-n_fiblets // 32)
-        self._round_arguments = n_chunks * CLASSES
-        self._list_base = self._words * VISIBILITY_WORDS
-        self._argument_base = self._list_base + self._words * CLASSES
-        size = self._argument_base + ROUNDS * self._round_arguments * ARGUMENT_BYTES // 4
+        self._n_fiblets = sum(sizes)
+        self._one_class = (self._n_fiblets if alike is None else alike) <= FEW
+        self._seed_words = -(-self._n_fiblets // SEED_OF)
+        self._slot_groups = max(min(most // (32 * GROUP_WORDS), max_groups), 1)
+        self._marks: list[MarkRange] = []
+        end = 0
+        for size in sizes:
+            self._marks.append(MarkRange.at(end, size, self._slot_groups))
+            end = self._marks[-1].end
         self._own: dict[str, moderngl.Buffer] = {}
-        self._own["visibility_bits"] = storage_buffer(ctx, np.zeros(size, np.uint32), "visibility_bits")
+        self._own["visibility_bits"] = storage_buffer(ctx, np.zeros(end // 4, np.uint32), "visibility_bits")
+
+    def list_lengths(self) -> npt.NDArray[np.uint32]:
+        """Return how long the lists of the last picture were, by chunk, round and class; it waits for the GPU."""
+        self._ctx.memory_barrier(moderngl.BUFFER_UPDATE_BARRIER_BIT)
+        held, size = self._own["visibility_bits"], 4 * ROUNDS * CLASSES
+        words = b"".join(held.read(size, offset=of.lengths) for of in self._marks)
+        return np.frombuffer(words, np.uint32).reshape(-1, ROUNDS, CLASSES)
+
+    def list_room(self, chunk: int) -> int:
+        """Return how many fiblets fit into a chunk's list; longer rounds go through the bits."""
+        return self._marks[chunk].room
+
+    def read_marks(self, chunk: int) -> npt.NDArray[np.uint32]:
+        """Return a chunk's bits, by kind and 32 fiblets (``visibility_bits.glsl``); it waits for the GPU."""
+        of, kinds = self._marks[chunk], VISIBILITY_WORDS
+        self._ctx.memory_barrier(moderngl.BUFFER_UPDATE_BARRIER_BIT)
+        words = self._own["visibility_bits"].read(4 * kinds * of.words, offset=of.begin)
+        return np.frombuffer(words, np.uint32).reshape(kinds, -1)
 
     @property
     def buffers(self) -> dict[str, Any]:
@@ -150,6 +209,7 @@ class ComputePipeline:
             self.planned = False
             return
         self._drop_raster()
+        seed = self._seed_words if not self.planned and request.occlusion is not None else 0
         self.planned = True
         if self._software:
             self._shares = segment_shares(request.line_width, request.segment)
@@ -157,15 +217,16 @@ class ComputePipeline:
         target, occlusion, passes = request.target, request.occlusion, request.passes
         with passes.timed("clear"):
             clear = self._program("clear", self._int64)
-            count = ROUNDS * self._round_arguments * ARGUMENT_BYTES // 4
-            set_uniforms(clear, argument_base=self._argument_base, argument_count=count)
             dispatch(clear, target.size[1], self._max_groups)
         with passes.timed("cull"):
             features = self._planning(request)
-            predicting = occlusion is not None and occlusion.predicts
-            if predicting and occlusion is not None:
+            clustered = self._clustered(request)
+            predicting = occlusion is not None and occlusion.predicts and not clustered
+            if clustered:
+                features.append("CLUSTERS")
+            elif predicting and occlusion is not None:
                 features.append(occlusion.feature)
-            yield from self._run("cull", features, request, pieces, looks=predicting)
+            yield from self._run("cull", features, request, pieces, looks=predicting, seed_words=seed)
             self._barrier()
         if occlusion is not None and not occlusion.halfway:
             with passes.timed("occlusion"):
@@ -175,12 +236,18 @@ class ComputePipeline:
         if occlusion is not None and occlusion.halfway:
             if occlusion.predicts:
                 with passes.timed("predicted"):
+                    if clustered:
+                        yield from self._choose("choose_predicted", LAST_LEFT, request, pieces)
                     yield from self._round("depth", PREDICTED, request, pieces)
             self._split(request, marking=False)
             with passes.timed("pyramid"):
                 occlusion.build(target)
+                self._bind(request)  # it takes image units
             with passes.timed("occlusion"):
-                yield from self._test("occlude", request, pieces)
+                if clustered:
+                    yield from self._choose("choose_rest", NOW_LEFT, request, pieces)
+                else:
+                    yield from self._test("occlude", request, pieces)
             with passes.timed("refine"):
                 yield from self._refine(request, pieces)
         with passes.timed("depth"):
@@ -199,7 +266,6 @@ class ComputePipeline:
         for name, index in IMAGES.items():
             if (texture := getattr(target, name)) is not None:
                 texture.bind_to_image(index, read=True, write=True)
-        self._own["visibility_bits"].bind_to_storage_buffer(STORAGE["visibility_bits"])
         if self._int64:
             self._bind_nearest(8 * target.size[0] * target.size[1])
 
@@ -216,15 +282,12 @@ class ComputePipeline:
         self._drop_raster()
         if self._software:
             self._shares = segment_shares(request.line_width, request.segment)
-        self._own["visibility_bits"].bind_to_storage_buffer(STORAGE["visibility_bits"])
         request.gather.bind_images()
         with request.passes.timed("gather"):
             if request.gather.own is None:
                 request.gather.target.clear(self._gl)
-            size = ROUNDS * self._round_arguments * ARGUMENT_BYTES
-            self._gl.clear_words(self._own["visibility_bits"], 4 * self._argument_base, size)
             features = self._planning(request)
-            finish(self._run("cull", features, request))
+            finish(self._run("cull", features, request, seed_words=0))
             self._barrier()
             finish(self._round("gather", REST, request))
         self._ctx.memory_barrier(moderngl.ALL_BARRIER_BITS)
@@ -237,7 +300,7 @@ class ComputePipeline:
         from .geometry import GeometryPipeline
 
         if self._raster is None:
-            self._raster = GeometryPipeline(self._ctx, self._gl, self._programs, 32 * self._words)
+            self._raster = GeometryPipeline(self._ctx, self._gl, self._programs, self._n_fiblets)
         return self._raster
 
     def _bind_nearest(self, size: int) -> None:
@@ -257,8 +320,13 @@ class ComputePipeline:
             return
         with request.passes.timed("owners" if marking else "split"):
             split = self._program("split", ())
-            set_uniforms(split, marking=int(marking))
+            set_uniforms(split, marking=0)
             dispatch(split, request.target.size[1], self._max_groups)
+            for index, chunk in enumerate(request.chunks if marking else ()):
+                chunk.bind_block()
+                self.bind_marks(index)
+                set_uniforms(split, marking=1)
+                dispatch(split, request.target.size[1], self._max_groups)
             self._barrier()
 
     def _planning(self, request: DrawRequest) -> list[str]:
@@ -278,24 +346,15 @@ class ComputePipeline:
             | moderngl.FRAMEBUFFER_BARRIER_BIT
         )
 
-    def _set_round(self, program: moderngl.ComputeShader, number: int, **uniforms: object) -> int:
-        """Tell a program of which round it is, and where lists and arguments stand; return the word of the latter."""
-        at = self._argument_base + number * self._round_arguments * ARGUMENT_BYTES // 4
-        places = {"list_base": self._list_base, "list_length": self._words, "argument_base": at}
-        set_uniforms(program, drawing=number, **places, **uniforms)
-        return at
-
     def _plan(self, number: int, chunks: Sequence[Chunk], refined: bool = False) -> None:
-        """List what a round has to draw."""
+        """List what a round has to draw, and write the arguments of the calls that do."""
         plan = self._program("plan", ())
-        self._set_round(plan, number, refined=int(refined))
-        for chunk in chunks:
+        set_uniforms(plan, drawing=number, refined=int(refined), slot_groups=self._slot_groups)
+        for index, chunk in enumerate(chunks):
             chunk.bind_block()
+            self.bind_marks(index)
+            set_uniforms(plan, slots=self._marks[index].slots)
             dispatch(plan, -(-chunk.n_fiblets // (32 * GROUP_SIZE)), self._max_groups)
-        self._barrier()
-        arguments = self._program("arguments", ())
-        self._set_round(arguments, number, list_count=self._round_arguments, max_groups=self._max_groups)
-        arguments.run(1)
         self._barrier()
 
     def _round(
@@ -321,13 +380,13 @@ class ComputePipeline:
         classes = [(part, [*features, *self._int64]) for part, features in request.classes(one=self._one_class)]
         name = f"fiblets/compute/{stage}.comp"
         made = all(self._programs.has_compute(name, each) for _, each in classes)
-        size = self._round_arguments * ARGUMENT_BYTES  # 0 without fiblets
-        if made or not (READ_LISTS and self._software and size):
+        if made or not (READ_LISTS and self._software and self._marks):
             return classes
         self._ctx.memory_barrier(moderngl.BUFFER_UPDATE_BARRIER_BIT)
-        lists = self._own["visibility_bits"].read(size, offset=4 * self._argument_base + number * size)
-        lengths = np.frombuffer(lists, np.uint32).reshape(-1, CLASSES, ARGUMENT_BYTES // 4)[..., -1]
-        return [one for one in classes if one[0] == 0 or lengths[:, one[0]].any()]
+        held = self._own["visibility_bits"]
+        lengths = [held.read(4 * CLASSES, offset=of.length_at(number)) for of in self._marks]
+        longest = np.frombuffer(b"".join(lengths), np.uint32).reshape(-1, CLASSES).max(axis=0)
+        return [one for one in classes if one[0] == 0 or longest[one[0]] > 0]
 
     def _run_listed(
         self,
@@ -341,31 +400,36 @@ class ComputePipeline:
         """Run a program for each class of fiblets, chunk by chunk, of which each is bound once."""
         listed = self._own["visibility_bits"]
 
-        def tell(program: moderngl.ComputeShader) -> int:
+        def tell(program: moderngl.ComputeShader) -> None:
             request.kept.bind(program)
             if request.peel is not None:
                 request.peel.bind(program)
             if request.gather is not None:
                 request.gather.bind(program)
-            if number == TESTED and request.occlusion is not None:
+            if number in (TESTED, LAST_LEFT, NOW_LEFT) and request.occlusion is not None:
                 request.occlusion.bind(program)
-            return 4 * self._set_round(program, number, **uniforms)
+            set_uniforms(program, drawing=number, **uniforms)
 
-        runs = [(program, part, tell(program) + ARGUMENT_BYTES * part) for program, part in parts]
-        for index in range(len(request.chunks)):
+        for program, _ in parts:
+            tell(program)
+        for index, marks in enumerate(self._marks):
             self._bind_chunk(index, request)
-            for program, part, at in runs:
+            self._bind_clusters(number, request.chunks[index])
+            for program, part in parts:
                 set_uniforms(program, part=part)  # which some have in common
-                place = at + index * CLASSES * ARGUMENT_BYTES
+                at = marks.arguments_at(number, part)
                 if pieces is None:
-                    program.run_indirect(listed, place)
+                    for slot in range(marks.slots):
+                        set_uniforms(program, first_group=slot * self._slot_groups)
+                        program.run_indirect(listed, at + slot * ARGUMENT_BYTES)
                     continue
-                entries = int.from_bytes(listed.read(4, offset=place + 12), sys.byteorder)
-                for _ in self._in_pieces(stage, program, -(-entries // GROUP_WORDS), request, pieces):
+                words = np.frombuffer(listed.read(marks.slots * ARGUMENT_BYTES, offset=at), np.uint32)
+                for _ in self._in_pieces(stage, program, int(words[::4].sum()), request, pieces):
                     yield
                     tell(program)
                     set_uniforms(program, part=part)
                     self._bind_chunk(index, request)
+                    self._bind_clusters(number, request.chunks[index])
 
     def _test(self, stage: str, request: DrawRequest, pieces: Pieces | None) -> Generator[None, None, None]:
         """Run a pass over all fiblets that looks at the occlusion's texture."""
@@ -384,6 +448,38 @@ class ComputePipeline:
         yield from self._run_listed("refine", parts, TESTED, request, pieces)
         self._barrier()
 
+    @staticmethod
+    def _clustered(request: DrawRequest) -> bool:
+        """Whether the chunks have clusters, and there are depth pyramids to test them against."""
+        halfway = request.occlusion is not None and request.occlusion.halfway
+        return halfway and all("clusters" in chunk.buffers for chunk in request.chunks)
+
+    @staticmethod
+    def _bind_clusters(number: int, chunk: Chunk) -> None:
+        if number in (LAST_LEFT, NOW_LEFT):
+            chunk.buffers["clusters"].bind_to_storage_buffer(CLUSTER_STORAGE["clusters"])
+
+    def _choose(
+        self, stage: str, number: int, request: DrawRequest, pieces: Pieces | None
+    ) -> Generator[None, None, None]:
+        """Put the fiblets of clusters that a pyramid does not hide into a round, as a stage wants them."""
+        assert request.occlusion is not None
+        clusters = self._program("clusters", [*request.decoding, *request.tubes, request.occlusion.feature])
+        request.occlusion.bind(clusters)
+        if number == LAST_LEFT:
+            set_uniforms(clusters, pyramid=CULLING["last"])
+        set_uniforms(clusters, drawing=number, slot_groups=self._slot_groups)
+        for index, chunk in enumerate(request.chunks):
+            chunk.bind_block()
+            self.bind_marks(index)
+            self._bind_clusters(number, chunk)
+            set_uniforms(clusters, slots=self._marks[index].slots)
+            dispatch(clusters, -(-chunk.n_fiblets // (CLUSTER * GROUP_SIZE)), self._max_groups)
+        self._barrier()
+        program = self._program(stage, [*self._planning(request), request.occlusion.feature])
+        yield from self._run_listed(stage, [(program, 0)], number, request, pieces)
+        self._barrier()
+
     def _run(
         self,
         stage: str,
@@ -392,6 +488,7 @@ class ComputePipeline:
         pieces: Pieces | None = None,
         *,
         looks: bool = False,
+        **uniforms: object,
     ) -> Generator[None, None, None]:
         """Run a pass of one invocation for 32 fiblets, which may look at the occlusion's texture."""
         program = self._program(stage, features)
@@ -400,10 +497,12 @@ class ComputePipeline:
             request.kept.bind(program)
             if looks and request.occlusion is not None:
                 request.occlusion.bind(program)
+            set_uniforms(program, **uniforms)
 
         tell()
         for index, chunk in enumerate(request.chunks):
             self._bind_chunk(index, request)
+            set_uniforms(program, slots=self._marks[index].slots)
             groups = -(-chunk.n_fiblets // (32 * GROUP_SIZE))
             if pieces is None:
                 dispatch(program, groups, self._max_groups)
@@ -415,7 +514,14 @@ class ComputePipeline:
 
     def _bind_chunk(self, index: int, request: DrawRequest) -> None:
         request.chunks[index].bind_storage()
+        self.bind_marks(index)
         request.kept.bind_chunk(index)
+
+    def bind_marks(self, chunk: int) -> None:
+        """Bind what the passes note of a chunk's fiblets (``visibility_bits.glsl``)."""
+        of = self._marks[chunk]
+        held = self._own["visibility_bits"]
+        held.bind_to_storage_buffer(STORAGE["visibility_bits"], of.begin, of.end - of.begin)
 
     def _in_pieces(
         self, stage: str, program: moderngl.ComputeShader, groups: int, request: DrawRequest, pieces: Pieces

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from ...gl.passes import GROUP_SIZE
 from ...view import MAX_CLIP_PLANES
+from ..data.chunks import CLUSTER, CLUSTER_BIAS, CLUSTER_STEP
 from ..data.filter_textures import MASK_BITS
 
 __all__ = [
+    "CLASSES",
     "CONSTANTS",
     "GREATEST_SIDE",
     "GROUP_WORDS",
+    "LIST_SHARE",
+    "ROUNDS",
     "SHARES",
     "TASK_FIBLETS",
     "TASK_ROUNDS",
@@ -18,8 +22,13 @@ __all__ = [
     "VISIBILITY_WORDS",
 ]
 
+CLASSES = 4
+ROUNDS = 8
+GROUP_CLUSTERS = 4
 GROUP_WORDS = 8
-VISIBILITY_WORDS = 15
+VISIBILITY_WORDS = 7
+LIST_SHARE = 8
+"""A list has room for one of so many of a chunk's fiblets."""
 
 SHARES = {"line": 60, "valued_line": 30, "cut_line": 30, "cut_valued_line": 20, "capsule": 12, "valued_capsule": 10,
           "cut_capsule": 9}
@@ -40,6 +49,13 @@ TASK_FIBLETS = THREADS * TASK_ROUNDS
 CONSTANTS = {
     "group_size": GROUP_SIZE,
     "group_words": GROUP_WORDS,
+    "classes": CLASSES,
+    "rounds": ROUNDS,
+    "group_clusters": GROUP_CLUSTERS,
+    "cluster_size": CLUSTER,
+    "cluster_bias": CLUSTER_BIAS,
+    "cluster_step": CLUSTER_STEP,
+    "list_share": LIST_SHARE,
     "visibility_words": VISIBILITY_WORDS,
     "mask_bits": MASK_BITS,
     "max_clip_planes": MAX_CLIP_PLANES,

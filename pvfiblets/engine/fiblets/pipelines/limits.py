@@ -9,20 +9,22 @@ import moderngl
 from ...gl.moderngl_extras import GLExtras
 from ...gl.passes import work_groups
 from ...gl.work_limits import WorkLimits
-from .compute import CLASSES
-from .constants import VISIBILITY_WORDS
+from .constants import CLASSES, LIST_SHARE, VISIBILITY_WORDS
 
 __all__ = ["TEXTURED", "Limits"]
 
 TEXTURED = ("tessellation", "geometry")
 """Pipelines that read data through buffer textures, and need no storage buffers."""
 
+MARKED = 2**32 - 2
+"""Fiblets that have numbers of their own, beside that of no fiblet."""
+
 MESH = ("mesh", "mesh-serial")
 
 LARGEST = 2**31 - 4
 """Bytes of a buffer, whatever a driver allows: what shaders count in a chunk then fits into 32 bits (``chunks.py``)."""
 
-_VISIBILITY_BYTES = {"texture": 32, "buffer": 4 * (VISIBILITY_WORDS + CLASSES)}  # for 32 fiblets
+_VISIBILITY_BYTES = {"texture": 32, "buffer": 4 * (VISIBILITY_WORDS + 32 * CLASSES // LIST_SHARE)}  # for 32 fiblets
 
 
 @dataclass(frozen=True)
@@ -41,6 +43,10 @@ class Limits:
         What holds them.
     fiblets : int
         Of one buffer of records, and with that of one call (:mod:`pvfiblets.engine.gl.work_limits`).
+    call : int
+        Fiblets of one call, where a buffer has several.
+    clustered : bool
+        Whether chunks have clusters (:mod:`pvfiblets.engine.fiblets.data.clusters`).
     """
 
     buffer_bytes: int
@@ -48,6 +54,8 @@ class Limits:
     marks: int
     marked_by: str
     fiblets: int
+    call: int = LARGEST
+    clustered: bool = False
 
     def visibility_bytes(self, n_fiblets: int) -> int:
         """Bytes of those marks."""
@@ -58,7 +66,7 @@ class Limits:
         cls, ctx: moderngl.Context, gl: GLExtras, pipeline: str, buffer_bytes: int | None, groups: int | None
     ) -> Limits:
         """Ask the driver, and take what is less."""
-        work = WorkLimits.of(ctx).fiblets
+        work, listed = WorkLimits.of(ctx).fiblets, WorkLimits.of(ctx).listed
         side = gl.get_integer("GL_MAX_TEXTURE_SIZE")
         if pipeline in TEXTURED:
             # Of the buffers that decide how many fiblets a chunk holds, every texel has four bytes.
@@ -70,4 +78,4 @@ class Limits:
         groups, records = min(axis, groups or axis), min(most, buffer_bytes or most)
         if pipeline in MESH:
             return cls(records, groups, side * side, "texture", work)
-        return cls(records, groups, 32 * (most // _VISIBILITY_BYTES["buffer"]), "buffer", work)
+        return cls(records, groups, MARKED, "buffer", LARGEST, listed)
