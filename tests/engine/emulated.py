@@ -235,8 +235,8 @@ def emulated_renderer(monkeypatch, gl, fiblets, *, serial=False, **options):
     from pvfiblets.engine import FibletRenderer
     from pvfiblets.engine.fiblets import renderer
 
-    def make(name, ctx, opengl, programs, n_fiblets, n_chunks, limits, alike):
-        return EmulatedMesh(ctx, opengl, programs, n_fiblets, serial=serial)
+    def make(name, ctx, opengl, programs, sizes, limits, alike):
+        return EmulatedMesh(ctx, opengl, programs, sum(sizes), serial=serial)
 
     with monkeypatch.context() as patch:
         patch.setattr(renderer, "make_pipeline", make)

@@ -76,7 +76,7 @@ def test_a_streamline_may_begin_long_before_its_chunk(gl):
     assert upload._points_before(whole, plans[1].fiblets[0]) == plans[1].points[0] > 2**30
     late = next(p for p in plan_chunks(whole, 2**27) if p.points[0] >= 2**32)
     with pytest.raises(EngineError, match=rf"fiblet {late.fiblets[0]} is {late.points[0]} points into its streamline"):
-        upload.upload_chunk(gl, whole, late, 0)
+        upload.upload_chunk(gl, whole, late)
 
 
 @pytest.mark.parametrize("bits", [8, 16])

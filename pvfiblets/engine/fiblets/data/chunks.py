@@ -38,7 +38,6 @@ __all__ = ["CHUNK_BLOCK", "Chunk", "ChunkPlan", "padded", "plan_chunks", "reserv
 
 CHUNK_BLOCK = UniformStruct(
     "Chunk",
-    Field("chunk_number", "uint", "of this chunk among all"),
     Field("chunk_fiblets", "uint", "fiblets here"),
     Field("chunk_first", "uint", "number of the first among all"),
     Field("chunk_points_before", "uint", "points of its streamline in earlier chunks"),

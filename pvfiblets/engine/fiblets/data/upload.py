@@ -58,9 +58,7 @@ def fill_buffer(
     return buffer
 
 
-def upload_chunk(
-    ctx: moderngl.Context, fiblets: FibletSet, plan: ChunkPlan, number: int, show: Show | None = None
-) -> Chunk:
+def upload_chunk(ctx: moderngl.Context, fiblets: FibletSet, plan: ChunkPlan, show: Show | None = None) -> Chunk:
     """Copy one chunk to the GPU."""
     first, last = plan.fiblets
     n = last - first
@@ -84,7 +82,6 @@ def upload_chunk(
     if max(before, last) >= 2**32:
         raise EngineError(f"fiblet {first} is {before} points into its streamline; shaders count less than 2^32")
     block = CHUNK_BLOCK.pack(
-        chunk_number=number,
         chunk_fiblets=n,
         chunk_first=first,
         chunk_points_before=before,
@@ -121,8 +118,8 @@ def upload_fitting(
         needed = sum(plan.nbytes for plan in fitted.plans)
         try:
             with progress_bar(progress, total=needed, unit="B", unit_scale=True, desc="to the GPU") as bar:
-                for number, plan in enumerate(fitted.plans):
-                    chunks.append(upload_chunk(ctx, fitted.fiblets, plan, number, bar.update))  # kept one by one
+                for plan in fitted.plans:
+                    chunks.append(upload_chunk(ctx, fitted.fiblets, plan, bar.update))  # noqa: PERF401 - kept one by one
         except GPUMemoryError:
             if fit != "sample":
                 raise
