@@ -47,7 +47,7 @@ def test_too_large_is_refused_before_anything_is_allocated(gl, brain, allocation
         FibletRenderer(gl, brain, max_total_bytes=100_000)
     said = str(caught.value)
     assert said.startswith(f"{brain.n_fiblets} fiblets need ")
-    assert "0.1 MB are available, as was asked for" in said
+    assert "0.1 MB are available, as requested" in said
     assert "for records and codes" in said
     assert said.endswith("draw fewer streamlines, an even share of them by fit='sample', or all of them part by part "
                          "by fit='stream'")  # fmt: skip

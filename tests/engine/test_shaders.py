@@ -12,6 +12,7 @@ from pvfiblets.engine import EngineError
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS as OF_PIPELINES
 from pvfiblets.engine.gl.shaders import FEATURES, Programs, assemble, tell_of_compiling
 from pvfiblets.engine.halos.uniform_blocks import CONSTANTS as OF_HALOS
+from tests.engine.shader_programs import COLOURS
 
 ROOT = Path(__file__).resolve().parents[2]
 SOURCES = sorted(p for p in (ROOT / "shaders").rglob("*") if p.is_file() and "resolve" not in p.parts)
@@ -100,7 +101,8 @@ def test_a_pipeline_that_opengl_is_too_old_for_is_refused_plainly():
 @pytest.mark.parametrize("value", ["VALUES_STORED", "VALUES_ARC_LENGTH", "VALUES_VOLUME"])
 def test_storage_buffers_are_no_more_than_opengl_promises(gl, name, value):
     """Eight bindings, 0 to 7: asked of the driver for a program with everything on."""
-    features = (EVERYTHING - {f for f in FEATURES if f.startswith("VALUES_")}) | {value}
+    without = {f for f in FEATURES if f.startswith("VALUES_")} | set(COLOURS)
+    features = (EVERYTHING - without) | {value, "COLOUR_POINT_SCALAR"}
     source = assemble(name, features, CONSTANTS)
     bindings = [int(n) for n in re.findall(r"std430, binding = (\d+)", source)]
     assert all(n < 8 for n in bindings if "#if FEATURE_INT64_ATOMICS" not in source or n != 8)

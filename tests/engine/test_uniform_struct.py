@@ -223,8 +223,8 @@ def test_a_source_has_a_block_by_its_name_once_and_only_if_it_is_looked_at():
         (("place", "vec3[0]", "mm"), r"place: 'vec3\[0\]' is no type"),
         (("place", "vec3[n]", "mm"), r"place: 'vec3\[n\]' is no type"),
         (("the place", "vec3", "mm"), r"'the place' is no name of a field; give letters, digits and underscores"),
-        (("place", "vec3", ""), r"place: say in one line what it is; its doc is ''"),
-        (("place", "vec3", "mm\nor so"), r"place: say in one line what it is"),
+        (("place", "vec3", ""), r"place: describe it in one line; its doc is ''"),
+        (("place", "vec3", "mm\nor so"), r"place: describe it in one line"),
     ],
 )
 def test_a_bad_field_is_one_clear_error(field, message):

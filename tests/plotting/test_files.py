@@ -258,7 +258,7 @@ def test_a_region_is_where_the_mesh_says(ball):
 
 def test_a_file_without_points_is_told(tmp_path):
     pv.PolyData().save(tmp_path / "a.vtp")
-    with pytest.raises(ValueError, match=r"a\.vtp holds no points: there is nothing to draw"):
+    with pytest.raises(ValueError, match=r"a\.vtp has no points to draw; check the program that wrote it"):
         read_mesh(tmp_path / "a.vtp")
 
 

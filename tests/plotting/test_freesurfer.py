@@ -235,4 +235,4 @@ def test_a_file_of_vtk_that_holds_a_surface_alone_is_drawn(tmp_path, suffix):
 def test_an_empty_file_of_vtk_is_refused(tmp_path, capsys):
     pv.PolyData().save(tmp_path / "none.vtk")
     assert main(["screenshot", str(tmp_path / "none.vtk"), "-o", str(tmp_path / "a.png")]) == 1
-    assert "none.vtk holds no points: there is nothing to draw" in capsys.readouterr().err
+    assert "none.vtk has no points to draw; check the program that wrote it" in capsys.readouterr().err

@@ -127,7 +127,7 @@ def test_what_is_no_directory_of_fixels_is_refused(folder, tmp_path):
         slices.add_fixels(made, "fd", clim=(1, 0))
     plotter.close()
     write(made / f"odd.{suffix}", np.zeros((7, 1, 1), np.float32))
-    with pytest.raises(ValueError, match="as many rows"):
+    with pytest.raises(ValueError, match="a row for each fixel"):
         as_slice_image(made / f"odd.{suffix}")
     write(made / f"directions.{suffix}", directions[:-1, :, None])
     with pytest.raises(ValueError, match="not there"):

@@ -121,7 +121,7 @@ def test_a_selection_as_tubes_is_named_once(scene):
     layer = scene.open("lines.fiblets")
     scene.selection.select(layer.id, [3])
     scene.set(layer.id, "selection_as_tubes", True)
-    assert SentScenes(scene).make() == "the width or the tubes of what is selected of 'lines.fiblets'"
+    assert SentScenes(scene).make() == "the width or the tubes of the selection of 'lines.fiblets'"
 
 
 @pytest.fixture

@@ -271,6 +271,6 @@ def test_commands(whole, tmp_path, capsys):
     assert "give the folder's name" in capsys.readouterr().err
     with pytest.raises(SystemExit):
         main(["convert", source, target, "--shards", "many"])
-    assert "'many' is no size of a file" in capsys.readouterr().err
+    assert "'many' is no file size" in capsys.readouterr().err
     assert main(["info", "https://example.org/a.tck"]) == 1
     assert "is an address" in capsys.readouterr().err
