@@ -69,7 +69,7 @@ def test_what_is_finished_is_skipped_and_what_changed_is_not(client, cohort, tmp
         return batch("convert", study / PATTERN, out, cluster=client, **options)
 
     assert len(run().done) == 3
-    with pytest.raises(ValueError, match=r"3 files of which are finished; give --resume .* --overwrite"):
+    with pytest.raises(ValueError, match=r"3 finished files; give --resume .* --overwrite"):
         run()
     before = {s: (out / name_of(s, ".fiblets")).stat().st_mtime_ns for s in SUBJECTS}
     again = run(resume=True)

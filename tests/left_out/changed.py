@@ -298,7 +298,11 @@ CHANGED = {
         buffers="-masks, -offsets",
     ),
     "volume: local mip": What(features="VOLUME_LOCAL"),
-    "volume: surface": What(features="VOLUME_CELLS, VOLUME_SURFACE", resolve="tube_normal"),
+    "volume: surface": What(
+        features="VOLUME_CELLS, VOLUME_SURFACE",
+        resolve="-colour_point_scalar, -point_value, colour_solid, tube_normal",
+        buffers="-colour_table",
+    ),
     "volume: gentle light": What(
         features="VOLUME_COMPOSITE, VOLUME_PREINTEGRATED",
         resolve="-colour_point_scalar, -point_value, colour_point_rgba, own_light",
@@ -350,9 +354,9 @@ CHANGED = {
     "volume: ray occlusion": What(
         ran="volumes/ray_occlusion.frag, volumes/ray_occlusion_mean.frag",
         features="VOLUME_CELLS, VOLUME_SURFACE",
-        resolve="ray_occlusion, tube_normal",
+        resolve="-colour_point_scalar, -point_value, colour_solid, ray_occlusion, tube_normal",
         passes="mean ray occlusion (effect), ray occlusion (effect)",
-        buffers="mean ray occlusion (effect), ray occlusion (effect)",
+        buffers="-colour_table, mean ray occlusion (effect), ray occlusion (effect)",
         modules="engine.volumes.ray_occlusion, mappers.ray_occlusion",
     ),
 }

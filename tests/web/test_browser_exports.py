@@ -115,7 +115,7 @@ def test_bundles_are_found_ordered_measured_and_fetched(revisit, tmp_path):
     here.page.fill("[data-find=clusters] input", "12")
     here.page.click("[data-bundle=clusters]")
     here.wait(lambda: "cluster 1" in names(here), "clusters")
-    assert "clusters" in here.toast()
+    here.wait(lambda: "clusters" in here.toast(), "how many there are")
     count = len(names(here))
     here.press("Control+z")
     here.wait(lambda: names(here) == ["near", "far"], "none of them")
