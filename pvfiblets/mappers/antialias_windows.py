@@ -26,8 +26,8 @@ shown_pictures: weakref.WeakSet[Any] = weakref.WeakSet()
 def refine(window: Any, *, cheaply: bool = False) -> bool:
     """Draw one more frame of the pictures of a window that want more samples or parts, or what it takes.
 
-    Nothing if none does; return whether another one is wanted. `cheaply`: without VTK's own samples of each pixel as
-    far as these change nothing.
+    Nothing if none does; return whether another one is wanted. `cheaply` leaves VTK's multisampling out where it
+    changes nothing.
     """
     wanting = _unfinished(window)
     if any(picture.draw_part() for picture in wanting):

@@ -36,8 +36,8 @@ class Colouring:
     Parameters
     ----------
     mode : str
-        One of `pvfiblets.colour_modes.MODES`. Numbers or colours of lines are in `values`, those of points are named by
-        `source`; `lut` is the table. ``'pixel_count'`` is of fiblets with a `pvfiblets.mappers.density.Density`.
+        One of `pvfiblets.colour_modes.MODES`. `values` holds numbers or colours of lines, `source` names the array of
+        points; `lut` is the table. ``'pixel_count'`` is of fiblets with a `pvfiblets.mappers.density.Density`.
     color : sequence of 3 floats, default (1, 1, 1)
         RGB between 0 and 1, for ``'solid'``.
     values : numpy.ndarray, optional
@@ -149,7 +149,7 @@ class Colouring:
 
     @property
     def maps_on_gpu(self) -> bool:
-        """Whether shaders look numbers up in the table; those of lines are colours by then."""
+        """Whether shaders map numbers by the table; numbers of lines are mapped on the CPU."""
         return self.kind.table and self.kind.numbers != "lines"
 
     @property

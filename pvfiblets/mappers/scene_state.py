@@ -13,7 +13,7 @@ from typing import Any
 __all__ = ["scene_state", "without_multisamples"]
 
 _multisamples: dict[str, int] = {}
-"""Of windows that do without for a frame, what they have otherwise."""
+"""Settings of windows that render a frame without multisampling, by address."""
 
 _SETTINGS = (
     "GetAmbient", "GetAutomaticLightCreation", "GetBackground", "GetBackground2", "GetBackgroundAlpha", "GetDraw",
@@ -43,7 +43,7 @@ def scene_state(renderer: Any) -> Hashable:
 
 @contextmanager
 def without_multisamples(window: Any) -> Iterator[None]:
-    """Have a window draw one sample a pixel, which changes the state of none of its pictures."""
+    """Render without multisampling; states of pictures stay equal."""
     address, samples = window.GetAddressAsString(""), window.GetMultiSamples()
     _multisamples[address] = samples
     window.SetMultiSamples(0)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -163,7 +164,7 @@ def find_scalars(numbers: Numbers, choice: Any, rgb: bool | None = None) -> Scal
 
 def direction_scalars() -> dict[str, Callable[[], Scalars]]:
     """Return what is built in for all lines: colours of their directions."""
-    return {name: lambda name=name: Scalars(name, name) for name in DIRECTIONS}  # type: ignore[misc]
+    return {name: partial(Scalars, name, name) for name in DIRECTIONS}
 
 
 def name_list(names: Iterable[Any]) -> str:

@@ -21,10 +21,9 @@ struct Walk {
     ivec3 cell;
     vec4 low;        // field at its corners, at x, where y goes before z, then at x + 1
     vec4 high;
-    bool loaded;
     float t;
     uint sides;
-    bool known;      // sides
+    bool known;      // low, high and sides hold: the walk came from the cell beside this one
 };
 
 struct Stretch {
@@ -49,7 +48,7 @@ Walk walk_from(Ray ray, float t) {
     walk.d = abs(ray.d);
     walk.cell = clamp(ivec3(floor(walk.o + t * walk.d)), ivec3(0), ivec3(volume_shape) - 2);
     walk.t = t;
-    walk.loaded = walk.known = false;
+    walk.known = false;
     return walk;
 }
 
@@ -84,22 +83,21 @@ float node_of_walk(Walk walk, out ivec3 low, out ivec3 high) {
     return number;
 }
 
-float cubic_at(vec4 b, float s) {
+// Value and slope.
+vec2 cubic_at(vec4 b, float s) {
     vec3 c = mix(b.xyz, b.yzw, s);
     vec2 d = mix(c.xy, c.yz, s);
-    return mix(d.x, d.y, s);
+    return vec2(mix(d.x, d.y, s), 3.0 * (d.y - d.x));
 }
 
 // Where a cubic changes sides between places that it does not turn between: steps of Newton, halves where these leave the bracket.
 float crossing_between(vec4 b, float first, float last, bool below) {
     float s = 0.5 * (first + last);
     for (int k = 0; k < 24; ++k) {
-        vec3 c = mix(b.xyz, b.yzw, s);
-        vec2 d = mix(c.xy, c.yz, s);
-        float value = mix(d.x, d.y, s), rise = 3.0 * (d.y - d.x);
-        if ((value < 0.0) == below) first = s;
+        vec2 value = cubic_at(b, s);
+        if ((value.x < 0.0) == below) first = s;
         else last = s;
-        float next = s - value / (rise == 0.0 ? 1e-30 : rise);
+        float next = s - value.x / (value.y == 0.0 ? 1e-30 : value.y);
         if (!(next > first && next < last)) next = 0.5 * (first + last);
         if (abs(next - s) < 1e-7) break;
         s = next;
@@ -125,7 +123,7 @@ vec3 crossings(vec4 b, bool below) {
     }
     float from = 0.0;
     for (int k = 0; k < 3 && count < 3; ++k) {
-        bool next = cubic_at(b, turns[k]) < 0.0;
+        bool next = cubic_at(b, turns[k]).x < 0.0;
         if (next != side) found[count++] = crossing_between(b, from, turns[k], side);
         side = next;
         from = turns[k];
@@ -155,18 +153,17 @@ void walk_cells(Ray ray, float start) {
             vec3 out_of = (vec3(high) - walk.o) * inverse;
             float end = min(out_of.x, min(out_of.y, out_of.z));
             walk.t = max(walk.t, end);
-            walk.loaded = walk.known = false;
+            walk.known = false;
             ivec3 inside = clamp(ivec3(floor(walk.o + walk.t * walk.d)), low, high - 1);
             walk.cell = ivec3(mix(vec3(inside), vec3(high), equal(out_of, vec3(end))));
             continue;
         }
         high = min(high, last_cell + 1);
-        if (!walk.loaded) {
+        if (!walk.known) {
             for (int k = 0; k < 4; ++k) {
                 walk.low[k] = voxel_of(walk, walk.cell + ivec3(0, k & 1, k >> 1));
                 walk.high[k] = voxel_of(walk, walk.cell + ivec3(1, k & 1, k >> 1));
             }
-            walk.loaded = true;
         }
         do {
             vec3 out_of = (vec3(walk.cell + 1) - walk.o) * inverse;

@@ -234,7 +234,7 @@ def assemble(
 
 
 def preprocess(text: str, features: Iterable[str]) -> str:
-    """Return GLSL with its includes and without what features leave out, for programs that somebody else makes."""
+    """Return GLSL with includes resolved and inactive features removed, for programs made elsewhere."""
     active, included = set(features), set[str]()
 
     def include(match: re.Match[str]) -> str:

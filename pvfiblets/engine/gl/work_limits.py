@@ -16,8 +16,8 @@ of its own    NVIDIA GTX 1650                 3        700 million         8 tho
 
 A call has fiblets of 60 segments for 0.7 s, if all are in view and none is hidden; or samples along rays for half a
 second. The compute pipeline cuts its lists for integrated cards into calls of a tenth of a second: there a buffer is as
-large as it may be, and calls without work cost next to nothing. Software has no such limits: nobody takes a processor
-for hung.
+large as it may be, and calls without work cost next to nothing. Software has no such limits: no
+watchdog resets a processor.
 """
 
 from __future__ import annotations

@@ -1,10 +1,11 @@
-"""What `scalars=` may name of fiblets: their arrays, images, and what is computed from their geometry."""
+"""Scalars of fiblets by name: arrays, images, and values computed from the geometry."""
 
 from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -101,7 +102,7 @@ def _built_in(fiblets: FibletSet) -> dict[str, Callable[[], Any]]:
 
     return {
         "coding_error": coding_error,
-        **{name: lambda name=name: measured(name) for name in COMPUTED["streamline"]},  # type: ignore[misc]
+        **{name: partial(measured, name) for name in COMPUTED["streamline"]},
         "length": lambda: measured("length"),
         "arc_length": arc_length,
         "curvature": curvature,

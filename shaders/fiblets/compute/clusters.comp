@@ -30,7 +30,7 @@ Box box_of(uint cluster) {
 #endif
     vec3 begin = UNIT * {{ cluster_bias }} + vec3(reference);
     vec3 a = (UNIT * {{ cluster_step }} * vec3(low) - begin) * anchor_scale, b = (UNIT * {{ cluster_step }} * vec3(high) - begin) * anchor_scale;
-    a = mix(a, vec3(-1e9), equal(low, uvec3(0u)));   // as far as boxes reach: nobody knows where it ends
+    a = mix(a, vec3(-1e9), equal(low, uvec3(0u)));   // unbounded
     b = mix(b, vec3(1e9), equal(high, uvec3(65535u)));
 #if FEATURE_TUBES
     a -= tube_radius;

@@ -5,7 +5,7 @@ a box around these. Sorted by place, along a Morton curve through the middles of
 
 A box is in units of anchors, coarsened so that 16 bits hold it with room around: place q stands for ``q * CLUSTER_STEP
 - CLUSTER_BIAS``, for sets with 32-bit anchors times 65,536. It holds the capsules of its fiblets, rounded up by more
-than a step. Places 0 and 65,535 mean that it reaches farther, nobody knows how far.
+than a step. Places 0 and 65,535 mean that the box is unbounded on that side.
 """
 
 from __future__ import annotations

@@ -29,9 +29,9 @@ def make_pipeline(
     limits: Limits,
     alike: int | None = None,
 ) -> Pipeline:
-    """Make a pipeline for chunks of so many fiblets, by a name that the context must support.
+    """Make a pipeline for chunks of these sizes, by a name that the context must support.
 
-    Its programs are those of `alike` fiblets.
+    It shares the programs of sets with `alike` fiblets.
     """
     n_fiblets = sum(sizes)
     if name in ("mesh", "mesh-serial"):

@@ -29,8 +29,8 @@ no more need of.
 
 Each round of drawing takes its fiblets from lists that the GPU made, by indirect dispatches: the CPU issues the same
 calls whatever there is to draw. A chunk is as large as buffers may be. Where it has more fiblets than one call may
-draw (:mod:`pvfiblets.engine.gl.work_limits`), its arguments have several slots, a call for each; those that a list does
-not need have no work groups.
+draw (:mod:`pvfiblets.engine.gl.work_limits`), its arguments have several slots, a call for each. Slots
+beyond the end of a list have no work groups.
 
 The sources are in ``shaders/fiblets/compute``; what a program includes is decided by features.
 """
@@ -78,8 +78,8 @@ TUBES_BY_RASTER = True
 takes is not known beforehand, and OpenGL's rasteriser has no such limit."""
 
 SEED_OF = 1 << 23
-"""Fiblets of which every eighth is drawn first where nothing is known of a last picture; fewer of more. They hide most
-of the others: of 7.4 million fiblets 1.5 million are drawn instead of all."""
+"""Size of a set up to which a first frame begins with every eighth fiblet; larger sets begin with a smaller share. They
+hide most of the other fiblets: of 7.4 million, 1.5 million are drawn instead of all."""
 
 READ_LISTS = True
 """Whether software OpenGL compiles programs of classes when they first have fiblets."""
@@ -98,7 +98,7 @@ class MarkRange:
 
     @classmethod
     def at(cls, begin: int, n_fiblets: int, slot_groups: int) -> MarkRange:
-        """Lay one out that begins so many bytes into the buffer."""
+        """Return the layout of a range that starts at byte `begin` of the buffer."""
         words = -(-n_fiblets // 32)
         slots = max(-(-words // (GROUP_WORDS * slot_groups)), 1)
         room = -(-n_fiblets // LIST_SHARE)

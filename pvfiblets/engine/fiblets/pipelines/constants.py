@@ -28,7 +28,7 @@ GROUP_CLUSTERS = 4
 GROUP_WORDS = 8
 VISIBILITY_WORDS = 7
 LIST_SHARE = 8
-"""A list has room for one of so many of a chunk's fiblets."""
+"""A list has room for a chunk's fiblets divided by this."""
 
 SHARES = {"line": 60, "valued_line": 30, "cut_line": 30, "cut_valued_line": 20, "capsule": 12, "valued_capsule": 10,
           "cut_capsule": 9}
