@@ -263,7 +263,7 @@ FILES = {
     if "__pycache__" not in path.parts and "_build" not in path.parts
 } | set(FOLDERS)
 NAMES = {name.rpartition("/")[2] for name in FILES}
-WRITTEN = re.compile(r"codec/layout\.glsl|uniforms/\w+\.glsl")  # by the package itself
+WRITTEN = re.compile(r"codec/layout\.glsl|colour/line_colour\.glsl|uniforms/\w+\.glsl")  # by the package itself
 ELSEWHERE = ("shaders/resolve/emission.glsl", "wslink/chunking.py")  # an example, and another library's
 
 

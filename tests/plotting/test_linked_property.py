@@ -200,7 +200,7 @@ def test_volumes(plotter, mode):
         plotter.render()
         wanted.append(plotter.screenshot(None).astype(int))
         plotter.remove_actor(actor)
-    actor = plotter.add_raycast_volume(image, mode=mode, show_scalar_bar=False)
+    actor = plotter.add_raycast_volume(image, mode=mode, cmap="gray", show_scalar_bar=False)
     plotter.render()
     actor.mapper.lookup_table.cmap = "jet"
     plotter.render()
