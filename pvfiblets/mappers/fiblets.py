@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from vtkmodules.vtkRenderingCore import vtkRenderer
@@ -20,6 +20,9 @@ from pvfiblets.mappers.scene import Frame, frame_of, slack, smoothers, wanted_sh
 from pvfiblets.mappers.shader_effects import ShaderEffect
 from pvfiblets.mappers.windows import Slot, WindowContext, contexts_with
 from pvfiblets.query.selection.point_flags import Sampling
+
+if TYPE_CHECKING:
+    from pvfiblets.engine.fiblets.sample_layers import SampledLines
 
 _OVER = object()
 
@@ -277,7 +280,7 @@ class FibletMapper(CutMapper[EngineOptions]):
         assert context is not None
         engine = self._engine(context, context.slot(self))
         samples = engine.sample_layers()
-        steps = samples.draw([one.sampled_lines(renderer, context) for one in lines])
+        steps = samples.draw([list(one.sampled_lines(renderer, context)) for one in lines])
         try:
             while context.alive:
                 with context.foreign():
@@ -291,8 +294,8 @@ class FibletMapper(CutMapper[EngineOptions]):
                 with context.foreign():
                     engine.drop_samples(samples)
 
-    def sampled_lines(self, renderer: vtkRenderer, context: WindowContext) -> Any:
-        """Return what the engine takes of this set (`pvfiblets.engine.fiblets.sample_layers.SampledLines`)."""
+    def sampled_lines(self, renderer: vtkRenderer, context: WindowContext) -> Iterable[SampledLines]:
+        """Return what the engine takes of this set, part by part."""
         frame, view, style = self._sampled(renderer)
         rectangle = frame.pixel_rectangle(self._drawn.bounds, self._drawn.promise, style.half_width + 1.0)
         return self._engine(context, context.slot(self)).sampled(view, style, rectangle)

@@ -15,6 +15,7 @@ from pvfiblets.cluster import connection
 from pvfiblets.cluster.connection import connected
 from pvfiblets.codec.fibletset import FibletSet
 from pvfiblets.engine import EngineError, FibletRenderer, FibletStyle, View
+from pvfiblets.engine.fiblets import sample_layers
 from pvfiblets.engine.fiblets.data.filter_textures import Filter
 from pvfiblets.engine.fiblets.data.sampled_volume import VolumeSource
 from pvfiblets.engine.fiblets.parts import cluster_renderer
@@ -271,6 +272,28 @@ def test_a_plotter_shows_what_workers_draw(client, brain):
     assert hits == there
     assert any(hits)
     assert told["parts"] == 2
+
+
+@pytest.mark.parametrize("mesh", [False, True])
+def test_samples_of_what_workers_draw_are_those_of_one_machine(client, brain, mesh, monkeypatch):
+    monkeypatch.setattr(sample_layers, "MOST_TEXELS", 2**17)
+
+    def shot(**options):
+        plotter = pv.Plotter(off_screen=True, window_size=(160, 120))
+        plotter.picture.antialias = "refined"
+        if mesh:
+            plotter.add_mesh(pv.Sphere(radius=40.0, center=(0, 0, 20)), color="white")
+        actor = plotter.add_fiblets(brain, scalars="height", **options)
+        actor.include(regions.Sphere((20, 0, 20), 40.0))
+        plotter.show(auto_close=False)
+        found = plotter.screenshot(None)
+        assert plotter.picture.samples == 16
+        plotter.close()
+        return found
+
+    here = shot()
+    assert len(np.unique(here.reshape(-1, 3), axis=0)) > 500
+    np.testing.assert_array_equal(shot(cluster=client), here)
 
 
 def test_a_page_has_workers_draw(client, brain, tmp_path):

@@ -10,9 +10,9 @@ from pvfiblets.codec.restrict import even_share
 from pvfiblets.engine.errors import EngineError
 from pvfiblets.engine.fiblets.data import memory_fit
 from pvfiblets.engine.fiblets.parts.streamed_renderer import StreamedRenderer
-from pvfiblets.engine.fiblets.renderer import FibletRenderer
 from pvfiblets.synthetic import brain_streamlines
 
+from .refined_scene import Renders
 from .views import shot
 
 
@@ -85,7 +85,10 @@ def test_a_set_whose_parts_are_all_there_is_refined_as_any_other(plotter, too_la
     monkeypatch.setattr(memory_fit, "free_memory", lambda ctx, gl: memory_fit.PICTURE_BYTES + 2_000_000)
     monkeypatch.setattr(memory_fit.MemoryBudget, "fits", lambda *_: False)
     actor = plotter.add_fiblets(too_large, fit="stream")
+    plotter.show(auto_close=False)
+    renders = Renders(plotter)
     picture = shot(plotter)
+    assert renders.since() <= 2, "samples of all parts are drawn at once"
     parts = actor.explain()["parts"]
     assert parts["there"] == parts["fetched"] == parts["total"] > 1
     assert plotter.picture.samples == 16
@@ -106,8 +109,10 @@ def test_a_set_whose_parts_are_all_there_is_refined_as_any_other(plotter, too_la
     plotter.remove_actor(actor)
     plotter.picture.antialias = "refined"
     plotter.add_fiblets(too_large, reset_camera=False)
-    monkeypatch.setattr(FibletRenderer, "layers_samples", lambda *_: False)
-    np.testing.assert_array_equal(picture, shot(plotter))
+    # Samples of parts are put together by OpenGL's depth test, which takes nearly equal depths as equal.
+    apart = np.abs(picture.astype(int) - shot(plotter))
+    assert (apart > 0).mean() < 1e-3
+    assert apart.max() <= 16  # one sample
 
 
 def test_samples_end_where_parts_must_be_fetched_for_them(plotter, too_large, little_memory, monkeypatch):

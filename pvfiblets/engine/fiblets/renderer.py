@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Generator, Iterator
 from contextlib import nullcontext
 from dataclasses import replace
 from functools import partial
@@ -29,6 +29,7 @@ from .data.memory_fit import MemoryBudget
 from .data.point_values import ValueSources
 from .data.uniform_blocks import SharedBlocks, decoding_features
 from .data.upload import release_chunks, upload_fitting
+from .fiblet_drawable import has_layers
 from .gather.lines_behind import LinesBehind
 from .pipelines import CONSTANTS, ComputePipeline, DrawRequest, Limits, Pipeline, make_measurer, make_pipeline
 from .style import FibletStyle
@@ -43,7 +44,7 @@ if TYPE_CHECKING:
     from ...query.selection.point_flags import Sampling
     from .data.sampled_volume import VolumeSource
     from .region_query import RegionQuery
-    from .sample_layers import SampledLines, SampleLayers
+    from .sample_layers import Rectangle, SampledLines
 
 __all__ = ["FibletRenderer"]
 
@@ -98,8 +99,6 @@ class FibletRenderer(LinesBehind):
     ValueError
         If there is no pipeline or fit of that name.
     """
-
-    STYLE = FibletStyle
 
     def __init__(
         self,
@@ -265,40 +264,22 @@ class FibletRenderer(LinesBehind):
         return two_phase and self._last != (view, style)
 
     def layers_samples(self, view: View, style: FibletStyle) -> bool:
-        """Say whether :meth:`sample_layers` can draw a picture: of lines without a surface, cut by planes at most."""
-        plain = style.radius is None and style.relief is None and view.region is None
-        return plain and isinstance(self._pipeline, ComputePipeline)
+        """See :meth:`.FibletDrawable.layers_samples`."""
+        return has_layers(view, style) and isinstance(self._pipeline, ComputePipeline)
 
-    def sampled(self, view: View, style: FibletStyle, rectangle: tuple[int, int, int, int]) -> SampledLines:
-        """Return what :meth:`sample_layers` draws of this set.
-
-        Parameters
-        ----------
-        view : View
-        style : FibletStyle
-            Of which, with the view, :meth:`layers_samples` is true.
-        rectangle : tuple of 4 ints
-            x, y, width, height of the part of the picture in which anything can be.
-        """
+    def sampled(self, view: View, style: FibletStyle, rectangle: Rectangle) -> list[SampledLines]:
+        """See :meth:`.FibletDrawable.sampled`."""
         from .sample_layers import SampledLines
 
         self._check_alive()
+        return [SampledLines(view, style, rectangle, self._draw_samples)]
+
+    def _draw_samples(self, view: View, style: FibletStyle, target: GBuffer) -> Iterator[None]:
+        from .sample_layers import draw_samples
+
         assert isinstance(self._pipeline, ComputePipeline)
-        return SampledLines(view, style, rectangle, self._fiblets.n_fiblets, self._request, self._pipeline)
-
-    def sample_layers(self) -> SampleLayers:
-        """Return what draws sixteen samples of every pixel, of this set and of others of the same picture and context.
-
-        The picture of :meth:`render` stays as it is. :meth:`drop_samples` gives it back, or :meth:`release`.
-        """
-        from .sample_layers import SampleLayers
-
-        self._check_alive()
-        return self._keep(SampleLayers(self._ctx, self._gl, self._programs), "samples")
-
-    def drop_samples(self, samples: SampleLayers) -> None:
-        """Give back what :meth:`sample_layers` returned; twice is harmless."""
-        self._drop(samples)
+        draw_samples(self._ctx, self._pipeline, self._request(view, style, target))
+        yield from ()
 
     def value_range(self, values: str | VolumeSource) -> tuple[float, float]:
         """Return the least and the greatest of a per-point value, for a colour map's range.

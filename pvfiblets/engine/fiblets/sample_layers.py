@@ -2,18 +2,19 @@
 
 Fiblets are decoded once for all samples of a pixel, which lie side by side in a picture four times as wide and high
 (``FEATURE_SUBSAMPLES``): each has a depth test of its own. The samples of a pixel that show the same fiblet are lit
-once: layer k holds each pixel's fiblet with the k-th most samples, and their share of the pixel. Several sets are drawn
-one after the other into the same samples.
+once: layer k holds each pixel's line with the k-th most samples, and their share of the pixel. Several sets, and the
+parts of a set that is drawn in parts, are drawn one after the other into the same samples.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack
 from copy import copy
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import TYPE_CHECKING
 
 import moderngl
 import numpy as np
@@ -27,10 +28,12 @@ from ..gl.queries import Query
 from ..gl.shaders import Programs
 from ..view import View
 from .parts.part_pictures import PictureTarget, textures_of
-from .pipelines import ComputePipeline, DrawRequest
 from .style import FibletStyle
 
-__all__ = ["LAYERS", "SAMPLES", "Layer", "SampleLayers", "SampledLines"]
+if TYPE_CHECKING:
+    from .pipelines import ComputePipeline, DrawRequest
+
+__all__ = ["LAYERS", "SAMPLES", "Layer", "SampleLayers", "SampledLines", "draw_samples"]
 
 SIDE = 4
 SAMPLES = SIDE * SIDE
@@ -50,7 +53,7 @@ Rectangle = tuple[int, int, int, int]
 
 @dataclass(frozen=True)
 class SampledLines:
-    """A set's lines as a picture shows them.
+    """Lines of a set, or of a part of it, as a picture shows them.
 
     Attributes
     ----------
@@ -58,19 +61,15 @@ class SampledLines:
     style : FibletStyle
     rectangle : tuple of 4 ints
         x, y, width, height of the part of the picture in which any of them can be.
-    n_fiblets : int
-    request : callable
-        Says what is to be drawn for a view and a style into a picture.
-    pipeline : ComputePipeline
-        Draws it.
+    draw : callable
+        Draws the samples of a part of the picture, whose view, style and G-buffer it is given, and yields where it
+        waits.
     """
 
     view: View
     style: FibletStyle
     rectangle: Rectangle
-    n_fiblets: int
-    request: Callable[[View, FibletStyle, GBuffer], DrawRequest]
-    pipeline: ComputePipeline
+    draw: Callable[[View, FibletStyle, GBuffer], Iterator[None]]
 
 
 @dataclass(frozen=True)
@@ -111,7 +110,7 @@ class _Buffers:
 
 
 class _Together:
-    """Samples of several sets in one picture, and what draws into it."""
+    """Samples of several sets or parts in one picture, and what draws into it."""
 
     def __init__(self, ctx: moderngl.Context, gl: GLExtras, size: tuple[int, int]) -> None:
         self._gl = gl
@@ -157,19 +156,25 @@ class SampleLayers:
         self._shown = Query(gl, "samples")
         self._held = ExitStack()  # until all is drawn; a generator may be closed when the context is gone
 
-    def draw(self, lines: Sequence[SampledLines]) -> Iterator[float | Layer]:
+    def draw(self, sets: Sequence[Sequence[SampledLines]]) -> Iterator[float | Layer]:
         """Draw once, part by part; yield the share of the work that is done after each, at last the layers.
+
+        Parameters
+        ----------
+        sets : sequence of sequence of SampledLines
+            The parts of each set. Of two lines at one depth the one of the later set or part shows.
 
         Raises
         ------
         EngineError
-            If memory does not suffice, or sets have more fiblets than can be told apart.
+            If memory does not suffice, or there are more sets than can be told apart.
         """
-        self._sets = len(lines)
-        if len(lines) > MOST_SETS or max(one.n_fiblets for one in lines) * len(lines) >= EMPTY:
-            raise EngineError(f"{len(lines)} sets are more than samples at once can tell apart; hide some")
-        whole = lines[0].view.size
-        size, corners = _parts(_union([one.rectangle for one in lines]), MOST_TEXELS // min(len(lines), 2))
+        self._sets = len(sets)
+        if len(sets) > MOST_SETS:
+            raise EngineError(f"{len(sets)} sets are more than samples at once can tell apart; hide some")
+        lines = [(number, part) for number, parts in enumerate(sets) for part in parts]
+        whole = lines[0][1].view.size
+        size, corners = _parts(_union([one.rectangle for _, one in lines]), MOST_TEXELS // min(len(lines), 2))
         drawn = self._keep(_Buffers(self._ctx))
         entries, listed = _target(self._ctx, size, 4)
         self._keep(entries)
@@ -180,15 +185,17 @@ class SampleLayers:
             self._ctx.scissor = None
             if kept is not None:
                 kept.clear()
-            for number, one in enumerate(lines):
-                if kept is None:
-                    self._draw_set(one, corner, drawn.of(size))
-                elif (place := _common(one.rectangle, (*corner, *size))) is not None:
-                    self._draw_set(one, place[:2], drawn.of(place[2:]))
-                    begin = place[0] - corner[0], place[1] - corner[1]
-                    self._merge(drawn.of(place[2:]), kept, _times(SIDE, begin), number)
-                if number + 1 < len(lines):
-                    yield (part * len(lines) + number + 1) / steps
+            for step, (number, one) in enumerate(lines, part * len(lines)):
+                place = _common(one.rectangle, (*corner, *size)) if kept is not None else (*corner, *size)
+                if place is not None:
+                    picture = drawn.of(place[2:])
+                    for _ in one.draw(*_subsampled(one, place[:2], picture.size), picture):
+                        yield step / steps
+                    if kept is not None:
+                        begin = place[0] - corner[0], place[1] - corner[1]
+                        self._merge(picture, kept, _times(SIDE, begin), number)
+                if step + 1 < (part + 1) * len(lines):
+                    yield (step + 1) / steps
             with self._gl.framebuffers_kept():
                 self._sort(whole, drawn.of(size) if kept is None else kept.picture, entries, listed, corner)
             yield (part + 1) / len(corners)
@@ -200,18 +207,11 @@ class SampleLayers:
         self._held.callback(kept.release)
         return kept
 
-    def _draw_set(self, lines: SampledLines, corner: tuple[int, int], drawn: GBuffer) -> None:
-        style, width = lines.style, SIDE * lines.style.line_width
-        sub = replace(style, line_width=width, edges=False, exact=True, tolerance=SIDE * style.tolerance)
-        wanted = lines.request(_part(lines.view, corner, drawn.size), sub, drawn)
-        with self._marks_kept(lines.pipeline):
-            lines.pipeline.draw(replace(wanted, occlusion=None, samples=("SUBSAMPLES",)))
-
     def _merge(self, drawn: GBuffer, kept: _Together, corner: tuple[int, int], number: int) -> None:
-        """Put a set's samples to those of the sets before, where they are nearer."""
+        """Put samples of a set to those before, where they are nearer."""
         program, array = self._programs.screen("fiblets/samples/merge.frag", [])
-        _use(program, {f"drawn_{name}": getattr(drawn, name) for name in ("depth", "owner", "ids", "position")})
-        program["corner"], program["set"], program["sets"] = corner, number, self._sets
+        _use(program, {f"drawn_{name}": getattr(drawn, name) for name in ("depth", "ids", "position")})
+        program["corner"], program["set"] = corner, number
         self._ctx.scissor = None
         self._ctx.enable_only(moderngl.DEPTH_TEST)
         self._ctx.depth_func = "<="
@@ -219,23 +219,6 @@ class SampleLayers:
             kept.framebuffer.use()
             kept.framebuffer.viewport = (*corner, *drawn.size)
             array.render(moderngl.TRIANGLES, vertices=3)
-
-    @contextmanager
-    def _marks_kept(self, pipeline: ComputePipeline) -> Iterator[None]:
-        """Lend what marks those fiblets as seen that the last picture shows, which are also so in the end."""
-        marks = pipeline.buffers["visibility_bits"]
-        kept = self._ctx.buffer(reserve=marks.size)
-        self._copy(kept, marks)
-        try:
-            yield
-        finally:
-            self._copy(marks, kept)
-            kept.release()
-
-    def _copy(self, target: moderngl.Buffer, source: moderngl.Buffer) -> None:
-        self._ctx.memory_barrier(moderngl.BUFFER_UPDATE_BARRIER_BIT)
-        self._ctx.copy_buffer(target, source)
-        self._ctx.memory_barrier(moderngl.SHADER_STORAGE_BARRIER_BIT | moderngl.COMMAND_BARRIER_BIT)
 
     def _sort(
         self,
@@ -249,13 +232,14 @@ class SampleLayers:
         self._ctx.enable_only(moderngl.NOTHING)
         self._ctx.scissor = None
         program, array = self._programs.screen("fiblets/samples/entries.frag", [])
-        _use(program, {"drawn_owner": samples.owner, "drawn_ids": samples.ids})
+        _use(program, {f"drawn_{name}": getattr(samples, name) for name in ("depth", "owner", "ids")})
+        program["several"] = int(self._sets > 1)
         listed.use()
         array.render(moderngl.TRIANGLES, vertices=3)
         program, array = self._programs.screen("fiblets/samples/layer.frag", [])
         drawn = {f"drawn_{name}": getattr(samples, name) for name in ("depth", "owner", "ids", "position")}
         _use(program, {"entries": entries, **drawn})
-        program["corner"], program["sets"] = corner, self._sets
+        program["corner"], program["several"] = corner, int(self._sets > 1)
         for number in range(LAYERS):
             if number == len(self._targets):
                 self._targets.append(self._made(size))
@@ -310,6 +294,24 @@ class SampleLayers:
         self._depths = None
 
 
+def draw_samples(ctx: moderngl.Context, pipeline: ComputePipeline, wanted: DrawRequest) -> None:
+    """Draw samples (``FEATURE_SUBSAMPLES``), and leave alone what marks those fiblets that the last picture shows."""
+    marks = pipeline.buffers["visibility_bits"]
+    kept = ctx.buffer(reserve=marks.size)
+    _copy(ctx, kept, marks)
+    try:
+        pipeline.draw(replace(wanted, occlusion=None, samples=("SUBSAMPLES",)))
+    finally:
+        _copy(ctx, marks, kept)
+        kept.release()
+
+
+def _copy(ctx: moderngl.Context, target: moderngl.Buffer, source: moderngl.Buffer) -> None:
+    ctx.memory_barrier(moderngl.BUFFER_UPDATE_BARRIER_BIT)
+    ctx.copy_buffer(target, source)
+    ctx.memory_barrier(moderngl.SHADER_STORAGE_BARRIER_BIT | moderngl.COMMAND_BARRIER_BIT)
+
+
 def _use(program: moderngl.Program, textures: dict[str, moderngl.Texture]) -> None:
     for name, texture in textures.items():
         texture.use(SAMPLE_LAYER[name])
@@ -356,11 +358,14 @@ def _parts(rectangle: Rectangle, most: int) -> tuple[tuple[int, int], list[tuple
     return size, [(x + size[0] * i, y + size[1] * j) for j in range(rows) for i in range(columns)]
 
 
-def _part(view: View, corner: tuple[int, int], size: tuple[int, int]) -> View:
-    """Return the view of a part of a picture, whose samples are its pixels: so many, from a pixel of the picture."""
+def _subsampled(lines: SampledLines, corner: tuple[int, int], size: tuple[int, int]) -> tuple[View, FibletStyle]:
+    """Return view and style of a part of a picture, whose samples are pixels: so many, from a pixel of the picture."""
+    view, style = lines.view, lines.style
+    width, tolerance = SIDE * style.line_width, SIDE * style.tolerance
     matrix = np.eye(4)
     for axis in (0, 1):
         scale = SIDE * view.size[axis] / size[axis]
         matrix[axis, axis] = scale
         matrix[axis, 3] = scale * (1.0 - 2.0 * corner[axis] / view.size[axis]) - 1.0
-    return replace(view, size=size, model_view_projection=matrix @ view.model_view_projection)
+    part = replace(view, size=size, model_view_projection=matrix @ view.model_view_projection)
+    return part, replace(style, line_width=width, edges=False, exact=True, tolerance=tolerance)

@@ -1,16 +1,19 @@
 // Which lines the sixteen samples of a pixel show: of each, how many samples, and one sample that stands for them.
 //
-// Samples of a fiblet that bends within the pixel count as lines of their own, by the tangents that their light depends on.
+// Samples of a streamline that bends within the pixel count as lines of their own, by the tangents that their light depends on.
 //
-//   drawn_owner   fiblets by sample (FEATURE_SUBSAMPLES), 4 x 4 texels a pixel; that of no fiblet is one of them
+//   drawn_depth   by sample (FEATURE_SUBSAMPLES), 4 x 4 texels a pixel; 0xFFFFFFFF where no line is
 //   drawn_ids     streamlines and tangents
-//   entries       16 bytes, from the lowest, that of no fiblet first, then those with most samples: 16 (samples - 1) + the
+//   drawn_owner   sets, where there are several
+//   entries       16 bytes, from the lowest, that of no line first, then those with most samples: 16 (samples - 1) + the
 //                 sample's number
 
 #version 430
 
-uniform usampler2D drawn_owner;
+uniform usampler2D drawn_depth;
 uniform usampler2D drawn_ids;
+uniform usampler2D drawn_owner;
+uniform int several;
 out uvec4 entries;
 
 const int ALIKE = 3000;   // of the 32767 steps of a tangent's packed halves
@@ -29,32 +32,37 @@ uint entry_of(uint samples) {
 
 void main() {
     ivec2 at = 4 * ivec2(gl_FragCoord.xy);
-    uint owners[16], tangents[16];
-    uint differing = 0u;
+    uint lines[16], tangents[16], sets[16];
+    uint differing = 0u, none = 0u;
     for (int i = 0; i < 16; ++i) {
-        owners[i] = texelFetch(drawn_owner, at + ivec2(i & 3, i >> 2), 0).x;
-        tangents[i] = owners[i] == 0xFFFFFFFFu ? 0u : texelFetch(drawn_ids, at + ivec2(i & 3, i >> 2), 0).y;
-        differing |= (owners[i] ^ owners[0]) | (alike(tangents[i], tangents[0]) ? 0u : 1u);
+        ivec2 sample_at = at + ivec2(i & 3, i >> 2);
+        bool empty = texelFetch(drawn_depth, sample_at, 0).x == 0xFFFFFFFFu;
+        uvec2 ids = empty ? uvec2(0u) : texelFetch(drawn_ids, sample_at, 0).xy;
+        lines[i] = ids.x;
+        tangents[i] = ids.y;
+        sets[i] = several != 0 && !empty ? texelFetch(drawn_owner, sample_at, 0).x : 0u;
+        none |= empty ? 1u << i : 0u;
+        differing |= (lines[i] ^ lines[0]) | (sets[i] ^ sets[0]) | (alike(tangents[i], tangents[0]) ? 0u : 1u);
     }
+    if (none != 0xFFFFu) differing |= none;
     entries = uvec4(0xF0u, 0u, 0u, 0u);
     if (differing == 0u) return;
-    uint found[16], left = 0xFFFFu, none = 0u;
-    for (int i = 0; i < 16; ++i) none |= owners[i] == 0xFFFFFFFFu ? 1u << i : 0u;
+    uint found[16], left = 0xFFFFu;
     int count = 0;
     if (none != 0u) {
         found[count++] = entry_of(none);
         left &= ~none;
     }
-    int lines = count;
+    int first_line = count;
     for (; left != 0u; ++count) {
         int first = findLSB(left);
-        uint mine = owners[first], tangent = tangents[first], same = 0u;
-        for (int i = 0; i < 16; ++i) same |= owners[i] == mine && alike(tangents[i], tangent) ? 1u << i : 0u;
+        uint line = lines[first], set = sets[first], tangent = tangents[first], same = 0u;
+        for (int i = 0; i < 16; ++i) same |= lines[i] == line && sets[i] == set && alike(tangents[i], tangent) ? 1u << i : 0u;
         same &= left;
         left &= ~same;
         uint entry = entry_of(same);
         int place = count;
-        for (; place > lines && found[place - 1] < entry; --place) found[place] = found[place - 1];
+        for (; place > first_line && found[place - 1] < entry; --place) found[place] = found[place - 1];
         found[place] = entry;
     }
     entries = uvec4(0u);

@@ -3,7 +3,7 @@
 // those that are left out count in proportion to the lines that are not: what no line covers keeps its share.
 //
 //   entries, drawn_depth, drawn_ids, drawn_position   of the samples of a part of the picture
-//   drawn_owner, sets                                 of several sets: which of them is told by the remainder
+//   drawn_owner                                       where there are several sets: a sample's
 //   corner                                            pixel of the picture where that part begins
 
 #version 430
@@ -15,7 +15,7 @@ uniform usampler2D drawn_ids;
 uniform sampler2D drawn_position;
 uniform int layer;
 uniform int layers;     // that there may be
-uniform uint sets;
+uniform int several;
 uniform ivec2 corner;
 
 layout(location = 0) out uint depth;
@@ -39,14 +39,14 @@ void main() {
         if (listed >= 16u && k < layer) discard;
     }
     uint first = entry_of(words, 0), entry = entry_of(words, layer);
-    uint none = texelFetch(drawn_owner, place_of(first, pixel), 0).x == 0xFFFFFFFFu ? samples_of(first) : 0u;
+    uint none = texelFetch(drawn_depth, place_of(first, pixel), 0).x == 0xFFFFFFFFu ? samples_of(first) : 0u;
     ivec2 at = place_of(entry, pixel);
     depth = texelFetch(drawn_depth, at, 0).x;
     // Rounded so that all together are 65536.
     uint of_lines = 4096u * (16u - none), lines = max(listed - none, 1u), from = before - min(before, none);
     uint part = layer == 0 && none > 0u ? 4096u * none
         : of_lines * (from + samples_of(entry)) / lines - of_lines * from / lines;
-    share = part | (texelFetch(drawn_owner, at, 0).x % sets) << 17u;
+    share = part | (several != 0 ? texelFetch(drawn_owner, at, 0).x << 17u : 0u);
     ids = texelFetch(drawn_ids, at, 0).xy;
     position = texelFetch(drawn_position, at, 0).xy;
 }

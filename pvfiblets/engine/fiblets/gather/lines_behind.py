@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 import moderngl
 
-from ...drawable import Drawable
 from ...view import View
+from ..fiblet_drawable import FibletDrawable
 from ..style import FibletStyle
 from .depth_peeling import LayeredBuffer, Layers
 
 if TYPE_CHECKING:
     from ...culling import Occlusion
+    from ...drawable import Drawable
     from ...gbuffer import GBuffer
     from ..data.uniform_blocks import SharedBlocks
     from ..pipelines import DrawRequest, Pipeline
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 __all__ = ["LinesBehind"]
 
 
-class LinesBehind(Drawable[FibletStyle]):
+class LinesBehind(FibletDrawable):
     """Layers and sums of lines behind the nearest. Textures and programs are made when first needed.
 
     Parameters

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import contextlib
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from functools import cache, reduce
 from typing import TYPE_CHECKING, Any
@@ -30,6 +30,7 @@ from ...view import View
 from ..census import no_counts
 from ..data.filter_textures import Filter, points_of_part
 from ..data.sampled_volume import VolumeSource
+from ..fiblet_drawable import has_layers
 from ..pipelines import CONSTANTS
 from ..style import FibletStyle
 from .nearest_only import NearestOnly
@@ -40,10 +41,12 @@ from .worker_drawing import PartOfSet, Request, draw_part, merge_parts, source_o
 
 if TYPE_CHECKING:
     from ....codec.fibletset import FibletSet
+    from ..sample_layers import Rectangle, SampledLines
 
 __all__ = ["ClusterRenderer"]
 
 TICK = 0.5  # seconds from look to look whether there are workers left
+LOOK = 0.05  # seconds for which a window stands still while samples of its picture are being drawn
 GRACE = 10.0  # seconds in which a cluster without workers may get some: those that die are started again
 
 
@@ -142,6 +145,11 @@ class ClusterRenderer(NearestOnly):
         """Whether the last picture lacks parts that another one of the same view would show."""
         return not self.released and self._root is not None and bool(self._left)
 
+    @property
+    def resident(self) -> bool:
+        """Whether the last picture is complete: workers hold their parts."""
+        return not self.released and self._root is not None and not self._left
+
     def _draw(self, view: View, style: FibletStyle, outside: moderngl.Texture | None) -> GBuffer:  # noqa: ARG002
         if self._asked != (view, style):
             self._ask(view, style)
@@ -162,20 +170,24 @@ class ClusterRenderer(NearestOnly):
     def _ask(self, view: View, style: FibletStyle) -> None:
         """Have a picture begun, and what is left of the last one dropped."""
         self._forget()
+        self._drawing, self._root = self._submit(view, style)
+        self._asked = view, style
+
+    def _submit(self, view: View, style: FibletStyle, *, samples: bool = False) -> tuple[list[Any], Any]:
+        """Have a picture begun; return its parts, and all of it."""
         volume = self._volume_of(style)
         plain = style if volume is None else replace(style, values=None)
-        request = Request(view, plain, self.pipeline, self._filter_key)
+        request = Request(view, plain, self.pipeline, self._filter_key, samples)
         each = zip(self._parts, self._sent, self._filters, strict=True)
-        self._drawing = self._submit_each(draw_part, ((part, request, sent, kept, volume) for part, sent, kept in each))
-        level = list(self._drawing)
+        drawing = self._submit_each(draw_part, ((part, request, sent, kept, volume) for part, sent, kept in each))
+        level = list(drawing)
         while len(level) > 1:
             pairs = [
                 self._cluster.submit(merge_parts, level[at], level[at + 1], pure=False, priority=20)
                 for at in range(0, len(level) - 1, 2)
             ]
             level = pairs + level[2 * len(pairs) :]
-        self._root = level[0]
-        self._asked = view, style
+        return drawing, level[0]
 
     def _answer(self) -> SparsePicture | None:
         """Wait for the picture, or for as long as patience lasts; None if nothing is there by then."""
@@ -184,7 +196,7 @@ class ClusterRenderer(NearestOnly):
             left = TICK if until is None else min(until - time.monotonic(), TICK)
             if left <= 0.0:
                 break
-            self._wait(left)
+            self._wait(self._root, left)
             if not self._root.done():
                 self._workers()  # raises where none is left
         if self._root.done():
@@ -196,12 +208,32 @@ class ClusterRenderer(NearestOnly):
         # All may be drawn and not yet put together: then it is this process that does it.
         return reduce(nearer, done) if done else None
 
-    def _wait(self, seconds: float) -> None:
+    def _wait(self, root: Any, seconds: float) -> None:
         from distributed import TimeoutError as TooLong
         from distributed import wait
 
         with self._cluster.as_current(), contextlib.suppress(TooLong, TimeoutError):
-            wait([self._root], timeout=seconds)
+            wait([root], timeout=seconds)
+
+    def layers_samples(self, view: View, style: FibletStyle) -> bool:
+        """See :meth:`.FibletDrawable.layers_samples`; a worker without compute shaders raises."""
+        return self.resident and has_layers(view, style)
+
+    def sampled(self, view: View, style: FibletStyle, rectangle: Rectangle) -> list[SampledLines]:
+        """See :meth:`.FibletDrawable.sampled`."""
+        from ..sample_layers import SampledLines
+
+        self._check_alive()
+        return [SampledLines(view, style, rectangle, self._draw_samples)]
+
+    def _draw_samples(self, view: View, style: FibletStyle, target: GBuffer) -> Iterator[None]:
+        _, root = self._submit(view, style, samples=True)
+        while not root.done():
+            self._wait(root, LOOK)
+            if not root.done():
+                self._workers()
+                yield
+        write_picture(_told(root), target)
 
     def _forget(self) -> None:
         # dask gives up what nobody holds any more; told to cancel, it would stop at tasks that have just ended.

@@ -5,9 +5,8 @@ from __future__ import annotations
 from abc import abstractmethod
 from typing import TYPE_CHECKING, Any
 
-from ...drawable import Drawable
 from ...errors import EngineError
-from ..style import FibletStyle
+from ..fiblet_drawable import FibletDrawable
 
 if TYPE_CHECKING:
     import moderngl
@@ -15,6 +14,7 @@ if TYPE_CHECKING:
     from ...gbuffer import GBuffer
     from ...view import View
     from ..data.filter_textures import Filter
+    from ..style import FibletStyle
 
 __all__ = ["NearestOnly"]
 
@@ -28,7 +28,7 @@ _NO_SUMS = (
 )
 
 
-class NearestOnly(Drawable[FibletStyle]):
+class NearestOnly(FibletDrawable):
     """Draws a set of fiblets in parts.
 
     Attributes
@@ -38,8 +38,6 @@ class NearestOnly(Drawable[FibletStyle]):
     patience : float or None
         Seconds after which a picture is given back as it is; None for complete pictures only.
     """
-
-    STYLE = FibletStyle
 
     hurried = False
     patience: float | None = None
@@ -51,9 +49,9 @@ class NearestOnly(Drawable[FibletStyle]):
         """Whether the last picture lacks parts that another one of the same view would show."""
 
     @property
+    @abstractmethod
     def resident(self) -> bool:
         """Whether all parts of the last picture are there, so that another one of nearly the same view fetches none."""
-        return False
 
     def render(
         self, view: View, style: FibletStyle | None = None, *, outside: moderngl.Texture | None = None

@@ -20,7 +20,7 @@ from __future__ import annotations
 
 import time
 from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 import moderngl
@@ -34,6 +34,7 @@ from ...gl.moderngl_extras import GLExtras
 from ...view import View
 from ..census import no_counts
 from ..data.memory_fit import MemoryBudget
+from ..fiblet_drawable import has_layers
 from ..pipelines import CONSTANTS, Limits
 from ..renderer import FibletRenderer
 from ..style import FibletStyle
@@ -49,6 +50,7 @@ if TYPE_CHECKING:
     from ..gather.gatherer import Gatherer
     from ..gather.gathering import Gathered
     from ..gather.paint import Paint
+    from ..sample_layers import Rectangle, SampledLines
 
 __all__ = ["PARTS", "THINNED_SHARE", "StreamedRenderer", "streamed_renderer"]
 
@@ -177,11 +179,14 @@ class StreamedRenderer(NearestOnly):
             self._parts.wait(left)
 
     def _begin(self, view: View, style: FibletStyle) -> None:
-        numbers = range(len(self._parts))
-        self._in_view = [n for n in numbers if in_view(view, style, self._box(n)) and not self._is_filtered(n)]
+        self._in_view = self._visible(view, style)
         self._left = sorted(self._in_view, key=lambda number: number not in self._there)
         self._pictures.begin(view.size, style.relief, style.edges)
         self._begun, self._thinned = (view, style), False
+
+    def _visible(self, view: View, style: FibletStyle) -> list[int]:
+        numbers = range(len(self._parts))
+        return [n for n in numbers if in_view(view, style, self._box(n)) and not self._is_filtered(n)]
 
     def _is_filtered(self, number: int) -> bool:
         """Whether the filter keeps no streamline of a part, which then need not come."""
@@ -244,6 +249,16 @@ class StreamedRenderer(NearestOnly):
         self._filtered.clear()
         for renderer in self._there.values():
             renderer.filtering = wanted
+
+    def layers_samples(self, view: View, style: FibletStyle) -> bool:
+        """See :meth:`.FibletDrawable.layers_samples`."""
+        return self.pipeline == "compute" and self.resident and has_layers(view, style)
+
+    def sampled(self, view: View, style: FibletStyle, rectangle: Rectangle) -> Iterator[SampledLines]:
+        """See :meth:`.FibletDrawable.sampled`; parts that are not there are fetched one after the other."""
+        self._check_alive()
+        for number in reversed(self._visible(view, style)):
+            yield from self._fetch(number).sampled(view, style, rectangle)
 
     def gather(
         self,

@@ -13,11 +13,13 @@ from collections import OrderedDict
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from functools import reduce
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from ....codec.shards.unread_set import UnreadSet
 from ...errors import EngineError
+from ...gbuffer import EMPTY, GBuffer
 from ...view import View
 from ..style import FibletStyle
 from .sparse_picture import Cost, SparsePicture, nearer, read_picture
@@ -25,6 +27,7 @@ from .sparse_picture import Cost, SparsePicture, nearer, read_picture
 if TYPE_CHECKING:
     from ....codec.fibletset import FibletSet
     from ..data.filter_textures import Filter
+    from ..fiblet_drawable import FibletDrawable
 
 __all__ = ["HELD", "PartOfSet", "Request", "draw_part", "merge_parts", "source_of", "value_range_of_part"]
 
@@ -67,12 +70,15 @@ class Request:
     pipeline : str
     filter_key : int
         Another one for another filter.
+    samples : bool
+        Whether each pixel is a sample (:mod:`pvfiblets.engine.fiblets.sample_layers`).
     """
 
     view: View
     style: FibletStyle
     pipeline: str
     filter_key: int
+    samples: bool = False
 
 
 class _Drawing:
@@ -118,8 +124,29 @@ class _Drawing:
             renderer.filtering = filtering
             self._filters[key] = request.filter_key
         style = request.style if volume is None else replace(request.style, values=volume)
-        found = read_picture(renderer.render(request.view, style), part.number)
+        if request.samples:
+            found = self._draw_samples(renderer, request.view, style, part.number)
+        else:
+            found = read_picture(renderer.render(request.view, style), part.number)
         return replace(found, costs=(Cost("draw", time.perf_counter() - begun, found.nbytes),))
+
+
+    def _draw_samples(self, renderer: FibletDrawable, view: View, style: FibletStyle, order: int) -> SparsePicture:
+        if renderer.pipeline != "compute":
+            raise EngineError(f"a worker has no compute shaders for samples; its pipeline is {renderer.pipeline!r}")
+        target = GBuffer(self._ctx, view.size)
+        try:
+            found = []
+            for lines in renderer.sampled(view, style, (0, 0, *view.size)):
+                for _ in lines.draw(view, style, target):
+                    pass
+                found.append(read_picture(target, order))
+            if not found:  # no part is in the view
+                target.depth.write(EMPTY.to_bytes(4, "little") * (view.size[0] * view.size[1]))
+                found.append(read_picture(target, order))
+        finally:
+            target.release()
+        return reduce(nearer, found)
 
 
 _drawing: _Drawing | None = None
