@@ -128,7 +128,7 @@ class _AddRaycastVolume(Protocol):
         blending: str | None = None, resolution: Any = None, multi_colors: bool = False,
         categories: bool | int = False, preference: str | None = None, mode: str = "composite",
         values: float | Any = None, surface_opacities: float | Any = None,
-        surface_colors: Sequence[ColorLike] | None = None, color: ColorLike | None = None,
+        surface_colors: Sequence[ColorLike] | None = None, closed: bool = False, color: ColorLike | None = None,
         cmap: ColormapOptions | pv.LookupTable | None = None, clim: float | Sequence[float] | None = None,
         n_colors: int = 256, log_scale: bool = False, annotations: dict[float, str] | None = None,
         flip_scalars: bool = False, opacity: float | str | Sequence[float] | np.ndarray = "linear",

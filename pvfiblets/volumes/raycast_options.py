@@ -57,6 +57,8 @@ class RaycastOptions:
         RGBA from 0 to 1 of each of `values`: then each ray shows all surfaces that it meets, one behind the other.
     transfer : Transfer, optional
         Colours and opacities by value, for ``'composite'``.
+    closed : bool
+        Whether the border of the volume, or of its `box`, closes surfaces about values that are at least theirs.
     threshold : float
         The least value of a peak, for ``'local-mip'``.
     low, high : float
@@ -109,6 +111,7 @@ class RaycastOptions:
     values: tuple[float, ...] = ()
     surfaces: tuple[tuple[float, ...], ...] | None = None
     transfer: Transfer | None = None
+    closed: bool = False
     threshold: float = -math.inf
     low: float = -math.inf
     high: float = math.inf

@@ -14,6 +14,12 @@ layout(location = 4) out vec4 out_colour;
 void clear_shown() { out_colour = vec4(0.0); }
 
 vec3 towards_viewer(Ray ray, float t) {
+#if FEATURE_VOLUME_CLOSED
+    if (t == box_enter || t == box_leave) {
+        vec3 axis = axis_of_face(at(ray, t));
+        return dot(axis, ray.d) > 0.0 ? -axis : axis;
+    }
+#endif
 #if FEATURE_VOLUME_NEAREST
     vec3 p = floor(at(ray, t) + 0.5);
 #else
@@ -39,6 +45,15 @@ void add_surface(Ray ray, float at_t, int k, inout float hit, inout float value,
     vec3 lit = lit_surface(colour.rgb, at(ray, at_t), towards_viewer(ray, at_t));
     light += (1.0 - light.a) * colour.a * vec4(lit, 1.0);
 }
+
+#if FEATURE_VOLUME_CLOSED
+void add_face(Ray ray, float at_t, inout float hit, inout float value, inout vec4 light) {
+    float at_face = value_at(at(ray, at_t));
+    for (int k = 0; k < isovalue_count && light.a < opaque_from; ++k) {
+        if (isovalues[k] <= at_face) add_surface(ray, at_t, k, hit, value, light);
+    }
+}
+#endif
 
 #if FEATURE_VOLUME_CELLS
 float shown_at, shown_value;
@@ -114,6 +129,16 @@ void add_surfaces(Ray ray, float step, float start, inout float hit, inout float
 
 #endif
 
+void add_all(Ray ray, float begin, float step, float start, inout float hit, inout float value, inout vec4 light) {
+#if FEATURE_VOLUME_CLOSED
+    if (begin == box_enter) add_face(ray, begin, hit, value, light);
+#endif
+    if (light.a < opaque_from) add_surfaces(ray, step, start, hit, value, light);
+#if FEATURE_VOLUME_CLOSED
+    if (ray.last == box_leave && light.a < opaque_from) add_face(ray, ray.last, hit, value, light);
+#endif
+}
+
 bool cast_ray(ivec2 pixel, Ray ray, float step, float start, out float hit, out float value) {
     vec4 light = vec4(0.0);
     hit = start;
@@ -122,10 +147,10 @@ bool cast_ray(ivec2 pixel, Ray ray, float step, float start, out float hit, out 
     Ray part = ray;
     float begin, late = start - ray.first;
     for (int number = 0; light.a < opaque_from && next_part(pixel, ray, number, begin, part.last);) {
-        add_surfaces(part, step, min(begin + late, part.last), hit, value, light);
+        add_all(part, begin, step, min(begin + late, part.last), hit, value, light);
     }
 #else
-    add_surfaces(ray, step, start, hit, value, light);
+    add_all(ray, ray.first, step, start, hit, value, light);
 #endif
     if (light.a >= opaque_from) light /= light.a;
     if (!(light.a > 0.0)) return false;

@@ -178,7 +178,11 @@ void walk_cells(Ray ray, float start) {
             if ((top >= lowest && bottom < highest) || (walk.known && sides != walk.sides)) {
                 vec3 enter = walk.o + first * walk.d - vec3(walk.cell), leave = walk.o + walk.t * walk.d - vec3(walk.cell);
                 vec4 b = bernstein(walk.low, walk.high, clamp(enter, 0.0, 1.0), clamp(leave, 0.0, 1.0)) * field_scale + field_shift;
-                if (show_stretch(ray, Stretch(first, walk.t, b, walk.known ? walk.sides : sides_of(b.x)))) return;
+                uint before = walk.known ? walk.sides : sides_of(b.x);
+#if FEATURE_VOLUME_CLOSED && !FEATURE_VOLUME_LAYERS
+                if (first == box_enter) before = all_sides;
+#endif
+                if (show_stretch(ray, Stretch(first, walk.t, b, before))) return;
                 sides = sides_of(b.w);
             }
             step_over(walk, end == out_of.x ? bvec3(true, false, false) : bvec3(false, end == out_of.y, end != out_of.y));

@@ -8,6 +8,10 @@ struct Ray {
     float last;
 };
 
+#if FEATURE_VOLUME_CLOSED
+float box_enter, box_leave;      // mm along the pixel's ray
+#endif
+
 vec3 at(Ray ray, float t) { return ray.o + t * ray.d; }
 
 void narrow(float start, float rise, inout float first, inout float last) {
@@ -43,6 +47,10 @@ Ray ray_of(vec2 fragment) {
     vec3 enter = min(to_low, to_high), leave = max(to_low, to_high);
     ray.first = max(enter.x, max(enter.y, enter.z));
     ray.last = min(leave.x, min(leave.y, leave.z));
+#if FEATURE_VOLUME_CLOSED
+    box_enter = ray.first;
+    box_leave = ray.last;
+#endif
     for (int plane = 0; plane < ray_plane_count; ++plane) {
         narrow(dot(ray_planes[plane], vec4(ray.o, 1.0)), dot(ray_planes[plane].xyz, ray.d), ray.first, ray.last);
     }

@@ -7,6 +7,10 @@
 // Regula falsi halves the weight of an end that stays twice (Illinois): it then converges where the field bends. A step of Newton
 // that leaves the bracket is replaced by a bisection.
 
+#if FEATURE_VOLUME_CLOSED
+#include "volumes/closed.glsl"
+#endif
+
 #if FEATURE_VOLUME_CELLS
 #include "volumes/cells.glsl"
 

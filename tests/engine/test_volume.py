@@ -132,13 +132,40 @@ def test_cells_hide_no_surface(cast, matrix, dtype, made, octree):
     assert (same | ~(shown.there | there)).mean() > 0.999
 
 
-def test_cells_show_translucent_surfaces_one_behind_the_other(cast, camera):
-    """A ball whose value falls from its middle: each ray through it meets both surfaces twice."""
+@pytest.mark.few(4)
+@pytest.mark.every("pair")
+@pytest.mark.parametrize("more", [{}, {"octree": False}, {"step": 0.02, "refine": "regula-falsi"}])
+@pytest.mark.parametrize("made", [blobs, thin])
+def test_the_border_closes_surfaces_as_low_voxels_around_the_volume_do(cast, matrix, made, more):
+    volume = made((13, 11, 12), np.float32)
+    value = 0.3 * top(volume)
+    low, high = ((2, 2, 0), (8, 8, 11)) if made is blobs else ((0, 0, 0), (12, 10, 11))
+    box = tuple(float(end) for ends in zip(low, high, strict=True) for end in ends) if made is blobs else None
+    shown, _ = cast(volume, RaycastOptions(values=(value,), closed=True, box=box, **more), matrix)
+    inside = volume.values[tuple(slice(first, last + 1) for first, last in zip(low, high, strict=True))]
+    affine = volume.affine.copy()
+    affine[:3, 3] += affine[:3, :3] @ low
+    affine[:3, 3] -= affine[:3, :3] @ [1.0, 1.0, 1.0]
+    padded = RaycastVolume(np.pad(inside, 1, constant_values=-1e4 * top(volume)), affine)
+    through = reference.rays(matrix, SIZE, padded)
+    wanted = reference.isosurface(padded, (value,), through)
+    there = wanted.value >= 0
+    assert there.sum() > 200
+    per_mm = np.abs(through.depth(wanted.t + 1e-3) - wanted.depth) / 1e-3
+    same = shown.there & there & (np.abs(shown.depth - wanted.depth) <= 4e-3 * per_mm)
+    assert (same | ~(shown.there | there)).mean() > (0.999 if not more.get("step") else 0.99)
+    opened, _ = cast(volume, RaycastOptions(values=(value,), **more), matrix)
+    assert (np.abs(opened.depth - shown.depth) > 1e-3).sum() > 100
+
+
+@pytest.mark.parametrize("half", [None, (0.0, 24.0, 12.0, 24.0, 0.0, 24.0), (0.0, 24.0, 0.0, 12.0, 0.0, 24.0)])
+def test_cells_show_translucent_surfaces_one_behind_the_other(cast, camera, half):
+    """A ball whose value falls from its middle: each ray through it, or through a closed half, meets surfaces twice."""
     at = np.stack(np.meshgrid(*[np.arange(25.0) - 12.0] * 3, indexing="ij"), axis=-1)
     volume = RaycastVolume((20.0 - np.linalg.norm(at, axis=-1)).astype(np.float32), np.eye(4))
     matrix = camera(SIZE, eye=(12.0, -200.0, 12.0), target=(12.0, 12.0, 12.0), near=10, far=400, height=30.0)
     surfaces = ((1.0, 0.0, 0.0, 0.25), (0.0, 1.0, 0.0, 0.5))
-    casting = RaycastOptions(values=(11.0, 16.0), surfaces=surfaces, step=100.0)
+    casting = RaycastOptions(values=(11.0, 16.0), surfaces=surfaces, step=100.0, box=half, closed=half is not None)
     shown, _ = cast(volume, casting, matrix)
     y, x = (np.indices(SIZE[::-1]) + 0.5 - np.array(SIZE[::-1]).reshape(2, 1, 1) / 2) * 30.0 / SIZE[1]
     beside = np.hypot(x, y)

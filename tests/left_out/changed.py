@@ -303,6 +303,11 @@ CHANGED = {
         resolve="-colour_point_scalar, -point_value, colour_solid, tube_normal",
         buffers="-colour_table",
     ),
+    "volume: closed surface": What(
+        features="VOLUME_CLOSED, VOLUME_CELLS, VOLUME_SURFACE",
+        resolve="-colour_point_scalar, -point_value, colour_solid, tube_normal",
+        buffers="-colour_table",
+    ),
     "volume: gentle light": What(
         features="VOLUME_COMPOSITE, VOLUME_PREINTEGRATED",
         resolve="-colour_point_scalar, -point_value, colour_point_rgba, own_light",

@@ -236,6 +236,7 @@ SCENES = {
     "volume: light": made("volume", mode="composite", opacity=[0, 0.5]),
     "volume: dense light": made("volume", mode="composite"),
     "volume: shaded light": made("volume", mode="composite", shade=True),
+    "volume: closed surface": made("volume", mode="isosurface", values=0.7, closed=True),
     "volume: translucent surfaces": made("volume", mode="isosurface", values=0.7, surface_opacities=0.5),
     "volume: minimum": made("volume", mode="minimum"),
     "volume: average": made("volume", mode="average"),

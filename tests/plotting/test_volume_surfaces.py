@@ -373,3 +373,29 @@ def test_it_is_a_live_setting():
     with pytest.raises(ValueError, match="specular"):
         actor.specular = -1.0
     plotter.close()
+
+
+@pytest.mark.parametrize("box", [None, (0, N - 1, 0, N - 1, 9, N - 1)])
+def test_a_closed_surface_looks_like_vtks_contour_of_a_volume_in_low_voxels(shot, box):
+    image = ball()
+    field = 14.0 - np.roll(image["far"].reshape((N, N, N), order="F"), (9, -11), (0, 1))
+    image["near"] = field.ravel(order="F")
+    low = 0 if box is None else box[4]
+    padded = pv.ImageData(dimensions=(N + 2, N + 2, N + 2 - low), origin=np.array(image.origin) + [-1, -1, low - 1])
+    padded["near"] = np.pad(field[:, :, low:], 1, constant_values=-1e5).ravel(order="F")
+    style = {"color": "tan", "ambient": 0.1, "diffuse": 0.8, "specular": 0.0}
+
+    def add_ours(plotter):
+        where = {"scalars": "near", "values": 0.0, "closed": True, "box": box}
+        plotter.add_raycast_volume(image, mode="isosurface", **where, **style)
+
+    def add_contour(plotter):
+        contour = padded.contour([0.0], scalars="near")
+        plotter.add_mesh(contour.compute_normals(feature_angle=30, split_vertices=True), scalars=None, **style)
+
+    view = [(-20.0, 35.0, -60.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0)]
+    ours, theirs = shot(add_ours, view=view), shot(add_contour, view=view)
+    apart = np.abs(ours - theirs).max(axis=-1)
+    assert (theirs.max(axis=-1) > 0).sum() > 1000
+    assert (apart > 24).mean() < 0.03, "edges"
+    assert np.median(apart[theirs.max(axis=-1) > 0]) <= 3

@@ -119,6 +119,7 @@ FEATURES: dict[str, str] = {
     "VOLUME_FETCHED": "a volume whose voxels the hardware weighs too coarsely",
     "VOLUME_LAYERS": "translucent surfaces in a volume, one behind the other",
     "VOLUME_COLOURS": "light in the voxels' own colours",
+    "VOLUME_CLOSED": "surfaces in a volume that end at its border, closed there",
     "VOLUME_CELLS": "surfaces by the cubics that cells hold along rays",
     "VOLUME_UNREFINED": "surfaces at the sample behind them",
     "VOLUME_NEWTON": "surfaces by Newton's steps",

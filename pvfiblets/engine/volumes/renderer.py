@@ -271,6 +271,7 @@ class VolumeRenderer(Drawable[VolumeStyle]):
         if casting.mode == "isosurface":
             features += ["VOLUME_CELLS"] if casting.exact else _OF_REFINEMENT[casting.refine]
             features += ["VOLUME_LAYERS"] if casting.layered else []
+            features += ["VOLUME_CLOSED"] if casting.closed else []
         if casting.mode == "composite":
             features += ["VOLUME_COLOURS"] if self._colours is not None else []
             features += _OF_INTEGRATOR[casting.integrator]

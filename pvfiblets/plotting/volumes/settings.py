@@ -128,6 +128,13 @@ class VolumeSettings(Settings):
         header="list of color-like, optional",
         where=CHOSEN,
     )
+    closed: Setting[bool] = Setting(
+        False,
+        "Whether surfaces around values above theirs are closed where the volume or its ``box`` ends.",
+        kind="bool",
+        where=CASTING,
+        row=Row("Closed", "Close surfaces at the volume's border.", matters=_mode("isosurface")),
+    )
     color: Setting[Any] = Setting(
         None,
         "One colour for all in place of the map; ``None`` for the map. Where no colours are given, one surface has the "
