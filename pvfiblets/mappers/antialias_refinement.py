@@ -73,7 +73,7 @@ class Refinement:
     """
 
     def __init__(self, samples: int, seconds: float | None = None) -> None:
-        self.positions = sample_positions(samples)
+        self.samples = samples
         self.seconds = seconds
         self.due = False
         self.seen: Callable[[], bool] = lambda: False
@@ -89,9 +89,14 @@ class Refinement:
         self._shares: Any = None
         self._back: Callable[[], None] | None = None
 
+    @property
+    def positions(self) -> tuple[tuple[float, float], ...]:
+        """Where in a pixel the samples lie."""
+        return sample_positions(self.samples)
+
     def same_as(self, other: Refinement) -> bool:
         """Say whether another one makes the same pictures."""
-        return (self.positions, self.seconds) == (other.positions, other.seconds)
+        return (self.samples, self.seconds) == (other.samples, other.seconds)
 
     @property
     def taken(self) -> int:
@@ -163,7 +168,7 @@ class Refinement:
     @property
     def untaken(self) -> bool:
         """Whether the picture lacks all of its samples, and they are as many as are drawn at once."""
-        return bool(self._left) and not self._taken and len(self.positions) == SAMPLES and self.seconds is None
+        return bool(self._left) and not self._taken and self.samples == SAMPLES and self.seconds is None
 
     @property
     def layered(self) -> bool:
@@ -176,7 +181,7 @@ class Refinement:
             for layer in layers:
                 self._shares = layer.shares
                 yield layer
-            self._frame, self._taken = _Frame.MEAN, len(self.positions)
+            self._frame, self._taken = _Frame.MEAN, self.samples
         finally:
             self._shares = None
             if self._frame is _Frame.ADDED:
@@ -239,7 +244,7 @@ class Refinement:
                 sums.restart()
             sums.add(colour, viewport, self._shares, alike=alike)
             self._painted = True
-        if self._frame is _Frame.SAMPLE and sums.kept and sums.samples < min(SHOWN_FROM, len(self.positions)):
+        if self._frame is _Frame.SAMPLE and sums.kept and sums.samples < min(SHOWN_FROM, self.samples):
             sums.show_kept(colour, viewport)
         elif self._frame is not _Frame.ADDED and sums.samples:  # none are left in a window that has been made anew
             sums.show(colour, viewport)

@@ -44,7 +44,7 @@ def refine(window: Any, *, cheaply: bool = False) -> bool:
 def finish(window: Any) -> None:
     """Draw all frames that the pictures of a window want."""
     wanting = _unfinished(window)
-    total = sum(len(picture.refinement.positions) for picture in wanting)
+    total = sum(picture.refinement.samples for picture in wanting)
     with Finishing(total) as finishing:
         while refine(window, cheaply=True) and finishing.reach(sum(picture.progress for picture in wanting)):
             pass

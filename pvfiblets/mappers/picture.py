@@ -151,7 +151,7 @@ class Picture:
         """Samples that have been drawn of the picture at rest."""
         assert self._refinement is not None
         job = self._job
-        return self._refinement.taken if job is None else int(job.share * len(self._refinement.positions))
+        return self._refinement.taken if job is None else int(job.share * self._refinement.samples)
 
     def draw_part(self) -> bool:
         """Draw a part of all samples at once, if that can be done; return whether there are more parts.
@@ -189,8 +189,7 @@ class Picture:
         """Whether the next sample needs VTK's own samples of each pixel, or what lies over the picture does."""
         refinement = self._refinement
         assert refinement is not None
-        samples = len(refinement.positions)
-        if samples < SAMPLES or refinement.remaining < 2 or self.draws_at_once():
+        if refinement.samples < SAMPLES or refinement.remaining < 2 or self.draws_at_once():
             return True
         return self._smoothing is None or not self._smoothing.only_surfaces
 

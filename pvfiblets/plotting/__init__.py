@@ -10,33 +10,35 @@ serves ``pyvista.read`` and ``save``. What can be set of a drawable is declared 
 ``settings`` of its folder. The actor's colours are found in ``scalars`` and made into a look-up
 table in ``colours``; the drawing is the mapper's.
 
-Importing this package registers the components. They import actors, mappers and the engine with the
-first ``add_*``: a scene of lines loads no volumes, and a compressed file no compiler.
+After importing this package, any plotter has the components (:mod:`.components`). Each is imported when somebody
+asks for it, and imports actors, mappers and the engine with the first ``add_*``: a scene of lines loads no volumes, and
+a compressed file no compiler.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from pvfiblets.plotting.fiblets.component import AddFiblets, FibletsComponent
-from pvfiblets.plotting.halos.component import (
-    AddHaloLines,
-    AddHaloPoints,
-    HaloLinesComponent,
-    HaloPointsComponent,
-)
-from pvfiblets.plotting.slices.component import AddSlices, SlicesComponent
-from pvfiblets.plotting.tubes.component import AddSplineTubes, SplineTubesComponent
-from pvfiblets.plotting.volumes.component import AddRaycastVolume, RaycastVolumesComponent
+from pvfiblets.plotting.components import await_components
 from pvfiblets.support.lazy_imports import names_from
 
 if TYPE_CHECKING:
     from pvfiblets.plotting.fiblets.actor import FibletActor
+    from pvfiblets.plotting.fiblets.component import AddFiblets, FibletsComponent
     from pvfiblets.plotting.halos.actors import HaloLineActor, HaloPointActor
+    from pvfiblets.plotting.halos.component import (
+        AddHaloLines,
+        AddHaloPoints,
+        HaloLinesComponent,
+        HaloPointsComponent,
+    )
+    from pvfiblets.plotting.slices.component import AddSlices, SlicesComponent
     from pvfiblets.plotting.slices.layer import SliceLayer
     from pvfiblets.plotting.slices.stack import SliceStack
     from pvfiblets.plotting.tubes.actor import TubeActor
+    from pvfiblets.plotting.tubes.component import AddSplineTubes, SplineTubesComponent
     from pvfiblets.plotting.volumes.actor import VolumeActor
+    from pvfiblets.plotting.volumes.component import AddRaycastVolume, RaycastVolumesComponent
 
 __all__ = [
     "AddFiblets",
@@ -61,6 +63,18 @@ __all__ = [
 ]
 
 _HOME = {
+    "AddFiblets": "fiblets.component",
+    "FibletsComponent": "fiblets.component",
+    "AddHaloLines": "halos.component",
+    "AddHaloPoints": "halos.component",
+    "HaloLinesComponent": "halos.component",
+    "HaloPointsComponent": "halos.component",
+    "AddRaycastVolume": "volumes.component",
+    "RaycastVolumesComponent": "volumes.component",
+    "AddSlices": "slices.component",
+    "SlicesComponent": "slices.component",
+    "AddSplineTubes": "tubes.component",
+    "SplineTubesComponent": "tubes.component",
     "FibletActor": "fiblets.actor",
     "HaloLineActor": "halos.actors",
     "HaloPointActor": "halos.actors",
@@ -71,3 +85,5 @@ _HOME = {
 }
 
 __getattr__, __dir__ = names_from(__name__, _HOME)
+
+await_components()

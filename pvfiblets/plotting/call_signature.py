@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import pyvista as pv
 
+from pvfiblets.plotting.components import register
 from pvfiblets.plotting.settings import arguments
 
 if TYPE_CHECKING:
@@ -61,7 +62,7 @@ def plotter_method(component: Any) -> Any:
 
     adder = _method_of_plotters(component.ADD, add, target.__doc__ or "", inspect.signature(target))
     adder.__module__ = component.__module__
-    return pv.register_plotter_component(component.ADD)(adder)
+    return register(component.ADD)(adder)
 
 
 def replace_method(

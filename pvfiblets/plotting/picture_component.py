@@ -20,6 +20,7 @@ from pvfiblets.mappers.antialias_windows import refine
 from pvfiblets.mappers.engine_mapper import shows_engine
 from pvfiblets.mappers.picture import DepthOfField, Picture
 from pvfiblets.plotting.antialias_pacing import Pacer
+from pvfiblets.plotting.components import register
 from pvfiblets.plotting.setting_places import OWN, Place
 from pvfiblets.plotting.settings import Setting, number
 
@@ -47,7 +48,7 @@ def _seconds(name: str, value: Any) -> float | None:
     return None if value is None else number(name, value, 0.0, None, "seconds")
 
 
-@pv.register_plotter_component("picture")
+@register("picture")
 class PictureComponent:
     """Smooth edges, depth of field, tone mapping, brightness, contrast and gamma of the active renderer.
 

@@ -10,8 +10,6 @@ import pyvista as pv
 
 from pvfiblets.images.sources import as_image, is_image
 from pvfiblets.support.vtk_space import space_of_dataset, to_ras
-from pvfiblets.volumes.freesurfer_files import SURFACES as FREESURFER
-from pvfiblets.volumes.gifti_files import SUFFIXES as GIFTI
 
 if TYPE_CHECKING:
     from pvfiblets.regions import Region
@@ -38,7 +36,7 @@ def as_region(what: Any) -> Region:
         )
     if isinstance(what, str) and what.lstrip("+-").lower() in AXES:
         raise ValueError(f"{what!r} is an axis, and no region; give the plane as ({what!r}, origin)")
-    if isinstance(what, (str, Path)) and str(what).lower().endswith((*GIFTI, *FREESURFER)):
+    if isinstance(what, (str, Path)) and _is_surface(str(what).lower()):
         from pvfiblets.plotting.meshes import read_mesh
 
         return _surface(read_mesh(what))
@@ -59,6 +57,13 @@ def as_region(what: Any) -> Region:
         f"{what!r} is no region; give one of pvfiblets.regions, a closed mesh, "
         "(xmin, xmax, ymin, ymax, zmin, zmax), or (normal, origin)"
     )
+
+
+def _is_surface(path: str) -> bool:
+    from pvfiblets.volumes.freesurfer_files import SURFACES
+    from pvfiblets.volumes.gifti_files import SUFFIXES
+
+    return path.endswith((*SUFFIXES, *SURFACES))
 
 
 def slab(normal: Any, origin: Any, thickness: float) -> Region:

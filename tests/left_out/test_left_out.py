@@ -113,6 +113,25 @@ def test_a_scene_has_what_it_asks_for_tells_all_of_it_and_waits_for_nothing(seen
     assert waits == {"at rest": EXACT_AT_ONCE.get(name, []), "in motion": []}
 
 
+ROOMS = ("tubes", "halos", "volumes", "slices", "query.bundles", "query.painting", "cluster", "web", "report", "cli")
+
+
+@pytest.mark.parametrize(
+    ("name", "own"),
+    [("plain", ()), ("spline tubes", ("tubes",)), ("halo lines", ("halos",)), ("volume: mip", ("volumes",))],
+)
+def test_a_scene_loads_no_module_of_other_rooms(seen, name, own):
+    others = set(ROOMS) - set(own)
+    parts = {module: module.removeprefix("pvfiblets.") for module in seen[name]["modules"]}
+    kinds = ("", "engine.", "plotting.")
+    found = [
+        module
+        for module, part in parts.items()
+        if any(part == kind + other or part.startswith(f"{kind}{other}.") for kind in kinds for other in others)
+    ]
+    assert found == []
+
+
 def test_what_vtk_compiles_is_valid_for_the_reference_compiler(seen, folder):
     """VTK's own shaders with the pieces of the resolve in them; drivers do not agree on what is."""
     paths = sorted(folder.glob("vtk-*"))

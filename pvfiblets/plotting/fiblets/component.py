@@ -16,12 +16,10 @@ import pyvista as pv
 
 from pvfiblets.plotting.actor_registry import ActorRegistry
 from pvfiblets.plotting.call_signature import plotter_method
-from pvfiblets.plotting.fiblets import widgets
+from pvfiblets.plotting.components import register
 from pvfiblets.plotting.fiblets.filter_state import unique_name
 from pvfiblets.plotting.fiblets.picking import MousePicking
 from pvfiblets.plotting.fiblets.settings import FibletSettings
-from pvfiblets.plotting.fiblets.slabs import FibletSlab
-from pvfiblets.plotting.region_sources import as_region
 from pvfiblets.plotting.setting_places import OPTIONS
 from pvfiblets.plotting.settings import Given, Setting
 from pvfiblets.plotting.words_of_add_mesh import why_not
@@ -35,6 +33,7 @@ if TYPE_CHECKING:
     from pvfiblets.engine.gl.capabilities import PipelineTable
     from pvfiblets.plotting.fiblets.actor import FibletActor
     from pvfiblets.plotting.fiblets.pick_result import Picked
+    from pvfiblets.plotting.fiblets.slabs import FibletSlab
     from pvfiblets.plotting.notebook_view import PageView
     from pvfiblets.plotting.same_names import Preference
     from pvfiblets.streamlines import Streamlines
@@ -42,7 +41,7 @@ if TYPE_CHECKING:
     Source: TypeAlias = str | PathLike[str] | FibletSet | Streamlines | pv.PolyData | list[Any]
 
 
-@pv.register_plotter_component("fiblets")
+@register("fiblets")
 class FibletsComponent(ActorRegistry["FibletActor"]):
     """The fiblet actors of one plotter.
 
@@ -286,13 +285,16 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
         FibletSlab
             ``position``, ``thickness``, ``normal`` and ``origin`` are live; ``remove()`` ends it.
         """
+        from pvfiblets.plotting.fiblets.slabs import FibletSlab
+        from pvfiblets.plotting.fiblets.widgets import centre
+
         actors = self._cut_actors(actor)
         slab = FibletSlab(
             self._plotter,
             actors,
             self._new_name(name, "slab"),
             normal=normal,
-            origin=widgets.centre(actors) if origin is None else origin,
+            origin=centre(actors) if origin is None else origin,
             thickness=thickness,
             volume=volume,
             **mesh_options,
@@ -342,7 +344,9 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
             for item in actors:
                 item.clip((normal, origin), inside=not invert, name=name)
 
-        widget, self._removals[name] = widgets.plane(
+        from pvfiblets.plotting.fiblets.widgets import plane
+
+        widget, self._removals[name] = plane(
             self._plotter, actors, name, cut, normal=normal, origin=origin, event=interaction_event, **widget_options
         )
         return widget
@@ -391,7 +395,9 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
             **(mesh_options or {}),
         )
 
-        widget, take_plane = widgets.plane(
+        from pvfiblets.plotting.fiblets.widgets import plane
+
+        widget, take_plane = plane(
             self._plotter, actors, slab.name, lambda normal, origin: slab.place(normal=normal, origin=origin),
             normal=normal, origin=slab.origin, event=interaction_event, **widget_options,
         )  # fmt: skip
@@ -434,8 +440,10 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
         -------
         vtkBoxWidget
         """
+        from pvfiblets.plotting.fiblets.widgets import box
+
         actors, name = self._cut_actors(actor), self._new_name(name, "box")
-        widget, self._removals[name] = widgets.box(
+        widget, self._removals[name] = box(
             self._plotter, actors, name, bounds=bounds, inside=not invert, event=interaction_event, **widget_options
         )
         return widget
@@ -484,10 +492,13 @@ class FibletsComponent(ActorRegistry["FibletActor"]):
         ValueError
             If the mesh is open, empty or inside-out.
         """
+        from pvfiblets.plotting.fiblets.widgets import surface
+        from pvfiblets.plotting.region_sources import as_region
+
         region = as_region(mesh)
         actors, name = self._cut_actors(actor), self._new_name(name, "mesh")
         look = dict(color=color, opacity=opacity, **(mesh_options or {}))
-        widget, shown, self._removals[name] = widgets.surface(
+        widget, shown, self._removals[name] = surface(
             self._plotter, actors, name, mesh, region, inside=not invert, look=look, **widget_options
         )
         return widget, shown

@@ -26,16 +26,19 @@ from pvfiblets.plotting.fiblets.filter_state import (
     in_groups,
     unique_name,
 )
-from pvfiblets.plotting.fiblets.painted import follow_painted
 from pvfiblets.plotting.fiblets.scalars import warn_if_apart
-from pvfiblets.plotting.region_sources import as_region
-from pvfiblets.query.bundles.bundle_list import Bundles, hidden_groups
-from pvfiblets.query.selection.predicates import select
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.mappers.fiblets import FibletMapper
+    from pvfiblets.query.bundles.bundle_list import Bundles
     from pvfiblets.query.selection.predicates import Predicate
+
+
+def _predicate(condition: Any) -> Predicate:
+    from pvfiblets.plotting.region_sources import as_region
+
+    return as_predicate(condition, as_region)
 
 
 class FilteredActor(ClippedActor):
@@ -138,7 +141,7 @@ class FilteredActor(ClippedActor):
         str
             The name, for :meth:`remove_condition`.
         """
-        return self._add_condition(as_predicate(condition, as_region), name, "include")
+        return self._add_condition(_predicate(condition), name, "include")
 
     def include_painted(self, live: Any, *, name: str | None = None, **how: Any) -> str:
         """Show only streamlines that satisfy conditions on painted regions, updated after each stroke.
@@ -186,11 +189,13 @@ class FilteredActor(ClippedActor):
         """
         if live.fiblets is not self._fiblets:
             raise ValueError("live is of other fiblets; make it of this actor's: regions.LiveRegions(actor.fiblets, …)")
+        from pvfiblets.plotting.fiblets.painted import follow_painted
+
         return follow_painted(self, live, name, how)
 
     def exclude(self, condition: Any, *, name: str | None = None) -> str:
         """Hide streamlines that satisfy a condition; parameters and result as for :meth:`include`."""
-        return self._add_condition(~as_predicate(condition, as_region), name, "exclude")
+        return self._add_condition(~_predicate(condition), name, "exclude")
 
     @property
     def conditions(self) -> Mapping[str, Predicate]:
@@ -215,7 +220,9 @@ class FilteredActor(ClippedActor):
             (n_streamlines,) bool, True if it holds. Computed on the GPU where possible, with the
             same answer.
         """
-        return select(self._fiblets, as_predicate(condition, as_region), flags=self._mapper.region_flags)
+        from pvfiblets.query.selection.predicates import select
+
+        return select(self._fiblets, _predicate(condition), flags=self._mapper.region_flags)
 
     # Subsets ------------------------------------------------------------------------------------
 
@@ -256,9 +263,13 @@ class FilteredActor(ClippedActor):
 
         Streamlines in no bundle stay shown whichever bundles are hidden.
         """
+        from pvfiblets.query.bundles.bundle_list import Bundles
+
         return Bundles(self._fiblets, self._bundles_changed)
 
     def _bundles_changed(self) -> None:
+        from pvfiblets.query.bundles.bundle_list import hidden_groups
+
         hidden = hidden_groups(self._fiblets.per_group) & set(self._fiblets.groups)
         shown = tuple(name for name in self._fiblets.groups if name not in hidden) if hidden else None
         self._choose(groups=shown, ungrouped=hidden != set())
@@ -290,6 +301,8 @@ class FilteredActor(ClippedActor):
     # Inside -------------------------------------------------------------------------------------
 
     def _add_condition(self, predicate: Predicate, name: str | None, stem: str) -> str:
+        from pvfiblets.query.selection.predicates import select
+
         known = self._choices.conditions
         name = unique_name(known, stem) if name is None else name
         mask = select(self._fiblets, predicate, flags=self._mapper.region_flags)

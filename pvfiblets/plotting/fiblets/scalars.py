@@ -23,8 +23,6 @@ from pvfiblets.plotting.scalars import (
     name_list,
     row_scalars,
 )
-from pvfiblets.query.bundles.bundle_list import first_groups, group_colours
-from pvfiblets.query.bundles.colours import distinct_colours
 from pvfiblets.query.measures.even_sample import longest_length, meets_image, rounding_of
 from pvfiblets.query.measures.measures import COMPUTED, Distance, curvature_values, measure
 from pvfiblets.query.selection.endpoints import end_directions
@@ -100,6 +98,11 @@ def _built_in(fiblets: FibletSet) -> dict[str, Callable[[], Any]]:
             "scalars='coding_error' to add_fiblets(streamlines), or run `pvfiblets verify`"
         )
 
+    def random_colours() -> Any:
+        from pvfiblets.query.bundles.colours import distinct_colours
+
+        return distinct_colours(count)
+
     return {
         "coding_error": coding_error,
         **{name: partial(measured, name) for name in COMPUTED["streamline"]},
@@ -109,7 +112,7 @@ def _built_in(fiblets: FibletSet) -> dict[str, Callable[[], Any]]:
         GROUP: lambda: by_group(fiblets),
         ENDS: lambda: end_directions(fiblets),
         ID: lambda: np.arange(count),
-        RANDOM: lambda: distinct_colours(count),
+        RANDOM: random_colours,
         DENSITY: lambda: Scalars(DENSITY, "pixel_count", None, (0.0, 1.0), 1.0),
     }
 
@@ -131,6 +134,8 @@ def by_group(fiblets: FibletSet) -> Scalars:
 
     Groups that are hidden come last. Colours are those of the list of bundles: a group's own, or one by its place.
     """
+    from pvfiblets.query.bundles.bundle_list import first_groups, group_colours
+
     if not fiblets.groups:
         raise KeyError("there are no groups to colour by; formats that keep groups are .trx and .fiblets")
     found = row_scalars(GROUP, first_groups(fiblets), fiblets.n_streamlines)

@@ -14,11 +14,11 @@ from pvfiblets.mappers.picking import Layer
 from pvfiblets.plotting.coloured import added_up
 from pvfiblets.plotting.fiblets.filtering import FilteredActor
 from pvfiblets.plotting.fiblets.pick_result import Picked
-from pvfiblets.plotting.fiblets.profiles import Profile, values_of
 
 if TYPE_CHECKING:
     from os import PathLike
 
+    from pvfiblets.plotting.fiblets.profiles import Profile
     from pvfiblets.plotting.fiblets.selection_overlay import SelectionOverlay
     from pvfiblets.plotting.scalars import Scalars
     from pvfiblets.query.measures.table import Table
@@ -308,6 +308,8 @@ class SelectableActor(FilteredActor):
         else:
             name = scalars if isinstance(scalars, str) else "Data"
         if scalars is not None:
+            from pvfiblets.plotting.fiblets.profiles import values_of
+
             values = values_of(self._fiblets, scalars, part, ids)
             values = values[np.isfinite(values)]
             found |= {
@@ -347,6 +349,8 @@ class SelectableActor(FilteredActor):
             scalars = self._scalars.name
         mean, std = mean_profile(self._fiblets, self.selection, scalars, n)
         name = scalars if isinstance(scalars, str) else str(getattr(scalars, "name", "Data"))
+        from pvfiblets.plotting.fiblets.profiles import Profile
+
         return Profile(mean, std, np.linspace(0.0, 1.0, n), name, len(self.selection))
 
     def save_selection(self, path: str | PathLike[str]) -> list[str]:

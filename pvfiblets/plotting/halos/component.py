@@ -13,6 +13,7 @@ import numpy as np
 import pyvista as pv
 
 from pvfiblets.plotting.call_signature import plotter_method
+from pvfiblets.plotting.components import register
 from pvfiblets.plotting.halos.settings import HaloLineSettings, HaloPointSettings
 from pvfiblets.plotting.screenshot import PrintableComponent
 from pvfiblets.plotting.setting_places import OPTIONS
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
     PointSource: TypeAlias = str | PathLike[str] | Points
 
 
-@pv.register_plotter_component("halo_lines")
+@register("halo_lines")
 class HaloLinesComponent(PrintableComponent["HaloLineActor"]):
     """The lines with halos of one plotter.
 
@@ -146,7 +147,7 @@ class HaloLinesComponent(PrintableComponent["HaloLineActor"]):
 AddHaloLines = plotter_method(HaloLinesComponent)
 
 
-@pv.register_plotter_component("halo_points")
+@register("halo_points")
 class HaloPointsComponent(PrintableComponent["HaloPointActor"]):
     """The points with halos of one plotter.
 

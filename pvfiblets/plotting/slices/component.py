@@ -13,6 +13,7 @@ import numpy as np
 import pyvista as pv
 
 from pvfiblets.plotting.call_signature import document, plotter_method
+from pvfiblets.plotting.components import register
 from pvfiblets.plotting.settings import Given
 from pvfiblets.plotting.settings import arguments as settings_of_call
 from pvfiblets.plotting.slices.settings import SliceCommon, SliceSettings
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
     Source: TypeAlias = str | PathLike[str] | SliceImage | np.ndarray | tuple[Any, Any] | pv.ImageData
 
 
-@pv.register_plotter_component("slices")
+@register("slices")
 class SlicesComponent:
     """The slices of one plotter.
 

@@ -15,6 +15,7 @@ import pyvista as pv
 
 from pvfiblets.plotting.actor_registry import ActorRegistry
 from pvfiblets.plotting.call_signature import plotter_method
+from pvfiblets.plotting.components import register
 from pvfiblets.plotting.setting_places import OPTIONS
 from pvfiblets.plotting.settings import Given
 from pvfiblets.plotting.tubes.settings import TubeSettings
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
     Source: TypeAlias = str | PathLike[str] | SplineTubes | Lines
 
 
-@pv.register_plotter_component("spline_tubes")
+@register("spline_tubes")
 class SplineTubesComponent(ActorRegistry["TubeActor"]):
     """The spline tubes of one plotter.
 

@@ -16,6 +16,7 @@ import pyvista as pv
 
 from pvfiblets.plotting.actor_registry import ActorRegistry
 from pvfiblets.plotting.call_signature import plotter_method
+from pvfiblets.plotting.components import register
 from pvfiblets.plotting.settings import Given
 from pvfiblets.plotting.volumes.blending import mode_of_blending
 from pvfiblets.plotting.volumes.settings import VolumeSettings
@@ -38,7 +39,7 @@ COLOURING = {"color", "cmap", "clim", "n_colors", "log_scale", "surface_colors",
 """Arguments that give surfaces colours, or a map of them."""
 
 
-@pv.register_plotter_component("raycast_volumes")
+@register("raycast_volumes")
 class RaycastVolumesComponent(ActorRegistry["VolumeActor"]):
     """The volumes of one plotter that rays are cast through.
 
