@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from numbers import Real
 from typing import Any
 
-from .raycast_options import RaycastOptions
+from .raycast_options import PROJECTIONS, RaycastOptions
 
 __all__ = ["COARSEST_STEP", "InteractiveQuality"]
 
@@ -65,7 +65,10 @@ class InteractiveQuality:
             integrator = "preintegrated"
         kept = light and integrator == "preintegrated" and not self.exactly
         step = casting.step if kept else min(casting.step * self.step, LARGEST_STEP)
-        return replace(casting, step=step, sparse=max(casting.sparse, self.sparse), integrator=integrator)
+        # Peaks by cells take twice the time of steps, which a moving picture does not show.
+        refine = "regula-falsi" if casting.exact and casting.mode in PROJECTIONS else casting.refine
+        sparse = max(casting.sparse, self.sparse)
+        return replace(casting, step=step, sparse=sparse, integrator=integrator, refine=refine)
 
 
 def _is_number(given: Any) -> bool:

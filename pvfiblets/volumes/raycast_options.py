@@ -65,7 +65,7 @@ class RaycastOptions:
         Values that are there; what is lower or higher is empty in all modes but ``'isosurface'``.
     step : float
         Of a ray, in mean voxel spacings, above 0; :meth:`step_mm` says what it is of voxels that are far from cubes.
-        Surfaces that are found exactly take no steps (:attr:`exact`).
+        Surfaces and peaks that are found exactly take no steps (:attr:`exact`).
     jitter : bool
         Whether each ray starts at a place of its own within the first step: noise takes the place of rings.
     filter : str
@@ -165,8 +165,8 @@ class RaycastOptions:
 
     @property
     def exact(self) -> bool:
-        """Whether surfaces are found cell by cell: the field in one is a cubic along a ray where it is trilinear."""
-        return self.mode == "isosurface" and self.refine == "exact" and self.filter == "trilinear"
+        """Whether rays go from cell to cell: the field in one is a cubic along a ray where it is trilinear."""
+        return self.mode not in ("composite", "average") and self.refine == "exact" and self.filter == "trilinear"
 
     @property
     def layered(self) -> bool:

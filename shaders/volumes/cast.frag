@@ -13,6 +13,9 @@
 #include "volumes/field.glsl"
 #include "volumes/ray.glsl"
 #include "volumes/nodes.glsl"
+#if FEATURE_VOLUME_CELLS
+#include "volumes/cells.glsl"
+#endif
 #include "codec/layout.glsl"
 #include "frame/tangent.glsl"
 #if FEATURE_CLIP_REGION

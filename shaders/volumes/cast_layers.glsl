@@ -86,7 +86,7 @@ void add_surfaces(Ray ray, float step, float start, inout float hit, inout float
     shown_at = hit;
     shown_value = value;
     shown_light = light;
-    walk_cells(ray, start);
+    walk_surfaces(ray, start);
     hit = shown_at;
     value = shown_value;
     light = shown_light;

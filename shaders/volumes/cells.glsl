@@ -1,16 +1,13 @@
-// Surfaces by cells: along a ray, the field within a cell of eight voxels is a cubic, whose crossings are found exactly.
-// Paper: Lesar 2015, section III.B, looks at places a step apart instead. That a product of three linear functions of t is a
+// Rays by cells: along a ray, the field within a cell of eight voxels is a cubic, whose crossings and peaks are found exactly.
+// Paper: Lesar 2015, sections III.B and III.F, looks at places a step apart instead. That a product of three linear functions of t is a
 // cubic, and its roots the surface, is well known (Parker and others, "Interactive ray tracing for isosurface rendering", 1998).
 //
 // Symbols
 //   s            0 where the ray enters the cell, 1 where it leaves it
 //   b            Bernstein coefficients of the field over s: the blossom of the trilinear interpolant. The field lies between
 //                the least and the largest of them
-//   sides        a bit for each isovalue: the field is below it
+//   sides        of surfaces, a bit for each isovalue: the field is below it (volumes/surface_cells.glsl)
 //
-// Cells that share a face share its voxels, so a surface that crosses a face by rounding alone is found by the side that the
-// last cell ended on. Where nodes are skipped, no value is met: the side begins anew behind them.
-
 // A walk goes forward along every axis: axes along which the ray goes back are mirrored.
 
 struct Walk {
@@ -25,19 +22,6 @@ struct Walk {
     uint sides;
     bool known;      // low, high and sides hold: the walk came from the cell beside this one
 };
-
-struct Stretch {
-    float first;     // mm
-    float last;
-    vec4 b;
-    uint sides;      // before it
-};
-
-uint sides_of(float value) {
-    uint sides = 0u;
-    for (int k = 0; k < isovalue_count; ++k) sides |= value < isovalues[k] ? 1u << k : 0u;
-    return sides;
-}
 
 Walk walk_from(Ray ray, float t) {
     Walk walk;
@@ -65,19 +49,23 @@ void step_over(inout Walk walk, bvec3 axis) {
     walk.high = axis.x ? f : axis.y ? vec4(high.y, f.y, high.w, f.w) : vec4(high.zw, f.yw);
 }
 
-vec4 bernstein(vec4 low, vec4 high, vec3 enter, vec3 leave) {
+// From first to where the walk is.
+vec4 bernstein(Walk walk, float first) {
+    vec3 enter = clamp(walk.o + first * walk.d - vec3(walk.cell), 0.0, 1.0);
+    vec3 leave = clamp(walk.o + walk.t * walk.d - vec3(walk.cell), 0.0, 1.0);
+    vec4 low = walk.low, high = walk.high;
     vec4 x0 = mix(low, high, enter.x), x1 = mix(low, high, leave.x);
     vec2 x0y0 = mix(x0.xz, x0.yw, enter.y), x0y1 = mix(x0.xz, x0.yw, leave.y);
     vec2 x1y0 = mix(x1.xz, x1.yw, enter.y), x1y1 = mix(x1.xz, x1.yw, leave.y);
     vec4 z0 = mix(vec4(x0y0.x, x1y0.x, x0y1.x, x1y1.x), vec4(x0y0.y, x1y0.y, x0y1.y, x1y1.y), enter.z);
     vec4 z1 = mix(vec4(x0y0.x, x1y0.x, x0y1.x, x1y1.x), vec4(x0y0.y, x1y0.y, x0y1.y, x1y1.y), leave.z);
-    return vec4(z0.x, (z0.y + z0.z + z1.x) / 3.0, (z0.w + z1.y + z1.z) / 3.0, z1.w);
+    return vec4(z0.x, (z0.y + z0.z + z1.x) / 3.0, (z0.w + z1.y + z1.z) / 3.0, z1.w) * field_scale + field_shift;
 }
 
 // The node of the walk's cell, by cells of the walk.
-float node_of_walk(Walk walk, out ivec3 low, out ivec3 high) {
+float node_of_walk(Walk walk, float threshold, out ivec3 low, out ivec3 high) {
     ivec3 one, other, turned = ivec3(lessThan(walk.way, ivec3(0)));
-    float number = node_of(walk.begin - turned + walk.way * walk.cell, 0.5, one, other);
+    float number = node_of(walk.begin - turned + walk.way * walk.cell, threshold, one, other);
     low = walk.way * ((one + turned * (other - one)) - walk.begin);
     high = low + other - one;
     return number;
@@ -105,51 +93,34 @@ float crossing_between(vec4 b, float first, float last, bool below) {
     return s;
 }
 
-// Places where a cubic changes sides, in order; 2 for none. At 0 if it begins on another side than the stretch before ended on.
-vec3 crossings(vec4 b, bool below) {
-    vec3 found = vec3(2.0);
-    int count = 0;
-    bool side = b.x < 0.0;
-    if (side != below) found[count++] = 0.0;
-    if (all(equal(lessThan(b, vec4(0.0)), bvec4(side)))) return found;
+// Where a cubic turns, in order; 1 for nowhere.
+vec2 turns_of(vec4 b) {
     float a = b.w - b.x - 3.0 * (b.z - b.y), h = b.x - 2.0 * b.y + b.z, c = b.y - b.x, square = h * h - a * c;
-    float turns[3];
-    turns[0] = turns[1] = turns[2] = 1.0;
-    if (square > 0.0) {
-        float r = -(h + (h < 0.0 ? -sqrt(square) : sqrt(square)));
-        float one = a == 0.0 ? 1.0 : clamp(r / a, 0.0, 1.0), other = clamp(c / r, 0.0, 1.0);
-        turns[0] = min(one, other);
-        turns[1] = max(one, other);
-    }
-    float from = 0.0;
-    for (int k = 0; k < 3 && count < 3; ++k) {
-        bool next = cubic_at(b, turns[k]).x < 0.0;
-        if (next != side) found[count++] = crossing_between(b, from, turns[k], side);
-        side = next;
-        from = turns[k];
-    }
-    return found;
+    if (!(square > 0.0)) return vec2(1.0);
+    float r = -(h + (h < 0.0 ? -sqrt(square) : sqrt(square)));
+    float one = a == 0.0 ? 1.0 : clamp(r / a, 0.0, 1.0), other = clamp(c / r, 0.0, 1.0);
+    return vec2(min(one, other), max(one, other));
 }
 
-float place_of(Stretch found, float s) { return mix(found.first, found.last, s); }
+// A node is left out if its number is not above it.
+float node_threshold();
 
-// Take from a stretch what shows; true if that is all. Defined beside it.
-bool show_stretch(Ray ray, Stretch found);
+// Whether nothing from a node of that number on shows.
+bool ends_before(float number);
 
-// Go through all cells in which there may be a surface, in order.
+// Take what shows of a cell, from first to where the walk is; true if that is all. The field lies between bottom and top in it.
+bool show_cell(Ray ray, inout Walk walk, float first, float bottom, float top);
+
+// Go through all cells in which something may show, in order.
 void walk_cells(Ray ray, float start) {
     Walk walk = walk_from(ray, start);
     ivec3 last_cell = ivec3(volume_shape) - 2;
     vec3 inverse = abs(ray.inverse);
-    float lowest = isovalues[0], highest = isovalues[0];
-    for (int k = 1; k < isovalue_count; ++k) {
-        lowest = min(lowest, isovalues[k]);
-        highest = max(highest, isovalues[k]);
-    }
-    uint all_sides = (1u << isovalue_count) - 1u;
     while (walk.t < ray.last && all(lessThanEqual(walk.cell, last_cell))) {
         ivec3 low, high;
-        if (node_of_walk(walk, low, high) <= 0.5) {
+        float threshold = node_threshold(), number = node_of_walk(walk, threshold, low, high);
+        if (ends_before(number)) return;
+        if (number <= threshold) {
             vec3 out_of = (vec3(high) - walk.o) * inverse;
             float end = min(out_of.x, min(out_of.y, out_of.z));
             walk.t = max(walk.t, end);
@@ -172,21 +143,10 @@ void walk_cells(Ray ray, float start) {
             least.xy = min(least.xy, least.zw);
             most.xy = max(most.xy, most.zw);
             float bottom = min(least.x, least.y) * field_scale + field_shift, top = max(most.x, most.y) * field_scale + field_shift;
-            uint sides = top < lowest ? all_sides : 0u;
             float first = walk.t;
             walk.t = clamp(end, first, ray.last);
-            if ((top >= lowest && bottom < highest) || (walk.known && sides != walk.sides)) {
-                vec3 enter = walk.o + first * walk.d - vec3(walk.cell), leave = walk.o + walk.t * walk.d - vec3(walk.cell);
-                vec4 b = bernstein(walk.low, walk.high, clamp(enter, 0.0, 1.0), clamp(leave, 0.0, 1.0)) * field_scale + field_shift;
-                uint before = walk.known ? walk.sides : sides_of(b.x);
-#if FEATURE_VOLUME_CLOSED && !FEATURE_VOLUME_LAYERS
-                if (first == box_enter) before = all_sides;
-#endif
-                if (show_stretch(ray, Stretch(first, walk.t, b, before))) return;
-                sides = sides_of(b.w);
-            }
+            if (show_cell(ray, walk, first, bottom, top)) return;
             step_over(walk, end == out_of.x ? bvec3(true, false, false) : bvec3(false, end == out_of.y, end != out_of.y));
-            walk.sides = sides;
             walk.known = true;
         } while (walk.t < ray.last && all(lessThan(walk.cell, high)));
     }

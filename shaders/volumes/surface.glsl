@@ -12,7 +12,7 @@
 #endif
 
 #if FEATURE_VOLUME_CELLS
-#include "volumes/cells.glsl"
+#include "volumes/surface_cells.glsl"
 
 #if !FEATURE_VOLUME_LAYERS
 float shown_at, shown_value = 3e38;
@@ -31,7 +31,7 @@ bool show_stretch(Ray ray, Stretch found) {
 }
 
 bool find_surface(Ray ray, float step, float start, out float hit, out float value) {
-    walk_cells(ray, start);
+    walk_surfaces(ray, start);
     hit = shown_at;
     value = shown_value;
     return value < 3e38;

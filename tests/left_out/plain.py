@@ -32,6 +32,7 @@ PLAIN = {
     ),
     "volume: mip": What(
         ran="volumes/cast.frag, screen/triangle.vert",
+        features="VOLUME_CELLS",
         resolve="colour_point_scalar, point_value, gbuffer, normal",
         passes="rays",
         buffers="colour_table, gbuffer, nodes, rays, voxels",

@@ -242,7 +242,7 @@ SCENES = {
     "volume: average": made("volume", mode="average"),
     "volume: nearest": made("volume", filter="nearest"),
     "volume: tricubic": made("volume", filter="tricubic"),
-    "volume: jitter": made("volume", jitter=True),
+    "volume: jitter": made("volume", jitter=True, refine="regula-falsi"),
     "volume: no octree": made("volume", octree=False),
     "volume: sparse": made("volume", sparse=4),
     "volume: cut by planes": doing(lambda s: s.actor.clip(box(s)), "volume"),

@@ -268,8 +268,9 @@ class VolumeRenderer(Drawable[VolumeStyle]):
 
     def _features_of(self, casting: RaycastOptions, outside: bool) -> list[str]:
         features = [*_OF_MODE[casting.mode], *self.field_features(casting)]
+        features += ["VOLUME_CELLS"] if casting.exact else []
         if casting.mode == "isosurface":
-            features += ["VOLUME_CELLS"] if casting.exact else _OF_REFINEMENT[casting.refine]
+            features += [] if casting.exact else _OF_REFINEMENT[casting.refine]
             features += ["VOLUME_LAYERS"] if casting.layered else []
             features += ["VOLUME_CLOSED"] if casting.closed else []
         if casting.mode == "composite":

@@ -210,8 +210,8 @@ class VolumeSettings(Settings):
     )  # fmt: skip
     step: Setting[float] = Setting(
         0.5,
-        "Distance of samples on a ray, in mean voxel spacings; opacity does not depend on it, and exact surfaces need "
-        "none.",
+        "Distance of samples on a ray, in mean voxel spacings; opacity does not depend on it, and exact surfaces and "
+        "peaks need none.",
         kind="float",
         where=CASTING,
         row=Row("Step", "Distance of samples on a ray, voxels.", "Rays", limits=(0.05, 8.0)),
@@ -226,13 +226,14 @@ class VolumeSettings(Settings):
     )
     refine: Setting[str] = Setting(
         "exact",
-        'Search for surfaces. ``"exact"``, the default, solves for the crossings of the cubic that the values of a '
-        'cell make along a ray, where the filter is ``"trilinear"``; with other filters it is ``"regula-falsi"``. The '
-        "others search between samples, as the paper does.",
+        'Search for surfaces and peaks. ``"exact"``, the default, solves for the crossings and the peaks of the cubic '
+        'that the values of a cell make along a ray, where the filter is ``"trilinear"``; with other filters it is '
+        '``"regula-falsi"``. The others search between samples, and peaks at samples, as the paper does.',
         kind="str",
         choices=REFINEMENTS,
         where=CASTING,
-        row=Row("Refine surfaces", "Refinement of a surface's position.", "Rays", matters=_mode("isosurface")),
+        row=Row("Refine", "Search for surfaces and peaks.", "Rays",
+                matters=_mode("isosurface", "mip", "local-mip", "minimum")),
     )
     iterations: Setting[int] = Setting(5, "Steps of the refinement, 1 to 64.", kind="int", where=CASTING)
     integrator: Setting[str] = Setting(
@@ -294,8 +295,8 @@ class VolumeSettings(Settings):
         0.5,
         'Quality while the camera moves, 0 to 1, or ``{"step": factor, "sparse": pixels}``.\n\n'
         "1: as when idle. 0.5: steps twice as long, and a ray for every second pixel at first; light\n"
-        "whose steps are integrated beforehand keeps its step. When the camera stops, there is\n"
-        "one more frame, at full quality. The camera counts as moving while the window requests the\n"
+        "whose steps are integrated beforehand keeps its step, and peaks are those of samples. When the\n"
+        "camera stops, there is one more frame, at full quality. It counts as moving while the window requests the\n"
         "update rate of an active interactor.",
         kind="float | dict[str, Any]",
         header="float or dict, default: 0.5",

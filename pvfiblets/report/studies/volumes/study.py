@@ -43,7 +43,9 @@ def settings(mode: str, quick: bool, spread: float) -> Iterator[tuple[str, str, 
     steps: tuple[float, ...] = QUICK_PICTURE_STEPS if quick else PICTURE_STEPS
     if mode == "isosurface":
         steps = ()  # the default takes none
-    yield from (("step", f"{step:g} voxels", {"step": step}) for step in steps if step != RaycastOptions.step)
+    searched: dict[str, Any] = {} if mode == "composite" else {"refine": "regula-falsi"}
+    wanted = {f"{step:g} voxels": {"step": step, **searched} for step in steps}
+    yield from (("step", how, fields) for how, fields in wanted.items() if fields != {"step": RaycastOptions.step})
     if mode == "isosurface":
         for name, (refine, counts) in REFINEMENTS.items():
             for count in (1, 3) if quick and len(counts) > 1 else counts:
@@ -56,7 +58,7 @@ def settings(mode: str, quick: bool, spread: float) -> Iterator[tuple[str, str, 
         for part in (0.01,) if quick else (0.002, 0.01, 0.05):
             yield "homogeneous nodes", f"{100.0 * part:g} % of the range", {"homogeneous": part * spread}
         yield "even nodes not as one", "", {"recon": False}
-    yield "jitter", "", {"jitter": True}
+    yield "jitter", "", {"jitter": True, **searched}
     yield "no octree", "", {"octree": False}
     for stride in (2, 4):
         for at in (0.05,) if quick else (0.01, 0.05, 0.2):
