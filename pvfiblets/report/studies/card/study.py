@@ -12,6 +12,7 @@ import tempfile
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 from typing import Self
 
@@ -21,7 +22,7 @@ from ...drawing import drawing_context
 from ...machine import CARD_STATE
 from ...process import CellProcess, Row
 from ...record import FRAME, Axes, CaseResult, Figure, Record
-from ...study import Options
+from ...study import Budget, Options
 from ...timing import timing
 from ..speed.cells import path_of_brain
 from ..speed.study import BRAINS, QUICK_SIZES, SIZES, STEP, measured, sections
@@ -36,6 +37,7 @@ CHANGED, QUICK_CHANGED = (434e6, 5.4e9), (1e6,)  # of which every step is measur
 STRIPS, QUICK_STRIPS = (8e6, 81e6, 202e6), (5e4,)
 WARM, QUICK_WARM = 2.0, 0.1  # s, at most, until the card's clock stands
 CHECK_SHARE = 0.25  # of the time, for checking fiblets
+CELL_SECONDS = 60.0  # that a cell or a check may take: a driver that hangs is not to use up the time
 CHECKED_FIRST = ("fiblets compute", "fiblets mesh")
 BYTES = 64  # of a buffer for a fiblet, about
 QUICKER = 7  # bits by which limits are less of a quick run
@@ -112,8 +114,8 @@ class CardStudy:
                     continue
                 cell = ready or cells[0]
                 cells.remove(cell)
-                # Each has a share of its own: it is not to fit in as often as the longest before it.
-                done = measured({**cell, "folder": folder}, process, set(), options.share())
+                own = replace(options, budget=Budget(min(options.budget.left, CELL_SECONDS)))
+                done = measured({**cell, "folder": folder}, process, set(), own)
                 if done is not None:
                     yield from _told(*done, cell, usual)
             yield from _checked(options.share(), [part for part in parts if part not in first], folder)
@@ -174,7 +176,8 @@ def _checked(options: Options, parts: Sequence[str], folder: str) -> Iterator[Ca
         if not options.lasts(f"checks of {part}"):
             continue
         options.log(part)
-        for finding, _ in findings_of(part, Path(folder), CellProcess([sys.executable, "-m", MODULE])):
+        process = CellProcess([sys.executable, "-m", MODULE])
+        for finding, _ in findings_of(part, Path(folder), process, min(CELL_SECONDS, options.budget.left)):
             yield from _case(finding, options)
             if not options.lasts(f"checks of {part} after {finding.feature}"):
                 break
@@ -202,8 +205,9 @@ def _told(record: Record, row: Row, cell: Row, usual: dict[str, str]) -> Iterato
     record.costs["steady"] = Figure(float(row["steady"]), "")
     for when, state in (("before", row["before"]), ("", row["after"])):
         record.costs |= {f"{name} {when}".strip(): Figure(value, CARD_STATE[name]) for name, value in state.items()}
-    record.times["in flight"] = timing([row["in_flight"]], 1.0, FRAME, "wall")
-    if row["clock"] == "wall" and row["gpu"]:
+    if "in_flight" in row:
+        record.times["in flight"] = timing([row["in_flight"]], 1.0, FRAME, "wall")
+    if row["clock"] == "wall" and row.get("gpu"):
         record.times["GPU"] = timing(row["gpu"], 1.0, FRAME, "GPU")
     yield record
     if cell["kind"] != "fiblets" or cell["pipeline"] != "compute":

@@ -69,6 +69,7 @@ class Drawing:
     nbytes: Callable[[], int]  # On the GPU that grow with the data
     release: Callable[[], object]
     explain: Callable[[], Mapping[str, Any]] = dict  # Passes and features of the last frame
+    waits: bool = False  # Whether each frame waits for its end
 
 
 def flown(ctx: Any, drawing: Drawing, seconds: float, warm: float = 0.0) -> Row:
@@ -215,7 +216,7 @@ def feature(ctx: Any, cell: Row) -> Drawing:
     (wanted,) = (one for one in subject.features if f"{one.group} {one.name}".strip() == cell["feature"])
     path = subject.path(cell["frames"] + WARM, tuple(cell["size"]))
     drawn = Drawn(ctx, subject, wanted, path[:1])
-    return Drawing(drawn.render, path, lambda: drawn.nbytes, drawn.release)
+    return Drawing(drawn.render, path, lambda: drawn.nbytes, drawn.release, waits=True)
 
 
 def tubes(ctx: Any, cell: Row) -> Drawing:
@@ -274,7 +275,7 @@ def measure_cell(cell: Row) -> Row:
 
     ctx = bare_context()
     try:
-        with replaced(cell.get("constants", {})):
+        with ctx, replaced(cell.get("constants", {})):
             drawing = CELLS[cell["kind"]](ctx, cell)
             try:
                 return _measured(ctx, drawing, cell)
@@ -282,6 +283,8 @@ def measure_cell(cell: Row) -> Row:
                 drawing.release()
     except (EngineError, MemoryError) as error:
         return {"unmeasured": (str(error) or type(error).__name__).splitlines()[0]}
+    finally:
+        ctx.release()
 
 
 def _measured(ctx: Any, drawing: Drawing, cell: Row) -> Row:
@@ -290,7 +293,8 @@ def _measured(ctx: Any, drawing: Drawing, cell: Row) -> Row:
     row = flown(ctx, drawing, cell["limit"], warm)
     row |= {"gpu_bytes": drawing.nbytes(), "features": list(drawing.explain().get("features", ()))}
     if warm:
-        row |= in_flight(ctx, drawing, len(row["seconds"]))
+        if not drawing.waits:
+            row |= in_flight(ctx, drawing, len(row["seconds"]))
         row |= {"before": before, "after": card_state()}
         if cell["kind"] == "fiblets":
             row["digest"] = digest(drawing.draw(drawing.path[0]))
