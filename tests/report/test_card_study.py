@@ -45,7 +45,7 @@ def test_a_quick_plan_runs_and_saves_record_by_record(gl, monkeypatch, tmp_path)
     monkeypatch.setattr(card, "QUICK_SIZES", ((96, 72),))
     monkeypatch.setattr(card, "findings_of", found(WORKS, MISSING, DIFFERS))
     small = {"kind": "volume", "voxels": 16, "mode": "mip", "size": [96, 72]}
-    feature = {"kind": "feature", "feature": "cut sphere", "step": 0.1, "view": "far", "segments": 2e4, "size": [96, 72]}
+    feature = {**BRAIN, "kind": "feature", "feature": "cut sphere", "segments": 2e4, "size": [96, 72]}
     monkeypatch.setattr(card, "sections", lambda quick, pipelines: [[], [], [feature], [small]])
     left = []
     told = list(card.STUDY.run(little(left_out=left)))
