@@ -82,6 +82,30 @@ def test_without_time_everything_is_left_out(gl, monkeypatch, tmp_path):
     assert sum(item.reason == "the time given was used up" for item in left) > 30
 
 
+def test_while_data_is_made_other_things_are_checked(gl, monkeypatch, tmp_path):
+    """Of a cell whose data comes late: nobody waits for it as long as there is a check to be made."""
+    monkeypatch.setenv(card.BRAINS, str(tmp_path))
+    order = []
+
+    class Late(Absent):
+        def has(self, cell):
+            return "halos" in order
+
+    def findings(part, folder, process, patience=0.0):
+        order.append(part)
+        yield Finding(part, "a feature", WORKS), []
+
+    def measured(cell, process, hopeless, options):
+        order.append(cell["kind"])
+
+    monkeypatch.setattr(card, "_Brains", lambda cells, folder: Late())
+    monkeypatch.setattr(card, "findings_of", findings)
+    monkeypatch.setattr(card, "measured", measured)
+    monkeypatch.setattr(card, "plan", lambda *_: [{"kind": "cell"}])
+    list(card.STUDY.run(little()))
+    assert order.index("fiblets compute") < order.index("halos") < order.index("cell") < order.index("features")
+
+
 class Absent:
     """Data that never comes."""
 

@@ -106,11 +106,15 @@ class CardStudy:
             yield from _checked(options.share(CHECK_SHARE), first, folder)
             process = CellProcess.of("pvfiblets.report.studies.speed.cells")
             stack.callback(process.close)
+            others = _checked(options, [part for part in parts if part not in first], folder)
             usual: dict[str, str] = {}
             while cells:
                 ready = next((cell for cell in cells if brains.has(cell)), None)
                 if ready is None and options.budget.left > 0.0:
-                    time.sleep(0.05)
+                    if (case := next(others, None)) is not None:
+                        yield case
+                    else:
+                        time.sleep(0.05)
                     continue
                 cell = ready or cells[0]
                 cells.remove(cell)
@@ -118,7 +122,7 @@ class CardStudy:
                 done = measured({**cell, "folder": folder}, process, set(), own)
                 if done is not None:
                     yield from _told(*done, cell, usual)
-            yield from _checked(options.share(), [part for part in parts if part not in first], folder)
+            yield from others
 
 
 def plan(quick: bool, fastest: str, forms: Sequence[str]) -> list[Row]:
@@ -154,7 +158,9 @@ class _Brains:
             f"for segments, step in {wanted}: stored_brain(segments, step, {folder!r})"
         )
         threads = {"NUMBA_NUM_THREADS": str(max((os.cpu_count() or 2) // 2, 1))}
-        self._process = subprocess.Popen([sys.executable, "-c", code], env={**os.environ, **threads})
+        self._process = subprocess.Popen(
+            [sys.executable, "-c", code], env={**os.environ, **threads}, stderr=subprocess.DEVNULL
+        )
 
     def __enter__(self) -> Self:
         return self
