@@ -147,6 +147,21 @@ def test_steps_done_otherwise_draw_the_same(gl, folder, name):
     assert measure_cell({**base, "view": "close"})["digest"] != usual["digest"]
 
 
+@pytest.mark.more
+def test_clusters_are_made_once_for_cells_of_the_same_set(gl, folder, monkeypatch):
+    from pvfiblets.engine.fiblets.data import clusters
+
+    made, usual = [], clusters.cluster_words
+    monkeypatch.setattr(clusters, "cluster_words", lambda *of: made.append(of[1:]) or usual(*of))
+    base = {**BRAIN, "folder": folder, "segments": 1e5, "constants": {"fiblets.data.chunks:CLUSTERED": 0}}
+    first, again = measure_cell(base), measure_cell(base)
+    assert first["digest"] == again["digest"]
+    assert len(made) == 1
+    measure_cell({**base, "segments": 5e4})
+    measure_cell(base)
+    assert len(made) == 3
+
+
 def test_constants_are_replaced_wherever_the_engine_holds_them_and_put_back():
     from pvfiblets.engine.fiblets.pipelines import compute, constants
     from pvfiblets.engine.gl import passes, work_limits

@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from hashlib import sha1
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 
@@ -135,15 +137,38 @@ def digest(target: Any) -> str:
     return found.hexdigest()[:12]
 
 
+_CLUSTERS: dict[tuple[Any, ...], list[Any]] = {}
+
+
+@contextmanager
+def clusters_kept(cell: Row) -> Iterator[None]:
+    """Keep the clusters of a set until another has any: those of billions of segments take half a minute."""
+    from pvfiblets.engine.fiblets.data import clusters
+
+    made, of = clusters.cluster_words, (cell["segments"], cell["step"])
+
+    def kept(fiblets: Any, first: int, last: int) -> Iterator[Any]:
+        key = (*of, first, last)
+        if key not in _CLUSTERS:
+            for other in [other for other in _CLUSTERS if other[:2] != of]:
+                del _CLUSTERS[other]
+            _CLUSTERS[key] = list(made(fiblets, first, last))
+        yield from _CLUSTERS[key]
+
+    with patch.object(clusters, "cluster_words", kept):
+        yield
+
+
 def fiblets(ctx: Any, cell: Row) -> Drawing:
     """Fiblets by one pipeline and culling: the paper's table 2, and the last column of its table 3."""
     from pvfiblets.engine import FibletRenderer
 
     brain = stored_brain(cell["segments"], cell["step"], cell["folder"])
     culling = None if cell["culling"] == "none" else cell["culling"]
-    renderer = FibletRenderer(
-        ctx, brain, pipeline=cell["pipeline"], culling=culling, max_buffer_bytes=cell.get("buffer_bytes")
-    )
+    with clusters_kept(cell):
+        renderer = FibletRenderer(
+            ctx, brain, pipeline=cell["pipeline"], culling=culling, max_buffer_bytes=cell.get("buffer_bytes")
+        )
     path = views(brain.bounds, cell["view"], DEGREES_PER_FRAME, cell["frames"] + WARM, tuple(cell["size"]))
     return _of_renderer(renderer, renderer.render, path)
 
