@@ -146,7 +146,7 @@ def make_parser() -> argparse.ArgumentParser:
     report.add_argument(
         "--only", nargs="+", metavar="STUDY",
         help="codec, decode, tractograms, pixels, culling, tubes, volumes, halos, features, antialias, "
-        "translucency, query, stability; only by name, speed alone: speed, lines, reading, work",
+        "translucency, query, stability; only by name, speed alone: speed, lines, card, reading, work",
     )  # fmt: skip
     report.add_argument(
         "--data", nargs="+", default=[], metavar="FILE",

@@ -5,12 +5,13 @@ from __future__ import annotations
 import os
 import platform
 import re
+import subprocess
 import time
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-__all__ = ["about", "processor", "slug"]
+__all__ = ["about", "card_state", "processor", "slug"]
 
 PACKAGES = ("pvfiblets", "numpy", "numba", "moderngl", "vtk", "pyvista", "dipy", "zstandard", "matplotlib")
 
@@ -44,6 +45,29 @@ def processor() -> str:
     except OSError:
         pass
     return platform.processor() or platform.machine() or "unknown processor"
+
+
+CARD_STATE = {
+    "clocks.sm": "MHz", "clocks.mem": "MHz", "power.draw": "W", "temperature.gpu": "°C",
+    "clocks_throttle_reasons.active": "",
+}  # fmt: skip
+"""What nvidia-smi is asked for, and units."""
+
+
+def card_state() -> dict[str, float]:
+    """Return clocks, power and temperature of the first NVIDIA card; nothing where there is none."""
+    command = ["nvidia-smi", f"--query-gpu={','.join(CARD_STATE)}", "--format=csv,noheader,nounits", "--id=0"]
+    try:
+        told = subprocess.run(command, capture_output=True, text=True, timeout=5.0, check=True).stdout
+    except (OSError, subprocess.SubprocessError):
+        return {}
+    found = {}
+    for name, word in zip(CARD_STATE, told.strip().split(","), strict=False):
+        try:
+            found[name] = float(int(word, 0)) if "0x" in word else float(word)
+        except ValueError:  # such as [N/A]
+            continue
+    return found
 
 
 def slug(name: str) -> str:

@@ -19,7 +19,7 @@ __all__ = ["QUICK_SECONDS", "make_report", "one_study", "write_pages"]
 QUICK_SECONDS = 120.0  # of a quick report, plots included
 PLOT_SECONDS = 30.0  # of these, kept for the page and the plots
 QUICK_REPEATS = 3
-SAVE_SECONDS = 10.0  # between savings of what a study has found so far: a run may be cut short
+SAVE_SHARE = 0.02  # of the time, for saving what a study has found so far: a run may be cut short
 
 Log = Callable[[str], None]
 
@@ -50,13 +50,13 @@ def make_report(
     report = Report(machine.about(seed, quick))
     seconds = 60.0 * minutes if minutes is not None else QUICK_SECONDS - PLOT_SECONDS if quick else float("inf")
     whole = Budget(seconds, clock)
-    saved = clock()
+    next_save = clock()
 
     def keep(so_far: StudyResult) -> None:
-        nonlocal saved
-        if clock() - saved >= SAVE_SECONDS:
+        nonlocal next_save
+        if (begun := clock()) >= next_save:
             Report(report.about, [*report.studies, so_far]).save(folder)
-            saved = clock()
+            next_save = clock() + (clock() - begun) / SAVE_SHARE
 
     for done, name in enumerate(names):
         options = Options(

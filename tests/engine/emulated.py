@@ -156,15 +156,10 @@ class EmulatedMesh(MeshPipeline):
     bits; and ``(groups, meshes of a group, words)``.
     """
 
-    max_tasks = 65535
-
     def __init__(self, ctx, gl, programs, n_fiblets, *, serial=False):
         super().__init__(ctx, gl, programs, n_fiblets, serial=serial)
         self.kept = {}
         self.tasks, self.meshes = [], []
-
-    def _most_tasks(self, wanted):
-        return self.max_tasks
 
     def _has_ballots(self):
         return False

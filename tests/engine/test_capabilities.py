@@ -39,7 +39,8 @@ def by_name(ctx):
         (Driver(330), ["geometry"]),
         (Driver(320), []),
         (Driver(460, MESH, renderer="llvmpipe (LLVM 19)"),
-         ["compute", "tessellation", "geometry", "mesh", "mesh-serial"]),
+         ["compute", "geometry", "tessellation", "mesh", "mesh-serial"]),
+        (Driver(410, renderer="llvmpipe (LLVM 19)"), ["geometry", "tessellation"]),
     ],
 )  # fmt: skip
 def test_a_driver_has_what_its_version_and_extensions_give_in_order_of_speed(driver, available):
@@ -139,7 +140,7 @@ def test_this_context_is_described_and_can_compute(gl):
 
 @pytest.mark.parametrize(
     ("version", "auto"),
-    [("4.1", "tessellation"), ("4.0", "geometry"), ("3.3", "geometry"), ("3.2", None)],
+    [("4.1", "geometry"), ("4.0", "geometry"), ("3.3", "geometry"), ("3.2", None)],
 )
 def test_an_older_opengl_is_seen_for_what_it_is(older_opengl, version, auto):
     command = [sys.executable, "-m", "pvfiblets", "gl", "--json"]

@@ -13,9 +13,10 @@ import pytest
 
 from pvfiblets import compress, synthetic
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
+from pvfiblets.engine.errors import EngineError
 from pvfiblets.engine.fiblets.pipelines import CONSTANTS
 from pvfiblets.engine.fiblets.pipelines.mesh import TASK_FIBLETS, MeshPipeline
-from pvfiblets.engine.gl.mesh_program import MeshProgram, nvidia_program
+from pvfiblets.engine.gl.mesh_program import MeshProgram
 from pvfiblets.engine.gl.shaders import EXTENDED, assemble, read_shader
 from tests.reference_compiler import glslang, link
 
@@ -294,7 +295,7 @@ class Driver(SimpleNamespace):
 
 def made(extensions=(), **numbers):
     ctx = SimpleNamespace(extensions=set(extensions), version_code=460)
-    known = {"GL_MAX_DRAW_MESH_TASKS_COUNT_NV": 65535, **{f"GL_SUBGROUP_{k}_KHR": v for k, v in numbers.items()}}
+    known = {f"GL_SUBGROUP_{name}_KHR": value for name, value in numbers.items()}
     return MeshPipeline(ctx, Driver(numbers=known), None, 10)
 
 
@@ -307,20 +308,19 @@ def test_ballots_are_used_where_they_cover_a_work_group():
     assert "SUBGROUPS" not in made(khr, SIZE=32, SUPPORTED_STAGES=0xFF, SUPPORTED_FEATURES=0x1).features
 
 
-def test_calls_are_as_long_as_the_driver_allows():
+def test_calls_are_as_long_as_the_extensions_promise():
     pipeline = made()
     calls = []
 
     class Program(dict):
-        def draw_mesh_tasks(self, first, count):
-            calls.append((self["first_group"], first, count))
+        def draw_mesh_tasks(self, count):
+            calls.append((self["first_group"], count))
 
     chunk = SimpleNamespace(n_fiblets=90_000_000, bind_storage=lambda: None)
     pipeline._draw(None, Program(), chunk, None)
     groups = -(-90_000_000 // TASK_FIBLETS)
-    assert [first for first, _, _ in calls] == list(range(0, groups, 65535))
-    assert all(zero == 0 for _, zero, _ in calls)
-    assert sum(count for _, _, count in calls) == groups
+    assert [first for first, _ in calls] == list(range(0, groups, 65535))
+    assert sum(count for _, count in calls) == groups
     assert len(calls) == 6
     assert pipeline.name == "mesh"
 
@@ -332,57 +332,78 @@ def test_emulation_replaces_one_page_only():
         assert not re.search(rf"(?m)^[^/\n]*(?<!\w){re.escape(word)}(?!\w)", source.replace("#if", ""))
 
 
-def test_fragments_are_handed_primitives_by_the_word_that_the_driver_takes(monkeypatch):
-    """Khronos' compiler wants `flat` beside the extension's word, and Mesa's refuses it."""
-    program = object.__new__(MeshProgram)
-    source = stages("together", ["DIRECTION", "MESH_EXT"])["frag"]
+FORMS = {"nv": "GL_NV_mesh_shader", "ext": "GL_EXT_mesh_shader"}
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_fragments_declare_primitives_in_the_form_that_the_driver_takes(monkeypatch, form):
+    """Khronos' compiler wants `flat`, which Mesa refuses. OpenGL programs on NVIDIA name no extension there either."""
+    sources = stages("together", ["DIRECTION", *(["MESH_EXT"] if form == "ext" else [])])
+    sources = {f"{'fragment' if name == 'frag' else name}_shader": text for name, text in sources.items()}
+    linked, calls = [], []
+
+    def made(refuses):
+        linked.clear()
+
+        def link(self, given):
+            linked.append(dict(given))
+            if refuses(given["fragment_shader"]):
+                raise moderngl.Error(f"refused {len(linked)}")
+
+        monkeypatch.setattr(MeshProgram, "_link", link)
+        monkeypatch.setattr(MeshProgram, "_active", lambda self: {})
+        monkeypatch.setattr(MeshProgram, "_call", lambda self, *call: calls.append(call))
+        return MeshProgram(SimpleNamespace(extensions=set()), sources, {}, nvidia=form == "nv")
+
+    program = made(lambda text: False)
+    assert linked == [sources]
+    calls.clear()
+    program.draw_mesh_tasks(7)
+    assert calls[-1] == (("glDrawMeshTasksNV", 0, 7) if form == "nv" else ("glDrawMeshTasksEXT", 7, 1, 1))
+    made(lambda text: "flat perprimitive" in text or "GL_NV_mesh_shader : enable" in text)
+    strict, lax = (given.pop("fragment_shader") for given in linked)
+    assert linked[0] == linked[1]
+    assert strict == sources["fragment_shader"]
+    word = f"#define VARYING {{}}perprimitive{form.upper()} in"
+    assert word.format("flat ") in strict
+    assert word.format("") in lax
+    assert "#extension GL_EXT_mesh_shader : require" in lax, "Mesa wants it"
+    with pytest.raises(moderngl.Error, match="refused 2"):
+        made(lambda text: True)
+
+
+@pytest.mark.parametrize(
+    ("has", "compiles", "taken"),
+    [
+        (["nv"], ["nv"], ["nv"]),
+        (["ext"], ["ext"], ["ext"]),
+        (["nv", "ext"], ["nv", "ext"], ["ext"]),
+        (["nv", "ext"], ["nv"], ["ext", "nv"]),
+        (["nv", "ext"], [], ["ext", "nv"]),
+        (["ext"], [], ["ext"]),
+    ],
+)
+def test_the_form_of_stages_is_one_that_the_driver_has_and_compiles(has, compiles, taken):
     tried = []
 
-    def driver(refused):
-        def compiled(self, name, text):
-            tried.append(text)
-            if re.search(refused, text):
-                raise moderngl.Error(f"{name}: no {refused}")
-            return len(tried)
+    class Driven:
+        def render(self, files, features):
+            form = "ext" if "MESH_EXT" in features else "nv"
+            tried.append(form)
+            if form not in compiles:
+                raise EngineError(f"{form} does not link")
+            return form
 
-        monkeypatch.setattr(MeshProgram, "_compiled", compiled)
-        return program._compiled_either("fragment_shader", source)
-
-    assert driver(r"\bVARYING perprimitiveEXT in") == 1
-    assert driver("flat perprimitiveEXT in") == 3
-    assert tried[0] == tried[1] == source
-    assert "#define VARYING perprimitiveEXT in" in tried[2]
-    with pytest.raises(moderngl.Error):
-        driver("void main")
-
-
-def test_fragments_say_what_they_are_handed_in_the_form_that_a_driver_takes(monkeypatch):
-    """Compilers differ by the extension's name and by `flat`; what the first form is refused for is told."""
-
-    fragment = assemble("fiblets/hardware_raster/line.frag", ["PER_PRIMITIVE"], {}, version=450)
-    assert "GL_NV_mesh_shader : require" not in fragment
-    sources = {"task_shader": "t", "mesh_shader": "m", "fragment_shader": fragment}
-    tried = []
-
-    class Driver:
-        def __init__(self, takes):
-            self.takes = takes
-
-        def program(self, *, fragment_shader, task_shader, mesh_shader):
-            tried.append(fragment_shader)
-            if not self.takes(fragment_shader):
-                raise moderngl.Error(f"refused {len(tried)}")
-            return task_shader + mesh_shader
-
-    assert nvidia_program(Driver(lambda _: True), sources) == "tm"
-    assert tried == [fragment]
-    tried.clear()
-    plain = "flat perprimitiveNV in"
-    assert (
-        nvidia_program(Driver(lambda text: "#extension GL_NV_mesh" not in text and plain not in text), sources) == "tm"
-    )
-    assert len(tried) == len(set(tried)) == 4
-    assert all("perprimitiveNV in\n" in text for text in tried)
-    tried.clear()
-    with pytest.raises(moderngl.Error, match="refused 1"):
-        nvidia_program(Driver(lambda _: False), sources)
+    pipeline = made([FORMS[form] for form in has])
+    pipeline._programs = Driven()
+    pipeline._features = lambda request: [*pipeline.features]
+    request = SimpleNamespace(wide=())
+    if compiles:
+        assert pipeline._program(request, ()) == taken[-1]
+        assert tried == taken
+        assert pipeline._program(request, ()) == taken[-1]
+        assert tried == [*taken, taken[-1]], "what was refused is not tried again"
+    else:
+        with pytest.raises(EngineError, match=f"{taken[-1]} does not link"):
+            pipeline._program(request, ())
+        assert tried == taken

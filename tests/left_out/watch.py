@@ -91,8 +91,6 @@ class Watch:
             _after(moderngl.ComputeShader, name, lambda _, program, *__, **___: self._run(program))
         for name in ("render", "render_indirect", "transform"):
             _after(moderngl.VertexArray, name, lambda _, array, *__, **___: self._run(array.program))
-        for name in ("draw_mesh_tasks", "draw_mesh_tasks_indirect", "draw_mesh_tasks_indirect_count"):
-            _after(moderngl.Program, name, lambda _, program, *__, **___: self._run(program))
 
     def _linked(self, program, sources) -> None:
         texts = [source.strip() for source in sources if source]

@@ -160,6 +160,22 @@ def test_a_driver_that_dies_or_hangs_takes_one_feature_along(tmp_path):
     assert not found.good
 
 
+@pytest.mark.parametrize(("extensions", "verdict"), [([], MISSING), (sorted(card_check.COMPUTES), FAILS)])
+def test_a_check_without_the_compute_pipeline_fails_where_the_driver_has_it(
+    tmp_path, monkeypatch, extensions, verdict
+):
+    """A context of an old version: on a card of today nothing that matters would have been checked."""
+    rows = [
+        {"name": "compute", "available": False, "why_not": "OpenGL is 3.3, needed is 4.3"},
+        {"name": "mesh", "available": False, "why_not": "OpenGL is 3.3, needed is 4.5"},
+    ]
+    monkeypatch.setattr(card_check, "_ask", lambda patience: {"pipelines": rows, "extensions": extensions})
+    found = card_check.run_check(tmp_path, (), lambda _: None, ["nothing else"])
+    assert [one.verdict for one in found.findings] == [verdict, MISSING]
+    assert found.findings[0].note.startswith("OpenGL is 3.3, needed is 4.3")
+    assert found.good == (verdict == MISSING)
+
+
 def test_no_opengl_is_one_finding(tmp_path, monkeypatch):
     monkeypatch.setenv("GLCONTEXT_LINUX_LIBEGL", "libnothing.so")
     monkeypatch.setenv("GLCONTEXT_LINUX_LIBGL", "libnothing.so")

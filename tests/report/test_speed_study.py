@@ -104,7 +104,7 @@ def test_data_that_cannot_be_made_is_told(tmp_path):
     (tmp_path / "a file").write_text("")
     left = []
     cell = {**CELLS[0], "folder": str(tmp_path / "a file")}
-    assert speed._measured(cell, CellProcess([]), set(), little(left_out=left)) is None
+    assert speed.measured(cell, CellProcess([]), set(), little(left_out=left)) is None
     assert left[0].reason.startswith("its data was not made: ")
 
 

@@ -13,6 +13,7 @@ from pvfiblets.codec.compress import compress
 from pvfiblets.codec.reference import encode_direction
 from pvfiblets.report import drawing, run, studies, timing
 from pvfiblets.report.record import Axes, Figure, LeftOut, Record
+from pvfiblets.report.report_file import Report
 from pvfiblets.report.studies.codec import data_sets
 from pvfiblets.report.studies.codec import study as codec
 from pvfiblets.report.studies.decode import decoders
@@ -287,6 +288,39 @@ def test_wrong_minutes_and_seeds_are_told(fakes, tmp_path, wrong, said):
     fakes(FakeStudy("brief", Clock(), 1.0, 1))
     with pytest.raises(ValueError, match=said):
         run.make_report(tmp_path, log=quiet, **wrong)
+
+
+def test_a_run_that_is_cut_keeps_every_record_before(fakes, tmp_path):
+    clock = Clock()
+
+    class Cut(FakeStudy):
+        def run(self, options):
+            for record in super().run(options):
+                if len(kept()) == 3:
+                    raise KeyboardInterrupt
+                yield record
+
+    def kept():
+        path = tmp_path / "report.json"
+        return Report.load(path).studies[0].records if path.exists() else []
+
+    fakes(Cut("cut", clock, 1.0, 5))
+    with pytest.raises(KeyboardInterrupt):
+        run.make_report(tmp_path, log=quiet, clock=clock)
+    assert len(kept()) == 3
+
+
+def test_saving_takes_a_small_part_of_the_time(fakes, tmp_path, monkeypatch):
+    clock, save = Clock(), Report.save
+
+    def slow(self, folder):
+        clock.now += 2.0
+        return save(self, folder)
+
+    monkeypatch.setattr(Report, "save", slow)
+    fakes(FakeStudy("brief", clock, 1.0, 1000))
+    run.make_report(tmp_path, log=quiet, clock=clock)
+    assert 1000 < clock.now < 1000 * (1.0 + 1.5 * run.SAVE_SHARE) + 4.0
 
 
 @pytest.mark.parametrize("name", [*studies.MODULES])

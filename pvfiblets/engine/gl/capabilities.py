@@ -39,8 +39,9 @@ AUTO = "auto"
 # 2,900 (docs/benchmarks): rasterisers are not made for primitives of a pixel. Mesh stages have not been measured on a
 # card. mesh-serial is there to be compared with.
 ORDER = ("compute", "mesh", "tessellation", "geometry", "mesh-serial")
-# On a CPU there is no rasteriser to feed: the pipeline that draws its own segments is the fastest.
-SOFTWARE_ORDER = ("compute", "tessellation", "geometry", "mesh", "mesh-serial")
+# On a CPU there is no rasteriser to feed: the pipeline that draws its own segments is the fastest. The geometry stage
+# takes up to a third less time than tessellation (docs/benchmarks/pipelines-llvmpipe.md).
+SOFTWARE_ORDER = ("compute", "geometry", "tessellation", "mesh", "mesh-serial")
 
 MESH, MESH_EXT = "GL_NV_mesh_shader", "GL_EXT_mesh_shader"
 

@@ -33,6 +33,7 @@ FUNCTIONS: dict[str, tuple[tuple[Any, ...], int | str]] = {
     "glDeleteTextures": ((_INT, _POINTER), 330),
     "glDeleteVertexArrays": ((_INT, _POINTER), 330),
     "glDrawMeshTasksEXT": ((_UINT, _UINT, _UINT), "GL_EXT_mesh_shader"),
+    "glDrawMeshTasksNV": ((_UINT, _UINT), "GL_NV_mesh_shader"),
     "glEndQuery": ((_UINT,), 330),
     "glFenceSync": ((_UINT, _UINT), 330),
     "glFramebufferTexture2D": ((_UINT, _UINT, _UINT, _UINT, _INT), 330),

@@ -1,4 +1,4 @@
-"""Programs of task and mesh stages: by GL_EXT_mesh_shader, which moderngl cannot make, or by NVIDIA's extension.
+"""Programs of task and mesh stages, by GL_EXT_mesh_shader, which moderngl cannot make, or by GL_NV_mesh_shader.
 
 A :class:`MeshProgram` has what the engine uses of a ``moderngl.Program``, so that those who set uniforms need not know
 which of the two they have.
@@ -15,20 +15,14 @@ import moderngl
 from ..errors import EngineError
 from .moderngl_extras import GLExtras, Uniform
 
-__all__ = ["MeshProgram", "nvidia_program"]
+__all__ = ["MeshProgram"]
 
 _STAGES = {"fragment_shader": 0x8B30, "mesh_shader": 0x9559, "task_shader": 0x955A}
 _COMPILE_STATUS, _LINK_STATUS, _LOG_LENGTH = 0x8B81, 0x8B82, 0x8B84
 _ACTIVE_UNIFORMS, _INVALID_INDEX = 0x8B86, 0xFFFFFFFF
-_STRICT, _LAX = "flat perprimitiveEXT in", "perprimitiveEXT in"
-"""How fragments are handed integers of a primitive: Khronos' compiler refuses the second, Mesa's the first."""
-_NVIDIA_FORMS: tuple[dict[str, str], ...] = (
-    {},
-    {"#extension GL_NV_mesh_shader : enable\n": "\n"},
-    {"flat perprimitiveNV in": "perprimitiveNV in"},
-    {"#extension GL_NV_mesh_shader : enable\n": "\n", "flat perprimitiveNV in": "perprimitiveNV in"},
-)
-"""How a fragment stage says that it is handed a primitive's data, where compilers differ: the first that links."""
+_STRICT = {"flat perprimitive": "perprimitive", "#extension GL_NV_mesh_shader : enable\n": "\n"}
+"""How a fragment stage declares a primitive's data for Khronos' compiler, and the form that drivers take: Mesa's wants
+no ``flat`` there, and OpenGL programs on NVIDIA's cards have neither that nor the extension's name."""
 _LONGEST = 256
 """Characters of a uniform's name, the closing zero included."""
 
@@ -42,32 +36,19 @@ _KINDS = {
 _WORDS = {"f": ctypes.c_float, "i": ctypes.c_int, "ui": ctypes.c_uint}
 
 
-def nvidia_program(ctx: moderngl.Context, sources: Mapping[str, str]) -> moderngl.Program:
-    """Return a program of task and mesh stages by GL_NV_mesh_shader."""
-    refused: list[moderngl.Error] = []
-    for form in _NVIDIA_FORMS:
-        fragment = sources["fragment_shader"]
-        for old, new in form.items():
-            fragment = fragment.replace(old, new)
-        try:
-            stages: dict[str, Any] = {**sources, "fragment_shader": fragment}
-            return ctx.program(**stages)
-        except moderngl.Error as error:
-            refused.append(error)
-    raise refused[0]
-
-
 class MeshProgram:
     """A linked program of a task, a mesh and a fragment stage.
 
     Parameters
     ----------
     ctx : moderngl.Context
-        With GL_EXT_mesh_shader; must be current in every call.
+        Must be current in every call.
     sources : mapping of str to str
         GLSL by moderngl's names: ``task_shader``, ``mesh_shader``, ``fragment_shader``.
     blocks : mapping of str to int
         Bindings of uniform blocks; missing ones are skipped.
+    nvidia : bool
+        Whether the sources are of GL_NV_mesh_shader.
 
     Raises
     ------
@@ -80,23 +61,14 @@ class MeshProgram:
         Whatever its users keep about it, as programs of moderngl have it.
     """
 
-    def __init__(self, ctx: moderngl.Context, sources: Mapping[str, str], blocks: Mapping[str, int]) -> None:
+    def __init__(
+        self, ctx: moderngl.Context, sources: Mapping[str, str], blocks: Mapping[str, int], *, nvidia: bool = False
+    ) -> None:
         self._gl = GLExtras(ctx)
+        self._nvidia = nvidia
         self.extra: Any = None
-        self.glo = self._call("glCreateProgram")
-        shaders = []
-        try:
-            for name, source in sources.items():
-                shaders.append(self._compiled_either(name, source))
-                self._call("glAttachShader", self.glo, shaders[-1])
-            self._call("glLinkProgram", self.glo)
-            self._check("Program", self.glo, _LINK_STATUS, "the program")
-        except moderngl.Error:
-            self.release()
-            raise
-        finally:
-            for shader in shaders:
-                self._call("glDeleteShader", shader)
+        self.glo = 0
+        self._link_either(sources)
         self._array = ctypes.c_uint(0)
         self._call("glGenVertexArrays", 1, ctypes.byref(self._array))
         self._uniforms = self._active()
@@ -108,14 +80,32 @@ class MeshProgram:
     def _call(self, name: str, *arguments: Any) -> Any:
         return self._gl.function(name)(*arguments)
 
-    def _compiled_either(self, name: str, source: str) -> int:
-        """Compile a stage as it is; if that fails, by the other word for what primitives hand over."""
+    def _link_either(self, sources: Mapping[str, str]) -> None:
+        """Link the stages as they are; if that fails, with the fragment stage in the form that drivers take."""
         try:
-            return self._compiled(name, source)
+            self._link(sources)
         except moderngl.Error:
-            if _STRICT not in source:
+            fragment = sources["fragment_shader"]
+            for strict, lax in _STRICT.items():
+                fragment = fragment.replace(strict, lax)
+            if fragment == sources["fragment_shader"]:
                 raise
-            return self._compiled(name, source.replace(_STRICT, _LAX))
+            self._link({**sources, "fragment_shader": fragment})
+
+    def _link(self, sources: Mapping[str, str]) -> None:
+        self.glo, shaders = self._call("glCreateProgram"), []
+        try:
+            for name, source in sources.items():
+                shaders.append(self._compiled(name, source))
+                self._call("glAttachShader", self.glo, shaders[-1])
+            self._call("glLinkProgram", self.glo)
+            self._check("Program", self.glo, _LINK_STATUS, "the program")
+        except moderngl.Error:
+            self.release()
+            raise
+        finally:
+            for shader in shaders:
+                self._call("glDeleteShader", shader)
 
     def _compiled(self, name: str, source: str) -> int:
         shader: int = self._call("glCreateShader", _STAGES[name])
@@ -177,13 +167,14 @@ class MeshProgram:
         """Return where a uniform is, or `default` if there is none outside of blocks."""
         return self._uniforms.get(name, default)
 
-    def draw_mesh_tasks(self, first: int, count: int) -> None:
-        """Run `count` task work groups; `first` is 0, as the extension has no other."""
-        if first:
-            raise EngineError(f"work groups count from 0 here, not from {first}")
+    def draw_mesh_tasks(self, count: int) -> None:
+        """Run `count` task work groups."""
         self._call("glUseProgram", self.glo)
         self._call("glBindVertexArray", self._array)  # of nothing: OpenGL's core profile draws with none
-        self._call("glDrawMeshTasksEXT", count, 1, 1)
+        if self._nvidia:
+            self._call("glDrawMeshTasksNV", 0, count)
+        else:
+            self._call("glDrawMeshTasksEXT", count, 1, 1)
 
     def release(self) -> None:
         """Delete it; twice is harmless."""

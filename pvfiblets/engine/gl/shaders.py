@@ -365,14 +365,10 @@ class Programs:
             }
             try:
                 program: Any
-                if "MESH_EXT" in request[1]:
+                if "mesh" in stages:
                     from .mesh_program import MeshProgram
 
-                    program = MeshProgram(self._ctx, sources, BLOCKS)
-                elif "mesh" in stages:
-                    from .mesh_program import nvidia_program
-
-                    program = nvidia_program(self._ctx, sources)
+                    program = MeshProgram(self._ctx, sources, BLOCKS, nvidia="MESH_EXT" not in request[1])
                 else:
                     program = self._ctx.program(**sources, varyings=tuple(varyings))
             except moderngl.Error as error:

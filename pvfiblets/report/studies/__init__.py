@@ -33,13 +33,14 @@ MODULES = {
     "query": "pvfiblets.report.studies.query.study",
     "speed": "pvfiblets.report.studies.speed.study",
     "lines": "pvfiblets.report.studies.speed.lines",
+    "card": "pvfiblets.report.studies.card.study",
     "work": "pvfiblets.report.studies.work.study",
     "reading": "pvfiblets.report.studies.speed.reading",
     "stability": "pvfiblets.report.studies.stability.study",
 }
 
 
-ONLY_NAMED = ("speed", "lines", "reading", "work")
+ONLY_NAMED = ("speed", "lines", "card", "reading", "work")
 """Studies that compare no approximations, and take hours and gigabytes: a report of all is without them."""
 
 

@@ -11,9 +11,9 @@
 bool wanted(Capsule c);
 
 void choose(uint round) {
-    uint listed = visibility_bits[length_at(0u)], entry = group_index() * GROUP_CLUSTERS, end = min(entry + GROUP_CLUSTERS, listed);
-    for (; entry < end; ++entry) {
-        uint k = visibility_bits[list_at(0u) + entry] * CLUSTER + gl_LocalInvocationIndex;
+    uint first = group_index() * GROUP_CLUSTERS, end = min(first + GROUP_CLUSTERS, visibility_bits[length_at(0u)]) * CLUSTER;
+    for (uint i = first * CLUSTER + gl_LocalInvocationIndex; i < end; i += gl_WorkGroupSize.x) {
+        uint k = visibility_bits[list_at(0u) + i / CLUSTER] * CLUSTER + i % CLUSTER;
         if (k >= chunk_fiblets) continue;
         uint f = clustered(k), which;
         if ((planned(f >> 5) >> (f & 31u) & 1u) != 0u) continue;

@@ -81,6 +81,9 @@ SEED_OF = 1 << 23
 """Size of a set up to which a first frame begins with every eighth fiblet; larger sets begin with a smaller share. They
 hide most of the other fiblets: of 7.4 million, 1.5 million are drawn instead of all."""
 
+INT64_EXTENSIONS = "GL_NV_shader_atomic_int64", "GL_ARB_gpu_shader_int64"
+"""For the least of words that hold depth and fiblet."""
+
 READ_LISTS = True
 """Whether software OpenGL compiles programs of classes when they first have fiblets."""
 
@@ -557,7 +560,6 @@ class ComputePipeline:
 
 def _has_int64_atomics(ctx: moderngl.Context) -> bool:
     """Whether shaders take the least of 64-bit words in a storage buffer, and there is a binding left for it."""
-    wanted = {"GL_NV_shader_atomic_int64", "GL_ARB_gpu_shader_int64"}
-    if version_of(ctx) < EXTENDED or not wanted <= set(ctx.extensions):
+    if version_of(ctx) < EXTENDED or not set(INT64_EXTENSIONS) <= set(ctx.extensions):
         return False
     return GLExtras(ctx).get_integer("GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS") > STORAGE["nearest"]

@@ -305,7 +305,7 @@ class RasterPipeline(abc.ABC):
     def _round(self, request: DrawRequest, features: Sequence[str]) -> None:
         """Draw all chunks with one program."""
         ctx = self._ctx
-        program = self._programs.render(self._stages(request), [*self._features(request), *features])
+        program = self._program(request, features)
         if program not in self._arrays:
             self._arrays[program] = self._array(program)
             self._prepare(program)
@@ -318,6 +318,10 @@ class RasterPipeline(abc.ABC):
             chunk.bind_block()
             request.kept.bind_chunk(index)
             self._draw(array, program, chunk, request)
+
+    def _program(self, request: DrawRequest, features: Sequence[str]) -> moderngl.Program:
+        """Return a round's program."""
+        return self._programs.render(self._stages(request), [*self._features(request), *features])
 
     def _features(self, request: DrawRequest) -> list[str]:
         """Features of a picture's programs."""

@@ -13,17 +13,19 @@ What stands before and after is the same: a task work group tests :data:`TASK_FI
 which of them are left; fragments are those of the other raster pipelines. Data come from the storage buffers that the
 compute pipeline reads, so that nothing else is uploaded.
 
-Drawing calls are limited to GL_MAX_DRAW_MESH_TASKS_COUNT_NV work groups, of which 65,535 are promised, as many as
-GL_EXT_mesh_shader promises along an axis: 16.7 million fiblets. More are drawn by several calls.
+The stages have a form for each extension. GL_EXT_mesh_shader's is taken where the driver has and compiles it, else
+NVIDIA's. Both promise 65,535 task work groups a call: 16.7 million fiblets. More are drawn by several calls.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import logging
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import moderngl
 
+from ...errors import EngineError
 from ...gl.capabilities import MESH, MESH_EXT
 from ...gl.moderngl_extras import GLExtras
 from ...gl.shaders import Programs
@@ -33,6 +35,8 @@ from .draw_request import DrawRequest
 from .hardware_raster import RasterPipeline
 
 __all__ = ["MeshPipeline"]
+
+logger = logging.getLogger("pvfiblets.engine")
 
 PROMISED_TASKS = 65535
 _BALLOT = 0x8  # of GL_SUBGROUP_SUPPORTED_FEATURES_KHR
@@ -45,42 +49,36 @@ class MeshPipeline(RasterPipeline):
     Parameters
     ----------
     ctx : moderngl.Context
-        With GL_NV_mesh_shader, which is taken where both are, or GL_EXT_mesh_shader.
+        With GL_EXT_mesh_shader or GL_NV_mesh_shader.
     gl : GLExtras
     programs : Programs
     n_fiblets : int
         In all chunks.
     serial : bool
         Whether one invocation decodes a fiblet.
-    max_tasks : int, optional
-        Task work groups of a call, where that is less than the driver's limit.
     """
 
     def __init__(
-        self,
-        ctx: moderngl.Context,
-        gl: GLExtras,
-        programs: Programs,
-        n_fiblets: int,
-        *,
-        serial: bool = False,
-        max_tasks: int | None = None,
+        self, ctx: moderngl.Context, gl: GLExtras, programs: Programs, n_fiblets: int, *, serial: bool = False
     ) -> None:
         super().__init__(ctx, gl, programs, n_fiblets)
         self.name = "mesh-serial" if serial else "mesh"
-        self._max_tasks = self._most_tasks(max_tasks)
-        self.features = (
-            "PER_PRIMITIVE",
-            *(("MESH_EXT",) if self._by_ext() else ()),
-            *(("SUBGROUPS",) if self._has_ballots() else ()),
-        )
+        self._max_tasks = PROMISED_TASKS
+        self._ballots = ("SUBGROUPS",) if self._has_ballots() else ()
+        self._take_form("MESH_EXT" if MESH_EXT in ctx.extensions else "")
 
-    def _by_ext(self) -> bool:
-        return MESH_EXT in self._ctx.extensions and MESH not in self._ctx.extensions
+    def _take_form(self, form: str) -> None:
+        self.features = ("PER_PRIMITIVE", *([form] if form else ()), *self._ballots)
 
-    def _most_tasks(self, wanted: int | None) -> int:
-        most = PROMISED_TASKS if self._by_ext() else self._gl.get_integer("GL_MAX_DRAW_MESH_TASKS_COUNT_NV")
-        return min(most, wanted or most)
+    def _program(self, request: DrawRequest, features: Sequence[str]) -> moderngl.Program:
+        try:
+            return super()._program(request, features)
+        except EngineError as error:
+            if "MESH_EXT" not in self.features or MESH not in self._ctx.extensions:
+                raise
+            logger.info("%s was refused, trying %s: %s", MESH_EXT, MESH, str(error).partition("\n")[0])
+            self._take_form("")
+            return super()._program(request, features)
 
     def _has_ballots(self) -> bool:
         """Whether a ballot tells the answers of a whole work group."""
@@ -102,8 +100,8 @@ class MeshPipeline(RasterPipeline):
     def _prepare(self, program: Any) -> None:
         """Do nothing: bindings stand in the sources."""
 
-    def _array(self, program: Any) -> moderngl.VertexArray | None:
-        return None if self._by_ext() else super()._array(program)
+    def _array(self, program: Any) -> moderngl.VertexArray | None:  # noqa: ARG002 - it has its own
+        return None
 
     def _draw(
         self,
@@ -116,4 +114,4 @@ class MeshPipeline(RasterPipeline):
         groups = -(-chunk.n_fiblets // TASK_FIBLETS)
         for first in range(0, groups, self._max_tasks):
             program["first_group"] = first
-            program.draw_mesh_tasks(0, min(self._max_tasks, groups - first))
+            program.draw_mesh_tasks(min(self._max_tasks, groups - first))

@@ -1,4 +1,4 @@
-"""The check of a graphics card, behind ``pvfiblets gl --check``: does it draw right, and how fast.
+"""Graphics cards: do they draw right, and how fast (``pvfiblets gl --check``); the first minutes of one (``study.py``).
 
 Every part runs in a process of its own. Start with ``check.py``.
 """

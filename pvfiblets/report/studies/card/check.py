@@ -9,20 +9,26 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import count
 from pathlib import Path
 from typing import Any
 
 from ...process import CellProcess, ended
 from .findings import FAILS, MISSING, Finding
 
-__all__ = ["CardCheck", "run_check"]
+__all__ = ["MODULE", "PATIENCE", "CardCheck", "findings_of", "run_check"]
 
 PATIENCE = 300.0
 """Seconds without a word after which a part counts as hanging: some drivers compile for a minute."""
 
 MODULE = "pvfiblets.report.studies.card.part"
+
+COMPUTES = {
+    "GL_ARB_compute_shader", "GL_ARB_shader_storage_buffer_object", "GL_ARB_shader_image_load_store",
+}  # fmt: skip
+"""Extensions of a driver that has compute shaders, whatever version its context tells."""
 
 
 @dataclass
@@ -62,7 +68,11 @@ def run_check(
     table = [(row["name"], row["available"], row["why_not"]) for row in asked["pipelines"]]
     for name, there, why in table:
         if not there:
-            check.findings.append(Finding(f"fiblets {name}", "pipeline", MISSING, why or ""))
+            hidden = name == "compute" and COMPUTES.issubset(asked["extensions"])
+            note = f"{why}, although the driver has compute shaders: nothing that users get was checked"
+            check.findings.append(
+                Finding(f"fiblets {name}", "pipeline", FAILS if hidden else MISSING, note if hidden else why or "")
+            )
     wanted = [part for part in parts_of([name for name, there, _ in table if there])
               if not only or part.startswith(tuple(only))]  # fmt: skip
     if segments and any(part.startswith(SPEED) for part in wanted):
@@ -71,7 +81,10 @@ def run_check(
     for part in wanted:
         if segments or not part.startswith(SPEED):
             log(part)
-            _run_part(check, part, folder, patience, CellProcess(command))
+            for finding, pictures in findings_of(part, folder, CellProcess(command), patience):
+                check.findings.append(finding)
+                if pictures:
+                    check.pictures[f"{part}: {finding.feature}"] = pictures
     return check
 
 
@@ -88,23 +101,23 @@ def _ask(patience: float) -> dict[str, Any] | str:
     return found
 
 
-def _run_part(check: CardCheck, part: str, folder: Path, patience: float, process: CellProcess) -> None:
-    """Run a part to its end, by as many processes as die of it."""
-    number = 0
-    while True:
-        begun = process.measure({"part": part, "folder": str(folder), "number": number}, patience)
-        if "unmeasured" in begun:
-            check.findings.append(Finding(part, "beginning", FAILS, begun["unmeasured"]))
-            break
-        feature = begun["feature"]
-        if not feature:
-            break
-        found = process.measure({"feature": feature}, patience)
-        if "unmeasured" in found:
-            check.findings.append(Finding(part, feature, FAILS, found["unmeasured"]))
-        else:
-            check.findings.append(Finding(**found["finding"]))
-            if found["pictures"]:
-                check.pictures[f"{part}: {feature}"] = [folder / name for name in found["pictures"]]
-        number += 1
-    process.close()
+def findings_of(
+    part: str, folder: Path, process: CellProcess, patience: float = PATIENCE
+) -> Iterator[tuple[Finding, list[Path]]]:
+    """Run a part to its end, by as many processes as die of it; yield what is found, and files of pictures."""
+    try:
+        for number in count():
+            begun = process.measure({"part": part, "folder": str(folder), "number": number}, patience)
+            if "unmeasured" in begun:
+                yield Finding(part, "beginning", FAILS, begun["unmeasured"]), []
+                return
+            feature = begun["feature"]
+            if not feature:
+                return
+            found = process.measure({"feature": feature}, patience)
+            if "unmeasured" in found:
+                yield Finding(part, feature, FAILS, found["unmeasured"]), []
+            else:
+                yield Finding(**found["finding"]), [folder / name for name in found["pictures"]]
+    finally:
+        process.close()

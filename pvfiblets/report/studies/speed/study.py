@@ -18,7 +18,7 @@ from ...study import Options
 from ...timing import timing
 from .cells import stored_brain
 
-__all__ = ["STUDY", "SpeedStudy", "by_size", "sections"]
+__all__ = ["STUDY", "SpeedStudy", "by_size", "measured", "sections"]
 
 SEGMENTS, QUICK_SEGMENTS = (1e6, 6e6, 60e6, 434e6, 1e9, 5.4e9), (5e4, 2e5)  # Schertzer et al. 2022, table 2
 STRIPS, QUICK_STRIPS = (8e6, 81e6, 202e6, 434e6), (5e4,)  # and table 3
@@ -81,8 +81,9 @@ class SpeedStudy:
                 part = options.share(1.0 / (len(parts) - number))
                 found: list[Record] = []
                 for cell in cells:
-                    record = _measured({**cell, "folder": folder}, process, hopeless, part)
-                    if record is not None:
+                    done = measured({**cell, "folder": folder}, process, hopeless, part)
+                    if done is not None:
+                        record, _ = done
                         record.default = (cell.get("pipeline"), cell.get("culling")) == (fastest, CULLINGS[0])
                         found.append(record)
                         yield record
@@ -113,11 +114,11 @@ def sections(quick: bool, pipelines: list[str]) -> list[list[Row]]:
     return [by_size[0], strips, figures, others, *by_size[1:]]
 
 
-def _measured(
+def measured(
     cell: Row, process: CellProcess, hopeless: set[tuple[Any, ...]], options: Options
-) -> Record | None:
-    """Return the record of one cell, if there is one; its data is made before, outside its time."""
-    data, method, setting = _named(cell)
+) -> tuple[Record, Row] | None:
+    """Return the record of one cell and its row, if there are; its data is made before, outside its time."""
+    data, method, setting = named(cell)
     what = ", ".join(part for part in (data, method, setting) if part)
     key = tuple(str(cell.get(name)) for name in ("kind", "size", "pipeline", "culling"))
     if key in hopeless:
@@ -139,7 +140,7 @@ def _measured(
         options.leave_out(what, row["unmeasured"])
         return None
     options.log(f"speed: {what}")
-    return Record(
+    record = Record(
         data=data,
         group="" if cell["kind"] != "fiblets" or cell["view"] != "far" else "fiblets",
         approximation="nothing",
@@ -150,9 +151,10 @@ def _measured(
         times={"draw": timing(row["seconds"], 1.0, FRAME, row["clock"])},
         ours=cell["kind"] != "line strips",
     )
+    return record, row
 
 
-def _named(cell: Row) -> tuple[str, str, str]:
+def named(cell: Row) -> tuple[str, str, str]:
     """Return data, method and setting of a cell's record."""
     at = f"{cell['size'][0]}×{cell['size'][1]}"
     match cell["kind"]:
@@ -160,7 +162,7 @@ def _named(cell: Row) -> tuple[str, str, str]:
             view = "" if cell["view"] == "far" else f", {cell['view']}"
             data = f"{cell['segments'] / 1e6:,g} M segments{view}, {at}"
             if cell["kind"] == "fiblets":
-                return data, cell["pipeline"], f"culling {cell['culling']}"
+                return data, cell["pipeline"], f"culling {cell['culling']}{cell.get('but', '')}"
             return data, str(cell.get("feature", cell["kind"])), ""
         case "volume":
             return f"vessels of {cell['voxels']}³ voxels, {at}", "volume", cell["mode"]
