@@ -247,7 +247,7 @@ def row_scalars(name: str, values: Any, count: int, *, whole: str = "streamline"
     if values.shape[:1] != (count,) or values.ndim > 2 or values.dtype.kind not in "buif":
         raise ValueError(
             f"scalars {name!r} have shape {values.shape} and type {values.dtype}; expected "
-            f"{count} numbers, one per {whole}, or as many rows of 3 or 4 colour parts"
+            f"{count} numbers, one per {whole}, or {count} rows of 3 or 4 colour parts"
         )
     if values.ndim == 1:
         numbers = values.astype(np.float64)

@@ -15,7 +15,7 @@ MANY = 6
 """Rows that a table has for one reason."""
 
 _WHAT = (
-    "What pvfiblets approximates, how far each approximation is from the exact answer, and what it costs, beside other "
+    "The approximations of pvfiblets: the distance of each from the exact answer, and its cost, beside other "
     "methods. A study compares methods on several data sets; the program's own default is **bold**. Plots "
     "show cost to the right and error upwards, so that good methods are at the lower left."
 )
@@ -184,7 +184,7 @@ def _cases(cases: Sequence[CaseResult]) -> list[str]:
     for system in dict.fromkeys(case.system for case in cases):
         lines += ["", f"### {system[:1].upper()}{system[1:]}", ""]
         lines += [
-            "| case | what is done | what must hold | measured | at most | held | |",
+            "| case | input | must hold | measured | at most | held | |",
             "|---|---|---|---|---|---|---|",
         ]
         for case in (case for case in cases if case.system == system):

@@ -119,7 +119,7 @@ def _of_colours(name: str, columns: list[PointValues]) -> Scalars:
     low, high = min(column.lo for column in columns), max(column.hi for column in columns)
     if low < 0.0 or high > 255.0:
         raise ValueError(
-            f"scalars {name!r} are vectors from {low:g} to {high:g}, of which the fiblets hold each column; colour by "
+            f"scalars {name!r} are vectors from {low:g} to {high:g}, stored as one array per column; colour by "
             f"one ({name + '[0]'!r}), or by their magnitude, an array"
         )
     clear = len(columns) > 3 and columns[3].lo < (1.0 if high <= 1.0 else 255.0)

@@ -146,8 +146,8 @@ class SeenTexture:
         rows = max(-(-n_fiblets >> self.bits), 1)
         if rows > limit:
             raise EngineError(
-                f"{n_fiblets} fiblets are more than the {limit << self.bits} of which this OpenGL's largest texture "
-                "holds a texel each; draw fewer streamlines"
+                f"{n_fiblets} fiblets are more than the {limit << self.bits} texels of this OpenGL's largest texture; "
+                "draw fewer streamlines"
             )
         self.size = 1 << self.bits, rows
         try:

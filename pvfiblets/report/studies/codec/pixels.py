@@ -36,11 +36,12 @@ class PixelsStudy:
     across = ("errors/other", "errors/beyond a pixel")
     notes = (
         "Figure 8 of Schertzer et al. 2022: a few streamlines, one pixel wide, without light, far (all in view) and "
-        "close (8 times nearer). *other*: pixels that one picture shows and the other does not, of those that either "
-        "shows; *beyond a pixel*: of them those with no pixel of the other picture next to them, corners included.",
-        "*by VTK*: decoded points through VTK's own lines, as the raw ones are: what compression moves, and no more. "
+        "close (8 times nearer). *other*: pixels covered in only one of the two pictures, as a share of those covered "
+        "in either; *beyond a pixel*: differing pixels whose neighbours in the other picture, corners included, are "
+        "empty.",
+        "*by VTK*: decoded points through VTK's own lines, as the raw ones are: the effect of compression alone. "
         "*fiblets, drawn*: by this program, which snaps ends of segments to pixels; *kept to a thousandth of a step*: "
-        "the same without an error to speak of, which leaves what the two ways of rasterising differ by.",
+        "the same with a negligible error, which leaves the difference between the two ways of rasterising.",
     )
 
     def run(self, options: Options) -> Iterator[Record]:

@@ -148,7 +148,7 @@ def _all_measures(fiblets: FibletSet) -> dict[str, Array]:
     return found | {"ends": end_points(fiblets), "connectome": fiblets.connectome(parcels, radius=0.0).matrix}
 
 
-@CASES.add("curvatures of stiff lines", "straight, back and forth, at one place", "finite, 0 of what is straight")
+@CASES.add("curvatures of stiff lines", "straight, back and forth, at one place", "finite, 0 where straight")
 def _curvatures(_: Setting) -> Outcome:
     straight = compress(lines_of(0.5 * np.arange(200)[:, None] * [1.0, 0.0, 0.0]), max_error=1e-5)
     curvature = np.asarray(measure(straight, "curvature").array())

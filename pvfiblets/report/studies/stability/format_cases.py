@@ -103,7 +103,7 @@ def _fiblets(_: Setting) -> Outcome:
 @CASES.add(
     "files that end too soon",
     "no bytes, one, and the first half of good files, in every format",
-    "an error, or what was lost is counted",
+    "an error, or counted losses",
 )
 def _cut(_: Setting) -> Outcome:
     wrong, said = 0, ""

@@ -54,8 +54,8 @@ class StabilityStudy:
     name = "stability"
     title = "Stiff and extreme cases"
     approximates = (
-        "What must hold whatever the data, the camera or the file: each case says it, and measures one figure by which "
-        "it is judged, against an error bound, a formula, or NumPy in float64."
+        "Conditions on any data, camera or file: each case states one, and judges a measured figure "
+        "by an error bound, a formula, or NumPy in float64."
     )
     axes: Sequence[Axes] = ()
     notes = (

@@ -254,8 +254,8 @@ class TubesStudy:
     name = "tubes"
     title = "Ray-cast spline tubes"
     approximates = (
-        "Where rays meet tubes of varying radius, found in float32 by a bounded number of steps: solvers by "
-        "iterations, beside the paper's; whole pictures, beside tessellation; depth, by what it is stored as."
+        "Intersections of rays with tubes of varying radius, found in float32 by a bounded number of steps: solvers by "
+        "iterations, beside the paper's; whole pictures, beside tessellation; depth, by its stored format."
     )
     axes = (
         Axes("hit-p99", "times/hit", "errors/hit p99", "ns per ray", "99th percentile of errors, radii"),
@@ -266,7 +266,7 @@ class TubesStudy:
         Axes("stored", "", "errors/p99 at far/near ", "far over near plane", "99th percentile, radii", series=True),
     )
     notes = (
-        "What is right is found in float64 by another method (report/studies/tubes/reference.py: eigenvalues of "
+        "The right answer is found in float64 by another method (report/studies/tubes/reference.py: eigenvalues of "
         "companion matrices, nothing is bracketed). Errors are in radii of the sphere that is met: along the ray, "
         "where it meets "
         "the tube and should; where only one of both is so, by how much the radius would have to change to make the "
@@ -282,12 +282,12 @@ class TubesStudy:
         "true one, over the true one's length. *depth* errors are along the ray, where a tube shows and should; "
         "their 99th percentile is that of inner outlines, where another tube shows.",
         f"Sets: the five of Russig et al. 2020, section 4, {SET_SIZE[0]}×{SET_SIZE[1]}; each solver against float64 in "
-        f"{SAMPLE} pixels, half of them covered, half empty beside these. *holes*: of the empty ones, those that a "
-        "tube covers; *false*: of the covered ones, those that none does; *depth p99 by storing*: what the right depth "
-        f"would be off by if stored as float32; *off by {GOAL:g}*: share of covered pixels with a larger error.",
-        "*stored depth*: what rounding the right depth to a format costs, and the depths of a picture as drawn and "
+        f"{SAMPLE} pixels, half of them covered, half empty beside these. *holes*: empty pixels that a "
+        "tube covers; *false*: covered pixels without a tube; *depth p99 by storing*: the error of the right depth "
+        f"if stored as float32; *off by {GOAL:g}*: share of covered pixels with a larger error.",
+        "*stored depth*: the error of rounding the right depth to a format, and the depths of a picture as drawn and "
         "stored, as a key of 32 bits; the near plane moves towards the eye. Where software draws, times are of the "
-        "processor, of all threads; those of cards are by the clock.",
+        "processor, of all threads; on a graphics card they are elapsed.",
         "*in a window*: the same pictures in PyVista windows with one light at the eye: `plotter.add_spline_tubes`, "
         "VTK's tube filter around the nodes' polylines, or around more samples of each segment, and VTK's lines shaded "
         "as tubes, as wide as the mean radius. Meshes of more than 12 million corners are left out.",
