@@ -53,7 +53,7 @@ AnyTarget = TypeVar("AnyTarget", bound=Target)
 class Drawable(ABC, Generic[AnyStyle]):
     """Draws one set of data on one OpenGL context.
 
-    The context must be current in every call. The renderer binds what it needs and leaves it bound, but for the
+    The context must be current in every call. The renderer leaves its bindings behind, except for the
     framebuffers; the caller keeps its own OpenGL state.
 
     Parameters
@@ -122,8 +122,8 @@ class Drawable(ABC, Generic[AnyStyle]):
         style : Style
             Of the class ``STYLE``; may be left out where that has a default for everything.
         outside : moderngl.Texture, optional
-            Depth of other things in the scene, r32ui keys as in the G-buffer, of the view's size. A picture for which
-            it was looked at serves this one call only: the next one draws anew.
+            Depth of other things in the scene, r32ui keys as in the G-buffer, of the view's size. A picture that
+            read it serves this one call only: the next one draws anew.
 
         Returns
         -------

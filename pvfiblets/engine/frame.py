@@ -1,8 +1,8 @@
 """What a view means to the shaders: the uniform block ``Frame``, computed in float64.
 
-Positions reach the shader as integers (anchors) relative to a reference anchor near what the camera looks at, and the
-matrix is composed with that reference in float64: float32 then rounds relative to what is seen, not to where the data
-lie in the world. ``shaders/frame/blocks.glsl`` says what the symbols are.
+Positions reach the shader as integers (anchors) relative to a reference anchor near the camera's target, and the
+matrix is composed with that reference in float64: float32 then rounds relative to the visible part, not to the data's
+place in the world. ``shaders/frame/blocks.glsl`` explains the symbols.
 """
 
 from __future__ import annotations

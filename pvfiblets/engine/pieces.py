@@ -1,7 +1,7 @@
 """`Pieces`: one frame drawn piece by piece, so that its caller can handle events in between.
 
-A drawing function that can be left between pieces is a generator: it yields where a piece ends and goes on when it is
-asked to. Meanwhile others may draw, into anything but this picture's own target, so what was bound is bound anew.
+A drawing function that can be left between pieces is a generator: it yields where a piece ends and resumes on demand.
+Meanwhile others may draw, into anything but this picture's own target, so bindings are made anew.
 """
 
 from __future__ import annotations

@@ -30,7 +30,7 @@ class Occlusion(Protocol):
     """Whether the last picture predicts what will show: ``shaders/culling/visibility_prediction.glsl``."""
 
     def before(self, target: GBuffer, view: View, style: Style) -> None:
-        """Be told that a picture will be drawn; the target still holds what it held."""
+        """Prepare for a picture; the target still holds the last one."""
         ...
 
     def forget(self) -> None:

@@ -12,7 +12,7 @@ OPERATORS = ("none", "reinhard", "exponential", "aces", "hable")
 """What tone mapping may be; the formulas are in the shader."""
 
 _WHITE = {"hable": 11.2}
-"""What becomes white where nothing else is asked for; of the other operators, the brightest that was drawn."""
+"""Default white point; the other operators take the brightest colour drawn."""
 
 _BRIGHTEST = 1e4
 

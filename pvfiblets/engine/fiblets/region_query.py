@@ -1,7 +1,7 @@
 """Which streamlines pass a region, asked on the GPU of the records that are drawn.
 
 The GPU classifies fiblets by their capsules and decodes those that a capsule leaves undecided, in float32 with a
-margin (``shaders/fiblets/compute/query.comp``). What the margin leaves open, and only that, is settled from the same
+margin (``shaders/fiblets/compute/query.comp``). Streamlines that the margin leaves open are settled from the same
 records in float64 by :func:`pvfiblets.query.selection.passing.region_flags`: the answers are its own, bit for bit.
 """
 
@@ -169,7 +169,7 @@ class RegionQuery:
         return self._block.nbytes + (0 if self._frame is None else self._frame.size)
 
     def release(self) -> None:
-        """Give back what is on the GPU; twice is harmless."""
+        """Release the GPU memory; twice is harmless."""
         self._block.release()
         if self._frame is not None:
             self._frame.release()

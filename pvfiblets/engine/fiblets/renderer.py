@@ -51,8 +51,7 @@ __all__ = ["FibletRenderer"]
 class FibletRenderer(LinesBehind):
     """Draws one fiblet set.
 
-    What others in the scene hide may be missing from a picture for which their depth was given: two-phase culling
-    looks at it.
+    Fiblets behind other actors may be missing from a picture drawn with their depth: two-phase culling reads it.
 
     Parameters
     ----------
@@ -77,9 +76,9 @@ class FibletRenderer(LinesBehind):
     lender : Drawable, optional
         As of :class:`pvfiblets.engine.drawable.Drawable`.
     whole : FibletSet, optional
-        What filters speak of, where `fiblets` are some of its streamlines (:mod:`pvfiblets.codec.restrict`).
+        The whole set, for filters, where `fiblets` are some of its streamlines (:mod:`pvfiblets.codec.restrict`).
     alike : int, optional
-        Fiblets of a set whose pictures those of this part of it shall equal in every bit.
+        Number of fiblets of the whole set, so that pictures of this part equal its pictures in every bit.
     most : float
         With ``fit='sample'``: draw no larger share of the streamlines, whatever would fit.
 
@@ -230,7 +229,7 @@ class FibletRenderer(LinesBehind):
         )
 
     def _request(self, view: View, style: FibletStyle, target: GBuffer) -> DrawRequest:
-        """Bring everything up to date that a view and a style need, bind it, and say what is to be drawn."""
+        """Update and bind everything that a view and a style need, and return the draw request."""
         values, kept, shared = self._values, self._kept, self._shared
         shared.bind()
         decoding = self._decoding_features()
@@ -253,7 +252,7 @@ class FibletRenderer(LinesBehind):
             kept=kept,
             tubes=("TUBES",) if style.radius is not None else (),
             across=("CROSS_LINE",) if style.relief is not None else (),
-            edges=("EDGES",) if style.edges and not style.exact else (),  # nobody reads those of a sample
+            edges=("EDGES",) if style.edges and not style.exact else (),  # samples have no edges
         )
 
     def needs_outside(self, view: View, style: Style) -> bool:
@@ -352,7 +351,7 @@ class FibletRenderer(LinesBehind):
         Parameters
         ----------
         region, sampling
-            As in :func:`pvfiblets.query.selection.passing.region_flags`, which also says what is returned and raised.
+            As in :func:`pvfiblets.query.selection.passing.region_flags`, with its result and errors.
 
         Raises
         ------

@@ -24,7 +24,7 @@ class FibletStyle(Style):
         streamline's first point), the name of an array in ``FibletSet.per_point`` or of colours there, or a volume to
         be sampled at the points (:mod:`pvfiblets.engine.fiblets.data.sampled_volume`). None costs nothing.
     line_width : float
-        Pixels, above 0. More than 1 draws round brushes of that diameter; else lines are thin, as OpenGL draws those of
+        Pixels, above 0. More than 1 draws round brushes of that diameter; else lines are thin, like OpenGL's lines of
         one pixel. Where ``exact``, all are brushes.
     tolerance : float
         Pixels. A fiblet whose points all lie this near to the segment between its ends is drawn as that segment, as is
@@ -78,7 +78,7 @@ class FibletStyle(Style):
 
     @property
     def detail(self) -> float:
-        """Pixels by which fiblets may be simplified."""
+        """Tolerance in pixels for simplified fiblets."""
         return self.tolerance
 
     @property

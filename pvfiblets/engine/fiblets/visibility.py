@@ -34,7 +34,7 @@ class Visibility:
     gl : GLExtras
     programs : Programs
     whole, drawn : FibletSet
-        What filters speak of, and what lies on the GPU: the same, or some of its streamlines.
+        The set that filters refer to, and the set on the GPU: the same, or some of its streamlines.
     chunks : sequence of Chunk
     """
 

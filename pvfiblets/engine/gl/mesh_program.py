@@ -1,7 +1,7 @@
 """Programs of task and mesh stages: by GL_EXT_mesh_shader, which moderngl cannot make, or by NVIDIA's extension.
 
-A :class:`MeshProgram` has what the engine uses of a ``moderngl.Program``, so that those who set uniforms need not know
-which of the two they have.
+A :class:`MeshProgram` has the interface of ``moderngl.Program`` that the engine uses, so that code that sets uniforms
+need not distinguish the two.
 """
 
 from __future__ import annotations

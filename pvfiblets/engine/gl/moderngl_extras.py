@@ -5,8 +5,8 @@
 >>> codes.bind(3)                                                 # doctest: +SKIP
 >>> gl.set_sampler(program, "codes", 3)                           # doctest: +SKIP
 
-moderngl remembers which framebuffer is bound and nothing else that is touched here: it makes a texture unit active
-before every bind of its own. So bindings of framebuffers are put back, texture units are left as they are asked for.
+moderngl remembers which framebuffer is bound, but no other binding that is changed here: it makes a texture unit active
+before every bind of its own. So bindings of framebuffers are restored, texture units are not.
 
 A loader's non-null pointer proves nothing: EGL and GLX hand out stubs for any name. Only what OpenGL 3.3 has, which
 is moderngl's own least version, is called without asking; all else names the version or extension that it needs.
@@ -168,7 +168,7 @@ class GLExtras:
             raise EngineError(f"{name} is not a known integer of OpenGL; known are {', '.join(sorted(INTEGERS))}")
         enum, needs = INTEGERS[name]
         self._require(name, needs)
-        values = (ctypes.c_int64 * 4)()  # GL_ATI_meminfo answers with four, of which the first is the sum
+        values = (ctypes.c_int64 * 4)()  # GL_ATI_meminfo returns four; the first is the sum
         self.function("glGetInteger64v")(enum, values)
         return values[0]
 
@@ -248,7 +248,7 @@ class GLExtras:
         """Bind again, at the end, the framebuffers that were bound, and have moderngl remember the one it did.
 
         moderngl binds the one that it remembers whenever it has made another, so a released one must not stay there.
-        ``ctx.detect_framebuffer`` is no way to learn what is bound: on VTK's framebuffers it leaves an OpenGL error.
+        ``ctx.detect_framebuffer`` cannot find the bound one: on VTK's framebuffers it leaves an OpenGL error.
         """
         draw = self.get_integer("GL_DRAW_FRAMEBUFFER_BINDING")
         read = self.get_integer("GL_READ_FRAMEBUFFER_BINDING")

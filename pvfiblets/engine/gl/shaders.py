@@ -6,7 +6,7 @@ Sources live in the repository's ``shaders`` folder, which the wheel carries as 
     Pastes that file, once per program. :func:`pvfiblets.codec.layout.glsl_source` writes ``"codec/layout.glsl"``,
     :func:`pvfiblets.colour_modes.glsl_source` ``"colour/line_colour.glsl"``, and
     :class:`.uniform_struct.UniformStruct` writes ``"uniforms/NAME.glsl"`` of the uniform block `NAME`. Below
-    ``#if FEATURE_NAME`` a file is pasted only where that is on, so that no block that nobody packs is looked for.
+    ``#if FEATURE_NAME`` a file is pasted only where that is on, so that no unused block is looked up.
 ``FEATURE_NAME``
     1 or 0, for every name in :data:`FEATURES`; ``#if FEATURE_NAME`` keeps unused code out of the program.
 ``{{ name }}``

@@ -5,11 +5,11 @@ and one for its back decides by pixel which fragments lie inside, which is right
 a sorted list of all window depths at which the region's expression turns, whatever its shapes.
 
 ==========  =========================================================================================================
-step        what it does
+step        task
 ==========  =========================================================================================================
 rays        planes, slabs, boxes and spheres: their rows of ``shaders/regions/rays.glsl``, composed in float64
 surfaces    closed surfaces are drawn, layer by layer (:mod:`.surface_layers`)
-combine     merges all crossings of a pixel and keeps those at which the expression turns, four to a pass and layer
+combine     merges all crossings of a pixel and keeps the ones where the expression changes, four to a pass and layer
 ==========  =========================================================================================================
 
 Made once for a region, a size and a camera. A box, a sphere or a convex mesh takes one layer of 16 bytes a pixel.
@@ -83,7 +83,7 @@ class RegionIntervals:
         self._reads = DelayedRead(ctx, gl)
 
     def prepare(self, view: View, origin: Array, scale: Array, top: int) -> bool:
-        """Bring the boundaries up to date; nothing is done where region, size and camera are what they were.
+        """Update the boundaries; unchanged region, size and camera cost nothing.
 
         Changes the framebuffer's binding for a while, and leaves blending, culling and the depth test off.
         """
@@ -135,7 +135,7 @@ class RegionIntervals:
             # What is beyond all crossings is known, and with it whether boundaries are even or odd in number.
             most = crossings + (crossings + form.far) % 2
         enough = -(-most // 4)
-        if (came := self._reads.arrived()) is not None and came[1].any():  # what was known did not do
+        if (came := self._reads.arrived()) is not None and came[1].any():  # the known number was too small
             self._known = max(self._known, 2 * came[0])
         layers = min(enough, max(_LAYERS, self._known))
         while True:

@@ -1,4 +1,4 @@
-"""Closed surfaces as layers of crossings along each pixel's ray: ``shaders/regions/layers.glsl`` says what they hold.
+"""Closed surfaces as layers of crossings along each pixel's ray, in the format of ``shaders/regions/layers.glsl``.
 
 This work is based on: Bavoil and Myers 2008, "Order independent transparency with dual depth peeling". A layer holds
 the nearest and the farthest crossing of front and of back faces each: a convex mesh takes one, and so does a torus.
@@ -222,7 +222,7 @@ class SurfaceLayers:
     def _draw_one(
         self, k: int, mesh: _Mesh, matrix: Array, rectangle: Rectangle, first: int, waits: bool
     ) -> _Found:
-        """Draw as many layers as the last picture had, and then those that are missing, as far as there is room.
+        """Draw the number of layers of the last picture, and then the missing ones, as far as there is room.
 
         Returns what :meth:`_inspect` does; of earlier pictures, if it must not wait.
         """

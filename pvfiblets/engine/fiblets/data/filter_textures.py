@@ -1,9 +1,9 @@
 """What is there to be drawn: streamlines, and points, that the caller kept. The rest is culled, not only hidden.
 
-A streamline takes a bit, by rank; a point takes a bit, in the order in which points are coded. Both are looked at by
-the culling stage of every pipeline (``shaders/culling/criteria.glsl``), so that what is left out costs no decoding. A
-segment is drawn where both of its points are kept, a streamline of one point where that one is; a fiblet of which only
-some segments are kept is drawn by the programs that can cut.
+A streamline takes a bit, by rank; a point takes a bit, in the order of the coded points. The culling stage of every
+pipeline (``shaders/culling/criteria.glsl``) reads both, so that removed lines cost no decoding. A segment is drawn
+where both of its points are kept, a streamline of one point where that point is kept; a fiblet with some segments kept
+is drawn by the programs that can cut.
 """
 
 from __future__ import annotations
@@ -46,8 +46,8 @@ class Filter:
     streamlines : numpy.ndarray, optional
         ``(n_streamlines,)`` bool; all by default.
     points : numpy.ndarray, optional
-        ``(n_words,)`` uint32, a bit for each point in the order in which points are coded (those of streamline, or
-        rank, 0 first), the lowest bit of a word first; ``32 * n_words >= n_points``. All by default.
+        ``(n_words,)`` uint32, a bit for each point in the order of the coded points (streamline of rank
+        0 first), the lowest bit of a word first; ``32 * n_words >= n_points``. All by default.
 
     Raises
     ------

@@ -8,7 +8,7 @@ OpenGL                 how
 software (Mesa)        the machine's own free memory, and no more than its control group allows
 NVIDIA                 GL_NVX_gpu_memory_info
 AMD                    GL_ATI_meminfo
-others                 not at all: the driver says so when it cannot go on, while the set is copied
+others                 not at all: the driver fails while the set is copied
 =====================  ==========================================================================================
 
 Counted are the chunks' buffers, the passes' marks, the largest per-point value that a style may ask for, and a picture
@@ -39,7 +39,7 @@ __all__ = ["PICTURE", "RESERVE", "Fitted", "MemoryBudget", "free_memory"]
 PICTURE = 1920 * 1080
 """Pixels of the picture that is reckoned with; larger ones live on the reserve."""
 
-PICTURE_BYTES = 48 * PICTURE  # G-buffer 24; depth buffers, what is kept between rounds, pyramid: 24 at most
+PICTURE_BYTES = 48 * PICTURE  # G-buffer 24; depth buffers, state kept between rounds, pyramid: 24 at most
 
 SHARED_BYTES = 20_000
 """Of the uniform blocks that all chunks share, and a little."""
@@ -165,7 +165,7 @@ class MemoryBudget:
 
     @property
     def room(self) -> int | None:
-        """Bytes that buffers may take beside a picture, :data:`RESERVE` less than are free; None if nobody knows.
+        """Bytes that buffers may take beside a picture, :data:`RESERVE` less than are free; None if unknown.
 
         Half of that where both are the same memory: parts stand in it twice.
         """

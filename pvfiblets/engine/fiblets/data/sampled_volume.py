@@ -127,7 +127,7 @@ class VolumeSource:
     def range(self) -> tuple[float, float]:
         """Least and greatest finite value; (0, 0) where there is none."""
         low, high = np.inf, -np.inf
-        for slab in self.values:  # a copy of the whole would take as much memory again
+        for slab in self.values:  # a copy of the whole would double the memory
             finite = slab[np.isfinite(slab)]
             if finite.size:
                 low, high = min(low, float(finite.min())), max(high, float(finite.max()))

@@ -83,7 +83,7 @@ class Gatherer:
         add: Callable[[Gathered], None],
         state: Any = None,
     ) -> Gathered:
-        """Return the sums of a picture of several parts, each of which adds its own."""
+        """Return the sums of a picture of several parts; each part adds its own."""
         key = None if state is None else (nearest.generation, nearest.size, paint, slices, distances, state)
         if self._held is not None and key is not None and self._made == key:
             return self._held
@@ -136,7 +136,7 @@ class Gatherer:
         return held
 
     def greatest(self, *, wait: bool = True) -> float:
-        """Return the greatest weight of a pixel in the first slice of what was made last."""
+        """Return the greatest weight of a pixel in the first slice of the last sums."""
         if (came := self._later.arrived()) is not None:
             self._greatest = came[0], float(came[1].max())
         known = self._greatest

@@ -45,7 +45,7 @@ class LinesBehind(Drawable[FibletStyle]):
 
     @abc.abstractmethod
     def _request(self, view: View, style: FibletStyle, target: GBuffer) -> DrawRequest:
-        """Bring everything up to date that a view and a style need, bind it, and say what is to be drawn."""
+        """Update and bind everything that a view and a style need, and return the draw request."""
 
     @abc.abstractmethod
     def _make_pipeline(self) -> Pipeline:
@@ -56,7 +56,7 @@ class LinesBehind(Drawable[FibletStyle]):
         """Make what draws one layer."""
 
     def render_layers(self, view: View, style: FibletStyle | None = None, count: int = 4) -> LayeredBuffer:
-        """Draw what lies behind the nearest too; nothing is done that has been done for this view and style.
+        """Draw the lines behind the nearest too; a repeated call with this view and style costs nothing.
 
         Parameters
         ----------
@@ -151,7 +151,7 @@ class LinesBehind(Drawable[FibletStyle]):
         return SliceDistances.of(view, origin, origin + top * scale)
 
     def gathers_words(self, view: View, style: FibletStyle, nearest: GBuffer) -> bool:
-        """Say whether sums of such a picture are words, not floats."""
+        """Return whether sums of such a picture are words, not floats."""
         return self._with_gatherer().gathers_words(self._request(view, style, nearest))
 
     def gather_into(
@@ -163,7 +163,7 @@ class LinesBehind(Drawable[FibletStyle]):
         nearest: GBuffer,
         hides: moderngl.Texture | None,
     ) -> None:
-        """Add what all lines show to sums of a set of which this is a part.
+        """Add all lines of this part to the sums of its set.
 
         Parameters
         ----------
@@ -209,7 +209,7 @@ class LinesBehind(Drawable[FibletStyle]):
 
     @contextmanager
     def _noting(self) -> Iterator[None]:
-        """Tell the features of what is drawn meanwhile with those of the picture."""
+        """Report the features of pictures drawn in this scope with those of the main picture."""
         with self._programs.noting() as features:
             yield
         self._features_behind |= features

@@ -34,7 +34,7 @@ class NearestOnly(Drawable[FibletStyle]):
     Attributes
     ----------
     hurried : bool
-        Whether pictures are of what is there, at once.
+        Whether pictures show the available data at once.
     patience : float or None
         Seconds after which a picture is given back as it is; None for complete pictures only.
     """
@@ -96,4 +96,4 @@ class NearestOnly(Drawable[FibletStyle]):
         """Do nothing: there are none."""
 
     def drop_gathered(self) -> None:
-        """Do nothing: there is nothing."""
+        """Do nothing: there are no sums."""

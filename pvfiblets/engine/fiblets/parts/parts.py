@@ -87,7 +87,7 @@ class Stretches:
 
     @cached_property
     def _ranks(self) -> Sequence[int]:
-        """First rank of each part, and one past the last: parts have about as many bytes of codes."""
+        """First rank of each part, and one past the last: parts have about the same number of bytes of codes."""
         pages = np.asarray(self.whole.pages, np.float64)
         codes = pages[:, 1]
         count = max(int(np.ceil(1.0 / self._share)), 1)
@@ -127,7 +127,7 @@ class Stretches:
 
 
 def _numbered(part: FibletSet, ids: npt.NDArray[np.int64]) -> FibletSet:
-    """Return a part with its streamlines' numbers, also where it is all there is: programs are those of the others."""
+    """Return a part with its streamlines' numbers, even if it is the whole set: all parts share their programs."""
     return part if part.rank_to_id is not None else replace(part, rank_to_id=ids)
 
 

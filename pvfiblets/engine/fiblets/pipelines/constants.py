@@ -42,7 +42,7 @@ TASK_ROUNDS = 8
 """How many fiblets each invocation of a task work group tests."""
 
 GREATEST_SIDE = 16
-"""Pixels of the squares of which the greatest sum is found."""
+"""Pixels of the side of the squares that the greatest sum is searched in."""
 
 TASK_FIBLETS = THREADS * TASK_ROUNDS
 

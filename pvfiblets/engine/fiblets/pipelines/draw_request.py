@@ -1,4 +1,4 @@
-"""What a pipeline is told to draw, and what every pipeline does."""
+"""The request that a pipeline draws, and the methods of every pipeline."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class DrawRequest:
         ``TUBES``, ``CROSS_LINE``, ``EDGES`` and ``SUBSAMPLES``, if asked for. With tubes the uniform block ``Tubes`` is
         bound too.
     peel : Peel, optional
-        Layers behind which the picture begins.
+        The picture begins behind these layers.
     gather : Gather, optional
         Where all lines are added up, in place of the nearest's picture.
     """
@@ -101,7 +101,7 @@ class DrawRequest:
 
     @property
     def cutting(self) -> tuple[str, ...]:
-        """Features by which a fiblet is drawn in part."""
+        """Features that draw a fiblet in part."""
         return (*self.planes, *self.kept.cutting)
 
     def classes(self, *, one: bool = False) -> list[tuple[int, tuple[str, ...]]]:
