@@ -19,8 +19,8 @@ layout(std430, binding = {{ storage_visibility_bits }}) buffer VisibilityBits { 
 const uint KINDS = {{ visibility_words }}u, CLASSES = {{ classes }}u, ROUNDS = {{ rounds }}u;
 const uint ROUND_LOW = 0u, ROUND_HIGH = 1u, CLASS_LOW = 2u, CLASS_HIGH = 3u, CANDIDATES = 4u, SEEN = 5u, TIED = 6u, KEPT = TIED;
 
-// What a pass works on: the plan's three rounds, candidates, fiblets whose pixels are to be written again, or those of the
-// rest that refine.comp tests. Two more list clusters. pvfiblets/engine/fiblets/pipelines/compute.py numbers them the same.
+// The lists of the passes: the plan's three rounds, candidates, fiblets whose pixels are to be written again, and the rest
+// that refine.comp tests. Two more list clusters. pvfiblets/engine/fiblets/pipelines/compute.py numbers them the same.
 const uint DRAW_SEEN = 0u, DRAW_PREDICTED = 1u, DRAW_REST = 2u, DRAW_CANDIDATES = 3u, DRAW_TIED = 4u, TEST_REST = 5u;  // 6, 7: of clusters
 
 uniform uint drawing;          // which of these
@@ -59,6 +59,6 @@ uint list_at(uint which) { return KINDS * chunk_words() + which * list_room(); }
 // Where a class's length in this round is.
 uint length_at(uint which) { return list_at(CLASSES) + drawing * CLASSES + which; }
 
-// Where all arguments start, and those of a class in this round.
+// Where all arguments start, and the arguments of a class in this round.
 uint all_arguments_at() { return list_at(CLASSES) + ROUNDS * CLASSES; }
 uint arguments_at(uint which, uint slots) { return all_arguments_at() + 4u * (drawing * CLASSES + which) * slots; }

@@ -2,7 +2,7 @@
 // rows of 2^{{ mask_bits }}. A segment is drawn where both of its points are kept, a streamline of one point where that one is.
 //
 // Use: begin_point_mask(f) once for a fiblet, whose bits are then at hand. Bit i stands for its point i; behind its last
-// stand the next fiblet's, so that the segment that joins both, and the one after it, can be told. At most
+// stand the next fiblet's, for the segment that joins both, and the one after it. At most
 // FIBLET_MAX_POINTS + 2 bits matter: two words.
 //
 // Without the feature all points are kept, and nothing is left of this file but that.

@@ -4,7 +4,7 @@
 //
 //   drawn_owner   fiblets by sample (FEATURE_SUBSAMPLES), 4 x 4 texels a pixel; that of no fiblet is one of them
 //   drawn_ids     streamlines and tangents
-//   entries       16 bytes, from the lowest, that of no fiblet first, then those with most samples: 16 (samples - 1) + the
+//   entries       16 bytes, from the lowest, that of no fiblet first, then the lines with most samples: 16 (samples - 1) + the
 //                 sample's number
 
 #version 430
