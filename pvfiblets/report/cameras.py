@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 __all__ = ["ELEVATION", "VERTICAL_ANGLE", "VIEWS", "Camera", "Lens", "by_turns", "orbit", "unit"]
 
-VERTICAL_ANGLE = 45.0  # degrees; this and the distances are those of Russig et al. 2020, section 4
+VERTICAL_ANGLE = 45.0  # degrees; this and the distances follow Russig et al. 2020, section 4
 VIEWS = {"far": 1.0, "close": 1.0 / 3.0}
 ELEVATION = 15.0  # degrees above the plane of the orbit
 
@@ -99,7 +99,7 @@ class Lens:
 
     size: tuple[int, int]
     eye: Array  # (3,) mm
-    backwards: Array  # (3,) unit vector from what is looked at to the eye; not upright
+    backwards: Array  # (3,) unit vector from the target to the eye; not upright
     slant: float  # Tangent of half the angle from top to bottom
     # mm from the eye's plane
     near: float
@@ -155,7 +155,7 @@ class Lens:
         return unit(local @ self.axes), forwards
 
     def depth(self, w: Array) -> Array:
-        """Return window depth, 0 to 1, of what lies w in front of the eye."""
+        """Return window depth, 0 to 1, at w in front of the eye."""
         return self.far / (self.far - self.near) * (1.0 - self.near / w)
 
     def distance(self, reversed_depth: Array) -> Array:

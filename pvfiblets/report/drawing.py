@@ -36,7 +36,7 @@ def drawing_context(options: Options) -> Iterator[Any]:
         raise Unavailable(str(error)) from error
     options.driver = f"{ctx.info['GL_RENDERER']}, {ctx.info['GL_VERSION']}"
     try:
-        with ctx:  # what was current before is so again afterwards
+        with ctx:  # restores the previous context afterwards
             yield ctx
     finally:
         ctx.release()

@@ -98,7 +98,7 @@ def _study(study: StudyResult, pictures: Sequence[tuple[str, str]]) -> list[str]
 
 
 def _left_out(items: Sequence[LeftOut]) -> list[str]:
-    """A table of what was left out and why; what many things have in common is said once, with them folded below."""
+    """A table of skipped measurements with reasons; a common reason is written once, with its cases folded below."""
     by_reason: dict[str, list[str]] = {}
     for item in items:
         by_reason.setdefault(item.reason, []).append(item.what)
@@ -179,7 +179,7 @@ def _is_default(study: StudyResult, label: str) -> bool:
 
 
 def _cases(cases: Sequence[CaseResult]) -> list[str]:
-    """A table for each system: what was done, what must hold, by what figure, and whether it does."""
+    """A table for each system: input, condition, measured figure, and whether it holds."""
     lines = []
     for system in dict.fromkeys(case.system for case in cases):
         lines += ["", f"### {system[:1].upper()}{system[1:]}", ""]

@@ -40,7 +40,7 @@ def make_report(
     log: Log = to_stderr,
     clock: Callable[[], float] = time.monotonic,
 ) -> Report:
-    """Run studies and keep what they find."""
+    """Run studies and collect their records."""
     names = studies.chosen_names(only)
     if minutes is not None and not minutes > 0.0:
         raise ValueError(f"minutes is {minutes}; give a number above 0")

@@ -1,4 +1,4 @@
-"""The study of smooth edges: what pictures are off by with few samples a pixel, and what they cost."""
+"""The study of smooth edges: the errors of pictures with few samples a pixel, and their cost."""
 
 from __future__ import annotations
 
@@ -239,7 +239,7 @@ class PictureWindow(Window):
         return float(np.mean([differences(after, before)["mean"] for before, after in itertools.pairwise(frames)]))
 
     def samples(self) -> float:
-        """Draw what is left of the picture, and return the seconds that it took."""
+        """Draw the remaining samples of the picture, and return the seconds taken."""
         begun = self.clock()
         while self.plotter.picture.refine():
             pass
@@ -247,7 +247,7 @@ class PictureWindow(Window):
         return self.clock() - begun
 
     def pixels(self) -> Pixels:
-        """Return what is seen: the picture as it is drawn, finished or not."""
+        """Return the picture on the screen, finished or not."""
         interactor = self.plotter.iren.interactor
         interactor.EnableRenderOff()  # or it would be finished first
         try:
@@ -299,7 +299,7 @@ def _measured(subject: Subject, options: Options) -> Iterator[Record]:
         for variant in variants(quick):
             if subject.only_vtk and variant.antialias == "coverage":
                 continue
-            other = subject.only_vtk and variant.setting.startswith("MSAA")  # of which the first has 8 samples
+            other = subject.only_vtk and variant.setting.startswith("MSAA")  # its first setting has 8 samples
             window.take(variant)
             if other not in references:
                 window.look_back()

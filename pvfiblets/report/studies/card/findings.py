@@ -15,14 +15,14 @@ EMPTY = "empty"
 """The figure that is 1 where a picture shows nothing at all."""
 WORKS, DRAWN, DIFFERS, SLOW, MISSING, FAILS = "works", "drawn", "differs", "too slow", "missing", "fails"
 BAD = (DIFFERS, FAILS)
-"""Verdicts with which a check ends with 1."""
+"""Verdicts that make a check exit with 1."""
 
 
 @dataclass(frozen=True)
 class Finding:
     """One thing that was tried."""
 
-    # What it belongs to, and what it is
+    # Its group, and its name
     part: str
     feature: str
     verdict: str  # One of `'works'`, `'drawn'` (not compared), `'differs'`, `'too slow'`, `'missing'` and `'fails'`

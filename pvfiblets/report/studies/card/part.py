@@ -84,7 +84,7 @@ class Trial:
         except (EngineError, MemoryError) as error:
             lacking = isinstance(error, (GPUMemoryError, MemoryError)) or LACKING.search(str(error))
             finding = Finding(self._part, feature, MISSING if lacking else FAILS, _first_line(error))
-        except Exception as error:  # noqa: BLE001  whatever a driver leads to is what is looked for
+        except Exception as error:  # noqa: BLE001  any failure of a driver is a finding
             finding = Finding(self._part, feature, FAILS, f"{type(error).__name__}: {_first_line(error)}")
         return {"finding": finding.as_dict(), "pictures": names}
 

@@ -23,7 +23,7 @@ Pixels = npt.NDArray[np.uint8]
 
 @dataclass(frozen=True, eq=False)
 class Judged:
-    """A picture, held against what is right."""
+    """A picture, compared with the right one."""
 
     # As in `Finding`
     figures: Mapping[str, float]
@@ -78,5 +78,5 @@ def tried(ctx: Any, part: str, feature: str, make: Callable[[], Scene]) -> tuple
 
 
 def share(mask: Mask, of: Mask) -> float:
-    """Return how many of a mask's pixels are true, as a share of those of another that are."""
+    """Return how many of the pixels of `of` are in a mask, as a share."""
     return float(mask.sum()) / max(int(of.sum()), 1)

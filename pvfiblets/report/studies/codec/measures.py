@@ -84,7 +84,7 @@ def _measured(data: DataSet, options: Options) -> Iterator[Record]:
 
 
 def _table(source: Source) -> Table:
-    """Return the table of a set; what it warns of is measured here."""
+    """Return the table of a set, without warnings: their subject is measured here."""
     from pvfiblets.query.measures.table import table
 
     with warnings.catch_warnings():
@@ -93,7 +93,7 @@ def _table(source: Source) -> Table:
 
 
 def _numbers(source: Source, original: Streamlines) -> dict[str, Floats]:
-    """Return what is measured of a set, on grids about the points that were given."""
+    """Return the measures of a set, on grids about the original points."""
     from pvfiblets.query.connectome.matrix import connectome
     from pvfiblets.query.density.volume import density
 

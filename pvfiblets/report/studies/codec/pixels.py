@@ -18,16 +18,16 @@ from .errors import median_step
 __all__ = ["STUDY", "PixelsStudy", "beyond", "lines_of"]
 
 SIZE, QUICK_SIZE = (960, 720), (240, 180)
-STREAMLINES, QUICK_STREAMLINES = 300, 40  # a few, as in the paper: of more, pixels show the nearest of many
+STREAMLINES, QUICK_STREAMLINES = 300, 40  # a few, as in the paper: in a dense set, pixels show the nearest of many
 STEP = 0.1  # mm
-FINE = 1e-3  # steps; so closely kept, what is left is how lines are rasterised
+FINE = 1e-3  # steps; so small an error leaves only the effect of rasterising
 VIEWS = {"far": 1.0, "close": 8.0}  # zoom
 
 Pixels = npt.NDArray[np.bool_]
 
 
 class PixelsStudy:
-    """Pixels of compressed lines that are not those of raw ones."""
+    """Pixels of compressed lines that differ from the raw lines'."""
 
     name = "pixels"
     title = "Pixels of compressed lines"

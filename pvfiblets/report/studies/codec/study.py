@@ -221,7 +221,7 @@ def measured(
 
 @contextmanager
 def one_thread() -> Iterator[None]:
-    """Run compiled loops on one thread: speeds are then of one core, as those of other methods are."""
+    """Run compiled loops on one thread: speeds are then of one core, like other methods' speeds."""
     import numba
 
     before = numba.get_num_threads()

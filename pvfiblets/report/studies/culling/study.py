@@ -1,4 +1,4 @@
-"""The study of culling: what is left out of a picture, by what hides it or by how small it is, and what that spares."""
+"""The study of culling: fiblets culled because they are hidden or small, and the time saved."""
 
 from __future__ import annotations
 

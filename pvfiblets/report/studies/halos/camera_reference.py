@@ -52,7 +52,7 @@ class Camera:
         return (clip[..., :2] / clip[..., 3:] + 1.0) / 2.0 * self.size
 
     def motion(self, clip: Array, way: Array) -> Array:
-        """Pixels by which a place of the window moves per length of a way in clip coordinates, behind the eye too."""
+        """Pixels that a place of the window moves per length of a way in clip coordinates, behind the eye too."""
         w = clip[..., 3:]
         return (way[..., :2] * w - clip[..., :2] * way[..., 3:]) / w**2 * self.size / 2.0
 

@@ -1,4 +1,4 @@
-"""Pictures of lines and points with halos: what is drawn, from where, with how many samples, and how far off."""
+"""Pictures of lines and points with halos: their data, camera and samples, and their errors."""
 
 from __future__ import annotations
 

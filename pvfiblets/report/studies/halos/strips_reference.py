@@ -155,7 +155,7 @@ class _Varying:
     steep: Array  # of the numbers, per mm
 
     def places(self, s: Array, part: tuple[float, float]) -> Array:
-        """Where on the segment is what is linearly s along a part of it in the window."""
+        """Places on the segment that are linearly s along a part of it in the window."""
         w = between(self.clip[:, 3], np.asarray(part))
         return part[0] + (part[1] - part[0]) * (s / w[1] / ((1.0 - s) / w[0] + s / w[1]))
 
@@ -235,7 +235,7 @@ def _strip(
 
 
 def _in_pixels(above: Array, per_pixel: Array) -> Array:
-    """How far it is along the axis to where what is so far above 0 meets it; infinitely far if it does not change."""
+    """Distance along the axis at which a value so far above 0 reaches it; infinite if it does not change."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(per_pixel != 0.0, above / np.abs(per_pixel), np.where(above >= 0.0, np.inf, -np.inf))
 

@@ -1,4 +1,4 @@
-"""The study of halos: what samples, smooth edges and halos of finished pictures are off by, and what they cost."""
+"""The study of halos: the errors and costs of samples, smooth edges and halos of finished pictures."""
 
 from __future__ import annotations
 

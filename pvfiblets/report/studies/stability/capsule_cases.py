@@ -1,4 +1,4 @@
-"""Capsules that culling trusts, and tubes about lines: every point within, and rays meet what they meet in float64."""
+"""Capsules that culling trusts, and tubes about lines: every point lies within, and rays hit the same as in float64."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Decoding, and what is known without it: the same numbers by every method, and every point in its capsule."""
+"""Decoding, and bounds without it: the same numbers by every method, and every point in its capsule."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ IN_STEPS = "steps"
 
 
 def stiff() -> dict[str, Streamlines]:
-    """Lines that the codec codes in all its ways, at the ends of what it takes."""
+    """Lines that need every way of the codec, at the limits of its input."""
     rng = np.random.default_rng(3)
     mixed = np.cumsum(10.0 ** rng.uniform(-6.0, 6.0, (200, 1)) * rng.normal(size=(200, 3)), axis=0)
     base = tracking(3)

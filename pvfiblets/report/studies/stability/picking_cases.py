@@ -1,4 +1,4 @@
-"""Picking and regions at their ends: what lies under an area, or in a shape, equals a search through all points."""
+"""Picking and regions at their limits: lines under an area, or in a shape, equal a search through all points."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Spline tubes that hardly are any: rays meet on the GPU what they meet in float64."""
+"""Spline tubes that hardly are any: rays hit the same on the GPU as in float64."""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ Ints = npt.NDArray[np.int64]
 MISS, ENTRY, EXIT, CAP = range(4)
 
 _BLOCK = 1 << 13
-"""Pairs of ray and half solved at a time: what they need in between stays in cache."""
+"""Pairs of ray and half solved at a time: their working arrays stay in cache."""
 
 _PAIRS = 1 << 21
 """Pairs whose bounding spheres are tried at a time."""
@@ -115,7 +115,7 @@ def nearest_hits(
     end: npt.ArrayLike = np.inf,
     capped: bool = False,
 ) -> Nearest:
-    """Meet each ray with every half, and keep what is nearest."""
+    """Meet each ray with every half, and keep the nearest hit."""
     halves, origins, unit = _halves(controls), _vectors(origins, "origins"), _directions(directions)
     low, high = _limits(start, "start"), _limits(end, "end")
     n = np.broadcast_shapes(origins.shape[:1], unit.shape[:1], low.shape, high.shape)[0]
@@ -159,7 +159,7 @@ def _near(centres: Array, reach: Array, origins: Array, unit: Array, low: Array,
     along = unit @ centres.T - np.einsum("ni,ni->n", unit, origins)[:, None]
     squares = np.einsum("mi,mi->m", centres, centres), np.einsum("ni,ni->n", origins, origins)
     away = squares[0] + squares[1][:, None] - 2.0 * (origins @ centres.T) - along**2
-    # Squares of large coordinates cancel: what is lost to that must not cost a hit.
+    # Squares of large coordinates cancel: the loss must not cost a hit.
     slack = 1e-12 * (squares[0].max() + squares[1].max() + (reach**2).max())
     close = away <= (reach**2 + slack)
     within = reach + np.sqrt(slack)

@@ -190,7 +190,7 @@ def _measured(
 
 
 def stored(ctx: Any, options: Options) -> Iterator[Record]:
-    """Yield records of depth by what it is stored as, and by how far the near and the far plane lie apart."""
+    """Yield records of depth by its stored format, and by the distance between the near and the far plane."""
     tubes, size = helices(2), QUICK_SIZE
     far = orbit(tubes, "far", 2, size)[0]
     lens = Lens.of(far)

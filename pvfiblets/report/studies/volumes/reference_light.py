@@ -25,7 +25,7 @@ from .reference_kernels import step, stretch
 __all__ = ["integrals"]
 
 DEEPEST = 60
-"""Halvings of a piece after which there is nothing between its ends."""
+"""Halvings of a piece after which its ends are neighbouring floats."""
 
 ROUNDING = 1e-15
 """Of a part; no halving makes it less."""
@@ -172,7 +172,7 @@ def _integral(
     field: Any, how: int, origin: Any, direction: Any, near: float, far: float, knots: Any, pieces: Any, unit: float,
     rule: Any, cap: float, tolerance: float, memory: Scratch, stack: Any, light: Any,
 ) -> None:  # fmt: skip
-    """Let light come through the cells of a ray until it ends, or what lies behind changes nothing any more."""
+    """Let light come through the cells of a ray until it ends, or the rest changes nothing any more."""
     t = near
     enter(field, how, origin, direction, t, memory.cell)
     while True:

@@ -38,7 +38,7 @@ DIFFERS = 4  # levels of 255: pixels farther from the default's are counted
 
 
 def settings(mode: str, quick: bool, spread: float) -> Iterator[tuple[str, str, dict[str, Any]]]:
-    """Yield what is varied, how, and the fields of `RaycastOptions` that are not its defaults, the default first."""
+    """Yield the varied field, its value, and the non-default fields of `RaycastOptions`; the default is first."""
     yield "default", "", {}
     steps: tuple[float, ...] = QUICK_PICTURE_STEPS if quick else PICTURE_STEPS
     if mode == "isosurface":
