@@ -1,4 +1,4 @@
-"""What users set of an actor's look-up table, as ``actor.mapper.lookup_table`` of a mesh, changes what is drawn.
+"""Changes that users make to an actor's look-up table, as to ``actor.mapper.lookup_table`` of a mesh, take effect.
 
 The table is written by the actor's settings, and by users. What somebody else has written counts as settings from then
 on: pictures and scalar bars show it, and other scalars keep it.
@@ -43,7 +43,7 @@ class _Written:
 class LinkedTable:
     """What others than an actor's settings write to its look-up table.
 
-    A method of the actor, ``modified``, is called at each change by others, who may not be done.
+    A method of the actor, ``modified``, is called at each change by other code, which may not have finished.
     """
 
     touched = False

@@ -1,6 +1,6 @@
-"""Mappers as PyVista's scripts know them: what they set of an actor's mapper is taken over, or told where it is.
+"""Mapper attributes of PyVista scripts: they are forwarded to the actor, or a warning names its property.
 
-Ours keep it in their actors. A mapper of VTK's takes any attribute that Python gives it, and nobody would read it.
+This package's mappers keep them in their actors. A VTK mapper takes any attribute that Python sets, and never reads it.
 """
 
 from __future__ import annotations
@@ -102,7 +102,7 @@ class PlottedLines(Plotted[AnyOptions]):
 
     @property
     def array_name(self) -> str:
-        """Name of what colours; empty without scalars. Set it to colour by another array of what is drawn."""
+        """Name of the colouring array; empty without scalars. Set it to colour by another array of the data."""
         found = self._owner._scalars  # noqa: SLF001
         return "" if found is None else str(found.name)
 

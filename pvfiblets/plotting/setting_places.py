@@ -1,4 +1,4 @@
-"""Where actors keep what is set of them: how a setting is read, and what changes when it is written."""
+"""Storage of settings in actors: how a setting is read, and which object changes when it is written."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Place:
         raise NotImplementedError
 
     def kept(self, actor: Any, one: Argument) -> Any:
-        """Return the value that made it what it is, for a copy."""
+        """Return the value to pass to a copy."""
         return getattr(actor, one.name)
 
     made_with: ClassVar[bool] = True

@@ -27,13 +27,13 @@ __all__ = ["Choices", "Condition", "Criterion", "as_predicate", "checked_range",
 
 @dataclass(frozen=True, eq=False)
 class Criterion:
-    """A range of values outside of which nothing is shown.
+    """A range of values; everything outside is hidden.
 
     Attributes
     ----------
     name : str
     what : Any
-        What was asked for: a name, an array, a ``Distance``.
+        The measure: a name, an array, a ``Distance``.
     values : Any
         :class:`pvfiblets.query.measures.measures.Values`.
     range : tuple of float
@@ -107,7 +107,7 @@ class Choices:
         return tuple(c for c in self.criteria.values() if c.values.kind == kind)
 
     def filter(self, fiblets: FibletSet) -> Filter | None:
-        """What the engine is told; None where everything is shown."""
+        """The engine's filter; None where everything is shown."""
         from pvfiblets.engine.fiblets.data.filter_textures import Filter
 
         mask, points = self.mask(fiblets), self.points(fiblets)
@@ -138,7 +138,7 @@ class Choices:
         )
 
     def explain(self, fiblets: FibletSet) -> dict[str, Any]:
-        """Return what is chosen, and of how many streamlines."""
+        """Return the criteria, and how many streamlines pass them."""
         mask, total = self.mask(fiblets), fiblets.n_streamlines
         return {
             "streamlines": {"total": total, "shown": total if mask is None else int(mask.sum())},

@@ -85,7 +85,7 @@ class Pointing:
             self._listen("MouseMoveEvent", self._move_area)
 
     def _listen(self, event: str, handler: Callable[[], bool]) -> None:
-        """Call a handler; where it returns True nobody else hears of the event."""
+        """Call a handler; if it returns True, the event goes no further."""
         reference = weakref.WeakMethod(handler)
 
         def call(interactor: Any, name: str) -> None:
@@ -194,7 +194,7 @@ class Pointing:
         return True
 
     def _area(self) -> np.ndarray:
-        """Corners of what has been drawn so far."""
+        """Corners of the outline so far."""
         if self._mode == "lasso":
             return np.array(self._corners, np.float64)
         from pvfiblets.plotting.fiblets.pick_result import checked_box

@@ -94,7 +94,7 @@ def as_transfer(choice: Any, arrays: Iterable[str] = ()) -> Any:
 def apply_transfer(table: Any, transfer: Any) -> None:
     """Give a look-up table opacities along it, by name or as :func:`as_transfer` returns them."""
     count = table.n_values
-    if not isinstance(transfer, str) and len(transfer) >= count:  # PyVista takes as many for bytes, and refuses more
+    if not isinstance(transfer, str) and len(transfer) >= count:  # PyVista reads equal lengths as bytes, refuses more
         places = np.linspace(0.0, 1.0, len(transfer))
         transfer = np.round(255.0 * np.interp(np.linspace(0.0, 1.0, count), places, transfer)).astype(np.uint8)
     table.apply_opacity(transfer)

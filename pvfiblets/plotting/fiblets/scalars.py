@@ -115,7 +115,7 @@ def _built_in(fiblets: FibletSet) -> dict[str, Callable[[], Any]]:
 
 
 def _of_colours(name: str, columns: list[PointValues]) -> Scalars:
-    """Colours of points, of which the fiblets hold each channel."""
+    """Colours of points; the fiblets hold each channel as an array."""
     low, high = min(column.lo for column in columns), max(column.hi for column in columns)
     if low < 0.0 or high > 255.0:
         raise ValueError(
@@ -127,9 +127,9 @@ def _of_colours(name: str, columns: list[PointValues]) -> Scalars:
 
 
 def by_group(fiblets: FibletSet) -> Scalars:
-    """Number the streamlines by the first of the groups that they are in; NaN for those in none.
+    """Number the streamlines by the first of their groups; NaN for those without a group.
 
-    Groups that are hidden come last. Colours are those of the list of bundles: a group's own, or one by its place.
+    Hidden groups come last. Colours are as in the list of bundles: a group's own, or one by its place.
     """
     if not fiblets.groups:
         raise KeyError("there are no groups to colour by; formats that keep groups are .trx and .fiblets")

@@ -281,7 +281,7 @@ class SelectableActor(FilteredActor):
             ``count``, ``points``; ``length_mean``, ``length_min``, ``length_max`` and
             ``length_total`` in mm; and, where there are numbers, their name as ``scalars``, and
             ``mean`` and ``std`` (population) over the streamlines or points that have one. NaN
-            where there is nothing.
+            for an empty selection.
 
         Raises
         ------

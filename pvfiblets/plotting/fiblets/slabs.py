@@ -123,7 +123,7 @@ class FibletSlab:
         return self._slice
 
     def place(self, *, normal: Any = None, origin: Any = None, thickness: Any = None) -> None:
-        """Change several of these at once; what is refused changes nothing."""
+        """Change several of these at once; an invalid value changes nothing."""
         before = self._normal, self._origin, self._thickness
         try:
             if normal is not None:

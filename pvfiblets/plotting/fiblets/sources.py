@@ -68,7 +68,7 @@ def as_fiblets(
         return with_point_values(with_preference(source, preference), scalars, rgb)
     streamlines = with_preference(as_streamlines(source), preference)
     _warn_of_nothing(streamlines)
-    from pvfiblets.codec.compress import choose_per_point, compress  # what is compressed already needs no compiler
+    from pvfiblets.codec.compress import choose_per_point, compress  # compressed sources need no compiler
 
     if is_values_file(scalars, streamlines):
         formats.attach(streamlines, scalars)
@@ -126,7 +126,7 @@ def as_fiblets(
 
 
 def _warn_of_nothing(data: FibletSet | Streamlines) -> None:
-    """Tell those who wonder why they see nothing."""
+    """Warn that an empty data set draws nothing."""
     if not data.n_points:
         what = "points" if len(data) else "streamlines"
         warnings.warn(f"the source holds no {what}: nothing is drawn", UserWarning, stacklevel=7)

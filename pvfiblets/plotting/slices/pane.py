@@ -31,7 +31,7 @@ MOST_PIXELS = 4096
 GAP = 6.0
 """Pixels of the cross-hair's middle that stay free."""
 BACKING = 0.65
-"""Opacity of what lies behind words."""
+"""Opacity of the background of text."""
 BEFORE = 1.0
 """mm from the slab to the cross-hair and to the slice."""
 FARTHEST = 1000.0
@@ -54,7 +54,7 @@ class Pane:
     color : color-like
         Of cross-hair and letters.
     plane : SlicePlane, optional
-        Whose directions the pane has, however it is turned, in the place of those of an orientation.
+        Plane with the pane's directions, however it is turned, in place of an orientation.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""The lines between the views of a workspace, which lie elsewhere than those of the plotter's shape."""
+"""The lines between the views of a workspace, which differ from the borders of the plotter's shape."""
 
 from __future__ import annotations
 

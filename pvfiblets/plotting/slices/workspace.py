@@ -65,7 +65,7 @@ class Workspace:
         layout: str,
         color: Any,
     ) -> None:
-        # What is wrong with them is said before anything is shown.
+        # Errors are raised before anything is shown.
         _choice("convention", convention, CONVENTIONS)
         _choice("layout", layout, LAYOUTS)
         _length(thickness)
@@ -276,7 +276,7 @@ class Workspace:
         return self.oblique
 
     def take(self, pane: Pane) -> None:
-        """Treat one more pane as those that were there from the beginning."""
+        """Set up one more pane like the initial ones."""
         pane.mirrored = self.convention == "radiological"
         pane.thickness, pane.cross_hair = self.thickness, self.cross_hair
         self.panes = MappingProxyType({**self.panes, pane.name: pane})
@@ -289,13 +289,13 @@ class Workspace:
     # Values -------------------------------------------------------------------------------------
 
     def values(self, radius: float = 2.0) -> PointValues:
-        """Return what is under the cross-hair.
+        """Return the values under the cross-hair.
 
         Parameters
         ----------
         radius : float, default: 2.0
-            mm: streamlines of which a point is nearer are listed, if they are shown. Compressed data are asked, of
-            which few are decoded. Where points are farther apart than that, positions between them count, too.
+            mm: shown streamlines with a point within it are listed. Few points of compressed data are decoded for
+            this. Where points are farther apart than that, positions between them count, too.
 
         Returns
         -------

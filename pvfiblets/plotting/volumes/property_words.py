@@ -32,7 +32,7 @@ class _Word:
     light: str = ""
     """What to say where light could use it, and its ``shade`` is off; empty: light never uses it."""
     reset: bool = False
-    """Whether it goes back to what it was, as VTK would do something else by it."""
+    """Whether the old value is restored, because VTK would draw something else by the new one."""
 
 
 _PEAK_MODES = ("mip", "local-mip", "minimum", "average")
@@ -72,7 +72,7 @@ class PropertyWords:
         self._prop, self._said = actor.prop, _read(actor.prop)
 
     def look(self, actor: VolumeActor) -> None:
-        """Warn of what was changed and changes nothing; another property than before is taken as it is."""
+        """Warn of changes without effect; a replaced property is taken as it is."""
         prop, known, before = actor.prop, self._prop, self._said
         self.note(actor)
         if prop is not known:
@@ -97,7 +97,7 @@ def tell_given(actor: VolumeActor, given: Mapping[str, Any]) -> None:
         if word.light and given.get(name) is not None and not _used(word, actor)
     }
     if given.get("shade") is False and actor.mode == LIGHT:
-        return  # whoever says so knows
+        return  # an explicit shade=False needs no warning
     if given.get("shade") and actor.mode in _PEAK_MODES:
         unused["shade"] = _PEAKS
     if unused:
