@@ -30,7 +30,7 @@ class Page:
     file_sort: str = "name"
     open_space: str = "RAS"  # of files of VTK that name none
     uploading: str = ""
-    uploaded: float = 0.0  # per cent; below zero: nobody knows
+    uploaded: float = 0.0  # per cent; below zero: unknown
     export_what: str = "selected"
     export_to: str = "folder"
     export_name: str = ""  # of the file; empty: after the layer
@@ -98,7 +98,7 @@ class Page:
     folder: str = ""
     entries: list[Record] = field(default_factory=list)
     several: bool = True  # files may be chosen at once
-    marked: list[str] = field(default_factory=list)  # those that are
+    marked: list[str] = field(default_factory=list)  # chosen ones
     script: str = ""
     shared: bool = False
     upload_limit: int = 0

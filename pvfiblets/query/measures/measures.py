@@ -1,7 +1,7 @@
 """Measures of streamlines and of points: what criteria compare and colours show.
 
 ====================  ===========  ====  =======================================================================
-name                  a value per  unit  what it is, of the decoded points
+name                  a value per  unit  definition, of the decoded points
 ====================  ===========  ====  =======================================================================
 ``'length'``          streamline   mm    sum of its segments' lengths; 0 without points
 ``'n_points'``        streamline         number of points
@@ -16,8 +16,8 @@ an image              point              its value there, as it colours: whole n
 ====================  ===========  ====  =======================================================================
 
 Curvature does not depend on how a set is stored. A tenth of a step, which coding may move points by, would turn each
-segment by a tenth of a radian; so chords of a streamline lead over as many points as it takes for such an error (or the
-set's promise where that is coarser) to change its mean curvature by no more than 2 %, of coded sets and of exact ones
+segment by a tenth of a radian; so chords of a streamline are long enough for such an error (or the set's error
+bound where that is coarser) to change its mean curvature by no more than 2 %, of coded sets and of exact ones
 alike: over ``2 sqrt(error / curvature)`` mm at least. The points at its ends take the value of the nearest one that has
 both chords; of fewer than three points it is 0. A warning tells where coded lines are too short or too bent for that,
 or the promise is coarser than a tenth of a step, and the `max_error` that is needed.

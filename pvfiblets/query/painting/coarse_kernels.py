@@ -130,7 +130,7 @@ def _along(u: Any, k: int, enter: float, leave: float, reach: Any, kept: Any, ra
                 return True, True
     touches, s = False, enter
     while True:
-        # As far as no voxel is near, there is nothing to look at. Positions so many voxels apart, rounded up, lie in
+        # Skip ahead as far as no voxel is near. Positions so many voxels apart, rounded up, lie in
         # voxels no farther from each other than that.
         ahead = _free(steps, first, u, k, s) - 1 - widest
         if ahead >= 0.5 * STEP:
@@ -158,7 +158,7 @@ def _along(u: Any, k: int, enter: float, leave: float, reach: Any, kept: Any, ra
 @kernel
 def _part(u: Any, k: int, kept: Any, radius: float, rows: Any, slack: float, box: Any, mask: Any, shape: Any,
           touching: int, inside: int, steps: Any, first: Any, reach: Any, low: Any, high: Any) -> Any:  # fmt: skip
-    """Whether part ``k`` may meet voxels of the bit ``touching``, and surely meets those of the bit ``inside``.
+    """Whether part ``k`` may meet voxels of the bit ``touching``, and surely meets voxels of the bit ``inside``.
 
     ``inside`` 0: not asked.
     """
@@ -174,7 +174,7 @@ def _part(u: Any, k: int, kept: Any, radius: float, rows: Any, slack: float, box
 def _fiblet(u: Any, parts: int, only: int, kept: Any, pieces: Any, row: int, unit: float, rows: Any, slack: float,
             box: Any, mask: Any, shape: Any, touching: int, inside: int, steps: Any, first: Any, reach: Any,
             low: Any, high: Any) -> Any:  # fmt: skip
-    """The same of a whole fiblet, or those of its parts whose bits are in `only`."""
+    """The same of a whole fiblet, or of its parts whose bits are in `only`."""
     touches = False
     for k in range(parts):
         if not only >> k & 1:

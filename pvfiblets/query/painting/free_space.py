@@ -13,8 +13,8 @@ import numpy.typing as npt
 __all__ = ["FAR", "FreeSpace"]
 
 FAR = 16
-"""Distances from here on are told as this."""
-LARGE = 1 << 18  # voxels of a box from which distances are told more coarsely
+"""Greatest stored distance; larger ones are stored as this."""
+LARGE = 1 << 18  # voxels of a box from which distances are stored more coarsely
 
 
 class FreeSpace(NamedTuple):

@@ -1,12 +1,12 @@
-"""Which streamlines pass painted regions, told again after each stroke from the fiblets near it alone.
+"""Which streamlines pass painted regions, updated after each stroke from the fiblets near it alone.
 
-For each fiblet it is kept whether some position of it lies in the region, and for each streamline how many such fiblets
-it has. A stroke changes these only where a fiblet comes near changed voxels, and where they are added, only for those
-that did not pass before. The index (:mod:`.fiblet_index`) finds these and settles most; the others are decoded and
+The state is, for each fiblet, whether some position of it lies in the region, and for each streamline the number of
+its fiblets inside. A stroke changes these only where a fiblet comes near changed voxels, and where voxels are added,
+only for fiblets outside so far. The index (:mod:`.fiblet_index`) finds these and settles most; others are decoded and
 walked through the voxels, so that the answer is exact. A fiblet here is its points, the segments between them, and the
 one that joins it to the next.
 
-Whether streamlines end in the region or never leave it is kept up only once it has been asked for.
+Whether streamlines end in the region or never leave it is computed from its first use on.
 """
 
 from __future__ import annotations
@@ -268,7 +268,7 @@ class LiveRegions:
         include, exclude : iterable of str
             Regions that streamlines must pass, and regions that they must miss.
         ends_in : iterable of str
-            Regions in each of which an end lies.
+            Regions; an end must lie in each.
         stays_in : str, optional
             Region that is never left.
         in_order : iterable of str

@@ -186,9 +186,9 @@ def _put(spans: Any, n: int, open_: bool, writes: bool, begin: float, end: float
 def label_spans(
     mask: Any, linear: Any, centre: Any, a: Any, b: Any, first: Any, spans: Any, writes: bool
 ) -> None:  # fmt: skip
-    """Shares of segments that lie in chosen voxels of ``mask`` (i, j, k): those of `voxel_walk_kernels.walk`.
+    """Shares of segments that lie in chosen voxels of ``mask`` (i, j, k), by `voxel_walk_kernels.walk`.
 
-    Unless ``writes``, only counted: ``first[k + 1]`` are those of segment k. Otherwise written to ``spans`` from
+    Unless ``writes``, only counted: ``first[k + 1]`` is the number of segment k. Otherwise written to ``spans`` from
     ``first[k]`` on.
     """
     shape = mask.shape

@@ -168,7 +168,7 @@ class Surface(Shape):
         -------
         numpy.ndarray
             ``(n,)`` float64 mm, exact up to rounding under any matrix; NaN where a coordinate is not finite. As part of
-            an expression made with ``|`` a surface counts as what it encloses, so that its inside has distance 0.
+            an expression made with ``|`` a surface counts as its enclosed volume, with distance 0 inside.
         """
         places = positions(points)
         finite = np.isfinite(places).all(axis=1)

@@ -5,9 +5,9 @@ between them: of a point the answer is that of ``region.contains``, of a segment
 need no decoding. All points of a fiblet, and the segment that joins it to the next, lie in the capsule about its chord
 (:mod:`..capsules`), hence in a ball about the middle of the chord. A ball that lies in the region, or apart from it,
 settles its fiblet (`classify`); the others are decoded where their streamline's answer is still open, and only
-there. Of these, segments are looked at where points leave the answer open, and the ball about a segment as well.
+there. Segments are tested where points leave the answer open, and the ball about a segment as well.
 
-Sets of any size are gone through by a few pages at a time; of a mapped one, the memory of what was read is given back.
+Sets of any size are processed a few pages at a time; of a mapped one, the pages read are released.
 """
 
 from __future__ import annotations

@@ -231,7 +231,7 @@ def _listed(predicate: Predicate) -> Iterator[Listed]:
 def _needed(predicate: Predicate) -> dict[_Key, int]:
     """Flags that are needed of each region and sampling."""
     bits: dict[_Key, int] = {}
-    # Ends are points whatever lies between them: they are asked along with another condition on their region.
+    # Ends are points, whatever lies between them: they are computed along with another condition on their region.
     for condition in sorted(predicate.conditions(), key=_asks_for_ends):
         key = _key(condition, bits)
         bits[key] = bits.get(key, 0) | condition.needed

@@ -1,6 +1,6 @@
 """Regions of the tab Filter: a flat list of the chosen layer's, each with or without 'not', joined by one word.
 
-A region has a name, and layers that have one of the same name share it: what is done to it is done for all of them.
+A region has a name; layers with a region of the same name share it: a change to it applies to all of them.
 """
 
 from __future__ import annotations

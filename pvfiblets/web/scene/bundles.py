@@ -1,7 +1,7 @@
 """Bundles of a scene's tractograms: named sets of streamlines, to be edited, undone and saved.
 
-They belong to where data comes from: layers of one source have the same ones. As long as nobody edits them they are the
-groups of the file, and a document says nothing of them.
+They belong to the source of data: layers of one source have the same ones. Unedited bundles are the
+groups of the file, and are not stored in the document.
 """
 
 from __future__ import annotations

@@ -117,7 +117,7 @@ class Cameras:
 
 
 def _depths(window: Any, left: int, below: int, right: int, above: int) -> np.ndarray:
-    """Return the depths of a rectangle of the last picture, ``(rows from below, columns)``; 1 is nothing."""
+    """Return the depths of a rectangle of the last picture, ``(rows from below, columns)``; 1 is empty."""
     from vtkmodules.util.numpy_support import vtk_to_numpy
     from vtkmodules.vtkCommonCore import vtkFloatArray
 
@@ -144,7 +144,7 @@ def check_camera(value: Any) -> dict[str, Any]:
 
 
 def _letters(direction: np.ndarray) -> str:
-    """Name a direction by its largest parts, those of at least half the largest."""
+    """Name a direction by its largest parts, down to half the largest."""
     length = np.linalg.norm(direction)
     if not length > 0.0:
         return ""

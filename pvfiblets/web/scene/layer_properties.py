@@ -1,7 +1,6 @@
 """The properties of tractograms, tubes, volumes, meshes and images of slices, in the order of a panel.
 
-Those that are settings of actors are found where these are declared (`pvfiblets.plotting.settings`); here stands
-what is the page's alone.
+Settings of actors are found in their declarations (`pvfiblets.plotting.settings`); this module adds the page's own.
 """
 
 from __future__ import annotations

@@ -41,7 +41,7 @@ class Wanted:
     labels : tuple of str
         All numbers that it may show, or its names.
     named : bool
-        Whether they are names, all of which it shows.
+        Whether they are names; then it shows all of them.
     """
 
     title: str
@@ -126,7 +126,7 @@ def _columns(
     """Return what bars take with letters of a size, titles shortened as far as they must be; ``None`` if too much."""
     room = size[0] - (LEFT + RIGHT) * scale - GAP * scale * (len(wanted) - 1)
     natural = [measure(one.title, font) for one in wanted]
-    # From no limit to the narrowest titles: the widest limit with which all fit.
+    # From no limit to the narrowest titles: the widest limit at which all fit.
     limits = sorted({width for width in natural if width > NARROWEST * scale} | {NARROWEST * scale}, reverse=True)
     limits += [limits[0] + share * (limits[-1] - limits[0]) for share in (k / 16 for k in range(1, 16))]
     for limit in sorted(limits, reverse=True):
@@ -153,8 +153,8 @@ def _column(
     if long < SHORTEST * scale:
         return None
     if one.named:
-        # Names stand apart by what they need, and out of the colours if those are shorter.
-        line = long / (1.25 * scale * max(len(one.labels), 1))  # the size of letters with which lines fill it
+        # Names stand apart by their height, and out of the colours if those are shorter.
+        line = long / (1.25 * scale * max(len(one.labels), 1))  # the size of letters at which lines fill it
         label_font = min(font, int(line)) if line >= SMALLEST_NAMES else 0
         if not label_font:
             return None

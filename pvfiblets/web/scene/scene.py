@@ -1,7 +1,7 @@
 """The scene of one session: a document, and the plotter that is kept in step with it.
 
-Whatever changes the document goes through :meth:`Scene.become`: actors are told what differs, and if one of them
-refuses, all is as it was. So undo, sessions and single settings are the same thing, a :class:`.State` to become.
+All changes of the document go through :meth:`Scene.become`: actors get the differences, and if one of them
+refuses, all is as before. So undo, sessions and single settings are the same thing, a :class:`.State` to become.
 """
 
 from __future__ import annotations
@@ -296,7 +296,7 @@ class Scene:
         with self.store.with_new(loaded):
             found = self._add(layer, f"open {layer.name}")
         if first and len(self.layers) > 1:
-            self.cameras.reset()  # an image is larger than what it has tracts of, and its view has become smaller
+            self.cameras.reset()  # an image is larger than its tracts, and its view has become smaller
             self.plotter.camera.zoom(1.4)  # VTK has room about it for the box's corners
         return found
 

@@ -109,7 +109,7 @@ class _Paths:
             try:
                 return self._files.name(self._files.resolve(str(beside)))
             except (OSError, ValueError):
-                pass  # what is said of it under the root is easier to understand
+                pass  # the error for the root is easier to understand
         return self._files.name(self._files.resolve(path))
 
     def shape(self, shape: dict[str, Any]) -> dict[str, Any]:

@@ -86,7 +86,7 @@ class Pace:
             self._first.discard(level)
             self._costs[level] = newest
             return
-        if len(self._run) == 1:  # what was expected of it was wrong, or the machine is busy: others have not changed
+        if len(self._run) == 1:  # its estimate was wrong, or the machine is busy: other levels have not changed
             self._costs[level] = min(newest, (before * newest) ** 0.5)
             return
         slower, faster = min(list(self._run)[-2:]), max(self._run) if len(self._run) == 3 else before

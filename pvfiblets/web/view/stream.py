@@ -385,7 +385,7 @@ class PictureStream:
 
     async def _wanted_within(self, seconds: float) -> bool:
         """Wait, so that events are heard, until another frame is wanted; ``False`` if none is after some seconds."""
-        # Not `asyncio.wait_for`: that of Python 3.11 loses a cancelling when what it waits for has just come.
+        # Not `asyncio.wait_for`: Python 3.11's loses a cancelling when its awaitable has just finished.
         with contextlib.suppress(TimeoutError):
             async with asyncio.timeout(seconds):
                 await self._wanted.wait()
