@@ -1,7 +1,7 @@
 """Streamlines from the objects of other libraries: nibabel, dipy, trx-python, and VTK's datasets other than PolyData.
 
-None of them is imported: what an object is, is told by what it has. Coordinates become RAS+ millimetres with voxel
-centres at integer indices, wherever the object says where it is.
+None of them is imported: objects are recognised by their attributes. Coordinates become RAS+ millimetres with voxel
+centres at integer indices, for objects with a position.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def streamlines_of(source: Any) -> Streamlines | None:
     if hasattr(source, "tractogram") and hasattr(source, "header"):  # nibabel's TrkFile, TckFile
         found = _of_tractogram(source.tractogram)
         header = source.header if isinstance(source.header, Mapping) else {}
-        # Of a tck file they are words of whoever wrote it.
+        # In a tck file these are strings of the program that wrote it.
         if not any(isinstance(header.get(name, ""), str) for name in ("dimensions", "voxel_sizes")):
             found.space = _space(header["dimensions"], header["voxel_sizes"], header.get("voxel_order", b""))
             found.affine = np.asarray(source.affine, np.float64)

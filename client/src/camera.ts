@@ -153,7 +153,7 @@ export class Camera {
     this.state.up = turned(this.state.up, this.forward, degrees);
   }
 
-  /** By shares of the window's height: what is under the hand stays there. */
+  /** By shares of the window's height, so that the point under the hand stays there. */
   pan(dx: number, dy: number): void {
     const s = this.state, size = s.parallel ? 2 * s.parallel_scale : 2 * this.distance * Math.tan((s.view_angle * Math.PI) / 360);
     const up = cross(this.right, this.forward), by = add(scaled(this.right, -dx * size), up, -dy * size);

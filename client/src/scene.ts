@@ -1,4 +1,4 @@
-/** What the page is told to show: the JSON that pvfiblets/page writes, whose counterpart is pvfiblets/page/scene.py. */
+/** The page's scene: the JSON that pvfiblets/page writes; its counterpart is pvfiblets/page/scene.py. */
 
 import type { Bounds, CameraState, Vec } from "./camera";
 import type { Cut } from "./cuts";
@@ -46,8 +46,8 @@ interface Layer {
 /** Of lines that one looks through. */
 export interface Through {
   opacity: number;      // of all
-  varied: boolean;      // whether colours or what is below have opacities of their own, which that is times
-  all: boolean;         // whether all lines show through the nearest, or what is behind all lines
+  varied: boolean;      // whether colours or the fields below have opacities of their own, multiplied by `opacity`
+  all: boolean;         // whether all lines show through the nearest, or the background of all lines
   opacities?: number;   // data: a byte for each streamline
   by_point?: boolean;   // whether values of points are opacities
 }

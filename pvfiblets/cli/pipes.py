@@ -1,6 +1,6 @@
 """``-`` on the command line: standard input and output in place of files.
 
-Formats need to jump about in what they read, and commands look at their output again, so that both lie in temporary
+Formats need random access to their input, and commands read their output again, so that both lie in temporary
 files meanwhile (``TMPDIR`` says where). Output leaves when it is whole, and alone: messages go to standard error then.
 """
 

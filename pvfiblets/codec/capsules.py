@@ -13,7 +13,7 @@ An end vector costs one word a streamline: three signed 10-bit integers in units
 error: ``r`` is measured from the rounded ``B``.
 
 The GPU decodes in float32, to within a thousandth of a step. ``r`` is enlarged by ``MARGIN`` times the length of the
-line drawn, about as much for a full fiblet, so that a GPU's decoded points stay within the capsule too.
+line drawn, about the same for a full fiblet, so that a GPU's decoded points stay within the capsule too.
 
 This is the literal reference; `capsule_kernels` compute the same.
 """

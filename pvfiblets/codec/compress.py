@@ -127,10 +127,10 @@ def compress(
     max_value_error : float or dict of str to float, optional
         Largest difference of a kept value to its original, in the array's unit, for all arrays or by name. By default
         1/255 of the range from the array's 1st to its 99th percentile, so that colours over that range move by a level
-        at most; of positive values over more than two decades, as much of their logarithms. Integers, categories,
+        at most; of positive values over more than two decades, 1/255 of their logarithms' range. Integers, categories,
         arrays of up to 255 different numbers and all values of exact sets are exact.
     exact : bool, optional
-        Keep every bit of the points. By default so where they take less than a megabyte and nothing is said of `step`,
+        Keep every bit of the points. By default so where they take less than a megabyte and none is given of `step`,
         `max_error`, `max_angle`, `effort` or `order`; and where coding would take more bytes than the points do, up to
         a gigabyte of them. False codes in any case.
     nan : {'split', 'drop', 'error'}

@@ -53,7 +53,7 @@ class Copies:
     """``n_streamlines`` copies of the streamlines of a pool; the first of each is not moved.
 
     Copy ``i`` is of streamline ``i % n_pool``. They stand in that order, or, with ``sequence``, all copies of one
-    streamline after those of another: the same copies, in an order that is compact in space where the sequence is.
+    streamline before the next one's: the same copies, in an order that is compact in space where the sequence is.
 
     Attributes
     ----------

@@ -21,7 +21,7 @@ within
 **What a code is decoded with.** A rotation without a part about X is two numbers, y and z; w follows from the unit
 length. Both are kept as 16-bit integers times a scale for each cap angle, so that all rotations are 16 KiB: what every
 driver gives to a uniform block, and what fits beside a GPU's other caches. CPU and GPU start from the same integers
-and take the same float32 operations, and the encoder searches among what they decode to: nothing is lost by rounding.
+and take the same float32 operations, and the encoder searches among their decoded vectors: nothing is lost by rounding.
 """
 
 from __future__ import annotations
@@ -97,7 +97,7 @@ def quaternions() -> npt.NDArray[np.float32]:
 
     Notes
     -----
-    The float32 operations and their order are those of ``shaders/fiblets/decode/words.glsl``.
+    The float32 operations and their order are as in ``shaders/fiblets/decode/words.glsl``.
     """
     words = packed()
     levels = np.stack([words & np.uint32(0xFFFF), words >> np.uint32(16)], axis=-1).astype(np.uint16).view(np.int16)

@@ -103,7 +103,7 @@ class FibletSet:
     space: dict[str, Any] = field(default_factory=dict)
     dropped: dict[str, int] = field(default_factory=dict)
 
-    # ------------------------------------------------------------------------------------------------ what it holds
+    # ------------------------------------------------------------------------------------------------ contents
 
     def __len__(self) -> int:
         return self.n_streamlines

@@ -7,7 +7,7 @@ is off by more than the bound. A single -9999 is an entry of its own and coarsen
 and the middle 98 % of them span a factor of 100, entries lie closer the smaller values are, so that logarithms are as
 true as values. What no table holds within the bound, and integers of too many kinds, are kept as they are.
 
-The bound, unless one is given: 1/255 of what lies between the 1st and the 99th percentile, and as much of their
+The bound, unless one is given: 1/255 of the range from the 1st to the 99th percentile, or of their
 logarithms. The largest code of floats means NaN, which infinities become too.
 """
 
@@ -170,7 +170,7 @@ class ValueSurvey:
         self._kind: np.dtype[Any] | None = None
         self._lo, self._hi = np.inf, -np.inf
         self._distinct: Array | None = np.zeros(0)
-        self._cells = np.zeros(1 << (32 - CELLS), bool)  # of float32 numbers, those that some value is in
+        self._cells = np.zeros(1 << (32 - CELLS), bool)  # of float32 numbers, the cells that some value is in
         self._usual: tuple[float, float] | None = None
         self._outside: Array | None = np.zeros(0)  # of the usual: kept as it is, while there is little of it
         self._sample: list[Array] = []

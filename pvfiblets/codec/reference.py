@@ -44,7 +44,7 @@ Array = npt.NDArray[np.float64]
 RECORD_BYTES = 22
 LATTICE_LIMIT = 2**30  # lattice coordinates stay clear of int32's end, on the GPU too
 MAX_HALVINGS = 15
-TURNED_TOO_FAR = 2**16  # bytes, for which any split is better that turns fewer segments too far
+TURNED_TOO_FAR = 2**16  # bytes: any split that turns fewer segments too far is better
 TREE_DEPTH = 6  # halving 60 points six times leaves single points
 
 

@@ -82,7 +82,7 @@ def _find(fiblets: FibletSet, streamline: int) -> tuple[int, int, int, int]:
         if not found.size:
             return 0, 0, 0, 0  # without points
         rank = int(found[0])
-    # Pages begin with fiblets of rising ranks; those of one rank lie in consecutive pages.
+    # Pages begin with fiblets of rising ranks; fiblets of one rank lie in consecutive pages.
     begins = fiblets.pages[:-1, 0]
     first = max(int(np.searchsorted(begins, rank, side="left")) - 1, 0)
     last = int(np.searchsorted(begins, rank, side="right")) - 1

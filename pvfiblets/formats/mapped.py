@@ -81,7 +81,7 @@ def forget(array: NDArray[Any], first: int, last: int) -> None:
     Without this a file that is streamed through its map ends up resident as a whole. Arrays in memory are left alone,
     and so are private maps (mode ``'c'``), whose changes are nowhere else, and maps not of NumPy's that can be written
     to, for they do not tell whether they are private. Give 0 for `first` where rows are read in
-    order: reading a block brings back pages of the one before, and what is forgotten twice costs nothing.
+    order: reading a block brings back pages of the one before, and releasing pages twice costs nothing.
     """
     owner: Any = array
     found: Any = None

@@ -3,7 +3,7 @@
 A format module offers ``read(path, *, progress=False)``, ``iter_chunks(path, max_points)`` and
 ``info(path)``, and where the format can be written ``write(path, streamlines)``. Modules are
 named by strings and imported when a file of theirs is first touched: a program that reads tck
-files never loads the trx code. One of them is the codec's, of which nothing else here knows.
+files never loads the trx code. One of them belongs to the codec; only this table refers to it.
 """
 
 from __future__ import annotations

@@ -26,15 +26,15 @@ class Grid:
 
     def __init__(self, places: Doubles, width: float) -> None:
         self._width = width
-        # Two more on either side: places are in the frame but for rounding, and cells next to theirs are asked for. Of
-        # very small cells the numbers wrap around, and then tell those apart that matter all the same.
+        # Two more on either side: places are in the frame but for rounding, and cells next to theirs are looked up.
+        # With very small cells the numbers wrap around, and still differ where that matters.
         across = int(1.0 / width) + 6
         self._strides = np.array([1, across, across * across], np.int64)
         around = np.stack(np.meshgrid(*[[-1, 0, 1]] * 3, indexing="ij"), axis=-1).reshape(-1, 3) @ self._strides
         cells = (self._cells(places)[:, None] + around).ravel()
         order = np.argsort(cells, kind="stable")
         self._wanted, self._whose = cells[order], order // len(around)
-        # Most of what is looked up is in none of these cells; a small table says so sooner than the list of them.
+        # Most look-ups miss all of these cells; a small table answers that sooner than the list of them.
         self._table = np.zeros(1 << _TABLE, bool)
         self._table[_hashed(self._wanted)] = True
 

@@ -1,9 +1,9 @@
 """Distances from places on lines to the nearest other lines, or from points to the nearest others.
 
-Lines are covered by arcs, each with a middle and at most so long to both sides, and only those arcs are divided that
-can be near one of the places that are asked about, which a grid tells. What may hold the nearest place is then narrowed
+Lines are covered by arcs, each with a middle and a bound of its length to both sides. Only arcs that can be near one of
+the queried places are divided; a grid finds them. The arcs that may hold the nearest place are then narrowed
 down by the same bounds until the distance is known. So time and memory depend on how much lies near the places, not on
-how many points lines have, and both are bounded: where there is too much, fewer places are asked about.
+the number of points, and both are bounded: where there is too much, fewer places are queried.
 """
 
 from __future__ import annotations

@@ -25,7 +25,7 @@ def halo_width(
     Parameters
     ----------
     dz : array_like
-        mm by which the other line lies farther from the viewer, along the view axis; none of its halo shows at 0 or
+        mm from this line to the other along the view axis, away from the viewer; none of its halo shows at 0 or
         less, where it is the one in front. NaN stays NaN.
     line_width : float
         mm, of the line in front.

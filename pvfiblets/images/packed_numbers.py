@@ -20,7 +20,7 @@ __all__ = ["Packing", "data_file", "numbers"]
 Packing = Literal["raw", "gzip", "zlib", "bzip2", "ascii"]
 
 PIECE = 1 << 18  # bytes read at a time
-LOOKED_AT = 1 << 24  # bytes unpacked beyond those that are needed, to see whether the data are whole
+LOOKED_AT = 1 << 24  # bytes unpacked beyond the needed ones, to see whether the data are whole
 
 
 def numbers(

@@ -1,6 +1,6 @@
 """`Connection`: what VTK's half of a mapper is connected to.
 
-Mostly a few triangles that stand for what is drawn (`pvfiblets.mappers.proxy`). Whoever connects something else, by
+Mostly a few triangles that stand for the drawable (`pvfiblets.mappers.proxy`). Any other connection, by
 ``SetInputConnection`` or ``SetInputData`` from Python or C++, is noticed by the mapper's ``ModifiedEvent``, and gets a
 filter between (`pvfiblets.mappers.vtk_input.VtkInput`). While VTK's code reads real lines, these are connected.
 """

@@ -1,7 +1,7 @@
 """An effect that lets lines be looked through: several layers of the picture, blended in order.
 
 The mapper's geometry then has two triangles for each layer, the farthest first (`pvfiblets.mappers.proxy`), and the
-engine keeps as many layers (`pvfiblets.engine.fiblets.gather.depth_peeling`). While the actor is opaque neither is
+engine has one for each (`pvfiblets.engine.fiblets.gather.depth_peeling`). While the actor is opaque neither is
 drawn, and no layer behind the nearest is made.
 """
 

@@ -214,7 +214,7 @@ class FibletMapper(CutMapper[EngineOptions]):
         """Draw, piece by piece, what the next frame of a renderer needs; the frame then finds it drawn.
 
         Yields after each piece (`pvfiblets.engine.drawable.Drawable.render_in_pieces`). Others may draw in between, and
-        anything may change: what is drawn then serves nobody. Nothing is drawn for a window that has not shown the
+        anything may change: the picture is then useless. Nothing is drawn for a window that has not shown the
         actor yet, while `vtkHardwareSelector` selects, or where VTK draws real lines.
 
         Parameters

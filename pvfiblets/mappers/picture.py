@@ -1,9 +1,9 @@
 """Effects on the whole picture of a renderer: depth of field, tones, refinement, behind scalar bars and texts.
 
-VTK draws what is opaque, translucent, volumetric, and at last what lies over all of these: scalar bars, texts. Each of
-them a prop may draw, in the order of the renderer's props. `Picture` puts a prop of its own before the first during a
+VTK draws opaque, translucent and volumetric props, and at last the overlay: scalar bars, texts. In each of these
+turns a prop may draw, in the order of the renderer's props. `Picture` puts a prop of its own before the first during a
 frame, a ``vtkContextActor``, which draws in the last of these turns only, and calls Python there: that is when the
-picture is complete, its depths are those of VTK's framebuffer, and nothing lies over it yet. Colours and depths are
+picture is complete, its depths are in VTK's framebuffer, and the overlay is not drawn yet. Colours and depths are
 read from the textures of whichever framebuffer VTK draws into, and the changed colours are drawn there; depths stay as
 they are.
 
@@ -186,7 +186,7 @@ class Picture:
 
     @property
     def needs_multisamples(self) -> bool:
-        """Whether the next sample needs VTK's own samples of each pixel, or what lies over the picture does."""
+        """Whether the next sample needs VTK's own samples of each pixel, or the overlay does."""
         refinement = self._refinement
         assert refinement is not None
         samples = len(refinement.positions)

@@ -155,7 +155,7 @@ def reading_of(mapper: Any) -> LineReading | None:
 def _clear_errors(mapper: Any, selector: Any) -> None:
     """Drop, after a selection, the error of OpenGL that VTK leaves when its data become lines after triangles.
 
-    It binds a buffer that it has deleted (9.7, mappers of its own too); who asks next would take the error for his own.
+    It binds a buffer that it has deleted (9.7, mappers of its own too); the next caller would see the error.
     """
     follower = weak(mapper)
 
@@ -192,7 +192,7 @@ def readable(window: Any, *, most: int = MOST_POINTS) -> Iterator[None]:
     ----------
     window : vtkRenderWindow
     most : int
-        Points of all lines together; beyond, streamlines are left out evenly, and a warning says so.
+        Greatest number of points of all lines; beyond, streamlines are left out evenly, with a warning.
 
     Warns
     -----

@@ -1,7 +1,7 @@
 """What a mapper can be given beside colours: pieces of the resolve that have textures and uniforms of their own.
 
-An effect is a value: it says which pieces of ``shaders/resolve`` it takes and what it wants of the engine. What it
-keeps on the GPU is made once for each window and lives in the window's slot. A mapper without effects draws as if this
+An effect is a value: it names its pieces of ``shaders/resolve`` and its inputs from the engine. Its
+GPU data are made once for each window and live in the window's slot. A mapper without effects draws as if this
 module did not exist.
 """
 

@@ -1,6 +1,6 @@
 """Cameras whose window is shifted for a moment: by a part of a pixel for a sample, by many to look beside a tile.
 
-What is drawn meanwhile is not what a user points at: a mapper does not remember it as its last picture, and who reads
+A user does not point at these frames: a mapper does not remember them as its last picture, and code that reads
 the depths of a window asks for them by `with_exact_depths`.
 """
 

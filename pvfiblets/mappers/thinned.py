@@ -30,7 +30,7 @@ def thinned_engine(
     share = max(wanted, min(least / fiblets.n_fiblets, slot.renderer.share))
     if share not in slot.thinned:
         try:
-            # Alike: the programs are those of all, which are compiled already.
+            # `alike`: shares the programs of the whole set, which are compiled already.
             slot.thinned[share] = make(context.ctx, fit="sample", most=share, alike=fiblets.n_fiblets)
         except GPUMemoryError:
             slot.thinned[share] = None

@@ -1,7 +1,7 @@
 """Which array of its input colours a mapper, and how, by the settings that every ``vtkMapper`` has.
 
 ``ScalarVisibility``, ``ScalarMode``, ``SelectColorArray``, ``ColorMode``, ``LookupTable``, ``ScalarRange`` and
-``UseLookupTableScalarRange`` mean what they do in VTK. Numbers at points are interpolated along a line before they
+``UseLookupTableScalarRange`` mean the same as in VTK. Numbers at points are interpolated along a line before they
 are mapped, as with ``InterpolateScalarsBeforeMapping``. Colours of whole lines are mapped by VTK itself.
 """
 
@@ -106,7 +106,7 @@ def paint_of(mapper: Any, data: Any) -> Paint | None:
 
 
 def _table_of(mapper: Any, array: Any) -> Any:
-    """Return the look-up table, with the range by which the mapper uses it."""
+    """Return the look-up table, with the mapper's range for it."""
     own = array.GetLookupTable() if array.IsA("vtkDataArray") else None
     if own is not None:
         mapper.SetLookupTable(own)

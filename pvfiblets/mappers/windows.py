@@ -207,11 +207,11 @@ class WindowContext:
     def foreign(self) -> Iterator[None]:
         """Keep VTK's record of the GL state true around GL calls that are not VTK's.
 
-        And moderngl's: it binds, whenever it has made a framebuffer, the one that it remembers, and what was bound
+        And moderngl's: whenever it has made a framebuffer, it binds the one that it remembers, and the one bound
         when it was attached may be gone. Framebuffer 0 never is; VTK binds its own again at the end.
 
-        An error of OpenGL that VTK has left behind (peeling of depth in a multi-sampled window does) is dropped: who
-        asks next, such as after making a buffer, would take it for his own.
+        An error of OpenGL that VTK has left behind (peeling of depth in a multi-sampled window does) is dropped: the
+        next caller, such as after making a buffer, would take it for its own.
         """
         state = self.window.GetState()
         state.Reset()
@@ -309,7 +309,7 @@ def _windows_of(mapper: Any) -> dict[str, Any]:
 def make_current_again(mapper: Any) -> None:
     """Make the window current that draws a mapper whose actor is in several.
 
-    VTK has just deleted what it had in another of them, and on EGL leaves that one current.
+    VTK has just deleted objects of another of them, and on EGL leaves that one current.
     """
     windows = _windows_of(mapper)
     for window in windows.values() if len(windows) > 1 else ():

@@ -1,6 +1,6 @@
 """Which numbers or colours `scalars=` means, by name or as an array, for every drawable.
 
-A name is looked up among the numbers at points, then among those of whole lines, then among built-in ones, which are
+A name is looked up among the numbers of points, then of whole lines, then among built-in ones, which are
 computed from the geometry. An array is recognised by its length. Arrays with three or four columns are colours, all
 others are numbers for a colour map.
 """

@@ -28,7 +28,7 @@ _stored = False
 
 
 class Placed(NamedTuple):
-    """Points ``(n, 3)`` of a surface where they are taken to lie, its file's own space and why, and what was done."""
+    """Points ``(n, 3)`` of a surface in the assumed space, its file's own space and why, and the applied change."""
 
     points: Array
     space: str = "RAS"

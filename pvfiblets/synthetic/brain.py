@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 __all__ = ["brain"]
 
-TRACKED = 16_384  # streamlines tracked, where steps are 0.1 mm or longer; fewer of shorter steps: as many points
+TRACKED = 16_384  # streamlines tracked, where steps are 0.1 mm or longer; fewer of shorter steps: equal points in all
 TURNS = 4  # variants of each, the first as tracked
 TURN = 2.0  # degrees: standard deviation of the turn about each axis
 LARGEST_TURN = 5.0  # degrees

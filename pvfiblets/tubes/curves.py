@@ -171,7 +171,7 @@ def _frames(points: Array) -> Array:
     straight = np.einsum("ki,ki->k", across, across) <= 1e-24
     across[straight] = spare[straight]
     y = _unit(across)
-    # Once more: what is left of a tangent that hardly leaves x is not at right angles to it to the last digit.
+    # Once more: the remainder of a tangent that hardly leaves x is not at right angles to it to the last digit.
     y = _unit(y - x * np.einsum("ki,ki->k", y, x)[:, None])
     return np.stack([x, y, np.cross(x, y)], axis=1)
 
@@ -191,7 +191,7 @@ def _least(values: Array) -> Array:
     bend = (first - second) + (third - second)
     with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
         turn = (first - second) / bend
-    # Any place on the curve may be asked, so that a turn that is none, or outside, need not be told apart.
+    # Any place on the curve may be taken, so that an invalid turn, or one outside, need not be distinguished.
     turn = np.clip(np.where(np.isfinite(turn), turn, 0.0), 0.0, 1.0)
     there = (1.0 - turn) ** 2 * first + 2.0 * turn * (1.0 - turn) * second + turn**2 * third
     found: Array = np.minimum(np.minimum(first, third), there)

@@ -1,4 +1,4 @@
-"""Files of GIFTI: nibabel reads them, its complaints become errors, and what they name can be asked before.
+"""Files of GIFTI: nibabel reads them, its complaints become errors, and the files that they name can be listed before.
 
 Format: https://www.nitrc.org/projects/gifti
 """

@@ -18,7 +18,7 @@ Of a large volume with few cells beyond a multiple of eight, 8/7 of 1/512 nodes 
 
 Catmull-Rom's cubic leaves the range of the voxels that it goes through. Along one axis, at t from 0 to 1 between two
 voxels, its outer two weights are -t (1 - t)^2 / 2 and -t^2 (1 - t) / 2: together -N, N = t (1 - t) / 2 <= 1/8, and the
-inner two sum to 1 + N. The weights' sizes sum to 1 + 2 N <= 5/4, those of the product along three axes to at most
+inner two sum to 1 + N. The weights' sizes sum to 1 + 2 N <= 5/4, for the product along three axes to at most
 125/64, and as the weights themselves sum to 1, the negative ones sum to at least -(125/64 - 1) / 2 = -61/128. Of voxels
 from m to M the field is thus within m - 61/128 (M - m) and M + 61/128 (M - m), and both are reached.
 """

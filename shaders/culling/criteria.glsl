@@ -1,4 +1,4 @@
-// The criteria by which fiblets are culled, besides occlusion: the view volume (culling/frustum.glsl), and the caller's
+// The criteria that cull fiblets, besides occlusion: the view volume (culling/frustum.glsl), and the caller's
 // choice. Culled are fiblets of hidden streamlines, fiblets without a visible segment, and fiblets wholly
 // beyond the caller's planes or outside the caller's region. All pipelines cull by these two functions: a new criterion is a
 // line of fails_criteria(), under a feature of its own.

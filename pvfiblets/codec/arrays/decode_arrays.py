@@ -33,7 +33,7 @@ def decode(
 ) -> int:
     """Decode fiblets into ``out``; returns how many were damaged and left out.
 
-    Arguments are those of `decode_kernels.decode`.
+    Arguments are as in `decode_kernels.decode`.
     """
     missed = 0
     for a in range(0, len(fiblets), BATCH):

@@ -136,7 +136,7 @@ def excess(
     units: Array,
     allowed: Array,
 ) -> Array:
-    """Greatest ratio of a turn to what is allowed, of each of ``k`` fiblets; see `turn_kernels.excess`."""
+    """Greatest ratio of a turn to its bound, of each of ``k`` fiblets; see `turn_kernels.excess`."""
     most, _, k = decoded.shape
     columns = np.arange(k)
     to: Array = np.empty_like(decoded)

@@ -92,8 +92,8 @@ def compress_file(
         Compare all of the finished file with the source, or every so many-th streamline, about a million points in all.
         That the promise is kept is seen to while coding, in either case.
     prepare : callable, optional
-        Called with the coded set before it is written, unless it keeps every bit: what it keeps with the set, as
-        :func:`pvfiblets.regions.index_of` does, is in the file.
+        Called with the coded set before it is written, unless it keeps every bit: data added to the set, as by
+        :func:`pvfiblets.regions.index_of`, are written to the file.
     progress : bool or callable
         Show a progress bar; or call this with the name of the step and its finished share, from 0 to 1 (0 while it
         is unknown). An exception stops the work.

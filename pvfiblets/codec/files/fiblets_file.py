@@ -125,7 +125,7 @@ def make_header(fiblets: FibletSet, per_point: dict[str, Member]) -> tuple[dict[
                 "member": name("per_point", per_point[k]),
                 **({} if v.table is None else {"table": name("table", plain(stored_table(v.table)))}),
                 **{key: getattr(v, key) for key in VALUE_FACTS},
-                "mean_error": float(f"{v.mean_error:.9g}"),  # whose last digits depend on what was added up together
+                "mean_error": float(f"{v.mean_error:.9g}"),  # the order of summing changes its last digits
             }
             for k, v in fiblets.per_point.items()
         },

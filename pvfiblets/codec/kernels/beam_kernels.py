@@ -2,8 +2,8 @@
 
 Greedy closed loop takes the code nearest to the next point; where that leaves the frame pointing badly, the point after
 pays for it. Here several partial codings are kept at once. Each is extended by the nearest code and by that code's
-nearest neighbours, and those with the least sum of squared errors go on. Several cap angles are tried, and the result
-is the one with the least sum of squares among those within the promise.
+nearest neighbours, and the ones with the least sum of squared errors go on. Several cap angles are tried; the result
+is the one with the least sum of squares among the codings within the error bound.
 """
 
 from __future__ import annotations

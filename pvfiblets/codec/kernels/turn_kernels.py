@@ -123,7 +123,7 @@ def cut(points: Any, offsets: Any, bound: Any, per: Any, at: Any, slots: Any) ->
 
 @kernel
 def excess(units: Any, a: int, b: int, decoded: Any, following: Any, leads: bool) -> float:
-    """Greatest ratio of a turn to what is allowed, over the segments that lead on from the fiblet ``decoded[a:b]``.
+    """Greatest ratio of a turn to its bound, over the segments that lead on from the fiblet ``decoded[a:b]``.
 
     ``leads``: a segment leads from the last of them to ``following``.
     """

@@ -94,7 +94,7 @@ class PictureEffects(PicturePasses):
         self._corner = corner
 
     def take_in(self, things: Iterable[SeenThrough]) -> None:
-        """Replace the copy's depths with those of see-through things, where they are nearer."""
+        """Give the copy the depths of see-through things, where these are nearer."""
         with self._plain_state():
             target = self._framebuffer(("depths",))
             self._ctx.enable_only(moderngl.BLEND)

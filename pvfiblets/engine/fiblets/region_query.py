@@ -1,6 +1,6 @@
 """Which streamlines pass a region, asked on the GPU of the records that are drawn.
 
-The GPU classifies fiblets by their capsules and decodes those that a capsule leaves undecided, in float32 with a
+The GPU classifies fiblets by their capsules and decodes the undecided ones, in float32 with a
 margin (``shaders/fiblets/compute/query.comp``). Streamlines that the margin leaves open are settled from the same
 records in float64 by :func:`pvfiblets.query.selection.passing.region_flags`: the answers are its own, bit for bit.
 """

@@ -19,7 +19,7 @@ def layer(found: Any) -> dict[str, Any]:
 
 
 def groups(described: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Return properties under their headings; headings of which nothing matters now are left out."""
+    """Return properties under their headings; headings without a relevant property are left out."""
     found: dict[str, list[dict[str, Any]]] = {}
     for item in described:
         found.setdefault(item["group"], []).append(control(item))

@@ -98,7 +98,7 @@ class SceneFilters:
         return {"kind": kind}
 
     def _checked_shape(self, shape: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the shape of a cut, checked by making a region of it, even if there is nothing to cut yet."""
+        """Return the shape of a cut, checked by making a region of it, even before there is anything to cut."""
         found = check_shape(shape, "cut", CUTTING)
         make_region(found, self.scene.store.shape)
         return found

@@ -132,7 +132,7 @@ def bar_arguments(place: Place, size: tuple[int, int], background: str) -> dict[
 
 
 def bar_calls(title: str, place: Place) -> dict[str, tuple[Any, ...]]:
-    """Return calls of a bar's methods for which ``plotter.add_scalar_bar`` has no argument: names, and arguments."""
+    """Return the calls of a bar's methods that ``plotter.add_scalar_bar`` has no argument for: names, and arguments."""
     calls: dict[str, tuple[Any, ...]] = {
         "SetBarRatio": (round(place.ratio, 4),),
         "SetVerticalTitleSeparation": (place.gap,),

@@ -18,7 +18,7 @@ vec3 unit_or_none(vec3 d) {
     return size > 0.0 ? normalize(d / size) : vec3(0.0);
 }
 
-// Of two unit vectors, either of which may be zero.
+// Of two unit vectors; either may be zero.
 vec3 mean_direction(vec3 before, vec3 after) {
     vec3 sum = before + after;
     float square = dot(sum, sum);

@@ -151,7 +151,7 @@ class LinesBehind(Drawable[FibletStyle]):
         return SliceDistances.of(view, origin, origin + top * scale)
 
     def gathers_words(self, view: View, style: FibletStyle, nearest: GBuffer) -> bool:
-        """Return whether sums of such a picture are words, not floats."""
+        """Return whether this picture's sums are words, not floats."""
         return self._with_gatherer().gathers_words(self._request(view, style, nearest))
 
     def gather_into(
@@ -209,7 +209,7 @@ class LinesBehind(Drawable[FibletStyle]):
 
     @contextmanager
     def _noting(self) -> Iterator[None]:
-        """Report the features of pictures drawn in this scope with those of the main picture."""
+        """Report the features of pictures drawn in this scope as the main picture's."""
         with self._programs.noting() as features:
             yield
         self._features_behind |= features

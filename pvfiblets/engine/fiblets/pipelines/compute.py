@@ -5,7 +5,7 @@ pass           task
 =============  =================================================================================================
 clear          empties depth and owners
 cull           plans the drawing: which fiblets can show, which were visible last time, which others will probably show
-               by the last picture's depth, of which class they are
+               by the last picture's depth, and the class of each
 visible        draws the depth of the fiblets visible last time with imageAtomicMin; marks the ones that came nearest
 predicted      draws the depth of fiblets that will probably show
 pyramid        makes the depth so far into a pyramid

@@ -1,4 +1,4 @@
-"""Numbers that the pipelines' sources and modules share, in a place that loads none of these modules."""
+"""Numbers that the pipelines' sources and modules share, in a module that imports no pipeline."""
 
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ pipeline         how a fiblet is decoded
 ===============  ==============================================================================================
 
 The stages before and after are the same: a task work group tests :data:`TASK_FIBLETS` fiblets and passes the remaining
-ones to the mesh stage; fragments are those of the other raster pipelines. Data come from the storage buffers that the
+ones to the mesh stage; fragments are as in the other raster pipelines. Data come from the storage buffers that the
 compute pipeline reads, so that nothing else is uploaded.
 
 Drawing calls are limited to GL_MAX_DRAW_MESH_TASKS_COUNT_NV work groups, at least 65,535, which is also the least that
