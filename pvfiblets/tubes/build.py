@@ -49,8 +49,8 @@ def as_spline_tubes(
         `RADIUS_NAMES`, else 0.5 % of the diagonal of the points' bounds (1 mm where all points are at one place).
     tangents : str or array_like, optional
         ``(n_points, 3)`` derivatives of the position, or the name of this array in the point data. Points of
-        several lines then stay one node. By default they are computed for each line by itself, so that such points become a node
-        for each line.
+        several lines then stay one node. By default they are computed for each line by itself, so that such points
+        become a node for each line.
     radius_slopes : float, str or array_like, optional
         ``(n_points,)`` derivatives of the radius. Computed by default.
     scalars : str, array_like or image, optional
