@@ -145,6 +145,7 @@ class FibletSettings(Settings):
     )  # fmt: skip
     style: Setting[str] = Setting(
         STYLES[0],
+        "Appearance of lines.\n\n"
         "``'surface'``: lines in their colours. ``'halo'``: black lines in white halos. ``'ink'``: black on a\n"
         "light background and white on a dark one, in halos of the background's colour. ``'density'``: sums\n"
         "of overlapping lines.\n\n"
