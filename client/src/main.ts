@@ -102,6 +102,6 @@ async function start(): Promise<void> {
   }
 }
 
-// The served page, which has no scene of its own, gets its renderer from here (pvfiblets/web/client/there.js).
+// The served page, which has no scene of its own, gets its renderer from here (pvfiblets/web/client/browser_renderer.js).
 (window as unknown as { pvfibletsPage: unknown }).pvfibletsPage = { Renderer, attachMouse, readArchive };
 if (document.getElementById("scene")) start().catch(fail);

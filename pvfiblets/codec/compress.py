@@ -62,7 +62,7 @@ class ValueBounds:
                 what = f"max_value_error of {name!r}" if isinstance(self.most, Mapping) else name
                 raise ValueError(f"{what} is {most!r}; a positive number in the array's unit is needed")
 
-    def of(self, name: str) -> float | None:
+    def bound_of(self, name: str) -> float | None:
         """Return the bound of an array, or of the one that a column is of."""
         if not isinstance(self.most, Mapping):
             return self.most
@@ -309,4 +309,5 @@ def value_coders(
     found: Survey, names: Iterable[str], how: ValueBounds, *, exact: bool = False
 ) -> dict[str, ValueCoder]:
     """Return how the columns of per-point arrays are coded, by what a survey has found of them."""
-    return {name: found.values.get(name, ValueSurvey()).coder(how.bits, how.of(name), exact=exact) for name in names}
+    surveys = {name: found.values.get(name, ValueSurvey()) for name in names}
+    return {name: one.coder(how.bits, how.bound_of(name), exact=exact) for name, one in surveys.items()}

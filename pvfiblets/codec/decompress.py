@@ -274,7 +274,7 @@ def _values(values: PointValues, rows: slice, long: bool) -> npt.NDArray[Any]:
 
 def _iterate_out_of_order(fiblets: FibletSet, max_points: int, kind: np.dtype[Any]) -> Iterator[Streamlines]:
     """Streamlines in their own order, gathered from wherever they are coded."""
-    places = StreamlineRanges.of(fiblets)
+    places = StreamlineRanges.from_fiblets(fiblets)
     for a, b in blocks(np.concatenate([[0], np.cumsum(places.points)]), max_points):
         meta = {
             "affine": fiblets.affine,

@@ -229,7 +229,7 @@ class ValueSurvey:
             return ValueCoder(_full(self._distinct.astype(kind), 16), len(self._distinct), kind, lo, hi, reference)
         if kind.kind != "f" or exact:
             return ValueCoder(None, 0, kind, lo, hi, reference)
-        scale = _Scale.of(sample.astype(np.float64), lo, hi, max_error)
+        scale = _Scale.from_sample(sample.astype(np.float64), lo, hi, max_error)
         for size in (8, 16) if bits == 8 else (16,):
             # A table of a small set shall not be larger than its codes.
             entries = self._entries(scale, (1 << size) - 1, 255 if size == 8 else max(self._n // 8, 255))
@@ -283,7 +283,7 @@ class _Scale:
     ratio: float  # of a step, below ``width / ratio``; 0 where logarithms do not count
 
     @classmethod
-    def of(cls, sample: Floats, lo: float, hi: float, max_error: float | None) -> _Scale:
+    def from_sample(cls, sample: Floats, lo: float, hi: float, max_error: float | None) -> _Scale:
         if max_error is not None:
             return cls(lo, hi, 2.0 * max_error, 0.0)
         low, high = np.quantile(sample, [0.01, 0.99]) if len(sample) else (lo, hi)

@@ -36,7 +36,7 @@ class StreamlineRanges:
     points: Ints
 
     @classmethod
-    def of(cls, fiblets: FibletSet) -> StreamlineRanges:
+    def from_fiblets(cls, fiblets: FibletSet) -> StreamlineRanges:
         """Those of all streamlines."""
         if in_parts(fiblets):
             return cls._of_parts(fiblets)
@@ -54,7 +54,7 @@ class StreamlineRanges:
         whole = cls(*(np.zeros(fiblets.n_streamlines, np.int64) for _ in range(4)))
         fiblet = point = 0
         for part, ids in stored_parts(fiblets):
-            own, there = cls.of(part), np.asarray(ids)
+            own, there = cls.from_fiblets(part), np.asarray(ids)
             filled = there[own.fiblets > 0]
             whole.fiblet[filled] = own.fiblet[own.fiblets > 0] + fiblet
             whole.point[filled] = own.point[own.fiblets > 0] + point
@@ -70,7 +70,7 @@ class StreamlineRanges:
 def ranges_of(fiblets: FibletSet, chosen: Ints) -> StreamlineRanges:
     """Ranges of chosen streamlines; a few are found without reading the records of the others."""
     if len(chosen) > FEW:
-        return StreamlineRanges.of(fiblets).at(chosen)
+        return StreamlineRanges.from_fiblets(fiblets).at(chosen)
     return StreamlineRanges(*(np.array([_find(fiblets, int(i)) for i in chosen], np.int64).reshape(-1, 4).T))
 
 
@@ -99,7 +99,7 @@ def _find(fiblets: FibletSet, streamline: int) -> tuple[int, int, int, int]:
 
 def coded_rows(fiblets: FibletSet) -> Ints:
     """Index among all points, in the order of the streamlines, of each point as coded: ``(n_points,)`` int64."""
-    places = StreamlineRanges.of(fiblets)
+    places = StreamlineRanges.from_fiblets(fiblets)
     starts = np.cumsum(places.points) - places.points
     order = np.argsort(places.point[places.points > 0], kind="stable")
     filled = np.flatnonzero(places.points > 0)[order]

@@ -210,7 +210,7 @@ class FibletMapper(CutMapper[EngineOptions]):
             return thinned_engine(context, slot, self._drawn, self._filtering, self._make)
         return engine
 
-    def draw_ahead(self, renderer: vtkRenderer, sample_camera: Any = None) -> Iterator[None]:
+    def draw_in_pieces(self, renderer: vtkRenderer, sample_camera: Any = None) -> Iterator[None]:
         """Draw, piece by piece, what the next frame of a renderer needs; the frame then finds it drawn.
 
         Yields after each piece (`pvfiblets.engine.drawable.Drawable.render_in_pieces`). Others may draw in between, and

@@ -1,4 +1,4 @@
-"""Some of a large set's streamlines, for frames of windows that are in a hurry (`pvfiblets.mappers.scene.hurry`).
+"""Some of a large set's streamlines, for frames of reduced detail (`pvfiblets.mappers.scene.reduce_detail`).
 
 Where lines hide each other, most of a set is decoded and tested in vain, and fewer pixels do not help. An even share of
 the streamlines, always the same one, lies on the GPU beside the set from the first such frame on. What is filtered,

@@ -286,7 +286,7 @@ class VolumeMapper(CutMapper[Options]):
 
         casting = self._casting
         if self.coarser is not None and in_motion(renderer):
-            casting = self.coarser.of(casting)
+            casting = self.coarser.applied_to(casting)
         shone = self.shaded if casting.mode == "composite" else casting.layered and self.lit_surfaces
         lit = shone and self.actor is not None
         return VolumeStyle(casting=casting, shading=shading_of(renderer, self.actor) if lit else None)

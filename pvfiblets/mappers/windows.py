@@ -76,7 +76,7 @@ class Slot:
     effects : dict
         Name of an effect to its class and its GPU resources (`pvfiblets.mappers.shader_effects`).
     thinned : dict
-        Share of the streamlines to a renderer of these, for frames in a hurry (`pvfiblets.mappers.thinned`).
+        Share of the streamlines to a renderer of these, for frames of reduced detail (`pvfiblets.mappers.thinned`).
     """
 
     def __init__(self, mapper: Any) -> None:

@@ -27,7 +27,7 @@ from pvfiblets.plotting.settings import Given, Setting, Settings
 from pvfiblets.plotting.settings import arguments as settings_of_call
 from pvfiblets.plotting.shared_settings import Common
 from pvfiblets.plotting.source_changes import SourceChanges
-from pvfiblets.plotting.words_of_add_mesh import why_not
+from pvfiblets.plotting.unsupported_arguments import why_not
 
 
 class Registered(Protocol):

@@ -30,7 +30,7 @@ class _Written:
     annotations: dict[float, str]
 
     @classmethod
-    def of(cls, table: pv.LookupTable) -> _Written:
+    def from_table(cls, table: pv.LookupTable) -> _Written:
         low, high = table.scalar_range
         colours = table.nan_color, table.below_range_color, table.above_range_color
         words = {
@@ -63,7 +63,7 @@ class LinkedTable:
 
     def note(self) -> None:
         """Remember what the settings have made of the table."""
-        self._written, self.touched = _Written.of(self._table), False
+        self._written, self.touched = _Written.from_table(self._table), False
 
     def settings(self) -> dict[str, Any]:
         """Return what others have written since, as settings of colours."""
@@ -72,7 +72,7 @@ class LinkedTable:
         before, self.touched = self._written, False
         if before is None:
             return {}
-        now, found = _Written.of(self._table), dict[str, Any]()
+        now, found = _Written.from_table(self._table), dict[str, Any]()
         for name, old, new in (
             ("clim", before.clim, now.clim),
             ("log_scale", before.log_scale, now.log_scale),

@@ -44,12 +44,12 @@ class Camera:
     @property
     def world_to_camera(self) -> Array:
         """(4, 4): x to the right, y up, z towards the viewer, the eye at 0."""
-        return Lens.of(self).world_to_camera
+        return Lens.from_camera(self).world_to_camera
 
     @property
     def model_view_projection(self) -> Array:
         """(4, 4) data coordinates to OpenGL clip coordinates."""
-        return Lens.of(self).model_view_projection
+        return Lens.from_camera(self).model_view_projection
 
     def aim(self, plotter: Any) -> None:
         """Make a plotter look through this camera."""
@@ -106,7 +106,7 @@ class Lens:
     far: float
 
     @classmethod
-    def of(cls, camera: Camera) -> Lens:
+    def from_camera(cls, camera: Camera) -> Lens:
         """Return the lens of an orbit's camera."""
         slant = float(np.tan(np.radians(VERTICAL_ANGLE / 2)))
         return cls(camera.size, camera.eye, camera.backwards, slant, camera.near, camera.far)

@@ -173,7 +173,7 @@ def limited_to() -> int | None:
 
 
 def taken() -> int:
-    """Return how much of it this process has."""
+    """Return the bytes that this process has allocated, which the limit counts."""
     text = Path("/proc/self/status").read_text(encoding="ascii", errors="replace")
     match = re.search(r"^VmData:\s+(\d+) kB$", text, re.MULTILINE)
     return 0 if match is None else 1024 * int(match[1])

@@ -52,7 +52,7 @@ logger = logging.getLogger("pvfiblets.web")
 CLIENT = Path(__file__).with_name("client")
 CLIENT_URL = "__pvfiblets"
 SCRIPTS = ("pvfiblets.js", "fields.js", "regions.js", "slices.js", "painting.js", "matrix.js", "connection.js",
-           "distances.js", "there.js")  # fmt: skip
+           "distances.js", "browser_renderer.js")  # fmt: skip
 
 
 class Explorer(TrameApp):

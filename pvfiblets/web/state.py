@@ -89,7 +89,7 @@ class Page:
     )
     info: list[Record] = field(default_factory=list)
     frame: str = ""
-    there: Record = field(default_factory=dict)  # the scene, where the browser draws it (client/there.js)
+    there: Record = field(default_factory=dict)  # the scene, where the browser draws it (client/browser_renderer.js)
     there_camera: Record = field(default_factory=dict)  # where from
     drawing: str = ""  # why the server draws
 

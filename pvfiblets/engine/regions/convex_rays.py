@@ -90,7 +90,7 @@ class RegionSignature:
     program: tuple[int, ...]
 
     @classmethod
-    def of(cls, region: Region) -> RegionSignature:
+    def from_region(cls, region: Region) -> RegionSignature:
         """Return that of a region."""
         return cls(tuple(leaf.kind for leaf in region.leaves), region.program)
 

@@ -122,7 +122,7 @@ class RegionIntervals:
         if self._block is None:
             self._block = self._ctx.buffer(reserve=RAYS_BLOCK.nbytes)
         self._block.write(block.tobytes())
-        form = RegionSignature.of(region)
+        form = RegionSignature.from_region(region)
         meshes = tuple(id(cast("Surface", leaf).mesh) for leaf in region.leaves if leaf.kind == SURFACE)
         if (form, meshes) != self._form:  # a simpler one needs no more than it does
             self._form = form, meshes

@@ -76,7 +76,7 @@ class _Found(NamedTuple):
     shared: bool
 
     @classmethod
-    def of(cls, said: npt.NDArray[np.float32]) -> _Found:
+    def from_squares(cls, said: npt.NDArray[np.float32]) -> _Found:
         """Read it from what the squares say, ``(2, n)``."""
         faces, crossings = said
         if faces.max() > MOST:
@@ -251,7 +251,7 @@ class SurfaceLayers:
         """Read the results of earlier frames."""
         arrived, known = self._reads[k].arrived(), self._known[k]
         if arrived is not None and known is not None:
-            found = _Found.of(arrived[1].reshape(-1, 2).T)
+            found = _Found.from_squares(arrived[1].reshape(-1, 2).T)
             layers, crossings = max(known.layers, found.layers), max(known.crossings, found.crossings)
             self._known[k] = _Found(layers, crossings, known.shared or found.shared)
 
@@ -336,7 +336,7 @@ class SurfaceLayers:
     def _inspect(self, rectangle: Rectangle, first: int, count: int) -> _Found:
         """Return what a picture's layers hold."""
         self._ask(rectangle, first, count)
-        return _Found.of(self._squares.ask(_INSPECT, rectangle).T)
+        return _Found.from_squares(self._squares.ask(_INSPECT, rectangle).T)
 
     def _ask(self, rectangle: Rectangle, first: int, count: int) -> None:
         """Get ready to ask that."""

@@ -24,7 +24,7 @@ from pvfiblets.plotting.fiblets.slabs import FibletSlab
 from pvfiblets.plotting.region_sources import as_region
 from pvfiblets.plotting.setting_places import OPTIONS
 from pvfiblets.plotting.settings import Given, Setting
-from pvfiblets.plotting.words_of_add_mesh import why_not
+from pvfiblets.plotting.unsupported_arguments import why_not
 
 if TYPE_CHECKING:
     from os import PathLike

@@ -123,7 +123,7 @@ def point_values(fiblets: Any, ids: np.ndarray, name: str) -> tuple[np.ndarray, 
         return None
     if measured.kind != "point":
         return None
-    where = StreamlineRanges.of(part)
+    where = StreamlineRanges.from_fiblets(part)
     offsets = np.concatenate([[0], np.cumsum(where.points)])
     rows = np.arange(offsets[-1]) + np.repeat(where.point - offsets[:-1], where.points)
     return np.asarray(measured.array(), np.float64)[rows], offsets

@@ -30,7 +30,7 @@ from pvfiblets.plotting.volumes.opacity import (
     surface_values,
     value_limits,
 )
-from pvfiblets.plotting.volumes.property_words import PropertyWords
+from pvfiblets.plotting.volumes.property_attributes import PropertyAttributes
 from pvfiblets.plotting.volumes.settings import CASTING, CHOSEN, LIGHT, SURFACE, VolumeSettings
 from pvfiblets.volumes import RaycastVolume, Transfer, smoothed
 from pvfiblets.volumes.interactive_quality import InteractiveQuality
@@ -101,7 +101,7 @@ class VolumeActor(VolumeSettings, ClippedActor):
 
     _DATA = "volume"
     _mapper: PlottedRaycast
-    _words: PropertyWords | None = None
+    _words: PropertyAttributes | None = None
     _alpha_written: Any = None
 
     def __init__(
@@ -133,7 +133,7 @@ class VolumeActor(VolumeSettings, ClippedActor):
         mapper.shaded = bool(chosen["shade"])
         self._look()
         self._take(chosen)
-        self._words = PropertyWords(self)
+        self._words = PropertyAttributes(self)
 
     def __repr__(self) -> str:
         size = " x ".join(map(str, self._volume.shape))

@@ -172,7 +172,7 @@ class RaycastVolumesComponent(ActorRegistry["VolumeActor"]):
         (0.4,)
         """
         from pvfiblets.plotting.volumes.actor import VolumeActor
-        from pvfiblets.plotting.volumes.property_words import tell_given
+        from pvfiblets.plotting.volumes.property_attributes import tell_given
         from pvfiblets.volumes.raycast_options import MODES
         from pvfiblets.volumes.sources import as_raycast_volume
 

@@ -135,7 +135,7 @@ class Distance:
         object.__setattr__(self, "what", what)
         object.__setattr__(self, "per", per)
 
-    def of(self, points: npt.NDArray[Any]) -> Floats:
+    def at_points(self, points: npt.NDArray[Any]) -> Floats:
         """Distances of positions ``(n, 3)``: ``(n,)`` float64, mm."""
         if isinstance(self.what, Region):
             return self.what.distance(points)
@@ -371,12 +371,12 @@ def _distance(fiblets: FibletSet, what: Distance) -> Values:
 
     def least(chunk: Streamlines) -> Floats:
         out = np.empty(len(chunk))
-        kernels.least(what.of(chunk.points), chunk.offsets, out)
+        kernels.least(what.at_points(chunk.points), chunk.offsets, out)
         return out
 
     values: npt.NDArray[Any]
     if what.per == "point":
-        values = _per_point(fiblets, lambda _, chunk: what.of(chunk.points))
+        values = _per_point(fiblets, lambda _, chunk: what.at_points(chunk.points))
     else:
         values = _per_streamline(fiblets, least, np.nan)
     return Values(what.per, values, "distance", "mm")

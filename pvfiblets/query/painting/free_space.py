@@ -32,7 +32,7 @@ class FreeSpace(NamedTuple):
     first: npt.NDArray[np.int64]
 
     @classmethod
-    def of(cls, bits: npt.NDArray[np.uint8], bit: int, box: npt.ArrayLike, *, beyond: bool = False) -> FreeSpace:
+    def from_bits(cls, bits: npt.NDArray[np.uint8], bit: int, box: npt.ArrayLike, *, beyond: bool = False) -> FreeSpace:
         """Return it of the voxels within a box that have a bit, or of all others."""
         low, high = np.asarray(box, float).reshape(2, 3)
         if not (low < high).all():

@@ -119,11 +119,11 @@ class LiveRegion:
         in_mm = _in_mm(changed, grid)
         near = index.near(*in_mm)
         whole = self._region_about(near, volume) if asked == coarse.REMOVED else changed
-        within = about_changed = about_whole = FreeSpace.of(volume, kernels.CHANGED, changed)
+        within = about_changed = about_whole = FreeSpace.from_bits(volume, kernels.CHANGED, changed)
         if asked == coarse.REMOVED:
-            about_whole = FreeSpace.of(volume, kernels.HERE, whole)
+            about_whole = FreeSpace.from_bits(volume, kernels.HERE, whole)
         elif asked == coarse.ADDED:
-            within = FreeSpace.of(volume, kernels.HERE, changed, beyond=True)
+            within = FreeSpace.from_bits(volume, kernels.HERE, changed, beyond=True)
         per, rows, bits = CHUNK // LEAF, np.linalg.norm(grid.linear, axis=1), np.empty(len(near), np.uint8)
         coarse.close_parts(near, index.leaves, index.parts, grid.linear, grid.corner, rows, changed, about_changed,
                            bits)  # fmt: skip

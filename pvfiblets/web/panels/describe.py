@@ -79,7 +79,7 @@ class Charts:
         self._scene = scene
         self._kept: dict[tuple[Any, ...], tuple[str, list[float]]] = {}
 
-    def of(self, layer_id: str, name: str) -> tuple[str, list[float]]:
+    def chart_of(self, layer_id: str, name: str) -> tuple[str, list[float]]:
         """Return the chart of a layer's values, and between which they lie."""
         found = self._scene.layer(layer_id)
         array = found.filters.images.get(name, name)
@@ -96,7 +96,7 @@ class Charts:
             return self._chart((volume, "colours", ""), lambda: self._scene.queries.histogram(layer_id))[0]
         if found.kind in ("volume", "image") and names:
             name = names[0]
-        return self.of(layer_id, name)[0] if name in names else ""
+        return self.chart_of(layer_id, name)[0] if name in names else ""
 
     def _chart(self, key: tuple[Any, ...], count: Callable[[], dict[str, Any]]) -> tuple[str, list[float]]:
         if key not in self._kept:

@@ -125,7 +125,7 @@ class ExportActions(Actions):
                 return done
 
             try:
-                done = await app.files.beside(name, work, "writing")
+                done = await app.files.run_in_background(name, work, "writing")
             except Cancelled:
                 app.say(f"{name} was not written: cancelled.")
                 return

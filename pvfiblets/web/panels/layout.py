@@ -319,7 +319,7 @@ def _view(app: Any) -> None:
         )
         area.add_view_handler(app.stream)
         with html.Div(classes="pv-there-place", style=(f"({OVER_3D})",)):
-            html.Canvas(  # of client/there.js
+            html.Canvas(  # of client/browser_renderer.js
                 id="pv-there", classes="pv-there", tabindex="0", role="img", style="visibility: hidden",
                 aria_label="The scene. Arrow keys turn it, plus and minus zoom, Shift with arrows moves it.",
             )  # fmt: skip

@@ -109,7 +109,7 @@ class SliceActions(Actions):
         source = layer.source
         scene = app.scene
         work = lambda *_: scene.images.with_names(scene.files.load(source, "image"))  # noqa: E731
-        loaded = await app.files.beside(layer.name, work, "reading", cancellable=False)
+        loaded = await app.files.run_in_background(layer.name, work, "reading", cancellable=False)
         found = app.scene.add(loaded, name=layer.name)
         app.scene.show(layer.id, False)
         if not app.page.chosen or app.page.chosen == layer.id:
@@ -129,7 +129,7 @@ class SliceActions(Actions):
     async def _name_labels(self, path: str) -> None:
         app = self._app
         chosen = app.page.chosen
-        loaded = await app.files.beside(
+        loaded = await app.files.run_in_background(
             Path(path).name, lambda *_: app.scene.images.load_labels(chosen, path), "reading", cancellable=False
         )
         app.scene.images.name_labels(chosen, loaded)

@@ -397,7 +397,7 @@ class Scene:
         chosen = layer.selected.array()
         if layer.source.ids is not None:
             chosen = layer.source.ids.array()[chosen]
-        source = replace(layer.source, ids=Ids.of(chosen))
+        source = replace(layer.source, ids=Ids.from_numbers(chosen))
         settings: dict[str, Any] = dict(layer.settings)
         for key, value in (("tube_radius", None), ("opacity", 1.0)):
             settings = layers.changed(layer.kind, settings, key, value, self.data(layer).data)

@@ -70,7 +70,7 @@ class Ids:
         object.__setattr__(self, "runs", runs)
 
     @classmethod
-    def of(cls, ids: Any) -> Ids:
+    def from_numbers(cls, ids: Any) -> Ids:
         """Make them of numbers in any order."""
         return cls(runs_of(np.unique(np.asarray(ids, np.int64))))
 

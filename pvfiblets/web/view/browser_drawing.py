@@ -1,7 +1,7 @@
 """Who draws: the server, which sends pictures, or the browser, with the script of pages (`pvfiblets.page`).
 
-A browser reports its abilities once (client/there.js). Before every picture this module decides whether one is needed:
-a browser that draws gets the changes of the scene and the camera instead, and reports where it has moved
+A browser reports its abilities once (client/browser_renderer.js). Before every picture this module decides whether one
+is needed: a browser that draws gets the changes of the scene and the camera instead, and reports where it has moved
 the camera. Panes of slices beside the 3-D view are pictures of the server's, without that view. The
 server's own plotter stays in step, so that picking, sessions, scripts and saved pictures know of it.
 """

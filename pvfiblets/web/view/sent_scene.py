@@ -170,7 +170,7 @@ def _readable(unable: str, scene: Scene) -> str:
 
 
 def _bars(scene: Scene) -> list[dict[str, Any]]:
-    """Return the colour bars, as client/there.js draws them."""
+    """Return the colour bars, as client/browser_renderer.js draws them."""
     import pyvista as pv
 
     found = []

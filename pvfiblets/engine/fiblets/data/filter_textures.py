@@ -214,7 +214,7 @@ def _packed(mask: npt.NDArray[np.bool_]) -> Words:
 def points_of_part(words: Words, whole: FibletSet, ids: npt.NDArray[np.int64]) -> Words:
     """Return the bits of the points of some streamlines, one after another in that order."""
     bits = np.unpackbits(words.view(np.uint8), bitorder="little")
-    places = StreamlineRanges.of(whole).at(ids)
+    places = StreamlineRanges.from_fiblets(whole).at(ids)
     ends = np.cumsum(places.points)
     rows = np.repeat(places.point - (ends - places.points), places.points) + np.arange(ends[-1] if len(ends) else 0)
     return _packed(bits[rows].astype(np.bool_))

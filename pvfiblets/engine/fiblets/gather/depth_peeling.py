@@ -216,7 +216,7 @@ class Layers:
         self._held: LayeredBuffer | None = None
         self._drawn: tuple[int, int] | None = None
 
-    def of(
+    def render(
         self, nearest: GBuffer, count: int, view: View, style: FibletStyle, make_job: Callable[[], DrawRequest]
     ) -> LayeredBuffer:
         """Return the layers of a picture, drawn unless they are there."""

@@ -51,7 +51,7 @@ class Gatherer:
         self._asked: Any = None
         self._later = DelayedRead(ctx, gl)
 
-    def of(
+    def render(
         self,
         nearest: GBuffer,
         paint: Paint,
@@ -73,7 +73,7 @@ class Gatherer:
         self._made = key
         return held
 
-    def of_parts(
+    def render_parts(
         self,
         nearest: GBuffer,
         paint: Paint,

@@ -71,7 +71,7 @@ class SliceDistances:
     far: float
 
     @classmethod
-    def of(cls, view: View, low: npt.ArrayLike, high: npt.ArrayLike) -> SliceDistances:
+    def from_box(cls, view: View, low: npt.ArrayLike, high: npt.ArrayLike) -> SliceDistances:
         """Find them for a view of data in a box.
 
         Parameters

@@ -83,7 +83,7 @@ class LinesBehind(Drawable[FibletStyle]):
         if self._layers is None:
             self._layers = self._keep(Layers(self._ctx, self._gl, self._programs, self._make_stage), "layers")
         with self._noting():
-            return self._layers.of(nearest, count, view, style, lambda: self._request(view, style, nearest))
+            return self._layers.render(nearest, count, view, style, lambda: self._request(view, style, nearest))
 
     def drop_layers(self) -> None:
         """Give back what :meth:`render_layers` keeps; twice is harmless."""
@@ -133,7 +133,7 @@ class LinesBehind(Drawable[FibletStyle]):
         nearest = self.render(view, style)
         gatherer = self._with_gatherer()
         with self._noting():
-            return gatherer.of(
+            return gatherer.render(
                 nearest,
                 paint or Paint(),
                 SLICES if sliced else 1,
@@ -148,7 +148,7 @@ class LinesBehind(Drawable[FibletStyle]):
         from .gathering import SliceDistances
 
         origin, scale, top = self._shared.place
-        return SliceDistances.of(view, origin, origin + top * scale)
+        return SliceDistances.from_box(view, origin, origin + top * scale)
 
     def gathers_words(self, view: View, style: FibletStyle, nearest: GBuffer) -> bool:
         """Return whether this picture's sums are words, not floats."""

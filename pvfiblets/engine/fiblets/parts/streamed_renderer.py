@@ -281,7 +281,7 @@ class StreamedRenderer(NearestOnly):
                 part.gather_into(held, view, style, asked, nearest, hides)
                 part.forget_picture()  # the next part draws into the same textures
 
-        return self._gatherer.of_parts(
+        return self._gatherer.render_parts(
             nearest, asked, SLICES if sliced else 1, first.slice_distances(view),
             lambda: first.gathers_words(view, style, nearest), add, (state,) if whole else None,
         )  # fmt: skip

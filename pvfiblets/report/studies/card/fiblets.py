@@ -137,7 +137,7 @@ def _lines(
     def judge(last: Any) -> Judged:
         numbers = np.flatnonzero(chosen) if half else np.arange(len(about.lines))
         along = getattr(about, values or "arc_length")
-        samples = LineSamples.of([about.lines[i] for i in numbers], [along[i] for i in numbers],
+        samples = LineSamples.from_lines([about.lines[i] for i in numbers], [along[i] for i in numbers],
                                  path[PICTURES - 1].model_view_projection, SIZE, keep)  # fmt: skip
         samples = replace(samples, streamline=numbers[samples.streamline])
         picture = shown(last)
@@ -222,7 +222,7 @@ def _layers(ctx: Any, pipeline: str) -> Scene:
 
     def judge(last: Any) -> Judged:
         about, width, height = brain(), *SIZE
-        samples = LineSamples.of(about.lines, about.arc_length, path[PICTURES - 1].model_view_projection, SIZE)
+        samples = LineSamples.from_lines(about.lines, about.arc_length, path[PICTURES - 1].model_view_projection, SIZE)
         keys = np.frombuffer(last.depth.read(), np.uint32).reshape(LAYERS, height, width)
         ids = np.frombuffer(last.ids.read(), np.uint32).reshape(LAYERS, height, width, 2)
         wrong = np.zeros((height, width), bool)

@@ -69,7 +69,7 @@ class LineSamples:
     value: Array  # `(n,)` numbers that run evenly along segments
 
     @classmethod
-    def of(
+    def from_lines(
         cls,
         lines: Sequence[Array],
         values: Sequence[Array],

@@ -58,7 +58,7 @@ class Truth:
     forwards: Array  # `(n,)` mm forwards by mm of ray
 
     @classmethod
-    def of(cls, tubes: SplineTubes, lens: Lens, pixels: npt.NDArray[np.int64] | None = None) -> Truth:
+    def from_tubes(cls, tubes: SplineTubes, lens: Lens, pixels: npt.NDArray[np.int64] | None = None) -> Truth:
         """Meet the rays of pixels, all by default, with all halves, in float64."""
         halves = curves.controls(tubes).reshape(-1, 3, 4)
         pixels = np.arange(lens.size[0] * lens.size[1]) if pixels is None else pixels

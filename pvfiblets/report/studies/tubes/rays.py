@@ -160,7 +160,7 @@ def of_set(tubes: Any, count: int, size: tuple[int, int], seed: int = 0) -> Rays
     rng = np.random.default_rng([seed, 7])
     parts = []
     for view in ("far", "close"):
-        lens = Lens.of(orbit(tubes, view, 4, size)[0])
+        lens = Lens.from_camera(orbit(tubes, view, 4, size)[0])
         chosen = rng.integers(0, tubes.n_segments, 40 * count)
         middle = tubes.points[tubes.segments[chosen]].mean(axis=1)
         reach = tubes.radius[tubes.segments[chosen]].max(axis=1)

@@ -44,7 +44,7 @@ def picture_sweeps(ctx: Any, options: Options) -> Iterator[Record]:
         errors: dict[str, dict[str, Figure]] = {}
         for ratio in ratios[:: 3 if options.quick else 1]:
             tubes, lens = make(ratio)
-            truth = Truth.of(tubes, lens)
+            truth = Truth.from_tubes(tubes, lens)
             by = {}
             for solver in ("auto", "bisection"):
                 drawn = CastTubes(ctx, tubes, solver)
@@ -99,7 +99,7 @@ def _helices(where: str, makers: Makers, options: Options) -> Iterator[Record]:
         if not options.allows(name):
             continue
         camera = orbit(tubes, view, 2, size)[0]
-        truth = Truth.of(tubes, Lens.of(camera))
+        truth = Truth.from_tubes(tubes, Lens.from_camera(camera))
         within = options.share()  # the reference took longer than pictures do
         yield from _measured(name, "pictures", camera, makers(tubes, size), _errors_of(truth), within)
 
@@ -122,7 +122,7 @@ def _sets(where: str, makers: Makers, options: Options) -> Iterator[Record]:
         tubes = tube_set(name, options.seed)
         for view in VIEWS:
             camera = orbit(tubes, view, 2, size)[0]
-            errors = _sampled_errors(tubes, Lens.of(camera), options)
+            errors = _sampled_errors(tubes, Lens.from_camera(camera), options)
             data = f"the set {name}, {view}{where}"
             yield from _measured(data, "sets", camera, makers(tubes, size), errors, options)
 
@@ -136,7 +136,7 @@ def _sampled_errors(tubes: SplineTubes, lens: Lens, options: Options) -> Callabl
         if not truths:
             rng = np.random.default_rng([options.seed, 1])
             count = QUICK_SAMPLE if options.quick else SAMPLE
-            truths.append(Truth.of(tubes, lens, sampled(there.reshape(lens.size[::-1]), count, rng)))
+            truths.append(Truth.from_tubes(tubes, lens, sampled(there.reshape(lens.size[::-1]), count, rng)))
         (truth,) = truths
         here, should = there[truth.pixels], truth.there
         off = truth.depth_errors(shown[truth.pixels], here)
@@ -193,8 +193,8 @@ def stored(ctx: Any, options: Options) -> Iterator[Record]:
     """Yield records of depth by its stored format, and by the distance between the near and the far plane."""
     tubes, size = helices(2), QUICK_SIZE
     far = orbit(tubes, "far", 2, size)[0]
-    lens = Lens.of(far)
-    truth = Truth.of(tubes, lens)
+    lens = Lens.from_camera(far)
+    truth = Truth.from_tubes(tubes, lens)
     drawn = CastTubes(ctx, tubes)
     names = [f"p99 at far/near {ratio:g}" for ratio in (QUICK_RANGES if options.quick else RANGES)]
     errors: dict[str, dict[str, Figure]] = {name: {} for name in ("key of 32 bits, as drawn", *FORMATS)}
@@ -203,7 +203,7 @@ def stored(ctx: Any, options: Options) -> Iterator[Record]:
             if not options.allows(f"stored depth: {name}"):
                 continue
             camera = replace(far, near=far.far / ratio)
-            seen = replace(truth, lens=Lens.of(camera))
+            seen = replace(truth, lens=Lens.from_camera(camera))
             drawn.draw(camera)
             shown = seen.errors(*drawn.visible(seen.lens))["depth p99"]
             errors["key of 32 bits, as drawn"][name] = Figure(shown, "radii")

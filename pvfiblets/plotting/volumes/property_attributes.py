@@ -16,7 +16,7 @@ from pvfiblets.plotting.volumes.settings import LIGHT, SURFACE
 if TYPE_CHECKING:
     from pvfiblets.plotting.volumes.actor import VolumeActor
 
-__all__ = ["PropertyWords", "tell_given"]
+__all__ = ["PropertyAttributes", "tell_given"]
 
 _PEAKS = "what peaks and projections show is the colour of a value, which no lamp shines on"
 _RAYS = "rays through a volume have neither lines nor points"
@@ -55,7 +55,7 @@ _WORDS = {
 }  # fmt: skip
 
 
-class PropertyWords:
+class PropertyAttributes:
     """What an actor's property said last.
 
     Parameters

@@ -17,13 +17,13 @@ if TYPE_CHECKING:
 
     Work = Callable[[Progress, Cancel], Any]
 
-__all__ = ["Beside"]
+__all__ = ["BackgroundWork"]
 
 MOST_WAITING = 16
 LATEST = 0.2  # seconds between two reports of progress
 
 
-class Beside(Actions):
+class BackgroundWork(Actions):
     """What takes long, while the page goes on."""
 
     def __init__(self, app: Any) -> None:
@@ -34,7 +34,7 @@ class Beside(Actions):
         self._waiting: list[str] = []  # for their turn, for people
         self.tell: Callable[[str], None] = lambda _: None  # called with the opened file's name, "" after it
 
-    async def beside(self, name: str, work: Work, what: str, *, cancellable: bool = True) -> Any:
+    async def run_in_background(self, name: str, work: Work, what: str, *, cancellable: bool = True) -> Any:
         """Do what takes long in a thread of its own, with progress; the page goes on.
 
         One task at a time: others wait, and the page names them.
