@@ -370,12 +370,12 @@ def has_name(source: Any, name: str) -> bool:
 
 
 def are_words(array: npt.NDArray[Any]) -> bool:
-    """Say whether an array is one of texts."""
+    """Return whether an array is one of texts."""
     return array.dtype.kind in "US" or (array.dtype.kind == "O" and _all_words(array))
 
 
 def _all_words(array: npt.NDArray[Any]) -> bool:
-    """Say whether things are texts, and some of them missing, as columns of tables have it."""
+    """Return whether things are texts, and some of them missing, as columns of tables have it."""
     kinds = {type(one) for one in array.flat}
     return kinds <= {str, np.str_, type(None)} and kinds != {type(None)}
 

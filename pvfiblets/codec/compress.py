@@ -88,7 +88,7 @@ def compress(
 
     Streamlines of (nearly) constant step take one byte a point, 22 bytes per 60 points and 4 per streamline, at a mean
     error of about a hundredth of a step; any other line is kept point for point on a lattice, at two to four bytes a
-    point. Which of the two is decided for every 60 points, so that the promise always holds.
+    point. Which of the two is decided for every 60 points, so that the error bound always holds.
 
     Sets of less than a megabyte keep every bit of their points, and so do sets that would take more bytes coded, such
     as lines of two points (:mod:`pvfiblets.codec.exact`).
@@ -102,7 +102,7 @@ def compress(
         two ends kept, and points between them where the line would otherwise be farther away than a quarter of the
         promise.
     max_error : float, optional
-        Promise in mm: no decoded point is farther from its original; of lines that are resampled, no point of one line
+        Error bound in mm: no decoded point is farther from its original; for resampled lines, no point of one line
         from the other. Default: a tenth of the median step. Where steps
         vary, or are longer than a 20th of the diagonal of the bounds, it is no more than a 4000th of that diagonal as
         seen along any of the axes: half a pixel of a full-screen view. Where units differ, such as degrees beside
@@ -221,7 +221,7 @@ def is_plain(*choices: Any) -> bool:
 
 
 def check_exact(exact: bool | None, step: float | str, order: str, max_error: float | None) -> None:
-    """Refuse what would change points that are to be kept as they are, and a promise that means nothing of them."""
+    """Refuse arguments that would change exact points, and an error bound for them."""
     if not any(exact is known for known in (None, True, False)):
         raise ValueError(f"exact is {exact!r}; True, False or None is needed")
     if exact and max_error is not None:

@@ -41,7 +41,7 @@ STATES: dict[Work, State] = {"coding": State(), "decoding": State()}
 
 @contextmanager
 def without_kernels(work: Work, points: int) -> Iterator[bool]:
-    """Say whether to do without kernels, and count the time that this takes."""
+    """Return whether to do without kernels, and count the time that this takes."""
     state = STATES[work]
     expected = state.spent + points * SECONDS_A_POINT[work]
     small = not state.loaded and (expected <= LOADING or (expected <= COMPILING and not is_filled(work)))

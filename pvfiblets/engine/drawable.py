@@ -108,7 +108,7 @@ class Drawable(ABC, Generic[AnyStyle]):
         """Return what :meth:`explain` says beside passes, features and buffers."""
 
     def needs_outside(self, view: View, style: Style) -> bool:  # noqa: ARG002
-        """Say whether :meth:`render` would gain from the depth of other things in the scene."""
+        """Return whether :meth:`render` would gain from the depth of other things in the scene."""
         return False
 
     # Drawing
@@ -224,7 +224,7 @@ class Drawable(ABC, Generic[AnyStyle]):
         self._outdate()
 
     def _serves(self, outside: moderngl.Texture | None) -> bool:  # noqa: ARG002
-        """Say whether a picture that was drawn without an outside serves where there is one."""
+        """Return whether a picture that was drawn without an outside serves where there is one."""
         return True
 
     def _checked(self, style: AnyStyle | None) -> AnyStyle:
@@ -297,7 +297,7 @@ class Drawable(ABC, Generic[AnyStyle]):
         return sizes
 
     def explain(self, *, counts: bool = True) -> dict[str, Any]:
-        """Say what the last redraw was made of, and wait for it to end.
+        """Return the work of the last redraw, and wait for it to end.
 
         Parameters
         ----------

@@ -62,7 +62,7 @@ class Pieces:
         return self._passes.clock() - self._begun >= 0.8 * self._seconds
 
     def pause(self) -> Iterator[None]:
-        """Let others draw, and go on with another piece."""
+        """Pause for others to draw, and go on with another piece."""
         with self._passes.away():
             yield
         self._again()

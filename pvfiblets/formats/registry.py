@@ -38,7 +38,7 @@ class UnknownFormatError(FibletsError, ValueError):
 
 
 def register(suffix: str, module_name: str) -> None:
-    """Let `module_name` serve files whose name ends in `suffix`."""
+    """Register `module_name` for files whose name ends in `suffix`."""
     if not suffix.startswith("."):
         raise ValueError(f"the suffix {suffix!r} must begin with a dot, as in '.trk'")
     _MODULES[suffix.lower()] = module_name

@@ -60,7 +60,7 @@ def _naming(size: int) -> AbstractContextManager[None]:
 
 
 def _take_room(file: int, size: int) -> None:
-    """Have the system set room aside now: a full disk met while a map is written to ends the process."""
+    """Reserve disk space now: a full disk during writes to a map ends the process."""
     if hasattr(os, "posix_fallocate"):
         os.posix_fallocate(file, 0, size)
     else:

@@ -46,7 +46,7 @@ class Connection:
         return self._settings is not None
 
     def show(self, proxy: vtkPolyData | None, *, connect: bool) -> None:
-        """Have VTK draw other triangles; where no filter puts them out, ``connect`` says whether to do so yet."""
+        """Connect other triangles; where no filter puts them out, ``connect`` decides whether to do so yet."""
         self.proxy = proxy
         if self.input is not None:
             if not self.input.executing:

@@ -94,7 +94,7 @@ class Layers(ShaderEffect):
         return _Held(ctx)
 
     def prepare(self, kept: _Held, draw: Any) -> Mapping[str, Any]:
-        """Have the engine draw the layers, unless nothing shows through or VTK selects."""
+        """Draw the layers in the engine, unless nothing shows through or VTK selects."""
         through = draw.renderer.GetSelector() is None and draw.actor.HasTranslucentPolygonalGeometry()
         arrays = kept.layers(draw, self.count) if through else kept.empty()
         names = {"fibletDepthLayers": "depth", "fibletIdLayers": "ids", "fibletPositionLayers": "position"}
@@ -105,7 +105,7 @@ class Layers(ShaderEffect):
         return textures
 
     def set_uniforms(self, kept: _Held, program: Any, draw: Any) -> None:  # noqa: ARG002  as all effects
-        """Say how many there are."""
+        """Set the number of layers."""
         program.SetUniformi("fibletLayerCount", kept.count)
 
 

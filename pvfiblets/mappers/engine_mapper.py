@@ -360,7 +360,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         slot.drawn[address] = Drawn(weak(renderer), viewport, view, style)
 
     def layers_samples(self, renderer: vtkRenderer) -> bool:  # noqa: ARG002
-        """Say whether samples of all that a renderer shows can be drawn at once."""
+        """Return whether samples of all that a renderer shows can be drawn at once."""
         return False
 
     def _wanted(self, renderer: vtkRenderer, frame: Frame, sample: bool | None) -> tuple[View, Style]:
@@ -427,7 +427,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         return 0.0
 
     def _widened(self, style: Any, frame: Frame) -> bool:  # noqa: ARG002
-        """Say whether some lines may be drawn into other pixels than those whose middles they cover."""
+        """Return whether some lines may be drawn into other pixels than those whose middles they cover."""
         return False
 
     def _whole_style(self, renderer: vtkRenderer, viewport: tuple[int, int, int, int]) -> Style:

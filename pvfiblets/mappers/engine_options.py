@@ -16,7 +16,7 @@ class Options:
     NOT_MADE_WITH: ClassVar[frozenset[str]] = frozenset()
 
     def __post_init__(self) -> None:
-        """Let None stand for no culling, and check the values."""
+        """Check the values; None stands for no culling."""
         if getattr(self, "culling", None) == "none":
             object.__setattr__(self, "culling", None)
         self._check()

@@ -247,7 +247,7 @@ class FibletMapper(CutMapper[EngineOptions]):
                 return
 
     def layers_samples(self, renderer: vtkRenderer) -> bool:
-        """Say whether samples of what a renderer shows can be drawn at once: of opaque lines, each pixel by itself."""
+        """Return whether a renderer's samples can be drawn at once: for opaque lines, each pixel by itself."""
         actor, context = self.actor, self._context_in(renderer)
         if actor is None or context is None or self.is_readable or self._empty or not self._has_edges or self._sums_up:
             return False
@@ -326,7 +326,7 @@ class FibletMapper(CutMapper[EngineOptions]):
         return None if found is None else (int(found.texels["ids"][0]), float(found.texels["position"][0]))
 
     def region_flags(self, region: Any, sampling: Sampling = "lines") -> Any:
-        """Say how each streamline lies to a region, by the GPU of a window that draws it, else by the CPU.
+        """Return how each streamline lies to a region, by the GPU of a window that draws it, else by the CPU.
 
         Parameters
         ----------

@@ -109,7 +109,7 @@ class Sums:
         return self._outside.copy_of_window(draw.renderer, viewport[2:]) if found is None else found
 
     def set_uniforms(self, program: Any) -> None:
-        """Say how to read the sums."""
+        """Set the shape of the sums."""
         held = self.held
         program.SetUniform2i("fibletSumShape", (0, 0) if held is None or not held.words else held.shape)
 

@@ -58,7 +58,7 @@ class KeptViews:
         self._tags = [window.AddObserver(event, call) for event in ("StartEvent", "EndEvent")]
 
     def stop(self) -> None:
-        """Have all views drawn in every frame again; twice is harmless."""
+        """Draw all views in every frame again; twice is harmless."""
         window = self._window.Get()
         while self._tags:
             tag = self._tags.pop()
@@ -68,13 +68,13 @@ class KeptViews:
         self._shown.clear()
 
     def follow(self, renderer: Any) -> None:
-        """Have one more view drawn only where it has changed."""
+        """Add a view that is drawn only where it has changed."""
         self._renderers.append(renderer)
         self.frames[renderer.GetAddressAsString("")] = 0
         self._shown.clear()
 
     def forget(self) -> None:
-        """Have all views drawn in the next frame."""
+        """Draw all views in the next frame."""
         self._shown.clear()
 
     def _start(self) -> None:

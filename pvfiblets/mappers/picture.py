@@ -298,7 +298,7 @@ class Picture:
         renderer.Modified()
 
     def _insert(self) -> None:
-        """Have the prop be the first of the renderer's, as long as it draws: users' lists of actors lack it."""
+        """Put the prop before all others of the renderer, while it draws: users' lists of actors lack it."""
         props = self.renderer.GetViewProps()
         if props.GetNumberOfItems() == 0:
             props.AddItem(self._prop)  # there is none to insert it before
@@ -373,7 +373,7 @@ class Picture:
         self._begin()
 
     def _begin(self) -> None:
-        """Have mappers note what effects want to know of this frame: edges, and what depths lack."""
+        """Make mappers record the inputs of effects in this frame: edges, and things without depth."""
         if self._depth_of_field is not None:
             lenses[self._address] = {}
         if self._smoothing is not None:
@@ -553,14 +553,14 @@ class Picture:
 
 
 def _refinable(renderer: Any) -> bool:
-    """Say whether a picture has a camera that can be shifted, and one of them."""
+    """Return whether a picture has a camera that can be shifted, and one of them."""
     camera = renderer.GetActiveCamera()
     fixed = camera.GetUseExplicitProjectionTransformMatrix() or camera.GetUseOffAxisProjection()
     return not fixed and not renderer.GetRenderWindow().GetStereoRender()
 
 
 def _starts_empty(renderer: Any) -> bool:
-    """Say whether a renderer that draws once more begins with its background."""
+    """Return whether a renderer that draws once more begins with its background."""
     return renderer.GetLayer() == 0 and renderer.GetErase() and not renderer.GetPreserveColorBuffer()
 
 

@@ -60,7 +60,7 @@ class _Painter:
         self._picture = weakref.ref(picture)
 
     def Initialize(self, _item: Any) -> bool:  # noqa: N802  VTK's name
-        """Be told of its item."""
+        """Accept any item."""
         return True
 
     def Paint(self, _item: Any, _context: Any) -> bool:  # noqa: N802  VTK's name

@@ -108,7 +108,7 @@ class LineReading:
         )  # fmt: skip
 
     def watch(self, renderer: vtkRenderer) -> None:
-        """Be told when a renderer begins a picture, which may be one of VTK's selection."""
+        """Handle the start of a renderer's picture, which may be one of VTK's selection."""
         address = renderer.GetAddressAsString("")
         known = self._watched.get(address)
         if known is None or known.Get() is None:
@@ -184,7 +184,7 @@ def _same(one: tuple[Any, ...], other: tuple[Any, ...]) -> bool:
 
 @contextmanager
 def readable(window: Any, *, most: int = MOST_POINTS) -> Iterator[None]:
-    """Let VTK's code read what mappers of this package show in a window, as lines with the colours of the picture.
+    """Make a window's lines of this package readable for VTK's code, with the colours of the picture.
 
     Exporters of VTK (``vtkGLTFExporter`` and its like) and PyVista's ``export_*`` do so by themselves.
 
@@ -223,7 +223,7 @@ def readable(window: Any, *, most: int = MOST_POINTS) -> Iterator[None]:
 
 @contextmanager
 def readable_mapper(mapper: EngineMapper[Any]) -> Iterator[None]:
-    """Let VTK's code read what one mapper shows, as often as it likes."""
+    """Make one mapper's lines readable for VTK's code, any number of times."""
     reading = mapper.reading
     data, count = reading.data(colours=True), reading.points
     _tell([reading], [count], count or 0, MOST_POINTS)

@@ -175,7 +175,7 @@ _reduced: dict[str, tuple[float, float]] = {}
 
 
 def reduce_detail(window: Any, pixels: float, share: float = 1.0) -> None:
-    """Let a window draw with an error in pixels, and a share of the streamlines, for speed; 0 and 1 end it."""
+    """Draw a window with an error in pixels and a share of the streamlines, for speed; 0 and 1 end it."""
     address = window.GetAddressAsString("")
     _reduced.pop(address, None)
     if pixels > 0.0 or share < 1.0:
@@ -229,7 +229,7 @@ def actors_in(prop: vtkProp) -> Iterator[vtkActor]:
 
 
 def others_before(renderer: vtkRenderer, actor: vtkProp) -> bool:
-    """Say whether VTK has drawn something opaque before an actor, whose depth may be looked at.
+    """Return whether VTK has drawn something opaque before an actor, whose depth may be looked at.
 
     False while VTK selects, which draws an invisible frame.
     """
@@ -246,7 +246,7 @@ def others_before(renderer: vtkRenderer, actor: vtkProp) -> bool:
 
 
 def others_opaque(renderer: vtkRenderer, actor: vtkProp) -> bool:
-    """Say whether anything else that a renderer shows is opaque, and so drawn before an actor that is translucent.
+    """Return whether anything else that a renderer shows is opaque, and so drawn before an actor that is translucent.
 
     Props in the plane of the screen and volumes of VTK leave no depth, though they call themselves opaque.
     """

@@ -127,11 +127,11 @@ class ShaderEffect:
         return None
 
     def prepare(self, kept: Any, draw: Draw) -> Mapping[str, Any]:  # noqa: ARG002 - as of all effects
-        """Have no textures."""
+        """Return no textures."""
         return {}
 
     def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:
-        """Have no uniforms."""
+        """Set no uniforms."""
 
 
 def styled(style: AnyStyle, effects: Iterable[MapperEffect]) -> AnyStyle:

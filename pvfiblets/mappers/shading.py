@@ -366,7 +366,7 @@ def background(renderer: Any) -> tuple[Colour, Colour]:
 
 
 def widen(program: Any, draw: Draw) -> None:
-    """Have the resolve look at pixels as far from the lines as any halo or outline reaches."""
+    """Extend the resolve to pixels as far from the lines as any halo or outline reaches."""
     from pvfiblets.engine.effects.halos import WIDEST
 
     margin = draw.style.half_width + 2.0 + max(WIDEST, MAX_OUTLINE) * _pixel_scale(draw)

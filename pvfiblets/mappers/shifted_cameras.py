@@ -70,7 +70,7 @@ def shifted(camera: Any, size: tuple[int, int], by: tuple[float, float]) -> Iter
 
 
 def is_shifted(camera: Any) -> bool:
-    """Say whether a camera is shifted now."""
+    """Return whether a camera is shifted now."""
     return camera.GetAddressAsString("") in _cameras
 
 
@@ -80,7 +80,7 @@ def note_sample(renderer: Any, *, begun: bool) -> None:
 
 
 def draws_sample(renderer: Any) -> bool:
-    """Say whether a renderer draws such a frame: what all of them are to share was found out in the one before."""
+    """Return whether a renderer draws such a frame: what all of them are to share was found out in the one before."""
     return renderer.GetAddressAsString("") in _samples
 
 

@@ -21,7 +21,7 @@ PATIENCE = 0.25
 
 
 def pace(engine: Any, renderer: Any) -> None:
-    """Tell an engine of parts that is about to draw how long it may take."""
+    """Set the time limit of an engine of parts before it draws."""
     picture = picture_of(renderer)
     engine.hurried = in_motion(renderer)
     paced = picture is not None and picture.refinement is not None and picture.paced() and not draws_sample(renderer)

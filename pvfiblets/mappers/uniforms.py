@@ -38,7 +38,7 @@ def set_uniforms(program: Any, frame: Frame, style: Any, fiblets: Any, colouring
     x, y, width, height = frame.viewport
     program.SetUniform2i("fibletOrigin", (x, y))
     program.SetUniform2i("fibletSize", (width, height))
-    # Decoded points may lie outside the bounds, by as much as the promise.
+    # Decoded points may lie outside the bounds, by as much as the error bound.
     slack = fiblets.promise + style.reach
     rectangle = frame.rectangle(fiblets.bounds, slack, style.half_width + 2.0)
     program.SetUniform4f("fibletRectangle", rectangle)

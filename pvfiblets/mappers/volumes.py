@@ -130,7 +130,7 @@ class VolumeMapper(CutMapper[Options]):
         self._follows = follows
 
     def SetInputData(self, image: Any) -> None:  # noqa: N802 - VTK's name
-        """Have a ``vtkImageData`` drawn, which ``vtkPolyDataMapper`` would refuse."""
+        """Connect a ``vtkImageData``, which ``vtkPolyDataMapper`` would refuse."""
         self.SetInputDataObject(0, image)
 
     def _input_state(self, data: Any) -> tuple[Any, ...]:

@@ -29,7 +29,7 @@ EXPORTERS = {
 
 
 def follow(picker: Any) -> Any:
-    """Have a picker find what this package draws: ``vtkPicker``, ``vtkPointPicker``, ``vtkCellPicker`` or their like.
+    """Make a picker find this package's actors: ``vtkPicker``, ``vtkPointPicker``, ``vtkCellPicker`` or their like.
 
     Those that are made after the first actor of this package do so by themselves.
 

@@ -184,7 +184,7 @@ class WindowContext:
         return self.window is not None and self._witness.GetHandle() != 0
 
     def tell_lost(self, renderer: Any) -> None:
-        """Say once that VTK shows nothing translucent: where its peeling of depth failed, with an error left behind.
+        """Warn once that VTK shows nothing translucent: where its depth peeling failed, with an error left behind.
 
         Some drivers refuse the copy of a multi-sampled depth that peeling begins with; meshes vanish as well.
         """

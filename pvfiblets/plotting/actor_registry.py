@@ -63,7 +63,7 @@ class Registered(Protocol):
         ...
 
     def entered(self, renderer: Any) -> None:
-        """Be told that a renderer draws it from now on."""
+        """Handle that a renderer draws it from now on."""
         ...
 
     def release(self, window: Any = None) -> None:
@@ -341,7 +341,7 @@ class ActorRegistry(Generic[A]):
     # Scalar bars and legend ---------------------------------------------------------------------
 
     def _recoloured(self, actor: A) -> None:
-        """Have scalar bar and legend say what the picture shows."""
+        """Update the scalar bar and the legend."""
         self._update_bar(actor)
         for renderer, _, _ in self._renderers.values():
             entry = renderer._labels.get(actor.memory_address)  # noqa: SLF001

@@ -109,7 +109,7 @@ class ColouredActor(Settings, pv.Actor):
     # What a component asks ----------------------------------------------------------------------
 
     def entered(self, renderer: Any) -> None:
-        """Be told that a renderer draws the actor from now on."""
+        """Handle that a renderer draws the actor from now on."""
 
     def raise_pending(self) -> None:
         """Raise what drawing stored, once."""
@@ -188,7 +188,7 @@ class ColouredActor(Settings, pv.Actor):
         self._bar()
 
     def _bar(self) -> None:
-        """Have scalar bar and legend follow."""
+        """Update the scalar bar and the legend."""
         if self._bar_changed is not None:
             self._bar_changed(self)
 
@@ -251,7 +251,7 @@ class ColouredActor(Settings, pv.Actor):
         return self._opacity_by
 
     def _fade_by(self, choice: Any, found: Opacities, instead: str) -> None:
-        """Have opacities beside the property's; refused ones leave all as it was."""
+        """Set opacities beside the property's; invalid ones change nothing."""
         if found.transfer is not None and (self._scalars is None or not self._scalars.mapped):
             raise ValueError(
                 f"opacity {choice!r} follows the numbers of a colour map, but there are none; give scalars, or one "

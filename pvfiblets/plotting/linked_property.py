@@ -33,7 +33,7 @@ def is_own_write() -> bool:
 
 
 def observe(watched: Any, method: Callable[[], None]) -> int:
-    """Have a method called whenever a VTK object is modified, and return the observer's tag; keeps no method alive."""
+    """Call a method whenever a VTK object is modified, and return the observer's tag; keeps no method alive."""
     this = weakref.WeakMethod(method)
 
     def modified(_watched: Any, _event: str) -> None:

@@ -132,18 +132,18 @@ class PlottedLines(Plotted[AnyOptions]):
         self._owner._hide_scalars(not shown)  # noqa: SLF001
 
     def SetScalarVisibility(self, shown: Any) -> None:  # noqa: N802 - VTK's name
-        """Have scalars colour, or not."""
+        """Switch colouring by scalars on or off."""
         if self.actor is None:  # as it is made
             super().SetScalarVisibility(shown)
         else:
             self.scalar_visibility = bool(shown)
 
     def ScalarVisibilityOn(self) -> None:  # noqa: N802 - VTK's name
-        """Have scalars colour."""
+        """Colour by scalars."""
         self.scalar_visibility = True
 
     def ScalarVisibilityOff(self) -> None:  # noqa: N802 - VTK's name
-        """Have the colour of the actor's property count."""
+        """Colour by the actor's property."""
         self.scalar_visibility = False
 
     def _wrapped(self, data: Any) -> Any:

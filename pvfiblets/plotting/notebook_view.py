@@ -120,7 +120,7 @@ class PageView:
         return {key: list(value) if isinstance(value, tuple) else value for key, value in place.items()}
 
     def _follow(self) -> None:
-        """Have the page follow the plotter's camera, as long as somebody has this view."""
+        """Follow the plotter's camera with the page, as long as this view exists."""
         moved = weakref.WeakMethod(self._from_plotter)
         tag = self._camera.AddObserver("ModifiedEvent", lambda *_: (call := moved()) and call())
         weakref.finalize(self, self._camera.RemoveObserver, tag)

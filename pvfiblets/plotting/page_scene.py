@@ -76,7 +76,7 @@ def page_and_actors(plotter: Any, *, title: str | None = None) -> tuple[PageScen
 def add_all(
     scene: PageScene, plotter: Any, *, controls: bool = True, besides: Collection[str] = ()
 ) -> tuple[list[str], list[str]]:
-    """Have a page show what a plotter's active renderer shows, but from where."""
+    """Fill a page from a plotter's active renderer, without its camera."""
     renderer = plotter.renderer
     prepare(renderer)  # slices have their colours from then on
     scene.background = _background(renderer)

@@ -89,7 +89,7 @@ class Own(Place):
         return getattr(actor, f"_read_{setting.field}")()
 
     def write(self, actor: Any, setting: Setting[Any], value: Any) -> None:
-        """Have the actor do it."""
+        """Call the actor's method."""
         getattr(actor, f"_write_{setting.field}")(value)
 
     def kept(self, actor: Any, one: Argument) -> Any:

@@ -299,7 +299,7 @@ class Settings:
 
 
 def _same(one: Any, other: Any) -> bool:
-    """Say whether two values are alike; arrays only if they are the same."""
+    """Return whether two values are alike; arrays only if they are the same."""
     return one is other or (not hasattr(one, "shape") and not hasattr(other, "shape") and bool(one == other))
 
 

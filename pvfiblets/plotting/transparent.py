@@ -54,7 +54,7 @@ def _unmixed(on_first: npt.NDArray[np.float64], on_second: npt.NDArray[np.float6
 
 @contextmanager
 def _on_ground(plotter: Any, number: int) -> Iterator[None]:
-    """Have all renderers of a plotter draw on the first or the second of their grounds meanwhile."""
+    """Draw all renderers of a plotter on the first or the second background in this scope."""
     from pvfiblets.mappers.shading import LUMINANCE, background
 
     renderers = list(plotter.renderers)

@@ -25,7 +25,7 @@ Log = Callable[[str], None]
 
 
 def to_stderr(line: str) -> None:
-    """Say how far it is."""
+    """Print a line to standard error."""
     print(line, file=sys.stderr, flush=True)
 
 

@@ -56,7 +56,7 @@ class Budget:
         return Budget(self.left * part, self._clock)
 
     def allows(self, factor: float = 1.0) -> bool:
-        """Say whether another measurement fits, ``factor`` times as long as the longest so far."""
+        """Return whether another measurement fits, ``factor`` times as long as the longest so far."""
         now = self._clock()
         self._longest = max(self._longest, now - self._last)
         self._last = now

@@ -139,7 +139,7 @@ def shown(size: float) -> str:
 
 
 def limit(size: int) -> None:
-    """Let this process have no more than some bytes of memory from now on."""
+    """Limit this process to some bytes of memory from now on."""
     assert resource is not None
     hardest = resource.getrlimit(resource.RLIMIT_DATA)[1]
     if hardest != resource.RLIM_INFINITY:
@@ -149,7 +149,7 @@ def limit(size: int) -> None:
 
 @contextmanager
 def limited(size: int | None) -> Iterator[None]:
-    """Let this process have no more than some bytes of memory meanwhile, where the system can limit it.
+    """Limit this process to some bytes of memory in this scope, where the system can limit it.
 
     A limit that it has already stays, if it is lower.
     """

@@ -40,7 +40,7 @@ def replacing(path: str | PathLike[str], needed: int | None = None) -> Iterator[
 
 @contextmanager
 def naming_target(path: str | PathLike[str], needed: int | Callable[[], int] | None = None) -> Iterator[None]:
-    """Let errors of writing, in whichever temporary file, name the target file and the fix."""
+    """Make errors of writing, in whichever temporary file, name the target file and the fix."""
     target = Path(path)
     try:
         yield

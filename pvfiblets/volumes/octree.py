@@ -138,7 +138,7 @@ def build_octree(volume: RaycastVolume, margin: int = 1) -> Octree:
 
 
 def flags(octree: Octree, visible: Callable[[npt.NDArray[Any], npt.NDArray[Any]], npt.NDArray[np.bool_]]) -> Flags:
-    """Say which nodes rays must look into."""
+    """Return which nodes rays must look into."""
     leaves = octree.levels[0]
     seen = [np.where(visible(leaves.least, leaves.greatest), VISIT, SKIP).astype(np.uint8)]
     while len(seen) < len(octree.levels):

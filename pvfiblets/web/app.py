@@ -192,7 +192,7 @@ class Explorer(TrameApp):
         router.add_get(f"{URL}/{{name}}", self.browser.send)
 
     def close(self) -> None:
-        """Let go of everything."""
+        """Release everything."""
         self.exports.close()
         self.scene.close()
         self.plotter.close()

@@ -111,7 +111,7 @@ def listen(server: Any) -> None:
 
 
 def hold_to(most: int | None) -> None:
-    """Let this process have no more memory than it may."""
+    """Limit the memory of this process as configured."""
     if most is None:
         return
     from pvfiblets.support import memory

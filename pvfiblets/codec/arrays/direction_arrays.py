@@ -100,7 +100,7 @@ class _Batch:
         self.decoded: Array = np.repeat(anchors[None], most, axis=0)
 
     def encode(self, lo: float, hi: float) -> None:
-        """Try the smallest cap that holds all turns, and wider ones where it errs by more than half the promise."""
+        """Try the smallest cap that holds all turns, and wider ones where it errs by more than half the error bound."""
         moving = int(np.searchsorted(-self.counts, -1))  # slots of one point come last
         if not moving:
             return

@@ -73,7 +73,7 @@ def compress_file(
     """Compress a tractogram file into a ``.fiblets`` file.
 
     The source is read three times: for its bounds and steps, for coding, and to compare the finished file with it.
-    Where it is resampled it is read once more, to know the promise before corners are cut.
+    Where it is resampled it is read once more, to know the error bound before corners are cut.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def compress_file(
         Another order needs all streamlines at once, and is refused here.
     verify : {'all', 'sample'}
         Compare all of the finished file with the source, or every so many-th streamline, about a million points in all.
-        That the promise is kept is seen to while coding, in either case.
+        Coding itself keeps the error bound, in either case.
     prepare : callable, optional
         Called with the coded set before it is written, unless it keeps every bit: data added to the set, as by
         :func:`pvfiblets.regions.index_of`, are written to the file.

@@ -52,7 +52,7 @@ class CullingChoice:
         self._trial = 0
 
     def next(self, key: Hashable) -> bool:
-        """Say whether the next picture is culled."""
+        """Return whether the next picture is culled."""
         self._look()
         if key != self._key:
             self._key = key

@@ -34,7 +34,7 @@ class Occlusion(Protocol):
         ...
 
     def forget(self) -> None:
-        """Be told that the next picture will be of other things: the last one hides nothing any more."""
+        """Forget the last picture: the next one shows other things, which it does not hide."""
         ...
 
     def build(self, target: GBuffer) -> None:
@@ -42,7 +42,7 @@ class Occlusion(Protocol):
         ...
 
     def after(self, target: GBuffer, view: View, style: Style) -> None:
-        """Be told that the picture is whole."""
+        """Finish the picture."""
         ...
 
     def bind(self, program: Any) -> None:

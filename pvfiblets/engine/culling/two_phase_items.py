@@ -144,7 +144,7 @@ class Listing:
         self._pyramid.build(target.buffer)
 
     def bind(self, program: moderngl.Program) -> None:
-        """Tell a drawing program where the list is."""
+        """Set the list's texture unit in a drawing program."""
         assert self._texture is not None
         self._texture.bind(ITEMS["listed"])
         self._gl.set_sampler(program, "listed_texels", ITEMS["listed"])

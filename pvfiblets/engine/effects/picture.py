@@ -161,7 +161,7 @@ class PictureEffects(PicturePasses):
                 self._pass(name, framebuffer, textures, shift | tone.uniforms(), features)
 
     def _blurred(self, focus: Focus, lens: Projection) -> dict[str, moderngl.Texture]:
-        """Say of each pixel of the copy how far its light spreads; returns what the last pass reads."""
+        """Compute how far the light of each pixel of the copy spreads; return the last pass's input."""
         size = self._textures["colours"].size
         blurs = self._texture("blurs", size, 4, "f4")
         tiled = -(-size[0] // TILE), -(-size[1] // TILE)

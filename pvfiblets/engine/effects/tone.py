@@ -85,5 +85,5 @@ class Tone:
 
 
 def is_number(value: object) -> bool:
-    """Say whether a value is a finite number, of NumPy's or of Python's, and no bool."""
+    """Return whether a value is a finite number, of NumPy's or of Python's, and no bool."""
     return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)

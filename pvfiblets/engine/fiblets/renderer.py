@@ -256,7 +256,7 @@ class FibletRenderer(LinesBehind):
         )
 
     def needs_outside(self, view: View, style: Style) -> bool:
-        """Say whether :meth:`render` would gain from the depth of other things in the scene.
+        """Return whether :meth:`render` would gain from the depth of other things in the scene.
 
         Only where the camera has just moved: the second picture of a view is drawn whole, to be used from then on.
         """
@@ -264,7 +264,7 @@ class FibletRenderer(LinesBehind):
         return two_phase and self._last != (view, style)
 
     def layers_samples(self, view: View, style: FibletStyle) -> bool:
-        """Say whether :meth:`sample_layers` can draw a picture: of lines without a surface, cut by planes at most."""
+        """Return whether :meth:`sample_layers` can draw a picture: lines without a surface, cut by planes at most."""
         plain = style.radius is None and style.relief is None and view.region is None
         return plain and isinstance(self._pipeline, ComputePipeline)
 
@@ -344,7 +344,7 @@ class FibletRenderer(LinesBehind):
         self._kept.filtering = wanted
 
     def query(self, region: Region, sampling: Sampling = "lines") -> npt.NDArray[np.uint8]:
-        """Say how each streamline of the set lies to a region, whatever is filtered or drawn.
+        """Return how each streamline of the set lies to a region, whatever is filtered or drawn.
 
         On the GPU where it can (:attr:`.RegionQuery.available`), and equal to what the CPU says.
 

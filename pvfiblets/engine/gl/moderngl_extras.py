@@ -177,7 +177,7 @@ class GLExtras:
         return int(self.function("glFenceSync")(_COMMANDS_COMPLETE, 0) or 0)
 
     def passed(self, fence: int) -> bool:
-        """Say whether the GPU is through with everything before a fence, without waiting; if so, drop the fence."""
+        """Return whether the GPU is through with everything before a fence, without waiting; if so, drop the fence."""
         if self.function("glClientWaitSync")(fence, _FLUSH, 0) not in _PASSED:
             return False
         self.drop_fence(fence)
@@ -206,7 +206,7 @@ class GLExtras:
         return texture
 
     def set_sampler(self, program: Any, name: str, unit: int) -> None:
-        """Tell a program from which texture unit a sampler of its reads, once and for all draws.
+        """Set the texture unit that a sampler of a program reads, once and for all draws.
 
         moderngl does not know samplers of buffer textures: setting their ``value`` does nothing.
         """
@@ -232,7 +232,7 @@ class GLExtras:
         self.limit_levels(texture, 0, levels - 1)
 
     def limit_levels(self, texture: moderngl.Texture, first: int, last: int, unit: int | None = None) -> None:
-        """Say which levels of a texture shaders may read; ``texelFetch`` counts them from ``first``.
+        """Limit the levels of a texture that shaders may read; ``texelFetch`` counts them from ``first``.
 
         The texture stays bound to the unit, moderngl's own by default.
 

@@ -20,7 +20,7 @@ SOFTWARE = ("llvmpipe", "softpipe", "swrast")
 
 
 def is_software(ctx: moderngl.Context) -> bool:
-    """Say whether OpenGL runs on the CPU."""
+    """Return whether OpenGL runs on the CPU."""
     renderer = str(ctx.info["GL_RENDERER"]).lower()
     return any(name in renderer for name in SOFTWARE)
 

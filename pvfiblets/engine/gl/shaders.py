@@ -252,7 +252,7 @@ def preprocess(text: str, features: Iterable[str]) -> str:
 
 
 def _left_out(text: str, place: int, active: set[str]) -> bool:
-    """Say whether a place in a file lies below ``#if FEATURE_NAME`` of a feature that is off."""
+    """Return whether a place in a file lies below ``#if FEATURE_NAME`` of a feature that is off."""
     off: list[bool] = []
     for condition in _CONDITION.finditer(text, 0, place):
         if condition[1] == "endif":

@@ -168,7 +168,7 @@ class RegionIntervals:
         return min(lefts), min(lowers), max(rights), max(uppers)
 
     def _overflows(self, stack: LayerStack, rectangle: Rectangle) -> bool:
-        """Say whether any pixel has more boundaries than there are layers for."""
+        """Return whether any pixel has more boundaries than there are layers for."""
         return self._ask(stack, rectangle) and bool(self._squares.ask(_OVERFLOW, rectangle).any())
 
     def _ask(self, stack: LayerStack, rectangle: Rectangle) -> bool:

@@ -259,7 +259,7 @@ class SurfaceLayers:
         return self._meshes[id(surface.mesh)][1]
 
     def _keep_meshes(self, surfaces: Sequence[Surface]) -> None:
-        """Have the meshes of these surfaces, and no others, on the GPU."""
+        """Keep the meshes of these surfaces, and no others, on the GPU."""
         wanted = {id(surface.mesh): surface for surface in surfaces}
         for key in [key for key in self._meshes if key not in wanted]:
             self._meshes.pop(key)[1].release()

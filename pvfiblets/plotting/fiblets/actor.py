@@ -455,7 +455,7 @@ class FibletActor(FibletSettings, SelectableActor):
     # Density ------------------------------------------------------------------------------------
 
     def _count_lines(self) -> None:
-        """Have all lines of a pixel counted where style or colours ask for it."""
+        """Count all lines of a pixel where style or colours need it."""
         thin, counted = self._style == "density", self._scalars is not None and self._scalars.kind == "pixel_count"
         effect = None
         if thin or counted:
@@ -469,7 +469,7 @@ class FibletActor(FibletSettings, SelectableActor):
         self._see_through()
 
     def _most_found(self, most: float) -> None:
-        """Have the scalar bar end at the number of lines in the fullest pixel."""
+        """End the scalar bar at the number of lines in the fullest pixel."""
         low, high = self._table.scalar_range
         if most > low and most != high and self._scalars is not None:
             self._scalars = replace(self._scalars, range=(self._scalars.range[0], most))

@@ -155,7 +155,7 @@ def refuse_unknown(streamlines: Streamlines, name: str) -> None:
 
 
 def missing_message(fiblets: FibletSet | Streamlines, name: str) -> str:
-    """Say that there is no array ``name``, which there are, and what to do."""
+    """Return the message that there is no array ``name``, with the existing ones and the fix."""
     from pvfiblets.codec.fibletset import FibletSet
 
     coded = isinstance(fiblets, FibletSet)

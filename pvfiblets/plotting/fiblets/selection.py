@@ -377,7 +377,7 @@ class SelectableActor(FilteredActor):
     # Life ---------------------------------------------------------------------------------------
 
     def entered(self, renderer: Any) -> None:
-        """Be told that a renderer draws the actor from now on."""
+        """Handle that a renderer draws the actor from now on."""
         if self._standout is not None:
             self._standout.enter(renderer)
 

@@ -141,7 +141,7 @@ class SelectionOverlay:
         self._renderers[address] = (weak(renderer), tag)
 
     def leave(self) -> None:
-        """Be gone from all renderers, and from the GPU."""
+        """Leave all renderers, and free the GPU memory."""
         for address in list(self._renderers):
             self._leave(address)
         self.mapper.release()
@@ -155,7 +155,7 @@ class SelectionOverlay:
             renderer.RemoveActor(self.actor)
 
     def leave_with_owner(self) -> None:
-        """Be gone from renderers that do not draw the owner any more."""
+        """Leave renderers that do not draw the owner any more."""
         owner = self._owner.Get()
         for address, (reference, _) in list(self._renderers.items()):
             renderer = reference.Get()

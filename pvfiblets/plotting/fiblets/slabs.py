@@ -159,7 +159,7 @@ class FibletSlab:
         return np.array(origin, float)
 
     def _add_slice(self, options: dict[str, Any]) -> Any:
-        """Have the plotter draw the slice, which PyVista refuses to add while it is empty."""
+        """Add the slice to the plotter, which PyVista refuses while it is empty."""
         empty = not self._slice_mesh.n_points
         if empty:
             self._slice_mesh.copy_from(self._volume.slice(normal=self._normal, origin=self._volume.center))

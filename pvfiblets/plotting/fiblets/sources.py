@@ -169,7 +169,7 @@ def _with_points(fiblets: FibletSet, name: str, values: np.ndarray, rgb: bool | 
 
 
 def _hold_colours(streamlines: Streamlines, name: str, colours: np.ndarray) -> list[str]:
-    """Have streamlines hold colours of points by their channels, and return what these are called."""
+    """Store colours of points by their channels, and return the channels' names."""
     rows = unit_colours(name, colours)
     columns = {f"{name}[{k}]": rows[:, k] for k in range(rows.shape[1])}
     streamlines.per_point = {key: held for key, held in streamlines.per_point.items() if key != name} | columns

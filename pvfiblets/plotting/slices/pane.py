@@ -197,7 +197,7 @@ class Pane:
     # Picture ------------------------------------------------------------------------------------
 
     def changed(self) -> None:
-        """Have the slice made anew with the next render."""
+        """Make the slice anew with the next render."""
         self._version += 1
 
     def prepare(self) -> None:

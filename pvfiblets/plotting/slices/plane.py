@@ -223,5 +223,5 @@ def on_events(caller: Any, events: tuple[str, ...], owner: Any, method: str) -> 
 
 
 def prepare(renderer: Any) -> None:
-    """Have all that stands by :func:`before_render` brought up to date, though the renderer does not draw yet."""
+    """Update everything that waits for :func:`before_render`, though the renderer does not draw yet."""
     renderer.InvokeEvent(_PREPARE)

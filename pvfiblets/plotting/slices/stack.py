@@ -306,13 +306,13 @@ class SliceStack:
             self._glyphs.remove(glyphs)
 
     def show_glyphs_on(self, renderer: Any, place: Callable[[], tuple[Array, Array] | None]) -> None:
-        """Have glyphs shown on a plane of another renderer, too, be they added later."""
+        """Show glyphs on a plane of another renderer, too, including glyphs added later."""
         self._views.append((renderer, place))
         for one in self._glyphs:
             one.show_on(renderer, place)
 
     def show_glyphs_on_plane(self, plane: SlicePlane) -> None:
-        """Have glyphs that are there shown on a plane of the stack that has just entered its renderer."""
+        """Show existing glyphs on a plane of the stack that has just entered its renderer."""
         for one in self._glyphs:
             one.show_on(plane.renderer, plane.place)
 
@@ -443,14 +443,14 @@ class SliceStack:
         self._watchers.append(changed)
 
     def changed(self) -> None:
-        """Have all slices made anew."""
+        """Make all slices anew."""
         for plane in self._planes.values():
             plane.update()
         for call in self._watchers:
             call()
 
     def removed_by(self, removal: Callable[[SliceStack], None] | None) -> None:
-        """Say what takes it out of its plotter."""
+        """Set the function that takes it out of its plotter."""
         self._removal = removal
 
     def remove(self) -> None:

@@ -374,7 +374,7 @@ class Workspace:
         self.panes["axial"].say(self._words if text is None else text)
 
     def sync(self) -> None:
-        """Have each pane show the 3-D view's streamlines in its slab, and contours; a renderer is about to draw."""
+        """Show the 3-D view's streamlines in each pane's slab, and contours; a renderer is about to draw."""
         actors = list(self._fiblets())
         for actor in [one for one in self._tracts if one not in actors]:  # no longer in the 3-D view
             self._take_out(actor)

@@ -359,7 +359,7 @@ class VolumeActor(VolumeSettings, ClippedActor):
             raise
 
     def _apply(self, wanted: dict[str, Any]) -> None:
-        """Have the mapper draw by the present settings, with some fields of the casting changed."""
+        """Draw by the present settings, with some fields of the casting changed."""
         made, colouring = self._made(wanted)
         self._mapper.show(made, colouring)
         self._casting = made
@@ -498,7 +498,7 @@ class VolumeActor(VolumeSettings, ClippedActor):
         super()._take_property()
 
     def _property_changed(self) -> None:
-        """Say what of the property means nothing to rays; the colour is left to the volume's settings."""
+        """Warn of parts of the property that rays ignore; the colour is left to the volume's settings."""
         if self._words is not None:
             self._words.look(self)
 

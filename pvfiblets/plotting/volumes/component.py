@@ -233,7 +233,7 @@ def _preferred(source: Any, scalars: Any, preference: str) -> Any:
 
 
 def _warn_of_nothing(actor: VolumeActor) -> None:
-    """Say so if all voxels have one value, which is as good as invisible."""
+    """Warn if all voxels have one value, which is as good as invisible."""
     low, high = actor.volume.value_range
     transfer = actor.casting.transfer
     if low == high and transfer is not None and float(transfer.lookup(low)[3]) == 0.0:

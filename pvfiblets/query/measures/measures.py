@@ -20,7 +20,7 @@ segment by a tenth of a radian; so chords of a streamline are long enough for su
 bound where that is coarser) to change its mean curvature by no more than 2 %, of coded sets and of exact ones
 alike: over ``2 sqrt(error / curvature)`` mm at least. The points at its ends take the value of the nearest one that has
 both chords; of fewer than three points it is 0. A warning tells where coded lines are too short or too bent for that,
-or the promise is coarser than a tenth of a step, and the `max_error` that is needed.
+or the error bound is coarser than a tenth of a step, and the `max_error` that is needed.
 
 Values per point stand in the order in which points are coded. Stored arrays come before the names above, as
 they do for colours.
@@ -63,7 +63,7 @@ Kind = Literal["streamline", "point"]
 Floats = npt.NDArray[np.float64]
 CURVATURE = "_curvature"
 """Attribute of a set, no field of it: a set that is made of another has other points."""
-SLACK = 0.99  # of a promise: it is a tenth of a step but for rounding
+SLACK = 0.99  # of an error bound: it is a tenth of a step but for rounding
 UNCERTAIN = 0.05  # of the streamlines may be too short for their curvature: every set has some
 
 COMPUTED: dict[Kind, dict[str, str]] = {

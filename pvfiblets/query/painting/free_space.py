@@ -53,7 +53,7 @@ class FreeSpace(NamedTuple):
 
 
 def _widen(near: npt.NDArray[np.bool_], axis: int, by: int) -> None:
-    """Have a set reach farther along an axis, both ways, in place."""
+    """Grow a set along an axis, both ways, in place."""
     lines: Any = np.moveaxis(near, axis, 0)
     for one in (lines, lines[::-1]):
         covered = 0

@@ -124,7 +124,7 @@ def _largest(linear: Array) -> float:
 
 
 def classify(region: Region, centres: npt.ArrayLike, radii: npt.ArrayLike) -> npt.NDArray[np.int8]:
-    """Say of balls whether they lie in a region.
+    """Classify balls by whether they lie in a region.
 
     Parameters
     ----------

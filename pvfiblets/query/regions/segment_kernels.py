@@ -97,7 +97,7 @@ def _holds(ops: Any, held: int) -> bool:
 def combine(
     ops: Any, rows: Any, places: Any, first: Any, spans: Any, a: Any, b: Any, together: float, out: Any
 ) -> None:  # fmt: skip
-    """Say of segments whether some of them lies in a region (1), and whether some does not (2): ``out`` (m,) uint8."""
+    """Flag segments with a part in a region (1), and with a part outside (2): ``out`` (m,) uint8."""
     n_leaves = len(rows)
     for block in numba.prange((len(out) + _BLOCK - 1) // _BLOCK):
         lows, highs, at = np.empty(n_leaves), np.empty(n_leaves), np.empty(n_leaves, np.int64)

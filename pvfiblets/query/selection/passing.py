@@ -72,7 +72,7 @@ class FibletBalls:
 def region_flags(
     fiblets: FibletSet, region: Region, sampling: Sampling = "lines", ids: Any = None, *, bits: int = 15
 ) -> npt.NDArray[np.uint8]:
-    """Say how each streamline lies to a region."""
+    """Return how each streamline lies to a region."""
     lines = check_sampling(sampling) == "lines"
     if in_parts(fiblets):
         return _flags_of_parts(fiblets, region, sampling, ids, bits)

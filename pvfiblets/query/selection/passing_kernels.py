@@ -192,7 +192,7 @@ def _alike(mask: Any, ax: float, ay: float, az: float, bx: float, by: float, bz:
 
 @parallel_kernel
 def label_points(points: Any, starts: Any, mask: Any, linear: Any, centre: Any, inside: Any, open_: Any) -> None:
-    """Say of fiblets' points whether they lie in chosen voxels, and mark the segments to test: both (n_points,) bool.
+    """Flag fiblets' points in chosen voxels, and mark the segments to test: both (n_points,) bool.
 
     The voxels of ``mask`` (i, j, k) are the nearest to ``linear (points - centre)``. A segment needs no test if it
     crosses one face of voxels at most, and so lies in the voxels of its ends, or if all voxels about it are alike.

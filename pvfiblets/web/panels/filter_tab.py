@@ -59,7 +59,7 @@ class FilterActions(LineActions):
         }  # fmt: skip
 
     def counted(self) -> str:
-        """Say how many streamlines of the chosen layer filters leave."""
+        """Return how many streamlines of the chosen layer filters leave."""
         layer = self._layer
         actor = self._app.scene.actor(layer.id)
         total = actor.fiblets.n_streamlines

@@ -69,7 +69,7 @@ class PaintActions(Actions):
         }  # fmt: skip
 
     def _passing(self, region: Any) -> str:
-        """Say how many of the chosen tractogram's streamlines pass a region that is used."""
+        """Return how many of the chosen tractogram's streamlines pass a region that is used."""
         fiblets = self._fiblets()
         if not region.use or fiblets is None:
             return ""

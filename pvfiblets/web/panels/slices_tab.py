@@ -117,7 +117,7 @@ class SliceActions(Actions):
         app.refresh()
 
     def choose_table(self, layer_id: str) -> None:
-        """Have the file chosen that says what labels are called."""
+        """Let the user choose the file with the labels' names."""
         app = self._app
         app.choose(layer_id)
         app.files.browse("", "labels")
@@ -135,7 +135,7 @@ class SliceActions(Actions):
         app.scene.images.name_labels(chosen, loaded)
 
     def set_convention(self, convention: str) -> None:
-        """Have the patient's right on the left, or on the right."""
+        """Put the patient's right on the left, or on the right."""
         self._set(convention=convention)
 
     def set_angle(self, which: int, text: Any) -> None:
@@ -194,7 +194,7 @@ class SliceActions(Actions):
         self.changed()
 
     def go_to(self, x: Any, y: Any) -> None:
-        """Have the cross-hair where a place of the picture shows a slice in the 3-D view, if it shows one."""
+        """Move the cross-hair to the slice under a place of the 3-D view, if there is one."""
         workspace = self._workspace
         place = workspace.picked_in_view(*self.pixel(x, y))
         if place is not None:

@@ -247,7 +247,7 @@ class BundleSync:
         return regrouped
 
     def show(self, state: State, drawn: Iterable[tuple[Layer, Any]], regrouped: set[Source]) -> None:
-        """Have actors colour and hide bundles as the document says."""
+        """Colour and hide bundles by the document."""
         for layer, actor in drawn:
             if layer.source in regrouped and isinstance(actor.scalars, str) and actor.scalars == "group":
                 actor.scalars = "group" if actor.fiblets.groups else None
@@ -270,7 +270,7 @@ def _replace(data: Any, groups: Mapping[str, Any], facts: Mapping[str, Any]) -> 
 
 
 def _mask(bundles: Iterable[Bundle], count: int) -> np.ndarray:
-    """Say which streamlines are in a bundle that is shown, or in none."""
+    """Return which streamlines are in a bundle that is shown, or in none."""
     mask = np.ones(count, bool)
     for wanted in (False, True):
         for one in bundles:

@@ -445,7 +445,7 @@ class Scene:
         return self.store.data(layer, progress, cancel)
 
     def forget_unused(self, states: Iterable[State] = ()) -> None:
-        """Let go of data that neither the document nor any of some other states needs."""
+        """Release data that neither the document nor any of some other states needs."""
         self.store.keep([self._state, *states])
 
     def volume_choices(self, layer: Layer) -> list[tuple[Any, str]]:

@@ -114,7 +114,7 @@ class FrontServer:
             logging.getLogger(name).removeFilter(self._quiet)
 
     async def _count(self) -> None:
-        """Say now and then what the log left out: after a flood nothing else might be logged."""
+        """Log now and then how much was dropped: after a flood nothing else might be logged."""
         while True:
             await asyncio.sleep(self._quiet.seconds)
             self._quiet.report()
@@ -262,14 +262,14 @@ class FrontServer:
         return response
 
     async def _connection(self, request: web.Request) -> web.StreamResponse:
-        """Tell trame's client where its WebSocket is: it asks for a launcher first."""
+        """Return the address of its WebSocket to trame's client, which asks for a launcher first."""
         session = self._session(request)
         if session is None or session.ended:
             raise RefusedError(404, "no session")
         return web.json_response({"sessionURL": "ws://USE_HOST/ws", "secret": "wslink-secret"}, headers=HEADERS)
 
     async def _status(self, request: web.Request) -> web.StreamResponse:
-        """Tell a page that lost its connection how its session is."""
+        """Return the state of its session to a page that lost its connection."""
         session = self._session(request)
         told: dict[str, object] = {"state": "none"}
         if session is not None and session.ended:

@@ -153,7 +153,7 @@ class PictureStream:
         self.request()  # always: a page that was reloaded has no picture yet
 
     def on_interaction(self, _origin: str, event: dict[str, Any]) -> None:
-        """Let VTK's interactor have an event of the pointer."""
+        """Pass an event of the pointer to VTK's interactor."""
         kind = str(event["type"])
         if kind.endswith("Press"):
             self._pressed.add(kind)
@@ -223,7 +223,7 @@ class PictureStream:
                 self._failed(error)
 
     def settle(self) -> tuple[int, int]:
-        """Have the whole picture drawn, if it is not or fewer pixels were, and return its width and height."""
+        """Draw the full-resolution frame, unless the last one was, and return its width and height."""
         if self._stale or self._level is not LEVELS[0]:
             self._draw()
         return self._size

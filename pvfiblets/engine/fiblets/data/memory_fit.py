@@ -160,7 +160,7 @@ class MemoryBudget:
         return self._buffers(fiblets, self._plans(fiblets))
 
     def fits(self, fiblets: FibletSet) -> bool:
-        """Say whether a set fits as a whole, as far as can be known beforehand."""
+        """Return whether a set fits as a whole, as far as can be known beforehand."""
         return self._refusal(fiblets, self._plans(fiblets)) is None
 
     @property

@@ -216,7 +216,7 @@ class VolumeTexture:
         self._block = ctx.buffer(reserve=SAMPLING_BLOCK.nbytes)
 
     def bind(self, to_data: Array) -> None:
-        """Say where the picture's local coordinates lie in the volume, and bind both."""
+        """Set the map from the picture's local coordinates to the volume, and bind both."""
         self._block.write(
             SAMPLING_BLOCK.pack(
                 voxel_from_local=self.source.voxels @ to_data,

@@ -239,7 +239,7 @@ class Layers:
         return held
 
     def _resize(self, nearest: GBuffer, count: int) -> LayeredBuffer:
-        """Have textures for a picture like this one."""
+        """Return textures for a picture like this one."""
         held = self._held
         wanted = nearest.size, count, nearest.relief
         if held is None or (held.size, held.count, held.relief) != wanted:

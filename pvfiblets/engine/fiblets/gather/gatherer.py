@@ -107,7 +107,7 @@ class Gatherer:
         self._add(request, Gather(held, paint, nearest, hides, own))
 
     def gathers_words(self, request: DrawRequest) -> bool:
-        """Say whether sums for such a request are words, not floats."""
+        """Return whether sums for such a request are words, not floats."""
         return self._pipeline.gathers_words(request)
 
     def _begin(

@@ -220,7 +220,7 @@ class LinesBehind(Drawable[FibletStyle]):
         self._features_behind = frozenset()
 
     def explain(self, *, counts: bool = True) -> dict[str, Any]:
-        """Say what the last redraw was made of, and wait for it to end.
+        """Return the work of the last redraw, and wait for it to end.
 
         Parameters
         ----------

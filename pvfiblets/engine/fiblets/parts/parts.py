@@ -151,7 +151,7 @@ def reach_of(part: FibletSet) -> Box | None:
 
 
 def in_view(view: View, style: Style, box: Box | None) -> bool:
-    """Say whether anything in a box may show; True where it is not known."""
+    """Return whether anything in a box may show; True where it is not known."""
     if box is None:
         return True
     corners = np.array([[box[i, 0], box[j, 1], box[k, 2], 1.0] for i in (0, 1) for j in (0, 1) for k in (0, 1)])

@@ -270,7 +270,7 @@ class ComputePipeline:
             self._bind_nearest(8 * target.size[0] * target.size[1])
 
     def gathers_words(self, request: DrawRequest) -> bool:
-        """Say whether sums for such a request are words, not floats."""
+        """Return whether sums for such a request are words, not floats."""
         return not (self._software and request.tubes and TUBES_BY_RASTER)
 
     def gather(self, request: DrawRequest) -> None:
@@ -293,7 +293,7 @@ class ComputePipeline:
         self._ctx.memory_barrier(moderngl.ALL_BARRIER_BITS)
 
     def _draw_by_raster(self, request: DrawRequest) -> None:
-        """Have the pipeline `geometry` draw, which reads the same buffers."""
+        """Draw by the pipeline `geometry`, which reads the same buffers."""
         self._by_raster().draw(request)
 
     def _by_raster(self) -> GeometryPipeline:

@@ -143,7 +143,7 @@ class Pipeline(Protocol):
         ...
 
     def gathers_words(self, request: DrawRequest) -> bool:
-        """Say whether sums for such a request are words, not floats (`gathering.Gathered`)."""
+        """Return whether sums for such a request are words, not floats (`gathering.Gathered`)."""
         ...
 
     def gather(self, request: DrawRequest) -> None:

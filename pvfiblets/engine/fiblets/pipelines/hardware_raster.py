@@ -262,7 +262,7 @@ class RasterPipeline(abc.ABC):
                     self._seen.update(request.target)
 
     def gathers_words(self, request: DrawRequest) -> bool:  # noqa: ARG002 - of all pipelines
-        """Say that sums are floats: OpenGL blends no words."""
+        """Return False: sums are floats, as OpenGL blends no words."""
         return False
 
     def gather(self, request: DrawRequest) -> None:

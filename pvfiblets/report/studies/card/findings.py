@@ -53,7 +53,7 @@ class Finding:
 
 
 def verdict_of(figures: Mapping[str, float], limits: Mapping[str, float], compared: bool = True) -> str:
-    """Say whether all figures are within their limits; NaN is not."""
+    """Return whether all figures are within their limits; NaN is not."""
     good = WORKS if compared else DRAWN
     return good if all(figures[name] <= limit for name, limit in limits.items()) else DIFFERS
 
@@ -73,7 +73,7 @@ def table(findings: Iterable[Finding]) -> str:
 
 
 def totals(findings: Iterable[Finding]) -> str:
-    """Say in one sentence how many there are of each verdict."""
+    """Return a sentence with the number of each verdict."""
     found = Counter(one.verdict for one in findings)
     words = {WORKS: ("works", "work"), DRAWN: ("was drawn and not compared", "were drawn and not compared"),
              SLOW: ("works slowly", "work slowly"),

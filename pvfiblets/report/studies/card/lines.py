@@ -126,7 +126,7 @@ class LineSamples:
         return int(self.streamline.max(initial=0)) + 1
 
     def wrong(self, picture: Shown, width: float = 1.0, *, values: bool = False) -> dict[str, Mask]:
-        """Say which pixels are wrong."""
+        """Return which pixels are wrong."""
         shape = picture.there.shape
         reach = math.ceil(OFF_AXIS + max(width, 1.0) / 2.0 - 0.5)
         around = [(dy, dx) for dy in range(-reach, reach + 1) for dx in range(-reach, reach + 1)]

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 __all__ = ["STUDY", "MeasuresStudy"]
 
 VOXEL, PARCEL = 1.0, 16.0  # mm, sides of voxels of maps and of parcels of matrices
-OTHERS = (0.25, 4.0)  # times the default's promise
+OTHERS = (0.25, 4.0)  # times the default's error bound
 
 Floats = npt.NDArray[np.float64]
 Source = FibletSet | Streamlines
@@ -57,7 +57,7 @@ class MeasuresStudy:
     )
 
     def run(self, options: Options) -> Iterator[Record]:
-        """Yield a record for every set and promise."""
+        """Yield a record for every set and error bound."""
         for data in chain(trackings(options), whole_files(options)):
             if not options.allows(data.name):
                 continue

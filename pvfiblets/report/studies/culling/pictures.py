@@ -110,7 +110,7 @@ def difference(pictures: Sequence[Singles], truth: Sequence[Singles]) -> Figure:
 
 
 def errors(pictures: Sequence[Visible], truth: Sequence[Visible]) -> dict[str, Figure]:
-    """Say how far pictures are from the right ones, as shares of the pixels in which those show a streamline."""
+    """Return how far pictures are from the right ones, as shares of the pixels in which those show a streamline."""
     wrong = coverage = covered = 0
     for one, other in zip(pictures, truth, strict=True):
         a, b = one.streamline, other.streamline

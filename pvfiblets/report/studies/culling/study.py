@@ -72,7 +72,7 @@ class Variant:
 
 
 def detail(tolerance: float) -> str:
-    """Say to how many pixels points are left out."""
+    """Return the pixels of error within which points are left out, in words."""
     return f"{tolerance:g} px" if tolerance else "every point"
 
 

@@ -241,7 +241,7 @@ def _in_pixels(above: Array, per_pixel: Array) -> Array:
 
 
 def _folded(own: Array, length: float, reach: float, bends: tuple[Array | None, Array | None]) -> bool:
-    """Say whether the edges across both ends of a strip meet within its reach."""
+    """Return whether the edges across both ends of a strip meet within its reach."""
     left = np.array([-own[1], own[0]])
     start, end = (0.0 if bend is None or not bend.any() else float(left @ bend) / float(own @ bend) for bend in bends)
     return length < abs(end - start) * reach

@@ -76,7 +76,7 @@ class Variant:
 
 
 def samples(times: int) -> str:
-    """Say how many samples a pixel has."""
+    """Return how many samples a pixel has."""
     return "1 sample" if times == 1 else f"{times**2} samples"
 
 
