@@ -1,4 +1,4 @@
-"""What tubes and lines with halos are made from: lines and their data, from every kind of source in one form."""
+"""The source of tubes and of lines with halos: lines and their data, from every kind of source in one form."""
 
 from __future__ import annotations
 

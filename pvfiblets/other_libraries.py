@@ -78,7 +78,7 @@ def _space(dimensions: Any, sizes: Any, order: Any) -> dict[str, Any]:
 
 
 def _of_tractogram(tractogram: Any) -> Streamlines:
-    """From nibabel's Tractogram, whole or lazy."""
+    """Convert nibabel's Tractogram, whole or lazy."""
     affine = tractogram.affine_to_rasmm
     if affine is None:
         raise ValueError(
@@ -97,7 +97,7 @@ def _of_tractogram(tractogram: Any) -> Streamlines:
 
 
 def _of_generators(tractogram: Any) -> Streamlines:
-    """From a lazy tractogram, whose `streamlines` have its pending affine applied and whose items may lack it."""
+    """Convert a lazy tractogram, whose `streamlines` have its pending affine applied and whose items may lack it."""
     return Streamlines.from_list(
         [np.asarray(line) for line in tractogram.streamlines],
         per_point=_joined(tractogram.data_per_point, np.concatenate),
@@ -113,7 +113,7 @@ def _joined(columns: Mapping[str, Any], join: Callable[[Any], npt.NDArray[Any]])
 def _sequences(
     lines: Any, per_point: Mapping[str, Any] | None = None, per_streamline: Mapping[str, Any] | None = None, **rest: Any
 ) -> Streamlines:
-    """From nibabel's ArraySequence of points, one of each value per point, and arrays per streamline."""
+    """Convert nibabel's ArraySequence of points, one of each value per point, and arrays per streamline."""
     counts = np.fromiter((len(line) for line in lines), np.int64, count=len(lines))
     points = np.asarray(lines.get_data()).reshape(-1, 3)
     return Streamlines(
@@ -173,7 +173,7 @@ def _named_blocks(source: Any) -> list[tuple[str, Any]]:
 
 
 def _of_blocks(blocks: Any, space: Space | None = None) -> Streamlines:
-    """From the blocks of a MultiBlock: their names are groups; arrays that some of them lack are dropped."""
+    """Convert the blocks of a MultiBlock: their names are groups; arrays that some of them lack are dropped."""
     space = space_of_dataset(blocks) or space  # of blocks that name none
     parts: list[Streamlines] = []
     named = [(name, block) for name, block in _named_blocks(blocks) if block is not None]

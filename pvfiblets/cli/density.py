@@ -1,4 +1,4 @@
-"""What ``pvfiblets density`` does."""
+"""The command ``pvfiblets density``."""
 
 from __future__ import annotations
 

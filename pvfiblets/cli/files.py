@@ -1,4 +1,4 @@
-"""What ``pvfiblets convert``, ``info`` and ``verify`` do."""
+"""The commands ``pvfiblets convert``, ``info`` and ``verify``."""
 
 from __future__ import annotations
 

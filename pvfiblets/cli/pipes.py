@@ -152,7 +152,7 @@ class Pipes:
 
 
 def _asks(value: Any) -> int:
-    """How often ``-`` is given for an argument."""
+    """Return how often ``-`` is given for an argument."""
     return (value or []).count("-") if isinstance(value, list) else int(value == "-")
 
 

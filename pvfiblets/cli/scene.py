@@ -1,4 +1,4 @@
-"""What ``pvfiblets screenshot`` and ``show`` put into a scene: tracts, images, meshes, cuts and filters; or a session.
+"""Scenes of ``pvfiblets screenshot`` and ``show``: tracts, images, meshes, cuts and filters; or a session.
 
 Options are named as in the equivalent Python: shapes and conditions are parsed as in sessions
 (`pvfiblets.web.session.shapes`), all else goes to ``add_fiblets``, ``add_raycast_volume`` and ``add_mesh`` as it is,

@@ -46,7 +46,7 @@ def capsule_radius(points: Array, b: Array) -> float:
 
 
 def capsule_ends(anchors: Array, end: npt.NDArray[np.bool_], vectors: Array, following: Array | None) -> Array:
-    """Where the chords of consecutive fiblets end."""
+    """Return the ends of the chords of consecutive fiblets."""
     last = anchors[-1:] if following is None else following[None]
     ends = np.concatenate([anchors[1:], last])
     ends[end] = anchors[end] + vectors

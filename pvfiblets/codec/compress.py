@@ -242,7 +242,7 @@ def _kept_exactly(streamlines: Streamlines, found: Survey, per_point: Sequence[s
 
 
 def _rest(streamlines: Streamlines, per_point: Sequence[str]) -> dict[str, Any]:
-    """What is kept whole, as fields of a FibletSet."""
+    """Return the data that are kept whole, as fields of a FibletSet."""
     return {
         "n_streamlines": len(streamlines),
         "per_streamline": {k: np.asarray(v) for k, v in streamlines.per_streamline.items()},

@@ -133,7 +133,7 @@ class Copies:
         return np.concatenate([[0], np.cumsum(counts)])
 
     def copies_at(self, first: int, last: int) -> Ints:
-        """Which copies stand at places ``first`` to ``last``: ``(last - first,)`` int64."""
+        """Return the copies at places ``first`` to ``last``: ``(last - first,)`` int64."""
         places = np.arange(first, last)
         if self.sequence is None:
             return places

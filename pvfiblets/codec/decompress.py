@@ -60,7 +60,7 @@ def decode_fiblets(
 
 
 def decoding_arrays(fiblets: FibletSet) -> tuple[Any, ...]:
-    """What `decode_kernels.decode_one` takes of a set, from ``arrays`` to ``tables``."""
+    """Return the arguments of `decode_kernels.decode_one` for a set, from ``arrays`` to ``tables``."""
     p, low = fiblets.parameters, fiblets.anchors_low
     return (
         (fixed(fiblets.anchors), fixed(fiblets.decoding), fixed(fiblets.codes), fixed(fiblets.pages[:, 1])),

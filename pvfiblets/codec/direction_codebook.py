@@ -53,7 +53,7 @@ def cap_ratios() -> npt.NDArray[np.float64]:
 
 @cache
 def disc() -> npt.NDArray[np.float64]:
-    """Where the codes lie on the unit disc."""
+    """Return the places of the codes on the unit disc."""
     points = np.empty((CODES, 2))
     turn = complex(1.0, 0.0)
     for code in range(CODES):
@@ -79,7 +79,7 @@ def _lateral() -> npt.NDArray[np.float64]:
 
 @cache
 def packed_scales() -> npt.NDArray[np.float32]:
-    """What one unit of a packed rotation's integers stands for."""
+    """Return the value of one unit of a packed rotation's integers."""
     return _frozen((np.abs(_lateral()).max(axis=(1, 2)) / PACKED_LEVELS).astype(np.float32))
 
 

@@ -1,4 +1,4 @@
-"""How far decoded points are from their originals, and drawn directions from true ones."""
+"""Errors of decoded points and of drawn directions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How the codec's kernels are compiled and kept.
+"""Compilation of the codec's kernels, and their cache.
 
 numba keeps compiled kernels beside their source and looks at that one file to see whether they are still good. A kernel
 that calls another module's kernel, or takes its constants, would be used on after that module changed, and might then

@@ -1,4 +1,4 @@
-"""What one file's fiblets have in common: origin, anchor grid, steps, lattice edge and the error promised."""
+"""Parameters that a file's fiblets share: origin, anchor grid, steps, lattice edge and the error bound."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ Vector = npt.NDArray[np.float64]
 
 @dataclass
 class Survey:
-    """What a first pass over the data finds.
+    """Result of a first pass over the data.
 
     Attributes
     ----------
@@ -160,7 +160,7 @@ def _scan(
 
 
 def _scanned(offsets: npt.NDArray[np.int64]) -> Iterator[tuple[npt.NDArray[np.int64], bool]]:
-    """Where the streamlines of each block begin and the last ends; a very long one comes in parts that overlap.
+    """Yield the offsets of each block's streamlines; a very long one comes in parts that overlap.
 
     And whether it goes on behind this part.
     """

@@ -119,7 +119,7 @@ class PointValues:
 
 @dataclass(frozen=True)
 class ValueCoder:
-    """How the values of an array are coded, by what a survey of them has found."""
+    """Coding of an array's values, by a survey of them."""
 
     table: Array | None
     count: int  # entries of the table that mean numbers
@@ -164,7 +164,7 @@ class ValueCoder:
 
 
 class ValueSurvey:
-    """What a first pass over the values of an array finds, chunk by chunk."""
+    """A first pass over the values of an array, chunk by chunk."""
 
     def __init__(self) -> None:
         self._kind: np.dtype[Any] | None = None
@@ -295,7 +295,7 @@ class _Scale:
 
     @property
     def steps(self) -> float:
-        """From the least value to the largest."""
+        """Steps from the least value to the largest."""
         return float(self.at(np.array([self.hi]))[0]) or 1.0
 
     def at(self, values: Floats) -> Floats:

@@ -233,7 +233,7 @@ def _box(points: Array, anchor: Array, h: float) -> _Box | None:
 
 
 def _turned(points: Array, anchor: Array, edge: float, turns: Turns, following: Array | None) -> float:
-    """By how many times the lattice turns a segment farther than it may; see :meth:`.turn_reference.Turns.excess`."""
+    """Return by how many times the lattice turns a segment too far; see :meth:`.turn_reference.Turns.excess`."""
     decoded = anchor + edge * _lattice(points, anchor, edge)
     decoded[0] = anchor
     return turns.excess(decoded, following)

@@ -30,7 +30,7 @@ COMPILING = 4.0  # seconds; work below that does not wait for uncompiled kernels
 
 @dataclass
 class State:
-    """What a process has spent on a work without kernels, seconds of a core, and whether it has loaded them."""
+    """Seconds of a core that a process has spent on a task without kernels, and whether it has loaded them."""
 
     spent: float = 0.0
     loaded: bool = False

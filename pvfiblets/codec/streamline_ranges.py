@@ -1,4 +1,4 @@
-"""Where a streamline stands in a set: its fiblets, and its points among all points."""
+"""Ranges of a streamline in a set: its fiblets, and its points among all points."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Ints = npt.NDArray[np.int64]
 
 @dataclass(frozen=True)
 class StreamlineRanges:
-    """Where some streamlines' fiblets and points stand among all.
+    """Ranges of some streamlines' fiblets and points among all.
 
     Attributes
     ----------
@@ -37,7 +37,7 @@ class StreamlineRanges:
 
     @classmethod
     def from_fiblets(cls, fiblets: FibletSet) -> StreamlineRanges:
-        """Those of all streamlines."""
+        """Return the ranges of all streamlines."""
         if in_parts(fiblets):
             return cls._of_parts(fiblets)
         owners, n = fiblets.fiblet_streamlines(), fiblets.n_streamlines
@@ -50,7 +50,7 @@ class StreamlineRanges:
 
     @classmethod
     def _of_parts(cls, fiblets: FibletSet) -> StreamlineRanges:
-        """Those of a set in shards, which are coded one behind the other."""
+        """Return the ranges in a set of shards, which are coded one behind the other."""
         whole = cls(*(np.zeros(fiblets.n_streamlines, np.int64) for _ in range(4)))
         fiblet = point = 0
         for part, ids in stored_parts(fiblets):
@@ -63,7 +63,7 @@ class StreamlineRanges:
         return whole
 
     def at(self, chosen: Ints) -> StreamlineRanges:
-        """Those of some of them."""
+        """Return the ranges of some of them."""
         return StreamlineRanges(self.fiblet[chosen], self.fiblets[chosen], self.point[chosen], self.points[chosen])
 
 

@@ -29,7 +29,7 @@ __all__ = ["Drawable", "Target", "sizes_of"]
 
 
 class GpuResource(Protocol):
-    """What a renderer keeps on the GPU; ``sizes``, ``buffers`` or ``nbytes`` say how large it is."""
+    """GPU memory of a renderer; ``sizes``, ``buffers`` or ``nbytes`` give its size."""
 
     def release(self) -> None:
         """Give it back; twice is harmless."""

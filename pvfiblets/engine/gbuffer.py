@@ -139,7 +139,7 @@ class GBuffer:
 
     @property
     def relief(self) -> str | None:
-        """What :meth:`want_relief` was last told."""
+        """The last argument of :meth:`want_relief`."""
         return self._relief
 
     @property

@@ -1,4 +1,4 @@
-"""What is drawn in two passes: hits with their depth first, then the G-buffer that is made of them.
+"""Drawables of two passes: hits with their depth first, then the G-buffer made of them.
 
 Spline tubes and lines with halos are drawn into it; `HitDrawable` is what their renderers share.
 """
@@ -126,13 +126,13 @@ class HitDrawable(Drawable[AnyStyle]):
     """A `Drawable` that finds hits and their depths first, and all else in one pass over the picture."""
 
     CULLING: ClassVar[tuple[str | None, ...]] = ("two-phase", None)
-    """How what others hide may be found out."""
+    """Methods of occlusion culling."""
 
     RELIEF: ClassVar[str] = "normal"
-    """What ``GBuffer.across`` holds."""
+    """Contents of ``GBuffer.across``."""
 
     EDGES: ClassVar[str] = "attributes"
-    """Which pass writes ``GBuffer.edges``, if asked for: ``'hits'`` or ``'attributes'``."""
+    """Pass that writes ``GBuffer.edges``, if requested: ``'hits'`` or ``'attributes'``."""
 
     SAMPLERS: ClassVar[Mapping[str, int]]
     """Texture units of the data, by the names of their samplers."""

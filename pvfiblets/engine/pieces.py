@@ -23,13 +23,13 @@ FIRST = 8
 """Work groups of a stage whose time is not known yet: some 2,000 fiblets."""
 
 GROWTH = 4
-"""How many times more groups than ever before may be tried at once."""
+"""Greatest ratio of groups tried at once to the most so far."""
 
 Found = TypeVar("Found")
 
 
 class Pieces:
-    """Where the pieces of one picture end, by the time that earlier ones took.
+    """Ends of one picture's pieces, by the times of earlier ones.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What is drawn from where (`View`) and how (`Style`): small frozen values that a redraw is decided on."""
+"""The camera and data of a picture (`View`), and its appearance (`Style`): frozen values; changes cause redraws."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ class View:
 
 @dataclass(frozen=True)
 class Style:
-    """How a drawable becomes pixels: what the styles of all drawables share.
+    """The style of a drawable: the fields that all drawables share.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ class Style:
 
     @property
     def relief(self) -> str | None:
-        """What ``GBuffer.across`` holds (:meth:`.GBuffer.want_relief`), or None for nothing."""
+        """Contents of ``GBuffer.across`` (:meth:`.GBuffer.want_relief`), or None for nothing."""
         return None
 
 

@@ -1,4 +1,4 @@
-"""Which module reads and writes which suffix.
+"""The modules that read and write each suffix.
 
 A format module offers ``read(path, *, progress=False)``, ``iter_chunks(path, max_points)`` and
 ``info(path)``, and where the format can be written ``write(path, streamlines)``. Modules are

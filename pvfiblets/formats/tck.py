@@ -84,10 +84,10 @@ MORE = "streamlines beyond the header's count (kept)"
 
 
 class Header(NamedTuple):
-    """What the text header says (shared with ``.tsf``, which has the same layout)."""
+    """Contents of the text header (shared with ``.tsf``, which has the same layout)."""
 
     fields: dict[str, str]
-    """By key in lower case; repeated keys have a line each."""
+    """Values by key in lower case; repeated keys have a line each."""
     dtype: np.dtype[Any]
     data_position: int
     n_streamlines: int | None

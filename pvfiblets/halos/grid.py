@@ -43,7 +43,7 @@ class Grid:
         return cells
 
     def near(self, points: Doubles) -> tuple[Ints, Ints, Ints]:
-        """Which points are near a place; and for each, where in a list the places are that it is near, and how many."""
+        """Return the points near a place; and for each, where in a list its near places are, and how many."""
         cells = self._cells(points)
         some = np.flatnonzero(self._table[_hashed(cells)])
         first = np.searchsorted(self._wanted, cells[some], side="left")
@@ -58,5 +58,5 @@ class Grid:
 
 
 def _hashed(cells: Ints) -> Ints:
-    """Where in the table each cell is looked up: the upper bits of a product, in which all bits of the cell count."""
+    """Return the table's index of each cell: the upper bits of a product, in which all bits of the cell count."""
     return ((cells.astype(np.uint64) * np.uint64(0x9E3779B97F4A7C15)) >> np.uint64(64 - _TABLE)).astype(np.int64)

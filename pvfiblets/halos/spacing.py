@@ -1,4 +1,4 @@
-"""How far apart lines or points lie, and the widths that suit them."""
+"""Spacing of lines or points, and widths that suit it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _ALONE = 1.0 / 60.0
 
 
 def line_spacing(lines: HaloLines, samples: int = 2000, seed: int = 0) -> float:
-    """How far apart lines lie.
+    """Return the spacing of lines.
 
     Examples
     --------
@@ -41,7 +41,7 @@ def line_spacing(lines: HaloLines, samples: int = 2000, seed: int = 0) -> float:
 
 
 def point_spacing(points: HaloPoints, samples: int = 2000, seed: int = 0) -> float:
-    """How far apart points lie."""
+    """Return the spacing of points."""
     _check_samples(samples)
     frame = Frame.around(points.points)
     found = np.zeros(0)

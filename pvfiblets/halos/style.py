@@ -19,7 +19,7 @@ MAX_TAPERED = 1000
 
 @dataclass(frozen=True)
 class HaloStyle:
-    """How lines, or points, with halos are drawn.
+    """The style of lines, or points, with halos.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""How wide a halo shows: the paper's appendix A, for every displacement function."""
+"""Visible widths of halos: the paper's appendix A, for every displacement function."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def halo_width(
     max_displacement: float,
     displacement: Displacement = "linear",
 ) -> npt.NDArray[np.float64]:
-    """How wide a line's halo shows, on each of its sides, where another line crosses behind it.
+    """Return the visible width of a line's halo, on each of its sides, where another line crosses behind it.
 
     Parameters
     ----------

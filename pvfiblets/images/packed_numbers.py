@@ -93,7 +93,7 @@ def _gzip(file: IO[bytes]) -> gzip.GzipFile:
 
 
 class _Inflated:
-    """What the zlib module has no file for."""
+    """File interface that the zlib module lacks."""
 
     def __init__(self, file: IO[bytes]) -> None:
         self._file = file

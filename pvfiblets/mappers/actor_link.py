@@ -24,7 +24,7 @@ _UNUSED = {
     "backface_prop": ("GetBackfaceProperty", "there are no back faces; prop applies to all sides"),
     "texture": ("GetTexture", "there are no texture coordinates; give colours as scalars"),
 }
-"""By PyVista's name: VTK's method, and the warning."""
+"""VTK's method, and the warning, by PyVista's name."""
 
 
 class ActorLink:

@@ -27,7 +27,7 @@ _SETTINGS = ("ScalarVisibility", "ColorMode", "ScalarMode", "InterpolateScalarsB
 
 
 class Connection:
-    """What VTK's half of a mapper is connected to; the mapper is not kept alive."""
+    """The input of VTK's half of a mapper; the mapper is not kept alive."""
 
     proxy: vtkPolyData | None = None
     """The triangles."""

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["TONES", "Density"]
 
 TONES = ("log", "sqrt", "linear")
-"""How brightness grows with the number of lines."""
+"""Functions from the number of lines to brightness."""
 
 
 @dataclass(frozen=True)

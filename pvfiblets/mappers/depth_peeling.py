@@ -28,7 +28,7 @@ __all__ = ["Layers", "layers_of", "with_layers"]
 
 
 class _Held:
-    """What is kept in one window: the engine that has layers, or empty textures in their place."""
+    """State of one window: the engine that has layers, or empty textures in their place."""
 
     def __init__(self, ctx: Any) -> None:
         self._engine: Any = None
@@ -67,7 +67,7 @@ class _Held:
 
 @dataclass(frozen=True)
 class Layers(ShaderEffect):
-    """Where the actor is translucent, several layers show.
+    """Shows several layers where the actor is translucent.
 
     Parameters
     ----------

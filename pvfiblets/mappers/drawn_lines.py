@@ -1,4 +1,4 @@
-"""What mappers draw, as lines with the colours that the picture has: for exporters, pickers and views in browsers."""
+"""Mappers' lines with the picture's colours: for exporters, pickers and views in browsers."""
 
 from __future__ import annotations
 

@@ -176,7 +176,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
 
     @property
     def options(self) -> AnyOptions:
-        """What can be chosen about drawing; set others to change it from the next frame on."""
+        """Options of drawing; set others to change it from the next frame on."""
         return self._options
 
     @options.setter
@@ -186,7 +186,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
 
     @property
     def colouring(self) -> Colouring:
-        """Where the colours come from; set another `Colouring` to change them."""
+        """Source of colours; set another `Colouring` to change them."""
         return self._colouring
 
     @colouring.setter
@@ -597,7 +597,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
 
     @property
     def _address(self) -> str:
-        """What windows know the mapper by."""
+        """Key of the mapper in windows."""
         return self.GetAddressAsString("")
 
     @property

@@ -35,7 +35,7 @@ class Options:
 
 @dataclass(frozen=True)
 class EngineOptions(Options):
-    """What can be chosen about drawing that does not show in the picture.
+    """Options of drawing that do not change the picture.
 
     Parameters
     ----------

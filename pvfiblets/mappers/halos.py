@@ -39,7 +39,7 @@ BLACK: Colour = (0.0, 0.0, 0.0)
 
 @dataclass(frozen=True)
 class HaloOptions(Options):
-    """What can be chosen about drawing lines and points with halos that does not show in the picture.
+    """Options of drawing lines and points with halos that do not change the picture.
 
     Parameters
     ----------
@@ -163,7 +163,7 @@ class HaloMapper(EngineMapper[HaloOptions]):
 
     @property
     def drawn(self) -> Drawn:
-        """What is drawn."""
+        """The drawn data."""
         drawn: Drawn = self._drawn
         return drawn
 

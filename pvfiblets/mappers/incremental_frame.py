@@ -1,4 +1,4 @@
-"""What the next frame of a window shows, drawn before it and piece by piece.
+"""The next frame of a window, drawn before it and piece by piece.
 
 VTK draws a frame in one call, without events in between. Most of its time goes into the G-buffers of fiblets where
 OpenGL runs on the CPU. So code that may have to abort a frame has them drawn beforehand by `draw_in_pieces`: the frame

@@ -34,7 +34,7 @@ LONGEST = 0.1
 
 @dataclass(frozen=True)
 class DepthOfField:
-    """What is in focus, and how blurred the rest is.
+    """The focus of a lens, and the blur around it.
 
     Parameters
     ----------

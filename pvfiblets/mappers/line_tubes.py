@@ -79,7 +79,7 @@ class TubeShading(ShaderEffect):
 
     @property
     def style(self) -> Mapping[str, Any]:
-        """What it wants of the engine."""
+        """Requests to the engine."""
         return {"across": True}
 
     def make(self, ctx: Any) -> _Blank:
@@ -135,5 +135,5 @@ class Tubes(SurfaceNormals):
 
     @property
     def style(self) -> Mapping[str, Any]:
-        """What it wants of the engine."""
+        """Requests to the engine."""
         return {"radius": float(self.radius), "across": True}

@@ -45,7 +45,7 @@ _EVENTS = ("StartEvent", "EndEvent", "ActiveCameraEvent")
 
 _COVERAGE = "coverage"
 ANTIALIAS = ("off", _COVERAGE)
-"""How edges of lines may be smoothed."""
+"""Methods of smoothing edges of lines."""
 
 
 @dataclass(slots=True)
@@ -59,7 +59,7 @@ class _Job:
 
 
 class Picture:
-    """What is done to everything that a renderer draws.
+    """Effects on everything that a renderer draws.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ class Picture:
 
     @property
     def tone(self) -> Tone:
-        """What is done to colours."""
+        """Tone mapping and colour correction."""
         return self._tone
 
     @tone.setter
@@ -118,7 +118,7 @@ class Picture:
 
     @property
     def depth_of_field(self) -> DepthOfField | None:
-        """What is in focus; None for all."""
+        """The focus; None for everything sharp."""
         return self._depth_of_field
 
     @depth_of_field.setter

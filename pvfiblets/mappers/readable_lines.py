@@ -38,7 +38,7 @@ class LineReading:
     """Real lines as VTK's data of one mapper, which is not kept alive, for a while."""
 
     purpose = ""
-    """What VTK draws the lines for: ``"selection"``, ``"export"``, or nothing."""
+    """VTK's purpose of drawing the lines: ``"selection"``, ``"export"``, or nothing."""
 
     def __init__(self, mapper: EngineMapper[Any], connection: Connection, link: ActorLink) -> None:
         self._weak = weak(mapper)
@@ -49,12 +49,12 @@ class LineReading:
 
     @property
     def mapper(self) -> EngineMapper[Any]:
-        """Whose lines they are."""
+        """Mapper of the lines."""
         return cast("EngineMapper[Any]", self._weak.Get())
 
     @property
     def points(self) -> int | None:
-        """How many points the lines have; None where there are none, as of volumes."""
+        """Number of points of the lines; None without lines, as for volumes."""
         mapper = self.mapper
         if mapper._drawn is None and self._connection.input is not None:  # noqa: SLF001
             self._connection.input.Update()

@@ -1,4 +1,4 @@
-"""Which renderer is drawing, from where it looks (VTK's matrices in float64), and how large its pixels are."""
+"""The renderer that is drawing, its camera (VTK's matrices in float64), and the size of its pixels."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a renderer's picture is made of, as one value: as long as it stays the same, so does the picture.
+"""The state of a renderer's picture, as one value: as long as it stays the same, so does the picture.
 
 VTK counts changes (``GetMTime``), and draws data anew by that count alone; so uncounted changes are
 not in the next picture either. The overlay, scalar bars and texts, is no part of it.

@@ -1,4 +1,4 @@
-"""What the resolve's own pieces read: textures by the names of their samplers, and uniforms of VTK's program."""
+"""Inputs of the resolve's own pieces: textures by the names of their samplers, and uniforms of VTK's program."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which array of its input colours a mapper, and how, by the settings that every ``vtkMapper`` has.
+"""The array of its input that colours a mapper, by the settings that every ``vtkMapper`` has.
 
 ``ScalarVisibility``, ``ScalarMode``, ``SelectColorArray``, ``ColorMode``, ``LookupTable``, ``ScalarRange`` and
 ``UseLookupTableScalarRange`` mean the same as in VTK. Numbers at points are interpolated along a line before they
@@ -31,7 +31,7 @@ Bytes = npt.NDArray[np.uint8]
 
 @dataclass(frozen=True, eq=False)
 class Paint:
-    """What colours lines, or an image.
+    """The colours of lines, or of an image.
 
     Attributes
     ----------

@@ -61,7 +61,7 @@ def _attach() -> Any:
 
 
 class Slot:
-    """What one mapper keeps in one window.
+    """A mapper's state in one window.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What a page shows, as plain data; ``client/src/scene.ts`` is the same for the page's script."""
+"""The scene of a page, as plain data; ``client/src/scene.ts`` is the same for the page's script."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ class Light:
 
 @dataclass
 class PageScene:
-    """What a page shows.
+    """The scene of a page.
 
     Attributes
     ----------

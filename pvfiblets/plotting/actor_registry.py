@@ -31,7 +31,7 @@ from pvfiblets.plotting.unsupported_arguments import why_not
 
 
 class Registered(Protocol):
-    """What an actor must have to be kept; besides, it is a :class:`pyvista.Actor`."""
+    """The interface of registered actors, which also are :class:`pyvista.Actor`."""
 
     name: Any
     prop: Any
@@ -40,12 +40,12 @@ class Registered(Protocol):
 
     @property
     def memory_address(self) -> str:
-        """What VTK knows it by."""
+        """VTK's address of it."""
         ...
 
     @property
     def scalars_title(self) -> str | None:
-        """What its scalar bar says; None if it needs none."""
+        """Title of its scalar bar; None if it needs none."""
         ...
 
     @property
@@ -86,7 +86,7 @@ LETTER = 0.5
 NAMES_FONT = 18
 """Size of the font of names beside a scalar bar that VTK chooses in a small window, about."""
 NAMES_SHARE = 0.42
-"""Of the window's width, for names beside a scalar bar."""
+"""Share of the window's width for names beside a scalar bar."""
 
 
 CAMERA_REACH = 2.0**53

@@ -1,4 +1,4 @@
-"""What all actors of this package have in common: colours by PyVista's rules, place, life and report."""
+"""The base of all actors of this package: colours by PyVista's rules, place, life and report."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ class ColouredActor(Settings, pv.Actor):
 
     @property
     def _drawn(self) -> Any:
-        """What is drawn."""
+        """The drawn data."""
         raise NotImplementedError
 
     def _as_polydata(self) -> pv.PolyData:
@@ -123,7 +123,7 @@ class ColouredActor(Settings, pv.Actor):
 
     @property
     def scalars_title(self) -> str | None:
-        """What a scalar bar says; ``None`` if the present colours need none."""
+        """Title of the scalar bar; ``None`` if the present colours need none."""
         return self._scalars.title if self._scalars is not None and self._scalars.mapped else None
 
     @property

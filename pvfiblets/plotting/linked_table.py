@@ -21,7 +21,7 @@ __all__ = ["LinkedTable"]
 
 @dataclass(frozen=True)
 class _Written:
-    """What a table says."""
+    """The contents of a table."""
 
     values: np.ndarray
     clim: tuple[float, float]
@@ -41,7 +41,7 @@ class _Written:
 
 
 class LinkedTable:
-    """What others than an actor's settings write to its look-up table.
+    """Changes of an actor's look-up table by other code than its settings.
 
     A method of the actor, ``modified``, is called at each change by other code, which may not have finished.
     """

@@ -112,7 +112,7 @@ class PlottedLines(Plotted[AnyOptions]):
 
     @property
     def dataset(self) -> pv.PolyData:
-        """What is drawn as PyVista's own lines or points, made anew each time: of a large set ask for a part."""
+        """The lines as PyVista's own lines or points, made anew each time: of a large set ask for a part."""
         if self.is_readable:
             return cast("pv.PolyData", pv.wrap(self.GetDataSetInput()))
         return self._owner._as_polydata()  # noqa: SLF001

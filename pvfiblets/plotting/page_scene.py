@@ -1,4 +1,4 @@
-"""What a plotter shows as a page (`pvfiblets.page`): fiblets, surfaces, slices of images, lights, camera, colour bars.
+"""A plotter's scene as a page (`pvfiblets.page`): fiblets, surfaces, slices of images, lights, camera, colour bars.
 
 What a page cannot show is named in one warning, and left out.
 """

@@ -1,4 +1,4 @@
-"""How the numbers beside a scalar bar are written."""
+"""Labels beside a scalar bar."""
 
 from __future__ import annotations
 

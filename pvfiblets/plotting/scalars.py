@@ -1,4 +1,4 @@
-"""Which numbers or colours `scalars=` means, by name or as an array, for every drawable.
+"""The numbers or colours of `scalars=`, by name or as an array, for every drawable.
 
 A name is looked up among the numbers of points, then of whole lines, then among built-in ones, which are
 computed from the geometry. An array is recognised by its length. Arrays with three or four columns are colours, all
@@ -102,7 +102,7 @@ class Scalars:
 
     @property
     def title(self) -> str:
-        """What the scalar bar says."""
+        """Title of the scalar bar."""
         return COUNTED if self.kind == "pixel_count" else UNITS.get(self.name, self.name)
 
     def distinct(self, fiblets: FibletSet) -> int:
@@ -123,7 +123,7 @@ class Scalars:
 
 @dataclass(frozen=True)
 class Numbers:
-    """What `scalars=` may name of something drawn.
+    """The values of `scalars=` for some data.
 
     Attributes
     ----------

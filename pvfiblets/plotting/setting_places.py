@@ -13,7 +13,7 @@ __all__ = ["COLOURS", "LATER", "MAPPER", "OPTIONS", "OWN", "PROPERTY", "Effect",
 
 
 class Place:
-    """Where an actor keeps a setting: how it is read, and what changes when it is written."""
+    """A place where an actor keeps a setting: it reads the setting, and applies its changes."""
 
     checks: ClassVar[bool] = False
     """Whether choices are looked at there, not before."""

@@ -1,4 +1,4 @@
-"""What can be set of an actor, said once.
+"""Settings of actors, each declared once.
 
 A drawable's settings are the body of one class, a :class:`Settings`, from which the actor inherits. Each
 :class:`Setting` in it is the live property of the actor, with its check and doc; the keyword argument of ``add_...``
@@ -39,7 +39,7 @@ SAME: Any = object()
 
 @dataclass(frozen=True)
 class Row:
-    """How the web page shows something that can be set.
+    """Appearance of a setting on the web page.
 
     Attributes
     ----------

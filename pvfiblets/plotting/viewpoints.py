@@ -1,4 +1,4 @@
-"""Where the camera stands to look at a brain."""
+"""Standard cameras for a brain."""
 
 from __future__ import annotations
 

@@ -32,12 +32,12 @@ class Camera:
 
     @property
     def pixels(self) -> float:
-        """What 1 mm takes in the picture at a distance of 1 mm."""
+        """Pixels of 1 mm at a distance of 1 mm."""
         return 0.5 * self.size[1] / math.tan(math.radians(VERTICAL_ANGLE / 2))
 
     @property
     def backwards(self) -> Array:
-        """From the centre to the eye, a unit vector."""
+        """Unit vector from the centre to the eye."""
         away = self.eye - self.centre
         return away / np.linalg.norm(away)
 
@@ -119,7 +119,7 @@ class Lens:
 
     @property
     def pixel(self) -> float:
-        """What a pixel takes at 1 mm from the eye, mm."""
+        """Size of a pixel at 1 mm from the eye, mm."""
         return 2.0 * self.slant / self.size[1]
 
     @property

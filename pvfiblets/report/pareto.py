@@ -1,4 +1,4 @@
-"""Which methods no other method beats."""
+"""Methods that no other method beats."""
 
 from __future__ import annotations
 

@@ -38,7 +38,7 @@ class Timing:
 
     @property
     def scale(self) -> float:
-        """What seconds for one item are multiplied by in tables and plots."""
+        """Factor of seconds for one item in tables and plots."""
         return 1e3 if self.item == FRAME else 1e9
 
     @property
@@ -116,7 +116,7 @@ class Axes:
 
 @dataclass(frozen=True)
 class CaseResult:
-    """What one named extreme case found."""
+    """Result of one named extreme case."""
 
     # Part of the program, and the case
     system: str

@@ -1,4 +1,4 @@
-"""From studies to ``report.json``, the page and the plots."""
+"""A run of studies, which writes ``report.json``, the page and the plots."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ __all__ = ["KINDS", "SliceImage", "as_slice_image"]
 Array = npt.NDArray[np.float64]
 
 KINDS = ("scalars", "rgb", "direction", "labels")
-"""What the numbers of a voxel may mean."""
+"""Meanings of the numbers of a voxel."""
 
 SAMPLED = 1_000_000
 """Number of voxels for percentiles; of larger images every n-th."""

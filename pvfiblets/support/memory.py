@@ -52,7 +52,7 @@ what each of them got, though all of it is free."""
 _MEMORY = Path("/proc/meminfo")
 _GROUP = Path("/sys/fs/cgroup")
 RESERVE = 48 * MEBIBYTE
-"""What must be left after something was loaded, so that the rest of the program goes on."""
+"""Bytes that must remain after something was loaded, so that the rest of the program goes on."""
 _UNITS = {"K": 1 << 10, "M": 1 << 20, "G": 1 << 30, "T": 1 << 40}
 
 Result = TypeVar("Result")

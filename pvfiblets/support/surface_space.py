@@ -1,4 +1,4 @@
-"""Where FreeSurfer's surfaces lie: from its own space (tkRAS, the origin in the volume's middle) to the scanner's mm.
+"""Positions of FreeSurfer's surfaces: from tkRAS, with the origin in the volume's middle, to the scanner's mm.
 
 Surfaces of FreeSurfer have the geometry of their volume with them. Their points are in tkRAS unless the file says that
 they are in the scanner's space (``mris_convert --to-scanner``). Programs that have moved the points, such as fMRIPrep,

@@ -18,7 +18,7 @@ from pvfiblets.volumes.volume import RaycastVolume
 __all__ = ["brain_like", "vessel_tree"]
 
 PEAKS = {"uint8": 255.0, "uint16": 4095.0, "int16": 4095.0, "float32": 1.0}
-"""What full brightness is in each type: angiographs have 8 or 12 bits."""
+"""Full brightness of each type: angiographs have 8 or 12 bits."""
 
 VESSEL_SIDE = 160.0  # mm, the field of view of a head's angiogram
 ROOTS = 3  # arteries that enter from below

@@ -69,7 +69,7 @@ class NodeValues:
 
     @cached_property
     def reference(self) -> float:
-        """What is subtracted from numbers on the graphics card; 0 of colours."""
+        """Offset subtracted from numbers on the graphics card; 0 for colours."""
         return 0.0 if self.is_colour else value_reference(self.values)
 
     @property
@@ -219,7 +219,7 @@ class SplineTubes:
 
     @property
     def promise(self) -> float:
-        """How far shown positions may lie from the given ones, mm: nodes are kept as they are."""
+        """Greatest distance of drawn positions from the given ones, mm: nodes are kept as they are."""
         return 0.0
 
     @property

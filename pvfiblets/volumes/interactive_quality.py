@@ -20,7 +20,7 @@ LARGEST_STEP = 1e3  # of RaycastOptions
 
 @dataclass(frozen=True)
 class InteractiveQuality:
-    """What is changed of a casting.
+    """Changes to a casting while the camera moves.
 
     Parameters
     ----------

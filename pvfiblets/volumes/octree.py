@@ -46,10 +46,10 @@ AT_ONCE = 1 << 22
 """Numbers of a volume's leaves that are brought together along one axis at a time: six bytes each, more or less."""
 
 SKIP, VISIT, HOMOGENEOUS = 0, 1, 2
-"""What rays do with a node: nothing, look into it, or take it as its mean."""
+"""Actions of rays at a node: nothing, look into it, or take it as its mean."""
 
 OVERSHOOT = 61 / 128
-"""How far the tricubic field leaves the range of its voxels, as a part of that range."""
+"""Greatest excess of the tricubic field over the range of its voxels, as a part of that range."""
 
 Flags = list[npt.NDArray[np.uint8]]
 

@@ -53,7 +53,7 @@ def _unit_depth(alpha: float) -> float:
 
 @kernel
 def _primitive(alpha: float) -> float:
-    """Of -ln(1 - alpha)."""
+    """Return the integral of -ln(1 - alpha)."""
     return (1.0 - alpha) * math.log1p(-alpha) + alpha if alpha < 1.0 else 1.0
 
 

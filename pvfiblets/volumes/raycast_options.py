@@ -25,10 +25,10 @@ PROJECTIONS = ("mip", "local-mip", "minimum", "average")
 """Modes that show one value of a ray."""
 
 REFINEMENTS = ("exact", "regula-falsi", "newton", "none")
-"""How surfaces are found: in each cell of eight voxels, or between two steps (paper: equations 3 and 4)."""
+"""Searches for surfaces: in each cell of eight voxels, or between two steps (paper: equations 3 and 4)."""
 
 INTEGRATORS = ("adaptive", "preintegrated", "exponential", "riemann", "simpson", "romberg", "rk4")
-"""How the rendering equation is integrated over a step."""
+"""Methods of integrating the rendering equation over a step."""
 
 MAX_VALUES = 8
 """Isosurfaces of one volume."""
@@ -45,7 +45,7 @@ LARGEST = (2.0 - 2.0**-23) * 2.0**127
 
 @dataclass(frozen=True)
 class RaycastOptions:
-    """How rays are cast.
+    """Options of ray casting.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What rays can be cast through: volumes gathered from every kind of source into one form, in RAS+ mm."""
+"""Sources of ray-cast volumes, gathered into one form, in RAS+ mm."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How much values may bend within a step of a ray, by the values at its ends, so that one look-up is enough for it.
+"""Greatest bends of values within a step of a ray, by the values at its ends, at which one look-up is enough.
 
 A pre-integrated table is exact where the value is linear over a step and both its ends are entries of the table. Two
 things take light away from it, and both are of some pairs of values, not of a transfer function as a whole:
@@ -27,7 +27,7 @@ from .volume import RaycastVolume
 __all__ = ["DEEP", "KINKS", "OFF", "PARTS", "UNTRUSTED", "allowed_bends", "largest_bend"]
 
 OFF = 1e-2
-"""What colours and opacities may be off by."""
+"""Largest error of colours and opacities."""
 
 DEEP = 9.0
 """Optical depth of a step beyond which the rest of the light at a ray's end does not follow from its opacity. Steps of

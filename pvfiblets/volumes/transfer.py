@@ -34,7 +34,7 @@ LARGEST_PREINTEGRATED = 1024
 """Largest number of entries of tables that can be pre-integrated: time grows with its third power."""
 
 EVEN_COLOURS, EVEN_EXTINCTION = 1.0 / 512.0, 1e-3
-"""What colours may change by, and what part of it extinction, where both count as the same."""
+"""Differences of colours, and their part of extinction, up to which both count as the same."""
 
 PLACES = 4080
 """Least number of pieces of the finer table that light is calculated from: 16 for each of 255."""
@@ -204,7 +204,7 @@ class Transfer:
         return either
 
     def _places(self, values: npt.ArrayLike) -> Array:
-        """Where values lie in the table, 0 to k - 1."""
+        """Return the places of values in the table, 0 to k - 1."""
         low, high = self.clim
         share = (np.asarray(values, np.float64) - low) / (high - low)
         return np.clip(share, 0.0, 1.0) * (len(self.table) - 1)

@@ -15,7 +15,7 @@ from pvfiblets.support.value_reference import relative, value_reference
 __all__ = ["FILTERS", "RaycastVolume"]
 
 FILTERS = ("nearest", "trilinear", "tricubic")
-"""How the field between voxel centres is reconstructed."""
+"""Reconstructions of the field between voxel centres."""
 
 KEPT = (np.uint8, np.uint16, np.int16, np.float32)
 WIDENED = {"b1": np.uint8, "i1": np.int16, "f2": np.float32}

@@ -25,7 +25,7 @@ class Actions:
 
 
 class LineActions(Actions):
-    """Those on the chosen layer of lines."""
+    """Actions on the chosen layer of lines."""
 
     @property
     def _layer(self) -> Any:

@@ -24,7 +24,7 @@ LATEST = 0.2  # seconds between two reports of progress
 
 
 class BackgroundWork(Actions):
-    """What takes long, while the page goes on."""
+    """Long tasks in a thread, while the page goes on."""
 
     def __init__(self, app: Any) -> None:
         super().__init__(app)
@@ -79,7 +79,7 @@ class BackgroundWork(Actions):
 
     @property
     def _then(self) -> str:
-        """What waits, for people."""
+        """Return the names of waiting tasks, for people."""
         return f"then {', '.join(self._waiting)}" if self._waiting else ""
 
     @contextlib.asynccontextmanager

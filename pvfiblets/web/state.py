@@ -1,4 +1,4 @@
-"""What a page shows, as one typed record; the server writes it, browsers may write a few of its fields."""
+"""The state of a page, as one typed record; the server writes it, browsers may write a few of its fields."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ Ints = npt.NDArray[np.int64]
 
 @dataclass(frozen=True)
 class Source:
-    """What all parts are cut from: points in mm, their turns, and the anchor grid."""
+    """The source of all parts: points in mm, their turns, and the anchor grid."""
 
     points: npt.NDArray[np.floating]
     origin: Array

@@ -277,7 +277,7 @@ def _keep_exactly(
 
 
 class _Whole:
-    """What is kept whole: per-streamline data, groups and the header, gathered over chunks."""
+    """Data that are kept whole: per-streamline data, groups and the header, gathered over chunks."""
 
     def __init__(self, dropped: dict[str, int]) -> None:
         self.n = 0

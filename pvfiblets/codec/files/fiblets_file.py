@@ -195,7 +195,7 @@ def _assemble_exact(
 
 
 def _data(header: dict[str, Any], arrays: dict[str, npt.NDArray[Any]]) -> dict[str, Any]:
-    """What is kept beside the points, as fields of a FibletSet; a key of the header that is not there means none."""
+    """Return the data beside the points, as fields of a FibletSet; a missing key of the header means none."""
     found = {name: header.get(name, {}) for name in ("per_point", "per_streamline", "groups", "per_group")}
     return {
         "per_point": {

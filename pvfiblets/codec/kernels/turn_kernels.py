@@ -87,7 +87,7 @@ def _first_bend(points: Any, i: int, bound: Any) -> float:
 
 @kernel
 def _next_slot(points: Any, a: int, stop: int, bound: Any) -> int:
-    """Where the slot that begins at point ``a`` ends, in a streamline that ends before ``stop``."""
+    """Return the end of the slot that begins at point ``a``, in a streamline that ends before ``stop``."""
     if stop - a <= MAX_POINTS:
         return stop
     found, least = a + MAX_POINTS, math.inf

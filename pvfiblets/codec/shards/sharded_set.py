@@ -85,7 +85,7 @@ class ShardedSet:
 
     @property
     def shards(self) -> tuple[Shard, ...]:
-        """What each shard holds, as the manifest says it."""
+        """Contents of each shard, from the manifest."""
         return self.manifest.shards
 
     @property

@@ -123,7 +123,7 @@ class UnreadSet(FibletSet):
 
     @cached_property
     def parameters(self) -> Parameters:  # type: ignore[override]
-        """What all fiblets share."""
+        """Parameters that all fiblets share."""
         return self._first.parameters
 
     @cached_property
@@ -133,7 +133,7 @@ class UnreadSet(FibletSet):
 
     @cached_property
     def space(self) -> dict[str, Any]:  # type: ignore[override]
-        """What writers of voxel-based formats need."""
+        """Facts for writers of voxel-based formats."""
         return dict(self._first.space)
 
     @cached_property
@@ -296,7 +296,7 @@ class UnreadSet(FibletSet):
 
 
 def _ranks_of(part: FibletSet, ids: Ints) -> Ints:
-    """What the streamlines of a part's ranks are called in the whole."""
+    """Return the numbers that streamlines of a part's ranks have in the whole."""
     return ids if part.rank_to_id is None else ids[np.asarray(part.rank_to_id)]
 
 

@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 __all__ = ["CoverageBuffer", "dilation_radius"]
 
 LEVEL = 3
-"""Of the pyramid: squares of 16 pixels."""
+"""Level of the pyramid: squares of 16 pixels."""
 
 THICK = 0.95
 """Share of fiblets whose capsules are thinner than R."""

@@ -1,4 +1,4 @@
-"""What every kind of occlusion culling does for a pipeline."""
+"""The interface of all kinds of occlusion culling."""
 
 from __future__ import annotations
 

@@ -189,7 +189,7 @@ class DepthPyramid:
 
     @property
     def levels(self) -> int:
-        """How many."""
+        """Number of levels."""
         return 0 if self._now is None else self._now.count
 
     @property

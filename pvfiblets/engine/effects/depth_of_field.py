@@ -29,7 +29,7 @@ TILE = 8
 
 @dataclass(frozen=True)
 class Focus:
-    """What a lens is set to.
+    """Settings of a lens.
 
     Parameters
     ----------

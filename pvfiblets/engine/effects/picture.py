@@ -52,7 +52,7 @@ class SeenThrough:
 
 
 class PictureEffects(PicturePasses):
-    """What changes pictures in one context.
+    """Effects on pictures in one context.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What is done to a picture that somebody else drew: passes over every pixel of textures of a framebuffer of theirs."""
+"""Passes over every pixel of a picture of another renderer, in textures of that renderer's framebuffer."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where in a pixel the samples of a refined picture lie.
+"""Positions of accumulation samples in a pixel.
 
 A pixel's colour is the mean over its square: a box filter one pixel wide, as multisampling has it. It is estimated by
 the mean of the pictures at n places p_i of that square. The effect on edges decides how good places are. The

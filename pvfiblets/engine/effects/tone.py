@@ -9,7 +9,7 @@ from numbers import Real
 __all__ = ["OPERATORS", "Tone", "is_number"]
 
 OPERATORS = ("none", "reinhard", "exponential", "aces", "hable")
-"""What tone mapping may be; the formulas are in the shader."""
+"""Operators of tone mapping; the formulas are in the shader."""
 
 _WHITE = {"hable": 11.2}
 """Default white point; the other operators take the brightest colour drawn."""
@@ -72,7 +72,7 @@ class Tone:
 
     @property
     def features(self) -> tuple[str, ...]:
-        """What a shader of this tone is made with."""
+        """Features of a shader with this tone."""
         return () if self.operator == "none" else (f"TONE_{self.operator.upper()}",)
 
     def uniforms(self) -> dict[str, float]:

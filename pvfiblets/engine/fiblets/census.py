@@ -1,4 +1,4 @@
-"""How many fiblets a picture is made of, counted when somebody asks.
+"""Counts of a picture's fiblets, made on demand.
 
 =============  ==================================================================================================
 count          meaning

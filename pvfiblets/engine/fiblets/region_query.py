@@ -1,4 +1,4 @@
-"""Which streamlines pass a region, asked on the GPU of the records that are drawn.
+"""Streamlines that pass a region, computed on the GPU from the drawn records.
 
 The GPU classifies fiblets by their capsules and decodes the undecided ones, in float32 with a
 margin (``shaders/fiblets/compute/query.comp``). Streamlines that the margin leaves open are settled from the same
@@ -196,7 +196,7 @@ def _answers(marks: Bytes) -> Bytes:
 
 
 def _open(marks: Bytes) -> npt.NDArray[np.bool_]:
-    """Which answers an unsure point could change."""
+    """Return the answers that an unsure point could change."""
     both = _INSIDE | _OUTSIDE
     some = (marks & _UNSURE != 0) & (marks & both != both)
     opened: npt.NDArray[np.bool_] = some | (marks & (_FIRST_UNSURE | _LAST_UNSURE) != 0)

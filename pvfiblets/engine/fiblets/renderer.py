@@ -323,7 +323,7 @@ class FibletRenderer(LinesBehind):
 
     @property
     def filtering(self) -> Filter | None:
-        """What is there to be drawn; None for everything. Setting it takes effect with the next picture.
+        """The filter; None for everything. Setting it takes effect with the next picture.
 
         Raises
         ------

@@ -15,7 +15,7 @@ NO_WIDTH = 1e-3
 
 @dataclass(frozen=True)
 class FibletStyle(Style):
-    """How fiblets become pixels.
+    """The style of fiblets.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ class FibletStyle(Style):
 
     @property
     def relief(self) -> str | None:
-        """What ``GBuffer.across`` holds: ``'across'`` of wide lines, ``'normal'`` of tubes, or None for nothing."""
+        """Contents of ``GBuffer.across``: ``'across'`` of wide lines, ``'normal'`` of tubes, or None for nothing."""
         if not self.across or (self.radius is None and self.line_width <= 1.0):
             return None
         return "across" if self.radius is None else "normal"

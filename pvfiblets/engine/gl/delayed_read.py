@@ -23,7 +23,7 @@ _FLOAT = 4
 
 
 class _Read(NamedTuple):
-    """What is on its way."""
+    """A read under way."""
 
     buffer: moderngl.Buffer
     fence: int

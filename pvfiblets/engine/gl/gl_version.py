@@ -1,4 +1,4 @@
-"""Which version of OpenGL a context can be used as.
+"""The usable version of an OpenGL context.
 
 The driver's version number counts, except with drivers that report exactly the requested version although they support
 later ones: NVIDIA's. VTK asks EGL for OpenGL 3.2, so that without this cards on machines without a display would draw

@@ -21,14 +21,14 @@ _STAGES = {"fragment_shader": 0x8B30, "mesh_shader": 0x9559, "task_shader": 0x95
 _COMPILE_STATUS, _LINK_STATUS, _LOG_LENGTH = 0x8B81, 0x8B82, 0x8B84
 _ACTIVE_UNIFORMS, _INVALID_INDEX = 0x8B86, 0xFFFFFFFF
 _STRICT, _LAX = "flat perprimitiveEXT in", "perprimitiveEXT in"
-"""How fragments are handed integers of a primitive: Khronos' compiler refuses the second, Mesa's the first."""
+"""Qualifiers of a primitive's integers in fragments: Khronos' compiler refuses the second, Mesa's the first."""
 _NVIDIA_FORMS: tuple[dict[str, str], ...] = (
     {},
     {"#extension GL_NV_mesh_shader : enable\n": "\n"},
     {"flat perprimitiveNV in": "perprimitiveNV in"},
     {"#extension GL_NV_mesh_shader : enable\n": "\n", "flat perprimitiveNV in": "perprimitiveNV in"},
 )
-"""How a fragment stage says that it is handed a primitive's data, where compilers differ: the first that links."""
+"""Declarations of a primitive's data in fragment stages, where compilers differ: the first that links."""
 _LONGEST = 256
 """Characters of a uniform's name, the closing zero included."""
 

@@ -64,7 +64,7 @@ _PASSED = (0x911A, 0x911C)  # already, or within the time that was given
 
 
 class Uniform(NamedTuple):
-    """Where a uniform of a program is that moderngl did not make.
+    """The location of a uniform of a program that moderngl did not make.
 
     Attributes
     ----------

@@ -147,7 +147,7 @@ FEATURES: dict[str, str] = {
     "TONE_ACES": "tones by the ACES film curve",
     "TONE_HABLE": "tones by Hable's film curve",
 }
-"""What a program can be made to do, by the name of its switch."""
+"""Features of programs, by the names of their switches."""
 
 NEWEST = 430
 """GLSL that sources are written for, unless they say otherwise."""

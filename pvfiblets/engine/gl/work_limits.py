@@ -34,7 +34,7 @@ __all__ = ["DISCRETE", "INTEGRATED", "SOFTWARE", "WorkLimits"]
 
 
 class WorkLimits(NamedTuple):
-    """What a call may have at most.
+    """Greatest work of one call.
 
     Attributes
     ----------

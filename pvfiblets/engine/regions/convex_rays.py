@@ -1,4 +1,4 @@
-"""Where rays enter and leave convex shapes, and what joins those: the uniform block of ``shaders/regions/rays.glsl``.
+"""Intersections of rays with convex shapes, and their expression: the block of ``shaders/regions/rays.glsl``.
 
 All matrices are composed in float64, and expanded about a leaf's own centre in the picture, so that float32 holds the
 remainder to the last digits.

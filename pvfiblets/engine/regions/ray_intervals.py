@@ -1,4 +1,4 @@
-"""Where a region begins and ends along each pixel's ray: `RegionIntervals`, for ``shaders/regions/boundaries.glsl``.
+"""Boundaries of a region along each pixel's ray: `RegionIntervals`, for ``shaders/regions/boundaries.glsl``.
 
 This work is based on: Schertzer et al. 2022, section 5.1 and figure 10: a mesh drawn into a depth buffer for its front
 and one for its back decides by pixel which fragments lie inside, which is right for convex meshes. Here every pixel has
@@ -51,7 +51,7 @@ _FORMS = 8
 """Programs kept."""
 
 _LAYERS = 2
-"""Of boundaries, before any pixel is known to have more than fit in."""
+"""Layers of boundaries, until a pixel is known to have more."""
 
 
 class RegionIntervals:

@@ -49,7 +49,7 @@ _DEPTH_CLAMP, _CLIP_DISTANCE_0 = 0x864F, 0x3000
 
 @dataclass(frozen=True)
 class Peeled:
-    """Where a surface's layers are.
+    """Textures of a surface's layers.
 
     Attributes
     ----------
@@ -69,7 +69,7 @@ class Peeled:
 
 
 class _Found(NamedTuple):
-    """How many layers there must be, the most crossings at a pixel, and whether layers miss any."""
+    """The number of layers needed, the most crossings at a pixel, and whether layers miss any."""
 
     layers: int
     crossings: int

@@ -282,7 +282,7 @@ class FibletActor(FibletSettings, SelectableActor):
 
     @property
     def scalars(self) -> str | np.ndarray | VolumeSource | None:
-        """What colours the actor: a name, an array or a volume; ``None`` for ``color`` or orientation."""
+        """Source of colours: a name, an array or a volume; ``None`` for ``color`` or orientation."""
         return self._choice
 
     @scalars.setter
@@ -342,7 +342,7 @@ class FibletActor(FibletSettings, SelectableActor):
 
     @property
     def share(self) -> float | None:
-        """How many of the streamlines are drawn: 1.0 for all; ``None`` before the first picture.
+        """Share of the streamlines that is drawn: 1.0 for all; ``None`` before the first picture.
 
         Less only where memory does not suffice for all, and ``fit`` is ``"sample"``; or it is ``"stream"``, and parts
         in view have not been drawn yet: then of the drawn ones.

@@ -49,7 +49,7 @@ class Criterion:
     keep_nan: bool
 
     def within(self) -> tuple[Any, float, float, bool]:
-        """What :mod:`pvfiblets.query.selection.bits` asks for."""
+        """Return the criterion in the form of :mod:`pvfiblets.query.selection.bits`."""
         return self.values, *self.range, self.keep_nan
 
 
@@ -80,7 +80,7 @@ class Choices:
         return replace(self, criteria=dict(self.criteria), conditions=dict(self.conditions))
 
     def mask(self, fiblets: FibletSet) -> np.ndarray | None:
-        """Which streamlines are shown, (n_streamlines,) bool; None for all."""
+        """Return a mask of the visible streamlines, (n_streamlines,) bool; None for all."""
         masks = [condition.mask for condition in self.conditions.values()]
         if per_streamline := self._of_kind("streamline"):
             from pvfiblets.query.selection.bits import streamline_mask
@@ -149,7 +149,7 @@ class Choices:
 
 
 def in_groups(fiblets: FibletSet, names: Iterable[str]) -> np.ndarray:
-    """Which streamlines are in any of some groups, (n_streamlines,) bool."""
+    """Return a mask of the streamlines in any of some groups, (n_streamlines,) bool."""
     mask = np.zeros(fiblets.n_streamlines, bool)
     for name in names:
         if name not in fiblets.groups:

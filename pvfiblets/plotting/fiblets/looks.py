@@ -108,7 +108,7 @@ PLAIN = {
     "depth_cue": False,
     "halos": False,
 }
-"""What every look says, in the order in which it is set."""
+"""Settings of every look, in the order in which they are set."""
 
 LOOKS: dict[str, Look] = {
     "plain": Look("thin lines in gentle light", PLAIN),

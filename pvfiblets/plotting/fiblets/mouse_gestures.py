@@ -1,4 +1,4 @@
-"""From mouse events to places in the window: clicks, rectangles and lassos.
+"""Mouse gestures: clicks, rectangles and lassos, in places of the window.
 
 Observers stand on the interactor, before its style and after widgets. A click leaves the event to the style, so that
 the camera still turns when the mouse is dragged; while an area is drawn the style gets none of the left button's
@@ -106,7 +106,7 @@ class Pointing:
 
     @property
     def pixel(self) -> tuple[int, int]:
-        """Where the mouse is, from the window's lower left corner."""
+        """Position of the mouse, from the window's lower left corner."""
         x, y = self._interactor.GetEventPosition()
         return x, y
 

@@ -1,4 +1,4 @@
-"""Where the opacity of streamlines comes from, beside one number for all: as in ``add_mesh``."""
+"""Sources of the opacity of streamlines, beside one number for all: as in ``add_mesh``."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ POINTS = "opacity"
 
 @dataclass(frozen=True, eq=False)
 class Opacities:
-    """What a choice of opacities means for some fiblets; one of these is given.
+    """A choice of opacities for some fiblets; one of these is given.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What was picked: streamlines, and the places of them that lay under the mouse or an area."""
+"""The result of a pick: streamlines, and their places under the mouse or an area."""
 
 from __future__ import annotations
 

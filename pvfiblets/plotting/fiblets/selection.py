@@ -29,7 +29,7 @@ _AS_BEFORE: Any = object()
 
 @dataclass(frozen=True)
 class SelectionStyle:
-    """How selected streamlines stand out.
+    """The style of selected streamlines.
 
     Attributes
     ----------
@@ -70,7 +70,7 @@ class SelectableActor(FilteredActor):
 
     @property
     def active_scalars(self) -> Scalars | None:
-        """What colours the actor, as found; ``None`` for one colour."""
+        """Source of the actor's colours; ``None`` for one colour."""
         return self._scalars
 
     # The selection ------------------------------------------------------------------------------
@@ -400,7 +400,7 @@ class SelectableActor(FilteredActor):
         self._select(None if other._selected is None else other._selected.copy())
 
     def _explain_selection(self) -> dict[str, Any]:
-        """How many are selected; where they are drawn apart, wider or as tubes, what that takes."""
+        """Return the number of selected streamlines; with a style that draws them apart, also its cost."""
         apart = None if self._standout is None else added_up(self._standout.mapper.explain())
         return {
             "streamlines": len(self.selection),

@@ -57,7 +57,7 @@ class _OfAll:
 
 @dataclass(frozen=True, eq=False)
 class _Splines:
-    """What spline tubes are made of.
+    """The data of spline tubes.
 
     Attributes
     ----------
@@ -125,7 +125,7 @@ class SelectionOverlay:
 
     @property
     def layer(self) -> Layer:
-        """What picking sees: pixels that show these streamlines show the owner's."""
+        """Layer for picking: pixels of these streamlines belong to the owner."""
         if self._plan is None:
             return Layer(self.mapper, self.ids)
         return Layer(self.mapper, self._plan.ids, self._starts)
@@ -205,7 +205,7 @@ class SelectionOverlay:
             self.mapper.filtering = part_of_filter(mapper.filtering, self._fiblets, self.ids)
 
     def _plan_for(self, mapper: Any) -> _Splines | None:
-        """What spline tubes have to be made of that do as the owner's mapper does; None where none can."""
+        """Return the data of spline tubes that look like the owner's lines; None where none can."""
         filtering = mapper.filtering
         masked = filtering is not None and filtering.points is not None
         values = None if self._color is not None else mapper.colouring.point_source

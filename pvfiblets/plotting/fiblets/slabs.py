@@ -100,7 +100,7 @@ class FibletSlab:
 
     @property
     def position(self) -> float:
-        """Where its middle plane is along the normal, mm."""
+        """Position of its middle plane along the normal, mm."""
         return float(self._origin @ self._normal / np.linalg.norm(self._normal))
 
     @position.setter
@@ -119,7 +119,7 @@ class FibletSlab:
 
     @property
     def slice_actor(self) -> pv.Actor | None:
-        """What shows the slice of the volume."""
+        """Actor of the volume's slice."""
         return self._slice
 
     def place(self, *, normal: Any = None, origin: Any = None, thickness: Any = None) -> None:

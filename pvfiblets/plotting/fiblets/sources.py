@@ -1,4 +1,4 @@
-"""From whatever a user holds to a :class:`~pvfiblets.codec.FibletSet`."""
+"""Conversion of every source to a :class:`~pvfiblets.codec.FibletSet`."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ Place = Callable[[], "tuple[Array, Array] | None"]
 MOST_POINTS = 1_500_000
 """Points of a slice's surfaces; the number of glyphs sets the detail of each sphere, from 2,562 points down to 42."""
 LINE_PERCENTILE = 99.0
-"""Of the lengths of an image's peaks: as long as that is as long as a voxel."""
+"""Percentile of the lengths of an image's peaks: it is as long as a voxel."""
 SAMPLED = 200_000
 N_COLOURS = 256
 
@@ -77,7 +77,7 @@ class GlyphSet:
 
     @property
     def size(self) -> float:
-        """Of the greatest glyph, per the smallest side of a voxel."""
+        """Size of the greatest glyph, per the smallest side of a voxel."""
         return self._size
 
     @size.setter

@@ -28,10 +28,10 @@ __all__ = ["NAME", "ObliqueSlice", "Trace", "add_oblique_slice", "turned_about"]
 Array = npt.NDArray[np.float64]
 
 NAME = "oblique"
-"""Of the plane and of its pane."""
+"""Name of the plane and of its pane."""
 
 HANDLE = 0.36
-"""How far handles are from the cross-hair, per the smaller side of a pane."""
+"""Distance of handles from the cross-hair, per the smaller side of a pane."""
 HANDLE_RADIUS, REACH = 5.0, 14.0
 """Pixels: how large handles are drawn, and how near one takes hold of them, which fingers do, too."""
 GAP = 12.0

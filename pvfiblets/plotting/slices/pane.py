@@ -112,7 +112,7 @@ class Pane:
 
     @property
     def zoom(self) -> float:
-        """How much larger the slice is than in a pane that it fills."""
+        """Magnification of the slice, compared with a pane that it fills."""
         return self._fitting / self._half
 
     @zoom.setter
@@ -174,13 +174,13 @@ class Pane:
 
     @property
     def _depth(self) -> float:
-        """How far from the plane the slice and the cross-hair lie, mm: beyond the slab, and beyond glyphs of voxels."""
+        """Distance of the slice and the cross-hair from the plane, mm: beyond the slab, and beyond glyphs of voxels."""
         voxel = max((float(one.image.voxel_size.max()) for one in self.stack.layers), default=0.0)
         return max(0.5 * self.thickness, voxel) + BEFORE
 
     @property
     def before(self) -> float:
-        """How far before the plane the cross-hair is drawn, mm: lines there hide behind nothing."""
+        """Distance of the cross-hair before the plane, mm: no other thing occludes its lines."""
         return self._depth
 
     @property

@@ -1,4 +1,4 @@
-"""What can be set of a layer of slices, said once."""
+"""Settings of a layer of slices, each declared once."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ def _index(name: str, value: Any) -> int:
 
 
 class SliceSettings(Settings):
-    """What can be set of a layer of slices."""
+    """Settings of a layer of slices."""
 
     cmap: Setting[Any] = Setting(
         "gray",

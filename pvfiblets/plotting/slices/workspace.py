@@ -176,7 +176,7 @@ class Workspace:
 
     @property
     def thickness(self) -> float:
-        """Of the slab about each slice whose streamlines are shown in its pane, mm."""
+        """Thickness of the slab about each slice whose streamlines are shown in its pane, mm."""
         return self.panes["axial"].thickness
 
     @thickness.setter
@@ -188,7 +188,7 @@ class Workspace:
 
     @property
     def layout(self) -> str:
-        """Which views are shown, and where.
+        """Visible views, and their layout.
 
         ``"grid"``, ``"row"``, ``"beside"`` (the 3-D view and, small, three slices: below it in a window that is higher
         than wide), or one of ``"3d"``, ``"axial"``,
@@ -210,7 +210,7 @@ class Workspace:
 
     @property
     def _places(self) -> Mapping[str, tuple[float, float, float, float]]:
-        """Where views are that are shown; the layout of a pane that is not is ``"beside"``."""
+        """Places of the visible views; the layout of a hidden pane counts as ``"beside"``."""
         width, height = self._plotter.window_size
         there = self._has_oblique_pane
         layout = "beside" if self._layout == OBLIQUE and not there else self._layout

@@ -143,7 +143,7 @@ class VolumeActor(VolumeSettings, ClippedActor):
 
     @property
     def volume(self) -> RaycastVolume:
-        """What is drawn, not smoothed; another may be put in its place."""
+        """The drawn volume, not smoothed; another may be put in its place."""
         return self._source
 
     @volume.setter
@@ -251,7 +251,7 @@ class VolumeActor(VolumeSettings, ClippedActor):
 
     @property
     def scalars_title(self) -> str | None:
-        """What a scalar bar says; ``None`` where there is one colour."""
+        """Title of the scalar bar; ``None`` for one colour."""
         own = self._settings.color is not None or self._volume.colours is not None
         own |= self.casting.layered and self._choices["surface_colors"] is not None
         return None if own or self._scalars is None else self._scalars.title

@@ -1,4 +1,4 @@
-"""What users say about a volume's values: opacities, as for ``Plotter.add_volume``, surfaces and limits."""
+"""Conversion of a volume's arguments: opacities, as for ``Plotter.add_volume``, surfaces and limits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What of a volume's ``prop`` changes its picture, by mode, and what to say of the rest.
+"""Attributes of a volume's ``prop`` that change its picture, by mode, and warnings for the rest.
 
 Actors of meshes and of ``add_volume`` have settings in their property that mean nothing to rays through values, or mean
 something in some modes only. Each is declared once here.
@@ -30,7 +30,7 @@ class _Word:
     used: tuple[str, ...]
     instead: str
     light: str = ""
-    """What to say where light could use it, and its ``shade`` is off; empty: light never uses it."""
+    """Message where light could use it, and its ``shade`` is off; empty: light never uses it."""
     reset: bool = False
     """Whether the old value is restored, because VTK would draw something else by the new one."""
 
@@ -56,7 +56,7 @@ _WORDS = {
 
 
 class PropertyAttributes:
-    """What an actor's property said last.
+    """The last state of an actor's property.
 
     Parameters
     ----------

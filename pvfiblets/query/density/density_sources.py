@@ -62,10 +62,10 @@ class Part:
 
 
 class Source(Protocol):
-    """What density maps are made of."""
+    """The source of density maps."""
 
     name: str
-    """Of the values."""
+    """Name of the values."""
     unit: str
     per_point: bool
     """Whether values are of points, or of streamlines."""

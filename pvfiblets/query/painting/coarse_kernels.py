@@ -35,7 +35,7 @@ def _kept(code: int) -> float:
 
 @kernel
 def _cut(u: Any, k: int, reach: Any, box: Any) -> Any:
-    """From which to which share of part ``k`` it may be in a box of voxels; (1, 0) if nowhere."""
+    """Return the shares of part ``k`` between which it may be in a box of voxels; (1, 0) if nowhere."""
     for axis in range(3):
         a, b = u[k, axis], u[k + 1, axis]
         low, high = box[axis] - reach[axis], box[3 + axis] + reach[axis]
@@ -270,7 +270,7 @@ def _mean(leaves: Any, leaf: int, nodes: int, linear: Any, corner: Any, mean: An
 def settle(near: Any, bits: Any, leaves: Any, pieces: Any, parts: int, per_stretch: int, stretch: int, states: Any,
            asked: int, linear: Any, corner: Any, rows: Any, mask: Any, shape: Any, changed: Any, whole: Any,
            in_mm: Any, about_changed: Any, about_whole: Any, within: Any, found: Any) -> None:  # fmt: skip
-    """What becomes of the fiblets of some leaves, ``found (n, LEAF)`` uint8: :data:`SAME` and so on."""
+    """Compute the new state of the fiblets of some leaves, ``found (n, LEAF)`` uint8: :data:`SAME` and so on."""
     changed_steps, changed_first = about_changed
     whole_steps, whole_first = about_whole
     within_steps, within_first = within

@@ -1,4 +1,4 @@
-"""How far each voxel of a box is from a set of voxels, so that kernels need not look at all that lies between.
+"""Distances of a box's voxels from a set of voxels, so that kernels can skip the space between.
 
 Distances count steps to the 26 voxels about one: a box that reaches fewer voxels from its middle meets none of the set.
 """

@@ -17,10 +17,10 @@ __all__ = ["ANY", "BAD", "CHANGED", "DAMAGED", "FIRST", "HERE", "LAST", "OUT", "
            "passes"]  # fmt: skip
 
 ANY, OUT, FIRST, LAST = 1, 2, 4, 8
-"""Of a fiblet: some position lies in the region, some does not, its first point does, its last point does."""
+"""Flags of a fiblet: some position lies in the region, some does not, its first point does, its last point does."""
 BAD, DAMAGED = 255, -(1 << 62)
 HERE, CHANGED = 1, 2
-"""Of a voxel: it is in the region, and this stroke changed it."""
+"""Flags of a voxel: it is in the region, and this stroke changed it."""
 BLOCK = 64
 
 

@@ -78,7 +78,7 @@ class Packed:
 
     @property
     def arrays(self) -> tuple[Any, ...]:
-        """What :func:`classify_ball` takes first: ops, rows, grids, values."""
+        """First arguments of :func:`classify_ball`: ops, rows, grids, values."""
         return self.ops, self.rows, self.grids, self.values
 
 

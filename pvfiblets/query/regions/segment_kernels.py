@@ -64,7 +64,7 @@ def _in_ball(p: Any, q: Any) -> Any:
 
 @kernel
 def _convex_span(row: Any, p: Any, q: Any) -> Any:
-    """From where to where a segment lies in a plane's half-space, slab, box or ball; closed, (2, -1) if nowhere."""
+    """Return the span of a segment in a plane's half-space, slab, box or ball; closed, (2, -1) if nowhere."""
     a, b = unit(row, p[0], p[1], p[2]), unit(row, q[0], q[1], q[2])
     kind = row[0]
     if kind == _PLANE:

@@ -102,7 +102,7 @@ class Mesh:
 
 
 class Surface(Shape):
-    """What a closed triangle mesh encloses: where its winding number is not 0.
+    """The inside of a closed triangle mesh: where its winding number is not 0.
 
     Of several components each encloses its own. A shell within another that is turned outwards like it encloses nothing
     more; one that is turned inwards is a hole.

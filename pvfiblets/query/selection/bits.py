@@ -28,7 +28,7 @@ SLICE = 1 << 22  # points of a mapped array that are looked at together
 
 @dataclass(frozen=True, eq=False)
 class Criterion:
-    """What is kept: values from ``lo`` to ``hi``, both included.
+    """The kept values: from ``lo`` to ``hi``, both included.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Where streamlines begin and end, and which end like others."""
+"""Ends of streamlines, and streamlines with similar ends."""
 
 from __future__ import annotations
 

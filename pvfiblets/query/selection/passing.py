@@ -1,4 +1,4 @@
-"""Which streamlines pass through a region, end in it, or stay in it: asked of the compressed data.
+"""Streamlines that pass through a region, end in it, or stay in it: found in the compressed data.
 
 What is tested are the decoded points, in the float64 arithmetic of ``decompress(dtype=float64)``, and the segments
 between them: of a point the answer is that of ``region.contains``, of a segment that of `segments`. Most fiblets

@@ -37,7 +37,7 @@ Mask = npt.NDArray[np.bool_]
 Flags = npt.NDArray[np.uint8]
 Ends = Literal["any", "both", "first", "last"]
 FlagsOf = Callable[[Region, Sampling], Flags]
-"""What gives a region's flags of every streamline, as :func:`.passing.region_flags` does."""
+"""A function that returns a region's flags of every streamline, as :func:`.passing.region_flags` does."""
 
 _Key = tuple[Region, Sampling]
 
@@ -72,7 +72,7 @@ class Predicate:
 
 @dataclass(frozen=True)
 class Condition(Predicate):
-    """How a streamline lies to one region.
+    """The relation of a streamline to one region.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Which streamlines lie under an area of the screen, seen or hidden, from the compressed data alone.
+"""Streamlines under an area of the screen, visible or hidden, from the compressed data alone.
 
 A fiblet's capsule (:mod:`pvfiblets.codec.capsules`) is tried first against the half spaces that bound the view through
 the area's rectangle; fiblets that reach into it are decoded, and their segments, cut at the near and the far plane, are

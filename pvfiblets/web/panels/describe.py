@@ -1,4 +1,4 @@
-"""From the scene's descriptions to what the page's templates show: texts, indices, steps and charts."""
+"""Data of the page's templates, from the scene's descriptions: texts, indices, steps and charts."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What opens over the page: files, sessions, the script, keys, renaming, progress and messages."""
+"""Dialogs of the page: files, sessions, the script, keys, renaming, progress and messages."""
 
 from __future__ import annotations
 

@@ -47,7 +47,7 @@ class _File:
 
 @dataclass(frozen=True, eq=False)
 class _Held:
-    """What is exported, and where it came from, or why that is not to be had."""
+    """The exported streamlines, and their source, or the reason why it is not available."""
 
     fiblets: Any
     ids: Any

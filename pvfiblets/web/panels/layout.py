@@ -170,7 +170,7 @@ OVER_3D = (
     "((b) => ({ left: 100 * b.x + '%', top: 100 * b.y + '%', right: 'auto', bottom: 'auto', width: 100 * b.w + '%', "
     "height: 100 * b.h + '%' }))(slicing.boxes.find((b) => b.name === '3d') || { x: 0, y: 0, w: 1, h: 1 })"
 )
-"""Where the 3-D view is in the picture, as CSS."""
+"""Position of the 3-D view in the picture, as CSS."""
 
 # Names are put in as text, by Vue.
 MARKS = """

@@ -36,7 +36,7 @@ COLOURS = "inferno"
 
 
 class MatrixActions(LineActions):
-    """What the page does with the matrix of the chosen tractogram."""
+    """The page's actions on the matrix of the chosen tractogram."""
 
     def __init__(self, app: Any) -> None:
         super().__init__(app)

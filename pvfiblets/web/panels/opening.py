@@ -32,7 +32,7 @@ PURPOSES = {
     "labels": TABLES,
     "painted": VOLUMES,
 }
-"""What a file may be chosen for, and the suffixes that are shown then."""
+"""Purposes of choosing a file, and the suffixes shown for each."""
 MOST_MARKED = 64  # files that are chosen at once
 
 

@@ -36,7 +36,7 @@ AT_ONCE = ("fill", "outline", "sphere", "grow")
 
 
 class PaintActions(Actions):
-    """What the page does with painted regions."""
+    """The page's actions on painted regions."""
 
     def __init__(self, app: Any) -> None:
         super().__init__(app)

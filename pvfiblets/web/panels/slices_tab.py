@@ -34,7 +34,7 @@ MOST_STEP = 100  # voxels at once
 
 
 class SliceActions(Actions):
-    """What the page does with the images of a scene that are shown as slices."""
+    """The page's actions on images that are shown as slices."""
 
     # What is shown
 

@@ -38,7 +38,7 @@ __all__ = [
 ]
 
 MOST_PLANES = 6
-"""That VTK cuts a mesh or tubes by."""
+"""Most planes that VTK cuts a mesh or tubes by."""
 
 _CONDITION, _CONNECTION = "regions", "connection"
 

@@ -1,4 +1,4 @@
-"""Where a scene is looked at from, and pictures of it."""
+"""The camera of a scene, and pictures of it."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ LARGEST_PICTURE = 64_000_000  # pixels
 
 
 class Cameras:
-    """Where a scene is looked at from, which is no part of what can be undone, and pictures of it."""
+    """The camera of a scene, which is no part of the undo history, and pictures of it."""
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene

@@ -1,4 +1,4 @@
-"""What painted regions of a document do to a scene: they show on slices, and filter streamlines."""
+"""Painted regions of a document in a scene: they show on slices, and filter streamlines."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a scene shows of its layers: cuts, criteria, groups, subsets and regions."""
+"""Filters of a scene's layers: cuts, criteria, groups, subsets and regions."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ LONGEST_CRITERION = 1100  # characters of the name of an image's values: its lay
 
 
 class SceneFilters:
-    """What a scene leaves out: cuts, criteria, groups, subsets and regions."""
+    """Filters of a scene's layers: cuts, criteria, groups, subsets and regions."""
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene

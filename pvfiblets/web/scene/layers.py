@@ -69,7 +69,7 @@ ARGUMENTS: dict[str, frozenset[str]] = {
 USUAL: dict[str, dict[str, Any]] = {
     kind: {prop.name: prop.usual for prop in TABLES[kind] if prop.live} for kind in _SETTINGS
 }
-"""What actors do that are not told of a look."""
+"""Settings of actors without a look."""
 for _lines_kind in LINES:
     USUAL[_lines_kind]["scalars"] = ORIENTATION
 USUAL["mesh"] = {

@@ -1,4 +1,4 @@
-"""Where colour bars go: side by side in the lower half of the picture, and how large they and their letters are there.
+"""Layout of colour bars: side by side in the lower half of the picture, with their sizes and letters.
 
 Nothing of what belongs to the page is covered: the tools at the left, the letters at the middles of the edges, the line
 at the bottom. Where there is less room, long titles are shortened first, then letters are smaller, and then bars are
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 __all__ = ["Place", "Wanted", "arrange"]
 
 Measure = Callable[[str, int], float]
-"""From a text and the size of its letters to its width, in pixels of the window."""
+"""Function from a text and the size of its letters to its width, in pixels of the window."""
 
 FONTS = (13, 11, 9)
 """Sizes of letters, from the one that is taken where there is room; 72 points are an inch."""
@@ -51,7 +51,7 @@ class Wanted:
 
 @dataclass(frozen=True)
 class Place:
-    """Where a bar is, and how large.
+    """Position and size of a bar.
 
     Attributes
     ----------
@@ -105,7 +105,7 @@ def arrange(wanted: Sequence[Wanted], size: tuple[int, int], scale: float, measu
 
 @dataclass(frozen=True)
 class _Column:
-    """What one bar takes: its colours begin ``before`` pixels from the left."""
+    """Space of one bar: its colours begin ``before`` pixels from the left."""
 
     width: float
     before: float

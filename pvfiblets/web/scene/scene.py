@@ -93,7 +93,7 @@ class _Drawn:
 
 
 class Scene:
-    """What a session shows.
+    """The scene of a session.
 
     All methods but :meth:`load` are for the thread that renders. None of them renders: call ``plotter.render()``.
 

@@ -38,7 +38,7 @@ LAYOUTS = {
     "grid": "All alike",
     "oblique": "Oblique, large",
 }
-"""How views may be laid out, for people."""
+"""Layouts of views, for people."""
 
 CONVENTIONS = ("radiological", "neurological")
 NAMES = ("axial", "coronal", "sagittal", "3d", "oblique")
@@ -56,7 +56,7 @@ _THICKEST = 1000.0  # mm
 
 @dataclass(frozen=True)
 class SliceView:
-    """How slices are looked at.
+    """The view of slices.
 
     Attributes
     ----------
@@ -183,7 +183,7 @@ class Slicing:
 
     @property
     def view(self) -> SliceView:
-        """How slices are looked at."""
+        """The view of slices."""
         if self.workspace is None:
             return self._view
         x, y, z = (float(part) for part in self.workspace.position)

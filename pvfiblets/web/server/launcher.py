@@ -80,7 +80,7 @@ class Session:
 
 @dataclass
 class Rescued:
-    """What a process that died had kept of its session, in a folder of the scratch folder."""
+    """The session that a dead process had kept, in a folder of the scratch folder."""
 
     folder: Path
     since: float = field(default_factory=time.monotonic)

@@ -1,4 +1,4 @@
-"""What passes between browsers and the processes of their sessions, once the front server has let it in."""
+"""Traffic between browsers and the processes of their sessions, once the front server has let it in."""
 
 from __future__ import annotations
 

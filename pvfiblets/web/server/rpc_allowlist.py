@@ -1,4 +1,4 @@
-"""What a browser may call, and with what: the only doors of a worker.
+"""The calls and arguments that browsers may send: the only doors of a worker.
 
 trame lets a browser set any key of its state and call any method that was registered. Here it may set a few keys of
 known types, call the triggers that the page uses, and move the pointer; whatever else comes is refused and logged by

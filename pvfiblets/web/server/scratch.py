@@ -24,7 +24,7 @@ __all__ = ["PRIVATE", "Notes", "Scratch", "remove_abandoned"]
 
 PREFIX = "pvfiblets-serve-"
 PRIVATE = ".pvfiblets-"
-"""How names begin of what sessions note: nothing else is ever removed."""
+"""Prefix of names that sessions record: nothing else is ever removed."""
 _LOCK, _NOTES = "lock", "notes"
 _SESSION, _RESTORE = "session.json", "restore.json"
 
@@ -65,7 +65,7 @@ class Scratch:
 
 
 class Notes:
-    """What a session writes outside of its folder until it is whole.
+    """Unfinished files that a session writes outside of its folder.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Where the token comes from, and where people find it: never on a command line, which others can read.
+"""The source of the token, and where people find it: never on a command line, which others can read.
 
 Files with a token belong to one user and can be read by no other.
 """

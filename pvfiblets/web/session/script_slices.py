@@ -1,4 +1,4 @@
-"""What a script says of images that are shown as slices."""
+"""The part of a script about images that are shown as slices."""
 
 from __future__ import annotations
 

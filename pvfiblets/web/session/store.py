@@ -1,4 +1,4 @@
-"""What a scene's documents name, read once: tractograms, volumes, meshes, regions, by where they come from."""
+"""Data that a scene's documents name, read once: tractograms, volumes, meshes, regions, by their source."""
 
 from __future__ import annotations
 

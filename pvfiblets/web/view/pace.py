@@ -1,4 +1,4 @@
-"""How coarse the pictures of a moving camera are: chosen from the times that frames took.
+"""Quality of the pictures of a moving camera, chosen from the times that frames took.
 
 Each level costs less than the one before. A level has become slower when two frames in a row were, and faster when
 three were; then the others are taken to have become so as well, as where the camera comes nearer. The first frame of a
@@ -18,7 +18,7 @@ ROOM = 0.6  # of the budget; a finer level is taken where it costs less than tha
 
 
 class Level(NamedTuple):
-    """How a frame is drawn.
+    """The quality of a frame.
 
     Attributes
     ----------

@@ -20,7 +20,7 @@ _Floats = NDArray[np.float64]
 
 
 class Sight:
-    """How a camera sees places.
+    """The projection of a camera.
 
     Parameters
     ----------

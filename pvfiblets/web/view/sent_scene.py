@@ -1,4 +1,4 @@
-"""What a browser needs to draw a scene by itself: the scene of a page (`pvfiblets.page`), and data that it fetches.
+"""The scene of a page (`pvfiblets.page`) for a browser that draws by itself, and the data that it fetches.
 
 Data are named by a hash of their bytes, so that a browser fetches again only changed data: for another filter a
 byte for each streamline. Results that take long to make are kept as long as the scene shows them.
@@ -57,7 +57,7 @@ class SentScene:
 
     @property
     def bytes(self) -> int:
-        """Of all data together."""
+        """Bytes of all data together."""
         return sum(map(len, self.blobs.values()))
 
 

@@ -1,4 +1,4 @@
-"""What is there to be drawn: streamlines, and points, that the caller kept. The rest is culled, not only hidden.
+"""Filters: the streamlines and points that the caller kept. The rest is culled, not only hidden.
 
 A streamline takes a bit, by rank; a point takes a bit, in the order of the coded points. The culling stage of every
 pipeline (``shaders/culling/criteria.glsl``) reads both, so that removed lines cost no decoding. A segment is drawn
@@ -39,7 +39,7 @@ Words = npt.NDArray[np.uint32]
 
 @dataclass(frozen=True, eq=False)
 class Filter:
-    """Which streamlines and points are drawn. The arrays must not be changed afterwards.
+    """Streamlines and points to draw. The arrays must not be changed afterwards.
 
     Parameters
     ----------
@@ -109,12 +109,12 @@ class FilterTextures:
 
     @property
     def cutting(self) -> tuple[str, ...]:
-        """Those that drawing needs, where fiblets may be drawn in part."""
+        """Features for drawing, where fiblets may be drawn in part."""
         return ("POINT_MASK",) if self._points else ()
 
     @property
     def filtering(self) -> Filter | None:
-        """What is drawn; None for everything."""
+        """The current filter; None for everything."""
         return self._filter
 
     @filtering.setter

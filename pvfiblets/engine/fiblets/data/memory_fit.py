@@ -42,7 +42,7 @@ PICTURE = 1920 * 1080
 PICTURE_BYTES = 48 * PICTURE  # G-buffer 24; depth buffers, state kept between rounds, pyramid: 24 at most
 
 SHARED_BYTES = 20_000
-"""Of the uniform blocks that all chunks share, and a little."""
+"""Bytes of the uniform blocks that all chunks share, with a reserve."""
 
 RESERVE = 0.1
 """Share of the free memory that a sample leaves free."""
@@ -53,7 +53,7 @@ _ADVICE = "draw fewer streamlines, an even share of them by fit='sample', or all
 
 @dataclass(frozen=True)
 class Fitted:
-    """What is drawn of a set.
+    """The drawn part of a set.
 
     Attributes
     ----------
@@ -70,7 +70,7 @@ class Fitted:
     share: float
 
     def kept(self) -> FibletSet:
-        """What to keep once it is on the GPU: a part, which only stands in memory, without its codes."""
+        """Return the set to keep once it is on the GPU: a part, without its codes."""
         return self.fiblets if self.share == 1.0 else replace(self.fiblets, codes=np.empty(0, np.uint8))
 
 
@@ -141,7 +141,7 @@ class MemoryBudget:
         return GPUMemoryError(f"{self._said(fiblets, plans)}; {_ADVICE}") if too_many or too_large else None
 
     def _fraction(self, fiblets: FibletSet, plans: list[ChunkPlan]) -> float:
-        """How much of a set may be taken: 0 to 1."""
+        """Return the share of a set that fits: 0 to 1."""
         # A part has the numbers of its streamlines on the GPU, and stays in memory.
         buffers = self._buffers(fiblets, plans) + 4 * fiblets.n_ranks
         host = max(fiblets.nbytes, 1)
@@ -198,7 +198,7 @@ class MemoryBudget:
 
 
 def _fraction_of(part: Restriction, whole: FibletSet) -> float:
-    """How much of a set a part of it is: of its fiblets, codes or points, whichever is most."""
+    """Return a part's share of a set: of its fiblets, codes or points, whichever is greatest."""
     sizes = ((part.n_fiblets, whole.n_fiblets), (part.n_codes, len(whole.codes)), (part.n_points, whole.n_points))
     return max(some / every for some, every in sizes if every)
 

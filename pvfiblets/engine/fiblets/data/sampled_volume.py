@@ -135,7 +135,7 @@ class VolumeSource:
 
     @cached_property
     def reference(self) -> float:
-        """What graphics cards subtract from the values first (`pvfiblets.support.value_reference`)."""
+        """Offset that graphics cards subtract from the values first (`pvfiblets.support.value_reference`)."""
         return value_reference(self.values)
 
     @cached_property

@@ -90,7 +90,7 @@ class SharedBlocks:
 
     @cached_property
     def place(self) -> tuple[Array, Array, int]:
-        """Where anchors count from and mm per anchor integer, ``(3,)`` float64, and the largest such integer."""
+        """Origin of anchors and mm per anchor integer, ``(3,)`` float64, and the largest such integer."""
         fiblets = self._fiblets
         return np.asarray(fiblets.origin, np.float64), np.asarray(fiblets.anchor_scale, np.float64), self.top
 

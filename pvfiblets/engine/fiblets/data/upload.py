@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 __all__ = ["SLICE_BYTES", "Show", "fill_buffer", "release_chunks", "rows_of", "upload_chunk", "upload_fitting"]
 
 SLICE_BYTES = 1 << 24
-"""How much is copied at a time."""
+"""Bytes that are copied at a time."""
 
 Show = Callable[[int], object]
 Array = npt.NDArray[Any]

@@ -1,4 +1,4 @@
-"""What lies behind the nearest: several layers of a picture, the nearest first, for lines that one looks through.
+"""Depth peeling: several layers of a picture, the nearest first, for translucent lines.
 
 Layer 0 is the picture itself. Layer k is drawn like a picture, but of every pixel only the part behind layer k - 1
 (``shaders/fiblets/segments/peel.glsl``; the method is depth peeling, Everitt 2001): so there is no order to sort lines
@@ -124,7 +124,7 @@ class LayeredBuffer:
 
 @dataclass(frozen=True)
 class Peel:
-    """What a picture is drawn behind.
+    """The layers in front of a picture.
 
     Attributes
     ----------
@@ -146,7 +146,7 @@ class Peel:
 
 
 class _Stage:
-    """What draws one layer, and remembers its last picture."""
+    """The renderer of one layer, with its last picture."""
 
     def __init__(self, ctx: moderngl.Context, pipeline: Pipeline, occlusion: Occlusion | None) -> None:
         self._ctx = ctx

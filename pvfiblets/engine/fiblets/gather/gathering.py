@@ -44,7 +44,7 @@ SLICES = 4
 """Sums of a pixel behind its nearest line; the shaders' three edges between them must agree."""
 
 GROWTH = 2.5
-"""How many times as deep as the one before each slice is."""
+"""Ratio of each slice's depth to the depth of the one before."""
 
 Array = npt.NDArray[np.float64]
 
@@ -57,7 +57,7 @@ def slice_edges() -> tuple[float, ...]:
 
 @dataclass(frozen=True)
 class SliceDistances:
-    """How distance along the view follows from depth: ``(p + q c) / (r + s c)``, with c = 1 - window depth.
+    """The distance along the view as a function of depth: ``(p + q c) / (r + s c)``, with c = 1 - window depth.
 
     Attributes
     ----------
@@ -243,7 +243,7 @@ class Gather:
 
     @property
     def owners(self) -> moderngl.Texture:
-        """Which fiblet is the nearest of the added ones."""
+        """Texture with the nearest of the added fiblets."""
         return (self.nearest if self.own is None else self.own).owner
 
     @property

@@ -18,7 +18,7 @@ MOST_OPAQUE = 0.999
 
 @dataclass(frozen=True)
 class Paint:
-    """What a line adds to the pixels that it takes, beside being there.
+    """The contribution of a line to its pixels, beside its count.
 
     Parameters
     ----------

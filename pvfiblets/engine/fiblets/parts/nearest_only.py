@@ -66,7 +66,7 @@ class NearestOnly(Drawable[FibletStyle]):
 
     @property
     def filtering(self) -> Filter | None:
-        """What is there to be drawn; see :attr:`.FibletRenderer.filtering`."""
+        """The filter; see :attr:`.FibletRenderer.filtering`."""
         self._check_alive()
         return self._filter
 

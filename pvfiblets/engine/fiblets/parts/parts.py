@@ -24,7 +24,7 @@ Box = npt.NDArray[np.float64]
 
 
 class Parts(Protocol):
-    """What a set is divided into. Each streamline is in one part, as a whole, with its number in the set."""
+    """The parts of a set. Each streamline is in one part, as a whole, with its number in the set."""
 
     whole: FibletSet
     """The set: what filters and colours go by."""

@@ -22,7 +22,7 @@ _KINDS = {"u": "<u4", "f": "<f4"}
 
 @dataclass(frozen=True)
 class Cost:
-    """What one step towards a picture took.
+    """The cost of one step towards a picture.
 
     Attributes
     ----------

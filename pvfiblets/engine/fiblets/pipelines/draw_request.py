@@ -86,7 +86,7 @@ class DrawRequest:
 
     @property
     def extra(self) -> tuple[str, ...]:
-        """What else drawing programs write; nothing of layers behind others."""
+        """Additional outputs of drawing programs; none for layers behind others."""
         return () if self.peel is not None else (*self.edges, *self.samples)
 
     @property
@@ -129,13 +129,13 @@ class Sized(Protocol):
 
 
 class Pipeline(Protocol):
-    """How fiblets become pixels."""
+    """A method of drawing fiblets."""
 
     name: str
 
     @property
     def buffers(self) -> Mapping[str, Sized]:
-        """What it keeps on the GPU of its own, by name."""
+        """Its own GPU memory, by name."""
         ...
 
     def draw(self, request: DrawRequest) -> None:

@@ -1,4 +1,4 @@
-"""What the pipelines have in common that OpenGL's own rasteriser draws for: rounds, depth test and attachments.
+"""The base of pipelines that draw by OpenGL's own rasteriser: rounds, depth test and attachments.
 
 ===============  ===============================================================================================
 pass             task
@@ -204,7 +204,7 @@ class RasterPipeline(abc.ABC):
 
     name: str
     features: tuple[str, ...] = ("TEXTURE_DATA",)
-    """Of all its programs."""
+    """Features of all its programs."""
 
     def __init__(self, ctx: moderngl.Context, gl: GLExtras, programs: Programs, n_fiblets: int) -> None:
         self._ctx = ctx

@@ -1,4 +1,4 @@
-"""What a driver allows a pipeline, or what its user does, where that is less."""
+"""Limits of a pipeline: the driver's, or the user's where they are less."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which segments of its fiblets an invocation draws at a time, where software OpenGL limits its loops."""
+"""Shares of fiblets' segments that an invocation draws at a time, where software OpenGL limits its loops."""
 
 from __future__ import annotations
 

@@ -43,7 +43,7 @@ def _nothing(_plotter: Any) -> None:
 
 @dataclass(frozen=True)
 class Variant:
-    """How edges are smoothed."""
+    """A method of smoothing edges."""
 
     # As of :class:`.Record`
     method: str

@@ -27,7 +27,7 @@ MODULE = "pvfiblets.report.studies.card.part"
 
 @dataclass
 class CardCheck:
-    """What a check found."""
+    """The result of a check."""
 
     # Driver, limits and extensions, as `pvfiblets gl --json` has them; empty without OpenGL
     opengl: dict[str, Any] = field(default_factory=dict)

@@ -242,7 +242,7 @@ def _layers(ctx: Any, pipeline: str) -> Scene:
 
 
 def _query(ctx: Any, pipeline: str) -> Scene:
-    """Which streamlines pass a sphere, or end in it: the same words as the CPU's."""
+    """Compare streamlines that pass a sphere, or end in it, with the CPU's."""
     from pvfiblets import regions
     from pvfiblets.query.selection.passing import region_flags
 

@@ -1,4 +1,4 @@
-"""What a check of a graphics card finds: one line for each thing that was tried, in plain words."""
+"""The findings of a check of a graphics card: one line for each test, in plain words."""
 
 from __future__ import annotations
 

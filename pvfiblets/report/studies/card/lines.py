@@ -35,7 +35,7 @@ ALONG = math.cos(math.radians(8.0))  # the engine's directions bend at points, t
 
 
 class Shown(NamedTuple):
-    """What a G-buffer's pixels show, ``(height, width)``, row 0 at the bottom."""
+    """The contents of a G-buffer's pixels, ``(height, width)``, row 0 at the bottom."""
 
     there: Mask
     depth: Array

@@ -34,7 +34,7 @@ def parts_of(pipelines: list[str]) -> list[str]:
 
 PARTS = {"spline tubes": "others:tubes_part", "halos": "others:halos_part", "volumes": "others:volumes_part",
          "features": "features:features_part"}  # fmt: skip
-"""Those that are the same whatever the pipeline: modules and functions."""
+"""Parts that do not depend on the pipeline: modules and functions."""
 
 
 def _scenes(ctx: Any, part: str, folder: Path) -> Iterator[tuple[str, Callable[[], Scene]]]:

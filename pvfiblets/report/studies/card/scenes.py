@@ -1,4 +1,4 @@
-"""How the check of a graphics card draws something and judges it, and the parts that it is made of."""
+"""Scenes of the check of a graphics card: drawing, comparison, and their parts."""
 
 from __future__ import annotations
 

@@ -95,7 +95,7 @@ class Scene:
 
 
 class _Basis:
-    """What pictures are compared with, each drawn once: right ones, and means of several samples a pixel."""
+    """Reference pictures, each drawn once: right ones, and means of several samples a pixel."""
 
     def __init__(self, ctx: Any, scene: Scene) -> None:
         self._ctx, self._scene = ctx, scene

@@ -31,7 +31,7 @@ def lens_of(camera: Camera) -> Projection:
 
 @dataclass(frozen=True)
 class PictureEffect:
-    """What a whole picture is changed by: tones, and whether it is in focus in the scene's middle only."""
+    """The effect on a whole picture: tones, and whether it is in focus in the scene's middle only."""
 
     name: str
     tone: Tone = field(default_factory=Tone)

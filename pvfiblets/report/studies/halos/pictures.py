@@ -41,7 +41,7 @@ Singles = npt.NDArray[np.float32]
 
 
 class Viewpoint(Protocol):
-    """What a picture is taken by: a camera, or a matrix alone."""
+    """The camera of a picture, or a matrix alone."""
 
     @property
     def size(self) -> tuple[int, int]:

@@ -32,7 +32,7 @@ NOTHING, LINE, HALO = range(3)
 
 @dataclass(frozen=True, eq=False)
 class Picture:
-    """What the pixels show; all are ``(height, width)``, row 0 at the bottom."""
+    """The contents of the pixels; all are ``(height, width)``, row 0 at the bottom."""
 
     kind: Ints  # int64: `NOTHING` 0, `LINE` 1 (points too), `HALO` 2
     owner: Ints  # int64 point, or first point of the segment, that the fragment belongs to; -1 in empty pixels
@@ -89,7 +89,7 @@ def _singles(numbers: npt.ArrayLike) -> Array:
 
 
 def _depths(clip: Array) -> Array:
-    """How far places are behind the near and before the far plane; both are negative nowhere in the view."""
+    """Return distances behind the near and before the far plane; both are negative nowhere in the view."""
     return np.stack([clip[:, 3] + clip[:, 2], clip[:, 3] - clip[:, 2]], axis=1)
 
 

@@ -144,7 +144,7 @@ def _bend(camera: Camera, look: HaloStyle, clip: Array, vertex: int, neighbour: 
 
 @dataclass(frozen=True, eq=False)
 class _Varying:
-    """What varies along one segment, by its two ends."""
+    """Quantities that vary along one segment, by its two ends."""
 
     camera: Camera
     look: HaloStyle
@@ -160,7 +160,7 @@ class _Varying:
         return part[0] + (part[1] - part[0]) * (s / w[1] / ((1.0 - s) / w[0] + s / w[1]))
 
     def half_widths(self, t: Array) -> tuple[Array, Array]:
-        """Of line and strip without the mask, pixels."""
+        """Return the widths of line and strip without the mask, pixels."""
         return self.camera.widths(between(self.clip[:, 3], t), between(self.cue, t))
 
     def edges(self, t: Array) -> tuple[Array, Array, Array | None]:

@@ -53,7 +53,7 @@ class Variant:
 
     @property
     def setting(self) -> str:
-        """How many samples a pixel has."""
+        """Number of samples of a pixel."""
         return samples(self.times)
 
     @property

@@ -17,7 +17,7 @@ __all__ = ["Case", "Cases", "Outcome", "Setting", "refused"]
 
 @dataclass(frozen=True)
 class Setting:
-    """What a case is run with."""
+    """The input of a case."""
 
     whole: bool = False  # Whether the largest cases are of their full size. Otherwise their text names the smaller one.
     ctx: moderngl.Context | None = None  # Current; only cases that draw need it
@@ -32,7 +32,7 @@ class Setting:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a case found."""
+    """The result of a case."""
 
     # What must hold does if `measured` is no larger than `limit`; NaN is larger than any
     measured: float

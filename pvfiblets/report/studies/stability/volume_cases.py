@@ -51,7 +51,7 @@ TABLES = {
 
 @dataclass(frozen=True, eq=False)
 class Cast:
-    """What a picture of a volume shows, ``(height, width, …)``."""
+    """Contents of a volume's picture, ``(height, width, …)``."""
 
     there: npt.NDArray[np.bool_]
     depth: Array

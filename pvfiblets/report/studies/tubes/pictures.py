@@ -49,7 +49,7 @@ def outline(mask: Mask) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Truth:
-    """What a picture of tubes should show, in all pixels or in some."""
+    """The right picture of tubes, in all pixels or in some."""
 
     lens: Lens
     pixels: npt.NDArray[np.int64]  # `(n,)` int64, counted in rows from below

@@ -51,7 +51,7 @@ class Rays:
 
     @cached_property
     def truth(self) -> Hits:
-        """What each ray meets, from its origin or from before it."""
+        """The hit of each ray, from its origin or from before it."""
         return hits(self.controls, self.origins, self.directions)
 
     @cached_property

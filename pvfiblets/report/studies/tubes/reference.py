@@ -48,7 +48,7 @@ _PAIRS = 1 << 21
 
 @dataclass(frozen=True, eq=False)
 class Hits:
-    """What rays meet."""
+    """Hits of rays."""
 
     # `(n,)` float64 mm along the ray from its origin; NaN for a miss
     l: Array  # noqa: E741 - the paper's name for it
@@ -58,7 +58,7 @@ class Hits:
 
 @dataclass(frozen=True, eq=False)
 class Nearest(Hits):
-    """What rays meet first of many halves."""
+    """The first hits of rays with many halves."""
 
     half: Ints  # `(n,)` int64 index of the half; -1 for a miss
 
@@ -141,7 +141,7 @@ def nearest_hits(
 
 
 def surface_distance(controls: npt.ArrayLike, points: npt.ArrayLike) -> Array:
-    """How far points are from the surface of one half each: the least ``|p - p(t)| - r(t)``."""
+    """Return distances of points from the surface of one half each: the least ``|p - p(t)| - r(t)``."""
     halves, places = _halves(controls), _vectors(points, "points")
     n = np.broadcast_shapes(halves.shape[:1], places.shape[:1])[0]
     halves, places = np.broadcast_to(halves, (n, 3, 4)), np.broadcast_to(places, (n, 3))

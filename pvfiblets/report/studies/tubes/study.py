@@ -245,7 +245,7 @@ PARTS: dict[Part, float] = {
     solvers: 3.0, pictures: 5.0, sets: 4.0, ray_sweeps: 2.0, picture_sweeps: 1.0, stored: 1.0, halves: 1.0,
 }  # fmt: skip
 IN_WINDOWS: dict[WindowPart, float] = {in_windows: 4.0}
-"""What is measured, and by what weight each part has its share of the time."""
+"""Measurements, and the weight of each part's share of the time."""
 
 
 class TubesStudy:

@@ -1,4 +1,4 @@
-"""How open surfaces of volumes are (Lesar 2015, equation 10): the scenes, and the right values, in float64."""
+"""Openness of volumes' surfaces (Lesar 2015, equation 10): the scenes, and the right values, in float64."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a picture of a ray-cast volume shows, and how far it is off: colours, and where surfaces are."""
+"""Pictures of ray-cast volumes, and their errors: colours, and places of surfaces."""
 
 from __future__ import annotations
 
