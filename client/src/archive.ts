@@ -28,7 +28,7 @@ function big(view: DataView, at: number): number {
   return view.getUint32(at, true) + view.getUint32(at + 4, true) * 4294967296;
 }
 
-/** Where the central directory begins, and how many members it has. */
+/** Start of the central directory, and its number of members. */
 function directory(view: DataView): [number, number] {
   const size = view.byteLength;
   for (let at = size - 22; at >= Math.max(0, size - 65558); --at) {

@@ -34,7 +34,7 @@ export function moved(by: Vec): Mat {
   return m;
 }
 
-/** By Gauss and Jordan; null for a matrix that flattens. */
+/** Inverse by Gauss and Jordan; null for a matrix that flattens. */
 export function inverse(m: Mat): Mat | null {
   const a = Array.from({ length: 4 }, (_, i) => Array.from({ length: 8 }, (_, j) => (j < 4 ? m[i + 4 * j] : j - 4 === i ? 1 : 0)));
   for (let k = 0; k < 4; ++k) {

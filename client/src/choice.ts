@@ -1,4 +1,4 @@
-/** Which streamlines the reader has chosen. */
+/** The streamlines that the reader has chosen. */
 
 import type { Region } from "./regions";
 import type { Lines } from "./lines";

@@ -43,7 +43,7 @@ interface Layer {
   planes?: number[][];  // (a, b, c, d): kept where a x + b y + c z + d >= 0, in world coordinates
 }
 
-/** Of lines that one looks through. */
+/** Translucency of lines. */
 export interface Through {
   opacity: number;      // of all
   varied: boolean;      // whether colours or the fields below have opacities of their own, multiplied by `opacity`

@@ -23,7 +23,7 @@ interface Held {
   summed: boolean;
 }
 
-/** What floats can be blended: of 32 bits, of 16, or none. */
+/** Bits of floats that can be blended: 32, 16, or 0. */
 export function floatBits(gl: GL): 0 | 16 | 32 {
   const whole = gl.getExtension("EXT_color_buffer_float"), half = whole ?? gl.getExtension("EXT_color_buffer_half_float");
   return whole && gl.getExtension("EXT_float_blend") ? 32 : half ? 16 : 0;

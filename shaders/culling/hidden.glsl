@@ -46,7 +46,7 @@ float rise_of(vec4 c, float r) {
     return r * length(gradient(2) - z * gradient(3)) / (c.w - r * w_per_mm);
 }
 
-// How much nearer than the line the first pixel of a thin segment may be.
+// Greatest excess of the first pixel of a thin segment, nearer than the line.
 float overshoot_of(vec4 a, vec4 b, float r) {
     float rise = abs(a.z / a.w - b.z / b.w) + rise_of(a, r) + rise_of(b, r);
     return half_line_width > 0.0 ? 0.0 : max(CELL_SHIFT.x, CELL_SHIFT.y) * rise;

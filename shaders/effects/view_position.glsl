@@ -1,4 +1,4 @@
-// Where a pixel of the G-buffer lies, in view coordinates (mm, the viewer at the origin, looking along -z), and back.
+// Position of a pixel of the G-buffer in view coordinates (mm, the viewer at the origin, looking along -z), and back.
 //
 // The way from a pixel to its place is projective, so for the pixel at n (in [-1, 1]) with f = 1 - window depth
 //

@@ -1,4 +1,4 @@
-// Where the ray of a pixel enters and leaves the convex shapes of a region: planes, slabs, boxes and spheres, placed by any
+// Intersections of a pixel's ray with the convex shapes of a region: planes, slabs, boxes and spheres, placed by any
 // affine map. pvfiblets/engine/regions/convex_rays.py declares and packs the block, pvfiblets/query/regions/shapes.py says what the shapes are.
 //
 // Symbols

@@ -61,7 +61,7 @@ uint covered(Band band, vec4 x, vec4 y) {
     return bits(lessThanEqual(abs(band.n.x * x + band.n.y * y + band.away), vec4(band.size)));
 }
 
-// What is left of the pixel's own line where that ends.
+// The remaining part of the pixel's own line where that ends.
 uint within(Edges edges, vec4 x, vec4 y) {
     vec4 along = (edges.n.x * y - edges.n.y * x) / 16.0;
     vec2 range = edges.end == 7u ? vec2(-0.5, 0.5)

@@ -1,4 +1,4 @@
-// How far out of focus each pixel is: the circle of confusion of a thin lens (Lesar, Bohak & Marolt 2015, section III.G,
+// Blur of each pixel: the circle of confusion of a thin lens (Lesar, Bohak & Marolt 2015, section III.G,
 // whose interpolation factor is the distance from the focal point).
 //
 // All that is at distance z reaches a lens of diameter A as a cone, which the plane in focus, at z_f, cuts in a disc of

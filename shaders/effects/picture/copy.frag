@@ -1,4 +1,4 @@
-// What VTK has drawn so far in one viewport, as single samples that shaders can read: the picture that effects change.
+// VTK's picture so far in one viewport, as single samples that shaders can read: the picture that effects change.
 //
 //   drawn      colour attachment of VTK's framebuffer
 //   depths     its depth attachment

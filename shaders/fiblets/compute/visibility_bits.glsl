@@ -1,4 +1,4 @@
-// What the passes of one picture tell each other about the fiblets of a chunk, in one buffer, because OpenGL promises no more than
+// Visibility bits and draw lists that the passes of one picture share, for a chunk's fiblets, in one buffer, because OpenGL promises no more than
 // eight storage buffers to a shader. Each chunk has a range of its own, so that no driver's limit of a block limits the set.
 //
 //   bits         {{ visibility_words }} kinds, of each a word for 32 fiblets
@@ -53,12 +53,12 @@ uint of_class(uint word, uint which) {
 
 uint list_room() { return (chunk_fiblets + {{ list_share }}u - 1u) / {{ list_share }}u; }
 
-// Where a class's list starts.
+// Start of a class's list.
 uint list_at(uint which) { return KINDS * chunk_words() + which * list_room(); }
 
-// Where a class's length in this round is.
+// Place of a class's length in this round.
 uint length_at(uint which) { return list_at(CLASSES) + drawing * CLASSES + which; }
 
-// Where all arguments start, and the arguments of a class in this round.
+// Start of all arguments, and of the arguments of a class in this round.
 uint all_arguments_at() { return list_at(CLASSES) + ROUNDS * CLASSES; }
 uint arguments_at(uint which, uint slots) { return all_arguments_at() + 4u * (drawing * CLASSES + which) * slots; }

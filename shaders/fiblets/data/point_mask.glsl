@@ -1,4 +1,4 @@
-// Which points are kept (pvfiblets/engine/fiblets/data/filter_textures.py): a bit for each, counted from the chunk's first, 32 to a texel, in
+// Mask of kept points (pvfiblets/engine/fiblets/data/filter_textures.py): a bit for each, counted from the chunk's first, 32 to a texel, in
 // rows of 2^{{ mask_bits }}. A segment is drawn where both of its points are kept, a streamline of one point where that one is.
 //
 // Use: begin_point_mask(f) once for a fiblet, whose bits are then at hand. Bit i stands for its point i; behind its last

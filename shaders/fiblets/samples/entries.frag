@@ -1,4 +1,4 @@
-// Which lines the sixteen samples of a pixel show: of each, how many samples, and one sample that stands for them.
+// Lines of the sixteen samples of a pixel: for each, the number of samples, and one sample that stands for them.
 //
 // Samples of a fiblet that bends within the pixel count as lines of their own, by the tangents that their light depends on.
 //

@@ -34,7 +34,7 @@ struct Segment {
     bool goes_on;    // whether the line does
 };
 
-// What a segment shows in a pixel.
+// A segment's hit in a pixel.
 struct Fragment {
     ivec2 pixel;
     float z;         // window depth
@@ -54,7 +54,7 @@ void put(Fragment fragment, Segment segment) {
     if (behind_layers(fragment.pixel, depth_key(fragment.z))) plot(fragment, segment);
 }
 
-// Where on the segment a pixel lies.
+// Place of a pixel on the segment.
 float along(Fragment fragment, Segment segment) {
     return along_segment(segment.from, segment.to, segment.piece, fragment.s);
 }
