@@ -17,7 +17,7 @@ class LineActor(ColouredActor):
     """Actor of tubes or halos: its lines have opacities."""
 
     def _lines_and_values(self) -> tuple[Any, Mapping[str, Any]]:
-        """Return the drawn lines, with ``n_streamlines`` and ``n_points``, and arrays with a row for each line."""
+        """Return what is drawn, with ``n_streamlines`` and ``n_points``, and arrays with a row for each line."""
         raise NotImplementedError
 
     def _write_opacity(self, opacity: Any) -> None:

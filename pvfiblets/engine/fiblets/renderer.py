@@ -51,7 +51,8 @@ __all__ = ["FibletRenderer"]
 class FibletRenderer(LinesBehind):
     """Draws one fiblet set.
 
-    Fiblets behind other actors may be missing from a picture drawn with their depth: two-phase culling reads it.
+    What others in the scene hide may be missing from a picture for which their depth was given: two-phase culling
+    looks at it.
 
     Parameters
     ----------
@@ -76,9 +77,9 @@ class FibletRenderer(LinesBehind):
     lender : Drawable, optional
         As of :class:`pvfiblets.engine.drawable.Drawable`.
     whole : FibletSet, optional
-        The whole set, for filters, where `fiblets` are some of its streamlines (:mod:`pvfiblets.codec.restrict`).
+        What filters speak of, where `fiblets` are some of its streamlines (:mod:`pvfiblets.codec.restrict`).
     alike : int, optional
-        Number of fiblets of the whole set, so that pictures of this part equal its pictures in every bit.
+        Fiblets of a set whose pictures those of this part of it shall equal in every bit.
     most : float
         With ``fit='sample'``: draw no larger share of the streamlines, whatever would fit.
 
@@ -229,7 +230,7 @@ class FibletRenderer(LinesBehind):
         )
 
     def _request(self, view: View, style: FibletStyle, target: GBuffer) -> DrawRequest:
-        """Update and bind everything that a view and a style need, and return the draw request."""
+        """Bring everything up to date that a view and a style need, bind it, and say what is to be drawn."""
         values, kept, shared = self._values, self._kept, self._shared
         shared.bind()
         decoding = self._decoding_features()
@@ -252,11 +253,11 @@ class FibletRenderer(LinesBehind):
             kept=kept,
             tubes=("TUBES",) if style.radius is not None else (),
             across=("CROSS_LINE",) if style.relief is not None else (),
-            edges=("EDGES",) if style.edges and not style.exact else (),  # samples have no edges
+            edges=("EDGES",) if style.edges and not style.exact else (),  # nobody reads those of a sample
         )
 
     def needs_outside(self, view: View, style: Style) -> bool:
-        """Return whether :meth:`render` would gain from the depth of other things in the scene.
+        """Say whether :meth:`render` would gain from the depth of other things in the scene.
 
         Only where the camera has just moved: the second picture of a view is drawn whole, to be used from then on.
         """
@@ -264,7 +265,7 @@ class FibletRenderer(LinesBehind):
         return two_phase and self._last != (view, style)
 
     def layers_samples(self, view: View, style: FibletStyle) -> bool:
-        """Return whether :meth:`sample_layers` can draw a picture: lines without a surface, cut by planes at most."""
+        """Say whether :meth:`sample_layers` can draw a picture: of lines without a surface, cut by planes at most."""
         plain = style.radius is None and style.relief is None and view.region is None
         return plain and isinstance(self._pipeline, ComputePipeline)
 
@@ -323,7 +324,7 @@ class FibletRenderer(LinesBehind):
 
     @property
     def filtering(self) -> Filter | None:
-        """The filter; None for everything. Setting it takes effect with the next picture.
+        """What is there to be drawn; None for everything. Setting it takes effect with the next picture.
 
         Raises
         ------
@@ -344,14 +345,14 @@ class FibletRenderer(LinesBehind):
         self._kept.filtering = wanted
 
     def query(self, region: Region, sampling: Sampling = "lines") -> npt.NDArray[np.uint8]:
-        """Return how each streamline of the set lies to a region, whatever is filtered or drawn.
+        """Say how each streamline of the set lies to a region, whatever is filtered or drawn.
 
         On the GPU where it can (:attr:`.RegionQuery.available`), and equal to what the CPU says.
 
         Parameters
         ----------
         region, sampling
-            As in :func:`pvfiblets.query.selection.passing.region_flags`, with its result and errors.
+            As in :func:`pvfiblets.query.selection.passing.region_flags`, which also says what is returned and raised.
 
         Raises
         ------

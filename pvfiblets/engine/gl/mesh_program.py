@@ -1,7 +1,7 @@
 """Programs of task and mesh stages: by GL_EXT_mesh_shader, which moderngl cannot make, or by NVIDIA's extension.
 
-A :class:`MeshProgram` has the interface of ``moderngl.Program`` that the engine uses, so that code that sets uniforms
-need not distinguish the two.
+A :class:`MeshProgram` has what the engine uses of a ``moderngl.Program``, so that those who set uniforms need not know
+which of the two they have.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ _STAGES = {"fragment_shader": 0x8B30, "mesh_shader": 0x9559, "task_shader": 0x95
 _COMPILE_STATUS, _LINK_STATUS, _LOG_LENGTH = 0x8B81, 0x8B82, 0x8B84
 _ACTIVE_UNIFORMS, _INVALID_INDEX = 0x8B86, 0xFFFFFFFF
 _STRICT, _LAX = "flat perprimitiveEXT in", "perprimitiveEXT in"
-"""Qualifiers of a primitive's integers in fragments: Khronos' compiler refuses the second, Mesa's the first."""
+"""How fragments are handed integers of a primitive: Khronos' compiler refuses the second, Mesa's the first."""
 _NVIDIA_FORMS: tuple[dict[str, str], ...] = (
     {},
     {"#extension GL_NV_mesh_shader : enable\n": "\n"},
     {"flat perprimitiveNV in": "perprimitiveNV in"},
     {"#extension GL_NV_mesh_shader : enable\n": "\n", "flat perprimitiveNV in": "perprimitiveNV in"},
 )
-"""Declarations of a primitive's data in fragment stages, where compilers differ: the first that links."""
+"""How a fragment stage says that it is handed a primitive's data, where compilers differ: the first that links."""
 _LONGEST = 256
 """Characters of a uniform's name, the closing zero included."""
 

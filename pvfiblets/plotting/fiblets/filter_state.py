@@ -27,13 +27,13 @@ __all__ = ["Choices", "Condition", "Criterion", "as_predicate", "checked_range",
 
 @dataclass(frozen=True, eq=False)
 class Criterion:
-    """A range of values; everything outside is hidden.
+    """A range of values outside of which nothing is shown.
 
     Attributes
     ----------
     name : str
     what : Any
-        The measure: a name, an array, a ``Distance``.
+        What was asked for: a name, an array, a ``Distance``.
     values : Any
         :class:`pvfiblets.query.measures.measures.Values`.
     range : tuple of float
@@ -49,7 +49,7 @@ class Criterion:
     keep_nan: bool
 
     def within(self) -> tuple[Any, float, float, bool]:
-        """Return the criterion in the form of :mod:`pvfiblets.query.selection.bits`."""
+        """What :mod:`pvfiblets.query.selection.bits` asks for."""
         return self.values, *self.range, self.keep_nan
 
 
@@ -80,7 +80,7 @@ class Choices:
         return replace(self, criteria=dict(self.criteria), conditions=dict(self.conditions))
 
     def mask(self, fiblets: FibletSet) -> np.ndarray | None:
-        """Return a mask of the visible streamlines, (n_streamlines,) bool; None for all."""
+        """Which streamlines are shown, (n_streamlines,) bool; None for all."""
         masks = [condition.mask for condition in self.conditions.values()]
         if per_streamline := self._of_kind("streamline"):
             from pvfiblets.query.selection.bits import streamline_mask
@@ -107,7 +107,7 @@ class Choices:
         return tuple(c for c in self.criteria.values() if c.values.kind == kind)
 
     def filter(self, fiblets: FibletSet) -> Filter | None:
-        """The engine's filter; None where everything is shown."""
+        """What the engine is told; None where everything is shown."""
         from pvfiblets.engine.fiblets.data.filter_textures import Filter
 
         mask, points = self.mask(fiblets), self.points(fiblets)
@@ -138,7 +138,7 @@ class Choices:
         )
 
     def explain(self, fiblets: FibletSet) -> dict[str, Any]:
-        """Return the criteria, and how many streamlines pass them."""
+        """Return what is chosen, and of how many streamlines."""
         mask, total = self.mask(fiblets), fiblets.n_streamlines
         return {
             "streamlines": {"total": total, "shown": total if mask is None else int(mask.sum())},
@@ -149,7 +149,7 @@ class Choices:
 
 
 def in_groups(fiblets: FibletSet, names: Iterable[str]) -> np.ndarray:
-    """Return a mask of the streamlines in any of some groups, (n_streamlines,) bool."""
+    """Which streamlines are in any of some groups, (n_streamlines,) bool."""
     mask = np.zeros(fiblets.n_streamlines, bool)
     for name in names:
         if name not in fiblets.groups:

@@ -1,4 +1,4 @@
-"""The filters of an actor: criteria, regions, groups, subsets, and cuts.
+"""Which streamlines, and which parts of them, an actor shows: criteria, regions, groups, subsets, and cuts.
 
 Choices add up: a streamline is shown where all of them agree. What is not shown is culled on the GPU, not only hidden,
 and nothing is compressed or copied anew.
@@ -277,7 +277,7 @@ class FilteredActor(ClippedActor):
 
     @property
     def shown(self) -> np.ndarray:
-        """Mask of the visible streamlines by choices of whole ones, (n_streamlines,) bool."""
+        """Which streamlines are shown as far as they are chosen as a whole, (n_streamlines,) bool."""
         mask = self._choices.mask(self._fiblets)
         return np.ones(self._fiblets.n_streamlines, bool) if mask is None else mask.copy()
 

@@ -29,7 +29,7 @@ _AS_BEFORE: Any = object()
 
 @dataclass(frozen=True)
 class SelectionStyle:
-    """The style of selected streamlines.
+    """How selected streamlines stand out.
 
     Attributes
     ----------
@@ -70,7 +70,7 @@ class SelectableActor(FilteredActor):
 
     @property
     def active_scalars(self) -> Scalars | None:
-        """Source of the actor's colours; ``None`` for one colour."""
+        """What colours the actor, as found; ``None`` for one colour."""
         return self._scalars
 
     # The selection ------------------------------------------------------------------------------
@@ -281,7 +281,7 @@ class SelectableActor(FilteredActor):
             ``count``, ``points``; ``length_mean``, ``length_min``, ``length_max`` and
             ``length_total`` in mm; and, where there are numbers, their name as ``scalars``, and
             ``mean`` and ``std`` (population) over the streamlines or points that have one. NaN
-            for an empty selection.
+            where there is nothing.
 
         Raises
         ------
@@ -377,7 +377,7 @@ class SelectableActor(FilteredActor):
     # Life ---------------------------------------------------------------------------------------
 
     def entered(self, renderer: Any) -> None:
-        """Handle that a renderer draws the actor from now on."""
+        """Be told that a renderer draws the actor from now on."""
         if self._standout is not None:
             self._standout.enter(renderer)
 
@@ -400,7 +400,7 @@ class SelectableActor(FilteredActor):
         self._select(None if other._selected is None else other._selected.copy())
 
     def _explain_selection(self) -> dict[str, Any]:
-        """Return the number of selected streamlines; with a style that draws them apart, also its cost."""
+        """How many are selected; where they are drawn apart, wider or as tubes, what that takes."""
         apart = None if self._standout is None else added_up(self._standout.mapper.explain())
         return {
             "streamlines": len(self.selection),

@@ -57,7 +57,7 @@ class _OfAll:
 
 @dataclass(frozen=True, eq=False)
 class _Splines:
-    """The data of spline tubes.
+    """What spline tubes are made of.
 
     Attributes
     ----------
@@ -125,7 +125,7 @@ class SelectionOverlay:
 
     @property
     def layer(self) -> Layer:
-        """Layer for picking: pixels of these streamlines belong to the owner."""
+        """What picking sees: pixels that show these streamlines show the owner's."""
         if self._plan is None:
             return Layer(self.mapper, self.ids)
         return Layer(self.mapper, self._plan.ids, self._starts)
@@ -141,7 +141,7 @@ class SelectionOverlay:
         self._renderers[address] = (weak(renderer), tag)
 
     def leave(self) -> None:
-        """Leave all renderers, and free the GPU memory."""
+        """Be gone from all renderers, and from the GPU."""
         for address in list(self._renderers):
             self._leave(address)
         self.mapper.release()
@@ -155,7 +155,7 @@ class SelectionOverlay:
             renderer.RemoveActor(self.actor)
 
     def leave_with_owner(self) -> None:
-        """Leave renderers that do not draw the owner any more."""
+        """Be gone from renderers that do not draw the owner any more."""
         owner = self._owner.Get()
         for address, (reference, _) in list(self._renderers.items()):
             renderer = reference.Get()
@@ -205,7 +205,7 @@ class SelectionOverlay:
             self.mapper.filtering = part_of_filter(mapper.filtering, self._fiblets, self.ids)
 
     def _plan_for(self, mapper: Any) -> _Splines | None:
-        """Return the data of spline tubes that look like the owner's lines; None where none can."""
+        """What spline tubes have to be made of that do as the owner's mapper does; None where none can."""
         filtering = mapper.filtering
         masked = filtering is not None and filtering.points is not None
         values = None if self._color is not None else mapper.colouring.point_source

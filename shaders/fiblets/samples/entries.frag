@@ -1,10 +1,10 @@
-// Lines of the sixteen samples of a pixel: for each, the number of samples, and one sample that stands for them.
+// Which lines the sixteen samples of a pixel show: of each, how many samples, and one sample that stands for them.
 //
 // Samples of a fiblet that bends within the pixel count as lines of their own, by the tangents that their light depends on.
 //
 //   drawn_owner   fiblets by sample (FEATURE_SUBSAMPLES), 4 x 4 texels a pixel; that of no fiblet is one of them
 //   drawn_ids     streamlines and tangents
-//   entries       16 bytes, from the lowest, that of no fiblet first, then the lines with most samples: 16 (samples - 1) + the
+//   entries       16 bytes, from the lowest, that of no fiblet first, then those with most samples: 16 (samples - 1) + the
 //                 sample's number
 
 #version 430

@@ -1,9 +1,9 @@
 // One layer of the lines that pixels' samples show (fiblets/samples/entries.frag): the k-th of each pixel, as a G-buffer, and in
 // place of the owner the share of the pixel that shows it, in 65536ths, and above its 17 bits the line's set. Where samples show more lines than there may be layers,
-// the lines left out count in proportion to the lines kept: the share that no line covers stays the same.
+// those that are left out count in proportion to the lines that are not: what no line covers keeps its share.
 //
 //   entries, drawn_depth, drawn_ids, drawn_position   of the samples of a part of the picture
-//   drawn_owner, sets                                 of several sets: the remainder is the set's number
+//   drawn_owner, sets                                 of several sets: which of them is told by the remainder
 //   corner                                            pixel of the picture where that part begins
 
 #version 430

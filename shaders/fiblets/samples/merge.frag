@@ -1,9 +1,9 @@
-// Samples of one more set, where they are nearer than the samples so far (fiblets/samples/entries.frag): by OpenGL's depth
-// test, as VTK draws one thing after the other.
+// Samples of one set more, where they are nearer than those of the sets before (fiblets/samples/entries.frag): by OpenGL's depth
+// test, as VTK has it for what it draws one after the other.
 //
 //   drawn_depth, _owner, _ids, _position    of this set
-//   corner                                  texel of the sets' samples where the samples of this set begin
-//   set, sets                               its number, and the number of sets: an owner's remainder by it is its set
+//   corner                                  texel of the sets' samples where those of this set begin
+//   set, sets                               its number, and how many sets there are: owners of all are told apart by it
 
 #version 430
 

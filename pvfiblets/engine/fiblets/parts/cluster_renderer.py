@@ -43,8 +43,8 @@ if TYPE_CHECKING:
 
 __all__ = ["ClusterRenderer"]
 
-TICK = 0.5  # seconds between checks for workers
-GRACE = 10.0  # seconds in which a cluster without workers may get some: dead ones are started again
+TICK = 0.5  # seconds from look to look whether there are workers left
+GRACE = 10.0  # seconds in which a cluster without workers may get some: those that die are started again
 
 
 class ClusterRenderer(NearestOnly):
@@ -100,7 +100,7 @@ class ClusterRenderer(NearestOnly):
             self._stretches = Stretches.of_count(fiblets, count)
         total = len(self._stretches)
         self._parts = [PartOfSet(key, path, number, total, int(fiblets.n_fiblets)) for number in range(total)]
-        # A worker reads its own files; dask keeps sent data for all frames.
+        # What a worker reads itself is not sent; dask keeps what is sent once for all frames.
         self._sent = [None if path else self._send(self._stretches.part(one.number), one.number) for one in self._parts]
         self._filters: list[Any] = [None] * total
         self._filter_key = 0
@@ -115,7 +115,7 @@ class ClusterRenderer(NearestOnly):
         return sorted(self._cluster.scheduler_info(n_workers=-1)["workers"])
 
     def _workers(self) -> list[str]:
-        """Return the addresses of the workers, after a grace period for restarting ones."""
+        """Return the addresses of the workers that there are; those that are being started again have time for it."""
         until = time.monotonic() + GRACE
         while not (found := self._there()):
             if time.monotonic() >= until:
@@ -160,7 +160,7 @@ class ClusterRenderer(NearestOnly):
         return target
 
     def _ask(self, view: View, style: FibletStyle) -> None:
-        """Begin a picture, and drop the rest of the last one."""
+        """Have a picture begun, and what is left of the last one dropped."""
         self._forget()
         volume = self._volume_of(style)
         plain = style if volume is None else replace(style, values=None)
@@ -204,7 +204,7 @@ class ClusterRenderer(NearestOnly):
             wait([self._root], timeout=seconds)
 
     def _forget(self) -> None:
-        # dask gives up unreferenced tasks; cancelling would stop at tasks that have just ended.
+        # dask gives up what nobody holds any more; told to cancel, it would stop at tasks that have just ended.
         self._drawing, self._root, self._asked = [], None, None
         self._lack(0)
 
@@ -257,7 +257,7 @@ class ClusterRenderer(NearestOnly):
         return {"fiblets_total": total, "fiblets": no_counts(total), "share": self.share, "cluster": cluster}
 
     def release(self) -> None:
-        """Release everything on the GPU, and the data sent to the workers; twice is harmless."""
+        """Give back everything on the GPU, and what was sent to the workers; twice is harmless."""
         self._forget()
         self._sent, self._filters, self._volume = [], [], None
         super().release()
@@ -275,7 +275,7 @@ def _client_at(address: str) -> Any:
 
 
 def client_of(cluster: Any) -> Any:
-    """Return the client of a cluster: the client itself, or one for an address, the same for the same address."""
+    """Return the client of a cluster: what is given, or one for an address, the same for the same."""
     if isinstance(cluster, str):
         try:
             return _client_at(cluster)
@@ -289,7 +289,7 @@ def client_of(cluster: Any) -> Any:
 
 
 def _told(future: Any) -> Any:
-    """Return a result, or raise a worker's error, wrapped as an EngineError if it is not one of this package."""
+    """Return a result, or raise what a worker has raised, as an error of the engine where it is none of ours."""
     try:
         return future.result()
     except (EngineError, ValueError, TypeError, OSError):

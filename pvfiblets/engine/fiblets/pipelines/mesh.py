@@ -9,11 +9,11 @@ pipeline         how a fiblet is decoded
 ``mesh-serial``  by one (section 3.3.1), to compare with
 ===============  ==============================================================================================
 
-The stages before and after are the same: a task work group tests :data:`TASK_FIBLETS` fiblets and passes the remaining
-ones to the mesh stage; fragments are as in the other raster pipelines. Data come from the storage buffers that the
+What stands before and after is the same: a task work group tests :data:`TASK_FIBLETS` fiblets and tells the mesh stage
+which of them are left; fragments are those of the other raster pipelines. Data come from the storage buffers that the
 compute pipeline reads, so that nothing else is uploaded.
 
-Drawing calls are limited to GL_MAX_DRAW_MESH_TASKS_COUNT_NV work groups, at least 65,535, which is also the least that
+Drawing calls are limited to GL_MAX_DRAW_MESH_TASKS_COUNT_NV work groups, of which 65,535 are promised, as many as
 GL_EXT_mesh_shader promises along an axis: 16.7 million fiblets. More are drawn by several calls.
 """
 

@@ -1,7 +1,7 @@
 """Whether this machine's OpenGL draws right, and how fast: every part in a process of its own, so that one may crash.
 
-A driver that dies takes its process along, not the check: the failing feature is recorded, and another process goes on
-with the next. Neither VTK nor a display is needed.
+A driver that dies takes its process along, not the check: what it was at is noted, and another process goes on with
+what comes after. Neither VTK nor a display is needed.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ MODULE = "pvfiblets.report.studies.card.part"
 
 @dataclass
 class CardCheck:
-    """The result of a check."""
+    """What a check found."""
 
-    # Driver, limits and extensions, as `pvfiblets gl --json` has them; empty without OpenGL
+    # Driver, limits and extensions, as `pvfiblets gl --json` has them; empty where OpenGL could not be asked
     opengl: dict[str, Any] = field(default_factory=dict)
     findings: list[Finding] = field(default_factory=list)
     # Files of what differs, `.npy`, by the feature's `part: feature`
@@ -89,7 +89,7 @@ def _ask(patience: float) -> dict[str, Any] | str:
 
 
 def _run_part(check: CardCheck, part: str, folder: Path, patience: float, process: CellProcess) -> None:
-    """Run a part to its end, in a new process after each crash."""
+    """Run a part to its end, by as many processes as die of it."""
     number = 0
     while True:
         begun = process.measure({"part": part, "folder": str(folder), "number": number}, patience)
