@@ -1,4 +1,4 @@
-"""How edges in pictures are smoothed: what ``plotter.picture.antialias`` may be, and what it is where nobody says.
+"""How edges in pictures are smoothed: the values of ``plotter.picture.antialias``, and its default.
 
 The module imports nothing that draws: actors ask it whether there is anything to be done.
 """

@@ -1,7 +1,7 @@
 """Bundles of streamlines: found by similarity, listed, named, measured.
 
 ``clusters(fiblets)`` puts streamlines that run alike together, ``similar(fiblets, ids)`` finds more like some, and
-``recognise(fiblets, folder)`` finds those of models. ``fiblets.bundles`` is the list of a set's groups, to be edited.
+``recognise(fiblets, folder)`` finds the bundles of models. ``fiblets.bundles`` is the editable list of a set's groups.
 ``tract_profile`` averages values along a bundle, ``bundle_table`` measures all of them.
 """
 

@@ -18,7 +18,7 @@ __all__ = ["MODES", "SHADERS", "ColourMode", "glsl_source"]
 
 @dataclass(frozen=True)
 class ColourMode:
-    """Where lines get their colours from.
+    """The source of lines' colours.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What tubes and lines with halos are made from: lines and their data, from every kind of source in one form."""
+"""The source of tubes and of lines with halos: lines and their data, from every kind of source in one form."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Lines:
     Parameters
     ----------
     points : ndarray
-        ``(n_points, 3)`` float64, mm; or float32, where that was given and :func:`gather` was told to keep it.
+        ``(n_points, 3)`` float64, mm; or float32, if that was given and :func:`gather` may keep it.
     ids : ndarray
         ``(n_ids,)`` int64: the points of all lines, one line after the other.
     offsets : ndarray
@@ -148,7 +148,7 @@ def _gather(source: Any, noun: str, keep_single: bool) -> Lines:
 
 
 def _cut(lines: Lines) -> tuple[Lines, dict[str, int]]:
-    """Return lines that end at non-finite points, and what was left out."""
+    """Return lines that end at non-finite points, and the number of dropped ones."""
     bad = ~np.isfinite(lines.points).all(axis=1)
     rows = np.flatnonzero(bad[lines.ids])
     if not len(rows):
@@ -282,8 +282,8 @@ def _from_segments(points: npt.NDArray[Any], segments: Ints) -> Lines:
 def _before(segments: Ints, n_points: int) -> Ints:
     """The segment that each one goes on from, itself for none.
 
-    It is the only one that ends where this one starts, if no other starts there: where more than two meet, which of
-    them go on as one is not to be told, and the order in which they are listed must not decide it.
+    It is the only one that ends where this one starts, if no other starts there: where more than two meet, the data do
+    not show which of them go on as one, and the order in which they are listed must not decide it.
     """
     n = len(segments)
     own = np.arange(n)
@@ -370,12 +370,12 @@ def has_name(source: Any, name: str) -> bool:
 
 
 def are_words(array: npt.NDArray[Any]) -> bool:
-    """Say whether an array is one of texts."""
+    """Return whether an array is one of texts."""
     return array.dtype.kind in "US" or (array.dtype.kind == "O" and _all_words(array))
 
 
 def _all_words(array: npt.NDArray[Any]) -> bool:
-    """Say whether things are texts, and some of them missing, as columns of tables have it."""
+    """Return whether things are texts, and some of them missing, as columns of tables have it."""
     kinds = {type(one) for one in array.flat}
     return kinds <= {str, np.str_, type(None)} and kinds != {type(None)}
 
@@ -405,7 +405,7 @@ def numbers_or_colours(array: npt.NDArray[Any], name: str, rgb: bool | None) -> 
 
 
 def joined(given: Any, counts: tuple[int, int | None]) -> npt.NDArray[Any]:
-    """An array of what was given; a list of arrays, one for each line, becomes one."""
+    """An array of the given data; a list of arrays, one for each line, becomes one."""
     arrays = isinstance(given, Sequence) and not isinstance(given, bytes) and any(np.ndim(part) for part in given)
     if not arrays:
         return np.asarray(given)

@@ -1,7 +1,7 @@
 """Streamlines from the objects of other libraries: nibabel, dipy, trx-python, and VTK's datasets other than PolyData.
 
-None of them is imported: what an object is, is told by what it has. Coordinates become RAS+ millimetres with voxel
-centres at integer indices, wherever the object says where it is.
+None of them is imported: objects are recognised by their attributes. Coordinates become RAS+ millimetres with voxel
+centres at integer indices, for objects with a position.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def streamlines_of(source: Any) -> Streamlines | None:
     if hasattr(source, "tractogram") and hasattr(source, "header"):  # nibabel's TrkFile, TckFile
         found = _of_tractogram(source.tractogram)
         header = source.header if isinstance(source.header, Mapping) else {}
-        # Of a tck file they are words of whoever wrote it.
+        # In a tck file these are strings of the program that wrote it.
         if not any(isinstance(header.get(name, ""), str) for name in ("dimensions", "voxel_sizes")):
             found.space = _space(header["dimensions"], header["voxel_sizes"], header.get("voxel_order", b""))
             found.affine = np.asarray(source.affine, np.float64)
@@ -78,7 +78,7 @@ def _space(dimensions: Any, sizes: Any, order: Any) -> dict[str, Any]:
 
 
 def _of_tractogram(tractogram: Any) -> Streamlines:
-    """From nibabel's Tractogram, whole or lazy."""
+    """Convert nibabel's Tractogram, whole or lazy."""
     affine = tractogram.affine_to_rasmm
     if affine is None:
         raise ValueError(
@@ -97,7 +97,7 @@ def _of_tractogram(tractogram: Any) -> Streamlines:
 
 
 def _of_generators(tractogram: Any) -> Streamlines:
-    """From a lazy tractogram, whose `streamlines` have its pending affine applied and whose items may lack it."""
+    """Convert a lazy tractogram, whose `streamlines` have its pending affine applied and whose items may lack it."""
     return Streamlines.from_list(
         [np.asarray(line) for line in tractogram.streamlines],
         per_point=_joined(tractogram.data_per_point, np.concatenate),
@@ -113,7 +113,7 @@ def _joined(columns: Mapping[str, Any], join: Callable[[Any], npt.NDArray[Any]])
 def _sequences(
     lines: Any, per_point: Mapping[str, Any] | None = None, per_streamline: Mapping[str, Any] | None = None, **rest: Any
 ) -> Streamlines:
-    """From nibabel's ArraySequence of points, one of each value per point, and arrays per streamline."""
+    """Convert nibabel's ArraySequence of points, one of each value per point, and arrays per streamline."""
     counts = np.fromiter((len(line) for line in lines), np.int64, count=len(lines))
     points = np.asarray(lines.get_data()).reshape(-1, 3)
     return Streamlines(
@@ -173,7 +173,7 @@ def _named_blocks(source: Any) -> list[tuple[str, Any]]:
 
 
 def _of_blocks(blocks: Any, space: Space | None = None) -> Streamlines:
-    """From the blocks of a MultiBlock: their names are groups; arrays that some of them lack are dropped."""
+    """Convert the blocks of a MultiBlock: their names are groups; arrays that some of them lack are dropped."""
     space = space_of_dataset(blocks) or space  # of blocks that name none
     parts: list[Streamlines] = []
     named = [(name, block) for name, block in _named_blocks(blocks) if block is not None]

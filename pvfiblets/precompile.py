@@ -1,7 +1,7 @@
 """Compiles all kernels: ``python -m pvfiblets.precompile``.
 
-Without it those that code streamlines are compiled when a set is first large enough for them, and those that tell
-streamlines of painted regions at the first stroke. Several processes compile, side by side, as numba compiles one
+Otherwise the kernels that code streamlines are compiled when a set is first large enough for them, and the kernels of
+painted regions at the first stroke. Several processes compile, side by side, as numba compiles one
 kernel at a time in a process.
 """
 
@@ -20,7 +20,7 @@ PAINTING = "painting"
 
 
 def main(arguments: list[str]) -> int:
-    """Compile what was not compiled before, or the part that is named; returns the exit status."""
+    """Compile the missing kernels, or the named part; return the exit status."""
     if arguments == [PAINTING]:
         logging.getLogger("pvfiblets.codec").setLevel(logging.ERROR)  # that kernels are compiled is known
         painting.compile_all()

@@ -1,4 +1,4 @@
-"""Regions of space, for choosing streamlines and for cutting what is shown.
+"""Regions of space, for choosing streamlines and for cutting actors.
 
 Shapes are combined by ``&`` (both), ``|`` (either), ``~`` (not) and ``-`` (without)::
 

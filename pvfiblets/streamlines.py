@@ -134,7 +134,7 @@ class Streamlines:
         return Streamlines.concatenate([self, other]) if isinstance(other, Streamlines) else NotImplemented
 
     def table(self, ids: Any = None, **options: Any) -> Table:
-        """Return a row for each streamline, or for those that `ids` names; see :func:`pvfiblets.table`."""
+        """Return a row for each streamline, or for the streamlines in `ids`; see :func:`pvfiblets.table`."""
         from pvfiblets import table
 
         return table(self, ids, **options)
@@ -302,7 +302,7 @@ class Streamlines:
         """All streamlines of `parts`, in order, with their data.
 
         Groups of the same name are joined, `dropped` is summed. The affine and space are the
-        first part's. Parts without streamlines contribute only what they dropped, so they need
+        first part's. Parts without streamlines contribute only their `dropped`, so they need
         not carry the same data.
 
         Raises

@@ -154,7 +154,7 @@ def late(visit: Any) -> float:
 
 
 def memory(served: Any) -> dict[str, Figure]:
-    """Return the memory of a server's sessions: resident, and their share of what they share."""
+    """Return the memory of a server's sessions: resident, and their part of shared memory."""
     total = {"Rss:": 0, "Pss:": 0}
     for thread in Path(f"/proc/{served.process.pid}/task").iterdir():
         for child in (thread / "children").read_text().split():

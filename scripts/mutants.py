@@ -1,6 +1,6 @@
 """Shows that the tests catch faults: ``python scripts/mutants.py [ROOM ...]``.
 
-``tests/mutants/ROOM.toml`` lists faults made by hand, each a piece of code, what stands there instead, and tests
+``tests/mutants/ROOM.toml`` lists faults made by hand, each a piece of code, its replacement, and tests
 that must then fail. Every fault is put, alone, into a copy of the tree; a fault that no named test sees ends this with
 status 1.
 """

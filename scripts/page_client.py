@@ -1,7 +1,7 @@
 """Build the script of pages: `make client`. Needs node and npm, which nothing else of this repository does.
 
 `client/src` and the shaders that scripts/page_shaders.py takes from the engine become ``pvfiblets/page/page.js``, which
-is part of the repository, so that neither users nor tests need node. Its first line names what it was made of: a test
+is part of the repository, so that neither users nor tests need node. Its first line names its sources: a test
 compares that.
 """
 

@@ -75,7 +75,7 @@ PRECISION = "".join(f"precision highp {kind};\n" for kind in ("float", "int", "s
 
 
 def page_shader(name: str, features: tuple[str, ...]) -> str:
-    """Return a stage in GLSL ES, without what is there for people."""
+    """Return a stage in GLSL ES, without comments."""
     text = assemble(name, features, version=300, replaced=REPLACED)
     text = re.sub(r"/\*.*?\*/", "", re.sub(r"//[^\n]*", "", text), flags=re.DOTALL)
     head, _, body = text.partition("\n")
@@ -95,7 +95,7 @@ def _tight(line: str) -> str:
 
 
 def _client_names() -> set[str]:
-    """Return all names that the client's own source has: those of uniforms and of what it changes are among them."""
+    """Return all names in the client's own source, including names of uniforms and of changed text."""
     source = "".join(path.read_text(encoding="utf-8") for path in sorted(CLIENT.glob("*.ts")))
     return {
         *re.findall(r"[A-Za-z_]\w*", source),

@@ -1,4 +1,4 @@
-"""Write ``pvfiblets/plotting/plotter.pyi``: what type checkers and editors know of plotters, from what is declared.
+"""Write ``pvfiblets/plotting/plotter.pyi``, for type checkers and editors, from the declarations.
 
 ``python scripts/plotter_stub.py`` writes it; a test says when that was forgotten.
 """
@@ -73,7 +73,7 @@ def stub() -> str:
 
 
 def _joined(lines: Iterable[str]) -> list[str]:
-    """Return ``from`` lines with all names of a module in one, but those that are renamed."""
+    """Return ``from`` lines with all names of a module in one, except renamed ones."""
     names: dict[str, list[str]] = {}
     for line in sorted(lines):
         module, _, name = line.removeprefix("from ").partition(" import ")

@@ -30,7 +30,7 @@ _WORDS = """
     while xor std140
 """
 _LANGUAGE = frozenset(_WORDS.split())
-"""Words of GLSL ES 3.00 that shaders here use; what is missing is found by the compiler of the tests."""
+"""Words of GLSL ES 3.00 that shaders here use; the tests' compiler finds missing ones."""
 _SWIZZLE = re.compile(r"[xyzw]{1,4}|[rgba]{1,4}")
 
 _SWITCH = re.compile(r"FEATURE_\w+|__VERSION__ >= \d+|[!()]|&&|\|\|")
@@ -50,7 +50,7 @@ def shrunk(text: str, switches: Mapping[str, bool | None]) -> str:
     text : str
         GLSL, one statement or brace to a line or more, without comments.
     switches : mapping of str to bool or None
-        Names of ``FEATURE_`` macros that are always on or off; those that the page sets are missing, or None.
+        Names of ``FEATURE_`` macros that are always on or off; macros that the page sets are missing, or None.
     """
     lines = _branches(text.replace("#define precise\n", "").replace("precise ", "").splitlines(), switches)
     while True:
@@ -101,7 +101,7 @@ def renamed(texts: Mapping[str, str], kept: Collection[str]) -> dict[str, str]:
 
 
 def _short_names() -> Iterator[str]:
-    """Yield names of two letters, then of three, none of which is a swizzle."""
+    """Yield names of two letters, then of three, without swizzles."""
     letters = string.ascii_uppercase + string.ascii_lowercase
     for first, second in itertools.product(letters, letters + string.digits):
         if not _SWIZZLE.fullmatch(first + second):
@@ -111,7 +111,7 @@ def _short_names() -> Iterator[str]:
 
 
 def _condition(text: str, switches: Mapping[str, bool | None]) -> bool | str:
-    """Return what a condition of #if is, or, where the page decides, the condition without what is known."""
+    """Return what a condition of #if is, or, where the page decides, the condition without its constant parts."""
     tokens = _SWITCH.findall(text)
     assert "".join(tokens).replace(" ", "") == text.replace(" ", ""), text
 

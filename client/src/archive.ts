@@ -1,5 +1,5 @@
 /**
- * The container of .fiblets files: a stored zip of .npy arrays (docs/reference/fiblets-files.md), of which arrays are views.
+ * The container of .fiblets files: a stored zip of .npy arrays (docs/reference/fiblets-files.md), read as views.
  */
 
 export class FileError extends Error {}
@@ -28,7 +28,7 @@ function big(view: DataView, at: number): number {
   return view.getUint32(at, true) + view.getUint32(at + 4, true) * 4294967296;
 }
 
-/** Where the central directory begins, and how many members it has. */
+/** Start of the central directory, and its number of members. */
 function directory(view: DataView): [number, number] {
   const size = view.byteLength;
   for (let at = size - 22; at >= Math.max(0, size - 65558); --at) {
@@ -130,13 +130,13 @@ function whole(header: any, arrays: Map<string, NpyArray>, ready: number): Archi
   return { header, arrays, ready };
 }
 
-/** A file of which parts come when they are asked for; views of `bytes` see them come. */
+/** A file whose parts arrive on demand; views of `bytes` see them arrive. */
 export interface Parts {
   bytes: Uint8Array;
   need(begin: number, end: number): Promise<void>;
 }
 
-/** Open an archive by the headers before its members, and read none of them but the table of pages; stop behind the codes and the values that are asked for. */
+/** Open an archive by the headers before its members, and read only the table of pages; stop behind the codes and the requested values. */
 export async function openParts(parts: Parts, values: string[]): Promise<Archive> {
   const { bytes } = parts, view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength), arrays = new Map<string, NpyArray>();
   let header: any = null;

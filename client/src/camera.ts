@@ -34,7 +34,7 @@ export function moved(by: Vec): Mat {
   return m;
 }
 
-/** By Gauss and Jordan; null for a matrix that flattens. */
+/** Inverse by Gauss and Jordan; null for a matrix that flattens. */
 export function inverse(m: Mat): Mat | null {
   const a = Array.from({ length: 4 }, (_, i) => Array.from({ length: 8 }, (_, j) => (j < 4 ? m[i + 4 * j] : j - 4 === i ? 1 : 0)));
   for (let k = 0; k < 4; ++k) {
@@ -153,7 +153,7 @@ export class Camera {
     this.state.up = turned(this.state.up, this.forward, degrees);
   }
 
-  /** By shares of the window's height: what is under the hand stays there. */
+  /** By shares of the window's height, so that the point under the hand stays there. */
   pan(dx: number, dy: number): void {
     const s = this.state, size = s.parallel ? 2 * s.parallel_scale : 2 * this.distance * Math.tan((s.view_angle * Math.PI) / 360);
     const up = cross(this.right, this.forward), by = add(scaled(this.right, -dx * size), up, -dy * size);

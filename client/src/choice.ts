@@ -1,10 +1,10 @@
-/** Which streamlines the reader has chosen. */
+/** The streamlines that the reader has chosen. */
 
 import type { Region } from "./regions";
 import type { Lines } from "./lines";
 import type { Control } from "./scene";
 
-/** Of one set: those of the figure, within all ranges, regions and groups that the reader has set. */
+/** Streamlines of one set that are in the figure and within all ranges, regions and groups of the reader. */
 export class Choice {
   private ranges = new Map<string, { values: Float32Array; low: number; high: number; whole: [number, number] }>();
   readonly regions = new Map<Region, { through: Uint8Array; blocks: number }>();  // of the set's first blocks

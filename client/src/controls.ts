@@ -1,4 +1,4 @@
-/** What lies over the picture: layers, views, cuts, ranges, colour bars, letters of orientation, and the word on what was picked. */
+/** The controls over the picture: layers, views, cuts, ranges, colour bars, letters of orientation, and the picked streamline. */
 
 import { Vec, apply, product, scaled } from "./camera";
 import { Choice } from "./choice";
@@ -11,7 +11,7 @@ import type { Renderer } from "./renderer";
 import type { Bar } from "./scene";
 
 const SVG = "http://www.w3.org/2000/svg";
-const UNREAD = "This browser lets no page read what it draws, unless you allow it to:";
+const UNREAD = "This browser does not let the page read its own picture, unless you allow it:";
 
 type Child = Node | string;
 
@@ -273,7 +273,7 @@ export class Controls {
     });
   }
 
-  /** Balls and boxes: streamlines that pass through all that are on, or through none of those that are inverted. */
+  /** Balls and boxes: streamlines that pass through all active ones, and through none of the inverted ones. */
   private regionList(): HTMLElement {
     const list = make("div"), { renderer } = this, b = renderer.scene.bounds, size = Math.hypot(b[1] - b[0], b[3] - b[2], b[5] - b[4]);
     const add = (ball: boolean) => (): void => {
@@ -344,7 +344,7 @@ export class Controls {
     this.choose();
   }
 
-  /** Streamlines have come: find those of them that pass through regions. */
+  /** Streamlines have arrived: find which of them pass through regions. */
   private grown(): void {
     if (!this.regions.length) return;
     for (const choice of this.choices.values()) for (const region of this.regions) choice.look(region, true);
@@ -362,7 +362,7 @@ export class Controls {
     this.renderer.change();
   }
 
-  /** Say what lies at a place of the page, and mark it. */
+  /** Describe the streamline at a place of the page, and mark it. */
   pick(x: number, y: number): void {
     const { renderer } = this, found = renderer.reads() ? renderer.pick(x, y) : null;
     this.unmark();
@@ -374,7 +374,7 @@ export class Controls {
       this.picked = { lines, streamline, place };
       this.told?.({ layer: renderer.scene.layers.indexOf(lines.layer), streamline, place: world });
     } else this.told?.(null);
-    if (!renderer.reads()) this.status.textContent = `${UNREAD} a click tells nothing.`;
+    if (!renderer.reads()) this.status.textContent = `${UNREAD} clicks pick nothing.`;
     renderer.change();
   }
 

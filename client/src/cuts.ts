@@ -10,7 +10,7 @@ export interface Cut {
 
 const ROWS = 6;
 
-/** What joins the shapes, as GLSL. */
+/** Expression of the shapes, as GLSL. */
 export function expression({ leaves, program }: Cut): string {
   const stack: string[] = [];
   for (const word of program) {

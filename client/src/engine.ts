@@ -1,4 +1,4 @@
-/** What the package hands to the page: shaders, blocks, and the table of rotations (scripts/page_shaders.py). */
+/** Data of the package for the page: shaders, blocks, and the table of rotations (scripts/page_shaders.py). */
 
 import engine from "../build/engine.json";
 

@@ -24,7 +24,7 @@ interface Growing {
   data: Uint8Array | Uint16Array | Uint32Array;
 }
 
-/** Slots of a share, of which a set takes the one that leaves fewest of them empty. */
+/** Slots of a share; a set takes the number that leaves fewest of them empty. */
 const SHARES = [4, 8, 11, 15];
 const KIND_DIRECTION = 0, KIND_WIDE = 3;
 
@@ -46,7 +46,7 @@ export interface Block {
   bounds: Bounds;     // data coordinates
   buffer: WebGLBuffer | null;
   used: number;
-  shapes: Float32Array | null;  // of its items, by which they are looked at (hiding.ts)
+  shapes: Float32Array | null;  // of its items, for the occlusion test (hiding.ts)
   likely: Uint8Array | null;    // of each item, whether it is drawn before others, which it may hide
   likelies: number;             // how many are
 }
@@ -73,7 +73,7 @@ function words(array: NpyArray | undefined, name: string, columns: number, n: nu
   return array.data;
 }
 
-/** An array as whole words of four bytes, of which the last may have something else behind it, which nothing reads. */
+/** An array as whole words of four bytes; bytes behind the end of the last one are never read. */
 export function asWords(data: Uint8Array | Uint16Array): Uint32Array {
   const n = Math.ceil(data.byteLength / 4);
   if (data.byteOffset % 4 === 0 && data.byteOffset + 4 * n <= data.buffer.byteLength)
@@ -219,7 +219,7 @@ export class FibletSet {
     return points % share === 0 && !end ? points / share : Math.ceil((points + (end ? 1 : 2)) / share);
   }
 
-  /** Choose the size of shares by the first fiblets, and have place for those of all. */
+  /** Choose the size of shares by the first fiblets, and make room for all. */
   private begin(first: number): void {
     const gl = this.gl,
       counts = SHARES.map((share) => {
@@ -369,13 +369,13 @@ export class FibletSet {
     table: Float32Array,
     { lo, hi, reference }: ValueFacts,
   ): PointValues {
-    if (data.length !== this.points) throw new FileError(`The values ${name} are not those of the file's points.`);
+    if (data.length !== this.points) throw new FileError(`The file has ${this.points} points, but ${data.length} values ${name}.`);
     const wide = data instanceof Uint16Array,
       format = wide ? "r16ui" : "r8ui";
     const texture = emptyRows(this.gl, format, this.points, "values of points");
     this.values.push({ texture, format, data });
     fillRows(this.gl, texture, format, data, 0, this.countBefore(this.done, 2));
-    const full = new Float32Array(wide ? 65536 : 256).fill(NaN); // of which a file has what is used
+    const full = new Float32Array(wide ? 65536 : 256).fill(NaN); // a file has only the used ones
     full.set(table.subarray(0, full.length));
     const meant = new Uint32Array(full.buffer);
     return { name, texture, table: rows(this.gl, "r32ui", meant, "values of codes"), range: [lo, hi], reference };
@@ -497,7 +497,7 @@ export class FibletSet {
       gl.vertexAttribIPointer(i, 4, gl.UNSIGNED_INT, SLOT_BYTES, from * this.itemBytes + i * SLOT_BYTES);
   }
 
-  /** Those of a block's items that are drawn before others: what was seen last, and of what was never looked at a share. */
+  /** A block's items that are drawn before others: the last visible ones; of a new block a share. */
   likely(block: Block): Uint8Array {
     if (!block.likely)
       block.likely = new Uint8Array(block.items).fill(
@@ -508,7 +508,7 @@ export class FibletSet {
     return block.likely;
   }
 
-  /** Find which of a block's items may show, and return those that are not `likely`, which these are from now on. */
+  /** Find which of a block's items may show, and return the ones that were not `likely`; all of them are from now on. */
   look(block: Block, window: Mat, brush: number, width: number, height: number, far: FarDepths): Uint8Array {
     const shows = new Uint8Array(block.items),
       before = this.likely(block),
@@ -545,7 +545,7 @@ export class FibletSet {
 
   private indices: WebGLBuffer | null = null;
 
-  /** Draw those of a block's items that are chosen, `most` of them at most. */
+  /** Draw the chosen items of a block, `most` at most. */
   drawSome(block: Block, program: Program, chosen: Uint8Array, sprites: boolean, most = Infinity): number {
     const gl = this.gl,
       { share } = this;
@@ -639,7 +639,7 @@ export class FibletSet {
     return found;
   }
 
-  /** Of each streamline 1 where some segment of it, moved by `model`, meets a region, else 0; of the blocks from `from` on, beside what is known. */
+  /** Of each streamline 1 where some segment of it, moved by `model`, meets a region, else 0; of the blocks from `from` on, added to `kept`. */
   through(region: Region, model: Mat, from = 0, kept: Uint8Array = new Uint8Array(this.streamlines)): Uint8Array {
     const { at, size } = region;
     const near = ({ bounds: b }: Block): boolean => {

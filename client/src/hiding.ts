@@ -1,8 +1,8 @@
 /**
- * Which shares of fiblets may show: those in view that do not lie behind all that has been drawn where they are.
+ * Which shares of fiblets may show: shares in view that do not lie behind everything drawn at their place.
  *
- * A share lies within a capsule around the line from its first to its last point. What was drawn is known as the farthest
- * depth of each tile of the picture (shaders/page/far_tiles.frag): what lies behind all tiles that it can touch is hidden, and
+ * A share lies within a capsule around the line from its first to its last point. The picture so far is known as the farthest
+ * depth of each tile (shaders/page/far_tiles.frag): a share behind all tiles that it can touch is hidden, and
  * the picture is the same without it.
  */
 
@@ -20,7 +20,7 @@ export interface FarDepths {
   depths: Float32Array;
 }
 
-/** Capsules of shares of `share` slots, of which `used` says how many a share's segments reach; four numbers a slot. */
+/** Capsules of shares of `share` slots; `used` returns how many a share's segments reach; four numbers a slot. */
 export function capsules(slots: Float32Array, items: number, share: number, used: (item: number) => number): Float32Array {
   const found = new Float32Array(CAPSULE * items);
   for (let item = 0; item < items; ++item) {

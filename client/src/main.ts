@@ -1,4 +1,4 @@
-/** The page's start: what it is to show, its data, and the errors that stop it, each as one sentence on the page. */
+/** The page's start: its scene, its data, and the errors that stop it, each as one sentence on the page. */
 
 import { Archive, needPages, openParts, readArchive } from "./archive";
 import { PAGE_BITS, fromBase64 } from "./engine";
@@ -11,7 +11,7 @@ import type { Scene } from "./scene";
 
 const text = (id: string): string => document.getElementById(id)?.textContent ?? "";
 
-/** Pages of 2^14 fiblets that are asked for together: some 4 MB. */
+/** Pages of 2^14 fiblets in one request: some 4 MB. */
 const STRIDE = 4;
 
 interface Loading {
@@ -31,7 +31,7 @@ async function dataOf(scene: Scene): Promise<Uint8Array[]> {
   }));
 }
 
-/** Open the sets of fiblets, of which those beside the page have yet to come. */
+/** Open the sets of fiblets; sets beside the page have yet to arrive. */
 async function archivesOf(scene: Scene, data: Uint8Array[], loading: Loading[]): Promise<Map<number, Archive>> {
   const found = new Map<number, Archive>();
   await Promise.all(scene.layers.map(async (layer) => {
@@ -49,7 +49,7 @@ async function archivesOf(scene: Scene, data: Uint8Array[], loading: Loading[]):
   return found;
 }
 
-/** Have all streamlines, piece by piece, of which each is shown when it is there. */
+/** Load all streamlines, piece by piece, and show each piece once it has arrived. */
 async function load(loading: Loading[], renderer: Renderer): Promise<void> {
   const bar = document.createElement("progress"), perPage = 1 << PAGE_BITS;
   bar.setAttribute("aria-label", "Streamlines that have come");
@@ -102,6 +102,6 @@ async function start(): Promise<void> {
   }
 }
 
-// The served page, which has no scene of its own, takes what it draws with from here (pvfiblets/web/client/there.js).
+// The served page, which has no scene of its own, gets its renderer from here (pvfiblets/web/client/browser_renderer.js).
 (window as unknown as { pvfibletsPage: unknown }).pvfibletsPage = { Renderer, attachMouse, readArchive };
 if (document.getElementById("scene")) start().catch(fail);

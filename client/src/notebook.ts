@@ -1,4 +1,4 @@
-/** A page in a frame of a notebook: it tells where the camera stands at rest and what was picked, and is told both by the kernel. */
+/** A page in a frame of a notebook: it sends its idle camera and its picks to the kernel, and receives the kernel's. */
 
 import type { CameraState } from "./camera";
 import type { Controls, Pick } from "./controls";

@@ -78,7 +78,7 @@ export class Renderer {
   private textures: Record<string, WebGLTexture> = {};
   private buffers: Record<string, WebGLFramebuffer> = {};
   private translucent: Translucent | null = null;
-  private bits: 0 | 16 | 32 | null = null;   // of floats that are blended, once that was asked
+  private bits: 0 | 16 | 32 | null = null;   // of floats that can be blended, once tested
   private stale = false;                 // streamlines have come that the picture at work does not have
   private frame: Frame | null = null;
   private rest: Frame | null = null;     // the finished picture, which streamlines that come are added to
@@ -168,7 +168,7 @@ export class Renderer {
     for (const lines of this.lines) lines.set.budget = budget / this.lines.length;
   }
 
-  /** Show another scene from where the camera is; what has the same data stays on the graphics card. */
+  /** Show another scene from where the camera is; unchanged data stay on the graphics card. */
   update(scene: Scene, data: Uint8Array[], archives: Map<number, Archive>): void {
     if (this.gl.isContextLost()) return;
     const { data: old } = this, lines = this.lines.splice(0), surfaces = this.surfaces.splice(0), images = this.images.splice(0);
@@ -214,7 +214,7 @@ export class Renderer {
     this.guarded(() => {
       const frame = this.frame ?? this.rest;
       if (this.throughs().length) {
-        // Sums begin behind the nearest lines: those that come now make another picture.
+        // Sums begin behind the nearest lines: new streamlines make another picture.
         for (const { set, layer } of this.lines) set.advance(this.archives.get(layer.data)!.ready);
         if (this.frame) this.stale = true;
         else this.change();
@@ -252,7 +252,7 @@ export class Renderer {
     for (const block of blocks) if (!this.outside(matrix, block.bounds)) frame.jobs.push({ lines, block, what: "all" });
   }
 
-  /** Find how far away what was drawn of a picture is, tile by tile. */
+  /** Find the distance of the picture so far, tile by tile. */
   private findFarTiles(depths: WebGLTexture, drawn: boolean, read: boolean): FarDepths | null {
     const { gl } = this, columns = Math.ceil(this.width / FAR_TILE), rows = Math.ceil(this.height / FAR_TILE);
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.buffers.far);
@@ -606,7 +606,7 @@ export class Renderer {
       else if (translucent) translucent.nearest(lines);
       else gl.bindFramebuffer(gl.FRAMEBUFFER, this.buffers.texels);
       gl.enable(gl.DEPTH_TEST);
-      gl.depthFunc(translucent ? gl.LEQUAL : gl.LESS);  // what is opaque hides nothing that lies in it
+      gl.depthFunc(translucent ? gl.LEQUAL : gl.LESS);  // opaque things hide nothing at their own depth
       this.frameBlock.bind();
       if (behind) {
         this.colour(program!.use(), lines);
@@ -742,7 +742,7 @@ export class Renderer {
     gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, Math.ceil(this.width / TILE) * Math.ceil(this.height / TILE));
   }
 
-  /** Edges were mixed into an earlier look at this picture: have what lies behind lines afresh. */
+  /** Edges were mixed into an earlier frame of this picture: draw the background of the lines afresh. */
   private repaint(drawn: Drawn): void {
     if (this.frame && this.frame.drawn++ > 0) this.drawBackdrop(drawn);
   }
@@ -787,7 +787,7 @@ export class Renderer {
     gl.depthMask(true);
   }
 
-  /** Whether what is read of pictures is what was drawn. */
+  /** Whether pixels read from pictures equal the drawn ones. */
   reads(): boolean {
     const { gl } = this, word = new Uint32Array(4);
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.buffers.far);

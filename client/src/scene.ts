@@ -1,4 +1,4 @@
-/** What the page is told to show: the JSON that pvfiblets/page writes, whose counterpart is pvfiblets/page/scene.py. */
+/** The page's scene: the JSON that pvfiblets/page writes; its counterpart is pvfiblets/page/scene.py. */
 
 import type { Bounds, CameraState, Vec } from "./camera";
 import type { Cut } from "./cuts";
@@ -43,11 +43,11 @@ interface Layer {
   planes?: number[][];  // (a, b, c, d): kept where a x + b y + c z + d >= 0, in world coordinates
 }
 
-/** Of lines that one looks through. */
+/** Translucency of lines. */
 export interface Through {
   opacity: number;      // of all
-  varied: boolean;      // whether colours or what is below have opacities of their own, which that is times
-  all: boolean;         // whether all lines show through the nearest, or what is behind all lines
+  varied: boolean;      // whether colours or the fields below have opacities of their own, multiplied by `opacity`
+  all: boolean;         // whether all lines show through the nearest, or the background of all lines
   opacities?: number;   // data: a byte for each streamline
   by_point?: boolean;   // whether values of points are opacities
 }

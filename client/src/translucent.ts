@@ -23,7 +23,7 @@ interface Held {
   summed: boolean;
 }
 
-/** What floats can be blended: of 32 bits, of 16, or none. */
+/** Bits of floats that can be blended: 32, 16, or 0. */
 export function floatBits(gl: GL): 0 | 16 | 32 {
   const whole = gl.getExtension("EXT_color_buffer_float"), half = whole ?? gl.getExtension("EXT_color_buffer_half_float");
   return whole && gl.getExtension("EXT_float_blend") ? 32 : half ? 16 : 0;
@@ -49,7 +49,7 @@ export class Translucent {
     gl.drawBuffers([gl.COLOR_ATTACHMENT0, ...more.map((_, i) => gl.COLOR_ATTACHMENT1 + i)]);
   }
 
-  /** Begin with a layer's nearest lines: what is opaque hides them. */
+  /** Begin with a layer's nearest lines: opaque things hide them. */
   begin(lines: Lines, wide: boolean, opaque: WebGLFramebuffer): void {
     const { gl, width, height } = this;
     let held = this.held.get(lines);
@@ -147,7 +147,7 @@ export class Translucent {
     gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE, gl.ZERO, gl.ONE_MINUS_SRC_ALPHA);
   }
 
-  /** Tell a program, which is told of the nearest lines, what lies behind them; `share`: of all lines that were added. */
+  /** Set the sums behind the nearest lines in a program, which has the nearest ones; `share`: of all lines, the added part. */
   show(program: Program, lines: Lines, share: number): void {
     const { sums, summed } = this.held.get(lines)!, unit = this.unit(lines);
     program.textures(Object.fromEntries([0, 1, 2, 3].map((k) => [`sums${k}`, summed ? sums[k] : null])));
@@ -158,7 +158,7 @@ export class Translucent {
     });
   }
 
-  /** Put the mixture over what is opaque; a program that does so is in use. */
+  /** Blend the mixture over the opaque picture; a program that does so is in use. */
   finish(program: Program, into: WebGLFramebuffer): void {
     const { gl } = this;
     gl.bindFramebuffer(gl.FRAMEBUFFER, into);

@@ -1,4 +1,4 @@
-"""What ``pvfiblets profile`` and ``pvfiblets table`` do."""
+"""The commands ``pvfiblets profile`` and ``pvfiblets table``."""
 
 from __future__ import annotations
 

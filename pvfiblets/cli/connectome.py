@@ -1,4 +1,4 @@
-"""What ``pvfiblets connectome`` does."""
+"""The command ``pvfiblets connectome``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What ``pvfiblets density`` does."""
+"""The command ``pvfiblets density``."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def density(
 
 @contextmanager
 def _warnings_off() -> Iterator[None]:
-    """Have the package log errors only meanwhile: the process may go on to do other things."""
+    """Restrict the package's log to errors in this scope: the process may go on to do other things."""
     logger = logging.getLogger("pvfiblets")
     level = logger.level
     logger.setLevel(logging.ERROR)

@@ -1,4 +1,4 @@
-"""What ``pvfiblets convert``, ``info`` and ``verify`` do."""
+"""The commands ``pvfiblets convert``, ``info`` and ``verify``."""
 
 from __future__ import annotations
 
@@ -245,7 +245,7 @@ def readable(value: Any) -> str:
     if isinstance(value, int):
         return f"{value:,}"
     if isinstance(value, float):
-        # Of points that are all one place, and of others as near: nobody reads a length of 300 zeros.
+        # For points at one place, and others as near: 300 zeros are unreadable.
         return "less than 1e-30" if 0.0 < abs(value) < 1e-30 else f"{value:.6g}"
     if value is None:
         return "none"

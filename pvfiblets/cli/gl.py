@@ -1,4 +1,4 @@
-"""What ``pvfiblets gl`` does: say what this machine's OpenGL can draw with, and check that it draws right."""
+"""The command ``pvfiblets gl``: reports this machine's pipelines, and checks that they draw right."""
 
 from __future__ import annotations
 

@@ -41,8 +41,8 @@ def bytes_of_file(text: str) -> int:
 def held_to(most: str | None) -> Iterator[None]:
     """Limit the memory of this process to ``--max-memory``.
 
-    By default it may take half of the machine's beyond what it has: a command that runs within a larger program, whose
-    memory nobody limited, is not refused for that.
+    By default it may take half of the machine's memory beyond its own: a command that runs within a larger program
+    without a limit is not refused for that.
     """
     from pvfiblets.support import memory
 

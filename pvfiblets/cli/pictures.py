@@ -1,4 +1,4 @@
-"""What ``pvfiblets screenshot``, ``show`` and ``demo`` do."""
+"""The commands ``pvfiblets screenshot``, ``show`` and ``demo``."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """``-`` on the command line: standard input and output in place of files.
 
-Formats need to jump about in what they read, and commands look at their output again, so that both lie in temporary
+Formats need random access to their input, and commands read their output again, so that both lie in temporary
 files meanwhile (``TMPDIR`` says where). Output leaves when it is whole, and alone: messages go to standard error then.
 """
 
@@ -152,7 +152,7 @@ class Pipes:
 
 
 def _asks(value: Any) -> int:
-    """How often ``-`` is given for an argument."""
+    """Return how often ``-`` is given for an argument."""
     return (value or []).count("-") if isinstance(value, list) else int(value == "-")
 
 

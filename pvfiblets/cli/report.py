@@ -1,4 +1,4 @@
-"""What ``pvfiblets report`` does."""
+"""The command ``pvfiblets report``."""
 
 from __future__ import annotations
 

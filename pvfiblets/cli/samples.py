@@ -1,4 +1,4 @@
-"""What ``pvfiblets sample`` does."""
+"""The command ``pvfiblets sample``."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""What ``pvfiblets screenshot`` and ``show`` put into a scene: tracts, images, meshes, cuts and filters; or a session.
+"""Scenes of ``pvfiblets screenshot`` and ``show``: tracts, images, meshes, cuts and filters; or a session.
 
-Options are the words of the equivalent Python: shapes and conditions are those of sessions
+Options are named as in the equivalent Python: shapes and conditions are parsed as in sessions
 (`pvfiblets.web.session.shapes`), all else goes to ``add_fiblets``, ``add_raycast_volume`` and ``add_mesh`` as it is,
 which check it.
 """
@@ -90,7 +90,7 @@ def value_of(text: str) -> Any:
 
 
 def shape_of(words: Sequence[str], option: str, others: Sequence[str] = ()) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return a shape as sessions have it, and what else was said by some other names."""
+    """Return a shape as sessions have it, and the values of some other names."""
     from pvfiblets.web.session.shapes import CUTTING, SHAPES, check_shape
 
     said = options_of([words[1:]], option)

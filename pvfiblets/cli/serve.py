@@ -1,4 +1,4 @@
-"""What ``pvfiblets serve`` does."""
+"""The command ``pvfiblets serve``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What words on the command line stand for."""
+"""Values of command line arguments."""
 
 from __future__ import annotations
 

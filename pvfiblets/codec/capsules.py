@@ -13,7 +13,7 @@ An end vector costs one word a streamline: three signed 10-bit integers in units
 error: ``r`` is measured from the rounded ``B``.
 
 The GPU decodes in float32, to within a thousandth of a step. ``r`` is enlarged by ``MARGIN`` times the length of the
-line drawn, about as much for a full fiblet, so that a GPU's decoded points stay within the capsule too.
+line drawn, about the same for a full fiblet, so that a GPU's decoded points stay within the capsule too.
 
 This is the literal reference; `capsule_kernels` compute the same.
 """
@@ -46,7 +46,7 @@ def capsule_radius(points: Array, b: Array) -> float:
 
 
 def capsule_ends(anchors: Array, end: npt.NDArray[np.bool_], vectors: Array, following: Array | None) -> Array:
-    """Where the chords of consecutive fiblets end."""
+    """Return the ends of the chords of consecutive fiblets."""
     last = anchors[-1:] if following is None else following[None]
     ends = np.concatenate([anchors[1:], last])
     ends[end] = anchors[end] + vectors

@@ -25,7 +25,7 @@ Ints = npt.NDArray[np.int64]
 
 @cache
 def search_tables() -> tuple[npt.NDArray[Any], ...]:
-    """What the encoder searches: quaternions, directions, ratios, and candidate rows of all cap angles."""
+    """Return the tables of the encoder's search: quaternions, directions, ratios, and candidates of all cap angles."""
     rows = [nearest.candidates(cap) for cap in range(CAPS)]
     base = np.cumsum([0] + [len(r.codes) for r in rows[:-1]])
     start = np.stack([r.start + b for r, b in zip(rows, base, strict=True)]).astype(np.int32)

@@ -62,7 +62,7 @@ class ValueBounds:
                 what = f"max_value_error of {name!r}" if isinstance(self.most, Mapping) else name
                 raise ValueError(f"{what} is {most!r}; a positive number in the array's unit is needed")
 
-    def of(self, name: str) -> float | None:
+    def bound_of(self, name: str) -> float | None:
         """Return the bound of an array, or of the one that a column is of."""
         if not isinstance(self.most, Mapping):
             return self.most
@@ -88,7 +88,7 @@ def compress(
 
     Streamlines of (nearly) constant step take one byte a point, 22 bytes per 60 points and 4 per streamline, at a mean
     error of about a hundredth of a step; any other line is kept point for point on a lattice, at two to four bytes a
-    point. Which of the two is decided for every 60 points, so that the promise always holds.
+    point. Which of the two is decided for every 60 points, so that the error bound always holds.
 
     Sets of less than a megabyte keep every bit of their points, and so do sets that would take more bytes coded, such
     as lines of two points (:mod:`pvfiblets.codec.exact`).
@@ -102,7 +102,7 @@ def compress(
         two ends kept, and points between them where the line would otherwise be farther away than a quarter of the
         promise.
     max_error : float, optional
-        Promise in mm: no decoded point is farther from its original; of lines that are resampled, no point of one line
+        Error bound in mm: no decoded point is farther from its original; for resampled lines, no point of one line
         from the other. Default: a tenth of the median step. Where steps
         vary, or are longer than a 20th of the diagonal of the bounds, it is no more than a 4000th of that diagonal as
         seen along any of the axes: half a pixel of a full-screen view. Where units differ, such as degrees beside
@@ -127,10 +127,10 @@ def compress(
     max_value_error : float or dict of str to float, optional
         Largest difference of a kept value to its original, in the array's unit, for all arrays or by name. By default
         1/255 of the range from the array's 1st to its 99th percentile, so that colours over that range move by a level
-        at most; of positive values over more than two decades, as much of their logarithms. Integers, categories,
+        at most; of positive values over more than two decades, 1/255 of their logarithms' range. Integers, categories,
         arrays of up to 255 different numbers and all values of exact sets are exact.
     exact : bool, optional
-        Keep every bit of the points. By default so where they take less than a megabyte and nothing is said of `step`,
+        Keep every bit of the points. By default so where they take less than a megabyte and none is given of `step`,
         `max_error`, `max_angle`, `effort` or `order`; and where coding would take more bytes than the points do, up to
         a gigabyte of them. False codes in any case.
     nan : {'split', 'drop', 'error'}
@@ -221,7 +221,7 @@ def is_plain(*choices: Any) -> bool:
 
 
 def check_exact(exact: bool | None, step: float | str, order: str, max_error: float | None) -> None:
-    """Refuse what would change points that are to be kept as they are, and a promise that means nothing of them."""
+    """Refuse arguments that would change exact points, and an error bound for them."""
     if not any(exact is known for known in (None, True, False)):
         raise ValueError(f"exact is {exact!r}; True, False or None is needed")
     if exact and max_error is not None:
@@ -242,7 +242,7 @@ def _kept_exactly(streamlines: Streamlines, found: Survey, per_point: Sequence[s
 
 
 def _rest(streamlines: Streamlines, per_point: Sequence[str]) -> dict[str, Any]:
-    """What is kept whole, as fields of a FibletSet."""
+    """Return the data that are kept whole, as fields of a FibletSet."""
     return {
         "n_streamlines": len(streamlines),
         "per_streamline": {k: np.asarray(v) for k, v in streamlines.per_streamline.items()},
@@ -309,4 +309,5 @@ def value_coders(
     found: Survey, names: Iterable[str], how: ValueBounds, *, exact: bool = False
 ) -> dict[str, ValueCoder]:
     """Return how the columns of per-point arrays are coded, by what a survey has found of them."""
-    return {name: found.values.get(name, ValueSurvey()).coder(how.bits, how.of(name), exact=exact) for name in names}
+    surveys = {name: found.values.get(name, ValueSurvey()) for name in names}
+    return {name: one.coder(how.bits, how.bound_of(name), exact=exact) for name, one in surveys.items()}

@@ -53,7 +53,7 @@ class Copies:
     """``n_streamlines`` copies of the streamlines of a pool; the first of each is not moved.
 
     Copy ``i`` is of streamline ``i % n_pool``. They stand in that order, or, with ``sequence``, all copies of one
-    streamline after those of another: the same copies, in an order that is compact in space where the sequence is.
+    streamline before the next one's: the same copies, in an order that is compact in space where the sequence is.
 
     Attributes
     ----------
@@ -133,7 +133,7 @@ class Copies:
         return np.concatenate([[0], np.cumsum(counts)])
 
     def copies_at(self, first: int, last: int) -> Ints:
-        """Which copies stand at places ``first`` to ``last``: ``(last - first,)`` int64."""
+        """Return the copies at places ``first`` to ``last``: ``(last - first,)`` int64."""
         places = np.arange(first, last)
         if self.sequence is None:
             return places

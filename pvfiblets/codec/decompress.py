@@ -60,7 +60,7 @@ def decode_fiblets(
 
 
 def decoding_arrays(fiblets: FibletSet) -> tuple[Any, ...]:
-    """What `decode_kernels.decode_one` takes of a set, from ``arrays`` to ``tables``."""
+    """Return the arguments of `decode_kernels.decode_one` for a set, from ``arrays`` to ``tables``."""
     p, low = fiblets.parameters, fiblets.anchors_low
     return (
         (fixed(fiblets.anchors), fixed(fiblets.decoding), fixed(fiblets.codes), fixed(fiblets.pages[:, 1])),
@@ -274,7 +274,7 @@ def _values(values: PointValues, rows: slice, long: bool) -> npt.NDArray[Any]:
 
 def _iterate_out_of_order(fiblets: FibletSet, max_points: int, kind: np.dtype[Any]) -> Iterator[Streamlines]:
     """Streamlines in their own order, gathered from wherever they are coded."""
-    places = StreamlineRanges.of(fiblets)
+    places = StreamlineRanges.from_fiblets(fiblets)
     for a, b in blocks(np.concatenate([[0], np.cumsum(places.points)]), max_points):
         meta = {
             "affine": fiblets.affine,

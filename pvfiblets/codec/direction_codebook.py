@@ -21,7 +21,7 @@ within
 **What a code is decoded with.** A rotation without a part about X is two numbers, y and z; w follows from the unit
 length. Both are kept as 16-bit integers times a scale for each cap angle, so that all rotations are 16 KiB: what every
 driver gives to a uniform block, and what fits beside a GPU's other caches. CPU and GPU start from the same integers
-and take the same float32 operations, and the encoder searches among what they decode to: nothing is lost by rounding.
+and take the same float32 operations, and the encoder searches among their decoded vectors: nothing is lost by rounding.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ def cap_ratios() -> npt.NDArray[np.float64]:
 
 @cache
 def disc() -> npt.NDArray[np.float64]:
-    """Where the codes lie on the unit disc."""
+    """Return the places of the codes on the unit disc."""
     points = np.empty((CODES, 2))
     turn = complex(1.0, 0.0)
     for code in range(CODES):
@@ -79,7 +79,7 @@ def _lateral() -> npt.NDArray[np.float64]:
 
 @cache
 def packed_scales() -> npt.NDArray[np.float32]:
-    """What one unit of a packed rotation's integers stands for."""
+    """Return the value of one unit of a packed rotation's integers."""
     return _frozen((np.abs(_lateral()).max(axis=(1, 2)) / PACKED_LEVELS).astype(np.float32))
 
 
@@ -97,7 +97,7 @@ def quaternions() -> npt.NDArray[np.float32]:
 
     Notes
     -----
-    The float32 operations and their order are those of ``shaders/fiblets/decode/words.glsl``.
+    The float32 operations and their order are as in ``shaders/fiblets/decode/words.glsl``.
     """
     words = packed()
     levels = np.stack([words & np.uint32(0xFFFF), words >> np.uint32(16)], axis=-1).astype(np.uint16).view(np.int16)

@@ -1,9 +1,9 @@
 """Streamlines to fiblet records, chunk by chunk: cut and code; :mod:`.record_writer` lays them out in pages.
 
 A streamline is cut every 60 points, or a little before where it bends sharply there (:mod:`.turn_reference`). Each cut
-is first tried with direction bytes; where those would break the promise (steps that vary, bends beyond the cap angles)
+is first tried with direction bytes; where those exceed the error bound (steps that vary, bends beyond the cap angles)
 or turn a tangent too far it is coded on the lattice instead, split further where that saves bytes. No point is ever
-dropped or moved by more than the promise.
+dropped or moved by more than the error bound.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""How far decoded points are from their originals, and drawn directions from true ones."""
+"""Errors of decoded points and of drawn directions."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from .tangents import pixel
 
 __all__ = ["CodingError", "ErrorTally", "measure_error"]
 
-_BINS = 20_000  # of the histogram that the percentile is read from: five-thousandths of a percent of the promise each
+_BINS = 20_000  # of the histogram that the percentile is read from: 5e-5 of the error bound each
 _PER_DEGREE = 100  # bins of the histogram of angles
 
 
@@ -182,7 +182,7 @@ class ErrorTally:
         self._largest_angle = max(self._largest_angle, largest)
 
     def result(self) -> CodingError:
-        """The errors so far; percentiles are rounded up: to 1/16000 of the promise, to a hundredth of a degree."""
+        """The errors so far; percentiles are rounded up: to 1/16000 of the error bound, to a hundredth of a degree."""
         maxima = np.concatenate(self._maxima) if self._maxima else np.empty(0)
         means = np.concatenate(self._means) if self._means else np.empty(0)
         if self._n == 0:

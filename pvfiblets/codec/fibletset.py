@@ -64,7 +64,7 @@ class FibletSet:
     n_streamlines : int
         Streamlines, those without points included.
     anchors_low : numpy.ndarray or None
-        ``(n_fiblets, 3)`` uint16: lower halves of 32-bit anchors, only where the promise asks for them.
+        ``(n_fiblets, 3)`` uint16: lower halves of 32-bit anchors, only where the error bound asks for them.
     rank_to_id : numpy.ndarray or None
         ``(n_ranks,)`` int64: streamline of each rank where some streamlines have no points, or are coded in another
         order than their own; else None, and both are the same.
@@ -103,7 +103,7 @@ class FibletSet:
     space: dict[str, Any] = field(default_factory=dict)
     dropped: dict[str, int] = field(default_factory=dict)
 
-    # ------------------------------------------------------------------------------------------------ what it holds
+    # ------------------------------------------------------------------------------------------------ contents
 
     def __len__(self) -> int:
         return self.n_streamlines
@@ -309,7 +309,7 @@ class FibletSet:
         Parameters
         ----------
         sets : iterable of FibletSet
-            Parts of one set keep every bit; others are coded again, within twice the coarsest of their promises.
+            Parts of one set keep every bit; others are coded again, within twice the coarsest of their error bounds.
 
         Returns
         -------
@@ -348,7 +348,7 @@ class FibletSet:
             Streamlines to decode: indices (any order, repeats allowed; negative ones count from the end), a boolean
             mask ``(n_streamlines,)``, or a slice. All by default.
         dtype : {float32, float64}, optional
-            Type of the points; by default float32 where its rounding is far below the promise.
+            Type of the points; by default float32 where its rounding is far below the error bound.
 
         Returns
         -------
@@ -365,7 +365,7 @@ class FibletSet:
         return decompress(self, ids, dtype)
 
     def point_dtype(self) -> npt.DTypeLike:
-        """Type of decoded points: float32 where its rounding at these bounds stays below 2 % of the promise.
+        """Type of decoded points: float32 where its rounding at these bounds stays below 2 % of the error bound.
 
         Of an exact set, that of the originals.
         """

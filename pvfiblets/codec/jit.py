@@ -1,11 +1,11 @@
-"""How the codec's kernels are compiled and kept.
+"""Compilation of the codec's kernels, and their cache.
 
 numba keeps compiled kernels beside their source and looks at that one file to see whether they are still good. A kernel
 that calls another module's kernel, or takes its constants, would be used on after that module changed, and might then
 read beyond arrays whose layout is another by now. So the kept kernels are keyed by the codec's sources as well, and
-those of another room by all of that room's besides.
+kernels of another room by all of that room's besides.
 
-A process that was forked after numba had begun its threads has none of them, and GNU's OpenMP ends it, or waits for
+A process that was forked after numba had begun its threads has no threads, and GNU's OpenMP ends it, or waits for
 ever. There the loops of parallel kernels run one after the other, on the one core that such a process is meant to use.
 
 They are kept in the user's folder for such things, by that key: another clone or installation of the same sources finds

@@ -96,7 +96,7 @@ def _ids(fiblets: FibletSet) -> npt.NDArray[np.int64]:
 
 
 def _values(sets: list[FibletSet]) -> dict[str, PointValues]:
-    """Values of all points; their codes are those of before where the ranges are the same."""
+    """Values of all points; codes are kept where the ranges are the same."""
     _refuse_gaps([set(one.per_point) for one in sets])
     kept = {}
     for name, first in sets[0].per_point.items():

@@ -1,4 +1,4 @@
-"""Where compiled kernels are kept, by the sources that they were compiled from; without numba."""
+"""The cache of compiled kernels, keyed by their sources; without numba."""
 
 from __future__ import annotations
 

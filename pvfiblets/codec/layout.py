@@ -80,7 +80,7 @@ WIDE = 3
 
 
 class Kind:
-    """How a fiblet's points are coded (two bits of the record). Compiled code takes the module's constants."""
+    """Coding of a fiblet's points (two bits of the record). Compiled code takes the module's constants."""
 
     DIRECTION = DIRECTION  # constant step, one direction byte a point in a propagated frame (paper, sections 3.2, 3.3)
     LATTICE8 = LATTICE8  # one byte: step between points of an integer lattice, mixed radix

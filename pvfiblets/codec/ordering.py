@@ -1,7 +1,7 @@
 """An order of streamlines in which neighbours lie close together: along a Hilbert curve through both of their ends.
 
 A streamline is a point of six dimensions: its two ends, that with the lesser y first, so that tracking the other way
-round changes nothing. The Hilbert curve visits such points so that what is near on the curve is near in space. Two
+round changes nothing. The Hilbert curve visits such points so that neighbours on the curve are near in space. Two
 streamlines whose ends are near each other mostly belong to one bundle and run side by side; adding the middle point to
 the key made groups of consecutive fiblets larger, not smaller.
 

@@ -1,4 +1,4 @@
-"""What one file's fiblets have in common: origin, anchor grid, steps, lattice edge and the error promised."""
+"""Parameters that a file's fiblets share: origin, anchor grid, steps, lattice edge and the error bound."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ Vector = npt.NDArray[np.float64]
 
 @dataclass
 class Survey:
-    """What a first pass over the data finds.
+    """Result of a first pass over the data.
 
     Attributes
     ----------
@@ -160,7 +160,7 @@ def _scan(
 
 
 def _scanned(offsets: npt.NDArray[np.int64]) -> Iterator[tuple[npt.NDArray[np.int64], bool]]:
-    """Where the streamlines of each block begin and the last ends; a very long one comes in parts that overlap.
+    """Yield the offsets of each block's streamlines; a very long one comes in parts that overlap.
 
     And whether it goes on behind this part.
     """
@@ -243,8 +243,8 @@ class Parameters:
         Half the chord and the capsule's radius together are no larger for any fiblet: each lies within a sphere of this
         radius about the middle of its chord.
     resampled : float
-        Distance that lines were resampled to, and 0 where the points are the source's. The promise is then about lines:
-        no point of the one that is decoded is farther from the source's, and none of the source's from the decoded one.
+        Distance that lines were resampled to, and 0 where the points are the source's. The error bound is then about
+        lines: no point of the decoded one is farther from the source's, and none of the source's from the decoded one.
     """
 
     origin: tuple[float, float, float]
@@ -295,14 +295,14 @@ class Parameters:
             # Rounding to a cubic lattice errs by at most half its diagonal.
             lattice=2.0 / math.sqrt(3.0) * promise * BUDGET,
             reach_scale=(MAX_POINTS * found.longest + 4.0 * promise) / 65535.0,
-            # Both ends of a decoded vector may be off by the promise.
+            # Both ends of a decoded vector may be off by the error bound.
             end_scale=(found.widest_end + 2.0 * promise) / END_LEVELS * (1.0 + 1e-9),
             promise=promise,
         )
 
     @classmethod
     def of_resampled(cls, found: Survey, promise: float, step: float) -> Parameters:
-        """Choose parameters to code lines that were resampled within ``CUT_SHARE`` of the promise."""
+        """Choose parameters to code lines that were resampled within ``CUT_SHARE`` of the error bound."""
         coding = max((1.0 - CUT_SHARE) * promise, _finest(found))
         return replace(cls.choose(found, coding), resampled=step)
 
@@ -315,7 +315,7 @@ class Parameters:
 
     @property
     def budget(self) -> float:
-        """Largest error that coding may cause, mm: the promise less what rounding decoded points may add."""
+        """Largest error that coding may cause, mm: the error bound less what rounding decoded points may add."""
         return self.promise * BUDGET
 
 
@@ -341,7 +341,7 @@ def _anchor_error(extent: Vector, bits: int) -> float:
 def _default_promise(segments: Vector, step: float, extent: Vector) -> float:
     """Greatest error in mm, for such segments in bounds of this extent.
 
-    Direction codes err by some hundredths of a step, and where steps are constant a finer promise would take a second
+    Direction codes err by some hundredths of a step, and where steps are constant a finer bound would take a second
     byte a point. Lattice codes err by all that they may: there a tenth of a long step shows. So it does in a view along
     an axis whose unit dominates the others, as metres do degrees.
     """

@@ -7,7 +7,7 @@ is off by more than the bound. A single -9999 is an entry of its own and coarsen
 and the middle 98 % of them span a factor of 100, entries lie closer the smaller values are, so that logarithms are as
 true as values. What no table holds within the bound, and integers of too many kinds, are kept as they are.
 
-The bound, unless one is given: 1/255 of what lies between the 1st and the 99th percentile, and as much of their
+The bound, unless one is given: 1/255 of the range from the 1st to the 99th percentile, or of their
 logarithms. The largest code of floats means NaN, which infinities become too.
 """
 
@@ -119,7 +119,7 @@ class PointValues:
 
 @dataclass(frozen=True)
 class ValueCoder:
-    """How the values of an array are coded, by what a survey of them has found."""
+    """Coding of an array's values, by a survey of them."""
 
     table: Array | None
     count: int  # entries of the table that mean numbers
@@ -164,13 +164,13 @@ class ValueCoder:
 
 
 class ValueSurvey:
-    """What a first pass over the values of an array finds, chunk by chunk."""
+    """A first pass over the values of an array, chunk by chunk."""
 
     def __init__(self) -> None:
         self._kind: np.dtype[Any] | None = None
         self._lo, self._hi = np.inf, -np.inf
         self._distinct: Array | None = np.zeros(0)
-        self._cells = np.zeros(1 << (32 - CELLS), bool)  # of float32 numbers, those that some value is in
+        self._cells = np.zeros(1 << (32 - CELLS), bool)  # of float32 numbers, the cells that some value is in
         self._usual: tuple[float, float] | None = None
         self._outside: Array | None = np.zeros(0)  # of the usual: kept as it is, while there is little of it
         self._sample: list[Array] = []
@@ -229,7 +229,7 @@ class ValueSurvey:
             return ValueCoder(_full(self._distinct.astype(kind), 16), len(self._distinct), kind, lo, hi, reference)
         if kind.kind != "f" or exact:
             return ValueCoder(None, 0, kind, lo, hi, reference)
-        scale = _Scale.of(sample.astype(np.float64), lo, hi, max_error)
+        scale = _Scale.from_sample(sample.astype(np.float64), lo, hi, max_error)
         for size in (8, 16) if bits == 8 else (16,):
             # A table of a small set shall not be larger than its codes.
             entries = self._entries(scale, (1 << size) - 1, 255 if size == 8 else max(self._n // 8, 255))
@@ -283,7 +283,7 @@ class _Scale:
     ratio: float  # of a step, below ``width / ratio``; 0 where logarithms do not count
 
     @classmethod
-    def of(cls, sample: Floats, lo: float, hi: float, max_error: float | None) -> _Scale:
+    def from_sample(cls, sample: Floats, lo: float, hi: float, max_error: float | None) -> _Scale:
         if max_error is not None:
             return cls(lo, hi, 2.0 * max_error, 0.0)
         low, high = np.quantile(sample, [0.01, 0.99]) if len(sample) else (lo, hi)
@@ -295,7 +295,7 @@ class _Scale:
 
     @property
     def steps(self) -> float:
-        """From the least value to the largest."""
+        """Steps from the least value to the largest."""
         return float(self.at(np.array([self.hi]))[0]) or 1.0
 
     def at(self, values: Floats) -> Floats:

@@ -67,7 +67,7 @@ def _decoding() -> None:
     from .compress import compress
     from .small_sets import STATES
 
-    fiblets = compress(_lines(), exact=False)  # codes: those of exact sets are not read
+    fiblets = compress(_lines(), exact=False)  # exact sets are not decoded
     STATES["decoding"].loaded = True
     for kind in (np.float32, np.float64):
         fiblets.decompress(dtype=kind)

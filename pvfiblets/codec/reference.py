@@ -44,7 +44,7 @@ Array = npt.NDArray[np.float64]
 RECORD_BYTES = 22
 LATTICE_LIMIT = 2**30  # lattice coordinates stay clear of int32's end, on the GPU too
 MAX_HALVINGS = 15
-TURNED_TOO_FAR = 2**16  # bytes, for which any split is better that turns fewer segments too far
+TURNED_TOO_FAR = 2**16  # bytes: any split that turns fewer segments too far is better
 TREE_DEPTH = 6  # halving 60 points six times leaves single points
 
 
@@ -233,7 +233,7 @@ def _box(points: Array, anchor: Array, h: float) -> _Box | None:
 
 
 def _turned(points: Array, anchor: Array, edge: float, turns: Turns, following: Array | None) -> float:
-    """By how many times the lattice turns a segment farther than it may; see :meth:`.turn_reference.Turns.excess`."""
+    """Return by how many times the lattice turns a segment too far; see :meth:`.turn_reference.Turns.excess`."""
     decoded = anchor + edge * _lattice(points, anchor, edge)
     decoded[0] = anchor
     return turns.excess(decoded, following)

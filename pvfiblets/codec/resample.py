@@ -35,7 +35,7 @@ def resample(streamlines: Streamlines, step: float, within: float = math.inf) ->
         kept = np.zeros(len(points), np.bool_)
         _keep_corners(points, offsets, fresh, low, weight, float(within), kept)
         corners = np.flatnonzero(kept)
-        # New points and corners in the order in which they stand along the lines; places are those of given points.
+        # New points and corners in the order in which they stand along the lines; places count original points.
         place = np.concatenate([low + weight, corners.astype(np.float64)])
         owner = np.concatenate([np.repeat(np.arange(len(lengths)), count), _owners(offsets, corners)])
         order = np.lexsort([place, owner])
@@ -109,7 +109,7 @@ def _keep_between(points: Any, low: Any, weight: Any, m: int, within: float, sta
     first = low[m] + 1
     last = low[m + 1] - 1 if weight[m + 1] == 0.0 else low[m + 1]
     a, b = np.empty(3), np.empty(3)
-    depth, begin, end = 0, first - 1, last + 1  # what lies between these, which stand for the new points at either end
+    depth, begin, end = 0, first - 1, last + 1  # the stretch between these, which stand for the new points at its ends
     while last >= first:
         if begin < first:
             _at(points, low[m], weight[m], a)

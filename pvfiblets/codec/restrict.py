@@ -59,7 +59,7 @@ def restrict(fiblets: FibletSet, ids: Any) -> FibletSet:
 
 
 class Restriction:
-    """What :func:`restrict` would give: how large it is, before it is made.
+    """The size of :func:`restrict`'s result, known before it is made.
 
     Parameters
     ----------

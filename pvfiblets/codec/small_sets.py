@@ -30,7 +30,7 @@ COMPILING = 4.0  # seconds; work below that does not wait for uncompiled kernels
 
 @dataclass
 class State:
-    """What a process has spent on a work without kernels, seconds of a core, and whether it has loaded them."""
+    """Seconds of a core that a process has spent on a task without kernels, and whether it has loaded them."""
 
     spent: float = 0.0
     loaded: bool = False
@@ -41,7 +41,7 @@ STATES: dict[Work, State] = {"coding": State(), "decoding": State()}
 
 @contextmanager
 def without_kernels(work: Work, points: int) -> Iterator[bool]:
-    """Say whether to do without kernels, and count the time that this takes."""
+    """Return whether to do without kernels, and count the time that this takes."""
     state = STATES[work]
     expected = state.spent + points * SECONDS_A_POINT[work]
     small = not state.loaded and (expected <= LOADING or (expected <= COMPILING and not is_filled(work)))

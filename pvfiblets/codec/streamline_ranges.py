@@ -1,4 +1,4 @@
-"""Where a streamline stands in a set: its fiblets, and its points among all points."""
+"""Ranges of a streamline in a set: its fiblets, and its points among all points."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Ints = npt.NDArray[np.int64]
 
 @dataclass(frozen=True)
 class StreamlineRanges:
-    """Where some streamlines' fiblets and points stand among all.
+    """Ranges of some streamlines' fiblets and points among all.
 
     Attributes
     ----------
@@ -36,8 +36,8 @@ class StreamlineRanges:
     points: Ints
 
     @classmethod
-    def of(cls, fiblets: FibletSet) -> StreamlineRanges:
-        """Those of all streamlines."""
+    def from_fiblets(cls, fiblets: FibletSet) -> StreamlineRanges:
+        """Return the ranges of all streamlines."""
         if in_parts(fiblets):
             return cls._of_parts(fiblets)
         owners, n = fiblets.fiblet_streamlines(), fiblets.n_streamlines
@@ -50,11 +50,11 @@ class StreamlineRanges:
 
     @classmethod
     def _of_parts(cls, fiblets: FibletSet) -> StreamlineRanges:
-        """Those of a set in shards, which are coded one behind the other."""
+        """Return the ranges in a set of shards, which are coded one behind the other."""
         whole = cls(*(np.zeros(fiblets.n_streamlines, np.int64) for _ in range(4)))
         fiblet = point = 0
         for part, ids in stored_parts(fiblets):
-            own, there = cls.of(part), np.asarray(ids)
+            own, there = cls.from_fiblets(part), np.asarray(ids)
             filled = there[own.fiblets > 0]
             whole.fiblet[filled] = own.fiblet[own.fiblets > 0] + fiblet
             whole.point[filled] = own.point[own.fiblets > 0] + point
@@ -63,14 +63,14 @@ class StreamlineRanges:
         return whole
 
     def at(self, chosen: Ints) -> StreamlineRanges:
-        """Those of some of them."""
+        """Return the ranges of some of them."""
         return StreamlineRanges(self.fiblet[chosen], self.fiblets[chosen], self.point[chosen], self.points[chosen])
 
 
 def ranges_of(fiblets: FibletSet, chosen: Ints) -> StreamlineRanges:
     """Ranges of chosen streamlines; a few are found without reading the records of the others."""
     if len(chosen) > FEW:
-        return StreamlineRanges.of(fiblets).at(chosen)
+        return StreamlineRanges.from_fiblets(fiblets).at(chosen)
     return StreamlineRanges(*(np.array([_find(fiblets, int(i)) for i in chosen], np.int64).reshape(-1, 4).T))
 
 
@@ -82,7 +82,7 @@ def _find(fiblets: FibletSet, streamline: int) -> tuple[int, int, int, int]:
         if not found.size:
             return 0, 0, 0, 0  # without points
         rank = int(found[0])
-    # Pages begin with fiblets of rising ranks; those of one rank lie in consecutive pages.
+    # Pages begin with fiblets of rising ranks; fiblets of one rank lie in consecutive pages.
     begins = fiblets.pages[:-1, 0]
     first = max(int(np.searchsorted(begins, rank, side="left")) - 1, 0)
     last = int(np.searchsorted(begins, rank, side="right")) - 1
@@ -99,7 +99,7 @@ def _find(fiblets: FibletSet, streamline: int) -> tuple[int, int, int, int]:
 
 def coded_rows(fiblets: FibletSet) -> Ints:
     """Index among all points, in the order of the streamlines, of each point as coded: ``(n_points,)`` int64."""
-    places = StreamlineRanges.of(fiblets)
+    places = StreamlineRanges.from_fiblets(fiblets)
     starts = np.cumsum(places.points) - places.points
     order = np.argsort(places.point[places.points > 0], kind="stable")
     filled = np.flatnonzero(places.points > 0)[order]

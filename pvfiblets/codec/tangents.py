@@ -1,4 +1,4 @@
-"""How far drawn directions are from true ones: the angle between tangents, whose colour and light a line has.
+"""Errors of drawn directions: the angle between tangents, which set a line's colour and light.
 
 The tangent at a point is the sum of the unit vectors of the segment before and of the segment after, as a unit vector;
 at an end it is that of the only one. A segment of no length has no direction and adds nothing, nor does one shorter

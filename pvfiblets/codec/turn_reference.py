@@ -1,13 +1,13 @@
-"""How far the encoder may turn segments, in plain NumPy and float64; `turn_kernels` compute the same.
+"""Greatest turns that the encoder may make, in plain NumPy and float64; `turn_kernels` compute the same.
 
-Symbols: ``u`` and ``v`` are the unit vectors of the segments before and after a point, ``u'`` and ``v'`` what they
-decode to, and ``A`` is the largest angle that is promised between the tangents, which are the directions of
+Symbols: ``u`` and ``v`` are the unit vectors of the segments before and after a point, ``u'`` and ``v'`` their
+decoded vectors, and ``A`` is the bound of the angle between the tangents, which are the directions of
 ``S = u + v`` and of ``S' = u' + v'``. From ``|S' - S| <= |u' - u| + |v' - v|`` follows that the angle between both is
 at most ``A`` where
 
     ``|u' - u| <= sin(A) |S| / 2`` and ``|v' - v| <= sin(A) |S| / 2``.
 
-Each segment so has a bound of its own, the lesser of those at its two ends, whatever its neighbours decode to: fiblets
+Each segment so has a bound of its own, the lesser of its two ends', whatever its neighbours decode to: fiblets
 can be coded apart from each other. At the end of a line there is one segment only, and it has the whole bound. The
 sharper the bend, the shorter is ``S``, and the finer are its two segments coded.
 
@@ -76,7 +76,7 @@ class Turns:
 
 
 def may_turn(line: Array, shortest: float, angle: float) -> Turns:
-    """How far the segments of a streamline may be turned."""
+    """Return the greatest turns of the segments of a streamline."""
     found = [_unit(line[i + 1] - line[i]) for i in range(len(line) - 1)]
     units = [unit if length > shortest * ONE_POINT else np.zeros(3) for unit, length in found]
     longer = [length > shortest for _, length in found]
@@ -98,7 +98,7 @@ def may_turn(line: Array, shortest: float, angle: float) -> Turns:
 
 
 def cut(turns: Turns, angle: float) -> list[int]:
-    """Where the slots of a streamline begin, at most 60 points after each other.
+    """Return the starts of a streamline's slots, at most 60 points after each other.
 
     A slot ends before its 60th point where the line bends there by more than the first point of a fiblet may: at the
     next point before at which it does not, or at that of the least bend among 20.

@@ -1,9 +1,9 @@
 """The caller's clip planes: the uniform block ``ClipPlanes``, whose symbols ``shaders/frame/clip_planes.glsl`` has.
 
-Planes cut before the nearest is chosen, so that what lies behind a cut shows. The cull pass drops fiblets beyond a
-plane and tells those that a plane touches from the others, which are drawn by the same programs as in a view without
-planes. A segment that crosses is shortened to its kept part, and of a wide line's brush the pixels beyond a plane are
-left out: no pixel shows, or stands for, a position that a plane cuts away.
+Planes cut before the nearest segment is chosen, so a cut reveals the lines behind it. The cull pass drops fiblets
+beyond a plane and separates fiblets that a plane touches from the others, which are drawn by the same programs as in a
+view without planes. A segment that crosses is shortened to its kept part, and the pixels of a wide line's brush beyond
+a plane are left out: no pixel shows, or stands for, a position that a plane cuts away.
 """
 
 from __future__ import annotations

@@ -29,7 +29,7 @@ __all__ = ["Drawable", "Target", "sizes_of"]
 
 
 class GpuResource(Protocol):
-    """What a renderer keeps on the GPU; ``sizes``, ``buffers`` or ``nbytes`` say how large it is."""
+    """GPU memory of a renderer; ``sizes``, ``buffers`` or ``nbytes`` give its size."""
 
     def release(self) -> None:
         """Give it back; twice is harmless."""
@@ -53,7 +53,7 @@ AnyTarget = TypeVar("AnyTarget", bound=Target)
 class Drawable(ABC, Generic[AnyStyle]):
     """Draws one set of data on one OpenGL context.
 
-    The context must be current in every call. The renderer binds what it needs and leaves it bound, but for the
+    The context must be current in every call. The renderer leaves its bindings behind, except for the
     framebuffers; the caller keeps its own OpenGL state.
 
     Parameters
@@ -108,7 +108,7 @@ class Drawable(ABC, Generic[AnyStyle]):
         """Return what :meth:`explain` says beside passes, features and buffers."""
 
     def needs_outside(self, view: View, style: Style) -> bool:  # noqa: ARG002
-        """Say whether :meth:`render` would gain from the depth of other things in the scene."""
+        """Return whether :meth:`render` would gain from the depth of other things in the scene."""
         return False
 
     # Drawing
@@ -122,8 +122,8 @@ class Drawable(ABC, Generic[AnyStyle]):
         style : Style
             Of the class ``STYLE``; may be left out where that has a default for everything.
         outside : moderngl.Texture, optional
-            Depth of other things in the scene, r32ui keys as in the G-buffer, of the view's size. A picture for which
-            it was looked at serves this one call only: the next one draws anew.
+            Depth of other things in the scene, r32ui keys as in the G-buffer, of the view's size. A picture that
+            read it serves this one call only: the next one draws anew.
 
         Returns
         -------
@@ -224,7 +224,7 @@ class Drawable(ABC, Generic[AnyStyle]):
         self._outdate()
 
     def _serves(self, outside: moderngl.Texture | None) -> bool:  # noqa: ARG002
-        """Say whether a picture that was drawn without an outside serves where there is one."""
+        """Return whether a picture that was drawn without an outside serves where there is one."""
         return True
 
     def _checked(self, style: AnyStyle | None) -> AnyStyle:
@@ -297,7 +297,7 @@ class Drawable(ABC, Generic[AnyStyle]):
         return sizes
 
     def explain(self, *, counts: bool = True) -> dict[str, Any]:
-        """Say what the last redraw was made of, and wait for it to end.
+        """Return the work of the last redraw, and wait for it to end.
 
         Parameters
         ----------

@@ -1,8 +1,8 @@
-"""What a view means to the shaders: the uniform block ``Frame``, computed in float64.
+"""A view as the shaders' uniform block ``Frame``, computed in float64.
 
-Positions reach the shader as integers (anchors) relative to a reference anchor near what the camera looks at, and the
-matrix is composed with that reference in float64: float32 then rounds relative to what is seen, not to where the data
-lie in the world. ``shaders/frame/blocks.glsl`` says what the symbols are.
+Positions reach the shader as integers (anchors) relative to a reference anchor near the camera's target, and the
+matrix is composed with that reference in float64: float32 then rounds relative to the visible part, not to the data's
+place in the world. ``shaders/frame/blocks.glsl`` explains the symbols.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ Array = npt.NDArray[np.float64]
 
 EPSILON = float(np.finfo(np.float32).eps)
 CORNERS = np.array(list(np.ndindex(2, 2, 2)))
-"""Of a box from 0 to 1."""
+"""Corners of a box from 0 to 1."""
 
 
 def reference_anchor(matrix: Array, origin: Array, scale: Array, top: int) -> npt.NDArray[np.int64]:
@@ -80,7 +80,7 @@ def local_frame(view: View, origin: Array, scale: Array, top: int) -> LocalFrame
 
 @lru_cache(maxsize=16)
 def _local_frame(matrix: bytes, origin_: bytes, scale_: bytes, top: int) -> LocalFrame:
-    """Of the bytes of its arrays: a picture asks some times, each time a hundred microseconds."""
+    """Return the local frame, cached by the bytes of its arrays: a picture needs it several times, at 100 µs each."""
     projection, origin, scale = np.frombuffer(matrix).reshape(4, 4), np.frombuffer(origin_), np.frombuffer(scale_)
     reference = reference_anchor(projection, origin, scale, top)
     to_data = np.eye(4)

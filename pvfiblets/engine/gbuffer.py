@@ -96,7 +96,7 @@ class GBuffer:
         return texture
 
     def want_relief(self, ctx: moderngl.Context, relief: str | None) -> None:
-        """Have the texture ``across`` for ``'across'`` of wide lines, ``'normal'`` of tubes, ``'ink'``, or None.
+        """Make the texture ``across``: ``'across'`` of wide lines, ``'normal'`` of tubes, ``'ink'``, or None for none.
 
         Raises
         ------
@@ -112,7 +112,7 @@ class GBuffer:
         self._relief = relief
 
     def want_edges(self, ctx: moderngl.Context, wanted: bool) -> None:
-        """Have the texture ``edges``, or not.
+        """Make or drop the texture ``edges``.
 
         Raises
         ------
@@ -127,7 +127,7 @@ class GBuffer:
             self.edges = None
 
     def want_colours(self, ctx: moderngl.Context) -> None:
-        """Have the texture ``colours``.
+        """Make the texture ``colours``.
 
         Raises
         ------
@@ -139,7 +139,7 @@ class GBuffer:
 
     @property
     def relief(self) -> str | None:
-        """What :meth:`want_relief` was last told."""
+        """The last argument of :meth:`want_relief`."""
         return self._relief
 
     @property

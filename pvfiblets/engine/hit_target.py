@@ -1,4 +1,4 @@
-"""What is drawn in two passes: hits with their depth first, then the G-buffer that is made of them.
+"""Drawables of two passes: hits with their depth first, then the G-buffer made of them.
 
 Spline tubes and lines with halos are drawn into it; `HitDrawable` is what their renderers share.
 """
@@ -126,13 +126,13 @@ class HitDrawable(Drawable[AnyStyle]):
     """A `Drawable` that finds hits and their depths first, and all else in one pass over the picture."""
 
     CULLING: ClassVar[tuple[str | None, ...]] = ("two-phase", None)
-    """How what others hide may be found out."""
+    """Methods of occlusion culling."""
 
     RELIEF: ClassVar[str] = "normal"
-    """What ``GBuffer.across`` holds."""
+    """Contents of ``GBuffer.across``."""
 
     EDGES: ClassVar[str] = "attributes"
-    """Which pass writes ``GBuffer.edges``, if asked for: ``'hits'`` or ``'attributes'``."""
+    """Pass that writes ``GBuffer.edges``, if requested: ``'hits'`` or ``'attributes'``."""
 
     SAMPLERS: ClassVar[Mapping[str, int]]
     """Texture units of the data, by the names of their samplers."""
@@ -146,7 +146,7 @@ class HitDrawable(Drawable[AnyStyle]):
             raise ValueError(f"culling is {culling!r}; choose one of {cls.CULLING}")
 
     def _make_listing(self, culling: str | None, n: int, n_items: int, **how: Any) -> None:
-        """Have what others hide left out, where that is wanted, possible, and worth it for ``n`` segments."""
+        """Set up occlusion culling, where it is requested, possible, and worth it for ``n`` segments."""
         if culling is not None and n >= LEAST_SEGMENTS and supports_listing(self._ctx):
             self._listing = self._keep(Listing(self._ctx, self._gl, self._programs, n_items, **how))
 
@@ -209,10 +209,10 @@ class HitDrawable(Drawable[AnyStyle]):
             self._ctx.depth_func = "<="
 
     def _prepare(self, program: moderngl.Program | moderngl.ComputeShader) -> None:
-        """Tell a program where the data are."""
+        """Set the data's texture units in a program."""
         for sampler, unit in self.SAMPLERS.items():
             self._gl.set_sampler(program, sampler, unit)
 
     def _prepare_listing(self, program: moderngl.ComputeShader) -> None:
-        """Tell a program that lists items all that it needs of them."""
+        """Set everything that a program that lists items needs of them."""
         self._prepare(program)

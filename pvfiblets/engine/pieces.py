@@ -1,7 +1,7 @@
 """`Pieces`: one frame drawn piece by piece, so that its caller can handle events in between.
 
-A drawing function that can be left between pieces is a generator: it yields where a piece ends and goes on when it is
-asked to. Meanwhile others may draw, into anything but this picture's own target, so what was bound is bound anew.
+A drawing function that can be left between pieces is a generator: it yields where a piece ends and resumes on demand.
+Meanwhile others may draw, into anything but this picture's own target, so bindings are made anew.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ FIRST = 8
 """Work groups of a stage whose time is not known yet: some 2,000 fiblets."""
 
 GROWTH = 4
-"""How many times more groups than ever before may be tried at once."""
+"""Greatest ratio of groups tried at once to the most so far."""
 
 Found = TypeVar("Found")
 
 
 class Pieces:
-    """Where the pieces of one picture end, by the time that earlier ones took.
+    """Ends of one picture's pieces, by the times of earlier ones.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ class Pieces:
         return self._passes.clock() - self._begun >= 0.8 * self._seconds
 
     def pause(self) -> Iterator[None]:
-        """Let others draw, and go on with another piece."""
+        """Pause for others to draw, and go on with another piece."""
         with self._passes.away():
             yield
         self._again()

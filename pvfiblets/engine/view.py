@@ -1,4 +1,4 @@
-"""What is drawn from where (`View`) and how (`Style`): small frozen values that a redraw is decided on."""
+"""The camera and data of a picture (`View`), and its appearance (`Style`): frozen values; changes cause redraws."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ class View:
         ``(4, 4)`` float64: data coordinates in mm (column vectors) to OpenGL clip coordinates. Perspective or
         parallel; any actor placement belongs in it.
     clip_planes : array_like, optional
-        ``(k, 4)`` float64 planes (a, b, c, d) in data coordinates, k <= 8: of the fiblets only what lies where
-        ax + by + cz + d >= 0 for all of them is there, and what lies behind a cut shows. They need not be
+        ``(k, 4)`` float64 planes (a, b, c, d) in data coordinates, k <= 8: fiblets remain only where
+        ax + by + cz + d >= 0 for all of them, and a cut reveals the fiblets behind it. They need not be
         normalised. None, or planes that nothing touches, cost nothing.
     region : Region, optional
         Region that clips the fiblets (:mod:`pvfiblets.regions`), data coordinates. None costs nothing.
     waits : bool
         Whether drawing may wait until the GPU has said in how many layers a region's closed surfaces lie there. If not,
-        as many are drawn as earlier pictures had: where a ray meets more, the picture lacks the farthest until the
+        the number of earlier pictures is used: where a ray meets more, the picture lacks the farthest until the
         number has come back, two or three pictures later.
 
     Raises
@@ -86,15 +86,15 @@ class View:
 
 @dataclass(frozen=True)
 class Style:
-    """How a drawable becomes pixels: what the styles of all drawables share.
+    """The style of a drawable: the fields that all drawables share.
 
     Parameters
     ----------
     values : str or VolumeSource, optional
         Name of the drawable's value to write for each pixel. None costs nothing.
     exact : bool
-        Whether pixels show just what covers their middles. Otherwise what is thinner than a pixel is widened to one, or
-        many of its pixels would be missed; the mean of many pictures, of other middles each, misses none.
+        Whether pixels show only lines that cover their middles. Otherwise lines thinner than a pixel are widened to
+        one, or many of their pixels would be missed; the mean of many pictures, of other middles each, misses none.
     edges : bool
         Whether to write where the edges run of what each pixel shows (``GBuffer.edges``), for smoothing them. Volumes
         have none.
@@ -126,7 +126,7 @@ class Style:
 
     @property
     def relief(self) -> str | None:
-        """What ``GBuffer.across`` holds (:meth:`.GBuffer.want_relief`), or None for nothing."""
+        """Contents of ``GBuffer.across`` (:meth:`.GBuffer.want_relief`), or None for nothing."""
         return None
 
 

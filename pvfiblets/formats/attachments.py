@@ -3,7 +3,7 @@
 ``.tsf``
     MRtrix track scalars: laid out as tck with one number per point, so it must have the same
     streamlines with the same numbers of points. A missing value (NaN inside a streamline) cannot
-    be told from the end of a streamline; such a file does not fit and is refused.
+    looks like the end of a streamline; such a file does not fit and is refused.
 ``.npy``
     An array, ``(n,)`` or ``(n, k)``.
 ``.txt``, ``.csv``

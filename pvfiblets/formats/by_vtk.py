@@ -1,7 +1,7 @@
 """Lines in files that VTK reads: ``.vtu``, ``.vtm``, ``.vtkhdf``, and files of pieces (``.pvtp``, ``.pvtu``).
 
 VTK's readers trust sizes of a damaged file and may end the process; the formats of tractograms from elsewhere have
-parsers of our own. Names of blocks become groups. Coordinates are RAS+ mm, or LPS+ if the field data say so
+parsers of our own. Names of blocks become groups. Coordinates are RAS+ mm, or LPS+ by the field data
 (:mod:`pvfiblets.support.vtk_space`).
 """
 

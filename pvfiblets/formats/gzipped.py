@@ -14,7 +14,7 @@ from pvfiblets.errors import FibletsError, FormatError
 from pvfiblets.support.memory import check_room, shown
 
 DENSEST = 1032
-"""How many bytes of deflate's come out of one, at most."""
+"""Most bytes of output per byte of deflate's."""
 SMALL = 64 << 20
 """Bytes that are always allowed."""
 ODD = 100

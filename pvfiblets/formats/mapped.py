@@ -54,7 +54,7 @@ class MappedFile:
         return bytes(self.buffer[position : position + count])
 
     def forget(self, position: int, n_bytes: int) -> None:
-        """Let go of the memory behind bytes that will hardly be read again; they stay readable.
+        """Release the memory behind bytes that will hardly be read again; they stay readable.
 
         Without this a file streamed piece by piece ends up resident as a whole, however small the pieces.
         """
@@ -76,12 +76,12 @@ class MappedFile:
 
 
 def forget(array: NDArray[Any], first: int, last: int) -> None:
-    """Let go of the memory behind rows of a mapped array, or of a view of one; they stay readable.
+    """Release the memory behind rows of a mapped array, or of a view of one; they stay readable.
 
     Without this a file that is streamed through its map ends up resident as a whole. Arrays in memory are left alone,
     and so are private maps (mode ``'c'``), whose changes are nowhere else, and maps not of NumPy's that can be written
     to, for they do not tell whether they are private. Give 0 for `first` where rows are read in
-    order: reading a block brings back pages of the one before, and what is forgotten twice costs nothing.
+    order: reading a block brings back pages of the one before, and releasing pages twice costs nothing.
     """
     owner: Any = array
     found: Any = None
@@ -106,7 +106,7 @@ def forget(array: NDArray[Any], first: int, last: int) -> None:
 
 
 def drop_pages(mapped: mmap.mmap, position: int, n_bytes: int) -> None:
-    """Let go of whole pages of memory within some bytes of a map, where the system can; they stay readable."""
+    """Release whole pages of memory within some bytes of a map, where the system can; they stay readable."""
     if not hasattr(mmap, "MADV_DONTNEED"):
         return
     first = -(-position // mmap.PAGESIZE) * mmap.PAGESIZE

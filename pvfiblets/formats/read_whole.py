@@ -1,4 +1,4 @@
-"""What the formats that must be read whole have in common."""
+"""The base of formats that must be read whole."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
-"""Which module reads and writes which suffix.
+"""The modules that read and write each suffix.
 
 A format module offers ``read(path, *, progress=False)``, ``iter_chunks(path, max_points)`` and
 ``info(path)``, and where the format can be written ``write(path, streamlines)``. Modules are
 named by strings and imported when a file of theirs is first touched: a program that reads tck
-files never loads the trx code. One of them is the codec's, of which nothing else here knows.
+files never loads the trx code. One of them belongs to the codec; only this table refers to it.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class UnknownFormatError(FibletsError, ValueError):
 
 
 def register(suffix: str, module_name: str) -> None:
-    """Let `module_name` serve files whose name ends in `suffix`."""
+    """Register `module_name` for files whose name ends in `suffix`."""
     if not suffix.startswith("."):
         raise ValueError(f"the suffix {suffix!r} must begin with a dot, as in '.trk'")
     _MODULES[suffix.lower()] = module_name

@@ -1,4 +1,4 @@
-"""How much writers that hold float32 only change float64 arrays, and a warning of it."""
+"""Changes to float64 arrays by writers that hold float32 only, and a warning of them."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Arrays too long for memory, in files without a name: for what must be at hand as one, such as one very long line.
 
-They lie where the system keeps temporary files (``TMPDIR`` names another place), take as much room there as they have
-bytes, and are gone with the process, however it ends.
+They lie where the system keeps temporary files (``TMPDIR`` names another place), take their size in bytes there,
+and are gone with the process, however it ends.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def _naming(size: int) -> AbstractContextManager[None]:
 
 
 def _take_room(file: int, size: int) -> None:
-    """Have the system set room aside now: a full disk met while a map is written to ends the process."""
+    """Reserve disk space now: a full disk during writes to a map ends the process."""
     if hasattr(os, "posix_fallocate"):
         os.posix_fallocate(file, 0, size)
     else:

@@ -9,7 +9,7 @@ no more of these rows. What is made of input that breaks these rules:
 the file                                          the result
 ================================================  =================================================
 no magic line, no END, bad datatype or offset     FormatError
-data end without the infinity row                 read, and ``dropped`` says so, if the last
+data end without the infinity row                 read, and counted in ``dropped``, if the last
                                                   streamline is closed and the header's count is
                                                   met; else FormatError at the end of the file
 last streamline not closed before the infinity    kept: the end closes it
@@ -22,7 +22,7 @@ two NaN rows in succession                        a streamline without points, k
 ================================================  =================================================
 
 The other keys of the header (``step_size``, ``timestamp``, ``command_history``) go along as ``space["tck_header"]``.
-``space["tck_rows"]``, a fingerprint of the rows, tells the writer whether the points are still those of that header.
+``space["tck_rows"]``, a fingerprint of the rows, shows the writer whether the points still belong to that header.
 """
 
 from __future__ import annotations
@@ -84,10 +84,10 @@ MORE = "streamlines beyond the header's count (kept)"
 
 
 class Header(NamedTuple):
-    """What the text header says (shared with ``.tsf``, which has the same layout)."""
+    """Contents of the text header (shared with ``.tsf``, which has the same layout)."""
 
     fields: dict[str, str]
-    """By key in lower case; repeated keys have a line each."""
+    """Values by key in lower case; repeated keys have a line each."""
     dtype: np.dtype[Any]
     data_position: int
     n_streamlines: int | None
@@ -402,7 +402,7 @@ def write(path: str | PathLike[str], streamlines: Streamlines, *, double: bool =
 
 
 def _header_for(streamlines: Streamlines) -> tuple[list[str], list[str]]:
-    """Return the lines of a header that describe the points, and what they change of the kept header."""
+    """Return the lines of a header that describe the points, and the replaced lines of the kept header."""
     lines = [line for line in str(streamlines.space.get(HEADER, "")).split("\n") if line]
     before = {key: value for key, _, value in (line.partition(": ") for line in lines)}
     after = {"timestamp": timestamp_of(streamlines)}

@@ -18,7 +18,7 @@ header's count is met
 more data than the header's count              left out, its bytes counted
 header's count 0                               means "not recorded": records up to the end
 affine not recorded (version 1, or zero)       that of the voxel sizes and order, with a warning;
-                                               ``space`` says so
+                                               recorded in ``space``
 a point with NaN or infinity                   left out with its scalars, the line cut there; both
                                                are counted
 a record of no points                          a streamline without points, kept

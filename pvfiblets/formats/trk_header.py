@@ -16,7 +16,7 @@ _SCALAR_NAMES, _PROPERTY_NAMES = 38, 240
 
 
 class Header(NamedTuple):
-    """What a trk header says."""
+    """Contents of a trk header."""
 
     order: str
     """Byte order, ``"<"`` or ``">"``."""

@@ -260,7 +260,7 @@ class _Trx:
 
 
 def _floats(rows: Array, long: bool) -> Array:
-    """Points as float32 or float64; those of a very long streamline are as they are mapped, if they can be."""
+    """Points as float32 or float64; a very long streamline's points stay mapped, if they can."""
     kind = np.dtype(np.float64 if rows.dtype.itemsize == 8 else np.float32)
     if long and rows.dtype == kind and rows.flags.aligned:
         return rows
@@ -364,7 +364,7 @@ def write(path: str | PathLike[str], streamlines: Streamlines) -> None:
 
 
 def _without_dots(names: Iterable[str], renamed: dict[str, str]) -> dict[str, str]:
-    """Return each name's name in the file, one for each, and add those that differ to `renamed`."""
+    """Return each name's name in the file, one for each, and add changed ones to `renamed`."""
     found: dict[str, str] = {}
     for name in sorted(names, key=lambda name: "." in name):  # names without dots stay
         new = name.replace(".", "_")

@@ -1,4 +1,4 @@
-"""How much memory VTK would take for a file: it takes whatever the file says, and ends the process if it cannot."""
+"""Memory that VTK would take for a file: it takes whatever the file says, and ends the process if it cannot."""
 
 from __future__ import annotations
 

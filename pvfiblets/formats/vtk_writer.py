@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def write_with(writer: Any, path: str | PathLike[str], data: pyvista.PolyData, *, compressed: bool = False) -> None:
-    """Let a VTK writer write poly data."""
+    """Write poly data with a VTK writer."""
     size = data.GetActualMemorySize() * 1024
     writer.SetInputData(data)
     said: list[str] = []

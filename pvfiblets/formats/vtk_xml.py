@@ -27,7 +27,7 @@ _TYPES = {
     "Float64": "f8",
 }
 MOST_TIMES = 10_000
-"""What a file can hold, in its own size: no compressor of VTK's packs more densely, but for nothing but zeros."""
+"""Largest ratio of contents to file size: no compressor of VTK's packs more densely, except for zeros."""
 
 _MOST_TEXT = 1 << 16  # bytes
 _COMPRESSORS = {

@@ -3,7 +3,7 @@
 Format: https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html. Read by a parser
 of our own for the reason given in :mod:`pvfiblets.formats.vtk_legacy`, written by VTK. The file
 must be read whole: the data of a streamline lie in several places of it. Several pieces are
-joined. Coordinates are RAS+ mm, or LPS+ if the field data say so (:mod:`pvfiblets.support.vtk_space`).
+joined. Coordinates are RAS+ mm, or LPS+ by the field data (:mod:`pvfiblets.support.vtk_space`).
 Damage is a FormatError at the array; cells that are not lines, points of no line, points
 with NaN or infinity and arrays of text are left out and counted; lines are cut at the points with
 NaN or infinity.

@@ -46,7 +46,7 @@ _ZIP_ERRORS = (
     struct.error,
     zlib.error,
 )
-"""What zipfile raises on damaged archives (RuntimeError: encrypted; OSError: absurd seeks)."""
+"""Errors of zipfile for damaged archives (RuntimeError: encrypted; OSError: absurd seeks)."""
 
 
 class ZipArrays:

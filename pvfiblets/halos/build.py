@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["FILTER", "SCALARS", "LinesAndValues", "as_halo_lines", "as_halo_points"]
 
 SCALARS, FILTER = "scalars", "filter"
-"""What arrays that come without a name are called."""
+"""Names of unnamed arrays."""
 
 Array = npt.NDArray[Any]
 

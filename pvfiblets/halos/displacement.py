@@ -13,10 +13,10 @@ from .style import DISPLACEMENTS, TABLE_SIZE
 __all__ = ["Displacement", "as_displacement", "displaced", "table_places"]
 
 Displacement: TypeAlias = str | Sequence[float] | npt.NDArray[Any] | Callable[[npt.NDArray[np.float64]], Any]
-"""What :func:`as_displacement` takes: a name, a table, or a function."""
+"""Types that :func:`as_displacement` takes: a name, a table, or a function."""
 
 _ROUNDING = 1e-9
-"""By so much a function may leave 0..1, as the sine of a right angle computed in a roundabout way does."""
+"""Greatest excess of a function beyond 0..1, as of a sine of a right angle computed in a roundabout way."""
 
 
 def as_displacement(given: Displacement) -> str | tuple[float, ...]:

@@ -1,4 +1,4 @@
-"""What halos are drawn around: `HaloLines` and `HaloPoints`, with numbers or colours at their points."""
+"""Data of halos: `HaloLines` and `HaloPoints`, with numbers or colours at their points."""
 
 from __future__ import annotations
 

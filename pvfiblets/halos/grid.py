@@ -26,15 +26,15 @@ class Grid:
 
     def __init__(self, places: Doubles, width: float) -> None:
         self._width = width
-        # Two more on either side: places are in the frame but for rounding, and cells next to theirs are asked for. Of
-        # very small cells the numbers wrap around, and then tell those apart that matter all the same.
+        # Two more on either side: places are in the frame but for rounding, and cells next to theirs are looked up.
+        # With very small cells the numbers wrap around, and still differ where that matters.
         across = int(1.0 / width) + 6
         self._strides = np.array([1, across, across * across], np.int64)
         around = np.stack(np.meshgrid(*[[-1, 0, 1]] * 3, indexing="ij"), axis=-1).reshape(-1, 3) @ self._strides
         cells = (self._cells(places)[:, None] + around).ravel()
         order = np.argsort(cells, kind="stable")
         self._wanted, self._whose = cells[order], order // len(around)
-        # Most of what is looked up is in none of these cells; a small table says so sooner than the list of them.
+        # Most look-ups miss all of these cells; a small table answers that sooner than the list of them.
         self._table = np.zeros(1 << _TABLE, bool)
         self._table[_hashed(self._wanted)] = True
 
@@ -43,7 +43,7 @@ class Grid:
         return cells
 
     def near(self, points: Doubles) -> tuple[Ints, Ints, Ints]:
-        """Which points are near a place; and for each, where in a list the places are that it is near, and how many."""
+        """Return the points near a place; and for each, where in a list its near places are, and how many."""
         cells = self._cells(points)
         some = np.flatnonzero(self._table[_hashed(cells)])
         first = np.searchsorted(self._wanted, cells[some], side="left")
@@ -58,5 +58,5 @@ class Grid:
 
 
 def _hashed(cells: Ints) -> Ints:
-    """Where in the table each cell is looked up: the upper bits of a product, in which all bits of the cell count."""
+    """Return the table's index of each cell: the upper bits of a product, in which all bits of the cell count."""
     return ((cells.astype(np.uint64) * np.uint64(0x9E3779B97F4A7C15)) >> np.uint64(64 - _TABLE)).astype(np.int64)

@@ -1,9 +1,9 @@
 """Distances from places on lines to the nearest other lines, or from points to the nearest others.
 
-Lines are covered by arcs, each with a middle and at most so long to both sides, and only those arcs are divided that
-can be near one of the places that are asked about, which a grid tells. What may hold the nearest place is then narrowed
+Lines are covered by arcs, each with a middle and a bound of its length to both sides. Only arcs that can be near one of
+the queried places are divided; a grid finds them. The arcs that may hold the nearest place are then narrowed
 down by the same bounds until the distance is known. So time and memory depend on how much lies near the places, not on
-how many points lines have, and both are bounded: where there is too much, fewer places are asked about.
+the number of points, and both are bounded: where there is too much, fewer places are queried.
 """
 
 from __future__ import annotations
@@ -86,7 +86,7 @@ class Frame:
 
 
 class _Things(Protocol):
-    """What distances are measured to."""
+    """The places that distances are measured to."""
 
     frame: Frame
 
@@ -161,7 +161,7 @@ class Paths:
             yield line, where.astype(np.float64)
 
     def usual_spacing(self) -> float:
-        """What the spacing would be if lines filled space as they do around a middling place of theirs."""
+        """Return the spacing if lines filled space as they do around a middling place of theirs."""
         n = 1 << 16
         where: Doubles = (np.arange(n, dtype=np.float64) + 0.5) * (self.length / n)
         return float(np.sqrt(_volume(self.at(self.line_at(where), where)) / self.length))
@@ -194,7 +194,7 @@ class Cloud:
         return 0.0, ((index, np.zeros(len(index))) for index in blocks)
 
     def usual_spacing(self) -> float:
-        """What the spacing would be if points filled space as they do around a middling one."""
+        """Return the spacing if points filled space as they do around a middling one."""
         n = len(self.points)
         return float(np.cbrt(_volume(self.at(np.arange(0, n, max(n >> 16, 1)))) / n))
 

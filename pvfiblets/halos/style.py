@@ -19,7 +19,7 @@ MAX_TAPERED = 1000
 
 @dataclass(frozen=True)
 class HaloStyle:
-    """How lines, or points, with halos are drawn.
+    """The style of lines, or points, with halos.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ class HaloStyle:
     strip_width : float
         mm, of a line together with the halos on both its sides, or of a point with its own; at least ``line_width``.
     max_displacement : float
-        mm by which the edge of a halo lies behind its line; 0 lets every halo hide all that is behind its line.
+        mm from a line to the edge of its halo behind it; 0 lets every halo hide everything behind its line.
     displacement : str or tuple of float
         How far behind its line a halo lies between its middle and its edge (equation 3): one of `DISPLACEMENTS`, or
         2 to `TABLE_SIZE` numbers in 0..1, the function at equally spaced places from 0 to 1, linear between them.
@@ -38,14 +38,14 @@ class HaloStyle:
         Where along the mask, from 0 at one end of a line to 1 at the other, the first ``n_tapered`` vertices end
         (section 3.4), above 0 and at most 0.5. The mask is as wide as the strip from 0.2 to 0.8 of it.
     width_cue : float
-        0 to 1: by which share the lines farthest away in the data are thinner than the nearest, for depth cueing by
-        line width. Halos keep their width.
+        0 to 1: thins the farthest lines of the data by this share, against the nearest, for depth cueing by line
+        width. Halos keep their width.
     min_width : float
         Pixels that a line takes at least, however thin and far it is; 0 leaves it as it is.
     smooth : bool
         Whether the edge between a line and its own halo is a gradual transition; else every pixel is one or the other.
     filter_by : str, optional
-        Values by which lines are filtered (section 3.6): only what has numbers from ``low`` to ``high`` is there, and
+        Values that filter lines (section 3.6): only numbers from ``low`` to ``high`` are shown, and
         NaN is not.
     low, high : float
         Thresholds; -inf and inf let all numbers pass.

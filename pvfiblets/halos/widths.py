@@ -1,4 +1,4 @@
-"""How wide a halo shows: the paper's appendix A, for every displacement function."""
+"""Visible widths of halos: the paper's appendix A, for every displacement function."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ def halo_width(
     max_displacement: float,
     displacement: Displacement = "linear",
 ) -> npt.NDArray[np.float64]:
-    """How wide a line's halo shows, on each of its sides, where another line crosses behind it.
+    """Return the visible width of a line's halo, on each of its sides, where another line crosses behind it.
 
     Parameters
     ----------
     dz : array_like
-        mm by which the other line lies farther from the viewer, along the view axis; none of its halo shows at 0 or
+        mm from this line to the other along the view axis, away from the viewer; none of its halo shows at 0 or
         less, where it is the one in front. NaN stays NaN.
     line_width : float
         mm, of the line in front.

@@ -235,7 +235,7 @@ def _data(header: _Header, sizes: list[int]) -> npt.NDArray[Any]:
 
 
 def _skip_lines(path: Path, start: int, lines: int) -> int:
-    """Where data begin, after as many lines."""
+    """Position of the data, after so many lines."""
     with path.open("rb") as file:
         file.seek(start)
         for _ in range(lines):

@@ -20,7 +20,7 @@ __all__ = ["Packing", "data_file", "numbers"]
 Packing = Literal["raw", "gzip", "zlib", "bzip2", "ascii"]
 
 PIECE = 1 << 18  # bytes read at a time
-LOOKED_AT = 1 << 24  # bytes unpacked beyond those that are needed, to see whether the data are whole
+LOOKED_AT = 1 << 24  # bytes unpacked beyond the needed ones, to see whether the data are whole
 
 
 def numbers(
@@ -93,7 +93,7 @@ def _gzip(file: IO[bytes]) -> gzip.GzipFile:
 
 
 class _Inflated:
-    """What the zlib module has no file for."""
+    """File interface that the zlib module lacks."""
 
     def __init__(self, file: IO[bytes]) -> None:
         self._file = file

@@ -87,7 +87,7 @@ def _found(image: Any, name: str | None) -> tuple[Any, bool]:
                 found = [each.GetArray(active) for each in data]
                 if getattr(association, "name", "POINT") == "CELL":
                     found[0] = None
-        # Filters leave arrays that nobody made active; one is as good as chosen.
+        # Filters leave arrays without an active one; a single array counts as chosen.
         for i, attributes in enumerate(data):
             # == would ask VTK's arrays for each of their numbers.
             if all(array is None for array in found) and attributes.GetNumberOfArrays() == 1:
@@ -120,7 +120,7 @@ def _read(reader: Any, path: Path) -> Any:
 def _check_sizes(path: Path) -> None:
     """Compare the sizes that a ``.vti`` file tells with each other and with its own.
 
-    VTK takes memory for whatever a file says, and if there is not as much it ends the process.
+    VTK takes the memory that a file declares, and ends the process if there is too little.
     """
     file = XmlFile(path, "ImageData")
     pieces = [(piece, _sides(file, piece, "Extent")) for piece in file.content.children("Piece")]

@@ -1,4 +1,4 @@
-"""Which renderer is drawing an actor at this moment."""
+"""The renderer that is drawing an actor at this moment."""
 
 from __future__ import annotations
 

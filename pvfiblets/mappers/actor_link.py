@@ -24,7 +24,7 @@ _UNUSED = {
     "backface_prop": ("GetBackfaceProperty", "there are no back faces; prop applies to all sides"),
     "texture": ("GetTexture", "there are no texture coordinates; give colours as scalars"),
 }
-"""By PyVista's name: VTK's method, and the warning."""
+"""VTK's method, and the warning, by PyVista's name."""
 
 
 class ActorLink:
@@ -102,7 +102,7 @@ class ActorLink:
         self._tell_unused(actor)
 
     def _tell_unused(self, actor: vtkActor) -> None:
-        """Say once of what an actor was given that the covering triangle has no use for it."""
+        """Warn once of an actor's settings that the covering triangle cannot use."""
         given = frozenset(name for name, (get, _) in _UNUSED.items() if getattr(actor, get)() is not None)
         new, self._unused = given - self._unused, given
         for name in sorted(new):
@@ -157,7 +157,7 @@ class ActorLink:
             self.actor.Modified()
 
     def show(self, features: frozenset[str], translucent: bool) -> None:
-        """Have the actor's shader pieces, and whether VTK draws it in its translucent pass, whatever its opacity is."""
+        """Set the actor's shader pieces, and whether VTK draws it in its translucent pass, whatever its opacity is."""
         self._features, self._translucent = features, translucent
         self.install()
 

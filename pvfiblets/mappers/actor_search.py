@@ -1,7 +1,7 @@
-"""Which actor has a mapper, where it was given to it by ``vtkActor.SetMapper``, of which VTK tells nobody.
+"""Which actor has a mapper that ``vtkActor.SetMapper`` gave to it, which VTK does not report.
 
-Mappers do not know their actors, and windows are in no list. But whoever renders does so from Python, by an object of
-his: a window, its interactor, a renderer, or a filter that takes pictures of a window. From these, among all objects
+Mappers do not know their actors, and windows are in no list. But all rendering starts in Python, from an object:
+a window, its interactor, a renderer, or a filter that takes pictures of a window. From these, among all objects
 that Python's garbage collector knows, windows lead to renderers and these to actors. That takes a hundredth of a second
 or so, once for each mapper.
 """

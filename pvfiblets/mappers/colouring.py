@@ -1,4 +1,4 @@
-"""How fiblets and spline tubes get their colours, by the rules of ``vtkLookupTable``."""
+"""Colours of fiblets and spline tubes, by the rules of ``vtkLookupTable``."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def _rgba(colour: Any, name: str) -> tuple[float, ...]:
 
 @dataclass(frozen=True, eq=False)
 class Colouring:
-    """What colour every pixel gets; of spline tubes, each tube counts as a streamline.
+    """The colour of every pixel; of spline tubes, each tube counts as a streamline.
 
     Instances never change; the arrays in them must not be changed either. Make another one with
     `dataclasses.replace`.
@@ -144,7 +144,7 @@ class Colouring:
 
     @property
     def kind(self) -> ColourMode:
-        """What the mode is."""
+        """The mode's properties."""
         return MODES[self.mode]
 
     @property

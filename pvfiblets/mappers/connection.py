@@ -1,6 +1,6 @@
 """`Connection`: what VTK's half of a mapper is connected to.
 
-Mostly a few triangles that stand for what is drawn (`pvfiblets.mappers.proxy`). Whoever connects something else, by
+Mostly a few triangles that stand for the drawable (`pvfiblets.mappers.proxy`). Any other connection, by
 ``SetInputConnection`` or ``SetInputData`` from Python or C++, is noticed by the mapper's ``ModifiedEvent``, and gets a
 filter between (`pvfiblets.mappers.vtk_input.VtkInput`). While VTK's code reads real lines, these are connected.
 """
@@ -27,7 +27,7 @@ _SETTINGS = ("ScalarVisibility", "ColorMode", "ScalarMode", "InterpolateScalarsB
 
 
 class Connection:
-    """What VTK's half of a mapper is connected to; the mapper is not kept alive."""
+    """The input of VTK's half of a mapper; the mapper is not kept alive."""
 
     proxy: vtkPolyData | None = None
     """The triangles."""
@@ -46,7 +46,7 @@ class Connection:
         return self._settings is not None
 
     def show(self, proxy: vtkPolyData | None, *, connect: bool) -> None:
-        """Have VTK draw other triangles; where no filter puts them out, ``connect`` says whether to do so yet."""
+        """Connect other triangles; where no filter puts them out, ``connect`` decides whether to do so yet."""
         self.proxy = proxy
         if self.input is not None:
             if not self.input.executing:

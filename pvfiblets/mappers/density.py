@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["TONES", "Density"]
 
 TONES = ("log", "sqrt", "linear")
-"""How brightness grows with the number of lines."""
+"""Functions from the number of lines to brightness."""
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,7 @@ class Density(ShaderEffect):
         return Sums(ctx)
 
     def prepare(self, kept: Sums, draw: Draw) -> Mapping[str, Any]:
-        """Have the engine add up, unless VTK selects."""
+        """Add up lines in the engine, unless VTK selects."""
         if draw.renderer.GetSelector() is not None:
             return kept.textures(draw, None)
         counts = draw.colouring.mode == "pixel_count"

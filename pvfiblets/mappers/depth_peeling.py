@@ -1,7 +1,7 @@
 """An effect that lets lines be looked through: several layers of the picture, blended in order.
 
 The mapper's geometry then has two triangles for each layer, the farthest first (`pvfiblets.mappers.proxy`), and the
-engine keeps as many layers (`pvfiblets.engine.fiblets.gather.depth_peeling`). While the actor is opaque neither is
+engine has one for each (`pvfiblets.engine.fiblets.gather.depth_peeling`). While the actor is opaque neither is
 drawn, and no layer behind the nearest is made.
 """
 
@@ -28,7 +28,7 @@ __all__ = ["Layers", "layers_of", "with_layers"]
 
 
 class _Held:
-    """What is kept in one window: the engine that has layers, or empty textures in their place."""
+    """State of one window: the engine that has layers, or empty textures in their place."""
 
     def __init__(self, ctx: Any) -> None:
         self._engine: Any = None
@@ -67,7 +67,7 @@ class _Held:
 
 @dataclass(frozen=True)
 class Layers(ShaderEffect):
-    """Where the actor is translucent, several layers show.
+    """Shows several layers where the actor is translucent.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ class Layers(ShaderEffect):
         return _Held(ctx)
 
     def prepare(self, kept: _Held, draw: Any) -> Mapping[str, Any]:
-        """Have the engine draw the layers, unless nothing shows through or VTK selects."""
+        """Draw the layers in the engine, unless nothing shows through or VTK selects."""
         through = draw.renderer.GetSelector() is None and draw.actor.HasTranslucentPolygonalGeometry()
         arrays = kept.layers(draw, self.count) if through else kept.empty()
         names = {"fibletDepthLayers": "depth", "fibletIdLayers": "ids", "fibletPositionLayers": "position"}
@@ -105,7 +105,7 @@ class Layers(ShaderEffect):
         return textures
 
     def set_uniforms(self, kept: _Held, program: Any, draw: Any) -> None:  # noqa: ARG002  as all effects
-        """Say how many there are."""
+        """Set the number of layers."""
         program.SetUniformi("fibletLayerCount", kept.count)
 
 

@@ -1,4 +1,4 @@
-"""What mappers draw, as lines with the colours that the picture has: for exporters, pickers and views in browsers."""
+"""Mappers' lines with the picture's colours: for exporters, pickers and views in browsers."""
 
 from __future__ import annotations
 
@@ -111,7 +111,7 @@ def _point_flags(
     """Bits of the points of some streamlines, end to end."""
     from pvfiblets.codec.streamline_ranges import StreamlineRanges
 
-    places = StreamlineRanges.of(fiblets).at(ids)
+    places = StreamlineRanges.from_fiblets(fiblets).at(ids)
     starts = np.cumsum(places.points) - places.points
     rows = np.arange(int(places.points.sum())) + np.repeat(places.point - starts, places.points)
     flags: npt.NDArray[np.bool_] = (words[rows >> 5] >> (rows & 31).astype(np.uint32) & 1).astype(bool)

@@ -176,7 +176,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
 
     @property
     def options(self) -> AnyOptions:
-        """What can be chosen about drawing; set others to change it from the next frame on."""
+        """Options of drawing; set others to change it from the next frame on."""
         return self._options
 
     @options.setter
@@ -186,7 +186,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
 
     @property
     def colouring(self) -> Colouring:
-        """Where the colours come from; set another `Colouring` to change them."""
+        """Source of colours; set another `Colouring` to change them."""
         return self._colouring
 
     @colouring.setter
@@ -360,7 +360,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         slot.drawn[address] = Drawn(weak(renderer), viewport, view, style)
 
     def layers_samples(self, renderer: vtkRenderer) -> bool:  # noqa: ARG002
-        """Say whether samples of all that a renderer shows can be drawn at once."""
+        """Return whether samples of all that a renderer shows can be drawn at once."""
         return False
 
     def _wanted(self, renderer: vtkRenderer, frame: Frame, sample: bool | None) -> tuple[View, Style]:
@@ -427,7 +427,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         return 0.0
 
     def _widened(self, style: Any, frame: Frame) -> bool:  # noqa: ARG002
-        """Say whether some lines may be drawn into other pixels than those whose middles they cover."""
+        """Return whether some lines may be drawn into other pixels than those whose middles they cover."""
         return False
 
     def _whole_style(self, renderer: vtkRenderer, viewport: tuple[int, int, int, int]) -> Style:
@@ -597,7 +597,7 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
 
     @property
     def _address(self) -> str:
-        """What windows know the mapper by."""
+        """Key of the mapper in windows."""
         return self.GetAddressAsString("")
 
     @property

@@ -16,7 +16,7 @@ class Options:
     NOT_MADE_WITH: ClassVar[frozenset[str]] = frozenset()
 
     def __post_init__(self) -> None:
-        """Let None stand for no culling, and check the values."""
+        """Check the values; None stands for no culling."""
         if getattr(self, "culling", None) == "none":
             object.__setattr__(self, "culling", None)
         self._check()
@@ -35,7 +35,7 @@ class Options:
 
 @dataclass(frozen=True)
 class EngineOptions(Options):
-    """What can be chosen about drawing that does not show in the picture.
+    """Options of drawing that do not change the picture.
 
     Parameters
     ----------

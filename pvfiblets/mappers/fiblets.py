@@ -213,11 +213,11 @@ class FibletMapper(CutMapper[EngineOptions]):
             return thinned_engine(context, slot, self._drawn, self._filtering, self._make)
         return engine
 
-    def draw_ahead(self, renderer: vtkRenderer, sample_camera: Any = None) -> Iterator[None]:
+    def draw_in_pieces(self, renderer: vtkRenderer, sample_camera: Any = None) -> Iterator[None]:
         """Draw, piece by piece, what the next frame of a renderer needs; the frame then finds it drawn.
 
         Yields after each piece (`pvfiblets.engine.drawable.Drawable.render_in_pieces`). Others may draw in between, and
-        anything may change: what is drawn then serves nobody. Nothing is drawn for a window that has not shown the
+        anything may change: the picture is then useless. Nothing is drawn for a window that has not shown the
         actor yet, while `vtkHardwareSelector` selects, or where VTK draws real lines.
 
         Parameters
@@ -250,7 +250,7 @@ class FibletMapper(CutMapper[EngineOptions]):
                 return
 
     def layers_samples(self, renderer: vtkRenderer) -> bool:
-        """Say whether samples of what a renderer shows can be drawn at once: of opaque lines, each pixel by itself."""
+        """Return whether a renderer's samples can be drawn at once: for opaque lines, each pixel by itself."""
         actor, context = self.actor, self._context_in(renderer)
         if actor is None or context is None or self.is_readable or self._empty or not self._has_edges or self._sums_up:
             return False
@@ -329,7 +329,7 @@ class FibletMapper(CutMapper[EngineOptions]):
         return None if found is None else (int(found.texels["ids"][0]), float(found.texels["position"][0]))
 
     def region_flags(self, region: Any, sampling: Sampling = "lines") -> Any:
-        """Say how each streamline lies to a region, by the GPU of a window that draws it, else by the CPU.
+        """Return how each streamline lies to a region, by the GPU of a window that draws it, else by the CPU.
 
         Parameters
         ----------

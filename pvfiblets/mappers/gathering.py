@@ -1,4 +1,4 @@
-"""What effects share that show all lines of a pixel: the sums that the engine makes of them, as textures and uniforms.
+"""The base of effects that show all lines of a pixel: the engine's sums, as textures and uniforms.
 
 The engine adds up what lines add (`pvfiblets.engine.fiblets.gather.gathering`); which colours they have is the
 mapper's to say.
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["Sums", "paint_of"]
 
 _SHOULDER = np.array([-1.0, 1.0, 1.0]) / np.sqrt(3.0)
-"""Where light comes from, in view coordinates (``shaders/resolve/line_light.glsl``)."""
+"""Direction of light in view coordinates (``shaders/resolve/line_light.glsl``)."""
 
 
 def paint_of(draw: Draw, *, lit: bool, opacity: float | None = None) -> Paint:
@@ -49,7 +49,7 @@ def paint_of(draw: Draw, *, lit: bool, opacity: float | None = None) -> Paint:
 
 
 class Sums:
-    """What an effect keeps in one window: the engine that has sums, and empty textures where there are none.
+    """An effect's state in one window: the engine that has sums, or empty textures.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ class Sums:
         return self._outside.copy_of_window(draw.renderer, viewport[2:]) if found is None else found
 
     def set_uniforms(self, program: Any) -> None:
-        """Say how to read the sums."""
+        """Set the shape of the sums."""
         held = self.held
         program.SetUniform2i("fibletSumShape", (0, 0) if held is None or not held.words else held.shape)
 

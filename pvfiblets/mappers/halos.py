@@ -39,7 +39,7 @@ BLACK: Colour = (0.0, 0.0, 0.0)
 
 @dataclass(frozen=True)
 class HaloOptions(Options):
-    """What can be chosen about drawing lines and points with halos that does not show in the picture.
+    """Options of drawing lines and points with halos that do not change the picture.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def halo_renderer(ctx: Any, drawn: Any, **options: Any) -> Any:
 
 @dataclass(frozen=True)
 class Strips(ShaderEffect):
-    """A `pvfiblets.mappers.shader_effects.MapperEffect` by which the halos in the G-buffer have a colour.
+    """A `pvfiblets.mappers.shader_effects.MapperEffect` that colours the halos in the G-buffer.
 
     Parameters
     ----------
@@ -118,8 +118,8 @@ class HaloMapper(EngineMapper[HaloOptions]):
         Of lines and points. By default they are black, and connected data are coloured as by any ``vtkMapper``:
         by its active scalars, or in the colour of the actor's property.
     halo_color : tuple of 3 floats, optional
-        RGB between 0 and 1; None for the renderer's background. When left out, halos are white, and around what is
-        connected of the background's colour.
+        RGB between 0 and 1; None for the renderer's background. When left out, halos are white; around
+        connected lines they have the background's colour.
     options : HaloOptions, optional
         What does not show.
     renderer_factory : callable, optional
@@ -163,7 +163,7 @@ class HaloMapper(EngineMapper[HaloOptions]):
 
     @property
     def drawn(self) -> Drawn:
-        """What is drawn."""
+        """The drawn data."""
         drawn: Drawn = self._drawn
         return drawn
 

@@ -1,8 +1,8 @@
-"""`KeptViews`: of a window with several views, those in which nothing has changed keep their picture.
+"""`KeptViews`: in a window with several views, unchanged views keep their picture.
 
 VTK clears and draws each view within its own viewport, into a framebuffer of the window's that stays from frame to
-frame. So a view that is not drawn (``vtkRenderer::SetDraw``) shows what it showed, at no cost: nothing is copied, read
-or drawn again. Before each frame of the window, what each view would show is compared with what it showed last
+frame. So a view that is not drawn (``vtkRenderer::SetDraw``) still shows its last picture, at no cost: nothing is
+copied, read or drawn again. Before each frame of the window, the state of each view is compared with its last one
 (`pvfiblets.mappers.scene_state`), and views in which both are the same are not drawn in that frame.
 """
 
@@ -32,7 +32,7 @@ class KeptViews:
     renderers : iterable of vtkRenderer
         Views that do not overlap. Others of the window are drawn in every frame.
     prepare : callable
-        Called before each frame, to bring views up to date that are made by who draws them.
+        Called before each frame, to update views before their states are compared.
 
     Attributes
     ----------
@@ -58,7 +58,7 @@ class KeptViews:
         self._tags = [window.AddObserver(event, call) for event in ("StartEvent", "EndEvent")]
 
     def stop(self) -> None:
-        """Have all views drawn in every frame again; twice is harmless."""
+        """Draw all views in every frame again; twice is harmless."""
         window = self._window.Get()
         while self._tags:
             tag = self._tags.pop()
@@ -68,13 +68,13 @@ class KeptViews:
         self._shown.clear()
 
     def follow(self, renderer: Any) -> None:
-        """Have one more view drawn only where it has changed."""
+        """Add a view that is drawn only where it has changed."""
         self._renderers.append(renderer)
         self.frames[renderer.GetAddressAsString("")] = 0
         self._shown.clear()
 
     def forget(self) -> None:
-        """Have all views drawn in the next frame."""
+        """Draw all views in the next frame."""
         self._shown.clear()
 
     def _start(self) -> None:

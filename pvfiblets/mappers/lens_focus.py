@@ -34,13 +34,13 @@ LONGEST = 0.1
 
 @dataclass(frozen=True)
 class DepthOfField:
-    """What is in focus, and how blurred the rest is.
+    """The focus of a lens, and the blur around it.
 
     Parameters
     ----------
     focal_distance : float, None or str
-        mm from the viewer's plane; None for the camera's focal point; ``'cursor'`` for what is nearest under the mouse,
-        or ``'center'`` for what is nearest in the middle, the last one where nothing is there.
+        mm from the viewer's plane; None for the camera's focal point; ``'cursor'`` for the nearest surface under the
+        mouse, or ``'center'`` for the nearest in the middle, or the last one found.
     aperture : float, optional
         mm: diameter of the lens. `APERTURE` of the height that is seen at the distance in focus by default.
     darkening : float

@@ -69,7 +69,7 @@ class _Blank:
 
 @dataclass(frozen=True)
 class TubeShading(ShaderEffect):
-    """A `pvfiblets.mappers.shader_effects.MapperEffect` by which lights fall on wide lines as on round tubes.
+    """A `pvfiblets.mappers.shader_effects.MapperEffect` that lights wide lines like round tubes.
 
     Only the light changes: depths stay flat. Lines one pixel wide look as they
     did, and tubes have their own normals. It costs two bytes for each pixel.
@@ -79,7 +79,7 @@ class TubeShading(ShaderEffect):
 
     @property
     def style(self) -> Mapping[str, Any]:
-        """What it wants of the engine."""
+        """Requests to the engine."""
         return {"across": True}
 
     def make(self, ctx: Any) -> _Blank:
@@ -94,7 +94,7 @@ class TubeShading(ShaderEffect):
 
 @dataclass(frozen=True)
 class SurfaceNormals(ShaderEffect):
-    """A `pvfiblets.mappers.shader_effects.MapperEffect` by which lights fall on the normals in ``GBuffer.across``."""
+    """A `pvfiblets.mappers.shader_effects.MapperEffect` that lights surfaces by the normals in ``GBuffer.across``."""
 
     features = frozenset({"tube_normal"})
 
@@ -135,5 +135,5 @@ class Tubes(SurfaceNormals):
 
     @property
     def style(self) -> Mapping[str, Any]:
-        """What it wants of the engine."""
+        """Requests to the engine."""
         return {"radius": float(self.radius), "across": True}

@@ -16,7 +16,7 @@ LAST = ("vtkSSAOPass", "vtkEDLShading")
 
 
 class Overlay:
-    """What lies over one renderer's picture."""
+    """The overlay of one renderer's picture."""
 
     def __init__(self) -> None:
         self._held: tuple[Any, Any] | None = None

@@ -25,7 +25,7 @@ DEPTH_ERROR = 3e-7
 
 @dataclass(frozen=True, eq=False)
 class Drawn:
-    """What was last drawn for one renderer.
+    """The last picture of one renderer.
 
     Attributes
     ----------
@@ -146,7 +146,7 @@ def shown_by(mapper: Any, renderer: Any = None) -> Shown | None:
 
 @dataclass(frozen=True, eq=False)
 class PixelHit:
-    """What the G-buffer says of the pixel nearest to a place.
+    """The G-buffer's contents at the pixel nearest to a place.
 
     Attributes
     ----------

@@ -1,9 +1,9 @@
 """Effects on the whole picture of a renderer: depth of field, tones, refinement, behind scalar bars and texts.
 
-VTK draws what is opaque, translucent, volumetric, and at last what lies over all of these: scalar bars, texts. Each of
-them a prop may draw, in the order of the renderer's props. `Picture` puts a prop of its own before the first during a
+VTK draws opaque, translucent and volumetric props, and at last the overlay: scalar bars, texts. In each of these
+turns a prop may draw, in the order of the renderer's props. `Picture` puts a prop of its own before the first during a
 frame, a ``vtkContextActor``, which draws in the last of these turns only, and calls Python there: that is when the
-picture is complete, its depths are those of VTK's framebuffer, and nothing lies over it yet. Colours and depths are
+picture is complete, its depths are in VTK's framebuffer, and the overlay is not drawn yet. Colours and depths are
 read from the textures of whichever framebuffer VTK draws into, and the changed colours are drawn there; depths stay as
 they are.
 
@@ -45,7 +45,7 @@ _EVENTS = ("StartEvent", "EndEvent", "ActiveCameraEvent")
 
 _COVERAGE = "coverage"
 ANTIALIAS = ("off", _COVERAGE)
-"""How edges of lines may be smoothed."""
+"""Methods of smoothing edges of lines."""
 
 
 @dataclass(slots=True)
@@ -59,7 +59,7 @@ class _Job:
 
 
 class Picture:
-    """What is done to everything that a renderer draws.
+    """Effects on everything that a renderer draws.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ class Picture:
 
     @property
     def tone(self) -> Tone:
-        """What is done to colours."""
+        """Tone mapping and colour correction."""
         return self._tone
 
     @tone.setter
@@ -118,7 +118,7 @@ class Picture:
 
     @property
     def depth_of_field(self) -> DepthOfField | None:
-        """What is in focus; None for all."""
+        """The focus; None for everything sharp."""
         return self._depth_of_field
 
     @depth_of_field.setter
@@ -186,7 +186,7 @@ class Picture:
 
     @property
     def needs_multisamples(self) -> bool:
-        """Whether the next sample needs VTK's own samples of each pixel, or what lies over the picture does."""
+        """Whether the next sample needs VTK's own samples of each pixel, or the overlay does."""
         refinement = self._refinement
         assert refinement is not None
         if refinement.samples < SAMPLES or refinement.remaining < 2 or self.draws_at_once():
@@ -297,7 +297,7 @@ class Picture:
         renderer.Modified()
 
     def _insert(self) -> None:
-        """Have the prop be the first of the renderer's, as long as it draws: users' lists of actors lack it."""
+        """Put the prop before all others of the renderer, while it draws: users' lists of actors lack it."""
         props = self.renderer.GetViewProps()
         if props.GetNumberOfItems() == 0:
             props.AddItem(self._prop)  # there is none to insert it before
@@ -372,7 +372,7 @@ class Picture:
         self._begin()
 
     def _begin(self) -> None:
-        """Have mappers note what effects want to know of this frame: edges, and what depths lack."""
+        """Make mappers record the inputs of effects in this frame: edges, and things without depth."""
         if self._depth_of_field is not None:
             lenses[self._address] = {}
         if self._smoothing is not None:
@@ -552,14 +552,14 @@ class Picture:
 
 
 def _refinable(renderer: Any) -> bool:
-    """Say whether a picture has a camera that can be shifted, and one of them."""
+    """Return whether a picture has a camera that can be shifted, and one of them."""
     camera = renderer.GetActiveCamera()
     fixed = camera.GetUseExplicitProjectionTransformMatrix() or camera.GetUseOffAxisProjection()
     return not fixed and not renderer.GetRenderWindow().GetStereoRender()
 
 
 def _starts_empty(renderer: Any) -> bool:
-    """Say whether a renderer that draws once more begins with its background."""
+    """Return whether a renderer that draws once more begins with its background."""
     return renderer.GetLayer() == 0 and renderer.GetErase() and not renderer.GetPreserveColorBuffer()
 
 

@@ -23,7 +23,7 @@ _TEXTURE, _FLOAT = 0x1702, 0x1406
 
 
 class Painted(Protocol):
-    """What a prop calls."""
+    """Callbacks of a prop."""
 
     def paint(self) -> None:
         """Change the picture."""
@@ -45,7 +45,7 @@ class PictureProp(vtkContextActor):
 
     @property
     def actor(self) -> vtkContextActor:
-        """What a `WindowContext` asks for, to see whether it is still shown."""
+        """Actor that a `WindowContext` reads, to see whether it is still shown."""
         return self
 
     def HasOpaqueGeometry(self) -> int:  # noqa: N802  VTK's name
@@ -54,13 +54,13 @@ class PictureProp(vtkContextActor):
 
 
 class _Painter:
-    """What VTK calls."""
+    """Methods that VTK calls."""
 
     def __init__(self, picture: Painted) -> None:
         self._picture = weakref.ref(picture)
 
     def Initialize(self, _item: Any) -> bool:  # noqa: N802  VTK's name
-        """Be told of its item."""
+        """Accept any item."""
         return True
 
     def Paint(self, _item: Any, _context: Any) -> bool:  # noqa: N802  VTK's name

@@ -15,7 +15,7 @@ def proxy_polydata(bounds: Sequence[float] | None, layers: int = 1) -> vtkPolyDa
     ``reset_camera``, the clipping range and VTK's frustum culling take the bounds from them; the vertex
     shader spreads them over the part of the viewport that the bounds cover. One sits with all its
     vertices in the least corner of the bounds, the other in the greatest, so that no picker that
-    intersects geometry finds a surface or an edge in mid-air. Its vertices are told apart by a billionth of the
+    intersects geometry finds a surface or an edge in mid-air. Its vertices differ by a billionth of the
     size, inwards: VTK before 9.7 leaves out triangles whose vertices coincide.
     """
     polydata = vtkPolyData()

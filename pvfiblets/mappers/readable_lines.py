@@ -38,7 +38,7 @@ class LineReading:
     """Real lines as VTK's data of one mapper, which is not kept alive, for a while."""
 
     purpose = ""
-    """What VTK draws the lines for: ``"selection"``, ``"export"``, or nothing."""
+    """VTK's purpose of drawing the lines: ``"selection"``, ``"export"``, or nothing."""
 
     def __init__(self, mapper: EngineMapper[Any], connection: Connection, link: ActorLink) -> None:
         self._weak = weak(mapper)
@@ -49,12 +49,12 @@ class LineReading:
 
     @property
     def mapper(self) -> EngineMapper[Any]:
-        """Whose lines they are."""
+        """Mapper of the lines."""
         return cast("EngineMapper[Any]", self._weak.Get())
 
     @property
     def points(self) -> int | None:
-        """How many points the lines have; None where there are none, as of volumes."""
+        """Number of points of the lines; None without lines, as for volumes."""
         mapper = self.mapper
         if mapper._drawn is None and self._connection.input is not None:  # noqa: SLF001
             self._connection.input.Update()
@@ -108,7 +108,7 @@ class LineReading:
         )  # fmt: skip
 
     def watch(self, renderer: vtkRenderer) -> None:
-        """Be told when a renderer begins a picture, which may be one of VTK's selection."""
+        """Handle the start of a renderer's picture, which may be one of VTK's selection."""
         address = renderer.GetAddressAsString("")
         known = self._watched.get(address)
         if known is None or known.Get() is None:
@@ -155,7 +155,7 @@ def reading_of(mapper: Any) -> LineReading | None:
 def _clear_errors(mapper: Any, selector: Any) -> None:
     """Drop, after a selection, the error of OpenGL that VTK leaves when its data become lines after triangles.
 
-    It binds a buffer that it has deleted (9.7, mappers of its own too); who asks next would take the error for his own.
+    It binds a buffer that it has deleted (9.7, mappers of its own too); the next caller would see the error.
     """
     follower = weak(mapper)
 
@@ -184,7 +184,7 @@ def _same(one: tuple[Any, ...], other: tuple[Any, ...]) -> bool:
 
 @contextmanager
 def readable(window: Any, *, most: int = MOST_POINTS) -> Iterator[None]:
-    """Let VTK's code read what mappers of this package show in a window, as lines with the colours of the picture.
+    """Make a window's lines of this package readable for VTK's code, with the colours of the picture.
 
     Exporters of VTK (``vtkGLTFExporter`` and its like) and PyVista's ``export_*`` do so by themselves.
 
@@ -192,7 +192,7 @@ def readable(window: Any, *, most: int = MOST_POINTS) -> Iterator[None]:
     ----------
     window : vtkRenderWindow
     most : int
-        Points of all lines together; beyond, streamlines are left out evenly, and a warning says so.
+        Greatest number of points of all lines; beyond, streamlines are left out evenly, with a warning.
 
     Warns
     -----
@@ -223,7 +223,7 @@ def readable(window: Any, *, most: int = MOST_POINTS) -> Iterator[None]:
 
 @contextmanager
 def readable_mapper(mapper: EngineMapper[Any]) -> Iterator[None]:
-    """Let VTK's code read what one mapper shows, as often as it likes."""
+    """Make one mapper's lines readable for VTK's code, any number of times."""
     reading = mapper.reading
     data, count = reading.data(colours=True), reading.points
     _tell([reading], [count], count or 0, MOST_POINTS)

@@ -108,7 +108,7 @@ NO_HIGHLIGHTS = (Replacement("fragment", "sf = sign(df)*pow(", False, "sf = 0.0*
 
 @dataclass
 class _Edits:
-    """What pieces want done at one tag of one stage."""
+    """Changes by pieces at one tag of one stage."""
 
     parts: dict[str, list[str]] = field(default_factory=lambda: {place: [] for place in _PLACES})
     replaced: bool = False

@@ -1,4 +1,4 @@
-"""Which renderer is drawing, from where it looks (VTK's matrices in float64), and how large its pixels are."""
+"""The renderer that is drawing, its camera (VTK's matrices in float64), and the size of its pixels."""
 
 from __future__ import annotations
 
@@ -171,25 +171,25 @@ def samples_per_pixel(renderer: vtkRenderer, viewport: tuple[int, int, int, int]
     return drawn / shown if shown > 0 and drawn > shown + 1 else 1.0
 
 
-_hasty: dict[str, tuple[float, float]] = {}
+_reduced: dict[str, tuple[float, float]] = {}
 
 
-def hurry(window: Any, pixels: float, share: float = 1.0) -> None:
-    """Let a window be coarse for as long as it must be fast."""
+def reduce_detail(window: Any, pixels: float, share: float = 1.0) -> None:
+    """Draw a window with an error in pixels and a share of the streamlines, for speed; 0 and 1 end it."""
     address = window.GetAddressAsString("")
-    _hasty.pop(address, None)
+    _reduced.pop(address, None)
     if pixels > 0.0 or share < 1.0:
-        _hasty[address] = pixels, share
+        _reduced[address] = pixels, share
 
 
 def slack(renderer: vtkRenderer) -> float:
-    """Return the error in drawn pixels that :func:`hurry` allows in a renderer's window; 0 by default."""
-    return _hasty.get(renderer.GetRenderWindow().GetAddressAsString(""), (0.0, 1.0))[0] if _hasty else 0.0
+    """Return the error in drawn pixels that :func:`reduce_detail` allows in a renderer's window; 0 by default."""
+    return _reduced.get(renderer.GetRenderWindow().GetAddressAsString(""), (0.0, 1.0))[0] if _reduced else 0.0
 
 
 def wanted_share(window: Any) -> float:
-    """Return the share of the streamlines that :func:`hurry` requests in a window; 1 by default."""
-    return _hasty.get(window.GetAddressAsString(""), (0.0, 1.0))[1] if _hasty else 1.0
+    """Return the share of the streamlines that :func:`reduce_detail` requests in a window; 1 by default."""
+    return _reduced.get(window.GetAddressAsString(""), (0.0, 1.0))[1] if _reduced else 1.0
 
 
 def in_motion(renderer: vtkRenderer) -> bool:
@@ -229,7 +229,7 @@ def actors_in(prop: vtkProp) -> Iterator[vtkActor]:
 
 
 def others_before(renderer: vtkRenderer, actor: vtkProp) -> bool:
-    """Say whether VTK has drawn something opaque before an actor, whose depth may be looked at.
+    """Return whether VTK has drawn something opaque before an actor, whose depth may be looked at.
 
     False while VTK selects, which draws an invisible frame.
     """
@@ -246,7 +246,7 @@ def others_before(renderer: vtkRenderer, actor: vtkProp) -> bool:
 
 
 def others_opaque(renderer: vtkRenderer, actor: vtkProp) -> bool:
-    """Say whether anything else that a renderer shows is opaque, and so drawn before an actor that is translucent.
+    """Return whether anything else that a renderer shows is opaque, and so drawn before an actor that is translucent.
 
     Props in the plane of the screen and volumes of VTK leave no depth, though they call themselves opaque.
     """

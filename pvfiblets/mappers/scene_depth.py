@@ -1,7 +1,7 @@
 """Depth of what VTK has drawn before the fiblets, which hides some of them.
 
 VTK draws opaque actors in the order in which they were added, so a mesh that was added before the fiblets is there and
-one that was added later is not; what is translucent comes when all of them are there. The depth is that of one moment:
+one that was added later is not; translucent actors are drawn after all of them. The depth belongs to one moment:
 a picture that was culled by it must not be used again for the next frame, in which the other actors may have moved.
 """
 
@@ -50,7 +50,7 @@ class OutsideDepth:
     def copy_of_window(self, renderer: vtkRenderer, size: tuple[int, int]) -> moderngl.Texture | None:
         """Copy the depth of a renderer's part of its window's own framebuffer, whichever is bound.
 
-        Depth peeling draws what is translucent elsewhere, when all that is opaque is in that framebuffer.
+        Depth peeling draws translucent actors into other framebuffers, when all opaque ones are in that one.
         """
         framebuffer = renderer.GetRenderWindow().GetRenderFramebuffer()
         depth = None if framebuffer is None else framebuffer.GetDepthAttachmentAsTextureObject()

@@ -1,7 +1,7 @@
-"""What a renderer's picture is made of, as one value: as long as it stays the same, so does the picture.
+"""The state of a renderer's picture, as one value: as long as it stays the same, so does the picture.
 
-VTK counts changes (``GetMTime``), and draws data anew by that count alone; so what is changed without being counted is
-not in the next picture either. What lies over the picture, scalar bars and texts, is no part of it.
+VTK counts changes (``GetMTime``), and draws data anew by that count alone; so uncounted changes are
+not in the next picture either. The overlay, scalar bars and texts, is no part of it.
 """
 
 from __future__ import annotations

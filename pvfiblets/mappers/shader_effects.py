@@ -1,7 +1,7 @@
-"""What a mapper can be given beside colours: pieces of the resolve that have textures and uniforms of their own.
+"""Effects of mappers beside colours: pieces of the resolve that have textures and uniforms of their own.
 
-An effect is a value: it says which pieces of ``shaders/resolve`` it takes and what it wants of the engine. What it
-keeps on the GPU is made once for each window and lives in the window's slot. A mapper without effects draws as if this
+An effect is a value: it names its pieces of ``shaders/resolve`` and its inputs from the engine. Its
+GPU data are made once for each window and live in the window's slot. A mapper without effects draws as if this
 module did not exist.
 """
 
@@ -62,7 +62,7 @@ class Draw:
 
 
 class GpuResource(Protocol):
-    """What an effect keeps on the GPU of one window."""
+    """GPU memory of an effect in one window."""
 
     def release(self) -> None:
         """Give it back; twice is harmless."""
@@ -99,7 +99,7 @@ class MapperEffect(Protocol):
 
 
 class ShaderEffect:
-    """What most effects have in common: nothing of their own on the GPU, and no wishes to the engine."""
+    """The base of most effects: nothing of their own on the GPU, and no requests to the engine."""
 
     @property
     def features(self) -> frozenset[str]:
@@ -127,11 +127,11 @@ class ShaderEffect:
         return None
 
     def prepare(self, kept: Any, draw: Draw) -> Mapping[str, Any]:  # noqa: ARG002 - as of all effects
-        """Have no textures."""
+        """Return no textures."""
         return {}
 
     def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:
-        """Have no uniforms."""
+        """Set no uniforms."""
 
 
 def styled(style: AnyStyle, effects: Iterable[MapperEffect]) -> AnyStyle:

@@ -199,7 +199,7 @@ class DepthCue(ShaderEffect):
 class Halos(ShaderEffect):
     """Depth-dependent halos: a line cuts a gap into the lines behind it, the wider the farther they are behind.
 
-    Everts et al. 2009. A halo is there where no line is, too: it hides what is behind it, and has a depth in the scene.
+    Everts et al. 2009. A halo covers pixels without a line, too: it hides its background, and has a depth in the scene.
     Lines that a colour's alpha hides have their halos all the same; a mask of streamlines takes both away.
 
     Parameters
@@ -208,7 +208,7 @@ class Halos(ShaderEffect):
         mm from a line's edge to its halo's, at most 24 pixels of the window. By default half the distance between lines
         (`pvfiblets.mappers.spacing`), but from 1.25 to 5 pixels of the window in the middle of the data.
     depth : float, optional
-        mm by which the halo's edge lies behind the line: lines side by side whose depths differ by less leave each
+        mm from the line back to the halo's edge: lines side by side whose depths differ by less leave each
         other alone. By default 8 times the width.
     color : tuple of 3 floats, optional
         RGB between 0 and 1; by default the renderer's background.
@@ -366,7 +366,7 @@ def background(renderer: Any) -> tuple[Colour, Colour]:
 
 
 def widen(program: Any, draw: Draw) -> None:
-    """Have the resolve look at pixels as far from the lines as any halo or outline reaches."""
+    """Extend the resolve to pixels as far from the lines as any halo or outline reaches."""
     from pvfiblets.engine.effects.halos import WIDEST
 
     margin = draw.style.half_width + 2.0 + max(WIDEST, MAX_OUTLINE) * _pixel_scale(draw)

@@ -1,6 +1,6 @@
 """Cameras whose window is shifted for a moment: by a part of a pixel for a sample, by many to look beside a tile.
 
-What is drawn meanwhile is not what a user points at: a mapper does not remember it as its last picture, and who reads
+A user does not point at these frames: a mapper does not remember them as its last picture, and code that reads
 the depths of a window asks for them by `with_exact_depths`.
 """
 
@@ -70,7 +70,7 @@ def shifted(camera: Any, size: tuple[int, int], by: tuple[float, float]) -> Iter
 
 
 def is_shifted(camera: Any) -> bool:
-    """Say whether a camera is shifted now."""
+    """Return whether a camera is shifted now."""
     return camera.GetAddressAsString("") in _cameras
 
 
@@ -80,7 +80,7 @@ def note_sample(renderer: Any, *, begun: bool) -> None:
 
 
 def draws_sample(renderer: Any) -> bool:
-    """Say whether a renderer draws such a frame: what all of them are to share was found out in the one before."""
+    """Return whether a renderer draws such a frame: what all of them are to share was found out in the one before."""
     return renderer.GetAddressAsString("") in _samples
 
 

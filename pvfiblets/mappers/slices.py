@@ -40,14 +40,14 @@ class Slices(ShaderEffect):
         return Sums(ctx)
 
     def prepare(self, kept: Sums, draw: Draw) -> Mapping[str, Any]:
-        """Have the engine add up, unless nothing shows through or VTK selects."""
+        """Add up lines in the engine, unless nothing shows through or VTK selects."""
         through = draw.renderer.GetSelector() is None and draw.actor.HasTranslucentPolygonalGeometry()
         textures = kept.textures(draw, _paint(draw) if through else None, sliced=True)
         keys = None if kept.held is None else kept.held.keys
         return {**textures, "fibletSliceKeys": draw.buffer.depth if keys is None else keys}
 
     def set_uniforms(self, kept: Sums, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all effects
-        """Say how many slices there are, and how to read them."""
+        """Set the number of slices, and how to read them."""
         kept.set_uniforms(program)
         program.SetUniformi("fibletLayerCount", 1 if kept.held is None else self.count)
         paint = kept.paint

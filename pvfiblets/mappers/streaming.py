@@ -1,8 +1,7 @@
-"""How long engines that fetch parts of their sets may take for a frame, and which of them want another one.
+"""Time limits of frames for engines that fetch parts of their sets, and which of them want another one.
 
-An engine of a set larger than GPU memory (`pvfiblets.engine.fiblets.parts.streamed_renderer`) draws a complete
-picture as
-long as nobody waits for the next one. In a window that asks for more frames while it rests (`Picture.paced`) each frame
+An engine of a set larger than GPU memory (`pvfiblets.engine.fiblets.parts.streamed_renderer`) draws a complete picture
+if no other frame is waiting. In a window that draws more frames while idle (`Picture.paced`) each frame
 takes `PATIENCE` at most, and the next goes on; while the camera moves, nothing is fetched.
 """
 
@@ -22,7 +21,7 @@ PATIENCE = 0.25
 
 
 def pace(engine: Any, renderer: Any) -> None:
-    """Tell an engine of parts that is about to draw how long it may take."""
+    """Set the time limit of an engine of parts before it draws."""
     picture = picture_of(renderer)
     engine.hurried = in_motion(renderer)
     paced = picture is not None and picture.refinement is not None and picture.paced() and not draws_sample(renderer)

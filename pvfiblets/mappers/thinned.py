@@ -1,4 +1,4 @@
-"""Some of a large set's streamlines, for frames of windows that are in a hurry (`pvfiblets.mappers.scene.hurry`).
+"""Some of a large set's streamlines, for frames of reduced detail (`pvfiblets.mappers.scene.reduce_detail`).
 
 Where lines hide each other, most of a set is decoded and tested in vain, and fewer pixels do not help. An even share of
 the streamlines, always the same one, lies on the GPU beside the set from the first such frame on. What is filtered,
@@ -30,7 +30,7 @@ def thinned_engine(
     share = max(wanted, min(least / fiblets.n_fiblets, slot.renderer.share))
     if share not in slot.thinned:
         try:
-            # Alike: the programs are those of all, which are compiled already.
+            # `alike`: shares the programs of the whole set, which are compiled already.
             slot.thinned[share] = make(context.ctx, fit="sample", most=share, alike=fiblets.n_fiblets)
         except GPUMemoryError:
             slot.thinned[share] = None

@@ -1,4 +1,4 @@
-"""What lies beyond the edge of a tile, for effects that look around.
+"""Pixels beyond the edge of a tile, for effects that read neighbours.
 
 ``vtkWindowToImageFilter``, and so ``screenshot(scale=2)``, makes a picture larger than its window of tiles, each a
 render of its own. A blur that ends at a tile's edge would leave a seam, so the surroundings are drawn, too: by the same

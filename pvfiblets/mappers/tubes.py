@@ -30,7 +30,7 @@ __all__ = ["TubeMapper", "TubeOptions", "tube_renderer"]
 
 @dataclass(frozen=True)
 class TubeOptions(Options):
-    """What can be chosen about casting rays at spline tubes.
+    """Options of casting rays at spline tubes.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ class TubeMapper(EngineMapper[TubeOptions]):
 
     @property
     def tubes(self) -> SplineTubes:
-        """What is drawn."""
+        """The drawn tubes."""
         tubes: SplineTubes = self._drawn
         return tubes
 

@@ -41,7 +41,7 @@ class UniformEffect:
         return
 
     def prepare(self, kept: Any, draw: Draw) -> Mapping[str, Any]:  # noqa: ARG002 - as of all effects
-        """Have no textures."""
+        """Return no textures."""
         return {}
 
     def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:  # noqa: ARG002 - as of all effects

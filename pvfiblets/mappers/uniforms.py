@@ -1,4 +1,4 @@
-"""What the resolve's own pieces read: textures by the names of their samplers, and uniforms of VTK's program."""
+"""Inputs of the resolve's own pieces: textures by the names of their samplers, and uniforms of VTK's program."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def set_uniforms(program: Any, frame: Frame, style: Any, fiblets: Any, colouring
     x, y, width, height = frame.viewport
     program.SetUniform2i("fibletOrigin", (x, y))
     program.SetUniform2i("fibletSize", (width, height))
-    # Decoded points may lie outside the bounds, by as much as the promise.
+    # Decoded points may lie outside the bounds, by as much as the error bound.
     slack = fiblets.promise + style.reach
     rectangle = frame.rectangle(fiblets.bounds, slack, style.half_width + 2.0)
     program.SetUniform4f("fibletRectangle", rectangle)

@@ -1,4 +1,4 @@
-"""What VTK's lights and an actor's property are to light through a volume."""
+"""Lamps for light through a volume, from VTK's lights and an actor's property."""
 
 from __future__ import annotations
 

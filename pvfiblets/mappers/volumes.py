@@ -46,7 +46,7 @@ def volume_renderer(ctx: Any, volume: Any, **options: Any) -> Any:
 
 @dataclass(frozen=True, eq=False)
 class RayHit:
-    """What a pixel shows of a volume.
+    """The appearance of a volume in a pixel.
 
     Attributes
     ----------
@@ -130,7 +130,7 @@ class VolumeMapper(CutMapper[Options]):
         self._follows = follows
 
     def SetInputData(self, image: Any) -> None:  # noqa: N802 - VTK's name
-        """Have a ``vtkImageData`` drawn, which ``vtkPolyDataMapper`` would refuse."""
+        """Connect a ``vtkImageData``, which ``vtkPolyDataMapper`` would refuse."""
         self.SetInputDataObject(0, image)
 
     def _input_state(self, data: Any) -> tuple[Any, ...]:
@@ -156,7 +156,7 @@ class VolumeMapper(CutMapper[Options]):
 
     @property
     def volume(self) -> RaycastVolume:
-        """What is drawn."""
+        """The drawn volume."""
         volume: RaycastVolume = self._drawn
         return volume
 
@@ -167,7 +167,7 @@ class VolumeMapper(CutMapper[Options]):
 
     @property
     def casting(self) -> RaycastOptions:
-        """How rays are cast; set another `RaycastOptions` to change it, which keeps the colours as far as it can."""
+        """Options of ray casting; set another `RaycastOptions` to change them; the colours stay as far as they can."""
         return self._casting
 
     @casting.setter
@@ -205,7 +205,7 @@ class VolumeMapper(CutMapper[Options]):
 
     @property
     def colouring(self) -> Colouring:
-        """Where the colours of surfaces and peaks come from."""
+        """Source of the colours of surfaces and peaks."""
         return self._colouring
 
     @colouring.setter
@@ -286,7 +286,7 @@ class VolumeMapper(CutMapper[Options]):
 
         casting = self._casting
         if self.coarser is not None and in_motion(renderer):
-            casting = self.coarser.of(casting)
+            casting = self.coarser.applied_to(casting)
         shone = self.shaded if casting.mode == "composite" else casting.layered and self.lit_surfaces
         lit = shone and self.actor is not None
         return VolumeStyle(casting=casting, shading=shading_of(renderer, self.actor) if lit else None)

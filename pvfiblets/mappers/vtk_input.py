@@ -2,8 +2,8 @@
 
 VTK draws a few triangles that stand for the lines (`pvfiblets.mappers.proxy`), so these triangles are what its own
 half of the mapper must be connected to. A filter stands between: it takes the lines that the user connects, has the
-mapper make of them what the engine draws, and puts out the triangles. VTK executes it as it does any other filter,
-before bounds are asked for and before a draw, when something upstream has changed.
+mapper make the engine's data of them, and puts out the triangles. VTK executes it as it does any other filter,
+before bounds are computed and before a draw, when something upstream has changed.
 """
 
 from __future__ import annotations

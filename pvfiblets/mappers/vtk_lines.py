@@ -1,4 +1,4 @@
-"""What the mappers draw of the PolyData that VTK's pipeline brings, in the colours that ``vtkMapper`` is set to."""
+"""The mappers' data from the PolyData of VTK's pipeline, in the colours that ``vtkMapper`` is set to."""
 
 from __future__ import annotations
 

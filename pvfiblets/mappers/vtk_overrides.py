@@ -2,7 +2,7 @@
 
 VTK's own hook for Python, ``vtkClass.override``, has ``vtkCellPicker()`` and its like make objects of these classes
 from the first actor of this package on. They do what VTK's do; only around each pick and each export mappers are
-readable (`pvfiblets.mappers.readable_lines`). A picker that was made before, or is of a class of its own, is told by
+readable (`pvfiblets.mappers.readable_lines`). A picker that was made before, or is of a class of its own, is handled by
 `follow`.
 """
 
@@ -29,7 +29,7 @@ EXPORTERS = {
 
 
 def follow(picker: Any) -> Any:
-    """Have a picker find what this package draws: ``vtkPicker``, ``vtkPointPicker``, ``vtkCellPicker`` or their like.
+    """Make a picker find this package's actors: ``vtkPicker``, ``vtkPointPicker``, ``vtkCellPicker`` or their like.
 
     Those that are made after the first actor of this package do so by themselves.
 

@@ -1,7 +1,7 @@
-"""Which array of its input colours a mapper, and how, by the settings that every ``vtkMapper`` has.
+"""The array of its input that colours a mapper, by the settings that every ``vtkMapper`` has.
 
 ``ScalarVisibility``, ``ScalarMode``, ``SelectColorArray``, ``ColorMode``, ``LookupTable``, ``ScalarRange`` and
-``UseLookupTableScalarRange`` mean what they do in VTK. Numbers at points are interpolated along a line before they
+``UseLookupTableScalarRange`` mean the same as in VTK. Numbers at points are interpolated along a line before they
 are mapped, as with ``InterpolateScalarsBeforeMapping``. Colours of whole lines are mapped by VTK itself.
 """
 
@@ -31,7 +31,7 @@ Bytes = npt.NDArray[np.uint8]
 
 @dataclass(frozen=True, eq=False)
 class Paint:
-    """What colours lines, or an image.
+    """The colours of lines, or of an image.
 
     Attributes
     ----------
@@ -106,7 +106,7 @@ def paint_of(mapper: Any, data: Any) -> Paint | None:
 
 
 def _table_of(mapper: Any, array: Any) -> Any:
-    """Return the look-up table, with the range by which the mapper uses it."""
+    """Return the look-up table, with the mapper's range for it."""
     own = array.GetLookupTable() if array.IsA("vtkDataArray") else None
     if own is not None:
         mapper.SetLookupTable(own)

@@ -61,7 +61,7 @@ def _attach() -> Any:
 
 
 class Slot:
-    """What one mapper keeps in one window.
+    """A mapper's state in one window.
 
     Attributes
     ----------
@@ -76,7 +76,7 @@ class Slot:
     effects : dict
         Name of an effect to its class and its GPU resources (`pvfiblets.mappers.shader_effects`).
     thinned : dict
-        Share of the streamlines to a renderer of these, for frames in a hurry (`pvfiblets.mappers.thinned`).
+        Share of the streamlines to a renderer of these, for frames of reduced detail (`pvfiblets.mappers.thinned`).
     """
 
     def __init__(self, mapper: Any) -> None:
@@ -184,7 +184,7 @@ class WindowContext:
         return self.window is not None and self._witness.GetHandle() != 0
 
     def tell_lost(self, renderer: Any) -> None:
-        """Say once that VTK shows nothing translucent: where its peeling of depth failed, with an error left behind.
+        """Warn once that VTK shows nothing translucent: where its depth peeling failed, with an error left behind.
 
         Some drivers refuse the copy of a multi-sampled depth that peeling begins with; meshes vanish as well.
         """
@@ -207,11 +207,11 @@ class WindowContext:
     def foreign(self) -> Iterator[None]:
         """Keep VTK's record of the GL state true around GL calls that are not VTK's.
 
-        And moderngl's: it binds, whenever it has made a framebuffer, the one that it remembers, and what was bound
+        And moderngl's: whenever it has made a framebuffer, it binds the one that it remembers, and the one bound
         when it was attached may be gone. Framebuffer 0 never is; VTK binds its own again at the end.
 
-        An error of OpenGL that VTK has left behind (peeling of depth in a multi-sampled window does) is dropped: who
-        asks next, such as after making a buffer, would take it for his own.
+        An error of OpenGL that VTK has left behind (peeling of depth in a multi-sampled window does) is dropped: the
+        next caller, such as after making a buffer, would take it for its own.
         """
         state = self.window.GetState()
         state.Reset()
@@ -309,7 +309,7 @@ def _windows_of(mapper: Any) -> dict[str, Any]:
 def make_current_again(mapper: Any) -> None:
     """Make the window current that draws a mapper whose actor is in several.
 
-    VTK has just deleted what it had in another of them, and on EGL leaves that one current.
+    VTK has just deleted objects of another of them, and on EGL leaves that one current.
     """
     windows = _windows_of(mapper)
     for window in windows.values() if len(windows) > 1 else ():

@@ -21,7 +21,7 @@ __all__ = ["fiblet_bytes"]
 _MEMBERS = ("pages", "rank_to_id", "anchors", "anchors_low", "decoding", "codes", "reach", "ends")
 """In this order, after values of points: a page that gets the file from its start has all that the first codes need.
 
-The page reads none of the last two, by which pvfiblets opens the file.
+The page skips the last two, which pvfiblets needs to open the file.
 """
 
 

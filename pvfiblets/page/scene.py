@@ -1,4 +1,4 @@
-"""What a page shows, as plain data; ``client/src/scene.ts`` is the same for the page's script."""
+"""The scene of a page, as plain data; ``client/src/scene.ts`` is the same for the page's script."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ class Light:
 
 @dataclass
 class PageScene:
-    """What a page shows.
+    """The scene of a page.
 
     Attributes
     ----------
@@ -111,8 +111,8 @@ class PageScene:
         self.blobs.append(data if isinstance(data, bytes) else np.ascontiguousarray(data).tobytes())
         return len(self.blobs) - 1
 
-    def once(self, what: tuple[Any, ...], make: Callable[[], Made]) -> Made:  # noqa: ARG002 - for those that keep it
-        """Return what takes long to make of some things; scenes that are made again and again keep it."""
+    def once(self, what: tuple[Any, ...], make: Callable[[], Made]) -> Made:  # noqa: ARG002 - used by subclasses
+        """Return a result that takes long to make; scenes that are made again and again keep it."""
         return make()
 
     def add_layer(self, layer: dict[str, Any], bounds: Sequence[float]) -> None:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @pv.register_dataset_accessor("fiblets", pv.PolyData)
 class FibletsAccessor:
-    """What can be done with a PolyData's lines.
+    """Methods for a PolyData's lines.
 
     Parameters
     ----------

@@ -27,11 +27,11 @@ from pvfiblets.plotting.settings import Given, Setting, Settings
 from pvfiblets.plotting.settings import arguments as settings_of_call
 from pvfiblets.plotting.shared_settings import Common
 from pvfiblets.plotting.source_changes import SourceChanges
-from pvfiblets.plotting.words_of_add_mesh import why_not
+from pvfiblets.plotting.unsupported_arguments import why_not
 
 
 class Registered(Protocol):
-    """What an actor must have to be kept; besides, it is a :class:`pyvista.Actor`."""
+    """The interface of registered actors, which also are :class:`pyvista.Actor`."""
 
     name: Any
     prop: Any
@@ -40,12 +40,12 @@ class Registered(Protocol):
 
     @property
     def memory_address(self) -> str:
-        """What VTK knows it by."""
+        """VTK's address of it."""
         ...
 
     @property
     def scalars_title(self) -> str | None:
-        """What its scalar bar says; None if it needs none."""
+        """Title of its scalar bar; None if it needs none."""
         ...
 
     @property
@@ -63,7 +63,7 @@ class Registered(Protocol):
         ...
 
     def entered(self, renderer: Any) -> None:
-        """Be told that a renderer draws it from now on."""
+        """Handle that a renderer draws it from now on."""
         ...
 
     def release(self, window: Any = None) -> None:
@@ -86,7 +86,7 @@ LETTER = 0.5
 NAMES_FONT = 18
 """Size of the font of names beside a scalar bar that VTK chooses in a small window, about."""
 NAMES_SHARE = 0.42
-"""Of the window's width, for names beside a scalar bar."""
+"""Share of the window's width for names beside a scalar bar."""
 
 
 CAMERA_REACH = 2.0**53
@@ -341,7 +341,7 @@ class ActorRegistry(Generic[A]):
     # Scalar bars and legend ---------------------------------------------------------------------
 
     def _recoloured(self, actor: A) -> None:
-        """Have scalar bar and legend say what the picture shows."""
+        """Update the scalar bar and the legend."""
         self._update_bar(actor)
         for renderer, _, _ in self._renderers.values():
             entry = renderer._labels.get(actor.memory_address)  # noqa: SLF001

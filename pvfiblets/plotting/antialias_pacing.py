@@ -1,4 +1,4 @@
-"""When the samples of a resting picture are drawn: one at a time, between the events of whoever looks at it."""
+"""Timing of the samples of an idle picture: one at a time, between the user's events."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ EARLY = 0.002  # seconds that a timer may come before its time
 class Pacer:
     """Has the pictures of a plotter refined while nothing happens.
 
-    A window with an event loop is asked for a timer of one shot after each frame: of `REST` after a plain one, of
-    `PAUSE` after a sample. A window whose interactor must not
-    render is a server's, such as a notebook's: there the steps are taken by the ``asyncio`` loop that is running, and
-    in the end the plotter renders once more, for those that send its pictures.
+    In a window with an event loop, each frame starts a one-shot timer: of `REST` after a plain frame, of
+    `PAUSE` after a sample. A window whose interactor must not render is a server's, such as a notebook's: there the
+    running ``asyncio`` loop takes the steps, and in the end the plotter renders once more, for servers that send its
+    pictures.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ class Pacer:
 
     @property
     def paces(self) -> bool:
-        """Whether more frames are asked for while the picture rests."""
+        """Whether an idle picture is refined by further frames."""
         interactor = self._interactor()
         return self.by_hand or self.seen or (interactor is not None and not interactor.GetEnableRender())
 
@@ -87,7 +87,7 @@ class Pacer:
         if self._tag is None:
             self._tag = interactor.AddObserver("TimerEvent", _weakly(self._heard))
         self._due = time.monotonic() + wait
-        # PyVista calls what `add_timer_event` was given at every timer's event: its own are those to wait for.
+        # PyVista calls the callbacks of `add_timer_event` at every timer's event: wait for its own timers.
         theirs = getattr(self._plotter.iren, "_timer", None)
         if theirs is None or theirs.step + 1 >= theirs.max_steps:
             self._timer = interactor.CreateOneShotTimer(max(round(1000.0 * wait), 1))

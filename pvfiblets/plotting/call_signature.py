@@ -1,4 +1,4 @@
-"""Arguments and docs of ``add`` and ``plotter.add_...``, put together of what is declared.
+"""Arguments and docs of ``add`` and ``plotter.add_...``, built from the declarations.
 
 A component's ``_make`` has the arguments that are about the data, and a docstring; settings follow them, and then what
 all drawables have in common. The result is what ``help``, ``inspect``, Sphinx and ``plotter.pyi`` show.
@@ -90,7 +90,7 @@ def replace_method(
 def _method_of_plotters(
     name: str, call: Callable[[Any, tuple[Any, ...], dict[str, Any]], Any], doc: str, signature: inspect.Signature
 ) -> Any:
-    """Return a component that is a method: ``help(plotter.NAME)`` and ``plotter.NAME?`` say what it does."""
+    """Return a component that is a method: ``help(plotter.NAME)`` and ``plotter.NAME?`` describe it."""
     bound = signature.replace(parameters=list(signature.parameters.values())[1:])
 
     class Method:

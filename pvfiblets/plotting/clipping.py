@@ -26,7 +26,7 @@ class ClippedActor(ColouredActor):
     _clips: Mapping[str, Region] = MappingProxyType({})
 
     def clip(self, what: Any, inside: bool = True, *, name: str | None = None) -> str:
-        """Cut: show only what lies within a region, or without.
+        """Show only the part inside a region, or outside.
 
         Parameters
         ----------

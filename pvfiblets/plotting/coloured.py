@@ -1,4 +1,4 @@
-"""What all actors of this package have in common: colours by PyVista's rules, place, life and report."""
+"""The base of all actors of this package: colours by PyVista's rules, place, life and report."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ class ColouredActor(Settings, pv.Actor):
 
     @property
     def _drawn(self) -> Any:
-        """What is drawn."""
+        """The drawn data."""
         raise NotImplementedError
 
     def _as_polydata(self) -> pv.PolyData:
@@ -109,7 +109,7 @@ class ColouredActor(Settings, pv.Actor):
     # What a component asks ----------------------------------------------------------------------
 
     def entered(self, renderer: Any) -> None:
-        """Be told that a renderer draws the actor from now on."""
+        """Handle that a renderer draws the actor from now on."""
 
     def raise_pending(self) -> None:
         """Raise what drawing stored, once."""
@@ -123,7 +123,7 @@ class ColouredActor(Settings, pv.Actor):
 
     @property
     def scalars_title(self) -> str | None:
-        """What a scalar bar says; ``None`` if the present colours need none."""
+        """Title of the scalar bar; ``None`` if the present colours need none."""
         return self._scalars.title if self._scalars is not None and self._scalars.mapped else None
 
     @property
@@ -188,7 +188,7 @@ class ColouredActor(Settings, pv.Actor):
         self._bar()
 
     def _bar(self) -> None:
-        """Have scalar bar and legend follow."""
+        """Update the scalar bar and the legend."""
         if self._bar_changed is not None:
             self._bar_changed(self)
 
@@ -251,7 +251,7 @@ class ColouredActor(Settings, pv.Actor):
         return self._opacity_by
 
     def _fade_by(self, choice: Any, found: Opacities, instead: str) -> None:
-        """Have opacities beside the property's; refused ones leave all as it was."""
+        """Set opacities beside the property's; invalid ones change nothing."""
         if found.transfer is not None and (self._scalars is None or not self._scalars.mapped):
             raise ValueError(
                 f"opacity {choice!r} follows the numbers of a colour map, but there are none; give scalars, or one "

@@ -1,4 +1,4 @@
-"""From numbers to colours: PyVista's look-up table and the mapper's colouring, always in step.
+"""Colours of numbers: PyVista's look-up table and the mapper's colouring, always in step.
 
 One :class:`pyvista.LookupTable` per actor serves both the picture and the scalar bar, so the two
 cannot disagree: the mapper is handed this table's own bytes and range.
@@ -38,7 +38,7 @@ def label_colours(count: int) -> list[Any]:
 
 @dataclass
 class ColourSettings:
-    """What a user may set about an actor's colours; ``None`` means PyVista's theme or the data.
+    """A user's settings of an actor's colours; ``None`` means PyVista's theme or the data.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Surfaces cut by regions: the triangles that lie inside, those at the region's border cut along it.
+"""Surfaces cut by regions: the triangles inside, with the triangles at the region's border cut along it.
 
 A border is followed by straight pieces. Triangles near a shape are first divided until their edges are short beside
 it, so that a ball through the middle of a large triangle cuts a round hole. Where an edge crosses the border is found
@@ -37,7 +37,7 @@ def cut_surface(surface: Any, region: Any) -> pv.PolyData:
     whole = surface if surface.is_all_triangles else surface.triangulate()
     names = list(whole.point_data.keys())
     columns = [np.asarray(whole.point_data[name], np.float64).reshape(whole.n_points, -1) for name in names]
-    rows = np.column_stack([np.asarray(whole.points, np.float64), *columns])  # what is interpolated together
+    rows = np.column_stack([np.asarray(whole.points, np.float64), *columns])  # interpolated together
     faces = np.asarray(whole.regular_faces, np.int64)
     parents = np.arange(len(faces))
     for leaf in region.leaves:
@@ -91,7 +91,7 @@ def _edges(faces: Faces) -> tuple[Faces, Faces]:
 
 
 def _inside(rows: Floats, faces: Faces, parents: Faces, region: Any) -> tuple[Floats, Faces, Faces]:
-    """Leave what lies in a region, and cut the triangles at its border."""
+    """Keep the part in a region, and cut the triangles at its border."""
     held = region.contains(rows[:, :3])
     count = held[faces].sum(axis=1)
     found, owners = [faces[count == 3]], [parents[count == 3]]

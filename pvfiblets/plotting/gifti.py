@@ -159,6 +159,6 @@ def _add(mesh: pv.PolyData, place: Path, image: Any) -> list[str]:
             colours = table.rows(numbers)
             for row, number in enumerate(numbers.tolist()):  # of surfaces label 0 has its colour, too
                 colours[row] = table.colours.get(number, colours[row])
-            colours[colours[:, 3] == 0, :3] = 128  # what is not to be seen of a surface is grey
+            colours[colours[:, 3] == 0, :3] = 128  # invisible parts of a surface are grey
             mesh.point_data[f"{name}_rgb"] = colours[codes.ravel(), :3]
     return names

@@ -1,4 +1,4 @@
-"""What users set of an actor's ``prop``, as they do of any PyVista actor, changes what is drawn.
+"""Changes that users make to an actor's ``prop``, as for any PyVista actor, take effect.
 
 VTK itself obeys opacity, lighting, ambient, diffuse and specular shares. Colour, line width and round lines are this
 package's own to draw: an actor watches its property, and takes over what changed there.
@@ -28,12 +28,12 @@ def own_writes() -> Iterator[None]:
 
 
 def is_own_write() -> bool:
-    """Say whether what is being changed is by this package."""
+    """Return whether this package is making the current change."""
     return _writing > 0
 
 
 def observe(watched: Any, method: Callable[[], None]) -> int:
-    """Have a method called whenever a VTK object is modified, and return the observer's tag; keeps no method alive."""
+    """Call a method whenever a VTK object is modified, and return the observer's tag; keeps no method alive."""
     this = weakref.WeakMethod(method)
 
     def modified(_watched: Any, _event: str) -> None:

@@ -1,4 +1,4 @@
-"""What users set of an actor's look-up table, as ``actor.mapper.lookup_table`` of a mesh, changes what is drawn.
+"""Changes that users make to an actor's look-up table, as to ``actor.mapper.lookup_table`` of a mesh, take effect.
 
 The table is written by the actor's settings, and by users. What somebody else has written counts as settings from then
 on: pictures and scalar bars show it, and other scalars keep it.
@@ -21,7 +21,7 @@ __all__ = ["LinkedTable"]
 
 @dataclass(frozen=True)
 class _Written:
-    """What a table says."""
+    """The contents of a table."""
 
     values: np.ndarray
     clim: tuple[float, float]
@@ -30,7 +30,7 @@ class _Written:
     annotations: dict[float, str]
 
     @classmethod
-    def of(cls, table: pv.LookupTable) -> _Written:
+    def from_table(cls, table: pv.LookupTable) -> _Written:
         low, high = table.scalar_range
         colours = table.nan_color, table.below_range_color, table.above_range_color
         words = {
@@ -41,9 +41,9 @@ class _Written:
 
 
 class LinkedTable:
-    """What others than an actor's settings write to its look-up table.
+    """Changes of an actor's look-up table by other code than its settings.
 
-    A method of the actor, ``modified``, is called at each change by others, who may not be done.
+    A method of the actor, ``modified``, is called at each change by other code, which may not have finished.
     """
 
     touched = False
@@ -63,7 +63,7 @@ class LinkedTable:
 
     def note(self) -> None:
         """Remember what the settings have made of the table."""
-        self._written, self.touched = _Written.of(self._table), False
+        self._written, self.touched = _Written.from_table(self._table), False
 
     def settings(self) -> dict[str, Any]:
         """Return what others have written since, as settings of colours."""
@@ -72,7 +72,7 @@ class LinkedTable:
         before, self.touched = self._written, False
         if before is None:
             return {}
-        now, found = _Written.of(self._table), dict[str, Any]()
+        now, found = _Written.from_table(self._table), dict[str, Any]()
         for name, old, new in (
             ("clim", before.clim, now.clim),
             ("log_scale", before.log_scale, now.log_scale),

@@ -1,6 +1,6 @@
-"""Mappers as PyVista's scripts know them: what they set of an actor's mapper is taken over, or told where it is.
+"""Mapper attributes of PyVista scripts: they are forwarded to the actor, or a warning names its property.
 
-Ours keep it in their actors. A mapper of VTK's takes any attribute that Python gives it, and nobody would read it.
+This package's mappers keep them in their actors. A VTK mapper takes any attribute that Python sets, and never reads it.
 """
 
 from __future__ import annotations
@@ -102,7 +102,7 @@ class PlottedLines(Plotted[AnyOptions]):
 
     @property
     def array_name(self) -> str:
-        """Name of what colours; empty without scalars. Set it to colour by another array of what is drawn."""
+        """Name of the colouring array; empty without scalars. Set it to colour by another array of the data."""
         found = self._owner._scalars  # noqa: SLF001
         return "" if found is None else str(found.name)
 
@@ -112,7 +112,7 @@ class PlottedLines(Plotted[AnyOptions]):
 
     @property
     def dataset(self) -> pv.PolyData:
-        """What is drawn as PyVista's own lines or points, made anew each time: of a large set ask for a part."""
+        """The lines as PyVista's own lines or points, made anew each time: of a large set ask for a part."""
         if self.is_readable:
             return cast("pv.PolyData", pv.wrap(self.GetDataSetInput()))
         return self._owner._as_polydata()  # noqa: SLF001
@@ -132,18 +132,18 @@ class PlottedLines(Plotted[AnyOptions]):
         self._owner._hide_scalars(not shown)  # noqa: SLF001
 
     def SetScalarVisibility(self, shown: Any) -> None:  # noqa: N802 - VTK's name
-        """Have scalars colour, or not."""
+        """Switch colouring by scalars on or off."""
         if self.actor is None:  # as it is made
             super().SetScalarVisibility(shown)
         else:
             self.scalar_visibility = bool(shown)
 
     def ScalarVisibilityOn(self) -> None:  # noqa: N802 - VTK's name
-        """Have scalars colour."""
+        """Colour by scalars."""
         self.scalar_visibility = True
 
     def ScalarVisibilityOff(self) -> None:  # noqa: N802 - VTK's name
-        """Have the colour of the actor's property count."""
+        """Colour by the actor's property."""
         self.scalar_visibility = False
 
     def _wrapped(self, data: Any) -> Any:

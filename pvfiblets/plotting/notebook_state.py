@@ -1,4 +1,4 @@
-"""What a page in a notebook and the kernel tell each other: camera, and the streamline that was picked (anywidget).
+"""State that a page in a notebook shares with the kernel: camera, and the picked streamline (anywidget).
 
 The page is a frame that the notebook keeps; this model has no view. Where the notebook has it, ``notebook_state.js``
 passes messages on between it and the frames of its name.

@@ -1,4 +1,4 @@
-"""Pages in notebooks: the frame that a cell keeps, and what it shares with a kernel while there is one.
+"""Pages in notebooks: the frame of a cell, and the state that it shares with a kernel while there is one.
 
 `show` is PyVista's backend ``"fiblets"`` of notebooks (entry point ``pyvista.jupyter_backends``).
 """
@@ -33,7 +33,7 @@ class Picked:
     Attributes
     ----------
     name : str
-        Of its actor, by which the plotter has it.
+        Name of its actor in the plotter.
     streamline : int
         Its number.
     place : tuple of 3 floats, optional
@@ -120,7 +120,7 @@ class PageView:
         return {key: list(value) if isinstance(value, tuple) else value for key, value in place.items()}
 
     def _follow(self) -> None:
-        """Have the page follow the plotter's camera, as long as somebody has this view."""
+        """Follow the plotter's camera with the page, as long as this view exists."""
         moved = weakref.WeakMethod(self._from_plotter)
         tag = self._camera.AddObserver("ModifiedEvent", lambda *_: (call := moved()) and call())
         weakref.finalize(self, self._camera.RemoveObserver, tag)

@@ -1,4 +1,4 @@
-"""What a plotter shows as a page (`pvfiblets.page`): fiblets, surfaces, slices of images, lights, camera, colour bars.
+"""A plotter's scene as a page (`pvfiblets.page`): fiblets, surfaces, slices of images, lights, camera, colour bars.
 
 What a page cannot show is named in one warning, and left out.
 """
@@ -76,7 +76,7 @@ def page_and_actors(plotter: Any, *, title: str | None = None) -> tuple[PageScen
 def add_all(
     scene: PageScene, plotter: Any, *, controls: bool = True, besides: Collection[str] = ()
 ) -> tuple[list[str], list[str]]:
-    """Have a page show what a plotter's active renderer shows, but from where."""
+    """Fill a page from a plotter's active renderer, without its camera."""
     renderer = plotter.renderer
     prepare(renderer)  # slices have their colours from then on
     scene.background = _background(renderer)
@@ -219,7 +219,7 @@ def _names(categories: Mapping[int, str], colouring: Colouring) -> list[dict[str
 
 
 def _controls(scene: PageScene, fiblets: Any, actor: Any, colouring: Colouring) -> list[dict[str, Any]]:
-    """Return numbers of streamlines that a page can choose by: those that colour, and lengths where they come soon."""
+    """Return numbers of streamlines that a page can filter by: the colouring ones, and lengths if they are cheap."""
     found: dict[str, Any] = {}
     if colouring.kind.numbers == "lines" and colouring.kind.table:
         scalars = getattr(actor, "active_scalars", None)
@@ -306,7 +306,7 @@ def camera_place(camera: Any) -> CameraPlace:
 
 
 def _lights(renderer: Any) -> Iterator[Light]:
-    """Yield the lights that are on; those of the camera as they stand to it, which their own coordinates say."""
+    """Yield the lights that are on; camera lights in camera coordinates."""
     lights = renderer.GetLights()
     for light in (lights.GetItemAsObject(i) for i in range(lights.GetNumberOfItems())):
         intensity = light.GetIntensity()

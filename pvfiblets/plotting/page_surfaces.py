@@ -100,7 +100,7 @@ def _edges(prop: Any, surface: pv.PolyData, triangles: np.ndarray) -> dict[str, 
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
     sides = np.full(len(triangles), 7, np.uint8)
-    if not surface.is_all_triangles and not surface.n_strips:  # what lies within a polygon is none of its sides
+    if not surface.is_all_triangles and not surface.n_strips:  # edges within a polygon are not drawn
 
         def keys(a: np.ndarray, b: np.ndarray) -> np.ndarray:
             return np.minimum(a, b).astype(np.int64) * surface.n_points + np.maximum(a, b)

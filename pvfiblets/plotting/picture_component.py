@@ -122,7 +122,7 @@ class PictureComponent:
     def refine(self) -> bool:
         """Draw one more accumulation sample of the plotter's idle frames, or more parts of sets larger than GPU memory.
 
-        Of scenes of nothing but lines, all samples are drawn at once, part by part.
+        In scenes of lines alone, all samples are drawn at once, part by part.
 
         Windows on a screen, notebooks and pages do it by themselves, screenshots draw all that are left. It is for
         event loops of other kinds, which call it while nothing happens.
@@ -152,7 +152,7 @@ class PictureComponent:
         Set it to ``True`` for the defaults, to a dict of what shall differ from them, or to ``False`` or ``None`` for
         off; read, it is the dict of all settings, or ``False``.
 
-        ``focal_distance``: mm from the camera to what is in focus; ``None``, the default, is the camera's focal point.
+        ``focal_distance``: mm from the camera to the plane in focus; ``None`` is the camera's focal point (default).
         ``"cursor"`` is the nearest surface under the mouse, live; ``"center"`` the nearest in the middle.
         ``aperture`` (mm): diameter of the lens: the wider, the more is blurred. ``None``, the default, is 6 % of the
         height that is seen at the distance in focus. ``darkening`` (0): 0 to 1, the share of light that things lose

@@ -27,7 +27,7 @@ def plot(source: Any, **options: Any) -> Any:
         Those of :func:`pyvista.plot` that are of plotters (``off_screen``, ``notebook``, ``window_size``, ``theme``,
         ``border`` and its like), of :meth:`pyvista.Plotter.show` (``screenshot``, ``cpos``, ``return_img``,
         ``jupyter_backend`` and its like), and ``background``, ``text``, ``zoom``, ``show_axes``, ``show_bounds``. All
-        others are those of ``plotter.add_fiblets``.
+        other arguments are passed to ``plotter.add_fiblets``.
 
     Returns
     -------
@@ -37,7 +37,7 @@ def plot(source: Any, **options: Any) -> Any:
     Raises
     ------
     TypeError
-        If an argument is one of none of them.
+        If an argument is unknown to all of these.
 
     Examples
     --------
@@ -46,7 +46,7 @@ def plot(source: Any, **options: Any) -> Any:
     >>> fiblets = pvfiblets.compress(pvfiblets.Streamlines.from_list(brain_streamlines(100)))
     >>> picture = pvfiblets.plot(fiblets, color="red", off_screen=True, screenshot=True)
     """
-    import pvfiblets.plotting.fiblets.component  # noqa: F401 - by which plotters know add_fiblets
+    import pvfiblets.plotting.fiblets.component  # noqa: F401 - registers plotter.add_fiblets
 
     def taken(*names: str) -> dict[str, Any]:
         return {name: options.pop(name) for name in names if name in options}

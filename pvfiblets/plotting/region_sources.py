@@ -1,4 +1,4 @@
-"""From what users hold to regions: meshes, bounds, planes and label volumes."""
+"""Conversion of sources to regions: meshes, bounds, planes and label volumes."""
 
 from __future__ import annotations
 

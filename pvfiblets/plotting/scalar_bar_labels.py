@@ -1,4 +1,4 @@
-"""How the numbers beside a scalar bar are written."""
+"""Labels beside a scalar bar."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 __all__ = ["label_format", "label_text"]
 
 LABELS = 5
-"""Numbers beside a bar of PyVista, if nobody says how many."""
+"""Default number of labels beside a bar of PyVista."""
 
 WHOLE = 2.0**53
 

@@ -1,6 +1,6 @@
-"""Which numbers or colours `scalars=` means, by name or as an array, for every drawable.
+"""The numbers or colours of `scalars=`, by name or as an array, for every drawable.
 
-A name is looked up among the numbers at points, then among those of whole lines, then among what is built in, which is
+A name is looked up among the numbers of points, then of whole lines, then among built-in ones, which are
 computed from the geometry. An array is recognised by its length. Arrays with three or four columns are colours, all
 others are numbers for a colour map.
 """
@@ -84,7 +84,7 @@ class Scalars:
 
     @property
     def colour_range(self) -> tuple[float, float]:
-        """The range, or one of which equal values that differ by rounding all have the first colour."""
+        """The range; widened if its values differ only by rounding, so that all have the first colour."""
         low, high = self.range
         with np.errstate(over="ignore"):
             # Compared as Python floats: NumPy would round the other side to float32.
@@ -102,7 +102,7 @@ class Scalars:
 
     @property
     def title(self) -> str:
-        """What the scalar bar says."""
+        """Title of the scalar bar."""
         return COUNTED if self.kind == "pixel_count" else UNITS.get(self.name, self.name)
 
     def distinct(self, fiblets: FibletSet) -> int:
@@ -123,14 +123,14 @@ class Scalars:
 
 @dataclass(frozen=True)
 class Numbers:
-    """What `scalars=` may name of something drawn.
+    """The values of `scalars=` for some data.
 
     Attributes
     ----------
     whole : str
         What a row of numbers is for, where it is not a point.
     count : int
-        Rows of such numbers.
+        Number of rows.
     at_points : callable
         A name to the numbers or colours of points; None where there are none.
     per_line : mapping of str to array
@@ -163,7 +163,7 @@ def find_scalars(numbers: Numbers, choice: Any, rgb: bool | None = None) -> Scal
 
 
 def direction_scalars() -> dict[str, Callable[[], Scalars]]:
-    """Return what is built in for all lines: colours of their directions."""
+    """Return the built-in scalars of all lines: colours of their directions."""
     return {name: partial(Scalars, name, name) for name in DIRECTIONS}
 
 
@@ -173,7 +173,7 @@ def name_list(names: Iterable[Any]) -> str:
 
 
 def refuse_numbers(title: str | None, rgb: bool | None) -> None:
-    """Refuse numbers, by what their scalar bar says, where colours are asked for, as `add_mesh` does."""
+    """Refuse numbers, with their scalar bar's title, where colours are expected, as `add_mesh` does."""
     if rgb and title is not None:
         raise ValueError(
             f"rgb=True asks for colours, but {title!r} has one number in each row; drop rgb, or give 3 or 4 columns"
@@ -247,7 +247,7 @@ def row_scalars(name: str, values: Any, count: int, *, whole: str = "streamline"
     if values.shape[:1] != (count,) or values.ndim > 2 or values.dtype.kind not in "buif":
         raise ValueError(
             f"scalars {name!r} have shape {values.shape} and type {values.dtype}; expected "
-            f"{count} numbers, one per {whole}, or as many rows of 3 or 4 colour parts"
+            f"{count} numbers, one per {whole}, or {count} rows of 3 or 4 colour parts"
         )
     if values.ndim == 1:
         numbers = values.astype(np.float64)

@@ -1,4 +1,4 @@
-"""Where actors keep what is set of them: how a setting is read, and what changes when it is written."""
+"""Storage of settings in actors: how a setting is read, and which object changes when it is written."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ __all__ = ["COLOURS", "LATER", "MAPPER", "OPTIONS", "OWN", "PROPERTY", "Effect",
 
 
 class Place:
-    """Where an actor keeps a setting: how it is read, and what changes when it is written."""
+    """A place where an actor keeps a setting: it reads the setting, and applies its changes."""
 
     checks: ClassVar[bool] = False
     """Whether choices are looked at there, not before."""
@@ -27,7 +27,7 @@ class Place:
         raise NotImplementedError
 
     def kept(self, actor: Any, one: Argument) -> Any:
-        """Return the value that made it what it is, for a copy."""
+        """Return the value to pass to a copy."""
         return getattr(actor, one.name)
 
     made_with: ClassVar[bool] = True
@@ -89,7 +89,7 @@ class Own(Place):
         return getattr(actor, f"_read_{setting.field}")()
 
     def write(self, actor: Any, setting: Setting[Any], value: Any) -> None:
-        """Have the actor do it."""
+        """Call the actor's method."""
         getattr(actor, f"_write_{setting.field}")(value)
 
     def kept(self, actor: Any, one: Argument) -> Any:

@@ -1,4 +1,4 @@
-"""What can be set of an actor, said once.
+"""Settings of actors, each declared once.
 
 A drawable's settings are the body of one class, a :class:`Settings`, from which the actor inherits. Each
 :class:`Setting` in it is the live property of the actor, with its check and doc; the keyword argument of ``add_...``
@@ -39,7 +39,7 @@ SAME: Any = object()
 
 @dataclass(frozen=True)
 class Row:
-    """How the web page shows something that can be set.
+    """Appearance of a setting on the web page.
 
     Attributes
     ----------
@@ -55,9 +55,9 @@ class Row:
     optional : bool
         Whether ``None`` is allowed: as the data or the program sees fit.
     choices : sequence of (value, label), or function of the data
-        Of a choice; those of the setting by default.
+        Options of a choice; the setting's by default.
     limits : (low, high), or function of the data
-        Of a number; of the others what a slider should offer, and no limit. Those of the setting by default.
+        Limits of a number; for other types the range of a slider only. The setting's by default.
     whole : bool
         Whether a number has no fraction.
     read : function of the actor, optional
@@ -174,7 +174,7 @@ class Setting(Argument, Generic[T]):
     where : Place
         What it changes.
     read : function of actor, optional
-        What the property is, where it is not what is kept.
+        Value of the property, where it is not the stored one.
     row : Row, optional
         How the web page shows it; without it, the page does not have it.
     **more
@@ -271,7 +271,7 @@ class NoSetting:
 class Settings:
     """Settings, declared in the body of a subclass, which is a base of the actor that has them."""
 
-    # All of them by name, in their order; those of a class before those that it inherits.
+    # All of them by name, in their order; a class's own before inherited ones.
     DECLARED: ClassVar[dict[str, Argument]] = {}
 
     def __init_subclass__(cls, **more: Any) -> None:
@@ -299,12 +299,12 @@ class Settings:
 
 
 def _same(one: Any, other: Any) -> bool:
-    """Say whether two values are alike; arrays only if they are the same."""
+    """Return whether two values are alike; arrays only if they are the same."""
     return one is other or (not hasattr(one, "shape") and not hasattr(other, "shape") and bool(one == other))
 
 
 def arguments(settings: type[Settings]) -> dict[str, Argument]:
-    """Return those of a drawable's settings that ``add_...`` takes."""
+    """Return the settings of a drawable that ``add_...`` takes."""
     declared = settings.DECLARED.items()
     return {name: one for name, one in declared if not isinstance(one, Setting) or one.is_argument}
 
@@ -317,7 +317,7 @@ class Given(dict[str, Any]):
     settings : type
         The drawable's `Settings`.
     given : mapping, optional
-        By name; those that are no settings are left to others.
+        By name; unknown names are left to others.
 
     Attributes
     ----------
@@ -333,7 +333,7 @@ class Given(dict[str, Any]):
         super().__init__((name, one.given(given.get(name, one.default))) for name, one in self._known.items())
 
     def at(self, where: Place) -> dict[str, Any]:
-        """Return those of one place, by their names there."""
+        """Return the settings of one place, by their names there."""
         return {self._known[name].field: value for name, value in self.items() if self._known[name].where is where}
 
 

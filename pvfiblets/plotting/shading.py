@@ -1,4 +1,4 @@
-"""How an actor's lines or tubes are shaded: each effect is off, and costs nothing, until it is set."""
+"""Shading of an actor's lines or tubes: each effect is off, and costs nothing, until it is set."""
 
 from __future__ import annotations
 

@@ -28,9 +28,9 @@ class SourceChanges:
         self._times = _times(source)
 
     def warn(self, actor: Any, add: str) -> bool:
-        """Warn if the data set has changed, and return True where there is nothing to warn of any more."""
+        """Warn if the data set has changed, and return True once no further warning is needed."""
         source = self._source.Get()
-        if source is None or _drawn_by(actor) is not self._drawn:  # whoever gives other data knows how
+        if source is None or _drawn_by(actor) is not self._drawn:  # the caller gave other data
             return True
         now = _times(source)
         changed = [name for name, time in self._times.items() if now.get(name, time) != time]

@@ -1,8 +1,8 @@
 """Pictures whose background is transparent: ``plotter.screenshot(transparent_background=True)``.
 
-VTK blends smooth edges and whatever is translucent with the background's colour, and its picture keeps that. So the
-scene is drawn on two grounds: by how much a pixel differs, the ground shows through, and the rest is the colour of what
-is drawn. Halos, fog and other things of the background's colour become transparent, too.
+VTK blends smooth edges and translucent actors with the background's colour, and its picture keeps that. So the
+scene is drawn on two backgrounds: the difference of a pixel is its transparency, and the rest is the scene's colour.
+Halos, fog and other things of the background's colour become transparent, too.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def _unmixed(on_first: npt.NDArray[np.float64], on_second: npt.NDArray[np.float6
 
 @contextmanager
 def _on_ground(plotter: Any, number: int) -> Iterator[None]:
-    """Have all renderers of a plotter draw on the first or the second of their grounds meanwhile."""
+    """Draw all renderers of a plotter on the first or the second background in this scope."""
     from pvfiblets.mappers.shading import LUMINANCE, background
 
     renderers = list(plotter.renderers)

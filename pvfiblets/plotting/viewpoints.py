@@ -1,4 +1,4 @@
-"""Where the camera stands to look at a brain."""
+"""Standard cameras for a brain."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ DIRECTIONS = {
     "right": ((1, 0, 0), (0, 0, 1)),
     "oblique": ((-1, 0.8, 0.45), (0, 0, 1)),
 }
-"""Where the camera stands, and what is up in the picture (RAS+ mm)."""
+"""Direction of the camera, and the picture's upward direction (RAS+ mm)."""
 
 
 def visible_bounds(plotter: Any) -> tuple[float, ...]:
@@ -33,7 +33,7 @@ def point_camera(plotter: Any, view: str) -> None:
     Nothing is rendered.
     """
     direction, up = DIRECTIONS[view]
-    plotter.renderer.view_vector(direction, viewup=up, render=False)  # those of the plotter itself do render
+    plotter.renderer.view_vector(direction, viewup=up, render=False)  # the plotter's own methods render
     plotter.renderer.reset_camera(render=False)
     camera, bounds = plotter.camera, visible_bounds(plotter)
     low, high = np.array(bounds[::2]), np.array(bounds[1::2])

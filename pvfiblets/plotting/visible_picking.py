@@ -1,4 +1,4 @@
-"""PyVista's rectangles that pick what is visible: they find triangles only, and lines of nobody; so that is told.
+"""PyVista's rectangle picking of visible cells finds only triangles, never lines, so it warns.
 
 PyVista looks for the cells that VTK selected among the triangles of a mesh, which lines have none of. All its other
 pickers find this package's lines (`pvfiblets.mappers.vtk_overrides`).

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 __all__ = ["ELEVATION", "VERTICAL_ANGLE", "VIEWS", "Camera", "Lens", "by_turns", "orbit", "unit"]
 
-VERTICAL_ANGLE = 45.0  # degrees; this and the distances are those of Russig et al. 2020, section 4
+VERTICAL_ANGLE = 45.0  # degrees; this and the distances follow Russig et al. 2020, section 4
 VIEWS = {"far": 1.0, "close": 1.0 / 3.0}
 ELEVATION = 15.0  # degrees above the plane of the orbit
 
@@ -32,24 +32,24 @@ class Camera:
 
     @property
     def pixels(self) -> float:
-        """What 1 mm takes in the picture at a distance of 1 mm."""
+        """Pixels of 1 mm at a distance of 1 mm."""
         return 0.5 * self.size[1] / math.tan(math.radians(VERTICAL_ANGLE / 2))
 
     @property
     def backwards(self) -> Array:
-        """From the centre to the eye, a unit vector."""
+        """Unit vector from the centre to the eye."""
         away = self.eye - self.centre
         return away / np.linalg.norm(away)
 
     @property
     def world_to_camera(self) -> Array:
         """(4, 4): x to the right, y up, z towards the viewer, the eye at 0."""
-        return Lens.of(self).world_to_camera
+        return Lens.from_camera(self).world_to_camera
 
     @property
     def model_view_projection(self) -> Array:
         """(4, 4) data coordinates to OpenGL clip coordinates."""
-        return Lens.of(self).model_view_projection
+        return Lens.from_camera(self).model_view_projection
 
     def aim(self, plotter: Any) -> None:
         """Make a plotter look through this camera."""
@@ -99,14 +99,14 @@ class Lens:
 
     size: tuple[int, int]
     eye: Array  # (3,) mm
-    backwards: Array  # (3,) unit vector from what is looked at to the eye; not upright
+    backwards: Array  # (3,) unit vector from the target to the eye; not upright
     slant: float  # Tangent of half the angle from top to bottom
     # mm from the eye's plane
     near: float
     far: float
 
     @classmethod
-    def of(cls, camera: Camera) -> Lens:
+    def from_camera(cls, camera: Camera) -> Lens:
         """Return the lens of an orbit's camera."""
         slant = float(np.tan(np.radians(VERTICAL_ANGLE / 2)))
         return cls(camera.size, camera.eye, camera.backwards, slant, camera.near, camera.far)
@@ -119,7 +119,7 @@ class Lens:
 
     @property
     def pixel(self) -> float:
-        """What a pixel takes at 1 mm from the eye, mm."""
+        """Size of a pixel at 1 mm from the eye, mm."""
         return 2.0 * self.slant / self.size[1]
 
     @property
@@ -155,7 +155,7 @@ class Lens:
         return unit(local @ self.axes), forwards
 
     def depth(self, w: Array) -> Array:
-        """Return window depth, 0 to 1, of what lies w in front of the eye."""
+        """Return window depth, 0 to 1, at w in front of the eye."""
         return self.far / (self.far - self.near) * (1.0 - self.near / w)
 
     def distance(self, reversed_depth: Array) -> Array:

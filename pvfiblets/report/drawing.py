@@ -1,4 +1,4 @@
-"""What the studies that draw share: a context of their own, parts that share the time, and bytes on the GPU."""
+"""The base of studies that draw: a context of their own, parts that share the time, and bytes on the GPU."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from .study import Options, Unavailable
 __all__ = ["Part", "WindowPart", "data_bytes", "drawing_context", "run_parts"]
 
 Part: TypeAlias = Callable[[Any, Options], Iterator[Record]]
-"""Of a study: from a context and options to records."""
+"""A part of a study: from a context and options to records."""
 
 WindowPart: TypeAlias = Callable[[Options], Iterator[Record]]
-"""Of a study: draws in windows."""
+"""A part of a study that draws in windows."""
 
 OF_THE_PICTURE = ("gbuffer", "occlusion", "framebuffer", "depth", "depth of tubes", "marks of tubes")
 """Buffers that grow with the picture, not with the data."""
@@ -36,7 +36,7 @@ def drawing_context(options: Options) -> Iterator[Any]:
         raise Unavailable(str(error)) from error
     options.driver = f"{ctx.info['GL_RENDERER']}, {ctx.info['GL_VERSION']}"
     try:
-        with ctx:  # what was current before is so again afterwards
+        with ctx:  # restores the previous context afterwards
             yield ctx
     finally:
         ctx.release()

@@ -1,4 +1,4 @@
-"""What the numbers of a report hold for."""
+"""The machine and versions of a report."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ MANY = 6
 """Rows that a table has for one reason."""
 
 _WHAT = (
-    "What pvfiblets approximates, how far each approximation is from the exact answer, and what it costs, beside other "
+    "The approximations of pvfiblets: the distance of each from the exact answer, and its cost, beside other "
     "methods. A study compares methods on several data sets; the program's own default is **bold**. Plots "
     "show cost to the right and error upwards, so that good methods are at the lower left."
 )
@@ -98,7 +98,7 @@ def _study(study: StudyResult, pictures: Sequence[tuple[str, str]]) -> list[str]
 
 
 def _left_out(items: Sequence[LeftOut]) -> list[str]:
-    """A table of what was left out and why; what many things have in common is said once, with them folded below."""
+    """A table of skipped measurements with reasons; a common reason is written once, with its cases folded below."""
     by_reason: dict[str, list[str]] = {}
     for item in items:
         by_reason.setdefault(item.reason, []).append(item.what)
@@ -179,12 +179,12 @@ def _is_default(study: StudyResult, label: str) -> bool:
 
 
 def _cases(cases: Sequence[CaseResult]) -> list[str]:
-    """A table for each system: what was done, what must hold, by what figure, and whether it does."""
+    """A table for each system: input, condition, measured figure, and whether it holds."""
     lines = []
     for system in dict.fromkeys(case.system for case in cases):
         lines += ["", f"### {system[:1].upper()}{system[1:]}", ""]
         lines += [
-            "| case | what is done | what must hold | measured | at most | held | |",
+            "| case | input | must hold | measured | at most | held | |",
             "|---|---|---|---|---|---|---|",
         ]
         for case in (case for case in cases if case.system == system):

@@ -1,4 +1,4 @@
-"""Which methods no other method beats."""
+"""Methods that no other method beats."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ __all__ = ["mark_fronts", "pareto"]
 
 
 def pareto(points: Sequence[tuple[float, float]]) -> list[bool]:
-    """Say of each point whether it lies on the Pareto front, less being better."""
+    """Return whether each point lies on the Pareto front, less being better."""
     on = [False] * len(points)
     finite = [i for i, point in enumerate(points) if all(map(math.isfinite, point))]
     least, before = math.inf, math.inf  # the least y so far, and where it was first reached

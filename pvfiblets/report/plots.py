@@ -19,7 +19,7 @@ __all__ = ["draw"]
 
 COLUMNS = 3
 LONGEST_TITLE = 54  # letters that a panel is wide
-# Told apart by those who see no red and green as well (Okabe and Ito), then some more.
+# Distinguishable by colour-blind readers as well (Okabe and Ito), then some more.
 COLOURS = (
     "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000",
     "#8c564b", "#7f7f7f", "#999933", "#882255", "#44aa99",
@@ -52,7 +52,7 @@ def draw(report: Report, folder: Path) -> dict[str, list[tuple[str, str]]]:
 
 
 def _points(record: Record, pair: Axes) -> list[tuple[float, float]]:
-    """Where a record is drawn: one place, or those of a series."""
+    """Places of a record in the plot: one, or a series."""
     if pair.series:
         prefix = pair.y.partition("/")[2]
         numbers = [(name, figure.value) for name, figure in record.errors.items() if name.startswith(prefix)]

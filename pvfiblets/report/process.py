@@ -61,7 +61,7 @@ class CellProcess:
             process.stdin.write(json.dumps(cell) + "\n")
             process.stdin.flush()
             line = process.stdout.readline()
-            while line and not (line.startswith("{") and line.endswith("}\n")):  # drivers print what they like
+            while line and not (line.startswith("{") and line.endswith("}\n")):  # skip what drivers print
                 line = process.stdout.readline()
         except BrokenPipeError:
             line = ""
@@ -74,13 +74,13 @@ class CellProcess:
         return {"unmeasured": f"takes more than {seconds:.3g} s here" if late.is_set() else reason}
 
     def close(self) -> str:
-        """End the process; return what it died of, if it had."""
+        """End the process; return the cause if it had died."""
         process, errors = self._process, self._errors
         if process is None or errors is None:
             return ""
         self._process = None
         if process.stdin is not None:
-            with contextlib.suppress(BrokenPipeError):  # of what it has not read
+            with contextlib.suppress(BrokenPipeError):  # of unread input
                 process.stdin.close()
         try:
             process.wait(10)

@@ -38,7 +38,7 @@ class Timing:
 
     @property
     def scale(self) -> float:
-        """What seconds for one item are multiplied by in tables and plots."""
+        """Factor of seconds for one item in tables and plots."""
         return 1e3 if self.item == FRAME else 1e9
 
     @property
@@ -61,7 +61,7 @@ class Record:
     # Such as `{"max": Figure(0.01, "mm")}` and `{"size": Figure(1.4, "bytes/point")}`; less is better
     errors: dict[str, Figure]
     costs: dict[str, Figure] = field(default_factory=dict)
-    times: dict[str, Timing] = field(default_factory=dict)  # By what is done
+    times: dict[str, Timing] = field(default_factory=dict)  # By task
     # Whether this is the program's own method, and its default
     ours: bool = False
     default: bool = False
@@ -98,7 +98,7 @@ class Axes:
     # Paths as :meth:`Record.value` takes them
     x: str
     y: str
-    # With units. Times are drawn in ns per item, those of pictures in ms per frame.
+    # With units. Times of items are drawn in ns per item, times of pictures in ms per frame.
     x_label: str
     y_label: str
     # A line for each method instead: `y` is how the names of several errors begin, which end in the numbers that
@@ -116,7 +116,7 @@ class Axes:
 
 @dataclass(frozen=True)
 class CaseResult:
-    """What one named extreme case found."""
+    """Result of one named extreme case."""
 
     # Part of the program, and the case
     system: str
@@ -147,7 +147,7 @@ class StudyResult:
     name: str
     title: str
     approximates: str
-    notes: list[str] = field(default_factory=list)  # Paragraphs that a reader needs: what was measured and how
+    notes: list[str] = field(default_factory=list)  # Paragraphs for the reader: the figures, and the method
     axes: list[Axes] = field(default_factory=list)
     records: list[Record] = field(default_factory=list)
     left_out: list[LeftOut] = field(default_factory=list)

@@ -1,8 +1,8 @@
 """A report, and the file that keeps it.
 
-``report.json`` is what :meth:`Report.to_json` writes: ``format`` (a name and a version), ``about`` (machine, versions,
+:meth:`Report.to_json` writes ``report.json``: ``format`` (a name and a version), ``about`` (machine, versions,
 seed, date), and ``studies``. Each study has its ``records``, the pairs of figures to be plotted against each other
-(``axes``), and what was ``left_out`` and why. Numbers are written with six digits, those that are not finite as null.
+(``axes``), and ``left_out``, the skipped measurements with reasons. Numbers have six digits; null if not finite.
 """
 
 from __future__ import annotations

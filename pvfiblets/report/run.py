@@ -1,4 +1,4 @@
-"""From studies to ``report.json``, the page and the plots."""
+"""A run of studies, which writes ``report.json``, the page and the plots."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Log = Callable[[str], None]
 
 
 def to_stderr(line: str) -> None:
-    """Say how far it is."""
+    """Print a line to standard error."""
     print(line, file=sys.stderr, flush=True)
 
 
@@ -40,7 +40,7 @@ def make_report(
     log: Log = to_stderr,
     clock: Callable[[], float] = time.monotonic,
 ) -> Report:
-    """Run studies and keep what they find."""
+    """Run studies and collect their records."""
     names = studies.chosen_names(only)
     if minutes is not None and not minutes > 0.0:
         raise ValueError(f"minutes is {minutes}; give a number above 0")

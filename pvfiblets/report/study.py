@@ -1,8 +1,8 @@
-"""What a study is, and what it is given: options, and a budget of time that it keeps to.
+"""The interface of a study, and its input: options, and a budget of time that it keeps to.
 
-A study is an object with ``name``, ``title``, ``approximates`` (one sentence: what is approximated, beside what),
-``axes`` (what is drawn against what), ``notes``, and ``run(options)``, which yields records as they are measured. What
-it cannot measure it leaves out with the reason (:meth:`Options.leave_out`); if it cannot measure anything (no GPU, no
+A study is an object with ``name``, ``title``, ``approximates`` (one sentence: the approximation and its reference),
+``axes`` (pairs of figures to plot), ``notes``, and ``run(options)``, which yields records as they are measured. It
+skips impossible measurements with a reason (:meth:`Options.leave_out`); if it cannot measure anything (no GPU, no
 data, a package that is missing) it raises :class:`Unavailable`, and the report names it with that reason. If it has
 ``across`` as well, paths of figures, one table shows these of all data sets.
 """
@@ -31,8 +31,8 @@ class Unavailable(Exception):  # noqa: N818 - it is a state to be reported, not 
 class Budget:
     """Seconds that may be spent, ``inf`` for no limit.
 
-    Before anything is measured, :meth:`allows` is asked. It takes the longest measurement so far as what the next one
-    may cost, so that a budget is overrun by no more than one measurement that is longer than all before it.
+    :meth:`allows` is called before each measurement. It takes the longest measurement so far as the next one's
+    cost, so that a budget is overrun by no more than one measurement that is longer than all before it.
     """
 
     def __init__(self, seconds: float, clock: Callable[[], float] = time.monotonic) -> None:
@@ -52,11 +52,11 @@ class Budget:
         return max(self._seconds - self.spent, 0.0)
 
     def share(self, part: float = 1.0) -> Budget:
-        """Return a budget of such a part of what is left, which knows of no measurement before it."""
+        """Return a budget of a part of the remaining time, without earlier measurements."""
         return Budget(self.left * part, self._clock)
 
     def allows(self, factor: float = 1.0) -> bool:
-        """Say whether another measurement fits, ``factor`` times as long as the longest so far."""
+        """Return whether another measurement fits, ``factor`` times as long as the longest so far."""
         now = self._clock()
         self._longest = max(self._longest, now - self._last)
         self._last = now
@@ -65,7 +65,7 @@ class Budget:
 
 @dataclass
 class Options:
-    """What a study is asked for."""
+    """Options of a study's run."""
 
     quick: bool = False  # A little of each
     budget: Budget = field(default_factory=lambda: Budget(float("inf")))  # This study's share of time
@@ -84,7 +84,7 @@ class Options:
         return replace(self, budget=self.budget.share(part))
 
     def leave_out(self, what: str, reason: object) -> None:
-        """Note what is not measured, and why."""
+        """Note a skipped measurement, and the reason."""
         self.left_out.append(LeftOut(what, str(reason)))
 
     def allows(self, what: str) -> bool:

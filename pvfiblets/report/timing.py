@@ -33,7 +33,7 @@ def clock_of(ctx: Any) -> tuple[Callable[[], float], str]:
 
 
 def turns_of(ctx: Any) -> Turns:
-    """Return turns that are timed by a context's clock; what they call must end with ``ctx.finish()``."""
+    """Return turns that are timed by a context's clock; their calls must end with ``ctx.finish()``."""
     return Turns(*clock_of(ctx))
 
 
@@ -64,7 +64,7 @@ class Turns:
         return len(self._calls) - 1
 
     def run(self, repeats: int, go_on: Callable[[], bool] = lambda: True) -> None:
-        """Time all calls until each has been ``repeats`` times, as long as ``go_on()`` says so before a call."""
+        """Time all calls until each has run ``repeats`` times; stop early once ``go_on()`` returns False."""
         for turn in range(1, repeats):
             for (function, inner), seconds in zip(self._calls, self._seconds, strict=True):
                 if turn >= 3 and seconds[0] > _LONG:
@@ -76,7 +76,7 @@ class Turns:
                 seconds.append(self._once(function, inner))
 
     def timing(self, number: int, items: float, item: str = "point") -> Timing:
-        """Return what was found of one call, which handles so many items."""
+        """Return the timing of one call, which handles so many items."""
         return timing(self._seconds[number], items, item, self._name)
 
     def _once(self, function: Callable[[], object], inner: int) -> float:

@@ -1,4 +1,4 @@
-"""From values on a plane to colours, and layers over each other.
+"""Colours of values on a plane, and layers over each other.
 
 Colours are float32 ``(height, width, 4)``, red, green and blue multiplied by the opacity, from 0 to 1.
 """

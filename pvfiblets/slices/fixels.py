@@ -25,7 +25,7 @@ Array = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
 SUFFIXES = (".mif", ".mif.gz", ".nii", ".nii.gz")
-"""Of the files of a folder."""
+"""Suffixes of the files of a folder."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,4 @@
-"""Where slices lie: three directions, the pixels of a plane, and the part of it that images cover."""
+"""Positions of slices: three directions, the pixels of a plane, and the part of it that images cover."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ LINES = ("peaks", "fixels")
 TENSORS = {
     "mrtrix": (0, 3, 4, 3, 1, 5, 4, 5, 2), "dipy": (0, 1, 3, 1, 2, 4, 3, 4, 5), "fsl": (0, 1, 2, 1, 3, 4, 2, 4, 5),
 }  # fmt: skip
-"""By program: which of six volumes is which part of the matrix, row by row."""
+"""Parts of the matrix in six volumes, row by row, by program."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +74,7 @@ def check_glyphs(image: SliceImage, kind: str, basis: str, full: bool, tensor: s
 def voxels_on_plane(image: SliceImage, position: Array, normal: Array) -> Ints:
     """Return ``(n, 3)`` the voxels nearest to a plane: along a grid's axis one layer, not all zero and all finite.
 
-    Of fixels those that have any.
+    For fixels, voxels with any.
     """
     step = image.affine[:3, :3].T @ normal
     start = float((image.affine[:3, 3] - position) @ normal)

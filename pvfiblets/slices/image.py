@@ -19,7 +19,7 @@ __all__ = ["KINDS", "SliceImage", "as_slice_image"]
 Array = npt.NDArray[np.float64]
 
 KINDS = ("scalars", "rgb", "direction", "labels")
-"""What the numbers of a voxel may mean."""
+"""Meanings of the numbers of a voxel."""
 
 SAMPLED = 1_000_000
 """Number of voxels for percentiles; of larger images every n-th."""
@@ -102,7 +102,7 @@ class SliceImage:
         return self.corners.mean(axis=0)
 
     def percentiles(self, low: float, high: float, index: int = 0) -> tuple[float, float]:
-        """Return two percentiles of a volume's finite numbers other than 0, which is what lies around a head."""
+        """Return two percentiles of a volume's finite numbers other than 0, the background of a head."""
         key = low, high, index
         if key not in self._percentiles:
             self._percentiles[key] = window_of(self.values[..., index], low, high)
@@ -145,7 +145,7 @@ def _of_fixels(fixels: Fixels, affine: Array, own: str, name: str | None) -> Sli
 
 
 def window_of(values: Array, low: float, high: float) -> tuple[float, float]:
-    """Return two percentiles of an image's finite numbers other than 0, which is what lies around a head."""
+    """Return two percentiles of an image's finite numbers other than 0, the background of a head."""
     flat = values.ravel(order="K")
     flat = flat[:: max(1, flat.size // SAMPLED)].astype(np.float64)
     flat = flat[np.isfinite(flat)]

@@ -130,7 +130,7 @@ def _of_lines(path: Path, text: str) -> LabelTable:
             unread.append(number)
             continue
         table.names[label], colours[label] = name, colour
-    all_shares = _are_shares(colours.values())  # a row such as 1 0 0 does not say so itself
+    all_shares = _are_shares(colours.values())  # a row such as 1 0 0 alone is ambiguous
     for label, parts in colours.items():
         full = 255.0 if all_shares or _are_shares([parts]) else 1.0
         red, green, blue = (float(part) * full for part in parts)
@@ -147,7 +147,7 @@ def _of_lines(path: Path, text: str) -> LabelTable:
 
 
 def _have_abbreviations(lines: list[str]) -> bool:
-    """Return True for a table of MRtrix, by MRtrix's rule: two names in each line, the first of which are shorter."""
+    """Return True for a table of MRtrix, by MRtrix's rule: two names in each line, the first ones shorter."""
     found = [match for line in lines if (match := _MRTRIX.match(line))]
     opaque = any(float(match[7]) > 0.0 for match in found)  # FreeSurfer has 0 there, and names of two words
     return opaque and 2 * len(found) > len(lines) and sum(len(m[2]) - len(m[3]) for m in found) < 0

@@ -1,4 +1,4 @@
-"""Where this user's machine keeps what can be made or fetched again."""
+"""The folder of this user's machine for data that can be made or fetched again."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Names of a package whose modules are imported when the names are first used.
 
 A package that imported all that it offers would have a scene of lines load volumes, and a volume load the codec. So the
-packages here state where each of their names lives, and nothing is imported for a name that nobody asks for.
+packages here state where each of their names lives, and import only the names that are used.
 """
 
 from __future__ import annotations

@@ -52,7 +52,7 @@ what each of them got, though all of it is free."""
 _MEMORY = Path("/proc/meminfo")
 _GROUP = Path("/sys/fs/cgroup")
 RESERVE = 48 * MEBIBYTE
-"""What must be left after something was loaded, so that the rest of the program goes on."""
+"""Bytes that must remain after something was loaded, so that the rest of the program goes on."""
 _UNITS = {"K": 1 << 10, "M": 1 << 20, "G": 1 << 30, "T": 1 << 40}
 
 Result = TypeVar("Result")
@@ -139,7 +139,7 @@ def shown(size: float) -> str:
 
 
 def limit(size: int) -> None:
-    """Let this process have no more than some bytes of memory from now on."""
+    """Limit this process to some bytes of memory from now on."""
     assert resource is not None
     hardest = resource.getrlimit(resource.RLIMIT_DATA)[1]
     if hardest != resource.RLIM_INFINITY:
@@ -149,7 +149,7 @@ def limit(size: int) -> None:
 
 @contextmanager
 def limited(size: int | None) -> Iterator[None]:
-    """Let this process have no more than some bytes of memory meanwhile, where the system can limit it.
+    """Limit this process to some bytes of memory in this scope, where the system can limit it.
 
     A limit that it has already stays, if it is lower.
     """
@@ -173,7 +173,7 @@ def limited_to() -> int | None:
 
 
 def taken() -> int:
-    """Return how much of it this process has."""
+    """Return the bytes that this process has allocated, which the limit counts."""
     text = Path("/proc/self/status").read_text(encoding="ascii", errors="replace")
     match = re.search(r"^VmData:\s+(\d+) kB$", text, re.MULTILINE)
     return 0 if match is None else 1024 * int(match[1])

@@ -1,4 +1,4 @@
-"""Where images of NIfTI lie: which of their matrices counts, and what programs make of headers that leave it open.
+"""Positions of NIfTI images: the matrix that counts, and other programs' reading of ambiguous headers.
 
 An image may have two matrices, each with a code: the sform and the qform. nibabel 5.4 and MRtrix 3.0.3 take the sform
 where its code is above 0; SimpleITK 2.5 takes the qform if the sform's code is 2 to 5. With both codes 0 nibabel lets

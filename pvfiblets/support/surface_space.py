@@ -1,4 +1,4 @@
-"""Where FreeSurfer's surfaces lie: from its own space (tkRAS, the origin in the volume's middle) to the scanner's mm.
+"""Positions of FreeSurfer's surfaces: from tkRAS, with the origin in the volume's middle, to the scanner's mm.
 
 Surfaces of FreeSurfer have the geometry of their volume with them. Their points are in tkRAS unless the file says that
 they are in the scanner's space (``mris_convert --to-scanner``). Programs that have moved the points, such as fMRIPrep,
@@ -28,7 +28,7 @@ _stored = False
 
 
 class Placed(NamedTuple):
-    """Points ``(n, 3)`` of a surface where they are taken to lie, its file's own space and why, and what was done."""
+    """Points ``(n, 3)`` of a surface in the assumed space, its file's own space and why, and the applied change."""
 
     points: Array
     space: str = "RAS"

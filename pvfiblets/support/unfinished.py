@@ -1,4 +1,4 @@
-"""What writers that were killed leave beside their target: which of it nobody writes any more, and removing that.
+"""Temporary files that killed writers leave beside their target: finding the abandoned ones, and removing them.
 
 A file or folder in the making is hidden and named by its target, machine and process, and locked for as long as its
 writer lives: the system gives the lock up with the process, whatever ended it.
@@ -44,7 +44,7 @@ def locked(place: Path) -> Iterator[None]:
 
 @contextmanager
 def scratch_beside(target: Path) -> Iterator[Path]:
-    """Make a folder beside a target for what it is made of, and remove it afterwards."""
+    """Make a temporary folder beside a target, and remove it afterwards."""
     whole = target.resolve()
     place = unfinished(whole.with_name(f"{whole.name}.{next(_NUMBERS)}"), "scratch")  # threads have one each
     place.mkdir(mode=0o700)
@@ -60,8 +60,8 @@ def remove_unfinished(folder: str | PathLike[str]) -> list[Path]:
 
     Notes
     -----
-    Only what three things agree about: this machine wrote it, no process has the writer's number, and nobody holds
-    its lock. So what another machine writes to a shared folder stays, and what a container with the same name does.
+    Only if three things agree: this machine wrote it, no process has the writer's number, and its lock is
+    free. So files that another machine writes to a shared folder stay, and a container's with the same name.
     Without such locks (Windows) nothing is removed.
     """
     gone: list[Path] = []

@@ -1,4 +1,4 @@
-"""Files that appear only when they are complete, and what is said where one cannot be written."""
+"""Files that appear only when they are complete, and the errors where one cannot be written."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def replacing(path: str | PathLike[str], needed: int | None = None) -> Iterator[
 
 @contextmanager
 def naming_target(path: str | PathLike[str], needed: int | Callable[[], int] | None = None) -> Iterator[None]:
-    """Let errors of writing, in whichever temporary file, name the file that was asked for and say what to do."""
+    """Make errors of writing, in whichever temporary file, name the target file and the fix."""
     target = Path(path)
     try:
         yield

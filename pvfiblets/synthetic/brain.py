@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 __all__ = ["brain"]
 
-TRACKED = 16_384  # streamlines tracked, where steps are 0.1 mm or longer; fewer of shorter steps: as many points
+TRACKED = 16_384  # streamlines tracked, where steps are 0.1 mm or longer; fewer of shorter steps: equal points in all
 TURNS = 4  # variants of each, the first as tracked
 TURN = 2.0  # degrees: standard deviation of the turn about each axis
 LARGEST_TURN = 5.0  # degrees
@@ -77,7 +77,7 @@ def brain(
     In the order of the input, streamline ``i`` is a rigidly moved copy of streamline ``i % n`` of
     ``brain_streamlines(n, step, seed)``, where ``n = min(n_streamlines, 16384)`` (or fewer, in proportion, for steps
     below 0.1 mm): turned by at most 5 degrees about its middle, moved by at most 4 mm along each axis. Every point lies
-    within the set's promise, a tenth of a step, of the copy so defined.
+    within the set's error bound, a tenth of a step, of the copy so defined.
 
     Tracking, turning and coding take up to half a minute and 2 GB, copying some seconds for 10^9 segments.
     """

@@ -1,6 +1,6 @@
 """Made-up lines and points of the sizes that the paper on halos measures (Everts et al. 2009, table 1).
 
-Each has exactly as many lines and vertices as the paper's data, and is like it in what costs time: how long lines are
+Each has exactly the paper's number of lines and vertices, and is like it in all that costs time: how long lines are
 and how far apart their vertices, how much lies behind one pixel, and how far apart in memory neighbours are. Numbers
 are fixed by the seed.
 """
@@ -53,7 +53,7 @@ def halo_set(name: str, seed: int = 0) -> HaloLines | HaloPoints:
     ----------
     name : str
         One of `HALO_SETS`. ``'fibres'``: short pieces of tracts all over a brain, 150,352 lines, 1,625,472 vertices
-        (the paper's figure 10a). ``'fibres-subset'``: those of another, longer, that cross a sagittal slice, 11,306,
+        (the paper's figure 10a). ``'fibres-subset'``: longer pieces of another set that cross a sagittal slice, 11,306,
         260,836 (figures 1, 8b). ``'office'``: air turning about in a room, 786, 278,849 (figures 8a, 11).
         ``'water'``: water swirling in a tank, 1,400, 2,603,605 (figure 12). ``'water-dense'``: more of the
         same, 4,475, 7,910,911 (figure 13). ``'shape-small'`` and ``'shape-large'``: points on a scanned, bumpy, closed
@@ -225,7 +225,7 @@ def _shape(n: int, rng: np.random.Generator) -> npt.NDArray[np.float32]:
         radius += bump
         slope += (narrow * bump)[:, None] * limb
     slope -= np.einsum("ij,ij->i", slope, direction)[:, None] * direction
-    # A scan has as many points on each square millimetre, however steep: candidates stay by their share of the area.
+    # A scan has an even density of points on its surface, however steep: candidates stay by their share of the area.
     area = radius * np.sqrt(radius**2 + np.einsum("ij,ij->i", slope, slope))
     keys = np.log(area) + rng.gumbel(size=many)
     kept = np.sort(np.argpartition(-keys, n - 1)[:n])

@@ -1,4 +1,4 @@
-"""Made-up tractograms that turn as those of four tracking algorithms do, at any step.
+"""Synthetic tractograms with the turns of four tracking algorithms, at any step.
 
 All follow the streamlines of :mod:`.tracking`, whose steps are constant. What differs is how directions change from
 point to point, which is what a codec of directions meets:
@@ -9,7 +9,7 @@ algorithm   directions
 iFOD1       a random turn at every step, 4 degrees per axis at 0.2 mm and in proportion to the step's root otherwise
 iFOD2       the same turns taken along arcs: a point's tangent is shared by the arcs at both sides, chords are shorter
             than their arcs, and so steps vary a little
-SD_STREAM   those of a smooth field: no noise, only bends
+SD_STREAM   a smooth field's turns: no noise, only bends
 EuDX        four fifths of a direction constant within a voxel of 2 mm: its peak counts until the next voxel's does
 ==========  ============================================================================================================
 
@@ -79,7 +79,7 @@ def _chords(tangents: Array, lasts: Ints) -> Array:
 
 
 def _held(points: Array, tangents: Array, lasts: Ints, voxel: float) -> Array:
-    """Runs whose direction is mostly that with which the point's voxel was entered."""
+    """Runs whose direction is mostly the direction in which the point's voxel was entered."""
     voxels = np.floor(points / voxel).astype(np.int64)
     enters = np.ones(len(points), bool)
     enters[1:] = (voxels[1:] != voxels[:-1]).any(axis=1)

@@ -223,7 +223,7 @@ def _chunk(
         tangents = _turned(tangents, rng.normal(0.0, np.radians(noise), tangents.shape))
 
     # Tracking: a point is its predecessor plus one step along the tangent there. Summing within
-    # each streamline is one running sum over all, less what had accumulated at its start.
+    # each streamline is one running sum over all, less the sum at its start.
     running = np.zeros_like(tangents)
     np.cumsum(step * tangents[:-1], axis=0, out=running[1:])
     start = np.repeat(running[offsets[:-1]] - control[:, 0], lengths, axis=0)
@@ -241,7 +241,7 @@ def _bundle(name: str, n: int, rng: np.random.Generator) -> np.ndarray:
     _, course, sheet, spread, cortex = _BUNDLES[name]
     where = rng.uniform(-1.0, 1.0, (n, 1, 1))
     control = np.asarray(course, float) + where * np.asarray(sheet, float)
-    # The two ends fan independently; what lies between is a blend of both.
+    # The two ends fan independently; the middle is a blend of both.
     weight = np.linspace(0.0, 1.0, 6)[None, :, None]
     fan = (1.0 - weight) * rng.normal(size=(n, 1, 3)) + weight * rng.normal(size=(n, 1, 3))
     control = control + np.asarray(spread, float)[None, :, None] * fan

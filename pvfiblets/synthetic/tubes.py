@@ -1,7 +1,7 @@
 """Made-up sets of spline tubes of the sizes that the paper measures (Russig et al. 2020, section 4).
 
-Each has exactly as many tubes and segments as the paper's set of that name, and is like it in what costs time: how
-long a segment is for its radius, how much lies behind one pixel, and how large the whole is. Numbers are fixed by the
+Each has exactly the numbers of tubes and segments of the paper's set of that name, and is like it in all that costs
+time: how long a segment is for its radius, how much lies behind one pixel, and the whole size. Numbers are fixed by the
 seed. All have ``values["value"]`` at every node; all but "brain" vary in radius along each tube.
 """
 

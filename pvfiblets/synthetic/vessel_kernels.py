@@ -25,7 +25,7 @@ def _uniform(seed: int, index: int) -> float:
 
 @kernel
 def _cover(depth: float, edge: float) -> float:
-    """How much of a voxel lies inside, smoothly, by its depth behind a surface."""
+    """Return the share of a voxel that lies inside, smoothly, by its depth behind a surface."""
     share = min(max(0.5 + depth / edge, 0.0), 1.0)
     return share * share * (3.0 - 2.0 * share)
 

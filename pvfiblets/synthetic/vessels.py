@@ -18,7 +18,7 @@ from pvfiblets.volumes.volume import RaycastVolume
 __all__ = ["brain_like", "vessel_tree"]
 
 PEAKS = {"uint8": 255.0, "uint16": 4095.0, "int16": 4095.0, "float32": 1.0}
-"""What full brightness is in each type: angiographs have 8 or 12 bits."""
+"""Full brightness of each type: angiographs have 8 or 12 bits."""
 
 VESSEL_SIDE = 160.0  # mm, the field of view of a head's angiogram
 ROOTS = 3  # arteries that enter from below
@@ -29,7 +29,7 @@ LARGEST_SEGMENTS = 100_000
 TOGETHER = 32  # slices that are drawn at the same time
 
 HEAD_SIDE = 200.0  # mm
-WAVES = 14  # of which the folds are made
+WAVES = 14  # that make up the folds
 WAVELENGTH = (18.0, 34.0)  # mm, of folds on the brain's surface
 
 _Array = npt.NDArray[np.float64]
@@ -39,7 +39,7 @@ _Floats = npt.NDArray[np.float32]
 def vessel_tree(n: int, seed: int = 0, dtype: Any = "uint8", *, noise: float = 0.0) -> RaycastVolume:
     """Make an angiogram-like volume: bright trees of vessels, about 1 % of it, in empty space.
 
-    Vessels fork by Murray's law (the cubes of the branches' radii sum to the trunk's, and the angles are those of least
+    Vessels fork by Murray's law (the cubes of the branches' radii sum to the trunk's, and the angles take the least
     work), wind, taper from 2.8 mm to 0.35 mm, and are the brighter the wider they are; one carries an aneurysm.
 
     Parameters
@@ -182,7 +182,7 @@ def _grown(seed: int) -> _Array:
             place = after
         if radius > 1.2:
             forks.append((place, radius))
-        # Murray: cubes of radii sum up; angles from the trunk's way are those of least work.
+        # Murray: cubes of radii sum up; angles from the trunk's way take the least work.
         share = rng.uniform(0.25, 0.75)
         first, second = radius * np.cbrt(share), radius * np.cbrt(1.0 - share)
         side = _unit(np.cross(way, rng.normal(size=3)))

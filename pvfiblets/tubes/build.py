@@ -38,7 +38,7 @@ def as_spline_tubes(
     Parameters
     ----------
     source : PolyData, Streamlines, FibletSet, array_like, tuple or SplineTubes
-        A PolyData (VTK or PyVista) with lines; a tractogram; one ``(n, 3)`` array in mm for one tube, or a list of such
+        A PolyData (VTK or PyVista) with lines; a tractogram; one ``(n, 3)`` array in mm for one tube, or a list of
         arrays; ``(points, segments)`` with ``(n_points, 3)`` positions in mm and ``(n_segments, 2)`` point indices.
         Segments, and line cells when all have two points, are smooth where one follows the other and no third meets
         them; in whichever order they are listed. Lines of one point become spheres, lines without
@@ -48,9 +48,9 @@ def as_spline_tubes(
         ``(n_lines,)`` numbers, or an image that has it at the points. By default the point data named in
         `RADIUS_NAMES`, else 0.5 % of the diagonal of the points' bounds (1 mm where all points are at one place).
     tangents : str or array_like, optional
-        ``(n_points, 3)`` derivatives of the position, or the name of such point data. Points that several lines use
-        then stay one node. By default they are computed for each line by itself, so that such points become a node
-        for each line.
+        ``(n_points, 3)`` derivatives of the position, or the name of this array in the point data. Points of
+        several lines then stay one node. By default they are computed for each line by itself, so that such points
+        become a node for each line.
     radius_slopes : float, str or array_like, optional
         ``(n_points,)`` derivatives of the radius. Computed by default.
     scalars : str, array_like or image, optional
@@ -62,7 +62,7 @@ def as_spline_tubes(
         Derivatives of `scalars`, in the same shape (of colours: of 0..1). Computed by default.
     rgb : bool, optional
         Whether `scalars` of three or four columns are colours, or vectors to be mapped by their magnitude. By default
-        those of uint8 are, and those whose name ends in ``"_rgb"`` or ``"_rgba"``.
+        uint8 columns are colours, and so are arrays whose name ends in ``"_rgb"`` or ``"_rgba"``.
     method : {'finite', 'catmull-rom', 'natural'}, default: 'finite'
         How derivatives that are not given are found; see :func:`.tangents.derivatives`.
     scaled : bool, optional
@@ -73,12 +73,12 @@ def as_spline_tubes(
     Returns
     -------
     SplineTubes
-        Per-line data of the source is kept as ``tube_values``, and of the point data what was asked for.
+        Per-line data of the source is kept as ``tube_values``, and the requested point data as ``values``.
 
     Raises
     ------
     TypeError
-        If nothing can be made of such a source, or SplineTubes come with anything else.
+        If such a source is not supported, or SplineTubes come with anything else.
     ValueError
         If there are no lines in a PolyData, an array has the wrong shape, a name is unknown, a radius or derivative
         is not finite, or a radius is negative. The message names array, row, line and value.
@@ -121,7 +121,7 @@ def as_spline_tubes(
 
 
 class _Builder:
-    """Tubes in the making: rows are the points of all lines, one line after the other; nodes are what is kept."""
+    """Tubes in the making: rows are the points of all lines, one line after the other; nodes are the kept points."""
 
     def __init__(self, lines: Lines, scaled: bool, method: str, own_nodes: bool) -> None:
         self.lines, self.scaled, self.method = lines, scaled, method
@@ -154,7 +154,7 @@ class _Builder:
     # ------------------------------------------------------------------ rows and nodes
 
     def _nodes(self, rows: Doubles) -> Doubles:
-        """Bring rows to nodes; where lines share a node, it has the mean of what they ask for."""
+        """Bring rows to nodes; where lines share a node, it has the mean of their rows."""
         if self.own_nodes:
             return rows
         n, ids = len(self.lines.points), self.lines.ids
@@ -167,7 +167,7 @@ class _Builder:
         last = np.zeros_like(sums)
         last[ids] = flat
         for k in range(flat.shape[1]):
-            # Around one of the values: equal ones, which is most of them, stay what they are to the last digit.
+            # Around one of the values: equal ones, the usual case, stay the same to the last digit.
             with np.errstate(invalid="ignore"):
                 sums[:, k] = last[:, k] + np.bincount(ids, flat[:, k] - last[ids, k], n) / uses
         return nodes
@@ -181,7 +181,7 @@ class _Builder:
         result[self.single] = 0.0
         return result
 
-    # ------------------------------------------------------------------ what was given
+    # ------------------------------------------------------------------ input
 
     def _radius(self, radius: Any) -> tuple[Doubles, str | None]:
         """Return the radius of each row, and the name of the array it is from."""
@@ -199,7 +199,7 @@ class _Builder:
 
     def _scalars(self, scalars: Any, slopes: Any, rgb: bool | None, radius_name: str | None) -> tuple[
         dict[str, NodeValues], dict[str, npt.NDArray[Any]]]:
-        """Return node values and tube values: what colours are asked of, and the source's line data."""
+        """Return node values and tube values: the values of colours, and the source's line data."""
         tube_values = dict(self.lines.line_data)
         if scalars is None:
             return {}, tube_values
@@ -227,7 +227,7 @@ class _Builder:
         return {name: NodeValues(self._nodes(values), self._nodes(found))}, tube_values
 
     def _values(self, array: npt.NDArray[Any], name: str, rgb: bool | None) -> Doubles:
-        """Numbers, or colours as RGBA of 0..1, for each row, of what was given for each point."""
+        """Numbers, or colours as RGBA of 0..1, for each row, from an array with an entry for each point."""
         if array.ndim == 1:
             if rgb:
                 raise ValueError(

@@ -32,7 +32,7 @@ Array = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
 MIDDLE = 0.25
-"""How far along the end tangents the middle control points lie: ``c`` above."""
+"""Distance of the middle control points along the end tangents: ``c`` above."""
 
 _BLOCK = 1 << 14
 """Segments measured at a time, so that the samples of millions of them need no gigabytes."""
@@ -171,7 +171,7 @@ def _frames(points: Array) -> Array:
     straight = np.einsum("ki,ki->k", across, across) <= 1e-24
     across[straight] = spare[straight]
     y = _unit(across)
-    # Once more: what is left of a tangent that hardly leaves x is not at right angles to it to the last digit.
+    # Once more: the remainder of a tangent that hardly leaves x is not at right angles to it to the last digit.
     y = _unit(y - x * np.einsum("ki,ki->k", y, x)[:, None])
     return np.stack([x, y, np.cross(x, y)], axis=1)
 
@@ -191,7 +191,7 @@ def _least(values: Array) -> Array:
     bend = (first - second) + (third - second)
     with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
         turn = (first - second) / bend
-    # Any place on the curve may be asked, so that a turn that is none, or outside, need not be told apart.
+    # Any place on the curve may be taken, so that an invalid turn, or one outside, need not be distinguished.
     turn = np.clip(np.where(np.isfinite(turn), turn, 0.0), 0.0, 1.0)
     there = (1.0 - turn) ** 2 * first + 2.0 * turn * (1.0 - turn) * second + turn**2 * third
     found: Array = np.minimum(np.minimum(first, third), there)
@@ -204,7 +204,7 @@ def _least(values: Array) -> Array:
 def deviations(
     tubes: SplineTubes, segments: npt.ArrayLike | None = None, middle: float = MIDDLE, samples: int = 64
 ) -> Array:
-    """How far the halves leave the cubics, segment by segment, measured at equal parameters."""
+    """Return how far the halves leave the cubics, segment by segment, measured at equal parameters."""
     if samples < 2:
         raise ValueError(f"samples is {samples}, expected at least 2")
     chosen = _chosen(tubes, segments)
@@ -222,7 +222,7 @@ def deviations(
 
 
 def deviation(tubes: SplineTubes, middle: float = MIDDLE, samples: int = 64) -> float:
-    """How far the surface shown may lie from the cubic tube's, in mm, at most."""
+    """Return the greatest distance of the drawn surface from the cubic tube's, mm."""
     # Two spheres are no further apart than their centres are plus what their radii differ by.
     return float(deviations(tubes, None, middle, samples).sum(axis=1).max(initial=0.0))
 

@@ -184,7 +184,7 @@ def _form(w: Array, signs: Array) -> Array:
 
 
 def _jet(w: Array, signs: Array, u: Array) -> tuple[Array, Array, Array]:
-    """Return (n, k) each: ``g``, ``g'`` and ``g''`` at (n, k) places, of what is squared, not of what is summed."""
+    """Return (n, k) each: ``g``, ``g'`` and ``g''`` at (n, k) places, from the squared factors, not their sum."""
     value, slope, bend = np.zeros(u.shape), np.zeros(u.shape), np.zeros(u.shape)
     for k, sign in enumerate(signs):
         a, b, c = w[:, k, 0, None], w[:, k, 1, None], w[:, k, 2, None]
@@ -217,7 +217,7 @@ def _ratio(a: Array, b: Array) -> Array:
 
 
 def _shift(degree: int, c: float) -> Array:
-    """Return the matrix from coefficients in ``u`` to those in ``v`` of ``(1 + c v)^degree p(u)``."""
+    """Return the matrix from coefficients in ``u`` to coefficients in ``v`` of ``(1 + c v)^degree p(u)``."""
     found = np.zeros((degree + 1, degree + 1))
     for k in range(degree + 1):
         row = np.ones(1)
@@ -228,7 +228,7 @@ def _shift(degree: int, c: float) -> Array:
 
 
 def _roots(coefficients: Array) -> Array:
-    """Return (n, degree) real parts of the roots of polynomials, given by rising powers; 2 for those at infinity."""
+    """Return (n, degree) real parts of the roots of polynomials, given by rising powers; 2 for roots at infinity."""
     n, degree = coefficients.shape[0], coefficients.shape[1] - 1
     largest = np.abs(coefficients).max(axis=1, initial=0.0, keepdims=True)
     scaled = coefficients / np.where(largest > 0.0, largest, 1.0)

@@ -26,7 +26,7 @@ Ints: TypeAlias = npt.NDArray[np.int64]
 Bounds: TypeAlias = tuple[float, float, float, float, float, float]
 
 _BLOCK = 1 << 16
-"""Segments handled at a time: what they need in between stays in cache."""
+"""Segments handled at a time: their working arrays stay in cache."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +69,7 @@ class NodeValues:
 
     @cached_property
     def reference(self) -> float:
-        """What is subtracted from numbers on the graphics card; 0 of colours."""
+        """Offset subtracted from numbers on the graphics card; 0 for colours."""
         return 0.0 if self.is_colour else value_reference(self.values)
 
     @property
@@ -113,7 +113,7 @@ class SplineTubes:
     values : mapping of str to NodeValues, optional
         Attributes to colour by, each with one row per node.
     tube_values : mapping of str to array, optional
-        ``(n_tubes,)`` or ``(n_tubes, k)`` arrays: what is known of whole tubes.
+        ``(n_tubes,)`` or ``(n_tubes, k)`` arrays: values of whole tubes.
 
     Raises
     ------
@@ -195,7 +195,7 @@ class SplineTubes:
 
     @property
     def n_nodes(self) -> int:
-        """Number of nodes, those of no segment included."""
+        """Number of nodes, including nodes without a segment."""
         return len(self.points)
 
     @property
@@ -209,7 +209,7 @@ class SplineTubes:
         return self.n_tubes
 
     def value_reference(self, name: Any) -> float:
-        """Return what is subtracted from values on the graphics card."""
+        """Return the offset subtracted from values on the graphics card."""
         return self.values[name].reference if name in self.values else 0.0
 
     @property
@@ -219,7 +219,7 @@ class SplineTubes:
 
     @property
     def promise(self) -> float:
-        """How far shown positions may lie from the given ones, mm: nodes are kept as they are."""
+        """Greatest distance of drawn positions from the given ones, mm: nodes are kept as they are."""
         return 0.0
 
     @property
@@ -274,7 +274,7 @@ class SplineTubes:
         return cast("npt.NDArray[np.bool_]", joined & moving[:, None])
 
     def _equal_at_ends(self) -> Ints:
-        """(n_nodes,): each node, or of those in one segment only the first that equals it: few are, where tubes end."""
+        """(n_nodes,): each node, or for nodes in one segment only the first equal one: few are, where tubes end."""
         uses = np.bincount(self.segments.ravel(), minlength=self.n_nodes)
         ends = np.flatnonzero(uses == 1)
         rows = np.column_stack([self.points, self.tangents, self.radius, self.radius_slopes])[ends] + 0.0  # -0 is 0
@@ -342,7 +342,7 @@ class SplineTubes:
 def chord_lengths(chords: Doubles) -> Doubles:
     """Lengths of ``(n, 3)`` vectors, right from the smallest to the largest numbers that there are."""
     largest = np.abs(chords).max(axis=1, initial=0.0)
-    # Squares of what is near 1 neither vanish nor overflow; powers of two scale without rounding.
+    # Squares of numbers near 1 neither vanish nor overflow; powers of two scale without rounding.
     exponent = np.frexp(largest)[1]
     scaled = np.ldexp(chords, -exponent[:, None])
     return cast("Doubles", np.ldexp(np.sqrt(np.einsum("ij,ij->i", scaled, scaled)), exponent))

@@ -130,7 +130,7 @@ def _natural(mean: Doubles, share: Doubles, rest: Doubles, steps: Steps) -> Doub
     left, right, known = 0.5 * share, 0.5 * rest, 1.5 * mean
     before, after = steps.behind, np.minimum(steps.ahead + 1, len(mean) - 1)
     for _ in range(_SWEEPS):
-        # Put each neighbour's own equation in its place: what is left over are the neighbours twice as far away.
+        # Put each neighbour's own equation in its place: the neighbours twice as far away remain.
         own = 1.0 - left * right[before] - right * left[after]
         known = (known - left[:, None] * known[before] - right[:, None] * known[after]) / own[:, None]
         left, right = -left * left[before] / own, -right * right[after] / own

@@ -22,7 +22,7 @@ VALUES = (".annot", ".thickness", ".curv", ".sulc")
 """Ends of names of files with a label or a number for each vertex."""
 
 MOST_LABELS = 1 << 15
-"""Of a table: FreeSurfer's own numbers end at 14175."""
+"""Most labels of a table: FreeSurfer's own numbers end at 14175."""
 _TRIANGLES, _NUMBERS = b"\xff\xff\xfe", b"\xff\xff\xff"
 _QUADS = {b"\xff\xff\xff": 2, b"\xff\xff\xfd": 4}
 """First bytes of older surfaces of quadrangles, and the bytes of a coordinate."""

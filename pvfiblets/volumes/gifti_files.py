@@ -1,4 +1,4 @@
-"""Files of GIFTI: nibabel reads them, its complaints become errors, and what they name can be asked before.
+"""Files of GIFTI: nibabel reads them, its complaints become errors, and the files that they name can be listed before.
 
 Format: https://www.nitrc.org/projects/gifti
 """
@@ -18,7 +18,7 @@ __all__ = ["SUFFIXES", "VALUES", "named_files", "read_gifti"]
 
 SUFFIXES = (".gii", ".gii.gz")
 VALUES = tuple(f".{what}{suffix}" for what in ("label", "shape", "func") for suffix in SUFFIXES)
-"""Of files with numbers for the vertices of a surface that lies in another file."""
+"""Suffixes of files with numbers for the vertices of a surface in another file."""
 
 _BUFFER = 1 << 16  # nibabel's own is 35 MB
 

@@ -20,7 +20,7 @@ LARGEST_STEP = 1e3  # of RaycastOptions
 
 @dataclass(frozen=True)
 class InteractiveQuality:
-    """What is changed of a casting.
+    """Changes to a casting while the camera moves.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ class InteractiveQuality:
             return None
         return cls(min(1.0 / max(quality, 1e-3), COARSEST_STEP), 2 if quality > 1.0 / COARSEST_STEP else 4)
 
-    def of(self, casting: RaycastOptions) -> RaycastOptions:
+    def applied_to(self, casting: RaycastOptions) -> RaycastOptions:
         """Return the casting while the camera moves."""
         integrator, light = casting.integrator, casting.mode == "composite"
         if integrator == "adaptive":

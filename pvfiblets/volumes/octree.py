@@ -18,7 +18,7 @@ Of a large volume with few cells beyond a multiple of eight, 8/7 of 1/512 nodes 
 
 Catmull-Rom's cubic leaves the range of the voxels that it goes through. Along one axis, at t from 0 to 1 between two
 voxels, its outer two weights are -t (1 - t)^2 / 2 and -t^2 (1 - t) / 2: together -N, N = t (1 - t) / 2 <= 1/8, and the
-inner two sum to 1 + N. The weights' sizes sum to 1 + 2 N <= 5/4, those of the product along three axes to at most
+inner two sum to 1 + N. The weights' sizes sum to 1 + 2 N <= 5/4, for the product along three axes to at most
 125/64, and as the weights themselves sum to 1, the negative ones sum to at least -(125/64 - 1) / 2 = -61/128. Of voxels
 from m to M the field is thus within m - 61/128 (M - m) and M + 61/128 (M - m), and both are reached.
 """
@@ -46,10 +46,10 @@ AT_ONCE = 1 << 22
 """Numbers of a volume's leaves that are brought together along one axis at a time: six bytes each, more or less."""
 
 SKIP, VISIT, HOMOGENEOUS = 0, 1, 2
-"""What rays do with a node: nothing, look into it, or take it as its mean."""
+"""Actions of rays at a node: nothing, look into it, or take it as its mean."""
 
 OVERSHOOT = 61 / 128
-"""How far the tricubic field leaves the range of its voxels, as a part of that range."""
+"""Greatest excess of the tricubic field over the range of its voxels, as a part of that range."""
 
 Flags = list[npt.NDArray[np.uint8]]
 
@@ -138,7 +138,7 @@ def build_octree(volume: RaycastVolume, margin: int = 1) -> Octree:
 
 
 def flags(octree: Octree, visible: Callable[[npt.NDArray[Any], npt.NDArray[Any]], npt.NDArray[np.bool_]]) -> Flags:
-    """Say which nodes rays must look into."""
+    """Return which nodes rays must look into."""
     leaves = octree.levels[0]
     seen = [np.where(visible(leaves.least, leaves.greatest), VISIT, SKIP).astype(np.uint8)]
     while len(seen) < len(octree.levels):

@@ -14,7 +14,7 @@ from pvfiblets.codec.jit import kernel, parallel_kernel
 __all__ = ["preintegrate", "unit_depths"]
 
 LARGEST_DEPTH = 24.0 * np.log(2.0)  # as of transfer.py, which loads this module only when it is needed
-SPENT = 40.0  # optical depth behind which nothing is seen: exp(-40) is 4e-18
+SPENT = 40.0  # optical depth that no visible light passes: exp(-40) is 4e-18
 THICK = 0.5  # optical depth of a piece beyond which exp(-tau) falls too fast for one panel of the quadrature
 GRADES = 14  # panels of a thick piece shrink to 2^-14 of it towards both ends
 
@@ -53,7 +53,7 @@ def _unit_depth(alpha: float) -> float:
 
 @kernel
 def _primitive(alpha: float) -> float:
-    """Of -ln(1 - alpha)."""
+    """Return the integral of -ln(1 - alpha)."""
     return (1.0 - alpha) * math.log1p(-alpha) + alpha if alpha < 1.0 else 1.0
 
 

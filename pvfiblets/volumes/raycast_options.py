@@ -25,10 +25,10 @@ PROJECTIONS = ("mip", "local-mip", "minimum", "average")
 """Modes that show one value of a ray."""
 
 REFINEMENTS = ("exact", "regula-falsi", "newton", "none")
-"""How surfaces are found: in each cell of eight voxels, or between two steps (paper: equations 3 and 4)."""
+"""Searches for surfaces: in each cell of eight voxels, or between two steps (paper: equations 3 and 4)."""
 
 INTEGRATORS = ("adaptive", "preintegrated", "exponential", "riemann", "simpson", "romberg", "rk4")
-"""How the rendering equation is integrated over a step."""
+"""Methods of integrating the rendering equation over a step."""
 
 MAX_VALUES = 8
 """Isosurfaces of one volume."""
@@ -45,7 +45,7 @@ LARGEST = (2.0 - 2.0**-23) * 2.0**127
 
 @dataclass(frozen=True)
 class RaycastOptions:
-    """How rays are cast.
+    """Options of ray casting.
 
     Parameters
     ----------
@@ -62,9 +62,9 @@ class RaycastOptions:
     threshold : float
         The least value of a peak, for ``'local-mip'``.
     low, high : float
-        Values that are there; what is lower or higher is empty in all modes but ``'isosurface'``.
+        Range of visible values; lower and higher ones are empty in all modes but ``'isosurface'``.
     step : float
-        Of a ray, in mean voxel spacings, above 0; :meth:`step_mm` says what it is of voxels that are far from cubes.
+        Of a ray, in mean voxel spacings, above 0; :meth:`step_mm` converts it for voxels that are far from cubes.
         Surfaces and peaks that are found exactly take no steps (:attr:`exact`).
     jitter : bool
         Whether each ray starts at a place of its own within the first step: noise takes the place of rings.
@@ -75,17 +75,17 @@ class RaycastOptions:
     iterations : int
         Steps of the refinement, 1 to 64.
     integrator : str
-        Of `INTEGRATORS`. ``'adaptive'`` is ``'preintegrated'`` for steps of which one look-up is enough, takes those in
-        parts over which values bend, as at edges from voxel to voxel, and halves others until their halves agree
+        Of `INTEGRATORS`. ``'adaptive'`` is ``'preintegrated'`` for steps where one look-up is enough, takes steps in
+        parts where values bend, as at edges from voxel to voxel, and halves others until their halves agree
         (:mod:`pvfiblets.volumes.steepness`).
     octree : bool
-        Whether nodes in which there is nothing to see are skipped. It changes no pixel.
+        Whether invisible nodes are skipped. It changes no pixel.
     homogeneous : float
         Nodes whose values differ by no more are taken as their mean, for ``'composite'``; 0 for none.
     recon : bool
-        Whether nodes in which neither colour nor opacity changes with the value, as their bounds say, are not
-        reconstructed at all but taken as one, for ``'composite'``. It changes no more than rounding does. Of these and
-        of homogeneous ones there must be as many as of all others that rays look into, or none is: asking costs more.
+        Whether nodes in which neither colour nor opacity changes with the value, by their bounds, are not
+        reconstructed at all but taken as one, for ``'composite'``. It changes no more than rounding does. These and
+        homogeneous ones must make up at least half of the nodes that rays look into, or none is: testing costs more.
     sparse : int
         A ray is cast for every so many pixels along each axis first, 1, 2 or 4, and for those between only where
         what the first ones found differs (section III.D). Things thinner than that may be missed.
@@ -95,7 +95,7 @@ class RaycastOptions:
     stop : float
         Opacity at which a ray ends, above 0 and at most 1.
     box : tuple of float, optional
-        (xmin, xmax, ymin, ymax, zmin, zmax) in voxels: only what lies in it is there.
+        (xmin, xmax, ymin, ymax, zmin, zmax) in voxels: everything outside is cut away.
 
     Raises
     ------
@@ -199,7 +199,7 @@ class RaycastOptions:
 
         Of voxels that are much shorter along one axis than along others, the mean spacing would step over things many
         of the short ones wide: a step is no longer than one of those, or than `step` of them if that is more, unless
-        a ray through the whole volume took more than `MOST_STEPS` then. Light that is as dense as fog is not, of which
+        a ray through the whole volume took more than `MOST_STEPS` then. Light as dense as fog, where
         ``'adaptive'`` is to miss no corner, has shorter ones: of an optical depth of `DEEPEST` at most, but no shorter
         than one by `MOST_SHORTER` of that.
 

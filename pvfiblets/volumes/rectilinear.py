@@ -10,7 +10,7 @@ import numpy.typing as npt
 __all__ = ["MOST_TIMES", "evenly"]
 
 MOST_TIMES = 4
-"""Planes of the even grid along an axis, in those of the uneven one, at most."""
+"""Greatest ratio of the even grid's planes along an axis to the uneven one's."""
 
 EVEN = 1e-6
 """Tolerance of even planes, as a part of the mean distance."""

@@ -1,4 +1,4 @@
-"""What rays can be cast through: volumes gathered from every kind of source into one form, in RAS+ mm."""
+"""Sources of ray-cast volumes, gathered into one form, in RAS+ mm."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _EXPECTED = (
     "a pyvista.ImageData, an (nx, ny, nz) array, an (array, affine) tuple, an image of nibabel, a RaycastVolume or the "
     f"path of one of {', '.join(SUFFIXES)}"
 )
-UNIT_LENGTH = 1e-3  # by which a direction may differ from length 1: headers keep few digits
+UNIT_LENGTH = 1e-3  # tolerance of a direction's length of 1: headers keep few digits
 
 Array = npt.NDArray[np.float64]
 Found = tuple[npt.NDArray[Any], Array, str]
@@ -52,13 +52,13 @@ def as_raycast_volume(
         - :class:`pyvista.ImageData` or another ``vtkImageData``: origin, spacing and direction matrix place it. Cell
           data become the mean of the cells around each point, as in ``Plotter.add_volume``.
         - :class:`pyvista.RectilinearGrid`: along axes whose planes are uneven, values are interpolated at the least
-          distance of two, at four times as many places at most.
+          distance of two, at up to four times the number of places.
           Four numbers of type uint8 for each point are RGBA: light then has the voxels' own colours and opacities.
         - ``(nx, ny, nz)`` numbers, masked arrays (masked voxels are missing) and memory maps; or ``(array, affine)``.
           ``(nx, ny, nz, 4)`` of type uint8 are RGBA.
         - An image of nibabel; of type RGBA its colours count.
         - A path: ``.nii``, ``.nii.gz``, ``.mgh``, ``.mgz``, ``.mif``, ``.mif.gz``, ``.mih``, ``.nrrd``,
-          ``.nhdr``, ``.mhd``, ``.mha``, ``.vti``; of NRRD files that say so, and of MetaImage files always, coordinates
+          ``.nhdr``, ``.mhd``, ``.mha``, ``.vti``; of NRRD files in LPS+, and of MetaImage files always, coordinates
           are LPS+ and are turned to RAS+. Any other, such as ``.raw``: bare numbers, the first axis running fastest;
           they need ``shape`` and ``dtype``.
         - A :class:`.RaycastVolume`, or anything else with ``values`` and ``affine``.
@@ -167,7 +167,7 @@ def _thick(values: Any, colours: Any, affine: Any) -> tuple[Any, Any, Array]:
 
 
 def _apart(values: Any) -> tuple[npt.NDArray[Any], npt.NDArray[np.uint8] | None]:
-    """Numbers, and colours where the numbers are RGBA: alpha, of which the others are the colours."""
+    """Numbers, and colours where the numbers are RGBA: then the numbers are alpha, the rest the colours."""
     return (values[..., 3], values[..., :3]) if _is_rgba(np.shape(values), values.dtype) else (values, None)
 
 

@@ -1,13 +1,13 @@
-"""How much values may bend within a step of a ray, by the values at its ends, so that one look-up is enough for it.
+"""Greatest bends of values within a step of a ray, by the values at its ends, at which one look-up is enough.
 
 A pre-integrated table is exact where the value is linear over a step and both its ends are entries of the table. Two
 things take light away from it, and both are of some pairs of values, not of a transfer function as a whole:
 
 * Between entries a texture interpolates. How far that is off is known: opacities in the middle of four entries have a
-  closed form. A value that hardly changes meets the same error at every step, so that of m steps ``exp(-m tau)`` is
-  off by ``|exp(-m tau) - exp(-m tau')|``, whichever m is worst. Pairs for which it is off are `UNTRUSTED`.
+  closed form. A value that hardly changes meets the same error at every step, so that m steps ``exp(-m tau)`` are
+  off by ``|exp(-m tau) - exp(-m tau')|``, for the worst m. Pairs with too large an error are `UNTRUSTED`.
 * Values are not linear over a step that crosses from one cell to another. If they make a tent of some height over
-  their chord, light is that of two steps half as long; the height at which it differs is what they may bend by.
+  their chord, light is that of two steps half as long; the height at which it differs is the allowed bend.
 
 A ray then goes step by step by its own values (``shaders/volumes/preintegrated.glsl``): one look-up; or `PARTS` shorter
 ones where values bend by more; or the light of a stretch that is halved until its halves agree.
@@ -27,24 +27,24 @@ from .volume import RaycastVolume
 __all__ = ["DEEP", "KINKS", "OFF", "PARTS", "UNTRUSTED", "allowed_bends", "largest_bend"]
 
 OFF = 1e-2
-"""What colours and opacities may be off by."""
+"""Largest error of colours and opacities."""
 
 DEEP = 9.0
-"""Optical depth of a step beyond which that of what is left at a ray's end is not told from its opacity. Steps of half
-a voxel through a table that ends in opacity 1, as most do, have 8.3."""
+"""Optical depth of a step beyond which the rest of the light at a ray's end does not follow from its opacity. Steps of
+half a voxel through a table that ends in opacity 1, as most do, have 8.3."""
 
 PARTS = 4
 """Parts of a step over which values bend: a power of two, so that they add up to it exactly."""
 
 KINKS = 5.0
-"""Bends up to so many times what is allowed need no shorter parts than a step's: at the worst, a twelfth of them is
+"""Bends up to so many times the allowed one need no shorter parts than a step's: at the worst, a twelfth of them is
 left as an error, of either sign."""
 
 UNTRUSTED = -1.0
-"""In place of what is allowed: a look-up is off even where values do not bend at all."""
+"""In place of the allowed bend: a look-up is off even where values do not bend at all."""
 
 MOST = 512
-"""Pairs of values along each side of what is allowed; of a larger table, the least of neighbours counts."""
+"""Pairs of values along each side of the table of bends; of a larger table, the least of neighbours counts."""
 
 Array = npt.NDArray[np.float64]
 
@@ -77,7 +77,7 @@ def allowed_bends(transfer: Transfer, step: float, low: float = -np.inf, high: f
     for cut in (low, high):
         if np.isfinite(cut) and -np.expm1(-step * float(transfer.extinction(cut))) > OFF:
             place = (cut - transfer.clim[0]) / span * (len(table) - 1)
-            before = np.arange(len(table) - 1) <= place  # of an interval, the end before it, or what it may bend to
+            before = np.arange(len(table) - 1) <= place  # of an interval, the end before it, or the end of its bend
             after = np.arange(1, len(table)) >= place
             allowed[np.logical_and.outer(before, after) | np.logical_and.outer(after, before)] = UNTRUSTED
     together = -(-len(allowed) // MOST)

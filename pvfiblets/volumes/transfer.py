@@ -34,7 +34,7 @@ LARGEST_PREINTEGRATED = 1024
 """Largest number of entries of tables that can be pre-integrated: time grows with its third power."""
 
 EVEN_COLOURS, EVEN_EXTINCTION = 1.0 / 512.0, 1e-3
-"""What colours may change by, and what part of it extinction, where both count as the same."""
+"""Differences of colours, and their part of extinction, up to which both count as the same."""
 
 PLACES = 4080
 """Least number of pieces of the finer table that light is calculated from: 16 for each of 255."""
@@ -145,7 +145,7 @@ class Transfer:
     def visible_range(self, low: npt.ArrayLike, high: npt.ArrayLike) -> npt.NDArray[np.bool_]:
         """Return whether anything between two values, themselves included, has an opacity above 0.
 
-        For arrays of bounds, as :func:`pvfiblets.volumes.octree.flags` asks; what it costs does not depend on how much
+        For arrays of bounds, as in :func:`pvfiblets.volumes.octree.flags`; the cost does not depend on the length
         of the table lies between.
         """
         first, last = self._places(low), self._places(high)
@@ -204,7 +204,7 @@ class Transfer:
         return either
 
     def _places(self, values: npt.ArrayLike) -> Array:
-        """Where values lie in the table, 0 to k - 1."""
+        """Return the places of values in the table, 0 to k - 1."""
         low, high = self.clim
         share = (np.asarray(values, np.float64) - low) / (high - low)
         return np.clip(share, 0.0, 1.0) * (len(self.table) - 1)
@@ -252,14 +252,14 @@ class Transfer:
         Parameters
         ----------
         least : int
-            Least number of places, at which kappa is known; there are as many between all entries of the table.
+            Least number of places at which kappa is known; the same number lies between all entries of the table.
 
         Returns
         -------
         media : ndarray
             ``(2, n, 4)`` float32. First colour and extinction, 1/mm, at places evenly over ``clim``; then the integral
-            of extinction over places from the first on, in two numbers of which the second is what the first lacks, by
-            how much it grows to the next place, and 0.
+            of extinction over places from the first on, in two numbers, the second the remainder of the first, its
+            growth to the next place, and 0.
         places : int
             From each entry of the table to the next.
         """
@@ -279,7 +279,7 @@ class Transfer:
 
 @lru_cache(maxsize=KEPT)
 def _preintegrated(table: bytes, n: int, units: float) -> npt.NDArray[np.float32]:
-    """Table of n entries, made of those of a user, by the length of a step in units of opacity."""
+    """Table of n entries, made of a user's table, by the length of a step in units of opacity."""
     from .preintegration import preintegrate
 
     rgba = np.frombuffer(table, np.float32).reshape(-1, 4).astype(np.float64)

@@ -15,7 +15,7 @@ from pvfiblets.support.value_reference import relative, value_reference
 __all__ = ["FILTERS", "RaycastVolume"]
 
 FILTERS = ("nearest", "trilinear", "tricubic")
-"""How the field between voxel centres is reconstructed."""
+"""Reconstructions of the field between voxel centres."""
 
 KEPT = (np.uint8, np.uint16, np.int16, np.float32)
 WIDENED = {"b1": np.uint8, "i1": np.int16, "f2": np.float32}
@@ -43,7 +43,7 @@ class RaycastVolume:
     ----------
     values : array_like
         ``(nx, ny, nz)`` numbers. uint8, uint16, int16 and float32 are kept as they are, memory maps included; bool
-        becomes uint8, int8 int16, and everything else float32. Of those whose values lie far from 0 for their range,
+        becomes uint8, int8 int16, and everything else float32. For values far from 0 for their range,
         as 1e8 to 1e8 + 100, `offset` is subtracted first: true numbers are `values` plus `offset`. Not to be changed
         afterwards. NaN counts as the least value and infinities as the nearest finite one: `values` of the
         volume holds those instead (a copy, where there are any), so that they are all finite.

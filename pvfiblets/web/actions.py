@@ -25,7 +25,7 @@ class Actions:
 
 
 class LineActions(Actions):
-    """Those on the chosen layer of lines."""
+    """Actions on the chosen layer of lines."""
 
     @property
     def _layer(self) -> Any:
@@ -41,7 +41,9 @@ class LineActions(Actions):
         """Do work on a layer's streamlines beside everything else; None if it was cancelled."""
         app = self._app
         try:
-            found = await app.files.beside(layer.name, lambda progress, cancel: work(Watch(progress, cancel)), what)
+            found = await app.files.run_in_background(
+                layer.name, lambda progress, cancel: work(Watch(progress, cancel)), what
+            )
         except Cancelled:
             app.say(f"{layer.name}: cancelled{cancelled}.")
             return None

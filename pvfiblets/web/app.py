@@ -52,7 +52,7 @@ logger = logging.getLogger("pvfiblets.web")
 CLIENT = Path(__file__).with_name("client")
 CLIENT_URL = "__pvfiblets"
 SCRIPTS = ("pvfiblets.js", "fields.js", "regions.js", "slices.js", "painting.js", "matrix.js", "connection.js",
-           "distances.js", "there.js")  # fmt: skip
+           "distances.js", "browser_renderer.js")  # fmt: skip
 
 
 class Explorer(TrameApp):
@@ -61,9 +61,9 @@ class Explorer(TrameApp):
     Parameters
     ----------
     options : Options
-        What it opens with, and the root that it is confined to.
+        Its initial files, and the root that it is confined to.
     notes : Notes
-        Where it notes what it writes outside of its temporary folder.
+        Records files written outside of its temporary folder.
     """
 
     def __init__(self, options: Options, notes: Notes) -> None:
@@ -176,7 +176,7 @@ class Explorer(TrameApp):
             self.server.controller.trigger(name)(function)
 
     def add_routes(self, router: Any) -> None:
-        """Add what comes and goes by plain HTTP."""
+        """Add the routes of plain HTTP."""
         from aiohttp import web
 
         document = first_document()
@@ -192,7 +192,7 @@ class Explorer(TrameApp):
         router.add_get(f"{URL}/{{name}}", self.browser.send)
 
     def close(self) -> None:
-        """Let go of everything."""
+        """Release everything."""
         self.exports.close()
         self.scene.close()
         self.plotter.close()
@@ -245,7 +245,7 @@ class Explorer(TrameApp):
         self.stream.request()
 
     def _show_info(self) -> None:
-        """Show the facts of the chosen layer, some of which are counted on the GPU: only while somebody looks."""
+        """Show the facts of the chosen layer, some of them counted on the GPU: only while the tab is open."""
         page = self.page
         if page.tab == "info":
             page.info = tables(self.scene.queries.info(page.chosen)) if page.chosen else []
@@ -301,7 +301,7 @@ class Explorer(TrameApp):
         try:
             self.scene.set(layer_id, name, value)
         except Exception:
-            self.page.groups = []  # what was typed gives way to what is in force
+            self.page.groups = []  # restores the current value in the field
             self.state.flush()
             self.refresh()
             raise
@@ -349,7 +349,7 @@ class Explorer(TrameApp):
             self.refresh()
 
     def redo(self) -> None:
-        """Do again what was undone last."""
+        """Redo the last undone change."""
         if self.history.redo() is not None:
             self.refresh()
 
@@ -357,7 +357,7 @@ class Explorer(TrameApp):
 
     def _drawn(self) -> None:
         """Show what goes with a frame; nothing is sent where it is as before."""
-        self.files.keep_soon()  # cameras are no part of what is watched
+        self.files.keep_soon()  # camera moves do not trigger it by themselves
         with self.state:
             self.camera.refresh()
             self.slices.refresh()

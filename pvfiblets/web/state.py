@@ -1,4 +1,4 @@
-"""What a page shows, as one typed record; the server writes it, browsers may write a few of its fields."""
+"""The state of a page, as one typed record; the server writes it, browsers may write a few of its fields."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Page:
     file_sort: str = "name"
     open_space: str = "RAS"  # of files of VTK that name none
     uploading: str = ""
-    uploaded: float = 0.0  # per cent; below zero: nobody knows
+    uploaded: float = 0.0  # per cent; below zero: unknown
     export_what: str = "selected"
     export_to: str = "folder"
     export_name: str = ""  # of the file; empty: after the layer
@@ -89,7 +89,7 @@ class Page:
     )
     info: list[Record] = field(default_factory=list)
     frame: str = ""
-    there: Record = field(default_factory=dict)  # the scene, where the browser draws it (client/there.js)
+    there: Record = field(default_factory=dict)  # the scene, where the browser draws it (client/browser_renderer.js)
     there_camera: Record = field(default_factory=dict)  # where from
     drawing: str = ""  # why the server draws
 
@@ -98,7 +98,7 @@ class Page:
     folder: str = ""
     entries: list[Record] = field(default_factory=list)
     several: bool = True  # files may be chosen at once
-    marked: list[str] = field(default_factory=list)  # those that are
+    marked: list[str] = field(default_factory=list)  # chosen ones
     script: str = ""
     shared: bool = False
     upload_limit: int = 0

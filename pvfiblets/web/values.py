@@ -1,6 +1,6 @@
 """Checks of values that come from browsers and session files, which are not trusted.
 
-Each returns the value in one plain form, or raises :class:`ValueError` with its name, what it is and what was expected.
+Each returns the value in one plain form, or raises :class:`ValueError` with the name, the value and the expected form.
 """
 
 from __future__ import annotations
@@ -93,7 +93,7 @@ def mapping(value: Any, name: str, needed: Sequence[str] = (), optional: Sequenc
 
 
 def plain(value: Any) -> Any:
-    """Return a value in JSON's own types; what is no finite number becomes None."""
+    """Return a value in JSON's own types; non-finite numbers become None."""
     import numpy as np
 
     if isinstance(value, Mapping):

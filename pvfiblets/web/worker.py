@@ -1,7 +1,7 @@
 """The process of one session: ``python -m pvfiblets.web.worker``, started by the front server and by nothing else.
 
 It reads its settings from standard input, says on standard output where it listens, and ends when standard input
-closes. Every request must carry the front server's key, so that nobody else on this machine can speak to it.
+closes. Every request must carry the front server's key, so that no other process on this machine can use it.
 """
 
 from __future__ import annotations
@@ -111,7 +111,7 @@ def listen(server: Any) -> None:
 
 
 def hold_to(most: int | None) -> None:
-    """Let this process have no more memory than it may."""
+    """Limit the memory of this process as configured."""
     if most is None:
         return
     from pvfiblets.support import memory

@@ -10,7 +10,7 @@
 #include "colour/logarithm.glsl"
 #endif
 
-uniform sampler2D colour_table;        // n colours, then those of below, above and NaN, row by row
+uniform sampler2D colour_table;        // n colours, then the colours of below, above and NaN, row by row
 uniform int colour_entries;            // n
 uniform vec3 colour_range;             // lo, hi, n / (hi - lo); logarithms of lo, hi on a log scale
 

@@ -1,4 +1,4 @@
-// What encloses a fiblet: a capsule, all points no farther than r from the segment a b. The paper (Schertzer et al. 2022,
+// Bounds of a fiblet: a capsule, all points no farther than r from the segment a b. The paper (Schertzer et al. 2022,
 // section 3.4.1) takes a sphere of radius N delta around the first point; the capsule is as long and a tenth as thick.
 //
 //   a, b         the fiblet's first point and the next fiblet's; where the streamline ends, b comes from its end vector

@@ -14,7 +14,7 @@
 //   the point y v            |a u + y delta| = R, zeta = y + a: the carved hemisphere of appendix C, which solves the same
 //                            quadratic (there, -X^2 belongs outside of the root)
 //   the line x v, x <= y     R |v| / |delta x v| from the eye, where the foot of the perpendicular lies in front of y
-// The paper has the first only, of which its figure 6 is the case. The second is what a perspective view makes of edges:
+// The paper has the first only; its figure 6 shows that case. The second is the shape of edges in a perspective view:
 // next to a background far away, a hemisphere there has no width on the screen, but a fiblet at the edge reaches over it
 // all the same.
 //
@@ -43,7 +43,7 @@ uniform vec3 ray_y;
 uniform vec2 pitch;          // least distance of neighbours' rays, per mm of distance from the eye in perspective
 uniform int perspective;
 uniform vec2 radius;         // x: R (mm); y: by how many texels a gap is less
-uniform float far;           // zeta of the far plane: what is allowed behind it is as good as everything
+uniform float far;           // zeta of the far plane: a depth allowed behind it is not limited
 
 out float farthest;
 

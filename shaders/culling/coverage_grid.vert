@@ -49,5 +49,5 @@ void main() {
     zeta = dot(zeta_from_texel, here);
     if (most - least <= jump) zeta_flat = -EMPTY;
     gl_Position = most >= EMPTY ? vec4(2.0, 2.0, 2.0, 1.0) : clip_from_texel * here;
-    gl_Position.z = 0.0;  // nothing is clipped but what is behind the camera
+    gl_Position.z = 0.0;  // only points behind the camera are clipped
 }

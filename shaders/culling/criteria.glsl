@@ -1,9 +1,9 @@
-// The criteria by which fiblets are culled, beside what hides them: the view volume (culling/frustum.glsl), and what the caller
-// chose. Culled are fiblets of streamlines that are not to be shown, those no segment of which is, and those that lie wholly
+// The criteria that cull fiblets, besides occlusion: the view volume (culling/frustum.glsl), and the caller's
+// choice. Culled are fiblets of hidden streamlines, fiblets without a visible segment, and fiblets wholly
 // beyond the caller's planes or outside the caller's region. All pipelines cull by these two functions: a new criterion is a
 // line of fails_criteria(), under a feature of its own.
 //
-// Invariant: never culls a fiblet of which one pixel would be drawn.
+// Invariant: a culled fiblet has no visible pixel.
 
 #include "culling/frustum.glsl"
 #include "frame/clip_planes.glsl"
@@ -21,7 +21,7 @@ bool beyond_clip_planes(Capsule c) { return clip_height(0.5 * (c.a + c.b)) + cli
 #endif
 
 #if FEATURE_CLIP_REGION
-// 1: wholly within the caller's region, its brush included; -1: wholly outside; 0: who knows.
+// 1: wholly within the caller's region, its brush included; -1: wholly outside; 0: undecided.
 int region_of_fiblet(Capsule c) {
     vec3 middle = 0.5 * (c.a + c.b);
     float ball = ball_of(c), w = window_from_local[3].w + ball * w_per_mm;
@@ -30,7 +30,7 @@ int region_of_fiblet(Capsule c) {
 }
 #endif
 
-// Whether a fiblet is culled by what the caller chose; `partly`: whether what is left of it may need to be cut.
+// Whether the caller's choice culls a fiblet; `partly`: whether the rest of it may need to be cut.
 bool fails_criteria(uint f, Capsule c, out bool partly) {
     partly = false;
 #if FEATURE_STREAMLINE_MASK

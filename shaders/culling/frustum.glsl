@@ -2,7 +2,7 @@
 // plane of the view volume cannot show. The paper dilates the volume by a sphere and tests a point; the signed distances
 // of a capsule's two ends to the planes of the model-view-projection do the same for perspective and for parallel views.
 //
-// Invariant: never culls a fiblet of which one pixel would be drawn. The capsule (`bounds`, rounded up by the encoder) holds
+// Invariant: a culled fiblet has no visible pixel. The capsule (`bounds`, rounded up by the encoder) holds
 // all points and the joining segment; the planes stand half a line's width, the radius of tubes and the rounding of this very computation
 // further out (pvfiblets/engine/frame.py must agree).
 

@@ -1,7 +1,7 @@
-// Whether nothing of a fiblet can be nearer than what is drawn already: two-phase culling against a depth pyramid.
+// Whether a fiblet is wholly behind the depth drawn so far: two-phase culling against a depth pyramid.
 //
-// What was visible in the last picture is drawn first; the pyramid is made of that depth, so that it belongs to this very
-// camera, and what it hides, the finished picture hides. The paper (Schertzer et al. 2022, section 3.4) tests against the
+// Fiblets visible in the last picture are drawn first; the pyramid is made of that depth, so that it belongs to this very
+// camera, and anything that it hides is hidden in the finished picture. The paper (Schertzer et al. 2022, section 3.4) tests against the
 // last picture's dilated depth; culling/coverage.glsl does that.
 //
 // Symbols
@@ -18,8 +18,8 @@
 //      that holds both balls holds the hull. This is exact for any projection, without a division.
 //   4. A fiblet is hidden if all its pieces are. One that reaches beside or behind the camera never is.
 //
-// Invariant: never hides a fiblet of which one pixel would be kept. Pixels of thin lines are up to one pixel off the line
-// (fiblets/segments/thin_line_rule.glsl), those of wide ones half the width. Depth is that of the line itself; but the first pixel of a thin
+// Invariant: a hidden fiblet has no visible pixel. Pixels of thin lines are up to one pixel off the line
+// (fiblets/segments/thin_line_rule.glsl), pixels of wide lines half the width. Depth is that of the line itself; but the first pixel of a thin
 // segment shows a place before its start, CELL_SHIFT / n of the segment, and the last one after its end: `overshoot`.
 // Rounding of h is paid by `slack`.
 
@@ -46,7 +46,7 @@ float rise_of(vec4 c, float r) {
     return r * length(gradient(2) - z * gradient(3)) / (c.w - r * w_per_mm);
 }
 
-// How much nearer than the line the first pixel of a thin segment may be.
+// Greatest excess of the first pixel of a thin segment, nearer than the line.
 float overshoot_of(vec4 a, vec4 b, float r) {
     float rise = abs(a.z / a.w - b.z / b.w) + rise_of(a, r) + rise_of(b, r);
     return half_line_width > 0.0 ? 0.0 : max(CELL_SHIFT.x, CELL_SHIFT.y) * rise;

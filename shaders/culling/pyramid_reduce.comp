@@ -1,7 +1,7 @@
 // Up to six levels of the depth pyramid (pvfiblets/engine/culling/pyramid.py), as culling/pyramid_reduce.frag makes one: the farthest of
 // 2 x 2 depth keys of the level before. A work group reduces a square of 64 x 64 of the source in shared memory.
 //
-// Beyond the picture's edge there is nothing to hide: the nearest of all depths stands there. An empty pixel is the farthest.
+// Texels beyond the picture's edge hold the nearest of all depths, which hides everything. An empty pixel is the farthest.
 
 #version 430
 layout(local_size_x = 16, local_size_y = 16) in;

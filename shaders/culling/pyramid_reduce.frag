@@ -1,7 +1,7 @@
 // One level of the depth pyramid (pvfiblets/engine/culling/pyramid.py): the farthest of 2 x 2 depth keys of the level before.
 // In the first level the nearer of fiblets and of other things in the scene hides (FEATURE_SCENE_DEPTH).
 //
-// Beyond the picture's edge there is nothing to hide: the nearest of all depths stands there. An empty pixel is the farthest.
+// Texels beyond the picture's edge hold the nearest of all depths, which hides everything. An empty pixel is the farthest.
 
 #version 430
 

@@ -1,10 +1,10 @@
 // Whether a fiblet that was not seen in the last picture will probably show in this one: it is then drawn before others are
 // tested.
 //
-// A camera that moves opens gaps between lines, and gaps hide nothing: if only what was seen in the last picture were drawn
+// A camera that moves opens gaps between lines, and gaps hide nothing: if only the fiblets of the last picture were drawn
 // first, the depth so far would be full of them. Points of a fiblet are compared with the last picture's depth pyramid as
-// if the camera had not moved, at a level coarse enough to take in what lies a little behind. Whether the prediction is good
-// decides how long a picture takes, not what it shows.
+// if the camera had not moved, at a level coarse enough to include fiblets a little behind. The quality of the prediction
+// decides how long a picture takes, not its pixels.
 //
 // A square with an empty pixel hides nothing. There a finer level decides: else all that lies behind the silhouette would be drawn.
 

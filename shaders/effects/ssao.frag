@@ -1,11 +1,11 @@
-// Ambient occlusion in screen space: how much of what is drawn around a pixel stands over it.
+// Ambient occlusion in screen space: how much of a pixel's surroundings stands over it.
 //
 //   occlusion = gain * 1/n sum_i  max(0, 1 - |v_i|^2 / r^2) * max(0, n.v_i / |v_i| - bias)
 //
 // over n pixels of the disc that a ball of radius r (mm) covers, spread evenly (a spiral of golden angles); v_i (mm)
-// goes from the pixel's place to that of pixel i. The first factor is the range check: what is farther than r does not
-// count, however near it looks. n is the surface's normal, or a line's nearest to the viewer, so that a line does not darken
-// itself, whichever way it runs. Pixels without a line, and those beyond the picture's edge, are open.
+// goes from the pixel's place to that of pixel i. The first factor is the range check: pixels farther than r do not
+// count, however near they look. n is the surface's normal, or a line's nearest to the viewer, so that a line does not darken
+// itself, whichever way it runs. Pixels without a line, and pixels beyond the picture's edge, are open.
 //
 // The spiral is turned in steps of 1/16 over squares of 4 x 4 pixels; the mean over such a square, which
 // effects/ssao_blur.frag takes, has seen 16 n directions. The same picture always gives the same occlusion.

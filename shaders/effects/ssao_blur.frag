@@ -1,4 +1,4 @@
-// Mean of the occlusion over squares of 4 x 4 pixels, of which every one has been looked at in another direction
+// Mean of the occlusion over squares of 4 x 4 pixels; each of the 16 sampled other directions
 // (effects/ssao.frag). Pixels whose lines lie apart in depth by half the radius or more do not mix.
 
 #version 430

@@ -1,4 +1,4 @@
-// The nearest distance of every tile of {{ tile }} x {{ tile }} pixels; what has none counts as NOTHING.
+// The nearest distance of every tile of {{ tile }} x {{ tile }} pixels; NOTHING for empty tiles.
 
 #version 430
 

@@ -1,4 +1,4 @@
-// Where a pixel of the G-buffer lies, in view coordinates (mm, the viewer at the origin, looking along -z), and back.
+// Position of a pixel of the G-buffer in view coordinates (mm, the viewer at the origin, looking along -z), and back.
 //
 // The way from a pixel to its place is projective, so for the pixel at n (in [-1, 1]) with f = 1 - window depth
 //
@@ -34,7 +34,7 @@ float pixels_per_mm(float distance)
     return lens.x / max(lens.y + lens.z * distance, 1.0e-20);
 }
 
-// Key of what lies in a pixel at a distance: f = (B + distance * D) / (-A - distance * C).
+// Depth key of a pixel at a distance: f = (B + distance * D) / (-A - distance * C).
 uint key_at(ivec2 pixel, float distance)
 {
     vec4 flat_part = pixel_to_view * vec4(normalized(pixel), 0.0, 1.0);

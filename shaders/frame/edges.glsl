@@ -1,5 +1,5 @@
-// Where the edges of what a pixel shows run, in 32 bits: GBuffer.edges, from which pixels' shares are found
-// (shaders/effects/picture/antialias_coverage.frag). Near a pixel, what it shows is taken for a band:
+// Edges of the line that a pixel shows, in 32 bits: GBuffer.edges, from which pixels' shares are found
+// (shaders/effects/picture/antialias_coverage.frag). Near a pixel, the line is taken for a band:
 //
 //          e < 0 beyond the edge
 //     ------------------------------  nearest edge     n   unit vector of the window across the band, out of the nearest edge

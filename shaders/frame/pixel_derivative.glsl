@@ -1,4 +1,4 @@
-// How far a step in space goes in the window.
+// Length in the window of a step in space.
 
 #include "frame/project.glsl"
 

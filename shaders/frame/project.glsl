@@ -1,4 +1,4 @@
-// From local millimetres to pixels, and the part of a segment that the view volume holds.
+// Projection of local millimetres to pixels, and the part of a segment in the view volume.
 //
 // Symbols
 //   c            homogeneous window coordinates (X, Y, Z, W), see frame/blocks.glsl

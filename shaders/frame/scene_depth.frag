@@ -1,8 +1,8 @@
-// Depth of what VTK has drawn already, as keys of the G-buffer, for culling what it hides.
+// Depth of VTK's picture so far, as keys of the G-buffer, for occlusion culling.
 //
 // A fiblet is hidden at a pixel only if it is behind every sample of it, so the farthest sample counts. A blit would keep
 // whichever sample the driver likes. MARGIN is two units of a 24-bit depth buffer: VTK rounds the fiblet's depth as it
-// writes it and lets equal depths pass, so what is behind by less may yet be seen.
+// writes it and lets equal depths pass, so a fiblet behind by less may still be visible.
 //
 //   source    depth attachment of VTK's framebuffer
 //   origin    lower left pixel of the viewport in it

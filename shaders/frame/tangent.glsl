@@ -8,7 +8,7 @@ uint packed_direction(vec3 d) {
     return uint(i.x & 0xFFFF) | (uint(i.y) << 16u);
 }
 
-// That of a vector of any length; +x for one of none.
+// Packed direction of a vector of any length; `before` for the zero vector.
 uint packed_tangent(vec3 delta, uint before) {
     float size = max(abs(delta.x), max(abs(delta.y), abs(delta.z)));
     return size > 0.0 ? packed_direction(delta / size) : before;

@@ -1,4 +1,4 @@
-// Where the data of fiblets lie in a page: textures of two dimensions, since WebGL 2 has neither storage buffers nor buffer
+// Data of fiblets in a page: textures of two dimensions, since WebGL 2 has neither storage buffers nor buffer
 // textures. It stands for fiblets/data/culling.glsl and fiblets/data/decoding.glsl: the functions are the same, and everything
 // that decodes is the engine's own text.
 //

@@ -1,3 +1,3 @@
-// How large the tiles are whose farthest depth is known (far_tiles.frag).
+// Size of the tiles of farthest depths (far_tiles.frag).
 
 const int FAR_TILE = 4;   // pixels; client/src/renderer.ts

@@ -1,5 +1,5 @@
-// How far away the farthest of a tile's pixels is, of what has been drawn so far: a float's bits, a texel for each tile of
-// FAR_TILE by FAR_TILE pixels. What lies behind that is hidden there (segment.vert).
+// Distance of the farthest of a tile's pixels in the picture so far: a float's bits, a texel for each tile of
+// FAR_TILE by FAR_TILE pixels. Lines behind that are hidden there (segment.vert).
 
 #version 430
 

@@ -1,4 +1,4 @@
-// The colours of a slice, which is not lit; where they are wholly translucent there is nothing.
+// The colours of a slice, unlit; wholly translucent pixels are left out.
 
 #version 430
 

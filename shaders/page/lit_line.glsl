@@ -1,5 +1,5 @@
-// What the nearest line of a pixel looks like, of one layer: its colours, and the light that falls on lines
-// (shaders/resolve/line_light.glsl, of which lights.glsl is the same in one piece).
+// Appearance of the nearest line of a pixel, of one layer: its colours, and the light that falls on lines
+// (shaders/resolve/line_light.glsl; lights.glsl is the same in one piece).
 //
 //   light    0 colours as they are, 1 the light on lines, 2 illuminated lines
 

@@ -1,4 +1,4 @@
-// The mean of all that is translucent in a pixel, and what it hides of what is behind (vtkOrderIndependentTranslucentPass).
+// The mean of all translucent things in a pixel, and their opacity over the background (vtkOrderIndependentTranslucentPass).
 
 #version 430
 

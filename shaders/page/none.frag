@@ -1,4 +1,4 @@
-// Of transform feedback: nothing is drawn.
+// Fragment stage of transform feedback: nothing is drawn.
 
 #version 430
 

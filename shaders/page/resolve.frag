@@ -1,4 +1,4 @@
-// From the page's G-buffer to colours, of one layer.
+// Colours of the page's G-buffer, for one layer.
 
 #version 430
 

@@ -1,4 +1,4 @@
-// Where an element of a long array lies in its texture: in rows of 2^ROW_BITS texels. Where textures hold no rows that long
+// Place of an element of a long array in its texture: in rows of 2^ROW_BITS texels. Where textures hold no rows that long
 // the client writes a smaller number (client/src/gl.ts).
 
 const int ROW_BITS = 12;

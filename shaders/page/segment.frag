@@ -1,8 +1,8 @@
-// What the nearest line of a pixel is: the page's G-buffer, one texel of four words a pixel, with the depth beside it.
+// The nearest line of a pixel: the page's G-buffer, one texel of four words a pixel, with the depth beside it.
 //
 //   streamline, the layer in the upper four bits | tangent (frame/tangent.glsl) | edges (frame/edges.glsl) | value, as a float's bits, or a colour
 //
-// Of wide lines that others are to show through (sum.frag), the place along the line stands beside it.
+// For wide translucent lines (sum.frag), the place along the line stands beside it.
 
 #version 430
 

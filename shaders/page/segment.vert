@@ -61,7 +61,7 @@ bool hidden(ClippedSegment piece) {
     if (any(greaterThan(to - from, ivec2(1)))) return false;
     uint farthest = max(max(texelFetch(far_tiles, from, 0).x, texelFetch(far_tiles, to, 0).x),
                         max(texelFetch(far_tiles, ivec2(from.x, to.y), 0).x, texelFetch(far_tiles, ivec2(to.x, from.y), 0).x));
-    // A pixel's depth may be a little beyond those of the ends (thin_line_rule.glsl).
+    // A pixel's depth may lie a little beyond both ends' (thin_line_rule.glsl).
     return min(piece.a.z, piece.b.z) - abs(piece.b.z - piece.a.z) > uintBitsToFloat(farthest);
 }
 

@@ -1,4 +1,4 @@
-// Which pixels a segment takes, and how deep they are: main(), which hands each to write(s, edges, z).
+// Pixels of a segment, and their depths: main(), which hands each to write(s, edges, z).
 //
 // The pixels of thin lines: fiblets/segments/thin_line_rule.glsl. Those of wide lines: fiblets/hardware_raster/capsule.frag.
 

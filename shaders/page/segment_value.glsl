@@ -1,4 +1,4 @@
-// Where along its segment a fragment is, and what the line has there: a value, as a float's bits, or a colour.
+// Place of a fragment along its segment, and the line's value there: a float's bits, or a colour.
 
 #include "fiblets/segments/thin_line_rule.glsl"
 #include "fiblets/segments/clipped_segment.glsl"

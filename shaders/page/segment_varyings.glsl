@@ -1,4 +1,4 @@
-// What a segment's rectangle hands to its fragments; all corners alike.
+// Outputs of a segment's rectangle to its fragments; equal at all corners.
 
 #ifndef VARYING
 #define VARYING flat out

@@ -17,7 +17,7 @@ uniform highp sampler2D depths;
 uniform vec4 slice_distances;          // p, q, r, s
 uniform float slice_far;               // d of the far end
 uniform vec3 slice_edges;
-uniform float sum_unit;                // of what is added; less than 1 where sums are of half precision
+uniform float sum_unit;                // scale of the sums; less than 1 where sums are of half precision
 #if FEATURE_WIDE_LINES && FEATURE_GATHER_SLICES
 uniform highp usampler2D places;
 const float WIDTHS = 2.0;
@@ -39,7 +39,7 @@ void write(float s, uint edges, float z) {
     float first = texelFetch(depths, pixel, 0).r, t = along_segment(s);
     bool same = (texelFetch(texels, pixel, 0).x & 0x0FFFFFFFu) == streamline;
 #if FEATURE_WIDE_LINES
-    // Once a pixel: by the segment beside which it lies.
+    // Once a pixel: by the segment beside it.
     if (s >= 1.0 && (seg_ids.y & 2u) == 0u || s <= 0.0 && (seg_ids.y & 1u) == 0u) discard;
 #endif
 #if FEATURE_WIDE_LINES && FEATURE_GATHER_SLICES

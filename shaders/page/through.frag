@@ -1,6 +1,6 @@
 // Translucent lines of one layer: the nearest, and behind it what sum.frag has added up, slice by slice (shaders/resolve/slices.glsl
 // and slices_colour.glsl). Of everything translucent in a pixel the mean is shown, as VTK has it without depth peeling
-// (shaders/resolve/layers.glsl): what is handed on is this layer's share of it, over its alpha, by which blending multiplies it.
+// (shaders/resolve/layers.glsl): the output is this layer's share of it, over its alpha, since blending multiplies by alpha.
 
 #version 430
 

@@ -1,4 +1,4 @@
-// Which tiles of the picture, of TILE by TILE pixels, have a line within them or a pixel beside them: a texel for each.
+// Mask of tiles of TILE by TILE pixels with a line within them or a pixel beside them: a texel for each.
 
 #version 430
 

@@ -1,3 +1,3 @@
-// How large the tiles are of which a page lights and smooths those alone that have lines.
+// Size of the tiles; a page lights and smooths only tiles with lines.
 
 const int TILE = 16;   // pixels; client/src/renderer.ts

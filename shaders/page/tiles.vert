@@ -1,5 +1,5 @@
-// The picture as tiles, an instance each, without those that tile_mask.frag found empty: passes that look at lines alone then cost
-// what the lines cover.
+// The picture as tiles, an instance each, without the empty ones of tile_mask.frag: passes over lines then cost
+// only the area that the lines cover.
 
 #version 430
 

@@ -1,5 +1,5 @@
-// What antialias_coverage.frag looks at, from the page's G-buffer, with a border of one texel around the picture: the page's
-// counterpart of effects/picture/visible_edges.frag, by which `narrower` is explained.
+// Input of antialias_coverage.frag, from the page's G-buffer, with a border of one texel around the picture: the page's
+// counterpart of effects/picture/visible_edges.frag, which explains `narrower`.
 
 #version 430
 

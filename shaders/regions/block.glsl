@@ -4,7 +4,7 @@
 // Symbols
 //   u            coordinates in which a leaf is its unit shape, from local millimetres by an affine map that is composed in
 //                float64; for leaves with a distance field they are the field's texel coordinates, texel centres at integers
-//   slack        how far u may be off: the rounding of p, of the map and of the product, and of what was composed
+//   slack        greatest error of u: the rounding of p, of the map, of the product, and of the composition
 
 #include "uniforms/Regions.glsl"
 

@@ -1,6 +1,6 @@
 // Whether something lies wholly in the region, wholly outside of it, or neither for sure: 1, -1, 0.
 //
-// A capsule is what lies within a radius of the segment a b, local millimetres; a ball is a capsule of no length. Each leaf
+// A capsule is all points within a radius of the segment a b, local millimetres; a ball is a capsule of no length. Each leaf
 // is classified by itself, and the expression evaluated in Kleene's logic (1952, section 64): of "and" the least, of "or"
 // the greatest, of "not" the negative.
 //

@@ -1,5 +1,5 @@
-// Boundaries of a pixel (regions/boundaries.glsl), from the first that this pass is to give on: all leaves' crossings along
-// the ray in ascending order, of which those are boundaries where the region's expression turns.
+// Boundaries of a pixel (regions/boundaries.glsl), from the first of this pass: all leaves' crossings along
+// the ray in ascending order; the ones where the region's expression changes are boundaries.
 //
 // Written for one form of region, that is, for its kinds of leaves and its expression, and for a number of layers: numbers
 // of leaves are constants once loops are unrolled, and their rows lie at known places.
@@ -35,7 +35,7 @@ layout(location = 7) out vec4 layer_7;
 
 const int LEAVES = {{ leaves }};
 const int KINDS[LEAVES] = int[LEAVES]({{ kinds }});
-const int PLANES[LEAVES] = int[LEAVES]({{ planes }});  // of which a leaf is made
+const int PLANES[LEAVES] = int[LEAVES]({{ planes }});  // that make a leaf
 const float NO_MORE = 2.0;
 const float OVERFLOW = -9.0;  // as in overflow.frag
 

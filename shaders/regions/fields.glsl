@@ -11,7 +11,7 @@ int region_field_ball(int leaf, vec3 centre, float radius) {
     vec3 slack, u = region_unit(leaf, centre, slack), pace = region_field_steps[leaf];
     vec3 top = vec3(region_field_shapes[leaf] - 1);
     float margin = radius * region_whole_slopes[leaf] + length(slack * pace);
-    // Outside of the grid there is nothing; the texels at its edge reach half a step further.
+    // Outside of the grid there is no field; the texels at its edge reach half a step further.
     vec3 beyond = max(abs(u - 0.5 * top) - (0.5 * top + 0.5), 0.0);
     if (length(beyond * pace) * (1.0 - REGION_ROUNDING) > margin) return -1;
     vec3 g = clamp(floor(u + 0.5), vec3(0.0), top);

@@ -1,4 +1,4 @@
-// What the CPU asks of a surface's layers (regions/layers.glsl), by squares of pixels:
+// Facts on a surface's layers for the CPU (regions/layers.glsl), by squares of pixels:
 //
 //   x   the most fragments of front or of back faces at a pixel; a layer holds two of each
 //   y   the most fragments at a pixel, negative where some share a depth, so that all layers together hold fewer

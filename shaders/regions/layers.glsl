@@ -1,7 +1,7 @@
 // Crossings of a pixel's ray with closed surfaces, as pvfiblets/engine/regions/surface_crossings.py has drawn them (regions/peel.frag).
 //
 // Symbols
-//   layer j      of a surface: its outermost crossings but for those of the layers before; even layers lie in one texture
+//   layer j      of a surface: its outermost crossings without the layers before; even layers lie in one texture
 //                array, odd ones in the other, so that none is read while the same array is drawn into
 //   ends         (-nearest front, farthest front, -nearest back, count of fragments: front + 4096 back)
 //   end          farthest back; LAYERS_NONE where there is none
@@ -32,7 +32,7 @@ vec4 layers_ends(vec4 ends, float end) {
     return depths;
 }
 
-// Of such depths, 1 for those that there are.
+// 1 for each depth that there is.
 ivec4 layers_there(vec4 depths) { return ivec4(greaterThan(depths, vec4(0.0))) * ivec4(lessThan(depths, vec4(2.0))); }
 
 // The first layer of a surface, which is always an even one.

@@ -1,5 +1,5 @@
 // One layer of a closed surface's crossings (regions/layers.glsl): the nearest and the farthest of front and of back faces,
-// and how many fragments there are, strictly within those of the layer before (FEATURE_PEEL).
+// and how many fragments there are, strictly within the layer before (FEATURE_PEEL).
 //
 // This work is based on: Bavoil and Myers 2008, "Order independent transparency with dual depth peeling", which takes the
 // nearest and the farthest at once by blending with MAX. Front and back faces apart, four crossings go at a time. The

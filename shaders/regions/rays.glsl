@@ -1,4 +1,4 @@
-// Where the ray of a pixel enters and leaves the convex shapes of a region: planes, slabs, boxes and spheres, placed by any
+// Intersections of a pixel's ray with the convex shapes of a region: planes, slabs, boxes and spheres, placed by any
 // affine map. pvfiblets/engine/regions/convex_rays.py declares and packs the block, pvfiblets/query/regions/shapes.py says what the shapes are.
 //
 // Symbols
@@ -9,8 +9,8 @@
 //
 // Algorithm. A plane in space is one in q, that is, a row (fx, fy, fz, f0) with f . (d, 1) >= 0 on the kept side; along a ray
 // that is linear in z. Boxes are six planes, slabs two. A sphere is a quadric in q, (d, 1) Q (d, 1) <= 0, hence a quadratic
-// in z, solved without cancellation (Press et al., Numerical Recipes, section 5.6). Its leading coefficient is that of the
-// eye: where it is negative, the eye is inside, and what lies before the lesser root is held.
+// in z, solved without cancellation (Press et al., Numerical Recipes, section 5.6). Its leading coefficient belongs to the
+// eye: where it is negative, the eye is inside, and the ray before the lesser root is held.
 //
 //   rows of a sphere   Qxx, Qyy, 2 Qxy, Q11 | 2 Qx1, 2 Qy1, Qxz, Qyz | Qzz, Qz1
 

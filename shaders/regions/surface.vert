@@ -1,5 +1,5 @@
-// A closed surface for its layers. It is cut at the near plane, for what lies before that has no boundary in the picture and
-// its window depths have no digits; beyond the far plane depths are clamped (pvfiblets/engine/regions/surface_crossings.py).
+// A closed surface for its layers. It is cut at the near plane, since crossings before it have no boundary in the picture and
+// their window depths have no digits; beyond the far plane depths are clamped (pvfiblets/engine/regions/surface_crossings.py).
 
 #version 430
 

@@ -1,5 +1,5 @@
-// Whether a closed surface holds a position of a pixel's ray: its winding number about it is not 0. By the surface's layers,
-// of which the first, which is all that most pixels have, is fetched once.
+// Whether a closed surface holds a position of a pixel's ray: its winding number about it is not 0. Computed from the surface's
+// layers; the first, which is all that most pixels have, is fetched once.
 
 #include "regions/rays.glsl"
 #include "regions/layers.glsl"
@@ -37,7 +37,7 @@ void surface_pass(vec4 depths, ivec4 tally, float z, inout int winding, inout fl
     winding += passed.x + passed.y - passed.z - passed.w;
 }
 
-// `next` becomes the nearest crossing beyond z, where it is nearer than what it was.
+// `next` becomes the nearest crossing beyond z, if that is nearer than `next`.
 bool surface_holds(int k, SurfaceHere here, ivec2 pixel, float z, inout float next) {
     int winding = here.winding;
     surface_pass(here.depths, here.tally, z, winding, next);

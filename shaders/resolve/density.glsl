@@ -1,5 +1,5 @@
 // Density: light adds up where lines lie on each other (pvfiblets/mappers/density.py). A pixel shows the mean colour of its n
-// lines; how much of it, over what is behind them, tells n:
+// lines; its opacity over the background depends on n:
 //
 //   log      log(1 + n) / log(1 + m)       m: lines in a pixel of full brightness
 //   sqrt     sqrt(n / m)
@@ -11,7 +11,7 @@
 //@ fragment after //VTK::CustomUniforms::Dec
 uniform int fibletTone;            // 0: log; 1: sqrt; 2: linear; -1: none, as where VTK selects
 uniform float fibletMost;          // m
-uniform int fibletHue;             // 1: colours are those of directions
+uniform int fibletHue;             // 1: colours of directions
 
 //@ fragment after //VTK::Color::Impl
   if (fibletTone >= 0)

@@ -75,7 +75,7 @@ vec3 fibletDirection(uint word)
   const float cscale = 0.0;
 
 // VTK's own clip code tests varyings of the covering triangle, which mean nothing here. The engine has cut the fiblets
-// at the mapper's planes already, before it kept the nearest, so that what lies behind a cut is in the G-buffer.
+// at the mapper's planes already, before it kept the nearest, so that the lines behind a cut are in the G-buffer.
 //@ vertex instead //VTK::Clip::Dec
 //@ vertex instead //VTK::Clip::Impl
 //@ fragment instead //VTK::Clip::Dec

@@ -12,10 +12,10 @@
 // VTK's own loop over the lights stays, with all their kinds, cones and attenuations. Only its two products with the
 // normal are exchanged, in the text that VTK has written. The vector that stands for R is that one of the cone of
 // reflections that comes nearest to V: it keeps the part of -L along T, and N turns the rest towards the viewer. The last
-// sections but one are for a single headlight, for which VTK writes L = (0, 0, 1) out and takes N.L in the place of R.V.
+// sections but one are for a single headlight: VTK then writes L = (0, 0, 1) out and takes N.L in the place of R.V.
 //
 // Lights from behind count as much as any, so several soon add up to more than white, and then no shape would be left. All
-// are therefore dimmed alike until together they are no brighter than one: `fibletLightSum` is what they add up to.
+// are therefore dimmed alike until together they are no brighter than one: `fibletLightSum` is their sum.
 
 //@ fragment after //VTK::CustomUniforms::Dec
 uniform float fibletLightSum;      // at least 1

@@ -1,4 +1,4 @@
-// Layers: what lies behind the nearest line shows through it (pvfiblets/engine/fiblets/gather/depth_peeling.py).
+// Layers: lines behind the nearest one show through it (pvfiblets/engine/fiblets/gather/depth_peeling.py).
 //
 // Every layer (layers_geometry.glsl) has its own colour, light and depth.
 //
@@ -24,9 +24,9 @@ uniform usampler2DArray fibletIdLayers;
     fibletIds = texelFetch(fibletIdLayers, ivec3(fibletPixel, fibletLayer), 0).rg;
   }
 
-// Without depth peeling VTK does not blend in any order: of all that is translucent in a pixel it takes the mean, weighted by
-// opacity a, and its alpha from all opacities (vtkOrderIndependentTranslucentPass, of which the text below is). Weighted by what
-// reaches the viewer besides, layer k by a (1 - a)^k, that mean is the layers' colour blended in order:
+// Without depth peeling VTK does not blend in any order: of all translucent fragments in a pixel it takes the mean, weighted by
+// opacity a, and its alpha from all opacities (vtkOrderIndependentTranslucentPass; its text is below). Weighted also by the light
+// that reaches the viewer, layer k by a (1 - a)^k, that mean is the layers' colour blended in order:
 //
 //   sum a (1 - a)^k c_k / sum a (1 - a)^k * (1 - (1 - a)^n) = sum a (1 - a)^k c_k
 //

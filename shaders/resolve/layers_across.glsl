@@ -1,4 +1,4 @@
-// Where across a wide line a pixel lies that is seen through others (layers.glsl, tube_shading.glsl).
+// Place across a wide line of a pixel that shows through others (layers.glsl, tube_shading.glsl).
 //
 //   fibletAcrossLayers  r16f    as fibletAcrossMap, layer by layer
 

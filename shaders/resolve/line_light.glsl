@@ -1,6 +1,6 @@
-// The light that lines have unless another is asked for: illuminated lines with a floor, so that colours stay what they are.
+// The default light of lines: illuminated lines with a floor, so that colours keep their hue.
 //
-// A line has a normal towards every light (Zöckler et al. 1996, see illuminated.glsl): what a light takes from it is told by the
+// A line has a normal towards every light (Zöckler et al. 1996, see illuminated.glsl): its share of a light depends on the
 // angle between both, wherever the viewer is. With unit vectors T along the line, L to a light:
 //
 //   share      s = 1 - (L.T)^4       of the light that falls on the line; sqrt(1 - (L.T)^2), the reflection itself, would take a

@@ -15,7 +15,7 @@
     ambientColor = ambientIntensity * fibletMean;
     diffuseColor = diffuseIntensity * fibletMean;
     opacity = 1.0 - exp(-fibletUnit * fibletSlice.a);
-    fibletIds.x = 0xFFFFFFFFu;     // no one streamline
+    fibletIds.x = 0xFFFFFFFFu;     // not a single streamline
   }
 
 // It has its lines' light already: what falls on it is taken whole.

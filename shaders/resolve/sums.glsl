@@ -1,4 +1,4 @@
-// What all lines of a pixel add up to (pvfiblets/engine/fiblets/gather/gathering.py): red, green, blue, each in 0..255 times weight, and
+// Sums of all lines of a pixel (pvfiblets/engine/fiblets/gather/gathering.py): red, green, blue, each in 0..255 times weight, and
 // weight, slice by slice.
 //
 //   fibletSumFloats    rgba32f  a layer a slice

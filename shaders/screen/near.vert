@@ -1,5 +1,5 @@
-// One triangle that covers the whole target at depth 0. With a depth buffer that is 0 where nothing has been drawn, and a test of
-// "less", such pixels take none of it.
+// One triangle that covers the whole target at depth 0. With a depth buffer that is 0 at empty pixels, and a test of
+// "less", empty pixels stay empty.
 
 #version 430
 

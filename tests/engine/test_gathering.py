@@ -114,7 +114,7 @@ def test_sums_are_those_of_streamlines_drawn_alone(gl, fabricate, camera, pipeli
     ok = both & (nearest.depth != EMPTY)
     assert (parts.sum(0)[ok] == count[ok] - 1).mean() > 0.995
     expected = np.zeros((SLICES, *count.shape))
-    distances = SliceDistances.of(view, fiblets.origin, fiblets.origin + 65535 * fiblets.anchor_scale)
+    distances = SliceDistances.from_box(view, fiblets.origin, fiblets.origin + 65535 * fiblets.anchor_scale)
     first = distance(distances, nearest.depth)
     for s, picture in enumerate(alone):
         u = (distance(distances, picture.depth) - first) / (distances.far - first)
@@ -138,7 +138,7 @@ def distance(distances, key):
 def test_distances_are_those_of_the_camera(camera, height):
     eye = np.array([10.0, -200.0, 60.0])
     view = View(SIZE, camera(SIZE, eye=tuple(eye), height=height))
-    found = SliceDistances.of(view, (-50, -40, -30), (50, 40, 30))
+    found = SliceDistances.from_box(view, (-50, -40, -30), (50, 40, 30))
     points = np.random.default_rng(0).uniform(-30, 30, (50, 3))
     clip = np.c_[points, np.ones(50)] @ np.asarray(view.model_view_projection).T
     depth = (clip[:, 2] / clip[:, 3] + 1) / 2

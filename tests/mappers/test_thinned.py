@@ -1,4 +1,4 @@
-"""Some of a large set's streamlines, for frames in a hurry."""
+"""Some of a large set's streamlines, for frames of reduced detail."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ import pyvista as pv
 import pvfiblets
 from pvfiblets.codec.restrict import even_share, restrict
 from pvfiblets.mappers import thinned
-from pvfiblets.mappers.scene import hurry
+from pvfiblets.mappers.scene import reduce_detail
 from pvfiblets.synthetic import brain_streamlines
 
 SHARE = 0.25
@@ -46,17 +46,17 @@ def drawn_by(engine):
     return set(np.unique(ids[depth != 0xFFFFFFFF]).tolist())
 
 
-def test_a_share_of_the_streamlines_is_drawn_in_a_hurry_and_all_after_it(plotter, brain):
+def test_a_share_of_the_streamlines_is_drawn_at_reduced_detail_and_all_after_it(plotter, brain):
     actor = plotter.add_fiblets(brain)
     plotter.show(auto_close=False)
     whole = shown(plotter)
     assert not thinned_sets(actor)  # nothing of it is there before
-    hurry(plotter.render_window, 0.0, SHARE)
+    reduce_detail(plotter.render_window, 0.0, SHARE)
     actor.mapper.Modified()
     hasty = shown(plotter)
     (engine,) = thinned_sets(actor).values()
     assert 0.1 < engine.share <= SHARE
-    hurry(plotter.render_window, 0.0)
+    reduce_detail(plotter.render_window, 0.0)
     actor.mapper.Modified()
     np.testing.assert_array_equal(shown(plotter), whole)
     assert not np.array_equal(hasty, whole)
@@ -76,7 +76,7 @@ def test_filters_colours_and_picks_go_by_the_numbers_of_the_whole_set(plotter, b
     kept = np.zeros(brain.n_streamlines, bool)
     kept[::3] = True
     actor.include(kept, name="every third")
-    hurry(plotter.render_window, 0.0, SHARE)
+    reduce_detail(plotter.render_window, 0.0, SHARE)
     actor.mapper.Modified()
     plotter.render()
     (engine,) = thinned_sets(actor).values()
@@ -94,7 +94,7 @@ def test_small_sets_and_sums_show_all(plotter, brain, monkeypatch):
     monkeypatch.setattr(thinned, "LEAST_FIBLETS", brain.n_fiblets + 1)
     actor = plotter.add_fiblets(brain)
     plotter.show(auto_close=False)
-    hurry(plotter.render_window, 0.0, SHARE)
+    reduce_detail(plotter.render_window, 0.0, SHARE)
     actor.mapper.Modified()
     plotter.render()
     assert not thinned_sets(actor)
@@ -108,7 +108,7 @@ def test_they_go_with_the_set_and_are_counted(plotter, brain):
     actor = plotter.add_fiblets(brain)
     plotter.show(auto_close=False)
     before = actor.explain()["gpu_bytes"]
-    hurry(plotter.render_window, 0.0, SHARE)
+    reduce_detail(plotter.render_window, 0.0, SHARE)
     actor.mapper.Modified()
     plotter.render()
     assert actor.explain()["gpu_bytes"] > before

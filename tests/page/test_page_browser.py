@@ -159,7 +159,7 @@ def test_page_that_may_not_read_its_picture_shows_it_and_says_why_clicks_tell_no
     assert drawn > 0.1
     assert wrong < 1e-3  # of two lines at the same depth either may be drawn
     page.page.mouse.click(100, 80)
-    said = "This browser lets no page read what it draws, unless you allow it to: a click tells nothing."
+    said = "This browser does not let the page read its own picture, unless you allow it: clicks pick nothing."
     assert page.page.locator("#status").inner_text() == said
     page.page.click("#panel summary")
     page.page.get_by_role("button", name="Save picture").click()

@@ -49,12 +49,12 @@ def test_the_distance_between_lines_is_that_of_their_grid():
 def test_a_width_goes_by_it_between_its_ends():
     few, dense = compress(sheet(3.0, 8)), compress(sheet(0.01, 8))
     size = diagonal(few)
-    assert Apart(0.1, 1e-9, 1.0).of(few) == pytest.approx(0.3, rel=0.03)
-    assert Apart(0.1, 0.01, 1.0).of(dense) == pytest.approx(0.01 * diagonal(dense), rel=0.01)
-    assert Apart(0.1, 1e-9, 0.001).of(few) == pytest.approx(0.001 * size, rel=0.01)
-    assert Apart(1.0, 1e-9, 1.0, 1000.0).of(few) == pytest.approx(1000.0 * 3.0 / size, rel=0.03)
+    assert Apart(0.1, 1e-9, 1.0).value_for(few) == pytest.approx(0.3, rel=0.03)
+    assert Apart(0.1, 0.01, 1.0).value_for(dense) == pytest.approx(0.01 * diagonal(dense), rel=0.01)
+    assert Apart(0.1, 1e-9, 0.001).value_for(few) == pytest.approx(0.001 * size, rel=0.01)
+    assert Apart(1.0, 1e-9, 1.0, 1000.0).value_for(few) == pytest.approx(1000.0 * 3.0 / size, rel=0.03)
     alone = compress(sheet(3.0, 1))
-    assert Apart(0.1, 1e-9, 0.02).of(alone) == pytest.approx(0.02 * 50.0, rel=0.01)
+    assert Apart(0.1, 1e-9, 0.02).value_for(alone) == pytest.approx(0.02 * 50.0, rel=0.01)
 
 
 def test_looks_can_be_set_and_read_back(plotter):
@@ -88,7 +88,7 @@ def test_looks_can_be_set_and_read_back(plotter):
 def test_glass_is_the_fainter_the_more_streamlines_there_are():
     found = [settings_of("glass", compress(sheet(0.5, count)))["opacity"] for count in (2, 300, 4800)]
     assert found == [0.5, 0.3, 0.15]
-    assert Fewer(0.3, 0.2, 0.5).of(compress(sheet(0.5, 4800))) == 0.2
+    assert Fewer(0.3, 0.2, 0.5).value_for(compress(sheet(0.5, 4800))) == 0.2
 
 
 def test_a_look_is_the_same_in_the_call_and_afterwards(plotter):

@@ -76,9 +76,10 @@ def test_light_keeps_its_table_unless_told():
         RaycastOptions(values=(0.5,), step=0.5, sparse=4),
     )
     half = InteractiveQuality.of_quality(0.5)
-    assert (half.of(light).step, half.of(light).sparse, half.of(light).integrator) == (0.5, 2, "preintegrated")
-    assert (half.of(surface).step, half.of(surface).sparse) == (1.0, 4)
+    moving = half.applied_to(light)
+    assert (moving.step, moving.sparse, moving.integrator) == (0.5, 2, "preintegrated")
+    assert (half.applied_to(surface).step, half.applied_to(surface).sparse) == (1.0, 4)
     told = InteractiveQuality.of_quality({"step": 3, "sparse": 4})
-    assert (told.of(light).step, told.of(light).sparse) == (1.5, 4)
+    assert (told.applied_to(light).step, told.applied_to(light).sparse) == (1.5, 4)
     assert (InteractiveQuality.of_quality(0.0).step, InteractiveQuality.of_quality(0.0).sparse) == (4.0, 4)
     assert InteractiveQuality.of_quality(1) is InteractiveQuality.of_quality({}) is None

@@ -58,7 +58,7 @@ def right_picture(samples):
 @pytest.fixture(scope="module")
 def sampled(polylines):
     values = [np.arange(len(line), dtype=float) for line in polylines]
-    return LineSamples.of(polylines, values, camera(polylines), SIZE)
+    return LineSamples.from_lines(polylines, values, camera(polylines), SIZE)
 
 
 def test_each_fault_of_a_picture_of_lines_is_found_and_none_in_a_right_one(sampled):

@@ -50,7 +50,7 @@ def test_rays_are_aimed_at_their_halves_at_angles_asked_for(tubes):
 
 def test_a_lens_is_the_orbits_camera(tubes):
     camera = orbit(tubes, "close", 4, (160, 90))[1]
-    lens = Lens.of(camera)
+    lens = Lens.from_camera(camera)
     np.testing.assert_allclose(lens.model_view_projection, camera.model_view_projection, rtol=1e-12)
     pixels = np.array([0, 159, 7250, 160 * 90 - 1])
     directions, forwards = lens.rays(pixels)

@@ -369,12 +369,13 @@ def test_actors_do_what_settings_say(scene, file, kind):
 
 def test_runs_of_ids_are_what_they_were_made_of():
     ids = np.array([5, 3, 4, 9, 11, 3, 12, 0])
-    runs = Ids.of(ids)
+    runs = Ids.from_numbers(ids)
     assert runs.array().tolist() == sorted(set(ids.tolist()))
     assert (len(runs), runs.highest) == (7, 12)
-    assert runs == Ids.of([0, 3, 4, 5, 9, 11, 12])
+    assert runs == Ids.from_numbers([0, 3, 4, 5, 9, 11, 12])
     assert hash(runs) == hash(Ids(runs.runs))
-    assert (len(Ids.of([])), Ids.of([]).highest, Ids.of([]).array().tolist()) == (0, -1, [])
+    none = Ids.from_numbers([])
+    assert (len(none), none.highest, none.array().tolist()) == (0, -1, [])
     for bad in ([[3, 3]], [[5, 4]], [[0, 2], [1, 3]], [[-1, 2]], [[0, 2], [2, 3]]):
         with pytest.raises(ValueError, match="rising"):
             Ids(np.array(bad))

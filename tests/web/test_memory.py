@@ -102,13 +102,13 @@ async def test_what_is_opened_meanwhile_waits_for_its_turn_and_the_page_names_it
         return "done"
 
     files = desk.files
-    first = asyncio.create_task(files.beside("a.trk", slow, "reading"))
+    first = asyncio.create_task(files.run_in_background("a.trk", slow, "reading"))
     await until(lambda: desk.page.job.get("text") == "a.trk: reading")
-    others = [asyncio.create_task(files.beside(f"{i}.trk", slow, "reading")) for i in range(16)]
+    others = [asyncio.create_task(files.run_in_background(f"{i}.trk", slow, "reading")) for i in range(16)]
     await until(lambda: desk.page.job.get("then"))
     seen.append(desk.page.job)
     with pytest.raises(ValueError, match="16 others wait"):
-        await files.beside("one too many.trk", slow, "reading")
+        await files.run_in_background("one too many.trk", slow, "reading")
     files.cancel()
     with pytest.raises(ValueError, match="stopped"):
         await first

@@ -13,8 +13,8 @@ from PIL import Image
 from scipy import ndimage
 
 from pvfiblets.engine.pieces import Pieces
-from pvfiblets.mappers.ahead import draw_ahead
-from pvfiblets.mappers.scene import hurry, slack
+from pvfiblets.mappers.incremental_frame import draw_in_pieces
+from pvfiblets.mappers.scene import reduce_detail, slack
 from pvfiblets.synthetic import brain_streamlines
 from pvfiblets.web.view import stream as stream_module
 from pvfiblets.web.view.encoding import encode
@@ -373,7 +373,7 @@ def test_haste_ends_at_rest(plotter):
     for level, pixels in ((LEVELS[1], 1.0), (LEVELS[3], 2.0)):
         hasty = (stream._draw(level) < 250).any(-1)
         assert slack(plotter.renderer) == pixels
-        hurry(plotter.render_window, 0.0)
+        reduce_detail(plotter.render_window, 0.0)
         actor.mapper.Modified()
         true = (stream._draw(level) < 250).any(-1)
         reach = ndimage.generate_binary_structure(2, 2)
@@ -420,13 +420,13 @@ def act_at(monkeypatch, stream, act):
 
     def pieces(window, **how):
         counts.append(0)
-        for _ in draw_ahead(window, **how):
+        for _ in draw_in_pieces(window, **how):
             counts[-1] += 1
             if len(counts) == 1 and counts[0] == 2:
                 act()
             yield
 
-    monkeypatch.setattr(stream_module, "draw_ahead", pieces)
+    monkeypatch.setattr(stream_module, "draw_in_pieces", pieces)
     return counts
 
 

@@ -33,7 +33,7 @@ def decode(
 ) -> int:
     """Decode fiblets into ``out``; returns how many were damaged and left out.
 
-    Arguments are those of `decode_kernels.decode`.
+    Arguments are as in `decode_kernels.decode`.
     """
     missed = 0
     for a in range(0, len(fiblets), BATCH):
@@ -121,7 +121,7 @@ def _decode_plain(
 
 
 def _runs(sizes: Ints) -> tuple[Ints, Ints, Ints]:
-    """Of each item of runs laid end to end: its run, where each run begins, and its place in it."""
+    """Return for each item of runs laid end to end: its run, the start of each run, and its place in it."""
     owner = np.repeat(np.arange(len(sizes)), sizes)
     begin = np.cumsum(sizes) - sizes
     return owner, begin, np.arange(len(owner)) - begin[owner]

@@ -1,8 +1,8 @@
 """Direction codes of many slots at once, in NumPy and in the arithmetic of `direction_kernels`.
 
-Codes of a slot follow from each other, those of different slots do not: the loop is over the points of a slot, and
-each turn of it is over all slots. They are sorted by their number of points, so that those with an ``i``-th one come
-first, and a slot that has broken the promise is left out of the rest.
+Codes of a slot follow from each other, codes of different slots do not: the loop is over the points of a slot, and
+each turn of it is over all slots. They are sorted by their number of points, so that slots with an ``i``-th point come
+first, and a slot that exceeds the error bound is left out of the rest.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def encode_directions(
     end_scale: float,
     out: tuple[npt.NDArray[Any], ...],
 ) -> None:
-    """Try to code every slot with direction bytes; arguments are those of `direction_kernels.encode_directions`.
+    """Try to code every slot with direction bytes; arguments are as in `direction_kernels.encode_directions`.
 
     ``turning`` is that of all points, ``end (m,)`` says which slots end their streamlines, and ``out`` is filled.
     """
@@ -100,8 +100,8 @@ class _Batch:
         self.decoded: Array = np.repeat(anchors[None], most, axis=0)
 
     def encode(self, lo: float, hi: float) -> None:
-        """Try the smallest cap that holds all turns, and wider ones where it errs by more than half the promise."""
-        moving = int(np.searchsorted(-self.counts, -1))  # those of one point come last
+        """Try the smallest cap that holds all turns, and wider ones where it errs by more than half the error bound."""
+        moving = int(np.searchsorted(-self.counts, -1))  # slots of one point come last
         if not moving:
             return
         if hi > lo:
@@ -142,14 +142,14 @@ class _Batch:
         return np.where(held.any(axis=0), held.argmax(axis=0), len(held) - 1)
 
     def _try(self, some: npt.NDArray[np.int64], caps: npt.NDArray[np.int64], step: Array) -> None:
-        """Code slots by caps; what is better than before is kept."""
+        """Code slots by caps; better codes replace earlier ones."""
         tables = np.moveaxis(quaternions().astype(np.float64), 2, 0)
         books = np.moveaxis(directions(), 2, 0)[:, caps]
         limit = np.minimum(self.give_up, self.best[some])
         counts = self.counts[some]
         codes = np.zeros((len(self.codes), len(some)), np.uint8)
         decoded = self.decoded[:, :, some]
-        column = np.arange(len(some))  # of those that have not failed, and have further points
+        column = np.arange(len(some))  # slots that have not failed, and have further points
         d, q = first_frames(self.shape[some])
         p = self.anchors[:, some]
         worst = _squares(self.true[0][:, some] - p)

@@ -49,6 +49,6 @@ def turn(q: Array, t: Array) -> Array:
 
 
 def turned_x(q: Array) -> Array:
-    """Where frames ``(4, k)`` turn X: ``(3, k)``."""
+    """Return the X axes of frames ``(4, k)``: ``(3, k)``."""
     w, x, y, z = q
     return np.stack([1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)])

@@ -1,6 +1,6 @@
 """Lattice codes of many slots at once, in NumPy and in the arithmetic of `lattice_kernels`.
 
-A slot may be split by halving, up to six times. All its parts of one size are looked at together, with those of the
+A slot may be split by halving, up to six times. All its parts of one size are coded together, with the parts of
 other slots: a *part* is a stretch ``[a, b)`` of the points of a slot.
 """
 
@@ -29,7 +29,7 @@ Ints = npt.NDArray[np.int64]
 
 @dataclass(frozen=True)
 class Source:
-    """What all parts are cut from: points in mm, their turns, and the anchor grid."""
+    """The source of all parts: points in mm, their turns, and the anchor grid."""
 
     points: npt.NDArray[np.floating]
     origin: Array
@@ -79,7 +79,7 @@ class _Parts:
         return excess(drawn, self.counts, self.following, self.leads, self.units, self.allowed)
 
     def halvings(self, edge: float) -> tuple[Ints, Array]:
-        """Least halvings of the edge that turn no segment too far, and the excess; those of least excess if none."""
+        """Least halvings of the edge that turn no segment too far, and the excess; the least excess if none does."""
         k = len(self.counts)
         found, least = np.zeros(k, np.int64), np.full(k, np.inf)
         searched = np.arange(k)
@@ -191,7 +191,7 @@ def encode_lattices(
 ) -> None:
     """Code slots as planned: ``plan`` is their number of pieces, and ``cuts``.
 
-    ``at`` and ``out`` are those of `lattice_kernels.encode_lattices`.
+    ``at`` and ``out`` are as in `lattice_kernels.encode_lattices`.
     """
     pieces, cuts = plan
     counts = cuts.astype(np.int64)

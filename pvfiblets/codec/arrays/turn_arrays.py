@@ -1,4 +1,4 @@
-"""Where streamlines are cut and how far segments may be turned, for all points at once; see `turn_reference`.
+"""Cuts of streamlines and greatest turns of segments, for all points at once; see `turn_reference`.
 
 NumPy and nothing else, in the arithmetic of `turn_kernels`: sets that are too small to load a compiler for.
 """
@@ -23,7 +23,7 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Turning:
-    """How far the segments of a chunk may be turned; row ``i`` is about the segment that leads on from point ``i``.
+    """Greatest turns of the segments of a chunk; row ``i`` is about the segment that leads on from point ``i``.
 
     Attributes
     ----------
@@ -136,7 +136,7 @@ def excess(
     units: Array,
     allowed: Array,
 ) -> Array:
-    """Greatest ratio of a turn to what is allowed, of each of ``k`` fiblets; see `turn_kernels.excess`."""
+    """Greatest ratio of a turn to its bound, of each of ``k`` fiblets; see `turn_kernels.excess`."""
     most, _, k = decoded.shape
     columns = np.arange(k)
     to: Array = np.empty_like(decoded)

@@ -73,7 +73,7 @@ def compress_file(
     """Compress a tractogram file into a ``.fiblets`` file.
 
     The source is read three times: for its bounds and steps, for coding, and to compare the finished file with it.
-    Where it is resampled it is read once more, to know the promise before corners are cut.
+    Where it is resampled it is read once more, to know the error bound before corners are cut.
 
     Parameters
     ----------
@@ -90,10 +90,10 @@ def compress_file(
         Another order needs all streamlines at once, and is refused here.
     verify : {'all', 'sample'}
         Compare all of the finished file with the source, or every so many-th streamline, about a million points in all.
-        That the promise is kept is seen to while coding, in either case.
+        Coding itself keeps the error bound, in either case.
     prepare : callable, optional
-        Called with the coded set before it is written, unless it keeps every bit: what it keeps with the set, as
-        :func:`pvfiblets.regions.index_of` does, is in the file.
+        Called with the coded set before it is written, unless it keeps every bit: data added to the set, as by
+        :func:`pvfiblets.regions.index_of`, are written to the file.
     progress : bool or callable
         Show a progress bar; or call this with the name of the step and its finished share, from 0 to 1 (0 while it
         is unknown). An exception stops the work.
@@ -277,7 +277,7 @@ def _keep_exactly(
 
 
 class _Whole:
-    """What is kept whole: per-streamline data, groups and the header, gathered over chunks."""
+    """Data that are kept whole: per-streamline data, groups and the header, gathered over chunks."""
 
     def __init__(self, dropped: dict[str, int]) -> None:
         self.n = 0

@@ -5,7 +5,7 @@
 
 0. The coordinates as they are, little-endian, x y z x y z ...
 1. Their bytes by place: the lowest byte of all coordinates, then the next of all, ...
-2. By place as in 1, of differences: of the bits of each coordinate, as a whole number, less those of the point before
+2. By place as in 1, of differences: the bits of each coordinate, as a whole number, less the bits of the point before
    it (modulo 2**32 or 2**64), all x, then all y, then all z. Points follow each other closely, so that the upper bytes
    repeat.
 """

@@ -125,7 +125,7 @@ def make_header(fiblets: FibletSet, per_point: dict[str, Member]) -> tuple[dict[
                 "member": name("per_point", per_point[k]),
                 **({} if v.table is None else {"table": name("table", plain(stored_table(v.table)))}),
                 **{key: getattr(v, key) for key in VALUE_FACTS},
-                "mean_error": float(f"{v.mean_error:.9g}"),  # whose last digits depend on what was added up together
+                "mean_error": float(f"{v.mean_error:.9g}"),  # the order of summing changes its last digits
             }
             for k, v in fiblets.per_point.items()
         },
@@ -195,7 +195,7 @@ def _assemble_exact(
 
 
 def _data(header: dict[str, Any], arrays: dict[str, npt.NDArray[Any]]) -> dict[str, Any]:
-    """What is kept beside the points, as fields of a FibletSet; a key of the header that is not there means none."""
+    """Return the data beside the points, as fields of a FibletSet; a missing key of the header means none."""
     found = {name: header.get(name, {}) for name in ("per_point", "per_streamline", "groups", "per_group")}
     return {
         "per_point": {

@@ -83,7 +83,7 @@ def _kept(values: PointValues) -> dict[str, Any]:
 
 
 def _pixels(promise: float, bounds: Sequence[float]) -> dict[str, float]:
-    """How far a point may move in a full-screen view along each axis, pixels, whatever the units of the axes are."""
+    """Return the pixels that a point may move in a full-screen view along each axis, whatever the axes' units."""
     extent = np.diff(np.reshape(bounds, (3, 2)), axis=1).ravel()
     wide = {name: math.hypot(*np.delete(extent, axis)) / PIXELS for axis, name in enumerate("xyz")}
     return {f"along_{name}": promise / side if side else 0.0 for name, side in wide.items()}

@@ -1,4 +1,4 @@
-"""How far a ``.fiblets`` file's lines are from those it was made from, in bounded memory."""
+"""Errors of a ``.fiblets`` file's lines against its source, in bounded memory."""
 
 from __future__ import annotations
 

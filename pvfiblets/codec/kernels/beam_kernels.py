@@ -2,8 +2,8 @@
 
 Greedy closed loop takes the code nearest to the next point; where that leaves the frame pointing badly, the point after
 pays for it. Here several partial codings are kept at once. Each is extended by the nearest code and by that code's
-nearest neighbours, and those with the least sum of squared errors go on. Several cap angles are tried, and the result
-is the one with the least sum of squares among those within the promise.
+nearest neighbours, and the ones with the least sum of squared errors go on. Several cap angles are tried; the result
+is the one with the least sum of squares among the codings within the error bound.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def neighbours(directions: Any) -> Any:
 def _beam(
     true: Any, n: int, step: float, cap: int, give_up: float, tables: Any, near: Any, scratch: Any, codes: Any
 ) -> float:
-    """Code ``true[:n]`` from the anchor ``scratch[0]``; returns the sum of squared errors, inf above the promise."""
+    """Code ``true[:n]`` from the anchor ``scratch[0]``; return the sum of squared errors, inf above the error bound."""
     anchor, states, fresh, parents, chosen = scratch
     quats, dirs, ratios, starts, listed = tables
     table, reach, start, ratio = quats[cap], dirs[cap], starts[cap], ratios[cap]
@@ -197,7 +197,7 @@ def encode_directions(
                 step_index[slot] = index
                 smallest = _smallest_cap(true, n, tables[2])
                 best, mine, used = math.inf, 0, 0
-                # Half the promise first: a low mean is not worth a point near the limit.
+                # Half the error bound first: a low mean is not worth a point near the limit.
                 for largest in (0.25 * give_up, give_up):
                     for cap in range(max(smallest - 1, 0), min(smallest + 3, len(tables[2]))):
                         score = _beam(true, n, step, cap, largest, tables, near, scratch, trial[1 - mine])

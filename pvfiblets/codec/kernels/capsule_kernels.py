@@ -82,7 +82,7 @@ def capsule(decoded: Any, a: int, b: int, end: int, following: Any, end_scale: f
 
 @parallel_kernel
 def leaving(points: Any, starts: Any, ends: Any, radius: Any) -> Any:
-    """``(m,)`` bool: fiblets of which some point lies outside the capsule.
+    """``(m,)`` bool: fiblets with a point outside of the capsule.
 
     ``points`` are decoded points ``(n, 3)`` float64; fiblet ``f`` has those from ``starts[f]`` to ``starts[f + 1]``,
     and its capsule leads from the first of them to ``ends[f]`` with ``radius[f]``, mm.

@@ -76,7 +76,7 @@ def copy_decoding(
 
 @parallel_kernel
 def copy_reach(reach: Any, first: Any, which: Any, at: Any, out: Any) -> None:
-    """Radii: those of the originals."""
+    """Copy the originals' radii."""
     for m in numba.prange(len(which)):
         begin = first[which[m]]
         for k in range(at[m + 1] - at[m]):
@@ -85,7 +85,7 @@ def copy_reach(reach: Any, first: Any, which: Any, at: Any, out: Any) -> None:
 
 @parallel_kernel
 def copy_codes(codes: Any, start: Any, which: Any, codes_at: Any, out: Any) -> None:
-    """Codes: those of the originals; ``start`` ``(n_pool + 1,)`` is where a streamline's codes begin."""
+    """Copy the originals' codes; ``start`` ``(n_pool + 1,)`` is where a streamline's codes begin."""
     for m in numba.prange(len(which)):
         begin, to = start[which[m]], codes_at[m] - codes_at[0]
         for k in range(start[which[m] + 1] - begin):

@@ -288,7 +288,7 @@ def encode_directions(
     ok, shape, step_index, cap_index, radius, end, end_words, codes = out
     lo, hi = steps
     give_up = promise * promise
-    retry = 0.25 * give_up  # half the promise: a wider cap is tried above it
+    retry = 0.25 * give_up  # half the error bound: a wider cap is tried above it
     n_slots = len(slots)
     for block in numba.prange((n_slots + BLOCK - 1) // BLOCK):
         true = np.empty((MAX_POINTS, 3))

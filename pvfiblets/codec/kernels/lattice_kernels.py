@@ -21,7 +21,7 @@ LATTICE_LIMIT = 2.0**30
 MAX_HALVINGS = 15
 TREE_DEPTH = 6
 NONE = 1 << 30
-TURNED_TOO_FAR = 1 << 16  # bytes, for which any split is better that turns fewer segments too far
+TURNED_TOO_FAR = 1 << 16  # bytes: any split that turns fewer segments too far is better
 _NODES = 1 << (TREE_DEPTH + 1)
 
 
@@ -90,7 +90,7 @@ def _turned(true: Any, a: int, b: int, edge: float, turns: Any) -> float:
 
 @kernel
 def _halvings(true: Any, a: int, b: int, h: float, turns: Any) -> Any:
-    """Least halvings of the edge that turn no segment too far, and the excess; those of least excess if none does."""
+    """Least halvings of the edge that turn no segment too far, and the excess; the least excess if none does."""
     found, least = 0, math.inf
     for halvings in range(MAX_HALVINGS + 1):
         over = _turned(true, a, b, h * 0.5**halvings, turns)

@@ -87,7 +87,7 @@ def _first_bend(points: Any, i: int, bound: Any) -> float:
 
 @kernel
 def _next_slot(points: Any, a: int, stop: int, bound: Any) -> int:
-    """Where the slot that begins at point ``a`` ends, in a streamline that ends before ``stop``."""
+    """Return the end of the slot that begins at point ``a``, in a streamline that ends before ``stop``."""
     if stop - a <= MAX_POINTS:
         return stop
     found, least = a + MAX_POINTS, math.inf
@@ -123,7 +123,7 @@ def cut(points: Any, offsets: Any, bound: Any, per: Any, at: Any, slots: Any) ->
 
 @kernel
 def excess(units: Any, a: int, b: int, decoded: Any, following: Any, leads: bool) -> float:
-    """Greatest ratio of a turn to what is allowed, over the segments that lead on from the fiblet ``decoded[a:b]``.
+    """Greatest ratio of a turn to its bound, over the segments that lead on from the fiblet ``decoded[a:b]``.
 
     ``leads``: a segment leads from the last of them to ``following``.
     """

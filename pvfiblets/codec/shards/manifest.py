@@ -79,7 +79,7 @@ class Shard:
 
 @dataclass(frozen=True)
 class Manifest:
-    """What the shards are parts of.
+    """The set that the shards are parts of.
 
     Attributes
     ----------

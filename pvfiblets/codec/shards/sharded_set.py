@@ -85,7 +85,7 @@ class ShardedSet:
 
     @property
     def shards(self) -> tuple[Shard, ...]:
-        """What each shard holds, as the manifest says it."""
+        """Contents of each shard, from the manifest."""
         return self.manifest.shards
 
     @property
@@ -130,7 +130,7 @@ class ShardedSet:
         return self._store.is_here(shard.fiblets) and self._store.is_here(shard.ids)
 
     def fetch(self, number: int) -> None:
-        """Have a shard's files on this machine."""
+        """Fetch a shard's files to this machine."""
         shard = self._shard(number)
         self._store.local(shard.fiblets)
         self._store.local(shard.ids)

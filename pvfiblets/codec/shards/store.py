@@ -1,4 +1,4 @@
-"""Where the files of a sharded set lie: a folder here, or anywhere that fsspec reaches, kept in a cache.
+"""The files of a sharded set: a folder here, or anywhere that fsspec reaches, kept in a cache.
 
 What is far away is fetched a file at a time, when it is first asked for, and kept on disk under its checksum, so that
 a changed set never meets files of before. The cache has a size; the least recently used files go first. A lost

@@ -1,7 +1,7 @@
 """`UnreadSet`: a :class:`.FibletSet` whose records stay in its shards until something asks for all of them.
 
-What is known from the manifest and from the first shard is told at once. What is asked streamline by streamline is
-asked of one shard after the other. Drawing takes shards as parts (:mod:`pvfiblets.engine.fiblets.parts.shard_parts`).
+Facts in the manifest and the first shard are available at once. Queries of single streamlines read
+one shard after the other. Drawing takes shards as parts (:mod:`pvfiblets.engine.fiblets.parts.shard_parts`).
 Records of the whole, such as ``anchors``, join all shards in memory, if they fit.
 """
 
@@ -71,7 +71,7 @@ class UnreadSet(FibletSet):
         Returns
         -------
         FibletSet
-            One of these. Shards that keep every bit are put together in memory: what is drawn of them is coded anew,
+            One of these. Shards that keep every bit are put together in memory: they are coded anew for drawing,
             and not in the same way for each alone as for all.
 
         Raises
@@ -108,7 +108,7 @@ class UnreadSet(FibletSet):
         """Streamlines that have points."""
         return sum(self.shards.shard(n).n_ranks for n in self.numbers)
 
-    # What the dataclass stores is worked out here when it is asked for: checkers take that for another kind of thing.
+    # The dataclass's stored fields are computed here on demand: checkers take that for another kind of attribute.
 
     exact = None  # sets that keep every bit are put together when they are opened
 
@@ -123,7 +123,7 @@ class UnreadSet(FibletSet):
 
     @cached_property
     def parameters(self) -> Parameters:  # type: ignore[override]
-        """What all fiblets share."""
+        """Parameters that all fiblets share."""
         return self._first.parameters
 
     @cached_property
@@ -133,7 +133,7 @@ class UnreadSet(FibletSet):
 
     @cached_property
     def space(self) -> dict[str, Any]:  # type: ignore[override]
-        """What writers of voxel-based formats need."""
+        """Facts for writers of voxel-based formats."""
         return dict(self._first.space)
 
     @cached_property
@@ -296,7 +296,7 @@ class UnreadSet(FibletSet):
 
 
 def _ranks_of(part: FibletSet, ids: Ints) -> Ints:
-    """What the streamlines of a part's ranks are called in the whole."""
+    """Return the numbers that streamlines of a part's ranks have in the whole."""
     return ids if part.rank_to_id is None else ids[np.asarray(part.rank_to_id)]
 
 

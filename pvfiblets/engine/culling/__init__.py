@@ -1,4 +1,4 @@
-"""What hides what: depth pyramid and coverage buffer, each a texture that shaders test fiblets against."""
+"""Occlusion: depth pyramid and coverage buffer, each a texture that shaders test fiblets against."""
 
 from __future__ import annotations
 

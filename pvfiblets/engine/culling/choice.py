@@ -4,8 +4,8 @@ Two-phase culling changes no pixel, so that it can be switched on and off from p
 pyramid of depth twice and two passes over all fiblets, it saves where much is hidden: of a whole brain from 6 million
 segments on, on the machines that were measured; with the camera inside it costs up to two thirds more than it saves.
 
-From time to time some pictures are drawn the other way, and what is faster is kept. The longer it stays so, the rarer
-that is: trials are 3 pictures of 40, then of 80, up to 320.
+From time to time some pictures are drawn the other way, and the faster way is kept. Trials grow rarer the longer the
+answer stays the same: 3 pictures of 40, then of 80, up to 320.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class CullingChoice:
     ----------
     clock : PictureClock
     culling : bool
-        At first: what is compiled later makes a picture late.
+        Initially on or off; on, programs compiled later make a picture late.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ class CullingChoice:
         self._trial = 0
 
     def next(self, key: Hashable) -> bool:
-        """Say whether the next picture is culled."""
+        """Return whether the next picture is culled."""
         self._look()
         if key != self._key:
             self._key = key
@@ -65,7 +65,7 @@ class CullingChoice:
 
     @contextmanager
     def drawing(self) -> Iterator[None]:
-        """Time the picture that :meth:`next` was asked about, if its time counts."""
+        """Time the picture that :meth:`next` decided on, if its time counts."""
         planned = self._planned.pop(0) if self._planned else None
         if planned is None or not planned[1]:
             yield
@@ -81,7 +81,7 @@ class CullingChoice:
         self._awaited = 2 * (TRIAL - 1)
 
     def _look(self) -> None:
-        """Take down what has ended, and decide once all of a trial has."""
+        """Record finished pictures, and decide once all pictures of a trial have finished."""
         for (trial, culled), seconds in self._clock.finished():
             if trial == self._trial and self._awaited:
                 self._times[culled].append(seconds)
@@ -98,7 +98,7 @@ class CullingChoice:
         self._left = self._period
 
     def start_over(self) -> None:
-        """Try again soon: what is drawn has changed, or a picture was given up."""
+        """Try again soon: the scene has changed, or a picture was aborted."""
         self._planned, self._awaited, self._trial = [], 0, self._trial + 1
         self._period, self._left = SHORTEST, 4
 

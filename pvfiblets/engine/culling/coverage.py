@@ -3,7 +3,7 @@
 Paper: Schertzer et al. 2022, sections 3.4.1, 3.4.2 and 4.4, appendix C. Made before a picture, of the one before:
 
 ========  ===========================================================================================================
-step      what it does
+step      task
 ========  ===========================================================================================================
 max       the farthest depth of squares of 16 x 16 pixels: four levels of :class:`DepthPyramid`
 dilate    the buffer is moved backwards and inwards by a radius R (``shaders/culling/coverage_dilate.frag``)
@@ -17,7 +17,7 @@ paper.
 R is no property of the fiblets but a choice: thick fiblets are never hidden, long ones take more fetches. It is the
 capsule radius that :data:`THICK` of the fiblets stay below, and an eighth of a long fiblet, which then takes five
 fetches or fewer. The paper's is the whole length of a fiblet. Fiblets hidden on a brain of 60 million points, by R in
-mm (10 is what is chosen for it): 6: 41 %, 8: 42 %, 10: 39 %, 14: 33 %, 20: 16 %, 30 (the paper's): 6 %.
+mm (10 is the chosen one): 6: 41 %, 8: 42 %, 10: 39 %, 14: 33 %, 20: 16 %, 30 (the paper's): 6 %.
 
 Nothing is hidden in the first picture, after a change of size, line width, tolerance or clip planes, and where the last
 view's matrix is singular.
@@ -47,13 +47,13 @@ if TYPE_CHECKING:
 __all__ = ["CoverageBuffer", "dilation_radius"]
 
 LEVEL = 3
-"""Of the pyramid: squares of 16 pixels."""
+"""Level of the pyramid: squares of 16 pixels."""
 
 THICK = 0.95
 """Share of fiblets whose capsules are thinner than R."""
 
 MARGIN = 1.5
-"""Pixels by which a line's pixels may be off (``shaders/culling/hidden.glsl``)."""
+"""Greatest distance in pixels of a drawn pixel from its line (``shaders/culling/hidden.glsl``)."""
 
 SAMPLE = 64
 """Pages whose fiblets decide on R."""

@@ -1,4 +1,4 @@
-"""What every kind of occlusion culling does for a pipeline."""
+"""The interface of all kinds of occlusion culling."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ class Occlusion(Protocol):
     """Whether the last picture predicts what will show: ``shaders/culling/visibility_prediction.glsl``."""
 
     def before(self, target: GBuffer, view: View, style: Style) -> None:
-        """Be told that a picture will be drawn; the target still holds what it held."""
+        """Prepare for a picture; the target still holds the last one."""
         ...
 
     def forget(self) -> None:
-        """Be told that the next picture will be of other things: the last one hides nothing any more."""
+        """Forget the last picture: the next one shows other things, which it does not hide."""
         ...
 
     def build(self, target: GBuffer) -> None:
@@ -42,7 +42,7 @@ class Occlusion(Protocol):
         ...
 
     def after(self, target: GBuffer, view: View, style: Style) -> None:
-        """Be told that the picture is whole."""
+        """Finish the picture."""
         ...
 
     def bind(self, program: Any) -> None:

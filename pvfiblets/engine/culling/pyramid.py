@@ -1,7 +1,7 @@
 """Depth pyramids of two-phase culling: the farthest depth of ever larger squares of pixels.
 
 Level k of the texture holds the greatest depth key of squares of 2^(k+1) pixels. Sides are powers of two, so that a
-square's four parts are whole; what lies outside the picture is never read. Made by compute shaders, six levels at once,
+square's four parts are whole; texels outside the picture are never read. Made by compute shaders, six levels at once,
 or, before OpenGL 4.3 and by software, to which barriers are dear, by drawing.
 """
 
@@ -31,8 +31,8 @@ AT_ONCE, TILE = 6, 64
 """Levels that a dispatch makes, and the side of its work groups' squares."""
 
 PREDICTION_LEVEL = 4
-"""Level by which it is predicted what will show, squares of 32 pixels. Finer levels draw less early, but leave
-more to be tested."""
+"""Level of the visibility prediction, squares of 32 pixels. Finer levels draw less early, but leave more to be
+tested."""
 
 
 class _Levels:
@@ -74,7 +74,7 @@ class DepthPyramid:
     Attributes
     ----------
     predicts : bool
-        Whether there is a last picture, by which a pipeline may choose what to draw first.
+        Whether there is a last picture from which a pipeline may predict the first draws.
     outside : moderngl.Texture or None
         Depth of other things in the scene, which hides too.
     """
@@ -100,7 +100,7 @@ class DepthPyramid:
             self._size = size
 
     def before(self, target: GBuffer, view: View, style: Style) -> None:  # noqa: ARG002 - as of all kinds
-        """Make the last picture's pyramid, if there is one of this size: what it does not hide is drawn early."""
+        """Make the last picture's pyramid, if any of this size: fiblets that it does not hide are drawn early."""
         self._resize(target.size)
         self.predicts = target.generation > 0
         if self.predicts:
@@ -109,7 +109,7 @@ class DepthPyramid:
             self._build(self._last, target)
 
     def forget(self) -> None:
-        """Do nothing: what is left out is found out by the picture itself."""
+        """Do nothing: the current picture alone decides which fiblets are hidden."""
 
     def after(self, target: GBuffer, view: View, style: Style) -> None:
         """Do nothing: the next picture asks for its own."""
@@ -183,13 +183,13 @@ class DepthPyramid:
 
     @property
     def texture(self) -> moderngl.Texture:
-        """All levels of the depth so far, of which level k holds squares of 2^(k+1) pixels."""
+        """All levels of the depth so far; level k holds squares of 2^(k+1) pixels."""
         assert self._now is not None
         return self._now.texture
 
     @property
     def levels(self) -> int:
-        """How many."""
+        """Number of levels."""
         return 0 if self._now is None else self._now.count
 
     @property

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 __all__ = ["LEAST_SEGMENTS", "Listing", "supports_listing"]
 
 LEAST_SEGMENTS = 16000
-"""With fewer, two rounds and a pyramid cost more than what they spare: for 3,500 segments as much again."""
+"""With fewer, two rounds and a pyramid cost more than they save: for 3,500 segments twice the time."""
 _QUAD = 4  # vertices
 _GROUP = 64
 
@@ -51,7 +51,7 @@ class Listing:
     features : sequence of str
         Of that shader; they may be others for each picture.
     shift : int
-        Items are ``1 << shift`` quads each, and as much is a quad's number moved to the right to give its item's.
+        Items are ``1 << shift`` quads each: a quad's number shifted right by this is its item's.
     """
 
     def __init__(
@@ -144,7 +144,7 @@ class Listing:
         self._pyramid.build(target.buffer)
 
     def bind(self, program: moderngl.Program) -> None:
-        """Tell a drawing program where the list is."""
+        """Set the list's texture unit in a drawing program."""
         assert self._texture is not None
         self._texture.bind(ITEMS["listed"])
         self._gl.set_sampler(program, "listed_texels", ITEMS["listed"])
@@ -161,5 +161,5 @@ class Listing:
 
 
 def supports_listing(ctx: moderngl.Context) -> bool:
-    """Say whether a context has what it takes."""
+    """Return whether a context has the required features."""
     return version_of(ctx) >= 430

@@ -1,6 +1,6 @@
 """Effects in screen space: passes over the whole picture that read a G-buffer and write a texture each.
 
-They know no lines, only pixels: what they cost depends on the picture's size alone. Each is a
+They see pixels, not lines: their cost depends on the picture's size alone. Each is a
 `pvfiblets.engine.effects.screen.ScreenEffect`, made when it is first wanted; OpenGL 3.3 suffices for all.
 """
 

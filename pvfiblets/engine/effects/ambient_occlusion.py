@@ -22,7 +22,7 @@ over a line by less than 6 degrees does not count: neighbours in a flat bundle a
 
 
 class AmbientOcclusionPass(ScreenEffect):
-    """How open each pixel of a G-buffer is.
+    """Openness of each pixel of a G-buffer.
 
     Parameters
     ----------

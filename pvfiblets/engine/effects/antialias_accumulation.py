@@ -56,7 +56,7 @@ class Accumulation(PicturePasses):
         self._copy(colour, viewport, viewport[2:], "kept", mixed=False, alike=alike)
 
     def show_kept(self, target: Attachment, viewport: Viewport) -> None:
-        """Draw what is remembered into a part of an attachment of the same size."""
+        """Draw the kept picture into a part of an attachment of the same size."""
         self._show("kept", 1.0, target, viewport)
 
     @property
@@ -65,7 +65,7 @@ class Accumulation(PicturePasses):
         return "kept" in self._textures
 
     def forget_kept(self) -> None:
-        """Give back what is remembered."""
+        """Release the kept picture."""
         if self.kept:
             self._drop("kept")
 

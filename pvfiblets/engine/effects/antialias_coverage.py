@@ -31,7 +31,7 @@ class SmoothedLines:
     buffer : GBuffer
         With ``edges``, of the viewport's size.
     narrower : float
-        Pixels by which its lines are thinner than they were drawn: those below one pixel are drawn one pixel wide.
+        Excess of the drawn width over the line's, in pixels: lines below one pixel are drawn one pixel wide.
     rectangle : tuple of 4 ints
         x, y, width, height of the part of the viewport that it can be in.
     """

@@ -17,19 +17,19 @@ from .projection import Projection
 __all__ = ["STEPS", "TILE", "WIDEST", "Focus", "disc_areas", "distance_of"]
 
 WIDEST = 64.0
-"""Pixels: no disc may be asked to have a greater radius, as a pixel looks at all of them that may reach it."""
+"""Pixels: the greatest radius of a disc, as a pixel reads all pixels whose discs may reach it."""
 
 STEPS = 16
 """Radii a pixel, in the table of the pixels that discs cover; the number is linear between halves of a pixel's width,
 and few distances of pixels from a centre lie between two steps."""
 
 TILE = 8
-"""Pixels of the side of a square for which one asks how far discs reach into it."""
+"""Pixels of the side of a square that stores how far discs reach into it."""
 
 
 @dataclass(frozen=True)
 class Focus:
-    """What a lens is set to.
+    """Settings of a lens.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ class Focus:
     max_blur : float
         Pixels, 1 to `WIDEST`: no disc has a greater radius.
     darkening : float
-        0 to 1: the share of light that what has the widest disc loses.
+        0 to 1: the share of light lost by pixels with the widest disc.
     """
 
     distance: float
@@ -84,7 +84,7 @@ def disc_areas(widest: float) -> npt.NDArray[np.float32]:
     offsets = np.arange(-side, side + 1, dtype=np.float64)
     apart = np.sort(np.hypot(offsets[:, None], offsets).ravel())
     radii = np.maximum(np.arange(math.ceil(widest * STEPS) + 2) / STEPS, 0.5)
-    # Pixels nearer than r - 1/2 count 1, those up to r + 1/2 what is left of r + 1/2 - d.
+    # Pixels nearer than r - 1/2 count 1, pixels up to r + 1/2 count r + 1/2 - d.
     sums = np.concatenate([[0.0], np.cumsum(apart)])
     inner, outer = (np.searchsorted(apart, radii + shift) for shift in (-0.5, 0.5))
     areas = inner + (outer - inner) * (radii + 0.5) - (sums[outer] - sums[inner])

@@ -20,7 +20,7 @@ TILE = 8
 
 
 class HaloPass(ScreenEffect):
-    """Where the halos of a G-buffer's lines show, and how deep they lie.
+    """Pixels of the halos of a G-buffer's lines, and their depths.
 
     Parameters
     ----------

@@ -17,7 +17,7 @@ ROW = 4096
 
 
 class OutlinePass(ScreenEffect):
-    """Where the outline of chosen streamlines runs.
+    """Pixels of the outline of chosen streamlines.
 
     Parameters
     ----------

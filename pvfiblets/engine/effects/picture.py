@@ -1,4 +1,4 @@
-"""Effects on a whole picture that is drawn already, whoever drew it: depth of field, and tones.
+"""Effects on a finished picture of any renderer: depth of field, and tones.
 
 `PictureEffects` copies colours and depths of a viewport, and draws them changed to where they were. What the copy is
 made of are textures of a framebuffer that is not the engine's, known by their OpenGL names.
@@ -38,7 +38,7 @@ class SeenThrough:
     depth : moderngl.Texture
         Where it begins, as keys.
     lights : moderngl.Texture, optional
-        Colour and opacity, if that differs by pixel; what is fainter than `FAINTEST` does not count.
+        Colour and opacity, if they differ by pixel; opacities below `FAINTEST` do not count.
     positions : moderngl.Texture, optional
         With `values`: place and value by pixel; others do not count.
     values : tuple of 2 floats
@@ -52,7 +52,7 @@ class SeenThrough:
 
 
 class PictureEffects(PicturePasses):
-    """What changes pictures in one context.
+    """Effects on pictures in one context.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ class PictureEffects(PicturePasses):
         self._corner = corner
 
     def take_in(self, things: Iterable[SeenThrough]) -> None:
-        """Have the copy's depths be those of things that one sees something through, where they are nearer."""
+        """Give the copy the depths of see-through things, where these are nearer."""
         with self._plain_state():
             target = self._framebuffer(("depths",))
             self._ctx.enable_only(moderngl.BLEND)
@@ -127,7 +127,7 @@ class PictureEffects(PicturePasses):
     def depths_later(
         self, rectangle: tuple[int, int, int, int], tag: Any
     ) -> tuple[Any, npt.NDArray[np.float32]] | None:
-        """Have window depths of the copy read, and return those of an earlier picture, without waiting for the GPU."""
+        """Request window depths of the copy, and return depths of an earlier picture, without waiting for the GPU."""
         if self._reads is None:
             self._reads = DelayedRead(self._ctx, self._gl)
         target = self._framebuffer(("colours", "depths"))
@@ -161,7 +161,7 @@ class PictureEffects(PicturePasses):
                 self._pass(name, framebuffer, textures, shift | tone.uniforms(), features)
 
     def _blurred(self, focus: Focus, lens: Projection) -> dict[str, moderngl.Texture]:
-        """Say of each pixel of the copy how far its light spreads; returns what the last pass reads."""
+        """Compute how far the light of each pixel of the copy spreads; return the last pass's input."""
         size = self._textures["colours"].size
         blurs = self._texture("blurs", size, 4, "f4")
         tiled = -(-size[0] // TILE), -(-size[1] // TILE)

@@ -1,4 +1,4 @@
-"""What is done to a picture that somebody else drew: passes over every pixel of textures of a framebuffer of theirs."""
+"""Passes over every pixel of a picture of another renderer, in textures of that renderer's framebuffer."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class PicturePasses:
         self._lent: moderngl.Framebuffer | None = None
 
     def _plain_state(self) -> Any:
-        """Return what keeps the framebuffers that are bound; what is drawn meanwhile is neither mixed nor tested."""
+        """Return a scope that restores the bound framebuffers; inside, drawing is neither blended nor depth-tested."""
         self._ctx.scissor = None
         self._ctx.enable_only(moderngl.NOTHING)
         return self._gl.framebuffers_kept()
@@ -76,7 +76,7 @@ class PicturePasses:
     def _onto(self, attachment: Attachment, viewport: tuple[int, int, int, int]) -> Iterator[moderngl.Framebuffer]:
         """Lend what draws into a part of somebody else's texture, within :meth:`_plain_state`.
 
-        The framebuffer is kept, what it draws into is not: its owner may delete it, and its name may be given again.
+        The framebuffer is kept, its attachment is not: its owner may delete it, and its name may be used again.
         """
         if self._lent is None:
             x, y, width, height = viewport

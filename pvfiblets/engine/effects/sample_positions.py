@@ -1,7 +1,7 @@
-"""Where in a pixel the samples of a refined picture lie.
+"""Positions of accumulation samples in a pixel.
 
 A pixel's colour is the mean over its square: a box filter one pixel wide, as multisampling has it. It is estimated by
-the mean of the pictures at n places p_i of that square. How good places are follows from what they do to edges. The
+the mean of the pictures at n places p_i of that square. The effect on edges decides how good places are. The
 share of the square U on one side of a straight edge is estimated by the share of the places there; the squared error of
 that, averaged over all straight lines that cut the square, is by Crofton's formula (the lines between two points are as
 many as their distance) proportional to the *energy distance* of the places and the square:
@@ -25,7 +25,7 @@ import numpy.typing as npt
 __all__ = ["CENTRED", "MOST", "energy_distance", "sample_positions"]
 
 MOST = 256
-"""Samples: the error of as many is below one level of eight bits at nearly all edges."""
+"""Samples: with 256, the error is below one level of eight bits at nearly all edges."""
 
 CENTRED = 8
 """Samples from which on one of them is the pixel's middle: fewer would be a worse picture by it."""
@@ -101,7 +101,7 @@ def _to_square_gradient(points: Array) -> Array:
 
 
 def _ordered(points: Array) -> list[tuple[float, float]]:
-    """Return points so that each is the one with which those so far have the least energy distance."""
+    """Return points ordered so that each has the least energy distance together with its predecessors."""
     to_square = _to_square(points)
     to_chosen = np.zeros(len(points))
     left = np.ones(len(points), bool)

@@ -1,4 +1,4 @@
-"""What all effects are made of: textures of the picture's size, and passes that fill them."""
+"""The base of all effects: textures of the picture's size, and passes that fill them."""
 
 from __future__ import annotations
 

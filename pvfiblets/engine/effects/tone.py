@@ -9,10 +9,10 @@ from numbers import Real
 __all__ = ["OPERATORS", "Tone", "is_number"]
 
 OPERATORS = ("none", "reinhard", "exponential", "aces", "hable")
-"""What tone mapping may be; the formulas are in the shader."""
+"""Operators of tone mapping; the formulas are in the shader."""
 
 _WHITE = {"hable": 11.2}
-"""What becomes white where nothing else is asked for; of the other operators, the brightest that was drawn."""
+"""Default white point; the other operators take the brightest colour drawn."""
 
 _BRIGHTEST = 1e4
 
@@ -72,7 +72,7 @@ class Tone:
 
     @property
     def features(self) -> tuple[str, ...]:
-        """What a shader of this tone is made with."""
+        """Features of a shader with this tone."""
         return () if self.operator == "none" else (f"TONE_{self.operator.upper()}",)
 
     def uniforms(self) -> dict[str, float]:
@@ -85,5 +85,5 @@ class Tone:
 
 
 def is_number(value: object) -> bool:
-    """Say whether a value is a finite number, of NumPy's or of Python's, and no bool."""
+    """Return whether a value is a finite number, of NumPy's or of Python's, and no bool."""
     return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)

@@ -1,12 +1,12 @@
-"""How many fiblets a picture is made of, counted when somebody asks.
+"""Counts of a picture's fiblets, made on demand.
 
 =============  ==================================================================================================
-count          what it says
+count          meaning
 =============  ==================================================================================================
 ``total``      fiblets on the GPU
 ``in_frustum`` those whose capsules reach into the view volume, on the kept side of the caller's planes
-``drawn``      those of them that culling left over; None where a pipeline does not remember them
-``visible``    those that own a pixel
+``drawn``      fiblets of these that culling kept; None where a pipeline does not remember them
+``visible``    fiblets that own a pixel
 =============  ==================================================================================================
 """
 
@@ -116,7 +116,7 @@ class Census:
 def no_counts(
     total: int, in_frustum: int | None = None, drawn: int | None = None, visible: int | None = None
 ) -> dict[str, int | None]:
-    """Return how many fiblets there are, and what is known besides."""
+    """Return the number of fiblets, and the counts known without rendering."""
     return {"total": total, "in_frustum": in_frustum, "drawn": drawn, "visible": visible}
 
 
@@ -130,7 +130,7 @@ def count_fiblets(
     kept: Visibility,
     culled: bool,
 ) -> dict[str, int | None]:
-    """Count fiblets of the last picture; uniform blocks and camera are those of it."""
+    """Count fiblets of the last picture, with its uniform blocks and camera."""
     marked = pipeline if isinstance(pipeline, ComputePipeline) and pipeline.planned else None
     in_frustum, drawn = census.count(chunks, [*features, *kept.culling], marked, kept)
     return no_counts(total, in_frustum, drawn if culled else in_frustum, census.visible(target))

@@ -1,7 +1,7 @@
-"""Which streamlines pass a region, asked on the GPU of the records that are drawn.
+"""Streamlines that pass a region, computed on the GPU from the drawn records.
 
-The GPU classifies fiblets by their capsules and decodes those that a capsule leaves undecided, in float32 with a
-margin (``shaders/fiblets/compute/query.comp``). What the margin leaves open, and only that, is settled from the same
+The GPU classifies fiblets by their capsules and decodes the undecided ones, in float32 with a
+margin (``shaders/fiblets/compute/query.comp``). Streamlines that the margin leaves open are settled from the same
 records in float64 by :func:`pvfiblets.query.selection.passing.region_flags`: the answers are its own, bit for bit.
 """
 
@@ -169,7 +169,7 @@ class RegionQuery:
         return self._block.nbytes + (0 if self._frame is None else self._frame.size)
 
     def release(self) -> None:
-        """Give back what is on the GPU; twice is harmless."""
+        """Release the GPU memory; twice is harmless."""
         self._block.release()
         if self._frame is not None:
             self._frame.release()
@@ -196,7 +196,7 @@ def _answers(marks: Bytes) -> Bytes:
 
 
 def _open(marks: Bytes) -> npt.NDArray[np.bool_]:
-    """Which answers an unsure point could change."""
+    """Return the answers that an unsure point could change."""
     both = _INSIDE | _OUTSIDE
     some = (marks & _UNSURE != 0) & (marks & both != both)
     opened: npt.NDArray[np.bool_] = some | (marks & (_FIRST_UNSURE | _LAST_UNSURE) != 0)

@@ -15,7 +15,7 @@ NO_WIDTH = 1e-3
 
 @dataclass(frozen=True)
 class FibletStyle(Style):
-    """How fiblets become pixels.
+    """The style of fiblets.
 
     Parameters
     ----------
@@ -24,7 +24,7 @@ class FibletStyle(Style):
         streamline's first point), the name of an array in ``FibletSet.per_point`` or of colours there, or a volume to
         be sampled at the points (:mod:`pvfiblets.engine.fiblets.data.sampled_volume`). None costs nothing.
     line_width : float
-        Pixels, above 0. More than 1 draws round brushes of that diameter; else lines are thin, as OpenGL draws those of
+        Pixels, above 0. More than 1 draws round brushes of that diameter; else lines are thin, like OpenGL's lines of
         one pixel. Where ``exact``, all are brushes.
     tolerance : float
         Pixels. A fiblet whose points all lie this near to the segment between its ends is drawn as that segment, as is
@@ -78,12 +78,12 @@ class FibletStyle(Style):
 
     @property
     def detail(self) -> float:
-        """Pixels by which fiblets may be simplified."""
+        """Tolerance in pixels for simplified fiblets."""
         return self.tolerance
 
     @property
     def relief(self) -> str | None:
-        """What ``GBuffer.across`` holds: ``'across'`` of wide lines, ``'normal'`` of tubes, or None for nothing."""
+        """Contents of ``GBuffer.across``: ``'across'`` of wide lines, ``'normal'`` of tubes, or None for nothing."""
         if not self.across or (self.radius is None and self.line_width <= 1.0):
             return None
         return "across" if self.radius is None else "normal"

@@ -1,4 +1,4 @@
-"""What of a set is there to be drawn: the caller's filter, and the region that cuts it."""
+"""The visible part of a set: the caller's filter, and the region that cuts it."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Visibility:
     gl : GLExtras
     programs : Programs
     whole, drawn : FibletSet
-        What filters speak of, and what lies on the GPU: the same, or some of its streamlines.
+        The set that filters refer to, and the set on the GPU: the same, or some of its streamlines.
     chunks : sequence of Chunk
     """
 
@@ -87,7 +87,7 @@ class Visibility:
 
     @property
     def cutting(self) -> tuple[str, ...]:
-        """Those that programs need which draw parts of fiblets."""
+        """Features of programs that draw parts of fiblets."""
         return (*self._filter.cutting, *(("CLIP_REGION",) if self._cutter is not None else ()))
 
     def _region_features(self) -> tuple[str, ...]:

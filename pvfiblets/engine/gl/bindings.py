@@ -232,4 +232,4 @@ CONSTANTS = {
     **{f"image_{name}": number for name, number in {**IMAGES, **SUM_IMAGES}.items()},
     **{f"unit_{name}": number for name, number in {**PEELING, **SAMPLED}.items()},
 }
-"""What sources call these numbers."""
+"""Names of these numbers in sources."""

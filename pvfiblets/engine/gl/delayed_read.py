@@ -23,7 +23,7 @@ _FLOAT = 4
 
 
 class _Read(NamedTuple):
-    """What is on its way."""
+    """A read under way."""
 
     buffer: moderngl.Buffer
     fence: int
@@ -55,7 +55,7 @@ class DelayedRead:
         *,
         attachment: int = 0,
     ) -> bool:
-        """Have an area read, unless too many are on their way."""
+        """Request a read of an area, unless too many are under way."""
         if len(self._reads) >= AT_ONCE:
             return False
         _, _, width, height = area

@@ -109,4 +109,4 @@ INTEGERS: dict[str, tuple[int, int | str]] = {
     "GL_SUBGROUP_SUPPORTED_STAGES_KHR": (0x9533, "GL_KHR_shader_subgroup"),
     "GL_SUBGROUP_SUPPORTED_FEATURES_KHR": (0x9534, "GL_KHR_shader_subgroup"),
 }
-"""What :meth:`.GLExtras.get_integer` knows: enum, and least version (330 is 3.3) or extension."""
+"""Limits of :meth:`.GLExtras.get_integer`: enum, and least version (330 is 3.3) or extension."""

@@ -1,9 +1,9 @@
-"""Which version of OpenGL a context can be used as.
+"""The usable version of an OpenGL context.
 
-That is the number it tells, except with drivers that give exactly the version that was asked for and have all of later
-ones in it: NVIDIA's. VTK asks EGL for OpenGL 3.2, so that without this cards on machines without a display would draw
-nothing: the least that any pipeline needs is 3.3. Such a context is tried, once: does it compile later GLSL, and has it
-the extensions that later versions took in? Elsewhere the number decides, never the extensions: a driver that is told to
+The driver's version number counts, except with drivers that report exactly the requested version although they support
+later ones: NVIDIA's. VTK asks EGL for OpenGL 3.2, so that without this cards on machines without a display would draw
+nothing: every pipeline needs 3.3 at least. Such a context is tested, once: does it compile later GLSL, and has it
+the extensions of later versions? Elsewhere the number decides, never the extensions: a driver configured to
 show an older version (``MESA_GL_VERSION_OVERRIDE``) still lists those.
 """
 
@@ -24,7 +24,7 @@ _TAKEN_IN: tuple[tuple[int, tuple[str, ...]], ...] = (
     (450, ("direct_state_access", "clip_control", "buffer_storage", "enhanced_layouts")),
     (460, ("shader_draw_parameters", "indirect_parameters")),
 )  # fmt: skip
-"""Extensions of ARB by the versions that took them in: those that the engine needs."""
+"""ARB extensions that the engine needs, by the version that includes them."""
 
 _known: dict[tuple[str, str], int] = {}
 

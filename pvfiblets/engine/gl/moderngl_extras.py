@@ -5,8 +5,8 @@
 >>> codes.bind(3)                                                 # doctest: +SKIP
 >>> gl.set_sampler(program, "codes", 3)                           # doctest: +SKIP
 
-moderngl remembers which framebuffer is bound and nothing else that is touched here: it makes a texture unit active
-before every bind of its own. So bindings of framebuffers are put back, texture units are left as they are asked for.
+moderngl remembers which framebuffer is bound, but no other binding that is changed here: it makes a texture unit active
+before every bind of its own. So bindings of framebuffers are restored, texture units are not.
 
 A loader's non-null pointer proves nothing: EGL and GLX hand out stubs for any name. Only what OpenGL 3.3 has, which
 is moderngl's own least version, is called without asking; all else names the version or extension that it needs.
@@ -64,7 +64,7 @@ _PASSED = (0x911A, 0x911C)  # already, or within the time that was given
 
 
 class Uniform(NamedTuple):
-    """Where a uniform of a program is that moderngl did not make.
+    """The location of a uniform of a program that moderngl did not make.
 
     Attributes
     ----------
@@ -168,7 +168,7 @@ class GLExtras:
             raise EngineError(f"{name} is not a known integer of OpenGL; known are {', '.join(sorted(INTEGERS))}")
         enum, needs = INTEGERS[name]
         self._require(name, needs)
-        values = (ctypes.c_int64 * 4)()  # GL_ATI_meminfo answers with four, of which the first is the sum
+        values = (ctypes.c_int64 * 4)()  # GL_ATI_meminfo returns four; the first is the sum
         self.function("glGetInteger64v")(enum, values)
         return values[0]
 
@@ -177,7 +177,7 @@ class GLExtras:
         return int(self.function("glFenceSync")(_COMMANDS_COMPLETE, 0) or 0)
 
     def passed(self, fence: int) -> bool:
-        """Say whether the GPU is through with everything before a fence, without waiting; if so, drop the fence."""
+        """Return whether the GPU is through with everything before a fence, without waiting; if so, drop the fence."""
         if self.function("glClientWaitSync")(fence, _FLUSH, 0) not in _PASSED:
             return False
         self.drop_fence(fence)
@@ -206,7 +206,7 @@ class GLExtras:
         return texture
 
     def set_sampler(self, program: Any, name: str, unit: int) -> None:
-        """Tell a program from which texture unit a sampler of its reads, once and for all draws.
+        """Set the texture unit that a sampler of a program reads, once and for all draws.
 
         moderngl does not know samplers of buffer textures: setting their ``value`` does nothing.
         """
@@ -232,7 +232,7 @@ class GLExtras:
         self.limit_levels(texture, 0, levels - 1)
 
     def limit_levels(self, texture: moderngl.Texture, first: int, last: int, unit: int | None = None) -> None:
-        """Say which levels of a texture shaders may read; ``texelFetch`` counts them from ``first``.
+        """Limit the levels of a texture that shaders may read; ``texelFetch`` counts them from ``first``.
 
         The texture stays bound to the unit, moderngl's own by default.
 
@@ -248,7 +248,7 @@ class GLExtras:
         """Bind again, at the end, the framebuffers that were bound, and have moderngl remember the one it did.
 
         moderngl binds the one that it remembers whenever it has made another, so a released one must not stay there.
-        ``ctx.detect_framebuffer`` is no way to learn what is bound: on VTK's framebuffers it leaves an OpenGL error.
+        ``ctx.detect_framebuffer`` cannot find the bound one: on VTK's framebuffers it leaves an OpenGL error.
         """
         draw = self.get_integer("GL_DRAW_FRAMEBUFFER_BINDING")
         read = self.get_integer("GL_READ_FRAMEBUFFER_BINDING")

@@ -20,7 +20,7 @@ SOFTWARE = ("llvmpipe", "softpipe", "swrast")
 
 
 def is_software(ctx: moderngl.Context) -> bool:
-    """Say whether OpenGL runs on the CPU."""
+    """Return whether OpenGL runs on the CPU."""
     renderer = str(ctx.info["GL_RENDERER"]).lower()
     return any(name in renderer for name in SOFTWARE)
 
@@ -28,7 +28,7 @@ def is_software(ctx: moderngl.Context) -> bool:
 class Passes:
     """Milliseconds of each pass of the last redraw.
 
-    A GPU is asked with timer queries. Mesa's software OpenGL answers those with nothing for compute work, but runs it
+    A GPU is measured with timer queries. Mesa's software OpenGL returns 0 from them for compute work, but runs it
     before the dispatching call returns: there the clock is read instead.
 
     Parameters

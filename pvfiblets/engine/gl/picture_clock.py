@@ -1,4 +1,4 @@
-"""How long pictures take on the GPU, told some pictures later: nothing is waited for."""
+"""GPU times of pictures, available some pictures later: nothing is waited for."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What OpenGL measures of the commands between two others: nanoseconds that they took, or samples that they drew.
+"""OpenGL queries between two commands: nanoseconds taken, or samples drawn.
 
 moderngl's own query objects are not used: they cannot be released, so that their names in OpenGL are never free again,
 and they read 32 bits, which nanoseconds exceed after 4.3 s.

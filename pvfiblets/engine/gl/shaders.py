@@ -6,7 +6,7 @@ Sources live in the repository's ``shaders`` folder, which the wheel carries as 
     Pastes that file, once per program. :func:`pvfiblets.codec.layout.glsl_source` writes ``"codec/layout.glsl"``,
     :func:`pvfiblets.colour_modes.glsl_source` ``"colour/line_colour.glsl"``, and
     :class:`.uniform_struct.UniformStruct` writes ``"uniforms/NAME.glsl"`` of the uniform block `NAME`. Below
-    ``#if FEATURE_NAME`` a file is pasted only where that is on, so that no block that nobody packs is looked for.
+    ``#if FEATURE_NAME`` a file is pasted only where that is on, so that no unused block is looked up.
 ``FEATURE_NAME``
     1 or 0, for every name in :data:`FEATURES`; ``#if FEATURE_NAME`` keeps unused code out of the program.
 ``{{ name }}``
@@ -148,7 +148,7 @@ FEATURES: dict[str, str] = {
     "TONE_ACES": "tones by the ACES film curve",
     "TONE_HABLE": "tones by Hable's film curve",
 }
-"""What a program can be made to do, by the name of its switch."""
+"""Features of programs, by the names of their switches."""
 
 NEWEST = 430
 """GLSL that sources are written for, unless they say otherwise."""
@@ -253,7 +253,7 @@ def preprocess(text: str, features: Iterable[str]) -> str:
 
 
 def _left_out(text: str, place: int, active: set[str]) -> bool:
-    """Say whether a place in a file lies below ``#if FEATURE_NAME`` of a feature that is off."""
+    """Return whether a place in a file lies below ``#if FEATURE_NAME`` of a feature that is off."""
     off: list[bool] = []
     for condition in _CONDITION.finditer(text, 0, place):
         if condition[1] == "endif":

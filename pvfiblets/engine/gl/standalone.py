@@ -9,8 +9,8 @@ from ..errors import EngineError
 
 __all__ = ["bare_context"]
 
-# Some drivers give the version that is asked for and no later one. 3.3 is the least that any pipeline needs; 3.2, which
-# VTK itself needs, is tried so as to be able to say so.
+# Some drivers give exactly the requested version. Every pipeline needs 3.3 at least; 3.2, which VTK itself needs, is
+# tried for the sake of a clear error.
 VERSIONS = (460, 450, 430, 410, 330, 320)
 
 

@@ -45,7 +45,7 @@ MODULES = {
     "Splines": "tubes.uniform_blocks",
     "Tubes": "fiblets.line_tubes",
 }
-"""Of the engine, by the names of the blocks that they pack."""
+"""Modules of the engine, by the names of the blocks that they pack."""
 
 LARGEST = 16384
 """Bytes that OpenGL promises to a uniform block."""

@@ -1,11 +1,11 @@
 """How much one call may ask of a graphics card, so that it ends within a second on the slowest that one meets.
 
 A system takes a card for hung, and resets it with all that it holds, when it cannot be interrupted for some seconds
-(two on Windows), and what it surely is interrupted between are calls. While one runs, nothing else is drawn either: no
+(two on Windows), and interruptions are certain only between calls. While one runs, nothing else is drawn either: no
 mouse pointer moves.
 
 What cards do in a second is an estimate. Mesa's software OpenGL decodes and draws 34 million segments a second on two
-cores of some 0.15 TFLOPS; others are taken to do as much for each of theirs:
+cores of some 0.15 TFLOPS; other devices are assumed to be proportional to theirs:
 
 ============  ==============================  =======  ==================  ==========================
 card          the slowest that is thought of  TFLOPS   segments a second   texture samples a second
@@ -34,7 +34,7 @@ __all__ = ["DISCRETE", "INTEGRATED", "SOFTWARE", "WorkLimits"]
 
 
 class WorkLimits(NamedTuple):
-    """What a call may have at most.
+    """Greatest work of one call.
 
     Attributes
     ----------

@@ -1,7 +1,7 @@
-"""What of a region is planes: a plane, a slab or a box that all else lies within needs no boundaries for each pixel.
+"""The planes of a region: a plane, a slab or a box that holds all else needs no boundaries for each pixel.
 
-A region that holds only what its parts hold all together, as several cuts of a user's do, is cut by part after part.
-Of those parts, planes, slabs and boxes are half spaces, which a view takes as clip planes (:mod:`.clipping`): 16 bytes
+A region that is the intersection of its parts, as several cuts of a user are, is cut by part after part.
+Planes, slabs and boxes among them are half spaces, which a view takes as clip planes (:mod:`.clipping`): 16 bytes
 each, and not 16 a pixel. The rest stays a region (:mod:`.cutting`).
 """
 

@@ -1,7 +1,7 @@
-"""Where rays enter and leave convex shapes, and what joins those: the uniform block of ``shaders/regions/rays.glsl``.
+"""Intersections of rays with convex shapes, and their expression: the block of ``shaders/regions/rays.glsl``.
 
-All matrices are composed in float64, and expanded about a leaf's own centre in the picture, so that float32 holds what
-is left of them to the last digits.
+All matrices are composed in float64, and expanded about a leaf's own centre in the picture, so that float32 holds the
+remainder to the last digits.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ RAYS_BLOCK = UniformStruct(
 
 
 def to_unit(leaf: Shape, offset: Array) -> Array:
-    """Return (4, 4): local mm, of which 0 lies at `offset` (data mm), to a shape's unit coordinates."""
+    """Return (4, 4): local mm, with 0 at `offset` (data mm), to a shape's unit coordinates."""
     found = np.eye(4)
     found[:3, :3] = leaf.linear
     found[:3, 3] = leaf.linear @ (offset - leaf.centre)
@@ -76,7 +76,7 @@ def _centre(window: Array, place: Array, size: tuple[int, int]) -> Array:
 
 @dataclass(frozen=True)
 class RegionSignature:
-    """What a program is written for: how many leaves there are, of which kinds, and what joins them.
+    """The structure that a program is written for: the number and kinds of leaves, and the expression that joins them.
 
     Attributes
     ----------
@@ -90,7 +90,7 @@ class RegionSignature:
     program: tuple[int, ...]
 
     @classmethod
-    def of(cls, region: Region) -> RegionSignature:
+    def from_region(cls, region: Region) -> RegionSignature:
         """Return that of a region."""
         return cls(tuple(leaf.kind for leaf in region.leaves), region.program)
 

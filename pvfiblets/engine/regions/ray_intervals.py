@@ -1,15 +1,15 @@
-"""Where a region begins and ends along each pixel's ray: `RegionIntervals`, for ``shaders/regions/boundaries.glsl``.
+"""Boundaries of a region along each pixel's ray: `RegionIntervals`, for ``shaders/regions/boundaries.glsl``.
 
 This work is based on: Schertzer et al. 2022, section 5.1 and figure 10: a mesh drawn into a depth buffer for its front
 and one for its back decides by pixel which fragments lie inside, which is right for convex meshes. Here every pixel has
 a sorted list of all window depths at which the region's expression turns, whatever its shapes.
 
 ==========  =========================================================================================================
-step        what it does
+step        task
 ==========  =========================================================================================================
 rays        planes, slabs, boxes and spheres: their rows of ``shaders/regions/rays.glsl``, composed in float64
 surfaces    closed surfaces are drawn, layer by layer (:mod:`.surface_layers`)
-combine     merges all crossings of a pixel and keeps those at which the expression turns, four to a pass and layer
+combine     merges all crossings of a pixel and keeps the ones where the expression changes, four to a pass and layer
 ==========  =========================================================================================================
 
 Made once for a region, a size and a camera. A box, a sphere or a convex mesh takes one layer of 16 bytes a pixel.
@@ -51,7 +51,7 @@ _FORMS = 8
 """Programs kept."""
 
 _LAYERS = 2
-"""Of boundaries, before any pixel is known to have more than fit in."""
+"""Layers of boundaries, until a pixel is known to have more."""
 
 
 class RegionIntervals:
@@ -83,7 +83,7 @@ class RegionIntervals:
         self._reads = DelayedRead(ctx, gl)
 
     def prepare(self, view: View, origin: Array, scale: Array, top: int) -> bool:
-        """Bring the boundaries up to date; nothing is done where region, size and camera are what they were.
+        """Update the boundaries; unchanged region, size and camera cost nothing.
 
         Changes the framebuffer's binding for a while, and leaves blending, culling and the depth test off.
         """
@@ -122,7 +122,7 @@ class RegionIntervals:
         if self._block is None:
             self._block = self._ctx.buffer(reserve=RAYS_BLOCK.nbytes)
         self._block.write(block.tobytes())
-        form = RegionSignature.of(region)
+        form = RegionSignature.from_region(region)
         meshes = tuple(id(cast("Surface", leaf).mesh) for leaf in region.leaves if leaf.kind == SURFACE)
         if (form, meshes) != self._form:  # a simpler one needs no more than it does
             self._form = form, meshes
@@ -135,7 +135,7 @@ class RegionIntervals:
             # What is beyond all crossings is known, and with it whether boundaries are even or odd in number.
             most = crossings + (crossings + form.far) % 2
         enough = -(-most // 4)
-        if (came := self._reads.arrived()) is not None and came[1].any():  # what was known did not do
+        if (came := self._reads.arrived()) is not None and came[1].any():  # the known number was too small
             self._known = max(self._known, 2 * came[0])
         layers = min(enough, max(_LAYERS, self._known))
         while True:
@@ -168,7 +168,7 @@ class RegionIntervals:
         return min(lefts), min(lowers), max(rights), max(uppers)
 
     def _overflows(self, stack: LayerStack, rectangle: Rectangle) -> bool:
-        """Say whether any pixel has more boundaries than there are layers for."""
+        """Return whether any pixel has more boundaries than there are layers for."""
         return self._ask(stack, rectangle) and bool(self._squares.ask(_OVERFLOW, rectangle).any())
 
     def _ask(self, stack: LayerStack, rectangle: Rectangle) -> bool:

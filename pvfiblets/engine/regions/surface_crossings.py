@@ -1,4 +1,4 @@
-"""Closed surfaces as layers of crossings along each pixel's ray: ``shaders/regions/layers.glsl`` says what they hold.
+"""Closed surfaces as layers of crossings along each pixel's ray, in the format of ``shaders/regions/layers.glsl``.
 
 This work is based on: Bavoil and Myers 2008, "Order independent transparency with dual depth peeling". A layer holds
 the nearest and the farthest crossing of front and of back faces each: a convex mesh takes one, and so does a torus.
@@ -49,7 +49,7 @@ _DEPTH_CLAMP, _CLIP_DISTANCE_0 = 0x864F, 0x3000
 
 @dataclass(frozen=True)
 class Peeled:
-    """Where a surface's layers are.
+    """Textures of a surface's layers.
 
     Attributes
     ----------
@@ -69,14 +69,14 @@ class Peeled:
 
 
 class _Found(NamedTuple):
-    """How many layers there must be, the most crossings at a pixel, and whether layers miss any."""
+    """The number of layers needed, the most crossings at a pixel, and whether layers miss any."""
 
     layers: int
     crossings: int
     shared: bool
 
     @classmethod
-    def of(cls, said: npt.NDArray[np.float32]) -> _Found:
+    def from_squares(cls, said: npt.NDArray[np.float32]) -> _Found:
         """Read it from what the squares say, ``(2, n)``."""
         faces, crossings = said
         if faces.max() > MOST:
@@ -222,7 +222,7 @@ class SurfaceLayers:
     def _draw_one(
         self, k: int, mesh: _Mesh, matrix: Array, rectangle: Rectangle, first: int, waits: bool
     ) -> _Found:
-        """Draw as many layers as the last picture had, and then those that are missing, as far as there is room.
+        """Draw the number of layers of the last picture, and then the missing ones, as far as there is room.
 
         Returns what :meth:`_inspect` does; of earlier pictures, if it must not wait.
         """
@@ -251,7 +251,7 @@ class SurfaceLayers:
         """Read the results of earlier frames."""
         arrived, known = self._reads[k].arrived(), self._known[k]
         if arrived is not None and known is not None:
-            found = _Found.of(arrived[1].reshape(-1, 2).T)
+            found = _Found.from_squares(arrived[1].reshape(-1, 2).T)
             layers, crossings = max(known.layers, found.layers), max(known.crossings, found.crossings)
             self._known[k] = _Found(layers, crossings, known.shared or found.shared)
 
@@ -259,7 +259,7 @@ class SurfaceLayers:
         return self._meshes[id(surface.mesh)][1]
 
     def _keep_meshes(self, surfaces: Sequence[Surface]) -> None:
-        """Have the meshes of these surfaces, and no others, on the GPU."""
+        """Keep the meshes of these surfaces, and no others, on the GPU."""
         wanted = {id(surface.mesh): surface for surface in surfaces}
         for key in [key for key in self._meshes if key not in wanted]:
             self._meshes.pop(key)[1].release()
@@ -336,7 +336,7 @@ class SurfaceLayers:
     def _inspect(self, rectangle: Rectangle, first: int, count: int) -> _Found:
         """Return what a picture's layers hold."""
         self._ask(rectangle, first, count)
-        return _Found.of(self._squares.ask(_INSPECT, rectangle).T)
+        return _Found.from_squares(self._squares.ask(_INSPECT, rectangle).T)
 
     def _ask(self, rectangle: Rectangle, first: int, count: int) -> None:
         """Get ready to ask that."""

@@ -1,8 +1,8 @@
 """Regions on the GPU: the uniform block ``Regions``, and the distance fields that it refers to.
 
 A leaf's map from data mm is composed with the reference anchor of the local coordinates in float64, so that float32
-rounds relative to what lies near that reference (:mod:`pvfiblets.engine.frame`). Every classification in the shaders is
-conservative: what rounding may turn over counts as undecided. ``shaders/regions/block.glsl`` says what the symbols are.
+rounds relative to positions near that reference (:mod:`pvfiblets.engine.frame`). Every classification in the shaders is
+conservative: anything within rounding counts as undecided. ``shaders/regions/block.glsl`` explains the symbols.
 
 Budget: the block takes 5.3 KiB of the 16 that OpenGL promises. A surface's field takes about 64^3 texels of 4 bytes,
 1 MB; a label volume's one for each voxel.

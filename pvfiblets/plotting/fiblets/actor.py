@@ -282,7 +282,7 @@ class FibletActor(FibletSettings, SelectableActor):
 
     @property
     def scalars(self) -> str | np.ndarray | VolumeSource | None:
-        """What colours the actor: a name, an array or a volume; ``None`` for ``color`` or orientation."""
+        """Source of colours: a name, an array or a volume; ``None`` for ``color`` or orientation."""
         return self._choice
 
     @scalars.setter
@@ -342,7 +342,7 @@ class FibletActor(FibletSettings, SelectableActor):
 
     @property
     def share(self) -> float | None:
-        """How many of the streamlines are drawn: 1.0 for all; ``None`` before the first picture.
+        """Share of the streamlines that is drawn: 1.0 for all; ``None`` before the first picture.
 
         Less only where memory does not suffice for all, and ``fit`` is ``"sample"``; or it is ``"stream"``, and parts
         in view have not been drawn yet: then of the drawn ones.
@@ -455,7 +455,7 @@ class FibletActor(FibletSettings, SelectableActor):
     # Density ------------------------------------------------------------------------------------
 
     def _count_lines(self) -> None:
-        """Have all lines of a pixel counted where style or colours ask for it."""
+        """Count all lines of a pixel where style or colours need it."""
         thin, counted = self._style == "density", self._scalars is not None and self._scalars.kind == "pixel_count"
         effect = None
         if thin or counted:
@@ -469,7 +469,7 @@ class FibletActor(FibletSettings, SelectableActor):
         self._see_through()
 
     def _most_found(self, most: float) -> None:
-        """Have the scalar bar end at the number of lines in the fullest pixel."""
+        """End the scalar bar at the number of lines in the fullest pixel."""
         low, high = self._table.scalar_range
         if most > low and most != high and self._scalars is not None:
             self._scalars = replace(self._scalars, range=(self._scalars.range[0], most))

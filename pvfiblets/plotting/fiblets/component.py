@@ -22,7 +22,7 @@ from pvfiblets.plotting.fiblets.picking import MousePicking
 from pvfiblets.plotting.fiblets.settings import FibletSettings
 from pvfiblets.plotting.setting_places import OPTIONS
 from pvfiblets.plotting.settings import Given, Setting
-from pvfiblets.plotting.words_of_add_mesh import why_not
+from pvfiblets.plotting.unsupported_arguments import why_not
 
 if TYPE_CHECKING:
     from os import PathLike

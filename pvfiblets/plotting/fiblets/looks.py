@@ -40,7 +40,7 @@ class Apart:
     most: float
     unit: float = 0.0
 
-    def of(self, data: Any) -> float:
+    def value_for(self, data: Any) -> float:
         """Return the width for some data."""
         from pvfiblets.mappers.spacing import line_spacing_of
 
@@ -64,7 +64,7 @@ class Fewer:
     least: float
     most: float
 
-    def of(self, data: Any) -> float:
+    def value_for(self, data: Any) -> float:
         """Return the opacity for some data."""
         share = self.opacity * (300.0 / max(data.n_streamlines, 1)) ** 0.25
         return float(f"{min(max(share, self.least), self.most):.2g}")
@@ -108,7 +108,7 @@ PLAIN = {
     "depth_cue": False,
     "halos": False,
 }
-"""What every look says, in the order in which it is set."""
+"""Settings of every look, in the order in which they are set."""
 
 LOOKS: dict[str, Look] = {
     "plain": Look("thin lines in gentle light", PLAIN),
@@ -143,7 +143,9 @@ def check_look(name: str, value: Any) -> str | None:
 def settings_of(look: str, data: Any) -> dict[str, Any]:
     """Return what a look sets for some data, by name."""
     declared = LOOKS[look].settings
-    return {name: value.of(data) if isinstance(value, (Apart, Fewer)) else value for name, value in declared.items()}
+    return {
+        name: value.value_for(data) if isinstance(value, (Apart, Fewer)) else value for name, value in declared.items()
+    }
 
 
 def look_of(settings: Mapping[str, Any], data: Any) -> str | None:

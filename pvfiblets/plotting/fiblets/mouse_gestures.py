@@ -1,4 +1,4 @@
-"""From mouse events to places in the window: clicks, rectangles and lassos.
+"""Mouse gestures: clicks, rectangles and lassos, in places of the window.
 
 Observers stand on the interactor, before its style and after widgets. A click leaves the event to the style, so that
 the camera still turns when the mouse is dragged; while an area is drawn the style gets none of the left button's
@@ -85,7 +85,7 @@ class Pointing:
             self._listen("MouseMoveEvent", self._move_area)
 
     def _listen(self, event: str, handler: Callable[[], bool]) -> None:
-        """Call a handler; where it returns True nobody else hears of the event."""
+        """Call a handler; if it returns True, the event goes no further."""
         reference = weakref.WeakMethod(handler)
 
         def call(interactor: Any, name: str) -> None:
@@ -106,7 +106,7 @@ class Pointing:
 
     @property
     def pixel(self) -> tuple[int, int]:
-        """Where the mouse is, from the window's lower left corner."""
+        """Position of the mouse, from the window's lower left corner."""
         x, y = self._interactor.GetEventPosition()
         return x, y
 
@@ -194,7 +194,7 @@ class Pointing:
         return True
 
     def _area(self) -> np.ndarray:
-        """Corners of what has been drawn so far."""
+        """Corners of the outline so far."""
         if self._mode == "lasso":
             return np.array(self._corners, np.float64)
         from pvfiblets.plotting.fiblets.pick_result import checked_box

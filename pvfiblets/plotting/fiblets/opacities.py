@@ -1,4 +1,4 @@
-"""Where the opacity of streamlines comes from, beside one number for all: as in ``add_mesh``."""
+"""Sources of the opacity of streamlines, beside one number for all: as in ``add_mesh``."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ POINTS = "opacity"
 
 @dataclass(frozen=True, eq=False)
 class Opacities:
-    """What a choice of opacities means for some fiblets; one of these is given.
+    """A choice of opacities for some fiblets; one of these is given.
 
     Attributes
     ----------
@@ -94,7 +94,7 @@ def as_transfer(choice: Any, arrays: Iterable[str] = ()) -> Any:
 def apply_transfer(table: Any, transfer: Any) -> None:
     """Give a look-up table opacities along it, by name or as :func:`as_transfer` returns them."""
     count = table.n_values
-    if not isinstance(transfer, str) and len(transfer) >= count:  # PyVista takes as many for bytes, and refuses more
+    if not isinstance(transfer, str) and len(transfer) >= count:  # PyVista reads equal lengths as bytes, refuses more
         places = np.linspace(0.0, 1.0, len(transfer))
         transfer = np.round(255.0 * np.interp(np.linspace(0.0, 1.0, count), places, transfer)).astype(np.uint8)
     table.apply_opacity(transfer)

@@ -1,4 +1,4 @@
-"""What picking draws over the scene: the outline of an area, and the text beside the mouse."""
+"""The overlay of picking: the outline of an area, and the text beside the mouse."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What was picked: streamlines, and the places of them that lay under the mouse or an area."""
+"""The result of a pick: streamlines, and their places under the mouse or an area."""
 
 from __future__ import annotations
 
@@ -123,7 +123,7 @@ def point_values(fiblets: Any, ids: np.ndarray, name: str) -> tuple[np.ndarray, 
         return None
     if measured.kind != "point":
         return None
-    where = StreamlineRanges.of(part)
+    where = StreamlineRanges.from_fiblets(part)
     offsets = np.concatenate([[0], np.cumsum(where.points)])
     rows = np.arange(offsets[-1]) + np.repeat(where.point - offsets[:-1], where.points)
     return np.asarray(measured.array(), np.float64)[rows], offsets
@@ -132,7 +132,7 @@ def point_values(fiblets: Any, ids: np.ndarray, name: str) -> tuple[np.ndarray, 
 def visible(
     actor: FibletActor, polygon: Any, *, tolerance: float = 0.0, nearest: bool = False, renderer: Any = None
 ) -> Picked | None:
-    """Return what is seen of an actor in an area of the window; ``None`` if that is nothing."""
+    """Return the visible part of an actor in an area of the window; ``None`` if it is empty."""
     hits = pick_area(actor.picking_layers, polygon, renderer=renderer, tolerance=tolerance)
     if hits is None or not len(hits.ids):
         return None
@@ -151,11 +151,10 @@ def visible(
 def everything(
     actor: FibletActor, polygon: Any, *, tolerance: float = 0.0, renderer: Any = None
 ) -> Picked | None:
-    """Return all of an actor under an area of the window, hidden or not; ``None`` if that is nothing.
+    """Return all of an actor under an area of the window, hidden or not; ``None`` if it is empty.
 
-    Arguments are those of :func:`visible`. What the actor's filters and cuts leave out is not
-    there. What is seen in the area is always among them, although its pixel may lie in it where the
-    line's middle does not.
+    Arguments are as for :func:`visible`. Lines left out by the actor's filters and cuts are not included. Visible
+    lines of the area are always included, even if only a line's pixel, not its middle, lies in it.
     """
     from pvfiblets.query.selection.screen import under_polygon
 

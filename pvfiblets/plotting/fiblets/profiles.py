@@ -1,4 +1,4 @@
-"""What selected streamlines hold: counts, lengths, values, and the profile of a value from one end to the other."""
+"""Statistics of selected streamlines: counts, lengths, values, and the profile of a value along them."""
 
 from __future__ import annotations
 

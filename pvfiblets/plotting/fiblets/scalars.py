@@ -118,11 +118,11 @@ def _built_in(fiblets: FibletSet) -> dict[str, Callable[[], Any]]:
 
 
 def _of_colours(name: str, columns: list[PointValues]) -> Scalars:
-    """Colours of points, of which the fiblets hold each channel."""
+    """Colours of points; the fiblets hold each channel as an array."""
     low, high = min(column.lo for column in columns), max(column.hi for column in columns)
     if low < 0.0 or high > 255.0:
         raise ValueError(
-            f"scalars {name!r} are vectors from {low:g} to {high:g}, of which the fiblets hold each column; colour by "
+            f"scalars {name!r} are vectors from {low:g} to {high:g}, stored as one array per column; colour by "
             f"one ({name + '[0]'!r}), or by their magnitude, an array"
         )
     clear = len(columns) > 3 and columns[3].lo < (1.0 if high <= 1.0 else 255.0)
@@ -130,9 +130,9 @@ def _of_colours(name: str, columns: list[PointValues]) -> Scalars:
 
 
 def by_group(fiblets: FibletSet) -> Scalars:
-    """Number the streamlines by the first of the groups that they are in; NaN for those in none.
+    """Number the streamlines by the first of their groups; NaN for those without a group.
 
-    Groups that are hidden come last. Colours are those of the list of bundles: a group's own, or one by its place.
+    Hidden groups come last. Colours are as in the list of bundles: a group's own, or one by its place.
     """
     from pvfiblets.query.bundles.bundle_list import first_groups, group_colours
 
@@ -160,7 +160,7 @@ def refuse_unknown(streamlines: Streamlines, name: str) -> None:
 
 
 def missing_message(fiblets: FibletSet | Streamlines, name: str) -> str:
-    """Say that there is no array ``name``, which there are, and what to do."""
+    """Return the message that there is no array ``name``, with the existing ones and the fix."""
     from pvfiblets.codec.fibletset import FibletSet
 
     coded = isinstance(fiblets, FibletSet)

@@ -126,7 +126,7 @@ class FibletSettings(Settings):
         "memory a pixel. ``\"layers\"``: the four nearest, each with its own colour, light and depth,\n"
         "blended in order. A number from 2 to 64: that number of layers. Lines behind the last layer are\n"
         "invisible; a layer costs a pass, and 44 bytes a pixel. ``None``: the nearest alone, over the rest\n"
-        "of the scene. Opaque actors pay for none of these.",
+        "of the scene. Opaque actors pay for neither.",
         kind="str | int | None",
         header='{"all", "layers", None} or int, default: "all"',
         where=LATER,
@@ -145,6 +145,7 @@ class FibletSettings(Settings):
     )  # fmt: skip
     style: Setting[str] = Setting(
         STYLES[0],
+        "Appearance of lines.\n\n"
         "``'surface'``: lines in their colours. ``'halo'``: black lines in white halos. ``'ink'``: black on a\n"
         "light background and white on a dark one, in halos of the background's colour. ``'density'``: sums\n"
         "of overlapping lines.\n\n"

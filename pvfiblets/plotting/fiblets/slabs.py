@@ -100,7 +100,7 @@ class FibletSlab:
 
     @property
     def position(self) -> float:
-        """Where its middle plane is along the normal, mm."""
+        """Position of its middle plane along the normal, mm."""
         return float(self._origin @ self._normal / np.linalg.norm(self._normal))
 
     @position.setter
@@ -119,11 +119,11 @@ class FibletSlab:
 
     @property
     def slice_actor(self) -> pv.Actor | None:
-        """What shows the slice of the volume."""
+        """Actor of the volume's slice."""
         return self._slice
 
     def place(self, *, normal: Any = None, origin: Any = None, thickness: Any = None) -> None:
-        """Change several of these at once; what is refused changes nothing."""
+        """Change several of these at once; an invalid value changes nothing."""
         before = self._normal, self._origin, self._thickness
         try:
             if normal is not None:
@@ -159,7 +159,7 @@ class FibletSlab:
         return np.array(origin, float)
 
     def _add_slice(self, options: dict[str, Any]) -> Any:
-        """Have the plotter draw the slice, which PyVista refuses to add while it is empty."""
+        """Add the slice to the plotter, which PyVista refuses while it is empty."""
         empty = not self._slice_mesh.n_points
         if empty:
             self._slice_mesh.copy_from(self._volume.slice(normal=self._normal, origin=self._volume.center))

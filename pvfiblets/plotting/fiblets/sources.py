@@ -1,4 +1,4 @@
-"""From whatever a user holds to a :class:`~pvfiblets.codec.FibletSet`."""
+"""Conversion of every source to a :class:`~pvfiblets.codec.FibletSet`."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def as_fiblets(
         return with_point_values(with_preference(source, preference), scalars, rgb)
     streamlines = with_preference(as_streamlines(source), preference)
     _warn_of_nothing(streamlines)
-    from pvfiblets.codec.compress import choose_per_point, compress  # what is compressed already needs no compiler
+    from pvfiblets.codec.compress import choose_per_point, compress  # compressed sources need no compiler
 
     if is_values_file(scalars, streamlines):
         formats.attach(streamlines, scalars)
@@ -126,7 +126,7 @@ def as_fiblets(
 
 
 def _warn_of_nothing(data: FibletSet | Streamlines) -> None:
-    """Tell those who wonder why they see nothing."""
+    """Warn that an empty data set draws nothing."""
     if not data.n_points:
         what = "points" if len(data) else "streamlines"
         warnings.warn(f"the source holds no {what}: nothing is drawn", UserWarning, stacklevel=7)
@@ -169,7 +169,7 @@ def _with_points(fiblets: FibletSet, name: str, values: np.ndarray, rgb: bool | 
 
 
 def _hold_colours(streamlines: Streamlines, name: str, colours: np.ndarray) -> list[str]:
-    """Have streamlines hold colours of points by their channels, and return what these are called."""
+    """Store colours of points by their channels, and return the channels' names."""
     rows = unit_colours(name, colours)
     columns = {f"{name}[{k}]": rows[:, k] for k in range(rows.shape[1])}
     streamlines.per_point = {key: held for key, held in streamlines.per_point.items() if key != name} | columns

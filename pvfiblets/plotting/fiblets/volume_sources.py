@@ -1,4 +1,4 @@
-"""From whatever holds an image to a source of colours."""
+"""Conversion of every image source to a source of colours."""
 
 from __future__ import annotations
 

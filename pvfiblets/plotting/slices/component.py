@@ -125,7 +125,7 @@ class SlicesComponent:
         planes : str or iterable of str, default: ("axial", "coronal", "sagittal")
             Which planes.
         axes : {"world", "image"} or (3, 3) array, default: "world"
-            Along what the planes lie: the scanner's axes, those of the image, as near as right angles allow, or
+            Axes that the planes follow: the scanner's, the image's, as near as right angles allow, or
             a rotation whose columns point to the right, to the front and up.
         kind : {"scalars", "rgb", "direction", "labels"}, optional
             What the numbers mean. By default bytes with three or four of them per voxel are colours, files that say
@@ -135,9 +135,9 @@ class SlicesComponent:
             Names and colours of labels: a colour table of FreeSurfer, a description of labels of ITK-SNAP, a ``.tsv``
             of BIDS, a GIFTI file, or a dict such as ``{17: ("hippocampus", "yellow")}``. With it numbers are labels.
         modulate : image, optional
-            What brightens direction-coded colours, such as FA; any of what ``source`` may be, on any grid.
+            Brightness of direction-coded colours, such as FA; any type that ``source`` may have, on any grid.
         vectors : {"scanner", "fsl"}, default: "scanner"
-            Axes of the vectors of ``kind="direction"``: right, front and up, or those of FSL (V1 of ``dtifit``,
+            Axes of the vectors of ``kind="direction"``: right, front and up, or FSL's axes (V1 of ``dtifit``,
             ``dyads`` of ``bedpostx``), which are the image's, x reversed if the affine's determinant is above 0.
 
         Returns
@@ -335,7 +335,7 @@ class SlicesComponent:
             self._followed[address] = renderer, renderer.AddObserver("ModifiedEvent", self._forget_removed)
 
     def _forget_removed(self, *_: Any) -> None:
-        """Forget slices of which none is in its renderer any more."""
+        """Forget slices that are in no renderer any more."""
         for stack in self:
             shown = [plane for plane in stack if plane.renderer is not None]
             if shown and not any(plane.renderer.HasViewProp(plane.actor) for plane in shown):

@@ -22,9 +22,9 @@ Place = Callable[[], "tuple[Array, Array] | None"]
 """Returns a point of a plane and its normal; None where it is not shown."""
 
 MOST_POINTS = 1_500_000
-"""Points of a slice's surfaces, by which spheres are divided, from 2,562 points down to 42."""
+"""Points of a slice's surfaces; the number of glyphs sets the detail of each sphere, from 2,562 points down to 42."""
 LINE_PERCENTILE = 99.0
-"""Of the lengths of an image's peaks: as long as that is as long as a voxel."""
+"""Percentile of the lengths of an image's peaks: it is as long as a voxel."""
 SAMPLED = 200_000
 N_COLOURS = 256
 
@@ -77,7 +77,7 @@ class GlyphSet:
 
     @property
     def size(self) -> float:
-        """Of the greatest glyph, per the smallest side of a voxel."""
+        """Size of the greatest glyph, per the smallest side of a voxel."""
         return self._size
 
     @size.setter
@@ -100,7 +100,7 @@ class GlyphSet:
 
     @property
     def n_glyphs(self) -> int:
-        """Glyphs that lie on slices now; those of slices that are not shown have not been made."""
+        """Glyphs on slices now; glyphs of hidden slices have not been made."""
         return sum(one.n for one in self._shown)
 
     def show_on(self, renderer: Any, place: Place) -> None:
@@ -169,7 +169,7 @@ def _longest(lengths: npt.NDArray[Any]) -> float:
 def _table(
     numbers: npt.NDArray[np.float32], cmap: Any, clim: Any
 ) -> tuple[npt.NDArray[np.uint8], float, float]:
-    """Return colours ``(n, 3)`` of numbers of fixels, and those of the first and the last: all by default."""
+    """Return colours ``(n, 3)`` of numbers of fixels, and the numbers of the first and last colour: all by default."""
     finite = numbers[np.isfinite(numbers)]
     given = (finite.min(initial=np.inf), finite.max(initial=-np.inf)) if clim is None else clim
     try:
@@ -184,7 +184,7 @@ def _table(
 
 
 def _sphere(n: int) -> pv.PolyData:
-    """Return a sphere of as many points as a slice of so many glyphs may have."""
+    """Return a sphere with the points that a slice of n glyphs affords."""
     level = next((one for one in (4, 3, 2) if n * (10 * 4**one + 2) <= MOST_POINTS), 1)
     return pv.Icosphere(radius=1.0, nsub=level)
 

@@ -1,4 +1,4 @@
-"""Where the views of a workspace lie in its window."""
+"""Layouts of the views of a workspace in its window."""
 
 from __future__ import annotations
 

@@ -28,10 +28,10 @@ __all__ = ["NAME", "ObliqueSlice", "Trace", "add_oblique_slice", "turned_about"]
 Array = npt.NDArray[np.float64]
 
 NAME = "oblique"
-"""Of the plane and of its pane."""
+"""Name of the plane and of its pane."""
 
 HANDLE = 0.36
-"""How far handles are from the cross-hair, per the smaller side of a pane."""
+"""Distance of handles from the cross-hair, per the smaller side of a pane."""
 HANDLE_RADIUS, REACH = 5.0, 14.0
 """Pixels: how large handles are drawn, and how near one takes hold of them, which fingers do, too."""
 GAP = 12.0
@@ -203,7 +203,7 @@ class ObliqueSlice:
         self._callbacks.append(callback)
 
     def add_widget(self, plotter: Any, view: Any, **options: Any) -> None:
-        """Have a plane widget of VTK's turn and push the slice in one of a plotter's views."""
+        """Add a plane widget of VTK's that turns and pushes the slice, to one of a plotter's views."""
         corners = self.plane.corners
         bounds = np.stack([corners.min(axis=0), corners.max(axis=0)], axis=1).ravel()
         reference = weakref.WeakMethod(self._dragged)
@@ -230,7 +230,7 @@ class ObliqueSlice:
             self._workspace.position = origin
 
     def _place_widget(self) -> None:
-        """Have the widget where the slice is; it tells of no event for that."""
+        """Move the widget to the slice, without an event."""
         widget = self._there()
         if widget is not None and not np.allclose(
             [widget.GetNormal(), widget.GetOrigin()], [self.normal, self.plane.origin], atol=1e-9

@@ -31,7 +31,7 @@ MOST_PIXELS = 4096
 GAP = 6.0
 """Pixels of the cross-hair's middle that stay free."""
 BACKING = 0.65
-"""Opacity of what lies behind words."""
+"""Opacity of the background of text."""
 BEFORE = 1.0
 """mm from the slab to the cross-hair and to the slice."""
 FARTHEST = 1000.0
@@ -54,7 +54,7 @@ class Pane:
     color : color-like
         Of cross-hair and letters.
     plane : SlicePlane, optional
-        Whose directions the pane has, however it is turned, in the place of those of an orientation.
+        Plane with the pane's directions, however it is turned, in place of an orientation.
     """
 
     def __init__(
@@ -112,7 +112,7 @@ class Pane:
 
     @property
     def zoom(self) -> float:
-        """How much larger the slice is than in a pane that it fills."""
+        """Magnification of the slice, compared with a pane that it fills."""
         return self._fitting / self._half
 
     @zoom.setter
@@ -174,13 +174,13 @@ class Pane:
 
     @property
     def _depth(self) -> float:
-        """How far from the plane the slice and the cross-hair lie, mm: beyond the slab, and beyond glyphs of voxels."""
+        """Distance of the slice and the cross-hair from the plane, mm: beyond the slab, and beyond glyphs of voxels."""
         voxel = max((float(one.image.voxel_size.max()) for one in self.stack.layers), default=0.0)
         return max(0.5 * self.thickness, voxel) + BEFORE
 
     @property
     def before(self) -> float:
-        """How far before the plane the cross-hair is drawn, mm: lines there hide behind nothing."""
+        """Distance of the cross-hair before the plane, mm: no other thing occludes its lines."""
         return self._depth
 
     @property
@@ -197,7 +197,7 @@ class Pane:
     # Picture ------------------------------------------------------------------------------------
 
     def changed(self) -> None:
-        """Have the slice made anew with the next render."""
+        """Make the slice anew with the next render."""
         self._version += 1
 
     def prepare(self) -> None:

@@ -1,7 +1,7 @@
 """Mouse and keys of the workspace.
 
-Observers stand on the interactor, before those that pick streamlines and before its style. What happens in a pane is
-kept from the style; in the 3-D view only clicks are looked at.
+Observers stand on the interactor, before the pickers of streamlines and before its style. Events in a pane never
+reach the style; in the 3-D view only clicks are handled.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ class PaneEvents:
         )
 
     def _listen(self, event: str, handler: Callable[[PaneEvents], bool]) -> None:
-        """Call a handler for as long as this is alive; where it returns True nobody else hears of the event."""
+        """Call a handler for as long as this is alive; if it returns True, the event goes no further."""
         alive = weakref.ref(self)
         held: list[int] = []
 
@@ -224,7 +224,7 @@ class PaneEvents:
         return False
 
     def _char(self) -> bool:
-        """Keep from the style what is typed or steps."""
+        """Keep typed and stepping keys from the style."""
         return self._typed is not None or self._interactor.GetKeySym() in (*_STEPS, "g", "G")
 
     def _type(self, word: str) -> bool:

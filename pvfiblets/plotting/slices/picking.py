@@ -1,4 +1,4 @@
-"""Which place of a slice a pixel of the 3-D view shows."""
+"""The place of a slice under a pixel of the 3-D view."""
 
 from __future__ import annotations
 

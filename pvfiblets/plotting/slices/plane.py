@@ -52,7 +52,7 @@ class SliceActor(pv.Actor):
         texture.SetColorModeToDirectScalars()
         self.SetTexture(texture)
         self._pixels: npt.NDArray[np.uint8] | None = None
-        self.shows = 0  # how often it has been told what to show
+        self.shows = 0  # number of images set so far
         self.prop.lighting = False
         self.prop.color = "white"
         self.GetShaderProperty().AddFragmentShaderReplacement("//VTK::TCoord::Impl", True, _DISCARD, False)
@@ -223,5 +223,5 @@ def on_events(caller: Any, events: tuple[str, ...], owner: Any, method: str) -> 
 
 
 def prepare(renderer: Any) -> None:
-    """Have all that stands by :func:`before_render` brought up to date, though the renderer does not draw yet."""
+    """Update everything that waits for :func:`before_render`, though the renderer does not draw yet."""
     renderer.InvokeEvent(_PREPARE)

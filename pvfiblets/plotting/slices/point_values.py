@@ -1,4 +1,4 @@
-"""What is at a position of a workspace: numbers of its images, and streamlines near it."""
+"""Values at a position of a workspace: numbers of its images, and streamlines near it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class PointValues:
-    """What is at a position.
+    """Values at a position.
 
     Attributes
     ----------

@@ -63,7 +63,7 @@ class Resampler:
         self._reslice.BorderOn()  # half a voxel beyond the centres of the outer ones, as far as they reach
 
     def changed(self) -> None:
-        """Take note that values, of which there is no copy here, have changed."""
+        """Take note that the values, which are not copied here, have changed."""
         self._image.GetPointData().GetScalars().Modified()
         self._image.Modified()
 

@@ -1,4 +1,4 @@
-"""The lines between the views of a workspace, which lie elsewhere than those of the plotter's shape."""
+"""The lines between the views of a workspace, which differ from the borders of the plotter's shape."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def seams_of(viewports: Iterable[Viewport]) -> pv.PolyData:
 
 
 def show_seams(plotter: pv.Plotter, viewports: Iterable[Viewport]) -> None:
-    """Have PyVista's lines between subplots lie between these views, if the plotter draws any."""
+    """Move PyVista's lines between subplots to the borders of these views, if the plotter draws any."""
     overlay = getattr(plotter.renderers, "_border_overlay_renderer", None)
     actor = None if overlay is None else getattr(overlay, "_border_actor", None)
     if actor is not None:

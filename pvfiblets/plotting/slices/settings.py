@@ -1,4 +1,4 @@
-"""What can be set of a layer of slices, said once."""
+"""Settings of a layer of slices, each declared once."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ def _index(name: str, value: Any) -> int:
 
 
 class SliceSettings(Settings):
-    """What can be set of a layer of slices."""
+    """Settings of a layer of slices."""
 
     cmap: Setting[Any] = Setting(
         "gray",
@@ -137,10 +137,10 @@ class SliceSettings(Settings):
                 matters=_of("scalars", "direction", "rgb")),
     )  # fmt: skip
     opacity: Setting[float] = Setting(
-        1.0, "From 0, not to be seen, to 1.", kind="float", where=LAYER, low=0.0, high=1.0, row=Row("Opacity")
+        1.0, "From 0, invisible, to 1.", kind="float", where=LAYER, low=0.0, high=1.0, row=Row("Opacity")
     )
     blend: Setting[str] = Setting(
-        "over", "Whether it lies over the layers before it, or is added to them.", kind="str",
+        "over", "Blending with the layers below: over them, or added to them.", kind="str",
         choices=("over", "add"), where=LAYER, row=Row("Blend", group="Drawing"),
     )  # fmt: skip
     interpolation: Setting[str] = Setting(
@@ -149,7 +149,7 @@ class SliceSettings(Settings):
         row=Row("Between voxels", group="Drawing", matters=_of("scalars", "rgb", "direction")),
     )  # fmt: skip
     index: Setting[int] = Setting(
-        0, "Which volume of an image of four axes is shown, from 0; negative ones count from the end.", kind="int",
+        0, "Number of the volume shown of an image with four axes, from 0; negative: from the end.", kind="int",
         where=LAYER, check=_index,
         row=Row("Volume", "Which volume of an image of several, from 0.", group="Drawing", type="number", whole=True,
                 limits=lambda image: (0, image.n_volumes - 1), matters=_of("scalars", "labels")),
@@ -158,7 +158,7 @@ class SliceSettings(Settings):
         False, "Whether labels are shown by their outlines alone.", kind="bool", where=LAYER, check=truth,
         row=Row("Outlines", matters=_of("labels")),
     )  # fmt: skip
-    visible: Setting[bool] = Setting(True, "Whether it is shown.", kind="bool", where=LAYER, check=truth)
+    visible: Setting[bool] = Setting(True, "Whether the layer is shown.", kind="bool", where=LAYER, check=truth)
 
 
 class SliceCommon(Settings):

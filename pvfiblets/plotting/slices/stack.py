@@ -107,7 +107,7 @@ class SliceStack:
         name: str | None = None,
         **settings: Any,
     ) -> SliceLayer:
-        """Lay another image over those that are there.
+        """Add another image on top.
 
         Parameters
         ----------
@@ -177,7 +177,7 @@ class SliceStack:
         self.changed()
 
     def reorder(self, layers: Iterable[SliceLayer | str]) -> None:
-        """Lay some layers below all others, in an order of which the lowest is the first."""
+        """Move some layers below all others; the first is the lowest."""
         first = [self.layer(one) if isinstance(one, str) else one for one in layers]
         order = [*first, *(one for one in self._layers if one not in first)]
         if sorted(map(id, order)) != sorted(map(id, self._layers)):
@@ -205,7 +205,7 @@ class SliceStack:
     ) -> GlyphSet:
         """Show peaks and fixels as lines, tensors as ellipsoids or spherical harmonics as lobes, on the slices.
 
-        Only those of the voxels that visible slices go through are made.
+        Only glyphs of the voxels that visible slices go through are made.
 
         Parameters
         ----------
@@ -217,8 +217,8 @@ class SliceStack:
         size : float, default: 1.0
             Of the greatest, per the smallest side of a voxel.
         normalize : bool, optional
-            Give all glyphs the same size. By default ellipsoids and lobes have it, and lines are as long as the peaks,
-            of which the 99th percentile is as long as a voxel.
+            Give all glyphs the same size. By default ellipsoids and lobes have it, and lines are as long as the peaks;
+            the 99th percentile is as long as a voxel.
         line_width : float, default: 2.0
             Pixels.
         basis : {"mrtrix", "tournier07_legacy", "descoteaux07", "descoteaux07_legacy"}, default: "mrtrix"
@@ -228,12 +228,12 @@ class SliceStack:
         tensor : {"mrtrix", "dipy", "fsl"}, default: "mrtrix"
             Order of a tensor's parts: xx, yy, zz, xy, xz, yz; xx, xy, yy, xz, yz, zz; or xx, xy, xz, yy, yz, zz.
         vectors : {"scanner", "fsl"}, optional
-            Axes of peaks and tensors: right, front and up, or those of FSL (``dtifit``, ``bedpostx``), which are the
+            Axes of peaks and tensors: right, front and up, or FSL's axes (``dtifit``, ``bedpostx``), which are the
             image's, x reversed if the affine's determinant is above 0. Default: FSL's for ``tensor="fsl"``, else the
             scanner's.
         scalars, length : str or (n,) array, optional
-            Numbers of fixels that colour them, by default their direction does, and that lines are as long as, of which
-            the 99th percentile is as long as a voxel; names of files of the directory, without suffix.
+            Numbers of fixels that colour them, by default their direction does, and numbers that set the lengths of
+            lines; the 99th percentile is as long as a voxel; names of files of the directory, without suffix.
         cmap, clim : optional
             Colour map of ``scalars``, and the numbers of its first and last colour.
 
@@ -306,13 +306,13 @@ class SliceStack:
             self._glyphs.remove(glyphs)
 
     def show_glyphs_on(self, renderer: Any, place: Callable[[], tuple[Array, Array] | None]) -> None:
-        """Have glyphs shown on a plane of another renderer, too, be they added later."""
+        """Show glyphs on a plane of another renderer, too, including glyphs added later."""
         self._views.append((renderer, place))
         for one in self._glyphs:
             one.show_on(renderer, place)
 
     def show_glyphs_on_plane(self, plane: SlicePlane) -> None:
-        """Have glyphs that are there shown on a plane of the stack that has just entered its renderer."""
+        """Show existing glyphs on a plane of the stack that has just entered its renderer."""
         for one in self._glyphs:
             one.show_on(plane.renderer, plane.place)
 
@@ -362,7 +362,7 @@ class SliceStack:
 
     @property
     def user_matrix(self) -> Array | None:
-        """``(4, 4)`` from the images' mm, of which ``position`` is, to those of the 3-D view."""
+        """``(4, 4)`` from the images' mm, in which ``position`` is given, to the 3-D view's."""
         return None if self._matrix is None else self._matrix.copy()
 
     @user_matrix.setter
@@ -443,14 +443,14 @@ class SliceStack:
         self._watchers.append(changed)
 
     def changed(self) -> None:
-        """Have all slices made anew."""
+        """Make all slices anew."""
         for plane in self._planes.values():
             plane.update()
         for call in self._watchers:
             call()
 
     def removed_by(self, removal: Callable[[SliceStack], None] | None) -> None:
-        """Say what takes it out of its plotter."""
+        """Set the function that takes it out of its plotter."""
         self._removal = removal
 
     def remove(self) -> None:

@@ -65,7 +65,7 @@ class Workspace:
         layout: str,
         color: Any,
     ) -> None:
-        # What is wrong with them is said before anything is shown.
+        # Errors are raised before anything is shown.
         _choice("convention", convention, CONVENTIONS)
         _choice("layout", layout, LAYOUTS)
         _length(thickness)
@@ -176,7 +176,7 @@ class Workspace:
 
     @property
     def thickness(self) -> float:
-        """Of the slab about each slice whose streamlines are shown in its pane, mm."""
+        """Thickness of the slab about each slice whose streamlines are shown in its pane, mm."""
         return self.panes["axial"].thickness
 
     @thickness.setter
@@ -188,7 +188,7 @@ class Workspace:
 
     @property
     def layout(self) -> str:
-        """Which views are shown, and where.
+        """Visible views, and their layout.
 
         ``"grid"``, ``"row"``, ``"beside"`` (the 3-D view and, small, three slices: below it in a window that is higher
         than wide), or one of ``"3d"``, ``"axial"``,
@@ -210,7 +210,7 @@ class Workspace:
 
     @property
     def _places(self) -> Mapping[str, tuple[float, float, float, float]]:
-        """Where views are that are shown; the layout of a pane that is not is ``"beside"``."""
+        """Places of the visible views; the layout of a hidden pane counts as ``"beside"``."""
         width, height = self._plotter.window_size
         there = self._has_oblique_pane
         layout = "beside" if self._layout == OBLIQUE and not there else self._layout
@@ -276,7 +276,7 @@ class Workspace:
         return self.oblique
 
     def take(self, pane: Pane) -> None:
-        """Treat one more pane as those that were there from the beginning."""
+        """Set up one more pane like the initial ones."""
         pane.mirrored = self.convention == "radiological"
         pane.thickness, pane.cross_hair = self.thickness, self.cross_hair
         self.panes = MappingProxyType({**self.panes, pane.name: pane})
@@ -289,13 +289,13 @@ class Workspace:
     # Values -------------------------------------------------------------------------------------
 
     def values(self, radius: float = 2.0) -> PointValues:
-        """Return what is under the cross-hair.
+        """Return the values under the cross-hair.
 
         Parameters
         ----------
         radius : float, default: 2.0
-            mm: streamlines of which a point is nearer are listed, if they are shown. Compressed data are asked, of
-            which few are decoded. Where points are farther apart than that, positions between them count, too.
+            mm: shown streamlines with a point within it are listed. Few points of compressed data are decoded for
+            this. Where points are farther apart than that, positions between them count, too.
 
         Returns
         -------
@@ -374,7 +374,7 @@ class Workspace:
         self.panes["axial"].say(self._words if text is None else text)
 
     def sync(self) -> None:
-        """Have each pane show the 3-D view's streamlines in its slab, and contours; a renderer is about to draw."""
+        """Show the 3-D view's streamlines in each pane's slab, and contours; a renderer is about to draw."""
         actors = list(self._fiblets())
         for actor in [one for one in self._tracts if one not in actors]:  # no longer in the 3-D view
             self._take_out(actor)

@@ -30,7 +30,7 @@ from pvfiblets.plotting.volumes.opacity import (
     surface_values,
     value_limits,
 )
-from pvfiblets.plotting.volumes.property_words import PropertyWords
+from pvfiblets.plotting.volumes.property_attributes import PropertyAttributes
 from pvfiblets.plotting.volumes.settings import CASTING, CHOSEN, LIGHT, SURFACE, VolumeSettings
 from pvfiblets.volumes import RaycastVolume, Transfer, smoothed
 from pvfiblets.volumes.interactive_quality import InteractiveQuality
@@ -101,7 +101,7 @@ class VolumeActor(VolumeSettings, ClippedActor):
 
     _DATA = "volume"
     _mapper: PlottedRaycast
-    _words: PropertyWords | None = None
+    _words: PropertyAttributes | None = None
     _alpha_written: Any = None
 
     def __init__(
@@ -133,7 +133,7 @@ class VolumeActor(VolumeSettings, ClippedActor):
         mapper.shaded = bool(chosen["shade"])
         self._look()
         self._take(chosen)
-        self._words = PropertyWords(self)
+        self._words = PropertyAttributes(self)
 
     def __repr__(self) -> str:
         size = " x ".join(map(str, self._volume.shape))
@@ -143,7 +143,7 @@ class VolumeActor(VolumeSettings, ClippedActor):
 
     @property
     def volume(self) -> RaycastVolume:
-        """What is drawn, not smoothed; another may be put in its place."""
+        """The drawn volume, not smoothed; another may be put in its place."""
         return self._source
 
     @volume.setter
@@ -251,7 +251,7 @@ class VolumeActor(VolumeSettings, ClippedActor):
 
     @property
     def scalars_title(self) -> str | None:
-        """What a scalar bar says; ``None`` where there is one colour."""
+        """Title of the scalar bar; ``None`` for one colour."""
         own = self._settings.color is not None or self._volume.colours is not None
         own |= self.casting.layered and self._choices["surface_colors"] is not None
         return None if own or self._scalars is None else self._scalars.title
@@ -359,7 +359,7 @@ class VolumeActor(VolumeSettings, ClippedActor):
             raise
 
     def _apply(self, wanted: dict[str, Any]) -> None:
-        """Have the mapper draw by the present settings, with some fields of the casting changed."""
+        """Draw by the present settings, with some fields of the casting changed."""
         made, colouring = self._made(wanted)
         self._mapper.show(made, colouring)
         self._casting = made
@@ -498,7 +498,7 @@ class VolumeActor(VolumeSettings, ClippedActor):
         super()._take_property()
 
     def _property_changed(self) -> None:
-        """Say what of the property means nothing to rays; the colour is left to the volume's settings."""
+        """Warn of parts of the property that rays ignore; the colour is left to the volume's settings."""
         if self._words is not None:
             self._words.look(self)
 

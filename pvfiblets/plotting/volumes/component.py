@@ -173,7 +173,7 @@ class RaycastVolumesComponent(ActorRegistry["VolumeActor"]):
         (0.4,)
         """
         from pvfiblets.plotting.volumes.actor import VolumeActor
-        from pvfiblets.plotting.volumes.property_words import tell_given
+        from pvfiblets.plotting.volumes.property_attributes import tell_given
         from pvfiblets.volumes.raycast_options import MODES
         from pvfiblets.volumes.sources import as_raycast_volume
 
@@ -234,7 +234,7 @@ def _preferred(source: Any, scalars: Any, preference: str) -> Any:
 
 
 def _warn_of_nothing(actor: VolumeActor) -> None:
-    """Say so if all voxels have one value, which is as good as invisible."""
+    """Warn if all voxels have one value, which is as good as invisible."""
     low, high = actor.volume.value_range
     transfer = actor.casting.transfer
     if low == high and transfer is not None and float(transfer.lookup(low)[3]) == 0.0:

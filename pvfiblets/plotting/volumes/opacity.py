@@ -1,4 +1,4 @@
-"""What users say about a volume's values: opacities, as for ``Plotter.add_volume``, surfaces and limits."""
+"""Conversion of a volume's arguments: opacities, as for ``Plotter.add_volume``, surfaces and limits."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def is_number(given: Any) -> bool:
 
 
 def number(name: str, given: Any, expected: str) -> float:
-    """Return what is to be one number."""
+    """Return a value as one number, or raise an error that names it."""
     if not is_number(given):
         raise ValueError(f"{name} is {given!r}; give {expected}")
     return float(given)

@@ -89,7 +89,7 @@ class VolumeSettings(Settings):
 
     mode: Setting[str] = Setting(
         "composite",
-        "Mode of the rays.\n\n"
+        "Result of a ray: the first surface, all light, or an extremum or mean of the values.\n\n"
         '``"isosurface"``: the first surface of ``values``. ``"composite"``: all light on the ray.\n'
         '``"mip"``: the greatest value. ``"local-mip"``: the first peak of at\n'
         'least ``peak``, or the greatest value where there is none. ``"minimum"``: the least value.\n'

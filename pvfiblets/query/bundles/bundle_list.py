@@ -1,8 +1,8 @@
 """The bundles of a set as one ordered list that can be edited: its groups, with a colour each, shown or not.
 
-A bundle *is* a group of the set, so that what is done here is saved in ``.fiblets`` and ``.trx`` files, colours by
+A bundle *is* a group of the set, so changes made here are saved in ``.fiblets`` and ``.trx`` files, colour by
 ``scalars="group"`` and is chosen by ``groups_shown``. Colour and visibility are data of the group (``per_group``):
-``color``, three uint8, and ``visible``, one uint8 that is there where the bundle is hidden.
+``color``, three uint8, and ``visible``, one uint8 that a hidden bundle has.
 """
 
 from __future__ import annotations
@@ -123,7 +123,7 @@ class Bundles:
     def __repr__(self) -> str:
         return f"Bundles({', '.join(f'{name!r}: {len(self.ids(name)):,}' for name in self.names)})"
 
-    # ------------------------------------------------------------------------------------------------------ what it has
+    # ------------------------------------------------------------------------------------------------------ properties
 
     @property
     def names(self) -> list[str]:
@@ -136,7 +136,7 @@ class Bundles:
 
     @property
     def colors(self) -> dict[str, Colour]:
-        """Colour of each, red, green, blue from 0 to 1; those that have none of their own get one by their place."""
+        """Colour of each bundle, red, green, blue from 0 to 1; without one of its own, by its place."""
         return group_colours(self.data.groups, self.data.per_group)
 
     @property
@@ -157,7 +157,7 @@ class Bundles:
         name : str
             Of no other bundle.
         ids : array_like, slice, Predicate, Similar, Cluster or Bundle
-            Its streamlines: numbers, a mask, what was found, or a condition such as ``regions.passes(region)``.
+            Its streamlines: numbers, a mask, a query's result, or a condition such as ``regions.passes(region)``.
         color : color-like, optional
         visible : bool, default: True
 
@@ -326,7 +326,7 @@ class Bundles:
         suffix : str, default: ".tck"
             Format of the files in a folder.
         hidden : bool, default: True
-            Write those that are hidden as well.
+            Write hidden bundles as well.
 
         Returns
         -------
@@ -385,7 +385,7 @@ class Bundles:
 
     def _members(self, ids: Any) -> Ints:
         if isinstance(ids, Predicate):
-            ids = self.data.select(ids)  # type: ignore[union-attr]  # conditions are asked of sets
+            ids = self.data.select(ids)  # type: ignore[union-attr]  # only sets evaluate conditions
         return np.unique(select_streamlines(len(self.data), getattr(ids, "ids", ids)))
 
     def _put(self, name: str, key: str, value: npt.NDArray[Any]) -> None:
@@ -407,7 +407,7 @@ def group_colours(groups: Iterable[str], per_group: Mapping[str, Mapping[str, An
 
 
 def own_colour(facts: Mapping[str, Any]) -> Colour | None:
-    """Colour that a group's data say, None for none; what is no colour is none."""
+    """Colour in a group's data, None if there is none or it is invalid."""
     values = np.asarray(facts.get(COLOR, ())).ravel()
     if values.size < 3 or values.dtype.kind not in "iuf":
         return None

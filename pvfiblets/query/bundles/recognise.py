@@ -68,8 +68,8 @@ def recognise(
     seed : int, default: 0
         Of random choices.
     progress : bool or callable
-        Show a progress bar; or call this with what is being done and which share of it is, from 0 to 1, before each
-        model. What it raises ends the work.
+        Show a progress bar; or call this with the current step and its share of the work, from 0 to 1, before each
+        model. An exception raised in it ends the work.
 
     Returns
     -------

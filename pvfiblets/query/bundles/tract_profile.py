@@ -132,8 +132,8 @@ def tract_profile(
     orient_by : array_like, optional
         ``(m, 3)`` mm: a line that all are turned to run along; by default the first of the bundle.
     confidence : float, default: 0.95
-        Of the band. It takes the streamlines for independent, which those of one brain are not: bands over subjects
-        are those of :func:`average_profiles`.
+        Of the band. It assumes independent streamlines, which is wrong within one brain: :func:`average_profiles`
+        returns bands over subjects.
     name, bundle : str, optional
         For legends and tables.
 

@@ -1,4 +1,4 @@
-"""How strongly the parcels of an atlas are connected, and which parcels streamlines connect.
+"""Connectomes: the strength of connections between an atlas's parcels, and the parcels of streamlines.
 
 Start with ``matrix.py``.
 """

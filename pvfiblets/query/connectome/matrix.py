@@ -34,9 +34,9 @@ if TYPE_CHECKING:
 __all__ = ["STATISTICS", "SUFFIXES", "Connectome", "connectome", "end_labels"]
 
 STATISTICS = ("sum", "mean", "min", "max")
-"""How the numbers of one pair's streamlines become one."""
+"""Statistics that turn the numbers of one pair's streamlines into one."""
 SUFFIXES = (".csv", ".tsv", ".txt", ".npy")
-"""Of files that a connectome is written to."""
+"""Suffixes of files that a connectome is written to."""
 MOST_VOXELS = 1 << 20
 """Voxels that may be looked at about an end."""
 TOGETHER = 1 << 18

@@ -1,4 +1,4 @@
-"""Which parcels of an atlas streamlines connect."""
+"""The parcels of an atlas that streamlines connect."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What streamlines add up to in the voxels of a grid.
+"""Density maps: sums of streamlines in the voxels of a grid.
 
 It knows nothing of drawing. Start with ``volume.py``.
 """

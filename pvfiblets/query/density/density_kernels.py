@@ -157,7 +157,7 @@ def add_up(
 ) -> None:  # fmt: skip
     """Add pieces to sums over voxels, in their order whatever the number of threads.
 
-    Each thread looks at all pieces, and adds those in voxels that are its own: reading costs far less than adding.
+    Each thread looks at all pieces, and adds the pieces in its own voxels: reading costs far less than adding.
     """
     for own in numba.prange(tiles):
         for r in range(n):

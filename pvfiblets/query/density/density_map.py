@@ -1,4 +1,4 @@
-"""What streamlines add up to in the voxels of a grid, and how it leaves for an image of PyVista or a file."""
+"""Sums of streamlines in the voxels of a grid, and their conversion to PyVista images and files."""
 
 from __future__ import annotations
 

@@ -62,10 +62,10 @@ class Part:
 
 
 class Source(Protocol):
-    """What density maps are made of."""
+    """The source of density maps."""
 
     name: str
-    """Of the values."""
+    """Name of the values."""
     unit: str
     per_point: bool
     """Whether values are of points, or of streamlines."""
@@ -81,7 +81,7 @@ class Source(Protocol):
         """Yield all streamlines in the order in which they are kept."""
 
     def compile(self) -> None:
-        """Have what :meth:`parts` needs compiled."""
+        """Compile the kernels of :meth:`parts`."""
 
 
 def as_source(source: Any, weights: Any, wanted: Wanted) -> Source:
@@ -164,7 +164,7 @@ class _Compressed:
         return np.array(rows[ranks if ids is None else ids[ranks]], np.float64)
 
     def compile(self) -> None:
-        """Have the decoder compiled by decoding nothing."""
+        """Compile the decoder by decoding nothing."""
         none = np.empty(0, np.int64)
         decode_fiblets(next(stored_parts(self._fiblets))[0], none, none, np.empty((0, 3)))
 

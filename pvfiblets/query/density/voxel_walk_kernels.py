@@ -30,7 +30,7 @@ def within(u: Any, i: int, shape: Any) -> bool:
 
 @kernel
 def clip(u: Any, i: int, shape: Any) -> Any:
-    """From which to which share of segment ``i`` it lies in the grid; (1, 0) if nowhere."""
+    """Return the shares of segment ``i`` between which it lies in the grid; (1, 0) if nowhere."""
     enter, leave = 0.0, 1.0
     for k in range(3):
         a, d = u[i, k], u[i + 1, k] - u[i, k]
@@ -71,7 +71,7 @@ def end_voxels(u: Any, i: int, shape: Any, enter: float, leave: float) -> Any:
 
 @kernel
 def faces(u: Any, i: int, k: int, first: int, last: int) -> Any:
-    """Of one axis: the first face that is crossed, the step to the next, how many there are, and the segment's extent.
+    """Return for one axis: the first face crossed, the step to the next, their number, and the segment's extent.
 
     ``first`` and ``last`` are rounded where the segment enters and leaves the grid; they never make it turn back.
     """

@@ -16,7 +16,7 @@ __all__ = ["chunks_of", "without_groups"]
 CHUNK = 1 << 21  # points decoded together: 50 MB
 
 def without_groups(data: FibletSet | Streamlines) -> Any:
-    """Return the same streamlines in no groups, of which every part would look through all, and no losses."""
+    """Return the same streamlines without groups, which every part would search through, and without losses."""
     if not isinstance(data, Streamlines):
         return replace(data, groups={}, per_group={})
     return Streamlines(

@@ -117,7 +117,7 @@ def resample(points: Any, values: Any, offsets: Any, places: Any, found: Any) ->
     """Positions and values at places of equal arc length along each streamline, its ends included.
 
     ``values`` is ``(n_points,)`` float64; ``places`` ``(n, m, 3)`` and ``found`` ``(n, m)`` float64 are filled. A value
-    between two points of which one has none (NaN) has none. Where a streamline has no length, all places are its first.
+    next to a point without one (NaN) is NaN. Where a streamline has no length, all places are its first.
     """
     for s in numba.prange(len(offsets) - 1):
         a, b, m = offsets[s], offsets[s + 1], found.shape[1]

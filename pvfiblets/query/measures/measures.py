@@ -1,7 +1,7 @@
 """Measures of streamlines and of points: what criteria compare and colours show.
 
 ====================  ===========  ====  =======================================================================
-name                  a value per  unit  what it is, of the decoded points
+name                  a value per  unit  definition, of the decoded points
 ====================  ===========  ====  =======================================================================
 ``'length'``          streamline   mm    sum of its segments' lengths; 0 without points
 ``'n_points'``        streamline         number of points
@@ -16,11 +16,11 @@ an image              point              its value there, as it colours: whole n
 ====================  ===========  ====  =======================================================================
 
 Curvature does not depend on how a set is stored. A tenth of a step, which coding may move points by, would turn each
-segment by a tenth of a radian; so chords of a streamline lead over as many points as it takes for such an error (or the
-set's promise where that is coarser) to change its mean curvature by no more than 2 %, of coded sets and of exact ones
+segment by a tenth of a radian; so chords of a streamline are long enough for such an error (or the set's error
+bound where that is coarser) to change its mean curvature by no more than 2 %, of coded sets and of exact ones
 alike: over ``2 sqrt(error / curvature)`` mm at least. The points at its ends take the value of the nearest one that has
 both chords; of fewer than three points it is 0. A warning tells where coded lines are too short or too bent for that,
-or the promise is coarser than a tenth of a step, and the `max_error` that is needed.
+or the error bound is coarser than a tenth of a step, and the `max_error` that is needed.
 
 Values per point stand in the order in which points are coded. Stored arrays come before the names above, as
 they do for colours.
@@ -63,7 +63,7 @@ Kind = Literal["streamline", "point"]
 Floats = npt.NDArray[np.float64]
 CURVATURE = "_curvature"
 """Attribute of a set, no field of it: a set that is made of another has other points."""
-SLACK = 0.99  # of a promise: it is a tenth of a step but for rounding
+SLACK = 0.99  # of an error bound: it is a tenth of a step but for rounding
 UNCERTAIN = 0.05  # of the streamlines may be too short for their curvature: every set has some
 
 COMPUTED: dict[Kind, dict[str, str]] = {
@@ -135,7 +135,7 @@ class Distance:
         object.__setattr__(self, "what", what)
         object.__setattr__(self, "per", per)
 
-    def of(self, points: npt.NDArray[Any]) -> Floats:
+    def at_points(self, points: npt.NDArray[Any]) -> Floats:
         """Distances of positions ``(n, 3)``: ``(n,)`` float64, mm."""
         if isinstance(self.what, Region):
             return self.what.distance(points)
@@ -371,12 +371,12 @@ def _distance(fiblets: FibletSet, what: Distance) -> Values:
 
     def least(chunk: Streamlines) -> Floats:
         out = np.empty(len(chunk))
-        kernels.least(what.of(chunk.points), chunk.offsets, out)
+        kernels.least(what.at_points(chunk.points), chunk.offsets, out)
         return out
 
     values: npt.NDArray[Any]
     if what.per == "point":
-        values = _per_point(fiblets, lambda _, chunk: what.of(chunk.points))
+        values = _per_point(fiblets, lambda _, chunk: what.at_points(chunk.points))
     else:
         values = _per_streamline(fiblets, least, np.nan)
     return Values(what.per, values, "distance", "mm")

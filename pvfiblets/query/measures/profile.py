@@ -1,7 +1,7 @@
 """Values along a bundle: the mean over streamlines at places of equal arc length (along-tract statistics).
 
 Streamlines of a bundle are stored in either direction. Each is turned to run as the first does, by the mean distance of
-its resampled points to those of the first, taken directly and flipped, the lesser deciding: Garyfallidis et al. 2012,
+its resampled points to the first's, taken directly and flipped, the lesser deciding: Garyfallidis et al. 2012,
 "QuickBundles, a method for tractography simplification", section 2.2, minimum average direct-flip distance.
 """
 

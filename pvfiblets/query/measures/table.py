@@ -42,7 +42,7 @@ class Table(dict[str, npt.NDArray[Any]]):
 
     @property
     def n_rows(self) -> int:
-        """How many rows there are."""
+        """Number of rows."""
         return len(next(iter(self.values()), ()))
 
     def to_pandas(self) -> Any:
@@ -217,7 +217,7 @@ def _measured(
 
 
 def _width(rows: Any) -> tuple[int]:
-    """How many columns an array has with a row for each thing, which may be none."""
+    """Return the number of columns of an array with a row for each thing, which may be none."""
     return (math.prod(np.shape(rows)[1:]),)
 
 

@@ -35,7 +35,7 @@ def _kept(code: int) -> float:
 
 @kernel
 def _cut(u: Any, k: int, reach: Any, box: Any) -> Any:
-    """From which to which share of part ``k`` it may be in a box of voxels; (1, 0) if nowhere."""
+    """Return the shares of part ``k`` between which it may be in a box of voxels; (1, 0) if nowhere."""
     for axis in range(3):
         a, b = u[k, axis], u[k + 1, axis]
         low, high = box[axis] - reach[axis], box[3 + axis] + reach[axis]
@@ -130,7 +130,7 @@ def _along(u: Any, k: int, enter: float, leave: float, reach: Any, kept: Any, ra
                 return True, True
     touches, s = False, enter
     while True:
-        # As far as no voxel is near, there is nothing to look at. Positions so many voxels apart, rounded up, lie in
+        # Skip ahead as far as no voxel is near. Positions so many voxels apart, rounded up, lie in
         # voxels no farther from each other than that.
         ahead = _free(steps, first, u, k, s) - 1 - widest
         if ahead >= 0.5 * STEP:
@@ -158,7 +158,7 @@ def _along(u: Any, k: int, enter: float, leave: float, reach: Any, kept: Any, ra
 @kernel
 def _part(u: Any, k: int, kept: Any, radius: float, rows: Any, slack: float, box: Any, mask: Any, shape: Any,
           touching: int, inside: int, steps: Any, first: Any, reach: Any, low: Any, high: Any) -> Any:  # fmt: skip
-    """Whether part ``k`` may meet voxels of the bit ``touching``, and surely meets those of the bit ``inside``.
+    """Whether part ``k`` may meet voxels of the bit ``touching``, and surely meets voxels of the bit ``inside``.
 
     ``inside`` 0: not asked.
     """
@@ -174,7 +174,7 @@ def _part(u: Any, k: int, kept: Any, radius: float, rows: Any, slack: float, box
 def _fiblet(u: Any, parts: int, only: int, kept: Any, pieces: Any, row: int, unit: float, rows: Any, slack: float,
             box: Any, mask: Any, shape: Any, touching: int, inside: int, steps: Any, first: Any, reach: Any,
             low: Any, high: Any) -> Any:  # fmt: skip
-    """The same of a whole fiblet, or those of its parts whose bits are in `only`."""
+    """The same of a whole fiblet, or of its parts whose bits are in `only`."""
     touches = False
     for k in range(parts):
         if not only >> k & 1:
@@ -270,7 +270,7 @@ def _mean(leaves: Any, leaf: int, nodes: int, linear: Any, corner: Any, mean: An
 def settle(near: Any, bits: Any, leaves: Any, pieces: Any, parts: int, per_stretch: int, stretch: int, states: Any,
            asked: int, linear: Any, corner: Any, rows: Any, mask: Any, shape: Any, changed: Any, whole: Any,
            in_mm: Any, about_changed: Any, about_whole: Any, within: Any, found: Any) -> None:  # fmt: skip
-    """What becomes of the fiblets of some leaves, ``found (n, LEAF)`` uint8: :data:`SAME` and so on."""
+    """Compute the new state of the fiblets of some leaves, ``found (n, LEAF)`` uint8: :data:`SAME` and so on."""
     changed_steps, changed_first = about_changed
     whole_steps, whole_first = about_whole
     within_steps, within_first = within

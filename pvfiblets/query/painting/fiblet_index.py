@@ -116,7 +116,7 @@ def _of_file(order: Any, leaves: Any, pieces: Any) -> FibletIndex:
 
 
 def _checked(fiblets: FibletSet, index: FibletIndex) -> FibletIndex:
-    """What a file holds, so that no kernel reads beyond its arrays."""
+    """Check the contents of a file, so that no kernel reads beyond its arrays."""
     n, parts = fiblets.n_fiblets, index.parts if index.pieces.ndim == 2 else 0
     whole, rest = divmod(n, CHUNK)
     n_leaves = whole * (CHUNK // LEAF) + -(-rest // LEAF)

@@ -1,4 +1,4 @@
-"""How far each voxel of a box is from a set of voxels, so that kernels need not look at all that lies between.
+"""Distances of a box's voxels from a set of voxels, so that kernels can skip the space between.
 
 Distances count steps to the 26 voxels about one: a box that reaches fewer voxels from its middle meets none of the set.
 """
@@ -13,8 +13,8 @@ import numpy.typing as npt
 __all__ = ["FAR", "FreeSpace"]
 
 FAR = 16
-"""Distances from here on are told as this."""
-LARGE = 1 << 18  # voxels of a box from which distances are told more coarsely
+"""Greatest stored distance; larger ones are stored as this."""
+LARGE = 1 << 18  # voxels of a box from which distances are stored more coarsely
 
 
 class FreeSpace(NamedTuple):
@@ -32,7 +32,7 @@ class FreeSpace(NamedTuple):
     first: npt.NDArray[np.int64]
 
     @classmethod
-    def of(cls, bits: npt.NDArray[np.uint8], bit: int, box: npt.ArrayLike, *, beyond: bool = False) -> FreeSpace:
+    def from_bits(cls, bits: npt.NDArray[np.uint8], bit: int, box: npt.ArrayLike, *, beyond: bool = False) -> FreeSpace:
         """Return it of the voxels within a box that have a bit, or of all others."""
         low, high = np.asarray(box, float).reshape(2, 3)
         if not (low < high).all():
@@ -53,7 +53,7 @@ class FreeSpace(NamedTuple):
 
 
 def _widen(near: npt.NDArray[np.bool_], axis: int, by: int) -> None:
-    """Have a set reach farther along an axis, both ways, in place."""
+    """Grow a set along an axis, both ways, in place."""
     lines: Any = np.moveaxis(near, axis, 0)
     for one in (lines, lines[::-1]):
         covered = 0

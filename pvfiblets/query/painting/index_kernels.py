@@ -1,7 +1,7 @@
 """Compiled kernels: a spatial index over fiblets; see :mod:`.fiblet_index`.
 
 A leaf is `LEAF` fiblets that run alike. Each fiblet is kept as a few chords between some of its points, in bytes beside
-those of its leaf, and a radius: every point of the fiblet lies within that of the chord of its part.
+beside their leaf's, and a radius: every point of the fiblet lies within it of the chord of its part.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ def chords(
 
 @kernel
 def _turned(x: float, y: float, z: float) -> bool:
-    """Whether a chord is taken from its end, so that those of one course and the other lie together."""
+    """Whether a chord is taken from its end, so that chords of opposite directions lie together."""
     return x + 0.37 * y + 0.11 * z < 0.0
 
 
@@ -175,9 +175,9 @@ def leaf_pieces(
     order: Any, arrays: Any, low: Any, fine: Any, origin: Any, scale: Any, steps: Any, tables: Any, parts: int,
     leaves: Any, pieces: Any, damaged: Any,
 ) -> None:  # fmt: skip
-    """Decode all fiblets and keep them coarsely; see :class:`.FibletIndex` for what is filled.
+    """Decode all fiblets and keep them coarsely; :class:`.FibletIndex` describes the filled arrays.
 
-    ``order (n,)`` are the fiblets, the other arrays those of :func:`.decode_kernels.decode`.
+    ``order (n,)`` are the fiblets, the other arrays as in :func:`.decode_kernels.decode`.
     """
     nodes = parts + 1
     for leaf in numba.prange(len(leaves)):

@@ -1,12 +1,12 @@
-"""Which streamlines pass painted regions, told again after each stroke from the fiblets near it alone.
+"""Which streamlines pass painted regions, updated after each stroke from the fiblets near it alone.
 
-For each fiblet it is kept whether some position of it lies in the region, and for each streamline how many such fiblets
-it has. A stroke changes these only where a fiblet comes near changed voxels, and where they are added, only for those
-that did not pass before. The index (:mod:`.fiblet_index`) finds these and settles most; the others are decoded and
+The state is, for each fiblet, whether some position of it lies in the region, and for each streamline the number of
+its fiblets inside. A stroke changes these only where a fiblet comes near changed voxels, and where voxels are added,
+only for fiblets outside so far. The index (:mod:`.fiblet_index`) finds these and settles most; others are decoded and
 walked through the voxels, so that the answer is exact. A fiblet here is its points, the segments between them, and the
 one that joins it to the next.
 
-Whether streamlines end in the region or never leave it is kept up only once it has been asked for.
+Whether streamlines end in the region or never leave it is computed from its first use on.
 """
 
 from __future__ import annotations
@@ -119,11 +119,11 @@ class LiveRegion:
         in_mm = _in_mm(changed, grid)
         near = index.near(*in_mm)
         whole = self._region_about(near, volume) if asked == coarse.REMOVED else changed
-        within = about_changed = about_whole = FreeSpace.of(volume, kernels.CHANGED, changed)
+        within = about_changed = about_whole = FreeSpace.from_bits(volume, kernels.CHANGED, changed)
         if asked == coarse.REMOVED:
-            about_whole = FreeSpace.of(volume, kernels.HERE, whole)
+            about_whole = FreeSpace.from_bits(volume, kernels.HERE, whole)
         elif asked == coarse.ADDED:
-            within = FreeSpace.of(volume, kernels.HERE, changed, beyond=True)
+            within = FreeSpace.from_bits(volume, kernels.HERE, changed, beyond=True)
         per, rows, bits = CHUNK // LEAF, np.linalg.norm(grid.linear, axis=1), np.empty(len(near), np.uint8)
         coarse.close_parts(near, index.leaves, index.parts, grid.linear, grid.corner, rows, changed, about_changed,
                            bits)  # fmt: skip
@@ -268,7 +268,7 @@ class LiveRegions:
         include, exclude : iterable of str
             Regions that streamlines must pass, and regions that they must miss.
         ends_in : iterable of str
-            Regions in each of which an end lies.
+            Regions; an end must lie in each.
         stays_in : str, optional
             Region that is never left.
         in_order : iterable of str

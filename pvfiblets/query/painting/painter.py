@@ -32,7 +32,7 @@ MOST_STEPS = 200
 
 @dataclass(frozen=True, eq=False)
 class Stroke:
-    """What a stroke changed.
+    """The changes of a stroke.
 
     Attributes
     ----------

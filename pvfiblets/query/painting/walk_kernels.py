@@ -17,10 +17,10 @@ __all__ = ["ANY", "BAD", "CHANGED", "DAMAGED", "FIRST", "HERE", "LAST", "OUT", "
            "passes"]  # fmt: skip
 
 ANY, OUT, FIRST, LAST = 1, 2, 4, 8
-"""Of a fiblet: some position lies in the region, some does not, its first point does, its last point does."""
+"""Flags of a fiblet: some position lies in the region, some does not, its first point does, its last point does."""
 BAD, DAMAGED = 255, -(1 << 62)
 HERE, CHANGED = 1, 2
-"""Of a voxel: it is in the region, and this stroke changed it."""
+"""Flags of a voxel: it is in the region, and this stroke changed it."""
 BLOCK = 64
 
 
@@ -44,7 +44,7 @@ def look(places: Any, order: Any, arrays: Any, low: Any, fine: Any, origin: Any,
          linear: Any, corner: Any, mask: Any, shape: Any, found: Any) -> None:  # fmt: skip
     """Flags of fiblets: ``found (m,)`` uint8; :data:`BAD` for a record that points beyond the arrays.
 
-    ``order[places]`` are the fiblets, the arrays up to ``tables`` those of :func:`.decode_kernels.decode`; ``mask`` is
+    ``order[places]`` are the fiblets, the arrays up to ``tables`` as in :func:`.decode_kernels.decode`; ``mask`` is
     flat, in C order, 1 in the region.
     """
     most, strides = shape[0] + shape[1] + shape[2] + 4, (shape[1] * shape[2], shape[2], 1)
@@ -87,7 +87,7 @@ def _apart_from(u: Any, i: int, box: Any) -> bool:
 @parallel_kernel
 def passes(places: Any, order: Any, arrays: Any, low: Any, fine: Any, origin: Any, scale: Any, steps: Any, tables: Any,
            linear: Any, corner: Any, mask: Any, bit: int, box: Any, shape: Any, found: Any) -> None:  # fmt: skip
-    """Whether fiblets meet voxels with a bit of ``mask``, all of which lie in ``box (6,)``; ``found (m,)`` uint8.
+    """Whether fiblets meet voxels with a bit of ``mask``, all within ``box (6,)``; ``found (m,)`` uint8.
 
     Other parameters, and what :data:`BAD` means, as for :func:`look`.
     """

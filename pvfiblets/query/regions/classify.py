@@ -78,7 +78,7 @@ class Packed:
 
     @property
     def arrays(self) -> tuple[Any, ...]:
-        """What :func:`classify_ball` takes first: ops, rows, grids, values."""
+        """First arguments of :func:`classify_ball`: ops, rows, grids, values."""
         return self.ops, self.rows, self.grids, self.values
 
 
@@ -124,7 +124,7 @@ def _largest(linear: Array) -> float:
 
 
 def classify(region: Region, centres: npt.ArrayLike, radii: npt.ArrayLike) -> npt.NDArray[np.int8]:
-    """Say of balls whether they lie in a region.
+    """Classify balls by whether they lie in a region.
 
     Parameters
     ----------
@@ -176,14 +176,14 @@ def _field_side(row: Any, grid: Any, values: Any, u: Any, slack: Any, r: float) 
     s1 = (slack[1] + _EPS * abs(grid[1])) / grid[4]
     s2 = (slack[2] + _EPS * abs(grid[2])) / grid[5]
     margin = r * row[13] * (1.0 + _EPS) + s0 * grid[6] + s1 * grid[7] + s2 * grid[8]
-    # Beyond the grid there is nothing; its outermost points reach half a step further.
+    # The grid's outermost points reach half a step beyond it.
     b0 = max(-0.5 - q0, q0 - (nx - 0.5), 0.0) * grid[6]
     b1 = max(-0.5 - q1, q1 - (ny - 0.5), 0.0) * grid[7]
     b2 = max(-0.5 - q2, q2 - (nz - 0.5), 0.0) * grid[8]
     beyond = b0 * b0 + b1 * b1 + b2 * b2
     if math.sqrt(beyond) * (1.0 - _EPS) > margin:
         return -1
-    # Comparisons with NaN are false, so that what is not a number ends at grid point 0 and is undecided.
+    # Comparisons with NaN are false, so that NaN ends at grid point 0 and is undecided.
     g0 = min(max(math.floor(q0 + 0.5), 0.0), nx - 1.0) if q0 == q0 else 0.0
     g1 = min(max(math.floor(q1 + 0.5), 0.0), ny - 1.0) if q1 == q1 else 0.0
     g2 = min(max(math.floor(q2 + 0.5), 0.0), nz - 1.0) if q2 == q2 else 0.0
@@ -243,7 +243,7 @@ def _leaf_side(row: Any, grids: Any, values: Any, x: float, y: float, z: float, 
 
 @kernel
 def classify_ball(ops: Any, rows: Any, grids: Any, values: Any, x: float, y: float, z: float, r: float) -> int:
-    """Side of one ball: +1, -1 or 0; the arrays are those of :class:`Packed`."""
+    """Side of one ball: +1, -1 or 0; the arrays are as in :class:`Packed`."""
     if not (math.isfinite(x) and math.isfinite(y) and math.isfinite(z) and math.isfinite(r)):
         return 0
     inside, outside = 0, 0  # two stacks of bits, the top in bit 0

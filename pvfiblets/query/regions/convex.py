@@ -16,8 +16,8 @@ def box_distance(linear: Array, unit: Array) -> Array:
     Notes
     -----
     The nearest point lies in the box itself, within a face, an edge or a corner. For each of the 26 the nearest point
-    of its whole plane or line follows from least squares; the least distance among those that lie within it is right,
-    as each is the distance to a point of the box, and the true nearest point is one of them.
+    of its whole plane or line follows from least squares. Candidates outside of their face or edge are dropped; the
+    least distance is right, as each is the distance to a point of the box, and the true nearest point is among them.
     """
     edges = np.linalg.inv(linear)  # mm per unit coordinate, columns
     lengths = np.linalg.norm(edges, axis=0)
@@ -31,7 +31,7 @@ def box_distance(linear: Array, unit: Array) -> Array:
         fixed = np.array(pattern) != 1
         if not fixed.any():
             continue
-        # Of the axes that stay free, by least squares; those that do not are at -1 or +1.
+        # Free axes by least squares; the others are at -1 or +1.
         away = unit[:, fixed] - (np.array(pattern)[fixed] - 1.0)
         apart = away @ edges[:, fixed].T
         free = edges[:, ~fixed]

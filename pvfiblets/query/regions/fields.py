@@ -9,7 +9,7 @@ Of a surface the grid has about :data:`CELLS` cells along the longest axis. Of a
 voxel from the first to the last chosen one, or for each block of them where they are more than `MOST_VALUES`; a block
 that is both in and out has 0.
 
-Distances between voxels are those of an exact Euclidean distance transform (Felzenszwalb and Huttenlocher 2012,
+Distances between voxels come from an exact Euclidean distance transform (Felzenszwalb and Huttenlocher 2012,
 "Distance transforms of sampled functions", section 2) from centre to centre, less half a voxel's diagonal: what
 changes, changes at a voxel's face. In a sheared volume all voxels count as cubes of the affine matrix' smallest
 singular value, which no true distance falls short of.

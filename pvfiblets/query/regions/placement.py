@@ -1,4 +1,4 @@
-"""What shapes are placed by: checked vectors and frames, and bounds that may be infinite."""
+"""Placement of shapes: checked vectors and frames, and bounds that may be infinite."""
 
 from __future__ import annotations
 

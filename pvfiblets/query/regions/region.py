@@ -90,7 +90,7 @@ class Region:
         raise TypeError("a region is neither true nor false; combine regions with &, | and ~, not with and, or, not")
 
     def contains(self, points: npt.ArrayLike) -> Flags:
-        """Say which positions lie in the region, in float64.
+        """Return which positions lie in the region, in float64.
 
         Parameters
         ----------

@@ -64,7 +64,7 @@ def _in_ball(p: Any, q: Any) -> Any:
 
 @kernel
 def _convex_span(row: Any, p: Any, q: Any) -> Any:
-    """From where to where a segment lies in a plane's half-space, slab, box or ball; closed, (2, -1) if nowhere."""
+    """Return the span of a segment in a plane's half-space, slab, box or ball; closed, (2, -1) if nowhere."""
     a, b = unit(row, p[0], p[1], p[2]), unit(row, q[0], q[1], q[2])
     kind = row[0]
     if kind == _PLANE:
@@ -97,7 +97,7 @@ def _holds(ops: Any, held: int) -> bool:
 def combine(
     ops: Any, rows: Any, places: Any, first: Any, spans: Any, a: Any, b: Any, together: float, out: Any
 ) -> None:  # fmt: skip
-    """Say of segments whether some of them lies in a region (1), and whether some does not (2): ``out`` (m,) uint8."""
+    """Flag segments with a part in a region (1), and with a part outside (2): ``out`` (m,) uint8."""
     n_leaves = len(rows)
     for block in numba.prange((len(out) + _BLOCK - 1) // _BLOCK):
         lows, highs, at = np.empty(n_leaves), np.empty(n_leaves), np.empty(n_leaves, np.int64)
@@ -186,9 +186,9 @@ def _put(spans: Any, n: int, open_: bool, writes: bool, begin: float, end: float
 def label_spans(
     mask: Any, linear: Any, centre: Any, a: Any, b: Any, first: Any, spans: Any, writes: bool
 ) -> None:  # fmt: skip
-    """Shares of segments that lie in chosen voxels of ``mask`` (i, j, k): those of `voxel_walk_kernels.walk`.
+    """Shares of segments that lie in chosen voxels of ``mask`` (i, j, k), by `voxel_walk_kernels.walk`.
 
-    Unless ``writes``, only counted: ``first[k + 1]`` are those of segment k. Otherwise written to ``spans`` from
+    Unless ``writes``, only counted: ``first[k + 1]`` is the number of segment k. Otherwise written to ``spans`` from
     ``first[k]`` on.
     """
     shape = mask.shape

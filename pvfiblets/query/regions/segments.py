@@ -1,14 +1,14 @@
-"""What of a segment lies in a region, exactly: in shares ``t`` of the segment, from 0 to 1, in float64.
+"""The parts of a segment in a region, exactly: in shares ``t`` of the segment, from 0 to 1, in float64.
 
 Each shape holds some spans of a segment:
 
 - a plane's half-space, a slab, a box or a ball one span, from the segment's ends in the shape's unit coordinates: where
   linear functions change sign, and the roots of a quadratic one. Its ends belong to it: what touches, is in.
-- a closed surface those between the triangles that the segment meets where the winding number is not 0.
-- labels those of the walk through their voxels, as density maps count them: a voxel of which the segment merely touches
+- a closed surface the spans between the triangles that the segment meets where the winding number is not 0.
+- labels the spans of the walk through their voxels, as density maps count them: a voxel touched only at
   an edge or a corner is not passed.
 
-The spans' ends of all shapes cut a segment into parts, on each of which every shape holds all or nothing; so the
+The spans' ends of all shapes cut a segment into parts, each wholly inside or outside of every shape; so the
 region's expression is evaluated once on each part and once on each end. Ends that differ by less than `TOGETHER` of the
 segment's length count as one: where two shapes share a face, rounding puts their crossings side by side.
 """

@@ -44,10 +44,10 @@ def _holds(row: Any, x: float, y: float, z: float) -> bool:
 
 @parallel_kernel
 def evaluate(ops: Any, rows: Any, known: Any, places: Any, points: Any, out: Any) -> None:
-    """Say which points a region holds.
+    """Find the points that a region holds.
 
-    ``known`` is (k, n) bool: what is already known of leaves, of leaf i in row ``places[i]`` if that is not -1
-    (surfaces, labels); the other leaves are looked at here. ``points`` is (n, 3) float64, ``out`` (n,) bool.
+    ``known`` is (k, n) bool: known results of leaves, of leaf i in row ``places[i]`` if that is not -1
+    (surfaces, labels); the other leaves are computed here. ``points`` is (n, 3) float64, ``out`` (n,) bool.
     """
     n = len(points)
     for block in numba.prange((n + _BLOCK - 1) // _BLOCK):

@@ -78,7 +78,7 @@ class Shape(Region):
 
     @property
     def kind(self) -> int:
-        """Which unit shape it is."""
+        """Kind of unit shape."""
         return self._kind
 
     @property
@@ -106,7 +106,7 @@ class Shape(Region):
 
     @property
     def _data(self) -> object:
-        """What tells apart shapes of one kind and place; compared by identity."""
+        """Key among shapes of one kind and place; compared by identity."""
         return None
 
     def placed(self, matrix: Array) -> Shape:
@@ -118,7 +118,7 @@ class Shape(Region):
         return other
 
     def _shared(self) -> dict[str, Any]:
-        """What a moved copy has in common with the shape."""
+        """Return data that a moved copy shares with the shape."""
         return {}
 
     def _unit(self, points: Array) -> tuple[Array, Array, Array]:
@@ -198,7 +198,7 @@ class Plane(Shape):
 
 
 class Slab(Shape):
-    """What lies between two parallel planes, the planes included.
+    """The space between two parallel planes, the planes included.
 
     Parameters
     ----------

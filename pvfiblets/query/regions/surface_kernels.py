@@ -2,8 +2,8 @@
 
 Winding number: along +z from a position, each triangle met counts its turning sense in the projection along z. Whether
 it is met is settled in that projection edge by edge, by the crossings of a ray along +x. An edge shared by two
-triangles is looked at from the same end both times (the smaller number first), so that what it adds to one it takes
-from the other, and no position falls between them; of its ends the lower counts. The triangles are found through a grid
+triangles is evaluated from the same end both times (the smaller number first), so that it adds to one just when it
+takes from the other, and no position falls between; of its ends the lower counts. Triangles are found through a grid
 of cells in the projection.
 
 Distance: a tree of boxes (bounding volume hierarchy), nearer child first. The triangle that was nearest to the position

@@ -102,7 +102,7 @@ class Mesh:
 
 
 class Surface(Shape):
-    """What a closed triangle mesh encloses: where its winding number is not 0.
+    """The inside of a closed triangle mesh: where its winding number is not 0.
 
     Of several components each encloses its own. A shell within another that is turned outwards like it encloses nothing
     more; one that is turned inwards is a hole.
@@ -168,7 +168,7 @@ class Surface(Shape):
         -------
         numpy.ndarray
             ``(n,)`` float64 mm, exact up to rounding under any matrix; NaN where a coordinate is not finite. As part of
-            an expression made with ``|`` a surface counts as what it encloses, so that its inside has distance 0.
+            an expression made with ``|`` a surface counts as its enclosed volume, with distance 0 inside.
         """
         places = positions(points)
         finite = np.isfinite(places).all(axis=1)

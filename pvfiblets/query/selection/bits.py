@@ -28,7 +28,7 @@ SLICE = 1 << 22  # points of a mapped array that are looked at together
 
 @dataclass(frozen=True, eq=False)
 class Criterion:
-    """What is kept: values from ``lo`` to ``hi``, both included.
+    """The kept values: from ``lo`` to ``hi``, both included.
 
     Attributes
     ----------
@@ -67,7 +67,7 @@ def point_words(fiblets: FibletSet, criteria: Iterable[Criterion | tuple[Any, ..
 
     Notes
     -----
-    Values are compared as float64; those that are stored as codes without being decoded, by what each code means.
+    Values are compared as float64; coded values by the meaning of their code, without decoding.
     """
     from .bit_kernels import keep_codes, keep_values
 

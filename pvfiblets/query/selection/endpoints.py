@@ -1,4 +1,4 @@
-"""Where streamlines begin and end, and which end like others."""
+"""Ends of streamlines, and streamlines with similar ends."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def similar_ends(fiblets: FibletSet, ids: Any, distance: float) -> Mask:
     cells = np.floor((pairs[:, 0] - low) / edge).astype(np.int64)
     order = np.lexsort(cells.T)
     keys, starts = np.unique(cells[order] @ _STRIDES, return_index=True)
-    # Keys rise with the lexical order of (z, y, x), by which the pairs are sorted.
+    # Keys rise with the lexical order of (z, y, x), the order of the sorted pairs.
     starts = np.append(starts, len(pairs)).astype(np.int64)
     find_similar(ends, np.ascontiguousarray(pairs[order]), keys, starts, low, edge, reach, found)
     return found

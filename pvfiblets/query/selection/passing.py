@@ -1,13 +1,13 @@
-"""Which streamlines pass through a region, end in it, or stay in it: asked of the compressed data.
+"""Streamlines that pass through a region, end in it, or stay in it: found in the compressed data.
 
 What is tested are the decoded points, in the float64 arithmetic of ``decompress(dtype=float64)``, and the segments
 between them: of a point the answer is that of ``region.contains``, of a segment that of `segments`. Most fiblets
 need no decoding. All points of a fiblet, and the segment that joins it to the next, lie in the capsule about its chord
 (:mod:`..capsules`), hence in a ball about the middle of the chord. A ball that lies in the region, or apart from it,
 settles its fiblet (`classify`); the others are decoded where their streamline's answer is still open, and only
-there. Of these, segments are looked at where points leave the answer open, and the ball about a segment as well.
+there. Segments are tested where points leave the answer open, and the ball about a segment as well.
 
-Sets of any size are gone through by a few pages at a time; of a mapped one, the memory of what was read is given back.
+Sets of any size are processed a few pages at a time; of a mapped one, the pages read are released.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ class FibletBalls:
 def region_flags(
     fiblets: FibletSet, region: Region, sampling: Sampling = "lines", ids: Any = None, *, bits: int = 15
 ) -> npt.NDArray[np.uint8]:
-    """Say how each streamline lies to a region."""
+    """Return how each streamline lies to a region."""
     lines = check_sampling(sampling) == "lines"
     if in_parts(fiblets):
         return _flags_of_parts(fiblets, region, sampling, ids, bits)

@@ -90,7 +90,7 @@ def settle(states: Any, anchors: Any, ranks: Any, wanted: Any, bits: int, flags:
 
 @parallel_kernel
 def reduce_fiblets(inside: Any, starts: Any, found: Any) -> None:
-    """Flags of each fiblet by itself, from those of its points.
+    """Flags of each fiblet by itself, from its points' flags.
 
     ``inside`` is ``(n_points,)`` bool, ``starts`` ``(n + 1,)`` int64, ``found`` ``(n,)`` uint8, filled.
     """
@@ -167,7 +167,7 @@ def run_sides(points: Any, starts: Any, packed: Any, sides: Any) -> None:
 def open_segments(points: Any, starts: Any, sides: Any, asked: Any, packed: Any, open_: Any) -> None:
     """Mark the segments of fiblets ``asked`` (n,) bool that balls leave undecided: ``open_`` (n_points,) bool.
 
-    The other arguments are those of :func:`run_sides`.
+    The other arguments are as in :func:`run_sides`.
     """
     for f in numba.prange(len(asked)):
         last = starts[f + 1] - 1
@@ -178,7 +178,7 @@ def open_segments(points: Any, starts: Any, sides: Any, asked: Any, packed: Any,
 
 @kernel
 def _alike(mask: Any, ax: float, ay: float, az: float, bx: float, by: float, bz: float) -> bool:
-    """Whether all voxels of the box between two of them are chosen, or none is; what is beyond the grid is not."""
+    """Whether all voxels of the box between two of them are chosen, or none is; outside of the grid none is."""
     ni, nj, nk = mask.shape
     count = total = 0
     for i in range(int(min(ax, bx)), int(max(ax, bx)) + 1):
@@ -192,13 +192,13 @@ def _alike(mask: Any, ax: float, ay: float, az: float, bx: float, by: float, bz:
 
 @parallel_kernel
 def label_points(points: Any, starts: Any, mask: Any, linear: Any, centre: Any, inside: Any, open_: Any) -> None:
-    """Say of fiblets' points whether they lie in chosen voxels, and mark the segments to test: both (n_points,) bool.
+    """Flag fiblets' points in chosen voxels, and mark the segments to test: both (n_points,) bool.
 
-    The voxels of ``mask`` (i, j, k) are those nearest to ``linear (points - centre)``. A segment needs no test that
-    crosses one face of voxels at most, and so lies in those of its ends, or whose way all voxels are alike about.
+    The voxels of ``mask`` (i, j, k) are the nearest to ``linear (points - centre)``. A segment needs no test if it
+    crosses one face of voxels at most, and so lies in the voxels of its ends, or if all voxels about it are alike.
     """
     ni, nj, nk = mask.shape
-    # Read once: what is written might be these arrays, for all that the compiler knows.
+    # Read once: the compiler cannot exclude that the written arrays are these.
     cx, cy, cz = centre[0], centre[1], centre[2]
     a0, a1, a2 = linear[0, 0], linear[0, 1], linear[0, 2]
     b0, b1, b2 = linear[1, 0], linear[1, 1], linear[1, 2]

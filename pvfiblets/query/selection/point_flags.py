@@ -1,4 +1,4 @@
-"""What a region's flags say of a streamline, and whether of all of it or of its points."""
+"""Flags of a streamline in a region, for all of it or for its points."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ ANY, ALL, FIRST, LAST = 1, 2, 4, 8
 """Flags of a streamline for a region: some of it lies in it, all of it does, the first point does, the last does."""
 
 Sampling = Literal["lines", "points"]
-"""What of a streamline counts: its points and all places between them, or the points alone."""
+"""Sampling of a streamline: its points and all places between them, or the points alone."""
 
 
 def check_sampling(sampling: Any) -> Sampling:

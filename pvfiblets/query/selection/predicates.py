@@ -37,7 +37,7 @@ Mask = npt.NDArray[np.bool_]
 Flags = npt.NDArray[np.uint8]
 Ends = Literal["any", "both", "first", "last"]
 FlagsOf = Callable[[Region, Sampling], Flags]
-"""What gives a region's flags of every streamline, as :func:`.passing.region_flags` does."""
+"""A function that returns a region's flags of every streamline, as :func:`.passing.region_flags` does."""
 
 _Key = tuple[Region, Sampling]
 
@@ -72,7 +72,7 @@ class Predicate:
 
 @dataclass(frozen=True)
 class Condition(Predicate):
-    """How a streamline lies to one region.
+    """The relation of a streamline to one region.
 
     Attributes
     ----------
@@ -231,7 +231,7 @@ def _listed(predicate: Predicate) -> Iterator[Listed]:
 def _needed(predicate: Predicate) -> dict[_Key, int]:
     """Flags that are needed of each region and sampling."""
     bits: dict[_Key, int] = {}
-    # Ends are points whatever lies between them: they are asked along with another condition on their region.
+    # Ends are points, whatever lies between them: they are computed along with another condition on their region.
     for condition in sorted(predicate.conditions(), key=_asks_for_ends):
         key = _key(condition, bits)
         bits[key] = bits.get(key, 0) | condition.needed

@@ -1,7 +1,7 @@
-"""Which streamlines lie under an area of the screen, seen or hidden, from the compressed data alone.
+"""Streamlines under an area of the screen, visible or hidden, from the compressed data alone.
 
 A fiblet's capsule (:mod:`pvfiblets.codec.capsules`) is tried first against the half spaces that bound the view through
-the area's rectangle; those that reach into it are decoded, and their segments, cut at the near and the far plane, are
+the area's rectangle; fiblets that reach into it are decoded, and their segments, cut at the near and the far plane, are
 tried against the area itself. All in float64 and without OpenGL, so that the answer is the same on every machine.
 """
 

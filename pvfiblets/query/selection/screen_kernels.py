@@ -32,7 +32,7 @@ def _inside(polygon: Any, x: float, y: float) -> bool:
 
 @kernel
 def _along(ax: float, ay: float, bx: float, by: float, x: float, y: float) -> Any:
-    """Where on a segment the point nearest to another lies, from 0 to 1, and the square of the distance."""
+    """Return the place on a segment nearest to another, from 0 to 1, and the square of the distance."""
     dx, dy = bx - ax, by - ay
     squares = dx * dx + dy * dy
     s = min(max(((x - ax) * dx + (y - ay) * dy) / squares, 0.0), 1.0) if squares > 0.0 else 0.0

@@ -1,4 +1,4 @@
-"""What surrounds the picture: bar, layers, tabs and dialogs, and what their controls do.
+"""Panels around the picture: bar, layers, tabs and dialogs, with the actions of their controls.
 
 It knows nothing of connections and processes. Start with ``layout.py`` and ``tabs.py``.
 """

@@ -24,7 +24,7 @@ MOST_ASKED = 2
 
 
 class AtlasActions(Actions):
-    """What the page does with the labels of a scene's images."""
+    """The page's actions on labels of a scene's images."""
 
     def __init__(self, app: Any) -> None:
         super().__init__(app)

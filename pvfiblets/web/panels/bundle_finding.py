@@ -29,7 +29,7 @@ COMPARED = 1000
 
 
 class FindingActions(LineActions):
-    """What the page does to find streamlines of the chosen tractogram."""
+    """The page's actions that find streamlines of the chosen tractogram."""
 
     def __init__(self, app: Any) -> None:
         super().__init__(app)

@@ -45,7 +45,7 @@ class _Result:
 
 
 class MeasureActions(LineActions):
-    """What the page measures of the bundles of the chosen tractogram."""
+    """The page's measures of the bundles of the chosen tractogram."""
 
     def __init__(self, app: Any) -> None:
         super().__init__(app)

@@ -22,7 +22,7 @@ MANY = 20
 
 
 class BundleActions(LineActions):
-    """What the page does with bundles of the chosen tractogram."""
+    """The page's actions on bundles of the chosen tractogram."""
 
     def __init__(self, app: Any) -> None:
         super().__init__(app)

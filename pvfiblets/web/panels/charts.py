@@ -136,7 +136,7 @@ def _label(x: float, y: float, text: str, anchor: str) -> str:
 
 
 def steps(limits: Sequence[float]) -> float:
-    """Return a slider's step for limits: a round number, a few hundred of which fill them."""
+    """Return a slider's step for limits: a round number that divides them into a few hundred."""
     reach = abs(float(limits[1]) - float(limits[0]))
     if not np.isfinite(reach) or reach <= 0.0:
         return 1.0

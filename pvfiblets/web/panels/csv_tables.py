@@ -1,4 +1,4 @@
-"""What the page shows in tables, as CSV: every number in full, every name as text."""
+"""The page's tables as CSV: every number in full, every name as text."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From the scene's descriptions to what the page's templates show: texts, indices, steps and charts."""
+"""Data of the page's templates, from the scene's descriptions: texts, indices, steps and charts."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def layer(found: Any) -> dict[str, Any]:
 
 
 def groups(described: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Return properties under their headings; headings of which nothing matters now are left out."""
+    """Return properties under their headings; headings without a relevant property are left out."""
     found: dict[str, list[dict[str, Any]]] = {}
     for item in described:
         found.setdefault(item["group"], []).append(control(item))
@@ -79,7 +79,7 @@ class Charts:
         self._scene = scene
         self._kept: dict[tuple[Any, ...], tuple[str, list[float]]] = {}
 
-    def of(self, layer_id: str, name: str) -> tuple[str, list[float]]:
+    def chart_of(self, layer_id: str, name: str) -> tuple[str, list[float]]:
         """Return the chart of a layer's values, and between which they lie."""
         found = self._scene.layer(layer_id)
         array = found.filters.images.get(name, name)
@@ -96,7 +96,7 @@ class Charts:
             return self._chart((volume, "colours", ""), lambda: self._scene.queries.histogram(layer_id))[0]
         if found.kind in ("volume", "image") and names:
             name = names[0]
-        return self.of(layer_id, name)[0] if name in names else ""
+        return self.chart_of(layer_id, name)[0] if name in names else ""
 
     def _chart(self, key: tuple[Any, ...], count: Callable[[], dict[str, Any]]) -> tuple[str, list[float]]:
         if key not in self._kept:

@@ -1,4 +1,4 @@
-"""What opens over the page: files, sessions, the script, keys, renaming, progress and messages."""
+"""Dialogs of the page: files, sessions, the script, keys, renaming, progress and messages."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ POINTER = (
 )
 
 
-SAVE = (  # of a session that is too large the page has nothing but why
+SAVE = (  # of a session that is too large the page gets only an error
     "trigger('save_session').then((text) => text && utils.download('session.json', text, 'application/json'))"
 )
 LABEL = "cursor: pointer; background: rgba(128,128,128,.2)"  # of files to choose: labels that look like buttons
@@ -43,7 +43,7 @@ LABEL = "cursor: pointer; background: rgba(128,128,128,.2)"  # of files to choos
 
 def build(app: Any) -> None:
     """Build all of them."""
-    # Beside the dialogs: what is in one that is closed meanwhile, by another who looks at the page, hears of no file.
+    # Outside of the dialogs: an input in a dialog that another user has closed would receive no file.
     html.Input(type="file", hidden=True, id="pv-upload", multiple=True, data_upload=True, data_limit=("upload_limit",))
     html.Input(type="file", accept=".json,application/json", hidden=True, id="pv-session", data_session=True,
                data_limit=LARGEST_SESSION)  # fmt: skip

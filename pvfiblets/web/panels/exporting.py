@@ -47,7 +47,7 @@ class _File:
 
 @dataclass(frozen=True, eq=False)
 class _Held:
-    """What is exported, and where it came from, or why that is not to be had."""
+    """The exported streamlines, and their source, or the reason why it is not available."""
 
     fiblets: Any
     ids: Any
@@ -125,7 +125,7 @@ class ExportActions(Actions):
                 return done
 
             try:
-                done = await app.files.beside(name, work, "writing")
+                done = await app.files.run_in_background(name, work, "writing")
             except Cancelled:
                 app.say(f"{name} was not written: cancelled.")
                 return

@@ -1,6 +1,6 @@
 """Regions of the tab Filter: a flat list of the chosen layer's, each with or without 'not', joined by one word.
 
-A region has a name, and layers that have one of the same name share it: what is done to it is done for all of them.
+A region has a name; layers with a region of the same name share it: a change to it applies to all of them.
 """
 
 from __future__ import annotations
@@ -169,7 +169,7 @@ class RegionActions(LineActions):
         self._change(row, lambda region: dragged(region, handle, where, self._sight()))
 
     def begin_placing(self, row: int) -> None:
-        """Have the next click on the picture say where a region is."""
+        """Place a region at the next click on the picture."""
         region = self._region(row)
         if region["kind"] not in PLACED:
             raise ValueError("a region of a file cannot be moved")
@@ -221,7 +221,7 @@ def title(region: Mapping[str, Any]) -> str:
 
 
 def sentence(join: str, rows: list[Row]) -> str:
-    """Say in words which streamlines regions leave."""
+    """Return a sentence on the streamlines that regions leave."""
     word = {"and": " and ", "or": " or "}[join]
     return word.join(f"{'not ' if row['not'] else ''}{_WORDS[row['how']]} {title(row['region'])}" for row in rows)
 

@@ -59,7 +59,7 @@ class FilterActions(LineActions):
         }  # fmt: skip
 
     def counted(self) -> str:
-        """Say how many streamlines of the chosen layer filters leave."""
+        """Return how many streamlines of the chosen layer filters leave."""
         layer = self._layer
         actor = self._app.scene.actor(layer.id)
         total = actor.fiblets.n_streamlines
@@ -72,7 +72,7 @@ class FilterActions(LineActions):
         return {title: source for title, source in named if source is not None}
 
     def _criterion(self, layer: Any, name: str, title: str) -> dict[str, Any]:
-        chart, limits = self._charts.of(layer.id, name)
+        chart, limits = self._charts.chart_of(layer.id, name)
         low, high = layer.filters.criteria[name]
         value = [limits[0] if math.isinf(low) else low, limits[1] if math.isinf(high) else high]
         reach = [min(limits[0], value[0]), max(limits[1], value[1])]
@@ -92,7 +92,7 @@ class FilterActions(LineActions):
                 app.files.with_volume(image, lambda: app.scene.filters.set_filter(layer.id, name, image=image))
             )
             return
-        low, high = self._charts.of(layer.id, name)[1]
+        low, high = self._charts.chart_of(layer.id, name)[1]
         app.scene.filters.set_filter(layer.id, name, low, high)
 
     def remove(self, name: str) -> None:

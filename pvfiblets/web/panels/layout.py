@@ -170,7 +170,7 @@ OVER_3D = (
     "((b) => ({ left: 100 * b.x + '%', top: 100 * b.y + '%', right: 'auto', bottom: 'auto', width: 100 * b.w + '%', "
     "height: 100 * b.h + '%' }))(slicing.boxes.find((b) => b.name === '3d') || { x: 0, y: 0, w: 1, h: 1 })"
 )
-"""Where the 3-D view is in the picture, as CSS."""
+"""Position of the 3-D view in the picture, as CSS."""
 
 # Names are put in as text, by Vue.
 MARKS = """
@@ -319,7 +319,7 @@ def _view(app: Any) -> None:
         )
         area.add_view_handler(app.stream)
         with html.Div(classes="pv-there-place", style=(f"({OVER_3D})",)):
-            html.Canvas(  # of client/there.js
+            html.Canvas(  # of client/browser_renderer.js
                 id="pv-there", classes="pv-there", tabindex="0", role="img", style="visibility: hidden",
                 aria_label="The scene. Arrow keys turn it, plus and minus zoom, Shift with arrows moves it.",
             )  # fmt: skip

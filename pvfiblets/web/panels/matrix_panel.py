@@ -36,7 +36,7 @@ COLOURS = "inferno"
 
 
 class MatrixActions(LineActions):
-    """What the page does with the matrix of the chosen tractogram."""
+    """The page's actions on the matrix of the chosen tractogram."""
 
     def __init__(self, app: Any) -> None:
         super().__init__(app)
@@ -208,7 +208,7 @@ class MatrixActions(LineActions):
         app, scene = self._app, self._app.scene
         fiblets = scene.actor(matrix.layer).fiblets
         try:
-            store, found = await app.files.beside(
+            store, found = await app.files.run_in_background(
                 Path(matrix.labels).name, lambda progress, cancel: scene.matrix.load_matrix(matrix, progress, cancel),
                 "connecting parcels",
             )  # fmt: skip

@@ -32,7 +32,7 @@ PURPOSES = {
     "labels": TABLES,
     "painted": VOLUMES,
 }
-"""What a file may be chosen for, and the suffixes that are shown then."""
+"""Purposes of choosing a file, and the suffixes shown for each."""
 MOST_MARKED = 64  # files that are chosen at once
 
 
@@ -76,7 +76,7 @@ class FileActions(SessionActions):
 
     async def _open_demo(self) -> bool:
         scene = self._app.scene
-        loaded = await self.beside("demo", lambda *_: scene.load_demo(), "making it", cancellable=False)
+        loaded = await self.run_in_background("demo", lambda *_: scene.load_demo(), "making it", cancellable=False)
         scene.add_loaded_demo(loaded)
         self._app.refresh()
         return True
@@ -91,7 +91,7 @@ class FileActions(SessionActions):
         if path.lower().endswith(VALUES):
             return await self._attach(path)
         try:
-            loaded = await self.beside(
+            loaded = await self.run_in_background(
                 name, lambda progress, cancel: app.scene.load(path, kind, progress, cancel, space), "opening"
             )
             layer = memory.within(lambda: app.scene.add(loaded), reserve=0)
@@ -119,7 +119,7 @@ class FileActions(SessionActions):
             raise ValueError(f"{name} holds values for the {of}; open that first")
         target = app.page.chosen if app.page.chosen in lines else lines[-1]
         try:
-            loaded = await self.beside(
+            loaded = await self.run_in_background(
                 name, lambda *_: app.scene.load_values(target, path), "reading", cancellable=False
             )
             layer = app.scene.attach(target, loaded)
@@ -263,7 +263,9 @@ class FileActions(SessionActions):
     async def with_shape(self, shape: Mapping[str, Any], then: Callable[[], Any]) -> None:
         """Read what a region is made of, a mesh or labels, beside everything else; then do what needs it."""
         store = self._app.scene.store.fork()
-        await self.beside(Path(shape["path"]).name, lambda *_: store.shape(shape), "reading", cancellable=False)
+        await self.run_in_background(
+            Path(shape["path"]).name, lambda *_: store.shape(shape), "reading", cancellable=False
+        )
         self._app.scene.store.take(store)
         then()
 
@@ -271,7 +273,7 @@ class FileActions(SessionActions):
         """Read a volume that colours or filters lines beside everything else; then do what needs it."""
         scene = self._app.scene
         if ("colours", source) not in scene.store.loaded:
-            loaded = await self.beside(
+            loaded = await self.run_in_background(
                 Path(source.path or "demo head").name,
                 lambda progress, cancel: scene.files.load(source, "colours", progress, cancel),
                 "reading",

@@ -36,7 +36,7 @@ AT_ONCE = ("fill", "outline", "sphere", "grow")
 
 
 class PaintActions(Actions):
-    """What the page does with painted regions."""
+    """The page's actions on painted regions."""
 
     def __init__(self, app: Any) -> None:
         super().__init__(app)
@@ -69,7 +69,7 @@ class PaintActions(Actions):
         }  # fmt: skip
 
     def _passing(self, region: Any) -> str:
-        """Say how many of the chosen tractogram's streamlines pass a region that is used."""
+        """Return how many of the chosen tractogram's streamlines pass a region that is used."""
         fiblets = self._fiblets()
         if not region.use or fiblets is None:
             return ""
@@ -108,7 +108,7 @@ class PaintActions(Actions):
     async def _compile(self) -> None:
         """Compile the kernels of painted regions before the first stroke, with a message."""
         work = lambda *_: kernels.compile_all()  # noqa: E731
-        await self._app.files.beside("regions", work, "compiling, once", cancellable=False)
+        await self._app.files.run_in_background("regions", work, "compiling, once", cancellable=False)
 
     def choose(self, name: str) -> None:
         """Paint this one from now on."""
@@ -211,7 +211,7 @@ class PaintActions(Actions):
     async def _open_labels(self, path: str) -> None:
         app = self._app
         work = lambda *_: app.scene.load(path, "image")  # noqa: E731
-        loaded = await app.files.beside(Path(path).name, work, "reading", cancellable=False)
+        loaded = await app.files.run_in_background(Path(path).name, work, "reading", cancellable=False)
         self._active = app.scene.painting.add_labels(loaded)[0].name
         app.refresh()
 

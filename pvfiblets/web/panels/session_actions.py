@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from pvfiblets.errors import FibletsError
-from pvfiblets.web.beside import Beside
+from pvfiblets.web.background_work import BackgroundWork
 from pvfiblets.web.scene.loading import Cancelled
 from pvfiblets.web.session import files as session
 
@@ -23,7 +23,7 @@ QUIET, LATEST = 1.0, 10.0  # seconds after the last, and after the first change 
 LARGEST_KEPT = 64 << 20  # bytes
 
 
-class SessionActions(Beside):
+class SessionActions(BackgroundWork):
     """The sessions of an application."""
 
     def __init__(self, app: Any) -> None:
@@ -67,7 +67,7 @@ class SessionActions(Beside):
         app = self._app
         scene = app.scene
         try:
-            prepared = await self.beside(
+            prepared = await self.run_in_background(
                 "session",
                 lambda progress, cancel: session.prepare(scene, session.from_text(content), folder, progress, cancel),
                 "reading",

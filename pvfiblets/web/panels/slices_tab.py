@@ -34,7 +34,7 @@ MOST_STEP = 100  # voxels at once
 
 
 class SliceActions(Actions):
-    """What the page does with the images of a scene that are shown as slices."""
+    """The page's actions on images that are shown as slices."""
 
     # What is shown
 
@@ -109,7 +109,7 @@ class SliceActions(Actions):
         source = layer.source
         scene = app.scene
         work = lambda *_: scene.images.with_names(scene.files.load(source, "image"))  # noqa: E731
-        loaded = await app.files.beside(layer.name, work, "reading", cancellable=False)
+        loaded = await app.files.run_in_background(layer.name, work, "reading", cancellable=False)
         found = app.scene.add(loaded, name=layer.name)
         app.scene.show(layer.id, False)
         if not app.page.chosen or app.page.chosen == layer.id:
@@ -117,7 +117,7 @@ class SliceActions(Actions):
         app.refresh()
 
     def choose_table(self, layer_id: str) -> None:
-        """Have the file chosen that says what labels are called."""
+        """Let the user choose the file with the labels' names."""
         app = self._app
         app.choose(layer_id)
         app.files.browse("", "labels")
@@ -129,13 +129,13 @@ class SliceActions(Actions):
     async def _name_labels(self, path: str) -> None:
         app = self._app
         chosen = app.page.chosen
-        loaded = await app.files.beside(
+        loaded = await app.files.run_in_background(
             Path(path).name, lambda *_: app.scene.images.load_labels(chosen, path), "reading", cancellable=False
         )
         app.scene.images.name_labels(chosen, loaded)
 
     def set_convention(self, convention: str) -> None:
-        """Have the patient's right on the left, or on the right."""
+        """Put the patient's right on the left, or on the right."""
         self._set(convention=convention)
 
     def set_angle(self, which: int, text: Any) -> None:
@@ -194,7 +194,7 @@ class SliceActions(Actions):
         self.changed()
 
     def go_to(self, x: Any, y: Any) -> None:
-        """Have the cross-hair where a place of the picture shows a slice in the 3-D view, if it shows one."""
+        """Move the cross-hair to the slice under a place of the 3-D view, if there is one."""
         workspace = self._workspace
         place = workspace.picked_in_view(*self.pixel(x, y))
         if place is not None:

@@ -38,7 +38,7 @@ __all__ = [
 ]
 
 MOST_PLANES = 6
-"""That VTK cuts a mesh or tubes by."""
+"""Most planes that VTK cuts a mesh or tubes by."""
 
 _CONDITION, _CONNECTION = "regions", "connection"
 
@@ -70,7 +70,7 @@ def remove_actor(plotter: Any, actor: Any) -> None:
 
 
 def put_in_order(renderer: Any, actors: Sequence[Any]) -> None:
-    """Have a renderer draw actors in an order, whenever each was added: of things in one place the first shows."""
+    """Order the actors of a renderer, whenever each was added: of things in one place the first shows."""
     props = renderer.GetViewProps()
     places = [props.IsItemPresent(actor) for actor in actors]  # from 1 on
     if places != sorted(places):
@@ -173,7 +173,7 @@ Planes = list[tuple[list[float], list[float]]]
 
 
 def split_cuts(layer: Layer, clips: Sequence[Clip]) -> tuple[Planes, list[Clip]]:
-    """Say how tubes or a mesh are cut by clips that are all for it."""
+    """Return how tubes or a mesh are cut by clips that are all for it."""
     planes: Planes = []
     others: list[Clip] = []
     for clip in clips:

@@ -1,7 +1,7 @@
 """Bundles of a scene's tractograms: named sets of streamlines, to be edited, undone and saved.
 
-They belong to where data comes from: layers of one source have the same ones. As long as nobody edits them they are the
-groups of the file, and a document says nothing of them.
+They belong to the source of data: layers of one source have the same ones. Unedited bundles are the
+groups of the file, and are not stored in the document.
 """
 
 from __future__ import annotations
@@ -54,9 +54,9 @@ class SceneBundles:
                 raise ValueError(f"nothing of {layer.name!r} is selected; pick streamlines first")
             ids = layer.selected
         elif isinstance(what, str) and what == "shown":
-            ids = Ids.of(np.flatnonzero(self.scene.actor(layer_id).shown))
+            ids = Ids.from_numbers(np.flatnonzero(self.scene.actor(layer_id).shown))
         else:
-            ids = Ids.of(what)
+            ids = Ids.from_numbers(what)
         if not len(ids):
             raise ValueError("a bundle of no streamlines; show or select some first")
         total = self.scene.data(layer).data.n_streamlines
@@ -77,7 +77,7 @@ class SceneBundles:
         colours, total = distinct_colours(len(there) + len(groups)), self.scene.data(layer).data.n_streamlines
         made: list[Bundle] = []
         for name, given in groups.items():
-            ids = Ids.of(given)
+            ids = Ids.from_numbers(given)
             if not len(ids):
                 raise ValueError(f"the bundle {shown(name)} has no streamlines")
             if ids.highest >= total:
@@ -131,7 +131,7 @@ class SceneBundles:
         parts = [named(there, name, "bundle") for name in dict.fromkeys(names)]
         if len(parts) < 2:
             raise ValueError("choose two bundles or more to merge")
-        ids = Ids.of(np.concatenate([one.ids.array() for one in parts]))
+        ids = Ids.from_numbers(np.concatenate([one.ids.array() for one in parts]))
         new = replace(parts[0], ids=ids)
         kept = [new if one is parts[0] else one for one in there if one is parts[0] or one not in parts]
         gone: dict[str, str | None] = {one.name: new.name for one in parts[1:]}
@@ -145,7 +145,7 @@ class SceneBundles:
         if not others:
             raise ValueError("choose a bundle, and then those whose streamlines are taken out of it")
         ids = np.setdiff1d(first.ids.array(), np.concatenate([one.ids.array() for one in others]))
-        new = replace(first, ids=Ids.of(ids))
+        new = replace(first, ids=Ids.from_numbers(ids))
         self._put(layer, tuple(new if one is first else one for one in there), f"subtract from {first.name}")
         return new
 
@@ -198,7 +198,7 @@ def _own(data: Any) -> tuple[Bundle, ...]:
     """Return the groups of a set as bundles."""
     colours, hidden = group_colours(data.groups, data.per_group), hidden_groups(data.per_group)
     return tuple(
-        Bundle(str(name), Ids.of(np.asarray(ids, np.int64)), hex_colour(colours[name]), name not in hidden)
+        Bundle(str(name), Ids.from_numbers(np.asarray(ids, np.int64)), hex_colour(colours[name]), name not in hidden)
         for name, ids in data.groups.items()
     )
 
@@ -247,7 +247,7 @@ class BundleSync:
         return regrouped
 
     def show(self, state: State, drawn: Iterable[tuple[Layer, Any]], regrouped: set[Source]) -> None:
-        """Have actors colour and hide bundles as the document says."""
+        """Colour and hide bundles by the document."""
         for layer, actor in drawn:
             if layer.source in regrouped and isinstance(actor.scalars, str) and actor.scalars == "group":
                 actor.scalars = "group" if actor.fiblets.groups else None
@@ -270,7 +270,7 @@ def _replace(data: Any, groups: Mapping[str, Any], facts: Mapping[str, Any]) -> 
 
 
 def _mask(bundles: Iterable[Bundle], count: int) -> np.ndarray:
-    """Say which streamlines are in a bundle that is shown, or in none."""
+    """Return which streamlines are in a bundle that is shown, or in none."""
     mask = np.ones(count, bool)
     for wanted in (False, True):
         for one in bundles:

@@ -1,4 +1,4 @@
-"""Where a scene is looked at from, and pictures of it."""
+"""The camera of a scene, and pictures of it."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ LARGEST_PICTURE = 64_000_000  # pixels
 
 
 class Cameras:
-    """Where a scene is looked at from, which is no part of what can be undone, and pictures of it."""
+    """The camera of a scene, which is no part of the undo history, and pictures of it."""
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
@@ -117,7 +117,7 @@ class Cameras:
 
 
 def _depths(window: Any, left: int, below: int, right: int, above: int) -> np.ndarray:
-    """Return the depths of a rectangle of the last picture, ``(rows from below, columns)``; 1 is nothing."""
+    """Return the depths of a rectangle of the last picture, ``(rows from below, columns)``; 1 is empty."""
     from vtkmodules.util.numpy_support import vtk_to_numpy
     from vtkmodules.vtkCommonCore import vtkFloatArray
 
@@ -144,7 +144,7 @@ def check_camera(value: Any) -> dict[str, Any]:
 
 
 def _letters(direction: np.ndarray) -> str:
-    """Name a direction by its largest parts, those of at least half the largest."""
+    """Name a direction by its largest parts, down to half the largest."""
     length = np.linalg.norm(direction)
     if not length > 0.0:
         return ""

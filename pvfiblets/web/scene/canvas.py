@@ -1,4 +1,4 @@
-"""What painted regions of a document do to a scene: they show on slices, and filter streamlines."""
+"""Painted regions of a document in a scene: they show on slices, and filter streamlines."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class Canvas:
         return self._strokes
 
     def painted(self, stroke: Stroke) -> Strokes | None:
-        """Return the strokes, of which the last has been painted by the painter just now; the document follows."""
+        """Return the strokes; the painter has just painted the last one, and the document follows."""
         if len(stroke):
             self._strokes = Strokes.after(self._strokes, stroke)
         return self._strokes

@@ -42,7 +42,7 @@ def show_distances(plotter: Any, measurements: Sequence[Measurement]) -> None:
 
 @contextmanager
 def hidden_distances(plotter: Any) -> Iterator[None]:
-    """Have a picture without distances drawn meanwhile, so that what is read of it is what they lie before."""
+    """Draw pictures without distances in this scope, so that depths read from them are the scene's."""
     found = [plotter.actors[name] for name in names_of(plotter)]
     for actor in found:
         actor.SetVisibility(False)

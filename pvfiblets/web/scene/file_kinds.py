@@ -77,5 +77,5 @@ def read_vtk(place: Path) -> Any:
     vtk_sizes.check_memory(place)
     try:
         return read_mesh(place)
-    except RuntimeError:  # by which PyVista says that VTK's reader gave nothing
+    except RuntimeError:  # PyVista's error when VTK's reader returned nothing
         raise FormatError(place, None, "what VTK's reader cannot read", "a whole file of this kind") from None

@@ -1,4 +1,4 @@
-"""What a scene shows of its layers: cuts, criteria, groups, subsets and regions."""
+"""Filters of a scene's layers: cuts, criteria, groups, subsets and regions."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ LONGEST_CRITERION = 1100  # characters of the name of an image's values: its lay
 
 
 class SceneFilters:
-    """What a scene leaves out: cuts, criteria, groups, subsets and regions."""
+    """Filters of a scene's layers: cuts, criteria, groups, subsets and regions."""
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
@@ -98,7 +98,7 @@ class SceneFilters:
         return {"kind": kind}
 
     def _checked_shape(self, shape: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the shape of a cut, of which a region can be made, even if there is nothing to cut yet."""
+        """Return the shape of a cut, checked by making a region of it, even before there is anything to cut."""
         found = check_shape(shape, "cut", CUTTING)
         make_region(found, self.scene.store.shape)
         return found

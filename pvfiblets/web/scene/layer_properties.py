@@ -1,7 +1,6 @@
 """The properties of tractograms, tubes, volumes, meshes and images of slices, in the order of a panel.
 
-Those that are settings of actors are found where these are declared (`pvfiblets.plotting.settings`); here stands
-what is the page's alone.
+Settings of actors are found in their declarations (`pvfiblets.plotting.settings`); this module adds the page's own.
 """
 
 from __future__ import annotations
@@ -74,7 +73,7 @@ def _table(
     found = list(first)
     for name, one in settings.DECLARED.items():
         if isinstance(one, Setting) and one.row is not None:
-            found.append(Property.of(one))
+            found.append(Property.from_setting(one))
         found += after.get(name, ())
     return tuple(found)
 
@@ -155,12 +154,12 @@ IMAGE = _table(
 
 MESH: tuple[Property, ...] = (
     _scalars(_mesh_scalars, None),
-    replace(Property.of(TubeSettings.color), default="#d3d3d3"),
-    Property.of(shared.CMAP),
-    Property.of(shared.LOG_SCALE),
+    replace(Property.from_setting(TubeSettings.color), default="#d3d3d3"),
+    Property.from_setting(shared.CMAP),
+    Property.from_setting(shared.LOG_SCALE),
     _BAR,
-    replace(Property.of(shared.CLIM), read=lambda actor: list(actor.mapper.scalar_range)),
-    Property.of(TubeSettings.opacity),
+    replace(Property.from_setting(shared.CLIM), read=lambda actor: list(actor.mapper.scalar_range)),
+    Property.from_setting(TubeSettings.opacity),
     own("representation", "choice", "Show", "Faces, edges or corners.", "Surface", "surface",
              choices=[("surface", "surface"), ("wireframe", "edges alone"), ("points", "points")]),
     own("show_edges", "bool", "Edges", "Draw edges over faces.", "Surface", False,
@@ -173,5 +172,5 @@ MESH: tuple[Property, ...] = (
              choices=[(None, "none"), ("back", "those seen from behind"), ("front", "those seen from the front")]),
     own("smooth_shading", "bool", "Smooth", "Shade as if the surface were curved.", "Shading", True),
     own("specular", "number", "Gloss", "How much it shines.", "Shading", 0.0, limits=(0.0, 1.0)),
-    Property.of(TubeSettings.lighting),
+    Property.from_setting(TubeSettings.lighting),
 )  # fmt: skip

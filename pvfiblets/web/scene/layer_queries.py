@@ -1,4 +1,4 @@
-"""What a scene knows of its layers: properties, histograms, facts, and which colours stand for what."""
+"""Queries of a scene's layers: properties, histograms, facts, and the meaning of colours."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 __all__ = ["LayerQueries"]
 
 MOST_POINTS = 4_000_000
-"""That a histogram looks at; of larger data an even share."""
+"""Greatest number of values in a histogram; of larger data an even share."""
 
 _KEPT = 64  # histograms
 
@@ -118,7 +118,7 @@ class LayerQueries:
 
     @property
     def legend(self) -> list[dict[str, Any]]:
-        """What the colours of each visible layer mean."""
+        """Return the meaning of the colours of each visible layer."""
         found = []
         for layer in self.scene.state.layers:
             if not layer.visible or layer.kind == "image":

@@ -64,12 +64,12 @@ _SETTINGS: dict[str, type[Settings]] = {
 ARGUMENTS: dict[str, frozenset[str]] = {
     kind: frozenset({"scalars", *arguments(settings)}) for kind, settings in _SETTINGS.items()
 }
-"""Looks that are arguments of ``plotter.add_...``, too; all others are attributes only. All those of meshes are."""
+"""Looks that are arguments of ``plotter.add_...``, too; all others are attributes only. Meshes have only arguments."""
 
 USUAL: dict[str, dict[str, Any]] = {
     kind: {prop.name: prop.usual for prop in TABLES[kind] if prop.live} for kind in _SETTINGS
 }
-"""What actors do that are not told of a look."""
+"""Settings of actors without a look."""
 for _lines_kind in LINES:
     USUAL[_lines_kind]["scalars"] = ORIENTATION
 USUAL["mesh"] = {
@@ -86,7 +86,7 @@ SELECTION = {
 """Properties of lines that are arguments of ``actor.selection_style``, by the names that they have there."""
 
 LOOK = "look"
-"""A property of lines that stands for others: their actor is told of these, of effects as the look has them."""
+"""A property of lines that stands for others: their actor gets these, with the look's values of effects."""
 
 PERCENTILES = (1.0, 99.0)
 """Percentiles of non-zero voxels: the default window of volumes, as of slices."""
@@ -141,7 +141,7 @@ def check(kind: str, name: Any, value: Any, data: Any, volumes: Choices = ()) ->
 
 
 def changed(kind: str, settings: Mapping[str, Any], name: str, value: Any, data: Any = None) -> dict[str, Any]:
-    """Return settings with one changed that was checked, and with those that it resets or, a look, sets.
+    """Return settings with one checked change, and with the settings that it resets or, for a look, sets.
 
     The line widths of the data are needed for looks.
     """

@@ -24,7 +24,7 @@ __all__ = ["Original", "original_of"]
 
 @dataclass(frozen=True, eq=False)
 class Original:
-    """Where some streamlines were read from.
+    """The source of some streamlines.
 
     Attributes
     ----------

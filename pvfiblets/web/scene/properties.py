@@ -43,7 +43,7 @@ class Property(Row):
         return cls(label, help, group, type, default, name=name, **more)
 
     @classmethod
-    def of(cls, setting: Setting[Any]) -> Property:
+    def from_setting(cls, setting: Setting[Any]) -> Property:
         """Return the property of a layer that a setting of actors is."""
         row, limits = setting.row, (setting.low, setting.high)
         assert row is not None

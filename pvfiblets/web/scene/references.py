@@ -1,10 +1,10 @@
-"""Files that name other files: what they name is found before a reader opens them, and confined as paths are.
+"""Files that name other files: the named files are found before a reader opens them, and confined as paths are.
 
 The headers of NRRD and MetaImage are parsed here by the functions that read them afterwards, so both see the same
 names. Of formats that are not listed here no reader follows a reference: tests ask the system which files are opened.
 
 A file is checked by its place without links, and the reader opens that place a moment later. Browsers can change
-nothing between: uploads and exports replace no file and make no links. Somebody who can write into the served folder by
+nothing between: uploads and exports replace no file and make no links. A user with write access to the served folder by
 other means can, and so must be trusted with what the server may read.
 """
 

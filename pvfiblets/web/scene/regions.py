@@ -88,7 +88,7 @@ class SceneRegions:
         self.scene.become(replace(self.scene.state, layers=layers), f"region {name}", ("region", name, *parts))
 
     def share_region(self, shape: Mapping[str, Any], how: str, negated: bool, layer_ids: Sequence[str]) -> None:
-        """Have some layers filtered by a region, and no others."""
+        """Filter some layers by a region, and no others."""
         name = text(shape.get("name"), "the name of a region", 40)
         for layer_id in layer_ids:
             self.scene.lines_layer(layer_id)
@@ -127,7 +127,7 @@ def _named(layer: Layer, name: str) -> list[Mapping[str, Any]]:
 
 
 def _is(part: Mapping[str, Any], name: str) -> bool:
-    """Say whether a part of a condition is about one region alone, with or without ``not``."""
+    """Return whether a part of a condition is about one region alone, with or without ``not``."""
     inner = part["of"][0] if part.get("op") == "not" else part
     return "region" in inner and inner["region"].get("name") == name
 

@@ -1,4 +1,4 @@
-"""Where colour bars go: side by side in the lower half of the picture, and how large they and their letters are there.
+"""Layout of colour bars: side by side in the lower half of the picture, with their sizes and letters.
 
 Nothing of what belongs to the page is covered: the tools at the left, the letters at the middles of the edges, the line
 at the bottom. Where there is less room, long titles are shortened first, then letters are smaller, and then bars are
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 __all__ = ["Place", "Wanted", "arrange"]
 
 Measure = Callable[[str, int], float]
-"""From a text and the size of its letters to its width, in pixels of the window."""
+"""Function from a text and the size of its letters to its width, in pixels of the window."""
 
 FONTS = (13, 11, 9)
 """Sizes of letters, from the one that is taken where there is room; 72 points are an inch."""
@@ -41,7 +41,7 @@ class Wanted:
     labels : tuple of str
         All numbers that it may show, or its names.
     named : bool
-        Whether they are names, all of which it shows.
+        Whether they are names; then it shows all of them.
     """
 
     title: str
@@ -51,7 +51,7 @@ class Wanted:
 
 @dataclass(frozen=True)
 class Place:
-    """Where a bar is, and how large.
+    """Position and size of a bar.
 
     Attributes
     ----------
@@ -105,7 +105,7 @@ def arrange(wanted: Sequence[Wanted], size: tuple[int, int], scale: float, measu
 
 @dataclass(frozen=True)
 class _Column:
-    """What one bar takes: its colours begin ``before`` pixels from the left."""
+    """Space of one bar: its colours begin ``before`` pixels from the left."""
 
     width: float
     before: float
@@ -126,7 +126,7 @@ def _columns(
     """Return what bars take with letters of a size, titles shortened as far as they must be; ``None`` if too much."""
     room = size[0] - (LEFT + RIGHT) * scale - GAP * scale * (len(wanted) - 1)
     natural = [measure(one.title, font) for one in wanted]
-    # From no limit to the narrowest titles: the widest limit with which all fit.
+    # From no limit to the narrowest titles: the widest limit at which all fit.
     limits = sorted({width for width in natural if width > NARROWEST * scale} | {NARROWEST * scale}, reverse=True)
     limits += [limits[0] + share * (limits[-1] - limits[0]) for share in (k / 16 for k in range(1, 16))]
     for limit in sorted(limits, reverse=True):
@@ -153,8 +153,8 @@ def _column(
     if long < SHORTEST * scale:
         return None
     if one.named:
-        # Names stand apart by what they need, and out of the colours if those are shorter.
-        line = long / (1.25 * scale * max(len(one.labels), 1))  # the size of letters with which lines fill it
+        # Names stand apart by their height, and out of the colours if those are shorter.
+        line = long / (1.25 * scale * max(len(one.labels), 1))  # the size of letters at which lines fill it
         label_font = min(font, int(line)) if line >= SMALLEST_NAMES else 0
         if not label_font:
             return None

@@ -76,7 +76,7 @@ class Bars:
             self.places, self._placed_for = [], ()
             return
         if tuple(window.GetTileScale()) != (1, 1):
-            return  # a picture in pieces: VTK enlarges what was placed before the first
+            return  # a picture in pieces: VTK enlarges positions set before the first
         size, dpi = self.size, window.GetDPI()
         now = (size, dpi, tuple(self._wanted))
         if now == self._placed_for:
@@ -132,7 +132,7 @@ def bar_arguments(place: Place, size: tuple[int, int], background: str) -> dict[
 
 
 def bar_calls(title: str, place: Place) -> dict[str, tuple[Any, ...]]:
-    """Return what is said to a bar that ``plotter.add_scalar_bar`` has no argument for: methods, and what they take."""
+    """Return the calls of a bar's methods that ``plotter.add_scalar_bar`` has no argument for: names, and arguments."""
     calls: dict[str, tuple[Any, ...]] = {
         "SetBarRatio": (round(place.ratio, 4),),
         "SetVerticalTitleSeparation": (place.gap,),

@@ -1,7 +1,7 @@
 """The scene of one session: a document, and the plotter that is kept in step with it.
 
-Whatever changes the document goes through :meth:`Scene.become`: actors are told what differs, and if one of them
-refuses, all is as it was. So undo, sessions and single settings are the same thing, a :class:`.State` to become.
+All changes of the document go through :meth:`Scene.become`: actors get the differences, and if one of them
+refuses, all is as before. So undo, sessions and single settings are the same thing, a :class:`.State` to become.
 """
 
 from __future__ import annotations
@@ -93,7 +93,7 @@ class _Drawn:
 
 
 class Scene:
-    """What a session shows.
+    """The scene of a session.
 
     All methods but :meth:`load` are for the thread that renders. None of them renders: call ``plotter.render()``.
 
@@ -296,7 +296,7 @@ class Scene:
         with self.store.with_new(loaded):
             found = self._add(layer, f"open {layer.name}")
         if first and len(self.layers) > 1:
-            self.cameras.reset()  # an image is larger than what it has tracts of, and its view has become smaller
+            self.cameras.reset()  # an image is larger than its tracts, and its view has become smaller
             self.plotter.camera.zoom(1.4)  # VTK has room about it for the box's corners
         return found
 
@@ -397,7 +397,7 @@ class Scene:
         chosen = layer.selected.array()
         if layer.source.ids is not None:
             chosen = layer.source.ids.array()[chosen]
-        source = replace(layer.source, ids=Ids.of(chosen))
+        source = replace(layer.source, ids=Ids.from_numbers(chosen))
         settings: dict[str, Any] = dict(layer.settings)
         for key, value in (("tube_radius", None), ("opacity", 1.0)):
             settings = layers.changed(layer.kind, settings, key, value, self.data(layer).data)
@@ -445,7 +445,7 @@ class Scene:
         return self.store.data(layer, progress, cancel)
 
     def forget_unused(self, states: Iterable[State] = ()) -> None:
-        """Let go of data that neither the document nor any of some other states needs."""
+        """Release data that neither the document nor any of some other states needs."""
         self.store.keep([self._state, *states])
 
     def volume_choices(self, layer: Layer) -> list[tuple[Any, str]]:

@@ -192,7 +192,7 @@ class SceneSelection:
         def chosen(layer: Layer) -> Ids | None:
             if layer.kind not in LINES:
                 return None
-            new = Ids.of(found[layer.id]) if layer.id in found else None
+            new = Ids.from_numbers(found[layer.id]) if layer.id in found else None
             old = layer.selected
             if mode == "replace":
                 return new if new is not None and len(new) else None
@@ -200,7 +200,7 @@ class SceneSelection:
                 return old
             before = np.zeros(0, np.int64) if old is None else old.array()
             join: Any = {"add": np.union1d, "remove": np.setdiff1d, "toggle": np.setxor1d}[mode]
-            joined = Ids.of(join(before, new.array()))
+            joined = Ids.from_numbers(join(before, new.array()))
             return joined if len(joined) else None
 
         taken = [(layer, chosen(layer)) for layer in self.scene.state.layers]

@@ -73,7 +73,7 @@ class SliceImages:
         return self.scene.slicing.view
 
     def turn_oblique(self, angles: tuple[float, float], drag: int | None = None) -> None:
-        """Have the oblique slice at angles that it was turned to by hand; turns of one drag are one step to undo."""
+        """Store the angles that the oblique slice was turned to by hand; turns of one drag are one step to undo."""
         key = ("oblique",) if drag is None else ("oblique", f"drag {drag}")
         state = replace(self.scene.state, oblique=angles)
         self.scene.become(state, "turn the oblique slice", key, whole=drag is not None)

@@ -38,7 +38,7 @@ LAYOUTS = {
     "grid": "All alike",
     "oblique": "Oblique, large",
 }
-"""How views may be laid out, for people."""
+"""Layouts of views, for people."""
 
 CONVENTIONS = ("radiological", "neurological")
 NAMES = ("axial", "coronal", "sagittal", "3d", "oblique")
@@ -56,7 +56,7 @@ _THICKEST = 1000.0  # mm
 
 @dataclass(frozen=True)
 class SliceView:
-    """How slices are looked at.
+    """The view of slices.
 
     Attributes
     ----------
@@ -143,7 +143,7 @@ def to_3d_view(plotter: Any) -> None:
 
 
 def ready_views(plotter: Any) -> None:
-    """Have a plotter of all views begin with the 3-D view alone, which is the active one."""
+    """Start a plotter of all views with the 3-D view alone, which is the active one."""
     for name, renderer in zip(NAMES, plotter.renderers, strict=False):
         renderer.SetDraw(name == "3d")
         renderer.SetInteractive(name == "3d")
@@ -183,7 +183,7 @@ class Slicing:
 
     @property
     def view(self) -> SliceView:
-        """How slices are looked at."""
+        """The view of slices."""
         if self.workspace is None:
             return self._view
         x, y, z = (float(part) for part in self.workspace.position)
@@ -207,12 +207,12 @@ class Slicing:
             workspace.position = view.position
 
     def tilt(self, oblique: tuple[float, float] | None) -> None:
-        """Have the oblique slice at other angles, or none."""
+        """Turn the oblique slice to other angles, or remove it."""
         if oblique != self._view.oblique:
             self.view = replace(self.view, oblique=oblique)
 
     def _tilt(self, oblique: tuple[float, float] | None) -> None:
-        """Have the slice at an angle, which is made when it is first wanted."""
+        """Turn the slice to an angle; it is made on first use."""
         workspace = self.workspace
         if workspace.oblique is None:
             if oblique is None:
@@ -224,7 +224,7 @@ class Slicing:
             workspace.oblique.normal = normal_of(oblique)
 
     def _was_turned(self, normal: Any) -> None:
-        """Tell of a slice that is turned by hand, at whole hundredths of a degree."""
+        """Report a slice that is turned by hand, at whole hundredths of a degree."""
         angles = angles_of(normal)
         if self._view.oblique is None or not np.allclose(normal, normal_of(self._view.oblique), atol=1e-9):
             self._turned(angles, self.workspace.oblique.drag)
@@ -316,7 +316,7 @@ class Slicing:
         return image
 
     def _call(self, image: Any, layer: Layer, data: LabelledImage) -> None:
-        """Have the image shown or not, named, and with glyphs, as its layer is."""
+        """Show or hide the image, name it, and set its glyphs, by its layer."""
         if image.visible != layer.visible:
             image.visible = layer.visible
         if image.name != layer.name:
@@ -356,7 +356,7 @@ class Slicing:
             ready_views(self._plotter)
 
     def _smooth_alike(self) -> None:
-        """Have edges in panes as smooth as in the 3-D view."""
+        """Smooth edges in panes as in the 3-D view."""
         plotter = self._plotter
         value = plotter.picture.antialias
         for at in range(len(plotter.renderers)):

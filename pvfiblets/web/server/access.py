@@ -124,7 +124,7 @@ class Access:
         return f"{name}.{self._signature(name)}"
 
     def is_session(self, cookie: str | None) -> bool:
-        """Return whether a cookie is of :meth:`new_session`: nobody else says what sessions are called."""
+        """Return whether :meth:`new_session` issued a cookie: sessions have no other source of names."""
         if cookie is None:
             return False
         name, _, signature = cookie.rpartition(".")

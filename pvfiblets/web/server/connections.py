@@ -1,7 +1,7 @@
 """Who is connected to the front server: at most so many, from all addresses and from one, and none that sends nothing.
 
-Beyond a limit the oldest connection that has no request in work gives way to the new one. Somebody who opens thousands
-and finishes no request thus closes the door to nobody, not even to others of the same address.
+Beyond a limit the oldest connection that has no request in work gives way to the new one. A client that opens thousands
+without finishing a request thus shuts out no other client, not even at the same address.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Why a session's process has ended, when nobody asked it to."""
+"""Why a session's process has ended unexpectedly."""
 
 from __future__ import annotations
 

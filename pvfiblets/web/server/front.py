@@ -1,8 +1,8 @@
 """The front server: the one public port of ``pvfiblets serve``.
 
-Every request passes the same checks in the same order: host, path, method, origin, token. What is left is passed on to
-the process of the browser's session, HTTP and WebSocket alike. The browser's cookies, and nothing in addresses, say
-who it is: the token leaves the address with the first answer.
+Every request passes the same checks in the same order: host, path, method, origin, token. Accepted requests go to
+the process of the browser's session, HTTP and WebSocket alike. The browser's cookies identify it, never its
+address: the token leaves the address with the first answer.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ logger = logging.getLogger("pvfiblets.web")
 
 PATIENCE = 30.0  # seconds for a whole request to come, and for a body that stops
 WRONG_TOKEN = 1.0  # seconds that a wrong token waits for its answer
-# Pages and files of the application, and what it sends away.
+# Methods of requests for pages and files of the application, and for its downloads.
 PASSED_ON = frozenset({"GET", "HEAD"})
 UPLOAD, SESSION = "/upload", "/session"
 DOWNLOAD = "/download/"
@@ -114,14 +114,14 @@ class FrontServer:
             logging.getLogger(name).removeFilter(self._quiet)
 
     async def _count(self) -> None:
-        """Say now and then what the log left out: after a flood nothing else might be logged."""
+        """Log now and then how much was dropped: after a flood nothing else might be logged."""
         while True:
             await asyncio.sleep(self._quiet.seconds)
             self._quiet.report()
 
     @property
     def url(self) -> str:
-        """The address to open, with the token if one is asked for."""
+        """The address to open, with the token if one is required."""
         query = "" if self.options.token is None else "?" + urlencode({"token": self.options.token})
         return self.address + query
 
@@ -230,7 +230,7 @@ class FrontServer:
         return web.Response(text=text, status=status, content_type="text/html", headers=HEADERS)
 
     def _log(self, request: web.Request, reason: str) -> None:
-        """Say what was refused: never the query, the cookies or the body, in which secrets are."""
+        """Log a refusal: never the query, the cookies or the body, which hold secrets."""
         logger.warning("refused %s %.200r from %s: %s", request.method, request.path, request.remote, reason)
 
     # Sessions
@@ -262,14 +262,14 @@ class FrontServer:
         return response
 
     async def _connection(self, request: web.Request) -> web.StreamResponse:
-        """Tell trame's client where its WebSocket is: it asks for a launcher first."""
+        """Return the address of its WebSocket to trame's client, which asks for a launcher first."""
         session = self._session(request)
         if session is None or session.ended:
             raise RefusedError(404, "no session")
         return web.json_response({"sessionURL": "ws://USE_HOST/ws", "secret": "wslink-secret"}, headers=HEADERS)
 
     async def _status(self, request: web.Request) -> web.StreamResponse:
-        """Tell a page that lost its connection how its session is."""
+        """Return the state of its session to a page that lost its connection."""
         session = self._session(request)
         told: dict[str, object] = {"state": "none"}
         if session is not None and session.ended:
@@ -282,7 +282,7 @@ class FrontServer:
     def _first_page(self, request: web.Request) -> web.StreamResponse:
         """Answer a browser that opens the page: with the application, or with why not yet or not at all.
 
-        Nothing is started: whoever only fetches pages runs no script, and is content with this one.
+        Nothing is started: clients that only fetch pages run no script, and need no more than this page.
         """
         session = self._session(request)
         if session is None and not self.launcher.has_room:
@@ -317,7 +317,7 @@ class FrontServer:
         await socket.prepare(request)
         session = await self.launcher.open(name)
         if session is not None:
-            session.connections += 1  # whoever waits is there
+            session.connections += 1  # a waiting browser counts as connected
             try:
                 waits = {asyncio.ensure_future(socket.receive()), asyncio.ensure_future(session.ready.wait())}
                 await asyncio.wait(waits, return_when=asyncio.FIRST_COMPLETED)

@@ -1,7 +1,7 @@
 """Sessions: one process each, started, watched and ended.
 
 A session lives while a browser is connected, and for `timeout` seconds after the last one has gone: a reload or a lost
-connection finds it as it was. Its process ends with it, and what it held on the GPU goes back. The process ends by
+connection finds it as it was. Its process ends with it, which frees its GPU memory. The process ends by
 itself when its standard input closes, so that none is left behind when the front server dies.
 """
 
@@ -31,7 +31,7 @@ GRACE = 5.0  # seconds that a process has to end by itself
 START = 600.0  # seconds to open the files it was started with
 RESCUED = 3600.0  # seconds that the session of a dead process can be restored
 MOST_RESCUED = 32
-MOST_WAITING = 1 << 16  # bytes of what a process was told and has not read
+MOST_WAITING = 1 << 16  # bytes sent to a process and not read yet
 SHARED = "shared"
 WORKER = (sys.executable, "-m", "pvfiblets.web.worker")
 
@@ -80,7 +80,7 @@ class Session:
 
 @dataclass
 class Rescued:
-    """What a process that died had kept of its session, in a folder of the scratch folder."""
+    """The session that a dead process had kept, in a folder of the scratch folder."""
 
     folder: Path
     since: float = field(default_factory=time.monotonic)
@@ -304,7 +304,7 @@ class Launcher:
             await self.end_idle()
 
     async def end_idle(self) -> None:
-        """End sessions whose browser has not come back in time, and forget states that nobody has restored."""
+        """End sessions whose browser has not come back in time, and forget states after their time to be restored."""
         now = time.monotonic()
         for identifier in [one for one, rescued in self._rescued.items() if now - rescued.since > RESCUED]:
             await self._discard(identifier)

@@ -18,7 +18,7 @@ class LogLimiter(logging.Filter):
     """Lets through a few records of a kind, and says how many it left out.
 
     A kind is the logger, the level and the text before its arguments are put in; a record with the attribute ``about``
-    (given by ``extra``) is of a kind with those about the same only, of which ten times as many are let through: they
+    (given by ``extra``) shares its kind only with records about the same, and ten times the limit are let through: they
     are a session's, and tracebacks are long.
 
     Parameters
@@ -58,7 +58,7 @@ class LogLimiter(logging.Filter):
         return self.lines * (10 if kind[3] else 1)
 
     def report(self) -> None:
-        """Say what was left out since the last time, and begin another period."""
+        """Log how many records were dropped since the last report, and begin another period."""
         with self._lock:
             counts, left_out = self._counts, self._left_out
             self._counts, self._left_out = {}, {}

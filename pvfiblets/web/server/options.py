@@ -1,4 +1,4 @@
-"""What ``pvfiblets serve`` was asked for, checked before anything starts."""
+"""The options of ``pvfiblets serve``, checked before anything starts."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ DRAW = ("auto", "here", "there")
 
 @dataclass(frozen=True)
 class Options:
-    """The settings of one server; :meth:`checked` says what is wrong with them.
+    """The settings of one server; :meth:`checked` lists their errors.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class Options:
     codec : str
         How pictures travel: 'jpeg', 'png' or 'webp'.
     draw : str
-        Who draws: 'here' this server, 'there' browsers where they can, 'auto' those of a graphics card.
+        Who draws: 'here' this server, 'there' browsers where they can, 'auto' browsers with a graphics card.
     look : str or None
         That lines begin with, as of ``plotter.add_fiblets``.
     antialias : str, int or None
@@ -69,7 +69,7 @@ class Options:
     connections, by_address : int
         The most connections at once, in all and from one address.
     proxies : list of str
-        Addresses of proxies, which are believed when they say for whom they ask.
+        Addresses of trusted proxies: their forwarding headers name the client.
     """
 
     files: list[str] = field(default_factory=list)
@@ -164,7 +164,7 @@ def chosen_memory(text: str, sessions: int) -> int | None:
     """Return the bytes that ``--max-memory auto|SIZE`` means, for each session; ``None`` where none can be set.
 
     By default, sessions share four fifths of the machine's memory. Few are full at once, so that none has less than a
-    fifth of the machine: four that are full leave the server what it needs.
+    fifth of the machine: four full ones leave the server enough.
     """
     if text != "auto":
         try:

@@ -1,4 +1,4 @@
-"""What passes between browsers and the processes of their sessions, once the front server has let it in."""
+"""Traffic between browsers and the processes of their sessions, once the front server has let it in."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ class Relay:
         except (aiohttp.ClientError, ConnectionError) as error:
             if isinstance(error.__cause__, RefusedError):  # of the body
                 raise error.__cause__ from error
-            if response is not None and response.prepared:  # too late to say so; a short answer is seen to be one
+            if response is not None and response.prepared:  # too late for an error; a short body shows it
                 if request.transport is not None:
                     request.transport.abort()
                 return response
@@ -119,7 +119,7 @@ class Relay:
     async def connect(
         self, request: web.Request, session: Session, refused: Callable[[str], None]
     ) -> web.StreamResponse:
-        """Connect a browser's WebSocket with its session's, while both last; `refused` is told of bad messages."""
+        """Connect a browser's WebSocket with its session's, while both last; `refused` receives bad messages."""
         assert self._client is not None
         # Pictures are compressed already: no permessage-deflate.
         browser = web.WebSocketResponse(heartbeat=HEARTBEAT, max_msg_size=LARGEST_MESSAGE, compress=False)

@@ -1,4 +1,4 @@
-"""What a browser may call, and with what: the only doors of a worker.
+"""The calls and arguments that browsers may send: the only doors of a worker.
 
 trame lets a browser set any key of its state and call any method that was registered. Here it may set a few keys of
 known types, call the triggers that the page uses, and move the pointer; whatever else comes is refused and logged by
@@ -42,7 +42,7 @@ LIFECYCLE = frozenset({"client_connected", "client_exited", "client_unmounted", 
 
 
 Check = Callable[..., list[Any] | None]
-"""From what was sent to the arguments of a method; ``None``: there is nothing to do."""
+"""Turns a message's arguments into a method's; ``None``: nothing to call."""
 
 
 # What wrong input raises; anything else is a mistake in this program, and its traceback is for the log.
@@ -152,7 +152,7 @@ def check_call(call: object) -> None:
 
 
 def guard_messages(handler: Any, complain: Callable[[str], None]) -> None:
-    """Close connections that send what is no message, and say so; wslink would write a traceback."""
+    """Close connections that send malformed messages, and log it; wslink would write a traceback."""
     receive, complete = handler.onMessage, handler.onCompleteMessage
 
     async def on_complete(call: object, client: str) -> None:
@@ -168,7 +168,7 @@ def guard_messages(handler: Any, complain: Callable[[str], None]) -> None:
                 raise MalformedError("too many messages that are not complete")
         except ConnectionError:  # it has gone: its own loop ends
             return
-        except UNREADABLE as error:  # what is called has a net of its own
+        except UNREADABLE as error:  # called methods catch their own errors
             reason = str(error) if isinstance(error, MalformedError) else type(error).__name__
             logger.warning("refused a message: %s", reason)
             complain(f"{REFUSED}: {reason}.")
@@ -179,7 +179,7 @@ def guard_messages(handler: Any, complain: Callable[[str], None]) -> None:
 
 
 class AllowedCalls:
-    """Stands between wslink's messages and what they call.
+    """Stands between wslink's messages and the called methods.
 
     Parameters
     ----------

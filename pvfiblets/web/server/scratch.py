@@ -1,8 +1,8 @@
 """Temporary files of sessions: where they are, and how they go when a session did not take them away itself.
 
-The front server has a folder, and each session's process a folder in it, the temporary folder of all that runs there.
-A killed process cleans nothing up, so the front server does; what a killed front server left, the next one removes.
-A session notes beforehand what it writes elsewhere until it is whole.
+The front server has a folder, and each session's process a folder in it, the temporary folder of all its code.
+A killed process cleans nothing up, so the front server does; the next front server cleans up after a killed one.
+A session records files written elsewhere before it writes them, until they are whole.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ __all__ = ["PRIVATE", "Notes", "Scratch", "remove_abandoned"]
 
 PREFIX = "pvfiblets-serve-"
 PRIVATE = ".pvfiblets-"
-"""How names begin of what sessions note: nothing else is ever removed."""
+"""Prefix of names that sessions record: nothing else is ever removed."""
 _LOCK, _NOTES = "lock", "notes"
 _SESSION, _RESTORE = "session.json", "restore.json"
 
@@ -47,7 +47,7 @@ class Scratch:
 
     def rescue(self, folder: Path) -> Path | None:
         """Move the session that a dead process kept to a folder of its own, and return that; None if it kept none."""
-        for name in (_RESTORE, _SESSION):  # what was to be restored counts more than the files of the start
+        for name in (_RESTORE, _SESSION):  # a session to restore counts more than the initial files
             if (folder / name).is_file():
                 found = self.session()
                 (folder / name).replace(found / _SESSION)
@@ -65,7 +65,7 @@ class Scratch:
 
 
 class Notes:
-    """What a session writes outside of its folder until it is whole.
+    """Unfinished files that a session writes outside of its folder.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ def hand_over(rescued: Path, folder: Path) -> None:
 
 
 def remove(folder: Path) -> None:
-    """Remove a session's folder, and what it noted."""
+    """Remove a session's folder, and the files that it recorded."""
     notes = folder / _NOTES
     for line in notes.read_text(encoding="utf-8").splitlines() if notes.is_file() else ():
         noted = Path(line)
@@ -151,7 +151,7 @@ def remove_abandoned() -> None:
 
 
 def _locked(file: IO[str]) -> bool:
-    """Take a lock if nobody has it; whether it is ours now."""
+    """Take a lock if it is free; return whether this process holds it now."""
     if fcntl is None:
         return False
     try:

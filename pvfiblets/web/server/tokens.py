@@ -1,4 +1,4 @@
-"""Where the token comes from, and where people find it: never on a command line, which others can read.
+"""The source of the token, and where people find it: never on a command line, which others can read.
 
 Files with a token belong to one user and can be read by no other.
 """
@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 VARIABLE = "PVFIBLETS_TOKEN"
-LONGEST = 4096  # bytes of a file that has nothing but a token
+LONGEST = 4096  # bytes of a file with only a token
 
 
 def chosen_token(choice: str, file: str | None = None, environment: Mapping[str, str] | None = None) -> str | None:
@@ -33,7 +33,7 @@ def chosen_token(choice: str, file: str | None = None, environment: Mapping[str,
 
 
 def new_token() -> str:
-    """Return a token that nobody can guess."""
+    """Return a token that cannot be guessed."""
     return secrets.token_urlsafe(24)
 
 

@@ -1,4 +1,4 @@
-"""What a scene's document is made of: immutable values, so that a state of it is kept by keeping a reference.
+"""Documents of scenes: immutable values, so that a state of it is kept by keeping a reference.
 
 A :class:`State` says all that a user may undo: layers, cuts, background. It holds no data and no actors; a
 :class:`Source` says where a layer's data comes from, and is the same as long as the data is.
@@ -38,7 +38,7 @@ __all__ = [
 ]
 
 KINDS = ("tractogram", "tubes", "volume", "mesh", "selection", "image")
-"""What a layer may be."""
+"""Kinds of layers."""
 
 LINES = ("tractogram", "selection")
 """Kinds that are drawn from fiblets: they can be filtered, cut and picked."""
@@ -70,7 +70,7 @@ class Ids:
         object.__setattr__(self, "runs", runs)
 
     @classmethod
-    def of(cls, ids: Any) -> Ids:
+    def from_numbers(cls, ids: Any) -> Ids:
         """Make them of numbers in any order."""
         return cls(runs_of(np.unique(np.asarray(ids, np.int64))))
 
@@ -104,7 +104,7 @@ class Ids:
 
 @dataclass(frozen=True)
 class Source:
-    """Where data comes from; one of ``path`` and ``demo``.
+    """The source of data; one of ``path`` and ``demo``.
 
     Attributes
     ----------
@@ -163,7 +163,7 @@ def volumes_of(settings: Mapping[str, Any]) -> dict[str, Source]:
 
 @dataclass(frozen=True)
 class Filters:
-    """Which of a layer's streamlines are shown; all of this together.
+    """The filters of a layer's streamlines; all of them together.
 
     Attributes
     ----------
@@ -294,18 +294,18 @@ class Measurement:
 
     @property
     def mm(self) -> float:
-        """How long it is."""
+        """Its length."""
         return math.dist(self.begin, self.end)
 
     @property
     def text(self) -> str:
-        """How long it is, for people."""
+        """Its length, for people."""
         return f"{self.mm:.4g} mm"
 
 
 @dataclass(frozen=True)
 class Matrix:
-    """How strongly the parcels of a label volume are connected by a tractogram: what there is a matrix of.
+    """A connectome: the connections of a label volume's parcels by a tractogram.
 
     Attributes
     ----------

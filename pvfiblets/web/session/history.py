@@ -1,4 +1,4 @@
-"""What a user did to a scene, to be undone and done again.
+"""The history of a scene, for undo and redo.
 
 A step is the document before it and after it; documents share equal parts, so a step costs little.
 The camera is no part of them.
@@ -66,12 +66,12 @@ class History:
 
     @property
     def undo_label(self) -> str | None:
-        """What :meth:`undo` would undo; None for nothing."""
+        """Name of the step that :meth:`undo` would undo; None for nothing."""
         return self._done[-1].what if self._done else None
 
     @property
     def redo_label(self) -> str | None:
-        """What :meth:`redo` would do again; None for nothing."""
+        """Name of the step that :meth:`redo` would redo; None for nothing."""
         return self._undone[-1].what if self._undone else None
 
     def __len__(self) -> int:

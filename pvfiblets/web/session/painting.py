@@ -29,7 +29,7 @@ USES = {
     "stays_in": "stay in",
     "in_order": "pass in order",
 }
-"""What streamlines that are shown do at a region."""
+"""Relations of visible streamlines to a region."""
 
 LONGEST = 60  # characters of a name
 MOST_REGIONS = 32

@@ -1,4 +1,4 @@
-"""From a session's JSON to a document: nothing is believed before it is checked, and its files are read and fit."""
+"""Sessions from JSON to a document: all values are checked first, and the files are read and fit."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ def read_session(
 
 
 class _Paths:
-    """Where files of a session are: beside it, or under the root."""
+    """The folders of a session's files: beside it, or under the root."""
 
     def __init__(self, scene: Scene, folder: Path | None) -> None:
         self._files, self._folder = scene.files, folder
@@ -109,7 +109,7 @@ class _Paths:
             try:
                 return self._files.name(self._files.resolve(str(beside)))
             except (OSError, ValueError):
-                pass  # what is said of it under the root is easier to understand
+                pass  # the error for the root is easier to understand
         return self._files.name(self._files.resolve(path))
 
     def shape(self, shape: dict[str, Any]) -> dict[str, Any]:
@@ -123,7 +123,7 @@ class _Paths:
 
 @dataclass(frozen=True)
 class _Reading:
-    """What a session is read with; its store is another than the scene's, which is in use meanwhile."""
+    """State of reading a session; its store is another than the scene's, which is in use meanwhile."""
 
     store: Store
     paths: _Paths

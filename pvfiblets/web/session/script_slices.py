@@ -1,4 +1,4 @@
-"""What a script says of images that are shown as slices."""
+"""The part of a script about images that are shown as slices."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ __all__ = ["bundle_lines", "has_images", "image_arguments", "painting_lines", "s
 
 
 def has_images(scene: Scene) -> bool:
-    """Say whether any layer is an image of slices."""
+    """Return whether any layer is an image of slices."""
     return any(layer.kind == "image" for layer in scene.layers)
 
 

@@ -39,10 +39,10 @@ CUTTING = ("plane", "slab", "box", "sphere", "mesh")
 """Shapes that can cut."""
 
 HOWS = {"passes": "pass through", "ends_in": "end in", "both_ends_in": "have both ends in", "stays_in": "stay in"}
-"""What streamlines may do in a region."""
+"""Relations of streamlines to a region."""
 
 SAMPLED = ("passes", "stays_in")
-"""What depends on whether places between points count."""
+"""Relations for which places between points count."""
 
 DEEPEST, MOST = 8, 32  # of a condition
 

@@ -1,4 +1,4 @@
-"""What a scene's documents name, read once: tractograms, volumes, meshes, regions, by where they come from."""
+"""Data that a scene's documents name, read once: tractograms, volumes, meshes, regions, by their source."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Store:
         return twin
 
     def take(self, other: Store) -> None:
-        """Have all that another one has, too."""
+        """Take over all data of another store."""
         self.loaded = {**other.loaded, **self.loaded}
         self.shapes = {**other.shapes, **self.shapes}
         self.ends = [*self.ends, *(one for one in other.ends if one not in self.ends)][-KEPT:]
@@ -128,7 +128,7 @@ class Store:
         return found.labels
 
     def keep(self, states: Iterable[State]) -> None:
-        """Let go of data that none of some documents needs."""
+        """Release data that none of some documents needs."""
         needed = set()
         for state in states:
             for kind, source in state.sources():
@@ -138,7 +138,7 @@ class Store:
         self.ends = [one for one in self.ends if any(one.fiblets is data for data in alive)]
 
     def clear(self) -> None:
-        """Let go of everything."""
+        """Release everything."""
         self.loaded.clear()
         self.shapes.clear()
         self.ends.clear()

@@ -1,8 +1,8 @@
 """Who draws: the server, which sends pictures, or the browser, with the script of pages (`pvfiblets.page`).
 
-A browser says once what it has (client/there.js). Before every picture it is asked here whether one is needed: where
-the browser draws, it is sent the scene and the camera instead, as far as they have changed, and says where it has moved
-the camera. Panes of slices beside the 3-D view are pictures of the server's, in which that view is left out. The
+A browser reports its abilities once (client/browser_renderer.js). Before every picture this module decides whether one
+is needed: a browser that draws gets the changes of the scene and the camera instead, and reports where it has moved
+the camera. Panes of slices beside the 3-D view are pictures of the server's, without that view. The
 server's own plotter stays in step, so that picking, sessions, scripts and saved pictures know of it.
 """
 
@@ -26,7 +26,7 @@ SOFTWARE = re.compile(r"swiftshader|llvmpipe|softpipe|software|basic render", re
 """Names of graphics cards that are none: programs that draw on the processor, slower than the server's may be."""
 
 KEPT = 4
-"""Scenes whose data can be fetched: what is on its way when the scene changes still arrives."""
+"""Scenes whose data can be fetched: requests under way when the scene changes still succeed."""
 
 PACKED = 1
 """How hard zlib tries on pixels: a third of a slice's bytes are left after 12 ms; a quarter, by 6, after 110."""

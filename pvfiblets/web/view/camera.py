@@ -1,4 +1,4 @@
-"""What the bar's buttons do to the camera, and what goes with it at the picture's edges."""
+"""Actions of the bar's buttons on the camera, and the overlay at the picture's edges."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The first document of the application: trame's, with what it shows until the page is there inside it.
+"""The first document of the application: trame's, with a placeholder inside it until the page is there.
 
 trame's own fetches that text and puts it into the page whenever it comes. On a busy machine it can come after the page,
 and then takes its place for good.

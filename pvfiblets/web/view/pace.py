@@ -1,4 +1,4 @@
-"""How coarse the pictures of a moving camera are: chosen from the times that frames took.
+"""Quality of the pictures of a moving camera, chosen from the times that frames took.
 
 Each level costs less than the one before. A level has become slower when two frames in a row were, and faster when
 three were; then the others are taken to have become so as well, as where the camera comes nearer. The first frame of a
@@ -18,7 +18,7 @@ ROOM = 0.6  # of the budget; a finer level is taken where it costs less than tha
 
 
 class Level(NamedTuple):
-    """How a frame is drawn.
+    """The quality of a frame.
 
     Attributes
     ----------
@@ -86,7 +86,7 @@ class Pace:
             self._first.discard(level)
             self._costs[level] = newest
             return
-        if len(self._run) == 1:  # what was expected of it was wrong, or the machine is busy: others have not changed
+        if len(self._run) == 1:  # its estimate was wrong, or the machine is busy: other levels have not changed
             self._costs[level] = min(newest, (before * newest) ** 0.5)
             return
         slower, faster = min(list(self._run)[-2:]), max(self._run) if len(self._run) == 3 else before

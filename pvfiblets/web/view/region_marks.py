@@ -20,7 +20,7 @@ _Floats = NDArray[np.float64]
 
 
 class Sight:
-    """How a camera sees places.
+    """The projection of a camera.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ _FACES = ("xmin", "xmax", "ymin", "ymax", "zmin", "zmax")
 
 
 def _stretched(ends: Sequence[float], face: int, place: Sequence[float], sight: Sight) -> list[float]:
-    """Return the bounds of a box of which a face was dragged along its axis, as far as the pointer says."""
+    """Return the bounds of a box after a face was dragged along its axis, as far as the pointer has moved."""
     bounds = [float(end) for end in ends]
     at = _faces(bounds)[_FACES[face]]
     pointed = sight.beneath(place, at)

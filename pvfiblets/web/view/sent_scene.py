@@ -1,7 +1,7 @@
-"""What a browser needs to draw a scene by itself: the scene of a page (`pvfiblets.page`), and data that it fetches.
+"""The scene of a page (`pvfiblets.page`) for a browser that draws by itself, and the data that it fetches.
 
-Data have names that follow from their bytes, so that a browser fetches again only what has changed: of another filter a
-byte for each streamline. What takes long to make is kept as long as the scene shows it.
+Data are named by a hash of their bytes, so that a browser fetches again only changed data: for another filter a
+byte for each streamline. Results that take long to make are kept as long as the scene shows them.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class SentScene:
 
     @property
     def bytes(self) -> int:
-        """Of all data together."""
+        """Bytes of all data together."""
         return sum(map(len, self.blobs.values()))
 
 
@@ -126,7 +126,7 @@ class _Remade(PageScene):
         self.made: dict[tuple[Any, ...], tuple[tuple[Any, ...], Any]] = {}
 
     def once(self, what: tuple[Any, ...], make: Callable[[], Made]) -> Made:
-        """Return what is made of some things: texts are told by what they say, others by which they are."""
+        """Return the result made of some things: texts are compared by content, others by identity."""
         key = tuple(part if isinstance(part, (str, tuple)) else id(part) for part in what)
         found = self._before.get(key) or (what, make())  # the things live as long as their addresses count
         self.made[key] = found
@@ -170,7 +170,7 @@ def _readable(unable: str, scene: Scene) -> str:
 
 
 def _bars(scene: Scene) -> list[dict[str, Any]]:
-    """Return the colour bars, as client/there.js draws them."""
+    """Return the colour bars, as client/browser_renderer.js draws them."""
     import pyvista as pv
 
     found = []

@@ -3,11 +3,12 @@
 Nothing is drawn and nothing is sent while nothing changes. While the pointer drags, frames are coded at a low quality,
 and the next is drawn only when the last one has left for the browser. Scenes that take long to draw are drawn with
 fewer pixels meanwhile, which the browser enlarges, with fewer points of their lines, which may be off by such a pixel,
-and large sets with fewer streamlines (:mod:`pvfiblets.web.view.pace`). As soon as the pointer rests, the whole
-picture comes
-at full quality; where it had all its pixels, without drawing again. It is drawn in pieces, and given up if somebody
-acts before it is there (:mod:`pvfiblets.mappers.ahead`). If nothing happens then, the samples of the refined
-picture (``plotter.picture.antialias``) are drawn, one between any two events, and it is sent when it is finished.
+and large sets with fewer streamlines (:mod:`pvfiblets.web.view.pace`).
+
+Once the pointer rests, the full-resolution frame is sent at full quality; if the last one had all its pixels, without
+drawing again. It is drawn in pieces, and aborted at an event (:mod:`pvfiblets.mappers.incremental_frame`). If nothing
+happens then, the accumulation samples of ``plotter.picture.antialias`` are drawn, one between any two events, and their
+mean is sent when it is finished.
 """
 
 from __future__ import annotations
@@ -26,8 +27,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pvfiblets.engine.pieces import PIECE
-from pvfiblets.mappers.ahead import draw_ahead
-from pvfiblets.mappers.scene import hurry
+from pvfiblets.mappers.incremental_frame import draw_in_pieces
+from pvfiblets.mappers.scene import reduce_detail
 from pvfiblets.web.server.rpc_allowlist import MOST_PIXELS
 from pvfiblets.web.view.encoding import encode
 from pvfiblets.web.view.pace import LEVELS, Level, Pace
@@ -152,7 +153,7 @@ class PictureStream:
         self.request()  # always: a page that was reloaded has no picture yet
 
     def on_interaction(self, _origin: str, event: dict[str, Any]) -> None:
-        """Let VTK's interactor have an event of the pointer."""
+        """Pass an event of the pointer to VTK's interactor."""
         kind = str(event["type"])
         if kind.endswith("Press"):
             self._pressed.add(kind)
@@ -222,7 +223,7 @@ class PictureStream:
                 self._failed(error)
 
     def settle(self) -> tuple[int, int]:
-        """Have the whole picture drawn, if it is not or fewer pixels were, and return its width and height."""
+        """Draw the full-resolution frame, unless the last one was, and return its width and height."""
         if self._stale or self._level is not LEVELS[0]:
             self._draw()
         return self._size
@@ -275,7 +276,7 @@ class PictureStream:
 
     async def close(self) -> None:
         """Stop."""
-        hurry(self._plotter.render_window, 0.0)
+        reduce_detail(self._plotter.render_window, 0.0)
         if self._task is not None:
             self._task.cancel()
             await asyncio.gather(self._task, return_exceptions=True)
@@ -339,7 +340,7 @@ class PictureStream:
         if self._pace.expected(LEVELS[0]) <= PIECE:
             return True
         self._drawn_ahead, began = 0.0, time.perf_counter()
-        for _ in draw_ahead(self._plotter.render_window, refining=refining):
+        for _ in draw_in_pieces(self._plotter.render_window, refining=refining):
             self._drawn_ahead += time.perf_counter() - began
             if await self._wanted_within(HEARD):
                 return False
@@ -385,7 +386,7 @@ class PictureStream:
 
     async def _wanted_within(self, seconds: float) -> bool:
         """Wait, so that events are heard, until another frame is wanted; ``False`` if none is after some seconds."""
-        # Not `asyncio.wait_for`: that of Python 3.11 loses a cancelling when what it waits for has just come.
+        # Not `asyncio.wait_for`: Python 3.11's loses a cancelling when its awaitable has just finished.
         with contextlib.suppress(TimeoutError):
             async with asyncio.timeout(seconds):
                 await self._wanted.wait()
@@ -417,7 +418,7 @@ class PictureStream:
         # Letters and lines keep their size on the page. Enlarged pixels have no use for samples.
         self._plotter.render_window.SetDPI(self._dpi)
         self._plotter.render_window.SetMultiSamples(self._sharp[0] if level is LEVELS[0] else 0)
-        hurry(self._plotter.render_window, level.off, level.share)
+        reduce_detail(self._plotter.render_window, level.off, level.share)
         interactor.UpdateSize(*self._pixels)
         for at in (last, place):  # an event moves the place before to the last
             interactor.SetEventPosition(

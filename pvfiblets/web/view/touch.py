@@ -1,4 +1,4 @@
-"""What two fingers on the picture do to the camera, or to a slice: zoom as far as they part, and move with them.
+"""Two-finger gestures on the camera, or on a slice: zoom as the fingers part, and move with them.
 
 VTK's trackball style knows no gestures, and its style for several fingers does not move the scene. Pages report which
 gesture they take a touch for; fingers seldom do one thing only, so zoom and shift are always taken from where the

@@ -1,16 +1,16 @@
-// Smooth edges of lines: every pixel shows as much of a line as the line covers of it.
+// Smooth edges of lines: every pixel shows the share of a line that covers it.
 //
-// The picture holds one line a pixel. What else a pixel would show is known from its neighbours: where the edges of their lines
-// run (frame/edges.glsl) is known to a fraction of a pixel, and they go on through this pixel. So each of 16 samples of the pixel
-// takes the colour of the nearest line whose band covers it, of this pixel's own and those of the three that are nearest to the
-// sample's quarter. Light was computed once a pixel, and colours are those of the finished picture.
+// The picture holds one line a pixel. The other lines of a pixel are known from its neighbours: the edges of their lines
+// (frame/edges.glsl) are known to a fraction of a pixel, and they go on through this pixel. So each of 16 samples of the pixel
+// takes the colour of the nearest line whose band covers it: this pixel's own line, or one of the three pixels nearest to the
+// sample's quarter. Light was computed once a pixel, and colours are the finished picture's.
 //
-//   . . .     What no band covers shows
-//   .[#]#       in a pixel without a line    what it shows anyway
-//   # # .       in a pixel with one          what is behind: those of the three that show no line and are not in front of it;
-//                                            if there is none, their lines, as between lines there are others
+//   . . .     Where no band covers
+//   .[#]#       a pixel without a line    shows its own colour
+//   # # .       a pixel with a line       shows the background: the three neighbours that show no line and are not in front of it;
+//                                         if all show lines, those lines, as between lines there are others
 //
-// Only what lies nearer than the pixel's own covers a pixel without a line: lines do not run over a mesh that hides them.
+// Only lines nearer than its own depth cover a pixel without a line: lines do not run over a mesh that hides them.
 //
 // Thin lines are drawn up to a pixel beside where they run (fiblets/segments/thin_line_rule.glsl): a pixel without a line whose
 // middle the band of one next to it covers takes that one for its own in all four quarters.
@@ -61,7 +61,7 @@ uint covered(Band band, vec4 x, vec4 y) {
     return bits(lessThanEqual(abs(band.n.x * x + band.n.y * y + band.away), vec4(band.size)));
 }
 
-// What is left of the pixel's own line where that ends.
+// The remaining part of the pixel's own line where that ends.
 uint within(Edges edges, vec4 x, vec4 y) {
     vec4 along = (edges.n.x * y - edges.n.y * x) / 16.0;
     vec2 range = edges.end == 7u ? vec2(-0.5, 0.5)

@@ -1,4 +1,4 @@
-// What VTK has drawn so far in one viewport, as single samples that shaders can read: the picture that effects change.
+// VTK's picture so far in one viewport, as single samples that shaders can read: the picture that effects change.
 //
 //   drawn      colour attachment of VTK's framebuffer
 //   depths     its depth attachment
@@ -8,8 +8,8 @@
 //   shares     65536ths of each pixel of the target that it shows, in 17 bits    (FEATURE_PICTURE_SHARES)
 //
 // Colours are the mean of a pixel's samples, as VTK's own resolve makes them: of colours ^ 2.2, which are proportional to
-// light. Of the depths the nearest counts: a pixel at the edge of something belongs to what is in front, or an edge in
-// focus would be blurred with what is behind it.
+// light. Of the depths the nearest counts: a pixel at an edge belongs to the front, or an edge in
+// focus would be blurred with its background.
 
 #version 430
 

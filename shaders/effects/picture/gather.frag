@@ -2,14 +2,14 @@
 // effects/picture/blur.frag that cover it.
 //
 //   front    pixels q nearer than p, whose discs cover p:            a = sum w(r_q, |p - q|) / A(r_q)
-//   back     p, and what is farther, as far as p's own disc reaches: b = sum w(r_p, |p - q|) / A(r_p)
+//   back     p, and farther pixels, as far as p's own disc reaches:  b = sum w(r_p, |p - q|) / A(r_p)
 //
 //   colour = sum of front + (1 - a) * sum of back / b               where a > 1: sum of front / a
 //
-// w is the disc, A the pixels in it. What is in front spreads over p; what is behind shines through p only as far as p is
-// blurred itself. So what is sharp neither bleeds nor is bled into from behind, and a blurred edge in front lets what is
+// w is the disc, A the pixels in it. Nearer pixels spread over p; farther ones shine through p only as far as p is
+// blurred itself. So a sharp pixel neither bleeds nor is bled into from behind, and a blurred edge in front lets the pixels
 // behind it through. A wall at one depth, however rounding sorts its pixels into front and back, gets the plain mean over
-// the disc; a lone point spreads into a disc of all its light; a pixel that nothing reaches stays exactly what it is.
+// the disc; a lone point spreads into a disc of all its light; a pixel that no disc reaches stays exactly the same.
 //
 //   colours    the copy of effects/picture/copy.frag
 //   blurs      depth | signed radius | 1 / A | light left

@@ -1,4 +1,4 @@
-// Which squares of TILE x TILE pixels show a line of one drawable, or have one right beside them: pixels that smooth edges may change.
+// Mask of squares of TILE x TILE pixels with a line of one drawable, or one right beside them: pixels that smooth edges may change.
 // It runs once for each drawable, and leaves squares alone that have none of its lines.
 //
 //   keys       of the drawable's G-buffer (pvfiblets/engine/gbuffer.py)

@@ -1,4 +1,4 @@
-// What is in every square of TILE x TILE pixels: the widest disc in front of the plane in focus, and the light if all
+// Summary of every square of TILE x TILE pixels: the widest disc in front of the plane in focus, and the light if all
 // pixels have the same, as a background's, -1 if not.
 
 #version 430

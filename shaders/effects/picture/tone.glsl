@@ -1,6 +1,6 @@
 // Tone mapping, brightness and contrast, gamma correction (Lesar, Bohak & Marolt 2015, section III.G), in this order:
 //
-//   x  = exposure * c                                                     c: what was drawn, red, green, blue apart
+//   x  = exposure * c                                                     c: the drawn colour, red, green, blue apart
 //   y  = operator(x)
 //   z  = (y - 1/2) * contrast + 1/2 + brightness
 //   c' = clamp(z, 0, 1) ^ (1 / gamma)

@@ -1,12 +1,12 @@
-// Which lines a picture shows, and what it shows of everything: what antialias_coverage.frag looks at, with a border of one texel around
-// the picture, where nothing is. It runs once for each drawable, the first time for all pixels, then for those that show it.
+// Input of antialias_coverage.frag: the lines that a picture shows, and all of its colours, with an empty border of one texel around
+// the picture. It runs once for each drawable, the first time for all pixels, then for pixels that show it.
 //
 //   keys, edges   of the drawable's G-buffer (pvfiblets/engine/gbuffer.py)
 //   drawn, depths colours and depths of VTK's framebuffer; single, or `samples` per pixel     (FEATURE_PICTURE_SAMPLES)
 //   origin        pixel of the framebuffer at which the picture begins
-//   narrower      pixels by which lines are thinner than they were drawn
+//   narrower      excess of the drawn width over the line's, in pixels
 //
-// A pixel shows a line where nothing is drawn before it. What is translucent leaves no depth: through it lines are seen.
+// A pixel shows a line where nothing is drawn before it. Translucent things leave no depth: lines are visible through them.
 // Out: bits of the window depth | edges (frame/edges.glsl), 0 where there is no line | colour, 4 x 8 bits.
 
 #version 430

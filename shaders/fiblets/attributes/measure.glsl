@@ -1,8 +1,8 @@
-// How long fiblets are, for arc length, which runs on from fiblet to fiblet: pvfiblets/engine/fiblets/data/point_values.py adds lengths up.
+// Lengths of fiblets, for arc length, which runs on from fiblet to fiblet: pvfiblets/engine/fiblets/data/point_values.py adds lengths up.
 
 #include "fiblets/decode/sequential.glsl"
 
-// Of all segments, the one that joins the next fiblet included.
+// Length of all segments, the one that joins the next fiblet included.
 float length_of(uint f) {
     float sum = 0.0;
     walk_begin(f);

@@ -1,4 +1,4 @@
-// What the G-buffer says of a pixel beside its depth (pvfiblets/engine/gbuffer.py): streamline, tangent, place along the
+// Contents of the G-buffer for a pixel, beside its depth (pvfiblets/engine/gbuffer.py): streamline, tangent, place along the
 // streamline, and the per-point value if the style asks for one.
 //
 // Use: begin_pixels(f) once for a fiblet, before it is walked along; start_segment() before the pixels of each of its segments;

@@ -1,4 +1,4 @@
-// Which streamline a fiblet belongs to, and how many of its points come before it.
+// The streamline of a fiblet, and the number of its points before the fiblet.
 //
 // Records hold no index along the streamline: the fiblets of a streamline are consecutive and ranks never fall, so the
 // first one is found by doubling steps backwards and halving them again, and the difference of both first points is

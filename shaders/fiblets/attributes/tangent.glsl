@@ -1,7 +1,7 @@
 // The tangent of a line, which its colour and its light are made of: continuous along the line, not one value a segment.
 //
 // Symbols
-//   u_i          unit vector of segment i, from point i to point i + 1; one of no length has none, and is told by zero
+//   u_i          unit vector of segment i, from point i to point i + 1; zero for a segment of no length
 //   T_i          tangent at point i, the mean of u_i and of the last u before it, as unit vector. At the first point of a
 //                streamline and of a fiblet it is u_i: the segment before belongs to a fiblet that is not decoded here, and
 //                both fiblets can tell u_i from the later one's record
@@ -18,7 +18,7 @@ vec3 unit_or_none(vec3 d) {
     return size > 0.0 ? normalize(d / size) : vec3(0.0);
 }
 
-// Of two unit vectors, either of which may be none.
+// Of two unit vectors; either may be zero.
 vec3 mean_direction(vec3 before, vec3 after) {
     vec3 sum = before + after;
     float square = dot(sum, sum);

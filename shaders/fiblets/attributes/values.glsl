@@ -58,7 +58,7 @@ void start_values(uint segment, vec3 to, vec3 delta, float steps) {}
 float value_of_point(uint i) { return 0.0; }
 
 #elif FEATURE_VALUES_ARC_LENGTH
-// Of a fiblet of constant step; 0 for others.
+// Length of a fiblet of constant step; 0 for others.
 float whole_length(uvec3 words) {
     return fiblet_kind(words) == KIND_DIRECTION ? float(fiblet_last(words)) * step_length(words) : 0.0;
 }

@@ -1,7 +1,7 @@
 // Tangents at both ends of the segments of a fiblet that is walked along (fiblets/segments/polyline.glsl), one after the other.
 //
-// Use: begin_tangents(f) before begin_polyline(f); then start_tangents() for every segment in order, after which `tangents` are
-// those at its ends.
+// Use: begin_tangents(f) before begin_polyline(f); then start_tangents() for every segment in order, which sets `tangents`
+// for both of its ends.
 
 #include "fiblets/segments/polyline.glsl"
 #include "fiblets/attributes/tangent.glsl"

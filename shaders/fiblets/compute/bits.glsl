@@ -1,6 +1,6 @@
-// How work groups share out the fiblets of a round.
+// Distribution of a round's fiblets to work groups.
 //
-// A group of {{ group_size }} invocations takes as many entries of its class's list: no lane is idle but in the last group. If the list was too
+// A group of {{ group_size }} invocations takes that number of entries of its class's list: only the last group has idle lanes. If the list was too
 // short for the fiblets, there are many: then a group serves {{ group_words }} words of bits, and invocation t takes the set bits number t,
 // t + {{ group_size }}, ...
 

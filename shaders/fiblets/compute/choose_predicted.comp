@@ -1,4 +1,4 @@
-// Of clusters that the last picture does not hide: the fiblets that were not seen in it, but will probably show.
+// Chooses, from clusters that the last picture does not hide, fiblets that were not visible in it, but will probably show.
 
 #version 430
 layout(local_size_x = {{ group_size }}) in;

@@ -1,4 +1,4 @@
-// Of clusters that this picture does not hide so far: the fiblets that are not drawn yet and not hidden as a whole; refine.comp goes on.
+// Chooses, from clusters that this picture does not hide so far, fiblets not drawn yet and not hidden as a whole; refine.comp goes on.
 
 #version 430
 layout(local_size_x = {{ group_size }}) in;

@@ -1,4 +1,4 @@
-// Claims places in a list (fiblets/compute/visibility_bits.glsl), and work groups for those who go through it. Arguments only grow.
+// Claims places in a list (fiblets/compute/visibility_bits.glsl), and the work groups that process it. Arguments only grow.
 
 uniform uint slots;        // dispatches of a class
 uniform uint slot_groups;  // work groups of one
@@ -10,7 +10,7 @@ void want_groups(uint which, uint first, uint end) {
     }
 }
 
-// The first of so many places in a class's list, of which a work group serves `served`.
+// The first of `count` places in a class's list; a work group serves `served` of them.
 uint claim(uint which, uint count, uint served) {
     uint start = atomicAdd(visibility_bits[length_at(which)], count), end = start + count;
     if (end <= list_room()) want_groups(which, start / served, (end + served - 1u) / served);

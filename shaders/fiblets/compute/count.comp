@@ -1,5 +1,5 @@
-// Counts fiblets for reports: those in the view volume (culling/criteria.glsl), as the cull pass finds them, and those that the
-// last picture drew, where the marks tell.
+// Counts fiblets for reports: the fiblets in the view volume (culling/criteria.glsl), as the cull pass finds them, and the fiblets
+// of the last picture, where the visibility bits hold them.
 //
 // One invocation per 32 fiblets. A set has fewer than 2^32 fiblets: 32 bits count them all.
 

@@ -1,17 +1,17 @@
-// Plans a picture: frustum culling (culling/criteria.glsl), and which programs draw what is left.
+// Plans a picture: frustum culling (culling/criteria.glsl), and the programs that draw the remaining fiblets.
 //
 // Invariants
-//   - No fiblet is culled of which one pixel would be drawn.
+//   - A culled fiblet has no visible pixel.
 //   - A fiblet of class 0 lies inside all planes, by `plane_rounding` and its radius: its segments need no clipping. One of
-//     class 1 lies so between the near and the far plane, hence in front of the camera. Class 2 are all others, and
-//     those that the caller's planes or region may touch, or some points of which are not to be shown. Class 3 are those of class 0 that are drawn as one segment.
-//   - Where there is ONE_CLASS, it has all fiblets, and its program what any of them needs.
+//     class 1 lies so between the near and the far plane, hence in front of the camera. Class 2 are all others, fiblets
+//     that the caller's planes or region may touch, and fiblets with hidden points. Class 3 are fiblets of class 0 drawn as one segment.
+//   - Where there is ONE_CLASS, it has all fiblets, and its program has the features that any of them needs.
 //
-// With FEATURE_CLUSTERS only those seen in the last picture are tested; choose.glsl finds the others through their clusters.
+// With FEATURE_CLUSTERS only fiblets visible in the last picture are tested; choose.glsl finds the others through their clusters.
 //
-// One invocation per 32 fiblets. What it writes is the plan of the drawing passes: which fiblets were seen in the last
-// picture (drawn first, so that most others lose at their first look at the depth image), which others will probably show
-// (two-phase culling only: culling/visibility_prediction.glsl), and of which class they are.
+// One invocation per 32 fiblets. It writes the plan of the drawing passes: fiblets visible in the last
+// picture (drawn first, so that most others lose at their first look at the depth image), others that will probably show
+// (two-phase culling only: culling/visibility_prediction.glsl), and the class of each.
 
 #version 430
 layout(local_size_x = {{ group_size }}) in;

@@ -35,7 +35,7 @@ void start_segment(uint segment, vec3 to, vec3 delta, vec3 ahead) {}
 vec3 shown_normal(Hit hit) { return hit.normal; }
 #endif
 
-// Whether a pixel that would show is there: kept by the caller's region, and of no earlier layer's surface.
+// Whether a nearest pixel is kept: by the caller's region, and as no part of an earlier layer's surface.
 bool may_show(ivec2 pixel, float z, uint segment) {
 #if FEATURE_CLIP_REGION
     if (!region_keeps(pixel, z)) return false;

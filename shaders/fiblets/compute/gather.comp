@@ -3,7 +3,7 @@
 //
 // The four words of a pixel lie side by side, in a row if a texture may be so wide: atomics cost what memory they touch costs.
 //
-// A wide line or a tube adds once to a pixel: by the segment beside which the pixel lies, and by round ends where the line ends.
+// A wide line or a tube adds once to a pixel: by the segment beside the pixel, and by round ends where the line ends.
 
 #version 430
 layout(local_size_x = {{ group_size }}) in;

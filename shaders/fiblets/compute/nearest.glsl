@@ -1,4 +1,4 @@
-// Where the driver has atomics of 64 bits: depth key and fiblet of every pixel in one word, the key in its upper half. The
+// With atomics of 64 bits: depth key and fiblet of every pixel in one word, the key in its upper half. The
 // least word of a pixel is its nearest fiblet, and of several at the same depth the one with the smallest index: ties need no
 // thought, and owners no second search.
 //

@@ -1,5 +1,5 @@
-// Takes out of the plan what is hidden (culling/occlusion.glsl). Behind this picture's own depth only those are tested that
-// are not drawn yet, as a whole, and refine.comp goes on. The coverage buffer is there before the picture, and all are tested.
+// Takes hidden fiblets out of the plan (culling/occlusion.glsl). Only fiblets not drawn yet are tested against this picture's own
+// depth, as a whole, and refine.comp goes on. The coverage buffer is there before the picture, and all are tested.
 //
 // One invocation per 32 fiblets.
 

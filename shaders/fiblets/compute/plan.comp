@@ -10,7 +10,7 @@ layout(local_size_x = {{ group_size }}) in;
 #include "fiblets/compute/visibility_bits.glsl"
 #include "fiblets/compute/claims.glsl"
 
-uniform uint refined;      // 1: the rest are those that refine.comp kept
+uniform uint refined;      // 1: the rest are the survivors of refine.comp
 shared uint counts[CLASSES];
 shared uint starts[CLASSES];
 

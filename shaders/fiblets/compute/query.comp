@@ -1,13 +1,13 @@
 // Asks of every streamline where it lies. Three passes over a batch of fiblets, one invocation each:
 //   CLASSIFY     whole fiblets by their capsules. Those that this leaves undecided are listed. A streamline's first point is an
-//                anchor; its last is no farther from the rounded end vector than the rounding (Capsule.slip), or asked for
+//                anchor; its last is no farther from the rounded end vector than the rounding (Capsule.slip), or must be decoded
 //   SIFT         of those, list the ones whose streamline's answer is still open: not where it has points inside and points
-//                outside by now, unless its last point is asked for
+//                outside by now, unless its last point is needed
 //   DECODE       the points of these, until the streamline's answer is settled
 // Lists keep neighbouring invocations busy alike.
 //
-// Points are tested as balls of the radius by which float32 may have moved them (walk_margin). A point that this leaves
-// undecided counts as unsure; where that matters to its streamline, pvfiblets/engine/fiblets/region_query.py has it settled in float64.
+// Points are tested as balls of the radius of float32's rounding (walk_margin). A point that remains undecided
+// counts as unsure; where that matters to its streamline, pvfiblets/engine/fiblets/region_query.py has it settled in float64.
 //
 // With `lines`, the segments between points are tested too, as capsules of that radius: first whole, then in PIECES. A piece
 // that this leaves undecided counts as unsure.
@@ -74,7 +74,7 @@ uint decoded_answer(uint f, bool last, uint known) {
     walk_begin(f);
     uint found = 0u;
     float margin = 0.0;
-    for (uint i = 0u; i <= walk.last; ++i) {  // the anchor itself was tried before, but its margin is asked for
+    for (uint i = 0u; i <= walk.last; ++i) {  // the anchor was tested before, but its margin is needed
         vec3 before = walk_point;
         float margin_before = margin;
         if (i > 0u) walk_next(i);

@@ -1,4 +1,4 @@
-// Takes out of the plan what is hidden, second test: the capsule in pieces (culling/hidden.glsl), of what the first one left.
+// Takes hidden fiblets out of the plan, second test: the capsules of the remaining ones in pieces (culling/hidden.glsl).
 
 #version 430
 layout(local_size_x = {{ group_size }}) in;

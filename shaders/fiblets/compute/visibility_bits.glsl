@@ -1,4 +1,4 @@
-// What the passes of one picture tell each other about the fiblets of a chunk, in one buffer, because OpenGL promises no more than
+// Visibility bits and draw lists that the passes of one picture share, for a chunk's fiblets, in one buffer, because OpenGL promises no more than
 // eight storage buffers to a shader. Each chunk has a range of its own, so that no driver's limit of a block limits the set.
 //
 //   bits         {{ visibility_words }} kinds, of each a word for 32 fiblets
@@ -19,8 +19,8 @@ layout(std430, binding = {{ storage_visibility_bits }}) buffer VisibilityBits { 
 const uint KINDS = {{ visibility_words }}u, CLASSES = {{ classes }}u, ROUNDS = {{ rounds }}u;
 const uint ROUND_LOW = 0u, ROUND_HIGH = 1u, CLASS_LOW = 2u, CLASS_HIGH = 3u, CANDIDATES = 4u, SEEN = 5u, TIED = 6u, KEPT = TIED;
 
-// What a pass works on: the plan's three rounds, candidates, fiblets whose pixels are to be written again, or those of the
-// rest that refine.comp tests. Two more list clusters. pvfiblets/engine/fiblets/pipelines/compute.py numbers them the same.
+// The lists of the passes: the plan's three rounds, candidates, fiblets whose pixels are to be written again, and the rest
+// that refine.comp tests. Two more list clusters. pvfiblets/engine/fiblets/pipelines/compute.py numbers them the same.
 const uint DRAW_SEEN = 0u, DRAW_PREDICTED = 1u, DRAW_REST = 2u, DRAW_CANDIDATES = 3u, DRAW_TIED = 4u, TEST_REST = 5u;  // 6, 7: of clusters
 
 uniform uint drawing;          // which of these
@@ -53,12 +53,12 @@ uint of_class(uint word, uint which) {
 
 uint list_room() { return (chunk_fiblets + {{ list_share }}u - 1u) / {{ list_share }}u; }
 
-// Where a class's list starts.
+// Start of a class's list.
 uint list_at(uint which) { return KINDS * chunk_words() + which * list_room(); }
 
-// Where a class's length in this round is.
+// Place of a class's length in this round.
 uint length_at(uint which) { return list_at(CLASSES) + drawing * CLASSES + which; }
 
-// Where all arguments start, and those of a class in this round.
+// Start of all arguments, and of the arguments of a class in this round.
 uint all_arguments_at() { return list_at(CLASSES) + ROUNDS * CLASSES; }
 uint arguments_at(uint which, uint slots) { return all_arguments_at() + 4u * (drawing * CLASSES + which) * slots; }

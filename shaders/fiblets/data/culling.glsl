@@ -1,4 +1,4 @@
-// What culling reads of a fiblet, from storage buffers (OpenGL 4.3) or from buffer textures (OpenGL 3.3). Nothing else
+// Data of a fiblet for culling, from storage buffers (OpenGL 4.3) or from buffer textures (OpenGL 3.3). Nothing else
 // knows where data lie: the functions are the same.
 //
 // `f` is an index within the chunk. A chunk holds whole pages, and at its end the anchor of the fiblet that follows.

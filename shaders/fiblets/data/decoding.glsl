@@ -1,4 +1,4 @@
-// What decoding reads beside fiblets/data/culling.glsl: the second half of a record, the codes, and the rotations that direction
+// Data for decoding, beside fiblets/data/culling.glsl: the second half of a record, the codes, and the rotations that direction
 // codes stand for (codec/layout.glsl and pvfiblets/codec/direction_codebook.py), from storage buffers or from buffer textures.
 
 #if FEATURE_TEXTURE_DATA

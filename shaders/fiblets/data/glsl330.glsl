@@ -1,4 +1,4 @@
-// What GLSL 3.30 lacks of 4.00, for the geometry pipeline on OpenGL 3.3.
+// Functions of GLSL 4.00 that 3.30 lacks, for the geometry pipeline on OpenGL 3.3.
 #define precise
 uint bitfieldExtract(uint value, int offset, int bits) {
     return bits == 32 ? value : (value >> uint(offset)) & ((1u << uint(bits)) - 1u);
@@ -11,7 +11,7 @@ int bitCount(uint value) {
     for (; value != 0u; value &= value - 1u) ++bits;
     return bits;
 }
-// Of the lowest bit set, and of the highest; -1 where there is none.
+// Index of the lowest bit set, and of the highest; -1 where there is none.
 int findLSB(uint value) { return value == 0u ? -1 : bitCount((value & (~value + 1u)) - 1u); }
 int findMSB(uint value) {
     int at = value == 0u ? -1 : 0;

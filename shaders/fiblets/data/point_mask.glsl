@@ -1,8 +1,8 @@
-// Which points are kept (pvfiblets/engine/fiblets/data/filter_textures.py): a bit for each, counted from the chunk's first, 32 to a texel, in
+// Mask of kept points (pvfiblets/engine/fiblets/data/filter_textures.py): a bit for each, counted from the chunk's first, 32 to a texel, in
 // rows of 2^{{ mask_bits }}. A segment is drawn where both of its points are kept, a streamline of one point where that one is.
 //
 // Use: begin_point_mask(f) once for a fiblet, whose bits are then at hand. Bit i stands for its point i; behind its last
-// stand the next fiblet's, so that the segment that joins both, and the one after it, can be told. At most
+// stand the next fiblet's, for the segment that joins both, and the one after it. At most
 // FIBLET_MAX_POINTS + 2 bits matter: two words.
 //
 // Without the feature all points are kept, and nothing is left of this file but that.

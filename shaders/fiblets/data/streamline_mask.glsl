@@ -1,4 +1,4 @@
-// Which streamlines are there to be drawn (pvfiblets/engine/fiblets/data/filter_textures.py): a bit for each by rank, 32 to a texel, in rows of
+// Mask of kept streamlines (pvfiblets/engine/fiblets/data/filter_textures.py): a bit for each by rank, 32 to a texel, in rows of
 // 2^{{ mask_bits }}.
 
 #if FEATURE_STREAMLINE_MASK

@@ -1,7 +1,7 @@
 // A work group of 32 invocations decodes one fiblet together (paper: Schertzer et al. 2022, section 3.3.2 and figure 5):
 // a prefix product of rigid motions in shared memory. Serves compute shaders and, unchanged, mesh shaders.
 //
-// Symbols (words.glsl has those of the frames)
+// Symbols (frames: see words.glsl)
 //   A_i          motion of point i >= 1: x -> r_i x + step r_i X, where r_1 is the first frame and r_i = T[cap][code];
 //                (r, t) stands for it, with t = step r X. A_0 is no motion
 //   W_i          A_1 A_2 .. A_i (equation 3); the translation of W_i is P_i - P_0

@@ -1,4 +1,4 @@
-// What a fiblet's record says (paper: Schertzer et al. 2022, section 3.2.2). The bit fields come from
+// Contents of a fiblet's record (paper: Schertzer et al. 2022, section 3.2.2). The bit fields come from
 // pvfiblets/codec/layout.py by way of "codec/layout.glsl", so that a shader cannot disagree with the encoder.
 
 #include "codec/layout.glsl"

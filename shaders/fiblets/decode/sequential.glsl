@@ -1,7 +1,7 @@
 // One invocation decodes one fiblet, point after point, in registers (paper: Schertzer et al. 2022, section 3.3.1 and
 // appendix B; the lattice kinds are this program's own).
 //
-// Symbols (words.glsl has those of the frames)
+// Symbols (frames: see words.glsl)
 //   P            position, local millimetres; P_0 is the anchor
 //   delta        P_i - P_(i-1), exact where P itself has lost digits
 //   K            position on the integer lattice of edge h around the anchor

@@ -1,4 +1,4 @@
-// What a line adds to a pixel (pvfiblets/engine/fiblets/gather/gathering.py): its colour times a weight, and the weight, as whole numbers.
+// Contribution of a line to a pixel (pvfiblets/engine/fiblets/gather/gathering.py): its colour times a weight, and the weight, as whole numbers.
 // Sums of whole numbers do not depend on the order in which lines are drawn.
 //
 // Symbols

@@ -1,5 +1,5 @@
 // The direction of a line where all lines of a pixel are added up: that of the segment, as a unit vector. Among many lines on each
-// other nobody sees that it is not continuous along each.
+// other, its jumps between segments are invisible.
 
 vec3 run_direction(vec3 run) {
     float square = dot(run, run);

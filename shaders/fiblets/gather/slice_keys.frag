@@ -1,4 +1,4 @@
-// Where the slices of each pixel begin (pvfiblets/engine/fiblets/gather/gathering.py): at the nearest line, and at shares of the distance
+// Beginnings of the slices of each pixel (pvfiblets/engine/fiblets/gather/gathering.py): at the nearest line, and at shares of the distance
 // from there to the far end of the data.
 //
 // Symbols

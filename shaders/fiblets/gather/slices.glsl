@@ -1,5 +1,5 @@
 // To which sum of its pixel a line adds: without FEATURE_GATHER_SLICES there is one, of all lines. Else the nearest line is in
-// none, and the others are told apart by the depths at which slices begin (fiblets/gather/slice_keys.frag).
+// none, and the others are sorted by the depths at which slices begin (fiblets/gather/slice_keys.frag).
 //
 //   slice_keys   depth keys of the nearest line, and of where the second, the third and the fourth slice begin
 

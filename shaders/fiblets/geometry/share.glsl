@@ -1,4 +1,4 @@
-// Which fiblet an invocation draws and from which segment on; SHARE is how many segments of it. Leaves the walk at its
+// The fiblet of an invocation, and the first segment of its share; SHARE is the number of segments. Leaves the walk at its
 // beginning (fiblets/segments/polyline.glsl).
 
 flat in uint shown[];  // fiblets/hardware_raster/survivors.vert

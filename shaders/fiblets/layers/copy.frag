@@ -1,4 +1,4 @@
-// Copies what was drawn into one layer of what keeps them all (pvfiblets/engine/fiblets/gather/depth_peeling.py).
+// Copies a picture into one layer of the array that keeps them all (pvfiblets/engine/fiblets/gather/depth_peeling.py).
 
 #version 430
 

@@ -14,8 +14,8 @@
 //   start, cap   the line starts at a, ends at b: nothing is drawn before or after that this part would be joined to
 //   s, u         positions along the part in the window, where depth is linear, and along the segment in space
 //
-// Tubes are not clipped: what their outline (fiblets/segments/line_tube.glsl) reaches is looked at pixel by pixel. Their a, b, t0 and t1 are
-// those of the part of the axis that the outline is around.
+// Tubes are not clipped: every pixel of their outline (fiblets/segments/line_tube.glsl) is tested. Their a, b, t0 and t1 are
+// the ends of the axis within the outline.
 
 #include "frame/project.glsl"
 #include "frame/clip_planes.glsl"

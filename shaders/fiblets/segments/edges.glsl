@@ -1,5 +1,5 @@
-// The edges (frame/edges.glsl) of a pixel of a line: of thin lines those of a line one pixel wide between the true ends of the
-// segment, however its pixels were chosen; of wide lines those of the capsule; of tubes their silhouette.
+// The edges (frame/edges.glsl) of a pixel of a line: for thin lines a band one pixel wide between the true ends of the
+// segment, however its pixels were chosen; for wide lines the capsule's outline; for tubes their silhouette.
 
 #include "frame/edges.glsl"
 
@@ -15,7 +15,7 @@ uint capsule_edges(vec2 centre, vec2 run, float r) {
 
 #if FEATURE_TUBES
 // The same of a tube thinner than a pixel. Where the line goes on, its segments do not end: of short ones a pixel shows the nearest to
-// the eye, not that beside which it lies.
+// the eye, not the one beside it.
 uint thin_tube_edges(Tube t, vec2 centre, vec2 run, float r) {
     float square = dot(run, run), foot = dot(centre, run) / max(square, 1e-12);
     foot = square > 1e-6 ? clamp(foot, t.start ? 0.0 : -1e6, t.cap ? 1.0 : 1e6) : clamp(foot, 0.0, 1.0);

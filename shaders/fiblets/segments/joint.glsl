@@ -1,4 +1,4 @@
-// How wide segments join. A pixel beside a joint belongs to the segment beside which it lies; the round end is drawn only where
+// How wide segments join. A pixel beside a joint belongs to the segment beside it; the round end is drawn only where
 // it lies beside neither, on the outer side of the bend:
 //
 //      ------------.  wedge         A pixel is within half a width of the line where it is so of the line's nearest point. If that is
@@ -11,7 +11,7 @@
 //   ahead        the next segment's run, mm; none where the line ends, or may not go on there as it does here
 //   onward       unit vector of that run in the window; none where it is shorter than LEAST pixels, and rounding would tell its
 //                direction: then the whole round end is drawn
-//   overlap      pixels by which the wedge reaches over the next segment: rounding must not part them
+//   overlap      pixels of the wedge over the next segment: rounding must not part them
 
 #include "frame/blocks.glsl"
 

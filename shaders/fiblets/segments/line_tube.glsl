@@ -57,7 +57,7 @@ struct Tube {
 #endif
 };
 
-// What a pixel shows.
+// The hit of a pixel.
 struct Hit {
     float z;       // depth
     float t;       // position along the segment

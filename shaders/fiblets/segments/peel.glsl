@@ -1,8 +1,8 @@
-// Layers: of every pixel only what lies behind the layers drawn so far (pvfiblets/engine/fiblets/gather/depth_peeling.py). Layer k shows the
+// Layers: of every pixel only the part behind the layers drawn so far (pvfiblets/engine/fiblets/gather/depth_peeling.py). Layer k shows the
 // nearest depth key behind that of layer k - 1; of several fiblets at the same key a pixel shows one.
 //
 // A wide line or a tube covers a pixel by many segments, one after the other, each at a depth of its own: they are one
-// surface, of which a pixel blends the nearest only. What belongs to an earlier layer's surface is told by its place:
+// surface, and a pixel blends its nearest part only. The place along the line decides whether a segment belongs to an earlier layer's surface:
 //
 //   place        of a streamline, in points: segment k stands for the places first + k ... first + k + steps
 //   reach        points that two widths of the line take, by the pixels that this segment takes. Half a width away on
@@ -71,7 +71,7 @@ bool behind_layers(ivec2 pixel, uint key) {
 bool behind_layers(ivec2 pixel, uint key) { return true; }
 #endif
 
-// Whether what is drawn there is no part of an earlier layer's surface. It is asked last, of what would show.
+// Whether the segment is no part of an earlier layer's surface. This test is the last before a pixel shows.
 bool new_surface(ivec2 pixel, uint segment) {
 #if FEATURE_PEEL && FEATURE_WIDE_LINES
     precise float from = peel_first + float(segment), to = from + peel_steps;

@@ -2,9 +2,9 @@
 // (is_one_segment() of culling/bounds.glsl), the ends of its capsule. FEATURE_ONE_SEGMENT: it is known that it is far enough,
 // and nothing is decoded.
 //
-// Use: begin_polyline(f); then next_point(i) for i = 1 .. polyline.count, after each of which walk_point and walk_delta hold
-// the end and the run of segment i - 1. What a segment shows depends on the next one, too: walk_ahead(i) goes to point i + 1,
-// and tells the run of segment i; past the last one it tells the next fiblet's first.
+// Use: begin_polyline(f); then next_point(i) for i = 1 .. polyline.count; after each, walk_point and walk_delta hold
+// the end and the run of segment i - 1. A segment's pixels depend on the next one, too: walk_ahead(i) goes to point i + 1,
+// and returns the run of segment i; past the last one it returns the next fiblet's first.
 
 #include "fiblets/decode/sequential.glsl"
 #include "culling/bounds.glsl"

@@ -1,4 +1,4 @@
-// Which pixels a thin segment takes. All pipelines follow this rule, so that all of them draw the same picture.
+// Pixels of a thin segment. All pipelines follow this rule, so that all of them draw the same picture.
 //
 // A segment is drawn from the centre of the pixel that holds its first point to the centre of the one that holds its last:
 // n = max(|dx|, |dy|) pixels, without the last, in which the next segment begins. Joints are neither doubled nor open,

@@ -66,7 +66,7 @@ def test_facts_are_those_of_the_set(unread, together):
     np.testing.assert_array_equal(unread.offsets(), together.offsets())
     np.testing.assert_array_equal(unread.lengths(), together.lengths())
     np.testing.assert_array_equal(coded_rows(unread), coded_rows(together))
-    found, wanted = StreamlineRanges.of(unread), StreamlineRanges.of(together)
+    found, wanted = StreamlineRanges.from_fiblets(unread), StreamlineRanges.from_fiblets(together)
     for name in ("fiblet", "fiblets", "point", "points"):
         np.testing.assert_array_equal(getattr(found, name), getattr(wanted, name))
     assert "FibletSet(" in repr(unread)

@@ -32,18 +32,19 @@ def steps_to(there):
 def test_distances_are_those_of_scipy():
     there = region()
     low, high = BOX[:3], BOX[3:]
-    found = FreeSpace.of(bits_of(there), 4, BOX)
+    found = FreeSpace.from_bits(bits_of(there), 4, BOX)
     np.testing.assert_array_equal(found.first, low)
     cut = there[tuple(map(slice, low, high))]
     np.testing.assert_array_equal(found.steps, steps_to(cut))
-    beyond = FreeSpace.of(bits_of(~there), 4, BOX, beyond=True)
+    beyond = FreeSpace.from_bits(bits_of(~there), 4, BOX, beyond=True)
     np.testing.assert_array_equal(beyond.steps, steps_to(np.pad(cut, 1, constant_values=True))[1:-1, 1:-1, 1:-1])
 
 
 def test_in_large_boxes_they_are_powers_of_two_and_never_too_long(monkeypatch):
     monkeypatch.setattr(free_space, "LARGE", 1)
     there = region()
-    found, exact = FreeSpace.of(bits_of(there), 4, BOX).steps, steps_to(there[tuple(map(slice, BOX[:3], BOX[3:]))])
+    found = FreeSpace.from_bits(bits_of(there), 4, BOX).steps
+    exact = steps_to(there[tuple(map(slice, BOX[:3], BOX[3:]))])
     assert set(np.unique(found)) <= {0, 1, 2, 4, 8, 16}
     assert (found <= exact).all()
     assert (2 * found[exact > 0].astype(int) > exact[exact > 0]).all()
@@ -51,5 +52,5 @@ def test_in_large_boxes_they_are_powers_of_two_and_never_too_long(monkeypatch):
 
 @pytest.mark.parametrize("beyond", [False, True])
 def test_a_box_without_voxels_is_far_from_all(beyond):
-    found = FreeSpace.of(bits_of(region()), 4, [np.inf] * 3 + [-np.inf] * 3, beyond=beyond)
+    found = FreeSpace.from_bits(bits_of(region()), 4, [np.inf] * 3 + [-np.inf] * 3, beyond=beyond)
     np.testing.assert_array_equal(found.steps, [[[FAR]]])

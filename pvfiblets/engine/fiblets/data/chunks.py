@@ -4,8 +4,8 @@ A chunk holds whole pages, so that the page-relative indices of the records stay
 follows its last one, so that no shader looks into another chunk. What culling reads (anchors, reach) stays in buffers
 apart from what decoding reads (words, codes).
 
-Budget, bytes per fiblet: anchors 8, radius 2, words 12, codes 58 when full, and the bits and lists by which the passes
-tell each other what to draw, 2.9: 82.9, or 1.38 per point. Clusters of large sets take 4.2 bytes more, a streamline's
+Budget, bytes per fiblet: anchors 8, radius 2, words 12, codes 58 when full, and the visibility bits and draw lists
+that the passes exchange, 2.9: 82.9, or 1.38 per point. Clusters of large sets take 4.2 bytes more, a streamline's
 end vector 4.
 
 What shaders count in 32 bits. Within a chunk: fiblets, bytes of codes, and points. A buffer of less than 2^31 bytes
@@ -161,7 +161,7 @@ def plan_chunks(
 
 def _plan(fiblets: FibletSet, begin: int, end: int, clustered: bool) -> ChunkPlan:
     """Plan pages ``begin`` to ``end`` as one chunk."""
-    # Sums of NumPy's 32-bit integers would wrap where those of Python do not.
+    # Sums of NumPy's 32-bit integers would wrap; Python's do not.
     (rank, code, point), (last_rank, last_code, last_point) = (
         [int(value) for value in fiblets.pages[page]] for page in (begin, end)
     )
@@ -220,5 +220,5 @@ def storage_buffer(ctx: moderngl.Context, data: npt.NDArray[Any] | bytes, what: 
     buffer = reserve_buffer(ctx, padded(len(raw)), what)
     if len(raw):
         buffer.write(raw)
-    buffer.write(bytes(buffer.size - len(raw)), offset=len(raw))  # drivers leave what was in memory before
+    buffer.write(bytes(buffer.size - len(raw)), offset=len(raw))  # drivers leave old memory in it
     return buffer

@@ -39,7 +39,7 @@ class DataTextures:
     ----------
     gl : GLExtras
     chunk : Chunk
-        Its buffers may come and go, as those of per-point values do.
+        Buffers of per-point values may come and go.
     """
 
     def __init__(self, gl: GLExtras, chunk: Chunk) -> None:
@@ -67,7 +67,7 @@ class DataTextures:
                 self._textures[name] = buffers[name], self._gl.texture_buffer(buffers[name], SAMPLERS[name][1])
         first = next(iter(self._textures.values()))[1]
         last = max(number for number, name in enumerate(FIBLET_DATA) if name in self._textures)
-        # Programs read nothing of those that are missing in between: any texture may be there.
+        # Programs never read the missing ones in between: any texture may be there.
         names = tuple(FIBLET_DATA)[: last + 1]
         every = [self._textures[name][1] if name in self._textures else first for name in names]
         self._binding = _binder(self._gl, min(FIBLET_DATA.values()), every)
@@ -99,7 +99,7 @@ def _nothing() -> None:
 
 
 def set_data_samplers(gl: GLExtras, program: moderngl.Program) -> None:
-    """Tell a program where :meth:`DataTextures.bind` puts what it reads."""
+    """Set a program's samplers to the units of :meth:`DataTextures.bind`."""
     for name, (sampler, _) in SAMPLERS.items():
         gl.set_sampler(program, sampler, FIBLET_DATA[name])
     gl.set_sampler(program, "sampled_volume", SAMPLED["sampled_volume"])

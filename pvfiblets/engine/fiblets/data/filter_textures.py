@@ -1,9 +1,9 @@
-"""What is there to be drawn: streamlines, and points, that the caller kept. The rest is culled, not only hidden.
+"""Filters: the streamlines and points that the caller kept. The rest is culled, not only hidden.
 
-A streamline takes a bit, by rank; a point takes a bit, in the order in which points are coded. Both are looked at by
-the culling stage of every pipeline (``shaders/culling/criteria.glsl``), so that what is left out costs no decoding. A
-segment is drawn where both of its points are kept, a streamline of one point where that one is; a fiblet of which only
-some segments are kept is drawn by the programs that can cut.
+A streamline takes a bit, by rank; a point takes a bit, in the order of the coded points. The culling stage of every
+pipeline (``shaders/culling/criteria.glsl``) reads both, so that removed lines cost no decoding. A segment is drawn
+where both of its points are kept, a streamline of one point where that point is kept; a fiblet with some segments kept
+is drawn by the programs that can cut.
 """
 
 from __future__ import annotations
@@ -39,15 +39,15 @@ Words = npt.NDArray[np.uint32]
 
 @dataclass(frozen=True, eq=False)
 class Filter:
-    """Which streamlines and points are drawn. The arrays must not be changed afterwards.
+    """Streamlines and points to draw. The arrays must not be changed afterwards.
 
     Parameters
     ----------
     streamlines : numpy.ndarray, optional
         ``(n_streamlines,)`` bool; all by default.
     points : numpy.ndarray, optional
-        ``(n_words,)`` uint32, a bit for each point in the order in which points are coded (those of streamline, or
-        rank, 0 first), the lowest bit of a word first; ``32 * n_words >= n_points``. All by default.
+        ``(n_words,)`` uint32, a bit for each point in the order of the coded points (streamline of rank
+        0 first), the lowest bit of a word first; ``32 * n_words >= n_points``. All by default.
 
     Raises
     ------
@@ -109,12 +109,12 @@ class FilterTextures:
 
     @property
     def cutting(self) -> tuple[str, ...]:
-        """Those that drawing needs, where fiblets may be drawn in part."""
+        """Features for drawing, where fiblets may be drawn in part."""
         return ("POINT_MASK",) if self._points else ()
 
     @property
     def filtering(self) -> Filter | None:
-        """What is drawn; None for everything."""
+        """The current filter; None for everything."""
         return self._filter
 
     @filtering.setter
@@ -214,7 +214,7 @@ def _packed(mask: npt.NDArray[np.bool_]) -> Words:
 def points_of_part(words: Words, whole: FibletSet, ids: npt.NDArray[np.int64]) -> Words:
     """Return the bits of the points of some streamlines, one after another in that order."""
     bits = np.unpackbits(words.view(np.uint8), bitorder="little")
-    places = StreamlineRanges.of(whole).at(ids)
+    places = StreamlineRanges.from_fiblets(whole).at(ids)
     ends = np.cumsum(places.points)
     rows = np.repeat(places.point - (ends - places.points), places.points) + np.arange(ends[-1] if len(ends) else 0)
     return _packed(bits[rows].astype(np.bool_))

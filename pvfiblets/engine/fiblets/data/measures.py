@@ -49,7 +49,7 @@ def _rows(scratch: moderngl.Buffer, size: int) -> npt.NDArray[np.float32]:
 
 
 class ComputeMeasurer:
-    """By compute (OpenGL 4.3).
+    """Measures by a compute shader (OpenGL 4.3).
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ class ComputeMeasurer:
 
 
 class FeedbackMeasurer:
-    """By transform feedback (OpenGL 3.3), with data from buffer textures.
+    """Measures by transform feedback (OpenGL 3.3), with data from buffer textures.
 
     Parameters
     ----------

@@ -8,7 +8,7 @@ OpenGL                 how
 software (Mesa)        the machine's own free memory, and no more than its control group allows
 NVIDIA                 GL_NVX_gpu_memory_info
 AMD                    GL_ATI_meminfo
-others                 not at all: the driver says so when it cannot go on, while the set is copied
+others                 not at all: the driver fails while the set is copied
 =====================  ==========================================================================================
 
 Counted are the chunks' buffers, the passes' marks, the largest per-point value that a style may ask for, and a picture
@@ -39,10 +39,10 @@ __all__ = ["PICTURE", "RESERVE", "Fitted", "MemoryBudget", "free_memory"]
 PICTURE = 1920 * 1080
 """Pixels of the picture that is reckoned with; larger ones live on the reserve."""
 
-PICTURE_BYTES = 48 * PICTURE  # G-buffer 24; depth buffers, what is kept between rounds, pyramid: 24 at most
+PICTURE_BYTES = 48 * PICTURE  # G-buffer 24; depth buffers, state kept between rounds, pyramid: 24 at most
 
 SHARED_BYTES = 20_000
-"""Of the uniform blocks that all chunks share, and a little."""
+"""Bytes of the uniform blocks that all chunks share, with a reserve."""
 
 RESERVE = 0.1
 """Share of the free memory that a sample leaves free."""
@@ -53,7 +53,7 @@ _ADVICE = "draw fewer streamlines, an even share of them by fit='sample', or all
 
 @dataclass(frozen=True)
 class Fitted:
-    """What is drawn of a set.
+    """The drawn part of a set.
 
     Attributes
     ----------
@@ -70,7 +70,7 @@ class Fitted:
     share: float
 
     def kept(self) -> FibletSet:
-        """What to keep once it is on the GPU: a part, which only stands in memory, without its codes."""
+        """Return the set to keep once it is on the GPU: a part, without its codes."""
         return self.fiblets if self.share == 1.0 else replace(self.fiblets, codes=np.empty(0, np.uint8))
 
 
@@ -141,7 +141,7 @@ class MemoryBudget:
         return GPUMemoryError(f"{self._said(fiblets, plans)}; {_ADVICE}") if too_many or too_large else None
 
     def _fraction(self, fiblets: FibletSet, plans: list[ChunkPlan]) -> float:
-        """How much of a set may be taken: 0 to 1."""
+        """Return the share of a set that fits: 0 to 1."""
         # A part has the numbers of its streamlines on the GPU, and stays in memory.
         buffers = self._buffers(fiblets, plans) + 4 * fiblets.n_ranks
         host = max(fiblets.nbytes, 1)
@@ -160,12 +160,12 @@ class MemoryBudget:
         return self._buffers(fiblets, self._plans(fiblets))
 
     def fits(self, fiblets: FibletSet) -> bool:
-        """Say whether a set fits as a whole, as far as can be known beforehand."""
+        """Return whether a set fits as a whole, as far as can be known beforehand."""
         return self._refusal(fiblets, self._plans(fiblets)) is None
 
     @property
     def room(self) -> int | None:
-        """Bytes that buffers may take beside a picture, :data:`RESERVE` less than are free; None if nobody knows.
+        """Bytes that buffers may take beside a picture, :data:`RESERVE` less than are free; None if unknown.
 
         Half of that where both are the same memory: parts stand in it twice.
         """
@@ -198,7 +198,7 @@ class MemoryBudget:
 
 
 def _fraction_of(part: Restriction, whole: FibletSet) -> float:
-    """How much of a set a part of it is: of its fiblets, codes or points, whichever is most."""
+    """Return a part's share of a set: of its fiblets, codes or points, whichever is greatest."""
     sizes = ((part.n_fiblets, whole.n_fiblets), (part.n_codes, len(whole.codes)), (part.n_points, whole.n_points))
     return max(some / every for some, every in sizes if every)
 

@@ -1,9 +1,9 @@
 """Per-point values on the GPU, made when a style asks for them and dropped when it no longer does.
 
 ============================  ==========================================  ==============================
-value                         what the GPU holds for it                   unit
+value                         GPU data                                    unit
 ============================  ==========================================  ==============================
-a name in ``per_point``       its codes and what they mean, or a float32   the array's own
+a name in ``per_point``       its codes and their range, or a float32     the array's own
 a name of three or four       a word per point: red, green, blue, alpha   a colour, packed into a number
 ``'arc_length'``              a float32 per fiblet: the anchor's          mm from the first point
 ``'curvature'``               as of a name in ``per_point``               1/mm
@@ -82,7 +82,7 @@ class ValueSources:
         self._curvature: PointValues | None = None
 
     def activate(self, name: str | VolumeSource | None, features: Sequence[str]) -> tuple[str, ...]:
-        """Make the buffers of a value, and drop those of the last one."""
+        """Make the buffers of a value, and drop the last value's."""
         if isinstance(name, str):
             self._check(name)
         if name != self._active:

@@ -127,7 +127,7 @@ class VolumeSource:
     def range(self) -> tuple[float, float]:
         """Least and greatest finite value; (0, 0) where there is none."""
         low, high = np.inf, -np.inf
-        for slab in self.values:  # a copy of the whole would take as much memory again
+        for slab in self.values:  # a copy of the whole would double the memory
             finite = slab[np.isfinite(slab)]
             if finite.size:
                 low, high = min(low, float(finite.min())), max(high, float(finite.max()))
@@ -135,7 +135,7 @@ class VolumeSource:
 
     @cached_property
     def reference(self) -> float:
-        """What graphics cards subtract from the values first (`pvfiblets.support.value_reference`)."""
+        """Offset that graphics cards subtract from the values first (`pvfiblets.support.value_reference`)."""
         return value_reference(self.values)
 
     @cached_property
@@ -216,7 +216,7 @@ class VolumeTexture:
         self._block = ctx.buffer(reserve=SAMPLING_BLOCK.nbytes)
 
     def bind(self, to_data: Array) -> None:
-        """Say where the picture's local coordinates lie in the volume, and bind both."""
+        """Set the map from the picture's local coordinates to the volume, and bind both."""
         self._block.write(
             SAMPLING_BLOCK.pack(
                 voxel_from_local=self.source.voxels @ to_data,

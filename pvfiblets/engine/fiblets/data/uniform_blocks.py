@@ -90,17 +90,17 @@ class SharedBlocks:
 
     @cached_property
     def place(self) -> tuple[Array, Array, int]:
-        """Where anchors count from and mm per anchor integer, ``(3,)`` float64, and the largest such integer."""
+        """Origin of anchors and mm per anchor integer, ``(3,)`` float64, and the largest such integer."""
         fiblets = self._fiblets
         return np.asarray(fiblets.origin, np.float64), np.asarray(fiblets.anchor_scale, np.float64), self.top
 
     def bind(self) -> None:
-        """Bind those that are always there."""
+        """Bind the blocks that every program has."""
         for name, block in (("frame", "Frame"), ("coding", "Coding"), ("rotations", "Rotations")):
             self.buffers[name].bind_to_uniform_block(BLOCKS[block])
 
     def forget_camera(self) -> None:
-        """Have positions count from the first anchor's, so that what is measured does not depend on the camera."""
+        """Have positions count from the first anchor's, so that measurements do not depend on the camera."""
         self.buffers["frame"].write(bytes(FRAME_BLOCK.nbytes))
 
     def write_camera(self, view: View, style: FibletStyle) -> tuple[bool, bool]:

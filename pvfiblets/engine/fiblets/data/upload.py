@@ -22,14 +22,14 @@ if TYPE_CHECKING:
 __all__ = ["SLICE_BYTES", "Show", "fill_buffer", "release_chunks", "rows_of", "upload_chunk", "upload_fitting"]
 
 SLICE_BYTES = 1 << 24
-"""How much is copied at a time."""
+"""Bytes that are copied at a time."""
 
 Show = Callable[[int], object]
 Array = npt.NDArray[Any]
 
 
 def rows_of(array: Array, first: int, last: int) -> Iterator[Array]:
-    """Yield rows of an array in slices of `SLICE_BYTES`; of a mapped one, forget each once the next is asked for."""
+    """Yield rows of an array in slices of `SLICE_BYTES`; release each slice of a mapped array before the next."""
     rows = max(SLICE_BYTES // max(array[:1].nbytes, 1), 1)
     for at in range(first, last, rows):
         end = min(at + rows, last)
@@ -175,7 +175,7 @@ def _with_next(array: Array, first: int, last: int) -> Iterator[Array]:
 
 
 def _rank_of(fiblets: FibletSet, index: int) -> int:
-    """Rank of one fiblet's streamline among those that have points."""
+    """Rank of one fiblet's streamline among the streamlines with points."""
     words = np.asarray(fiblets.anchors[index])
     return int(fiblets.pages[index >> layout.PAGE_BITS, 0]) + int(layout.unpack("rank", words))
 

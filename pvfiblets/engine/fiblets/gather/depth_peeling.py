@@ -1,9 +1,9 @@
-"""What lies behind the nearest: several layers of a picture, the nearest first, for lines that one looks through.
+"""Depth peeling: several layers of a picture, the nearest first, for translucent lines.
 
-Layer 0 is the picture itself. Layer k is drawn like a picture, but of every pixel only what lies behind layer k - 1
+Layer 0 is the picture itself. Layer k is drawn like a picture, but of every pixel only the part behind layer k - 1
 (``shaders/fiblets/segments/peel.glsl``; the method is depth peeling, Everitt 2001): so there is no order to sort lines
-into, and what a pixel shows does not depend on the order of streamlines. All layers together are exact as far as they
-reach; what lies behind the last one is not there.
+into, and no pixel depends on the order of streamlines. All layers together are exact as far as they
+reach; lines behind the last one are missing.
 
 Each layer is drawn from all fiblets in the view volume. What hides a fiblet of a layer is that layer's own depth so
 far, by two-phase culling as of the picture itself; what the last picture's same layer showed is drawn first. So each
@@ -45,7 +45,7 @@ class LayeredBuffer:
     ctx : moderngl.Context
     gl : GLExtras
     target : GBuffer
-        Of the same size and kind as what is to be kept.
+        Of the same size and kind as the layers to be kept.
     count : int
         Layers.
 
@@ -96,7 +96,7 @@ class LayeredBuffer:
         return {"depth": self.depth, "ids": self.ids, "position": self.position, **across}
 
     def _framebuffer(self, ctx: moderngl.Context, gl: GLExtras, target: GBuffer, layer: int) -> moderngl.Framebuffer:
-        # moderngl attaches whole textures: those of the picture hold the places.
+        # moderngl attaches whole textures: the picture's textures hold the places.
         framebuffer = ctx.framebuffer([getattr(target, name) for name in self.arrays])
         self._things.append(framebuffer)
         for attachment, array in enumerate(self.arrays.values()):
@@ -124,7 +124,7 @@ class LayeredBuffer:
 
 @dataclass(frozen=True)
 class Peel:
-    """What a picture is drawn behind.
+    """The layers in front of a picture.
 
     Attributes
     ----------
@@ -146,7 +146,7 @@ class Peel:
 
 
 class _Stage:
-    """What draws one layer, and remembers its last picture."""
+    """The renderer of one layer, with its last picture."""
 
     def __init__(self, ctx: moderngl.Context, pipeline: Pipeline, occlusion: Occlusion | None) -> None:
         self._ctx = ctx
@@ -155,7 +155,7 @@ class _Stage:
         self.target: GBuffer | None = None
 
     def draw(self, request: DrawRequest, peel: Peel, view: View, style: FibletStyle) -> GBuffer:
-        """Draw what lies behind some layers."""
+        """Draw the lines behind some layers."""
         if self.target is not None and self.target.size != request.target.size:
             self.target.release()
             self.target = None
@@ -198,7 +198,7 @@ class Layers:
     gl : GLExtras
     programs : Programs
     make : callable
-        Makes a pipeline, and what it culls by, if anything.
+        Makes a pipeline and its culling, if it has any.
     """
 
     def __init__(
@@ -216,7 +216,7 @@ class Layers:
         self._held: LayeredBuffer | None = None
         self._drawn: tuple[int, int] | None = None
 
-    def of(
+    def render(
         self, nearest: GBuffer, count: int, view: View, style: FibletStyle, make_job: Callable[[], DrawRequest]
     ) -> LayeredBuffer:
         """Return the layers of a picture, drawn unless they are there."""
@@ -239,7 +239,7 @@ class Layers:
         return held
 
     def _resize(self, nearest: GBuffer, count: int) -> LayeredBuffer:
-        """Have textures for a picture like this one."""
+        """Return textures for a picture like this one."""
         held = self._held
         wanted = nearest.size, count, nearest.relief
         if held is None or (held.size, held.count, held.relief) != wanted:

@@ -51,7 +51,7 @@ class Gatherer:
         self._asked: Any = None
         self._later = DelayedRead(ctx, gl)
 
-    def of(
+    def render(
         self,
         nearest: GBuffer,
         paint: Paint,
@@ -73,7 +73,7 @@ class Gatherer:
         self._made = key
         return held
 
-    def of_parts(
+    def render_parts(
         self,
         nearest: GBuffer,
         paint: Paint,
@@ -83,7 +83,7 @@ class Gatherer:
         add: Callable[[Gathered], None],
         state: Any = None,
     ) -> Gathered:
-        """Return the sums of a picture of several parts, each of which adds its own."""
+        """Return the sums of a picture of several parts; each part adds its own."""
         key = None if state is None else (nearest.generation, nearest.size, paint, slices, distances, state)
         if self._held is not None and key is not None and self._made == key:
             return self._held
@@ -107,7 +107,7 @@ class Gatherer:
         self._add(request, Gather(held, paint, nearest, hides, own))
 
     def gathers_words(self, request: DrawRequest) -> bool:
-        """Say whether sums for such a request are words, not floats."""
+        """Return whether sums for such a request are words, not floats."""
         return self._pipeline.gathers_words(request)
 
     def _begin(
@@ -136,7 +136,7 @@ class Gatherer:
         return held
 
     def greatest(self, *, wait: bool = True) -> float:
-        """Return the greatest weight of a pixel in the first slice of what was made last."""
+        """Return the greatest weight of a pixel in the first slice of the last sums."""
         if (came := self._later.arrived()) is not None:
             self._greatest = came[0], float(came[1].max())
         known = self._greatest

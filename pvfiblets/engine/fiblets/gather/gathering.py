@@ -8,13 +8,13 @@ density
     One sum a pixel, of all lines: their number, and with colours their mean colour.
 slices
     The nearest line of a pixel is in no sum; the others are in :data:`SLICES` sums by how far behind it they are. The
-    slices grow with that distance, since what lies near the nearest line shows most. Lines of one slice are blended in
+    slices grow with that distance, since lines near the nearest one show most. Lines of one slice are blended in
     no order; the slices are, one behind the other. This is layered weighted blending (after Friederichs, Eisemann and
     Eisemann, "Layered Weighted Blended Order-Independent Transparency", Graphics Interface 2021) with an exact first
     layer and, where all lines have the same opacity, an exact opacity of the whole: ``n`` lines of opacity ``a`` let
     ``(1 - a)^n`` through, whatever their order.
 
-The compute pipeline adds in words of an image array, with atomics; those of OpenGL's rasteriser add by blending, in an
+The compute pipeline adds in words of an image array, with atomics; the raster pipelines add by blending, in an
 array of float32, which holds whole numbers up to 2^24 exactly. One pass over all fiblets in view makes all of it.
 """
 
@@ -41,10 +41,10 @@ if TYPE_CHECKING:
 __all__ = ["SLICES", "Gather", "Gathered", "SliceDistances", "slice_edges"]
 
 SLICES = 4
-"""Sums of a pixel behind its nearest line; the shaders' three edges between them say so too."""
+"""Sums of a pixel behind its nearest line; the shaders' three edges between them must agree."""
 
 GROWTH = 2.5
-"""How many times as deep as the one before each slice is."""
+"""Ratio of each slice's depth to the depth of the one before."""
 
 Array = npt.NDArray[np.float64]
 
@@ -57,7 +57,7 @@ def slice_edges() -> tuple[float, ...]:
 
 @dataclass(frozen=True)
 class SliceDistances:
-    """How distance along the view follows from depth: ``(p + q c) / (r + s c)``, with c = 1 - window depth.
+    """The distance along the view as a function of depth: ``(p + q c) / (r + s c)``, with c = 1 - window depth.
 
     Attributes
     ----------
@@ -71,7 +71,7 @@ class SliceDistances:
     far: float
 
     @classmethod
-    def of(cls, view: View, low: npt.ArrayLike, high: npt.ArrayLike) -> SliceDistances:
+    def from_box(cls, view: View, low: npt.ArrayLike, high: npt.ArrayLike) -> SliceDistances:
         """Find them for a view of data in a box.
 
         Parameters
@@ -220,7 +220,7 @@ class Gathered:
 
 @dataclass(frozen=True)
 class Gather:
-    """What a pipeline is told about adding up.
+    """Parameters of a pipeline's sums.
 
     Attributes
     ----------
@@ -243,7 +243,7 @@ class Gather:
 
     @property
     def owners(self) -> moderngl.Texture:
-        """Which fiblet is the nearest of those that add."""
+        """Texture with the nearest of the added fiblets."""
         return (self.nearest if self.own is None else self.own).owner
 
     @property

@@ -46,7 +46,7 @@ class LinesBehind(FibletDrawable):
 
     @abc.abstractmethod
     def _request(self, view: View, style: FibletStyle, target: GBuffer) -> DrawRequest:
-        """Bring everything up to date that a view and a style need, bind it, and say what is to be drawn."""
+        """Update and bind everything that a view and a style need, and return the draw request."""
 
     @abc.abstractmethod
     def _make_pipeline(self) -> Pipeline:
@@ -57,7 +57,7 @@ class LinesBehind(FibletDrawable):
         """Make what draws one layer."""
 
     def render_layers(self, view: View, style: FibletStyle | None = None, count: int = 4) -> LayeredBuffer:
-        """Draw what lies behind the nearest too; nothing is done that has been done for this view and style.
+        """Draw the lines behind the nearest too; a repeated call with this view and style costs nothing.
 
         Parameters
         ----------
@@ -84,7 +84,7 @@ class LinesBehind(FibletDrawable):
         if self._layers is None:
             self._layers = self._keep(Layers(self._ctx, self._gl, self._programs, self._make_stage), "layers")
         with self._noting():
-            return self._layers.of(nearest, count, view, style, lambda: self._request(view, style, nearest))
+            return self._layers.render(nearest, count, view, style, lambda: self._request(view, style, nearest))
 
     def drop_layers(self) -> None:
         """Give back what :meth:`render_layers` keeps; twice is harmless."""
@@ -134,7 +134,7 @@ class LinesBehind(FibletDrawable):
         nearest = self.render(view, style)
         gatherer = self._with_gatherer()
         with self._noting():
-            return gatherer.of(
+            return gatherer.render(
                 nearest,
                 paint or Paint(),
                 SLICES if sliced else 1,
@@ -149,10 +149,10 @@ class LinesBehind(FibletDrawable):
         from .gathering import SliceDistances
 
         origin, scale, top = self._shared.place
-        return SliceDistances.of(view, origin, origin + top * scale)
+        return SliceDistances.from_box(view, origin, origin + top * scale)
 
     def gathers_words(self, view: View, style: FibletStyle, nearest: GBuffer) -> bool:
-        """Say whether sums of such a picture are words, not floats."""
+        """Return whether this picture's sums are words, not floats."""
         return self._with_gatherer().gathers_words(self._request(view, style, nearest))
 
     def gather_into(
@@ -164,7 +164,7 @@ class LinesBehind(FibletDrawable):
         nearest: GBuffer,
         hides: moderngl.Texture | None,
     ) -> None:
-        """Add what all lines show to sums of a set of which this is a part.
+        """Add all lines of this part to the sums of its set.
 
         Parameters
         ----------
@@ -210,7 +210,7 @@ class LinesBehind(FibletDrawable):
 
     @contextmanager
     def _noting(self) -> Iterator[None]:
-        """Tell the features of what is drawn meanwhile with those of the picture."""
+        """Report the features of pictures drawn in this scope as the main picture's."""
         with self._programs.noting() as features:
             yield
         self._features_behind |= features
@@ -221,7 +221,7 @@ class LinesBehind(FibletDrawable):
         self._features_behind = frozenset()
 
     def explain(self, *, counts: bool = True) -> dict[str, Any]:
-        """Say what the last redraw was made of, and wait for it to end.
+        """Return the work of the last redraw, and wait for it to end.
 
         Parameters
         ----------

@@ -18,7 +18,7 @@ MOST_OPAQUE = 0.999
 
 @dataclass(frozen=True)
 class Paint:
-    """What a line adds to the pixels that it takes, beside being there.
+    """The contribution of a line to its pixels, beside its count.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ class Paint:
     opacity : float, optional
         Of the whole drawable, where colours have opacities of their own; None where all lines have the same.
     opacities : moderngl.Texture, optional
-        RGBA of 8 bits, row by row: alphas are those of streamlines; with ``opacity``.
+        RGBA of 8 bits, row by row: alphas are the streamlines' opacities; with ``opacity``.
     value_opacity : bool
         Whether the style's per-point value is an opacity; with ``opacity``.
     version : object

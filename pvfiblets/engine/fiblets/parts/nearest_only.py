@@ -34,7 +34,7 @@ class NearestOnly(FibletDrawable):
     Attributes
     ----------
     hurried : bool
-        Whether pictures are of what is there, at once.
+        Whether pictures show the available data at once.
     patience : float or None
         Seconds after which a picture is given back as it is; None for complete pictures only.
     """
@@ -64,7 +64,7 @@ class NearestOnly(FibletDrawable):
 
     @property
     def filtering(self) -> Filter | None:
-        """What is there to be drawn; see :attr:`.FibletRenderer.filtering`."""
+        """The filter; see :attr:`.FibletRenderer.filtering`."""
         self._check_alive()
         return self._filter
 
@@ -94,4 +94,4 @@ class NearestOnly(FibletDrawable):
         """Do nothing: there are none."""
 
     def drop_gathered(self) -> None:
-        """Do nothing: there is nothing."""
+        """Do nothing: there are no sums."""

@@ -67,7 +67,7 @@ class PartPictures:
 
     @property
     def picture(self) -> GBuffer:
-        """What there is so far."""
+        """The picture so far."""
         return self._kept[0].picture
 
     def add(self, drawn: GBuffer, order: int, *, by_streamline: bool = False) -> None:

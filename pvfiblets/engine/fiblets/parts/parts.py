@@ -24,7 +24,7 @@ Box = npt.NDArray[np.float64]
 
 
 class Parts(Protocol):
-    """What a set is divided into. Each streamline is in one part, as a whole, with its number in the set."""
+    """The parts of a set. Each streamline is in one part, as a whole, with its number in the set."""
 
     whole: FibletSet
     """The set: what filters and colours go by."""
@@ -87,7 +87,7 @@ class Stretches:
 
     @cached_property
     def _ranks(self) -> Sequence[int]:
-        """First rank of each part, and one past the last: parts have about as many bytes of codes."""
+        """First rank of each part, and one past the last: parts have about the same number of bytes of codes."""
         pages = np.asarray(self.whole.pages, np.float64)
         codes = pages[:, 1]
         count = max(int(np.ceil(1.0 / self._share)), 1)
@@ -127,7 +127,7 @@ class Stretches:
 
 
 def _numbered(part: FibletSet, ids: npt.NDArray[np.int64]) -> FibletSet:
-    """Return a part with its streamlines' numbers, also where it is all there is: programs are those of the others."""
+    """Return a part with its streamlines' numbers, even if it is the whole set: all parts share their programs."""
     return part if part.rank_to_id is not None else replace(part, rank_to_id=ids)
 
 
@@ -151,7 +151,7 @@ def reach_of(part: FibletSet) -> Box | None:
 
 
 def in_view(view: View, style: Style, box: Box | None) -> bool:
-    """Say whether anything in a box may show; True where it is not known."""
+    """Return whether anything in a box may show; True where it is not known."""
     if box is None:
         return True
     corners = np.array([[box[i, 0], box[j, 1], box[k, 2], 1.0] for i in (0, 1) for j in (0, 1) for k in (0, 1)])

@@ -1,8 +1,8 @@
 """`ShardParts`: shards of a set as the parts that come to the GPU one by one.
 
-A shard that is larger than a part may be is divided once more (:class:`.Stretches`). Where shards lie is known from the
-manifest, so that those outside of the view are not read; shards at an address are fetched in the background while
-pictures of what is there go on.
+A shard above the size limit of a part is divided once more (:class:`.Stretches`). The manifest holds the bounds of
+shards, so shards outside of the view are not read; shards at an address are fetched in the background while pictures
+of the available data go on.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 __all__ = ["ShardGroups", "ShardParts", "gpu_bytes_of_shards", "in_memory", "parts_of"]
 
-FETCHED_AT_ONCE = 2  # connections; a third would take bandwidth from what is looked at
+FETCHED_AT_ONCE = 2  # connections; a third would take bandwidth from the parts in view
 
 
 class ShardParts:
@@ -71,7 +71,7 @@ class ShardParts:
     def is_here(self, number: int) -> bool:
         """Whether a part can be had at once; if not, it is being fetched from now on, if not too many others are."""
         shard = self._places[number][0]
-        # All of them: one may be here, be drawn and not be asked for again before its thread has ended.
+        # All of them: one may have arrived, been drawn and dropped before its thread has ended.
         for fetched in [one for one, future in self._fetching.items() if future.done()]:
             self._fetching.pop(fetched).result()
         if self._set.shards.is_here(shard):
@@ -134,7 +134,7 @@ def parts_of(fiblets: FibletSet, gpu_bytes: int, part_bytes: int) -> Parts:
 
 
 class ShardGroups:
-    """Shards of a set in runs of about as many fiblets, for workers that read them themselves.
+    """Shards of a set in runs of about the same number of fiblets, for workers that read them themselves.
 
     Parameters
     ----------

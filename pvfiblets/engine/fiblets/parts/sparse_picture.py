@@ -22,7 +22,7 @@ _KINDS = {"u": "<u4", "f": "<f4"}
 
 @dataclass(frozen=True)
 class Cost:
-    """What one step towards a picture took.
+    """The cost of one step towards a picture.
 
     Attributes
     ----------
@@ -115,7 +115,7 @@ def _keys(picture: SparsePicture) -> npt.NDArray[np.uint64]:
 
 
 def write_picture(found: SparsePicture, target: GBuffer) -> None:
-    """Fill a G-buffer of the same size and kind; what is not in the picture is empty."""
+    """Fill a G-buffer of the same size and kind; pixels outside the picture are empty."""
     count = found.size[0] * found.size[1]
     for name, array in found.textures.items():
         texture = getattr(target, name)

@@ -5,7 +5,7 @@ parts' (:mod:`.part_pictures`). Parts outside the view are left out. Those that 
 others come, each in the place of that which was not drawn for longest.
 
 =============  =======================================================================================================
-picture        what it shows
+picture        content
 =============  =======================================================================================================
 complete       every part in the view: bit by bit what a renderer of the whole set draws
 so far         after `patience` seconds: the parts that were drawn by then, and the even share while others are being
@@ -61,13 +61,13 @@ THINNED_SHARE = 0.25
 """Share of the memory for the streamlines that hurried pictures show."""
 
 LEAST_ROOM = 60_000
-"""Bytes of memory below which a part would not pay for what it takes beside its records."""
+"""Bytes of memory below which a part's overhead exceeds its records."""
 
 THINNED = -1  # number of the even share among the parts
 
 
 class StreamedRenderer(NearestOnly):
-    """Draws a set of which a part at a time is on the GPU.
+    """Draws a set with one part at a time on the GPU.
 
     Parameters
     ----------
@@ -296,7 +296,7 @@ class StreamedRenderer(NearestOnly):
                 part.gather_into(held, view, style, asked, nearest, hides)
                 part.forget_picture()  # the next part draws into the same textures
 
-        return self._gatherer.of_parts(
+        return self._gatherer.render_parts(
             nearest, asked, SLICES if sliced else 1, first.slice_distances(view),
             lambda: first.gathers_words(view, style, nearest), add, (state,) if whole else None,
         )  # fmt: skip

@@ -1,7 +1,7 @@
 """What a worker of a cluster does for a picture: it draws its part of a set, in an OpenGL context of its own.
 
 A context belongs to one thread: all drawing of a process runs in a thread that lives as long as the process. Renderers
-of the last :data:`HELD` sets and parts are kept, with what they hold on the GPU.
+of the last :data:`HELD` sets and parts are kept, with their GPU memory.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""How fiblets become pixels: one module per pipeline, each filling the same G-buffer from the same chunks."""
+"""Pipelines from fiblets to pixels: one module each, all filling the same G-buffer from the same chunks."""
 
 from __future__ import annotations
 

@@ -1,17 +1,17 @@
 """The compute pipeline (OpenGL 4.3): decode in registers, rasterise into images with atomics.
 
 =============  =================================================================================================
-pass           what it does
+pass           task
 =============  =================================================================================================
 clear          empties depth and owners
-cull           plans the drawing: which fiblets can show, which were seen last time, which others will probably show by
-               the last picture's depth, of which class they are
-visible        draws the depth of those seen last time with imageAtomicMin; marks those that came nearest somewhere
-predicted      draws the depth of those that will probably show
+cull           plans the drawing: which fiblets can show, which were visible last time, which others will probably show
+               by the last picture's depth, and the class of each
+visible        draws the depth of the fiblets visible last time with imageAtomicMin; marks the ones that came nearest
+predicted      draws the depth of fiblets that will probably show
 pyramid        makes the depth so far into a pyramid
 occlusion      tests the rest against it, each fiblet as a whole
-refine         tests in pieces those that were not hidden as a whole
-depth          draws the depth of what is left
+refine         tests in pieces the fiblets not hidden as a whole
+depth          draws the depth of the remaining fiblets
 resolve_owner  draws those so marked again: where depth was kept, the least fiblet index owns the pixel and writes
                streamline, tangent and place into it
 resolve_ties   writes the pixels that more than one fiblet took, by their owners
@@ -139,7 +139,7 @@ class ComputePipeline:
     Attributes
     ----------
     planned : bool
-        Whether the marks are those of the last picture.
+        Whether the visibility bits are the last picture's.
     """
 
     name = "compute"
@@ -273,7 +273,7 @@ class ComputePipeline:
             self._bind_nearest(8 * target.size[0] * target.size[1])
 
     def gathers_words(self, request: DrawRequest) -> bool:
-        """Say whether sums for such a request are words, not floats."""
+        """Return whether sums for such a request are words, not floats."""
         return not (self._software and request.tubes and TUBES_BY_RASTER)
 
     def gather(self, request: DrawRequest) -> None:
@@ -296,7 +296,7 @@ class ComputePipeline:
         self._ctx.memory_barrier(moderngl.ALL_BARRIER_BITS)
 
     def _draw_by_raster(self, request: DrawRequest) -> None:
-        """Have the pipeline `geometry` draw, which reads the same buffers."""
+        """Draw by the pipeline `geometry`, which reads the same buffers."""
         self._by_raster().draw(request)
 
     def _by_raster(self) -> GeometryPipeline:
@@ -377,8 +377,8 @@ class ComputePipeline:
     def _classes_of(self, stage: str, number: int, request: DrawRequest) -> list[tuple[int, list[str]]]:
         """Return the classes whose programs run in a round that is planned, with their features.
 
-        Software OpenGL is through with the plan when the call returns, and takes 0.3 s to compile what runs for the
-        first time: while a class has no program, it is asked whether it has fiblets. Cards would have to be waited for.
+        Software OpenGL has finished the plan when the call returns, and takes 0.3 s to compile a program's first
+        run: before a class gets a program, its fiblets are counted. Cards would have to be waited for.
         """
         classes = [(part, [*features, *self._int64]) for part, features in request.classes(one=self._one_class)]
         name = f"fiblets/compute/{stage}.comp"
@@ -400,7 +400,7 @@ class ComputePipeline:
         pieces: Pieces | None,
         **uniforms: object,
     ) -> Generator[None, None, None]:
-        """Run a program for each class of fiblets, chunk by chunk, of which each is bound once."""
+        """Run a program for each class of fiblets, chunk by chunk, with each chunk bound once."""
         listed = self._own["visibility_bits"]
 
         def tell(program: moderngl.ComputeShader) -> None:
@@ -444,7 +444,7 @@ class ComputePipeline:
         return [*request.decoding, *request.detail, *request.tubes, request.occlusion.feature]
 
     def _refine(self, request: DrawRequest, pieces: Pieces | None) -> Generator[None, None, None]:
-        """Test what the occlusion pass left over more closely; the list of the rest leaves out what is hidden."""
+        """Test the survivors of the occlusion pass more closely; hidden ones leave the list."""
         program = self._program("refine", self._looking(request))
         self._plan(TESTED, request.chunks)
         parts = [(program, part) for part, _ in request.classes(one=self._one_class)]
@@ -529,7 +529,7 @@ class ComputePipeline:
     def _in_pieces(
         self, stage: str, program: moderngl.ComputeShader, groups: int, request: DrawRequest, pieces: Pieces
     ) -> Iterator[None]:
-        """Run work groups of a program, some at a time; who goes on binds again what is the program's and the chunk's.
+        """Run work groups of a program, some at a time; after a pause, bind the program's and the chunk's data again.
 
         Which groups run together is of no consequence: no pass depends on the order of fiblets.
         """

@@ -1,4 +1,4 @@
-"""Numbers that the pipelines' sources and modules share, in a place that loads none of these modules."""
+"""Numbers that the pipelines' sources and modules share, in a module that imports no pipeline."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ VERTICES = {"line": 61, "valued_line": 31, "cut_line": 60, "cut_valued_line": 40
             "cut_capsule": 36}
 
 THREADS = 32
-"""Of a mesh stage's work group: a warp, as the paper has it."""
+"""Invocations of a mesh stage's work group: a warp, as in the paper."""
 
 TASK_ROUNDS = 8
-"""How many fiblets each invocation of a task work group tests."""
+"""Fiblets that each invocation of a task work group tests."""
 
 GREATEST_SIDE = 16
-"""Pixels of the squares of which the greatest sum is found."""
+"""Pixels of the side of the squares that the greatest sum is searched in."""
 
 TASK_FIBLETS = THREADS * TASK_ROUNDS
 
@@ -66,4 +66,4 @@ CONSTANTS = {
     **{f"{drawn}_share": share for drawn, share in SHARES.items()},
     **{f"{drawn}_vertices": count for drawn, count in VERTICES.items()},
 }
-"""Of all pipelines' sources."""
+"""Constants of all pipelines' sources."""

@@ -1,4 +1,4 @@
-"""What a pipeline is told to draw, and what every pipeline does."""
+"""The request that a pipeline draws, and the methods of every pipeline."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class DrawRequest:
         ``TUBES``, ``CROSS_LINE``, ``EDGES`` and ``SUBSAMPLES``, if asked for. With tubes the uniform block ``Tubes`` is
         bound too.
     peel : Peel, optional
-        Layers behind which the picture begins.
+        The picture begins behind these layers.
     gather : Gather, optional
         Where all lines are added up, in place of the nearest's picture.
     """
@@ -86,7 +86,7 @@ class DrawRequest:
 
     @property
     def extra(self) -> tuple[str, ...]:
-        """What else drawing programs write; nothing of layers behind others."""
+        """Additional outputs of drawing programs; none for layers behind others."""
         return () if self.peel is not None else (*self.edges, *self.samples)
 
     @property
@@ -101,7 +101,7 @@ class DrawRequest:
 
     @property
     def cutting(self) -> tuple[str, ...]:
-        """Features by which a fiblet is drawn in part."""
+        """Features that draw a fiblet in part."""
         return (*self.planes, *self.kept.cutting)
 
     def classes(self, *, one: bool = False) -> list[tuple[int, tuple[str, ...]]]:
@@ -129,13 +129,13 @@ class Sized(Protocol):
 
 
 class Pipeline(Protocol):
-    """How fiblets become pixels."""
+    """A method of drawing fiblets."""
 
     name: str
 
     @property
     def buffers(self) -> Mapping[str, Sized]:
-        """What it keeps on the GPU of its own, by name."""
+        """Its own GPU memory, by name."""
         ...
 
     def draw(self, request: DrawRequest) -> None:
@@ -143,7 +143,7 @@ class Pipeline(Protocol):
         ...
 
     def gathers_words(self, request: DrawRequest) -> bool:
-        """Say whether sums for such a request are words, not floats (`gathering.Gathered`)."""
+        """Return whether sums for such a request are words, not floats (`gathering.Gathered`)."""
         ...
 
     def gather(self, request: DrawRequest) -> None:

@@ -4,7 +4,7 @@ Paper: Schertzer et al. 2022, section 4.5. The sources are in ``shaders/fiblets/
 ``hardware_raster`` and ``segments``.
 
 Budget of a geometry stage: OpenGL promises 256 vertices and 1024 components of all vertices together. With the
-components of ``shaders/fiblets/hardware_raster/varyings.glsl``, those of edges included, and per-point values or not:
+components of ``shaders/fiblets/hardware_raster/varyings.glsl``, with or without edges and per-point values:
 
 ==============================  ==========  ==============  =======================================================
 drawn                           components  vertices        segments of a share
@@ -18,7 +18,7 @@ wide, with values               22          1024 // 22: 46  10: 60 in six shares
 wide, caller's planes, either   28          1024 // 28: 36  9: 60 in seven shares
 ==============================  ==========  ==============  =======================================================
 
-A fiblet is drawn in as many shares as its segments need; every share walks along the fiblet from its first point.
+A fiblet is drawn in several shares, depending on its segments; every share walks along the fiblet from its first point.
 """
 
 from __future__ import annotations

@@ -1,17 +1,17 @@
-"""What the pipelines have in common that OpenGL's own rasteriser draws for: rounds, depth test and attachments.
+"""The base of pipelines that draw by OpenGL's own rasteriser: rounds, depth test and attachments.
 
 ===============  ===============================================================================================
-pass             what it does
+pass             task
 ===============  ===============================================================================================
 clear            empties depth and owners
-visible          two-phase culling: draws those that the last picture showed, or that probably show now
-pyramid          two-phase culling: makes the pyramid of that depth, and keeps who owns it
+visible          two-phase culling: draws fiblets that the last picture showed, or that probably show now
+pyramid          two-phase culling: makes the pyramid of that depth, and keeps the owners of pixels
 draw             draws the others; without two-phase culling, all
 visibility_bits  two-phase culling: notes, for the next picture, which fiblets own a pixel
 ===============  ===============================================================================================
 
-The G-buffer's textures are colour attachments, and a depth buffer of float32 decides what is nearest. OpenGL
-draws in order, fiblet by fiblet, and a fragment must be nearer than what is there: of two at the same depth the
+The G-buffer's textures are colour attachments, and a depth buffer of float32 decides which fragment is nearest. OpenGL
+draws in order, fiblet by fiblet, and a fragment must be nearer than the pixel's depth: of two at the same depth the
 fiblet with the smaller index stays. The second round comes later than its indices:
 ``shaders/fiblets/hardware_raster/between.frag`` and ``shade.glsl`` see to it that the picture is the same
 as if there were but one. Depths are written as coarse as the keys that these go by.
@@ -146,8 +146,8 @@ class SeenTexture:
         rows = max(-(-n_fiblets >> self.bits), 1)
         if rows > limit:
             raise EngineError(
-                f"{n_fiblets} fiblets are more than the {limit << self.bits} of which this OpenGL's largest texture "
-                "holds a texel each; draw fewer streamlines"
+                f"{n_fiblets} fiblets are more than the {limit << self.bits} texels of this OpenGL's largest texture; "
+                "draw fewer streamlines"
             )
         self.size = 1 << self.bits, rows
         try:
@@ -204,7 +204,7 @@ class RasterPipeline(abc.ABC):
 
     name: str
     features: tuple[str, ...] = ("TEXTURE_DATA",)
-    """Of all its programs."""
+    """Features of all its programs."""
 
     def __init__(self, ctx: moderngl.Context, gl: GLExtras, programs: Programs, n_fiblets: int) -> None:
         self._ctx = ctx
@@ -227,7 +227,7 @@ class RasterPipeline(abc.ABC):
 
     @abc.abstractmethod
     def _prepare(self, program: moderngl.Program) -> None:
-        """Tell a new program what it needs to be told once."""
+        """Set the samplers and constants of a new program."""
 
     def _array(self, program: moderngl.Program) -> moderngl.VertexArray | None:
         """Return what a program draws with, none where it needs none."""
@@ -262,7 +262,7 @@ class RasterPipeline(abc.ABC):
                     self._seen.update(request.target)
 
     def gathers_words(self, request: DrawRequest) -> bool:  # noqa: ARG002 - of all pipelines
-        """Say that sums are floats: OpenGL blends no words."""
+        """Return False: sums are floats, as OpenGL blends no words."""
         return False
 
     def gather(self, request: DrawRequest) -> None:

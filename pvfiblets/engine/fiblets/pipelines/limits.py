@@ -1,4 +1,4 @@
-"""What a driver allows a pipeline, or what its user does, where that is less."""
+"""Limits of a pipeline: the driver's, or the user's where they are less."""
 
 from __future__ import annotations
 
@@ -38,9 +38,9 @@ class Limits:
     groups : int
         Compute work groups along one axis; 0 where there are none.
     marks : int
-        Fiblets of which the pipeline can remember what became of them.
+        Fiblets with a visibility bit in the pipeline.
     marked_by : str
-        What holds them.
+        Name of the resource that holds them.
     fiblets : int
         Of one buffer of records, and with that of one call (:mod:`pvfiblets.engine.gl.work_limits`).
     call : int
@@ -65,7 +65,7 @@ class Limits:
     def of(
         cls, ctx: moderngl.Context, gl: GLExtras, pipeline: str, buffer_bytes: int | None, groups: int | None
     ) -> Limits:
-        """Ask the driver, and take what is less."""
+        """Query the driver, and take the lesser limit."""
         work, listed = WorkLimits.of(ctx).fiblets, WorkLimits.of(ctx).listed
         side = gl.get_integer("GL_MAX_TEXTURE_SIZE")
         if pipeline in TEXTURED:

@@ -1,4 +1,4 @@
-"""Which segments of its fiblets an invocation draws at a time, where software OpenGL limits its loops."""
+"""Shares of fiblets' segments that an invocation draws at a time, where software OpenGL limits its loops."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SOFTWARE_ITERATIONS = 60_000
 iterations in sum and says nothing."""
 
 WIDEST_IN_SOFTWARE = 100
-"""Pixels of line width with which one segment of each fiblet stays within that."""
+"""Greatest line width in pixels at which one segment of each fiblet stays within that."""
 
 
 def segment_shares(line_width: float, segment: Callable[[], float]) -> list[tuple[int, int]]:

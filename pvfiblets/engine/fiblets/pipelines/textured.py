@@ -1,4 +1,4 @@
-"""What `tessellation` and `geometry` have in common: data from buffer textures, one vertex or several for a fiblet."""
+"""The base of `tessellation` and `geometry`: data from buffer textures, one or several vertices for a fiblet."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class TexturedPipeline(RasterPipeline):
     """Draws by stages with data from buffer textures, and fiblets from ``fiblets/hardware_raster/survivors.vert``."""
 
     mode: int
-    """What a vertex is to OpenGL."""
+    """OpenGL's primitive for a vertex."""
     software_batch: int | None = None
     """Vertices of one call, where Mesa's software OpenGL draws."""
 
@@ -33,7 +33,7 @@ class TexturedPipeline(RasterPipeline):
 
     @abc.abstractmethod
     def _shares(self, request: DrawRequest) -> int:
-        """How many vertices stand for a fiblet."""
+        """Return the number of vertices for a fiblet."""
 
     def _prepare(self, program: moderngl.Program) -> None:
         set_data_samplers(self._gl, program)

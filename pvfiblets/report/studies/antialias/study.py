@@ -1,4 +1,4 @@
-"""The study of smooth edges: what pictures are off by with few samples a pixel, and what they cost."""
+"""The study of smooth edges: the errors of pictures with few samples a pixel, and their cost."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def _nothing(_plotter: Any) -> None:
 
 @dataclass(frozen=True)
 class Variant:
-    """How edges are smoothed."""
+    """A method of smoothing edges."""
 
     # As of :class:`.Record`
     method: str
@@ -155,12 +155,12 @@ class AntialiasStudy:
         Axes("moving", "times/moving", "errors/moving", "ms per frame", "rms error, levels of 255"),
     )
     notes = (
-        "PyVista windows, all of VTK's work included; the camera turns by 1.14° between frames. *moving*: a frame as "
-        "it is shown while the camera turns; *at rest*: the finished picture, and the time from the change to it. Both "
-        "are the same but for *refined*, which then draws as many samples as a screenshot has, 16 unless a number says "
-        "otherwise, each with the camera moved by parts of a pixel: those of one set of lines at once, *singly* one "
-        "after the other, as in all other scenes. *samples*: pictures that the finished one is the mean "
-        "of. *shimmer*: the mean difference of the colours of two frames while the camera turns by 0.1° between them, "
+        "PyVista windows, all of VTK's work included; the camera turns by 1.14° between frames. *moving*: a frame "
+        "during the turn; *at rest*: the finished picture, and the time from the change to it. Both "
+        "are the same but for *refined*, which then draws the samples of a screenshot, 16 unless a number is set, "
+        "each with the camera moved by parts of a pixel: for a single set of lines at once, *singly* one "
+        "after the other, as in all other scenes. *samples*: the number of pictures averaged into the finished one. "
+        "*shimmer*: the mean difference of the colours of two frames while the camera turns by 0.1° between them, "
         "over the pixels that show anything in either.",
         "Errors are root mean squares over the pixels that show anything, beside the mean of 256 pictures (64 in quick "
         "runs) whose camera is moved on a regular grid in the pixel: a box filter one pixel wide. It is made for each "
@@ -168,7 +168,7 @@ class AntialiasStudy:
         "they are slanted); *p99* and *max* are of the finished picture.",
         "*MSAA*, *SSAA* and *FXAA* are VTK's own. MSAA smooths the meshes in a scene, no lines or tubes of this "
         "program, and averages light, not colours: its error is partly that. SSAA has a wider filter. *lines drawn by "
-        "VTK*: the lines of *bundle* by ``add_mesh``; *refined* is asked for there, since nothing of this program is "
+        "VTK*: the lines of *bundle* by ``add_mesh``; there, *refined* is set, since nothing of this program is "
         "in the scene. OpenGL draws other pixels of such lines under MSAA: its reference there is the mean of pictures "
         "under MSAA of 8.",
     )
@@ -239,7 +239,7 @@ class PictureWindow(Window):
         return float(np.mean([differences(after, before)["mean"] for before, after in itertools.pairwise(frames)]))
 
     def samples(self) -> float:
-        """Draw what is left of the picture, and return the seconds that it took."""
+        """Draw the remaining samples of the picture, and return the seconds taken."""
         begun = self.clock()
         while self.plotter.picture.refine():
             pass
@@ -247,7 +247,7 @@ class PictureWindow(Window):
         return self.clock() - begun
 
     def pixels(self) -> Pixels:
-        """Return what is seen: the picture as it is drawn, finished or not."""
+        """Return the picture on the screen, finished or not."""
         interactor = self.plotter.iren.interactor
         interactor.EnableRenderOff()  # or it would be finished first
         try:
@@ -299,7 +299,7 @@ def _measured(subject: Subject, options: Options) -> Iterator[Record]:
         for variant in variants(quick):
             if subject.only_vtk and variant.antialias == "coverage":
                 continue
-            other = subject.only_vtk and variant.setting.startswith("MSAA")  # of which the first has 8 samples
+            other = subject.only_vtk and variant.setting.startswith("MSAA")  # its first setting has 8 samples
             window.take(variant)
             if other not in references:
                 window.look_back()

@@ -1,4 +1,4 @@
-"""The card's check of fiblets: by one pipeline, with everything that it may be asked for, beside float64."""
+"""The card's check of fiblets: all features of one pipeline, beside float64."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ Array = npt.NDArray[np.float64]
 
 
 class Brain(NamedTuple):
-    """What is drawn: fiblets, and what they decode to on the CPU."""
+    """The drawn fiblets, and their points as decoded on the CPU."""
 
     fiblets: Any
     lines: list[Array]
@@ -60,7 +60,7 @@ def brain() -> Brain:
 
 
 def fiblets_part(ctx: Any, pipeline: str) -> Iterator[tuple[str, Callable[[], Scene]]]:
-    """Yield everything that a pipeline may be asked for."""
+    """Yield every feature of a pipeline."""
     scene = partial(_lines, ctx, pipeline)
     for culling in ("none", "two-phase", "coverage"):
         limits = {"lost": LOST_FOR_A_FRAME} if culling == "coverage" else {}
@@ -137,7 +137,7 @@ def _lines(
     def judge(last: Any) -> Judged:
         numbers = np.flatnonzero(chosen) if half else np.arange(len(about.lines))
         along = getattr(about, values or "arc_length")
-        samples = LineSamples.of([about.lines[i] for i in numbers], [along[i] for i in numbers],
+        samples = LineSamples.from_lines([about.lines[i] for i in numbers], [along[i] for i in numbers],
                                  path[PICTURES - 1].model_view_projection, SIZE, keep)  # fmt: skip
         samples = replace(samples, streamline=numbers[samples.streamline])
         picture = shown(last)
@@ -210,7 +210,7 @@ def _grey(numbers: Array) -> npt.NDArray[np.uint8]:
 
 
 def _layers(ctx: Any, pipeline: str) -> Scene:
-    """Each layer shows lines that are there, behind those of the layer before."""
+    """Each layer shows existing lines, behind the layer before."""
     from pvfiblets.engine.fiblets.style import FibletStyle
     from pvfiblets.engine.gbuffer import EMPTY as NO_KEY
 
@@ -222,7 +222,7 @@ def _layers(ctx: Any, pipeline: str) -> Scene:
 
     def judge(last: Any) -> Judged:
         about, width, height = brain(), *SIZE
-        samples = LineSamples.of(about.lines, about.arc_length, path[PICTURES - 1].model_view_projection, SIZE)
+        samples = LineSamples.from_lines(about.lines, about.arc_length, path[PICTURES - 1].model_view_projection, SIZE)
         keys = np.frombuffer(last.depth.read(), np.uint32).reshape(LAYERS, height, width)
         ids = np.frombuffer(last.ids.read(), np.uint32).reshape(LAYERS, height, width, 2)
         wrong = np.zeros((height, width), bool)
@@ -242,7 +242,7 @@ def _layers(ctx: Any, pipeline: str) -> Scene:
 
 
 def _query(ctx: Any, pipeline: str) -> Scene:
-    """Which streamlines pass a sphere, or end in it: the same words as the CPU's."""
+    """Compare streamlines that pass a sphere, or end in it, with the CPU's."""
     from pvfiblets import regions
     from pvfiblets.query.selection.passing import region_flags
 

@@ -1,4 +1,4 @@
-"""What a check of a graphics card finds: one line for each thing that was tried, in plain words."""
+"""The findings of a check of a graphics card: one line for each test, in plain words."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ EMPTY = "empty"
 """The figure that is 1 where a picture shows nothing at all."""
 WORKS, DRAWN, DIFFERS, SLOW, MISSING, FAILS = "works", "drawn", "differs", "too slow", "missing", "fails"
 BAD = (DIFFERS, FAILS)
-"""Verdicts with which a check ends with 1."""
+"""Verdicts that make a check exit with 1."""
 
 
 @dataclass(frozen=True)
 class Finding:
     """One thing that was tried."""
 
-    # What it belongs to, and what it is
+    # Its group, and its name
     part: str
     feature: str
     verdict: str  # One of `'works'`, `'drawn'` (not compared), `'differs'`, `'too slow'`, `'missing'` and `'fails'`
@@ -53,7 +53,7 @@ class Finding:
 
 
 def verdict_of(figures: Mapping[str, float], limits: Mapping[str, float], compared: bool = True) -> str:
-    """Say whether all figures are within their limits; NaN is not."""
+    """Return whether all figures are within their limits; NaN is not."""
     good = WORKS if compared else DRAWN
     return good if all(figures[name] <= limit for name, limit in limits.items()) else DIFFERS
 
@@ -73,7 +73,7 @@ def table(findings: Iterable[Finding]) -> str:
 
 
 def totals(findings: Iterable[Finding]) -> str:
-    """Say in one sentence how many there are of each verdict."""
+    """Return a sentence with the number of each verdict."""
     found = Counter(one.verdict for one in findings)
     words = {WORKS: ("works", "work"), DRAWN: ("was drawn and not compared", "were drawn and not compared"),
              SLOW: ("works slowly", "work slowly"),

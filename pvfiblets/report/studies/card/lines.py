@@ -35,7 +35,7 @@ ALONG = math.cos(math.radians(8.0))  # the engine's directions bend at points, t
 
 
 class Shown(NamedTuple):
-    """What a G-buffer's pixels show, ``(height, width)``, row 0 at the bottom."""
+    """The contents of a G-buffer's pixels, ``(height, width)``, row 0 at the bottom."""
 
     there: Mask
     depth: Array
@@ -69,7 +69,7 @@ class LineSamples:
     value: Array  # `(n,)` numbers that run evenly along segments
 
     @classmethod
-    def of(
+    def from_lines(
         cls,
         lines: Sequence[Array],
         values: Sequence[Array],
@@ -126,7 +126,7 @@ class LineSamples:
         return int(self.streamline.max(initial=0)) + 1
 
     def wrong(self, picture: Shown, width: float = 1.0, *, values: bool = False) -> dict[str, Mask]:
-        """Say which pixels are wrong."""
+        """Return which pixels are wrong."""
         shape = picture.there.shape
         reach = math.ceil(OFF_AXIS + max(width, 1.0) / 2.0 - 0.5)
         around = [(dy, dx) for dy in range(-reach, reach + 1) for dx in range(-reach, reach + 1)]

@@ -50,7 +50,7 @@ def capsules_of(lines: Sequence[Array], radius: float) -> Any:
 
 def judge_depths(gbuffer: Any, tubes: Any, camera: Camera) -> Judged:
     """Hold a G-buffer against where rays meet tubes."""
-    lens, truth = Lens.of(camera), _truth(tubes, camera)
+    lens, truth = Lens.from_camera(camera), _truth(tubes, camera)
     keys = np.frombuffer(gbuffer.depth.read(), np.uint32)
     there = keys != NO_KEY
     found = truth.errors(lens.distance(reversed_depth_of(keys)), there)
@@ -80,7 +80,7 @@ def _helices() -> tuple[Any, list[Camera]]:
 
 @cache
 def _truth(tubes: Any, camera: Camera) -> Truth:
-    return Truth.of(tubes, Lens.of(camera))  # the same for all solvers
+    return Truth.from_tubes(tubes, Lens.from_camera(camera))  # the same for all solvers
 
 
 def _tubes(ctx: Any, **options: Any) -> Scene:

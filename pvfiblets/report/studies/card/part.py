@@ -34,7 +34,7 @@ def parts_of(pipelines: list[str]) -> list[str]:
 
 PARTS = {"spline tubes": "others:tubes_part", "halos": "others:halos_part", "volumes": "others:volumes_part",
          "features": "features:features_part"}  # fmt: skip
-"""Those that are the same whatever the pipeline: modules and functions."""
+"""Parts that do not depend on the pipeline: modules and functions."""
 
 
 def _scenes(ctx: Any, part: str, folder: Path) -> Iterator[tuple[str, Callable[[], Scene]]]:
@@ -84,7 +84,7 @@ class Trial:
         except (EngineError, MemoryError) as error:
             lacking = isinstance(error, (GPUMemoryError, MemoryError)) or LACKING.search(str(error))
             finding = Finding(self._part, feature, MISSING if lacking else FAILS, _first_line(error))
-        except Exception as error:  # noqa: BLE001  whatever a driver leads to is what is looked for
+        except Exception as error:  # noqa: BLE001  any failure of a driver is a finding
             finding = Finding(self._part, feature, FAILS, f"{type(error).__name__}: {_first_line(error)}")
         return {"finding": finding.as_dict(), "pictures": names}
 

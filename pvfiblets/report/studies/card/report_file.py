@@ -23,7 +23,7 @@ __all__ = ["png", "summary", "write"]
 
 
 def summary(check: CardCheck) -> str:
-    """Return what a person reads: the driver, the table, and what it comes to."""
+    """Return the readable summary: the driver, the table, and the verdict."""
     opengl = check.opengl
     lines = [f"{name:<10}{opengl[name]}" for name in ("renderer", "driver") if name in opengl]
     if opengl.get("software"):

@@ -1,4 +1,4 @@
-"""How the check of a graphics card draws something and judges it, and the parts that it is made of."""
+"""Scenes of the check of a graphics card: drawing, comparison, and their parts."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Pixels = npt.NDArray[np.uint8]
 
 @dataclass(frozen=True, eq=False)
 class Judged:
-    """A picture, held against what is right."""
+    """A picture, compared with the right one."""
 
     # As in `Finding`
     figures: Mapping[str, float]
@@ -78,5 +78,5 @@ def tried(ctx: Any, part: str, feature: str, make: Callable[[], Scene]) -> tuple
 
 
 def share(mask: Mask, of: Mask) -> float:
-    """Return how many of a mask's pixels are true, as a share of those of another that are."""
+    """Return how many of the pixels of `of` are in a mask, as a share."""
     return float(mask.sum()) / max(int(of.sum()), 1)

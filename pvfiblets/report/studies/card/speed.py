@@ -27,7 +27,7 @@ HOPELESS = 2000.0  # ms a picture, beyond which larger sets are left out
 
 
 def named(segments: float) -> str:
-    """Return how a number of segments is told."""
+    """Return the label of a number of segments."""
     return f"{segments / 1e6:g} M segments"
 
 

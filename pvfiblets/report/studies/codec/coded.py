@@ -7,4 +7,4 @@ from functools import partial
 from pvfiblets.codec.compress import compress as _compress
 
 compress = partial(_compress, exact=False)
-"""As :func:`pvfiblets.compress`, without what it does by default of small sets."""
+"""As :func:`pvfiblets.compress`, without its default for small sets."""

@@ -24,7 +24,7 @@ QUICK_STEPS = (0.1, 0.5)
 NOISE = 4.0
 NOISE_STEP = 0.2
 LENGTH = 94.0  # mm of a synthetic streamline on average
-SMALL = 1000  # points; sets of fewer are measured, but not drawn: their times are those of a call
+SMALL = 1000  # points; smaller sets are measured, but not drawn: their times are the cost of a call
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,7 @@ def distances(original: Floats, decoded: Floats) -> npt.NDArray[np.float64]:
 
 
 def median_step(points: Floats, offsets: Ints) -> float:
-    """Median distance between consecutive points of a streamline, those at one place left out; NaN without any."""
+    """Median distance between consecutive points of a streamline, zeros left out; NaN without any."""
     points = np.asarray(points, np.float64)
     lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
     inside = np.ones(len(lengths), bool)
@@ -87,7 +87,7 @@ def direction_angles(
 
 
 def _tangents(points: npt.NDArray[np.float64], leads: npt.NDArray[np.bool_]) -> tuple[Floats, Floats]:
-    """Sums of the unit vectors of both segments at each point, and those of the segments before, ``(n, 3)`` each."""
+    """Sums of the unit vectors of both segments at each point, and of the segments before, ``(n, 3)`` each."""
     steps = np.diff(points, axis=0)
     steps[~leads] = 0.0
     lengths = np.linalg.norm(steps, axis=1, keepdims=True)

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 __all__ = ["STUDY", "MeasuresStudy"]
 
 VOXEL, PARCEL = 1.0, 16.0  # mm, sides of voxels of maps and of parcels of matrices
-OTHERS = (0.25, 4.0)  # times the default's promise
+OTHERS = (0.25, 4.0)  # times the default's error bound
 
 Floats = npt.NDArray[np.float64]
 Source = FibletSet | Streamlines
@@ -38,7 +38,7 @@ class MeasuresStudy:
 
     name = "measures"
     title = "Measures of coded sets"
-    approximates = "Numbers that are measured of coded points, beside those of the points that were given."
+    approximates = "Measures of coded points, beside the measures of the original points."
     axes = (
         Axes("length", "costs/size", "errors/length", "bytes per point", "largest error of a length, %"),
         Axes("density", "costs/size", "errors/density", "bytes per point", "streamlines counted in other voxels, %"),
@@ -46,18 +46,18 @@ class MeasuresStudy:
     across = ("costs/size", "errors/length", "errors/ends", "errors/direction", "errors/curvature", "errors/density",
               "errors/connectome", "times/table")  # fmt: skip
     notes = (
-        "*default*: the usual promise of a tenth of a step; others promise so many times that. *length*: largest error "
+        "*default*: the usual error bound of a tenth of a step; others are multiples of it. *length*: largest error "
         "of a streamline's length, %. *ends*: largest distance of a first or last point, mm. *direction*: mean angle "
         "between the segments of both, degrees. *curvature*: the error of mean curvature that 99 % of the streamlines "
-        f"keep, % of the set's median. *density*: of all visits of streamlines to voxels of {VOXEL:g} mm, those that "
-        "one map has and the other has not, %. *connectome*: the same of connections between parcels, cubes of "
+        f"keep, % of the set's median. *density*: visits of streamlines to voxels of {VOXEL:g} mm that only one of the "
+        "two maps has, % of all visits. *connectome*: the same of connections between parcels, cubes of "
         f"{PARCEL:g} mm.",
-        "Curvature is measured over chords that the promise leaves right: a finer promise makes it that of the points. "
-        "Where it is not within 2 %, ``table`` warns and names the promise that is needed.",
+        "Curvature is measured over chords that the error bound leaves right: a finer bound makes it that of the "
+        "points. Where it is not within 2 %, ``table`` warns and names the error bound that is needed.",
     )
 
     def run(self, options: Options) -> Iterator[Record]:
-        """Yield a record for every set and promise."""
+        """Yield a record for every set and error bound."""
         for data in chain(trackings(options), whole_files(options)):
             if not options.allows(data.name):
                 continue
@@ -84,7 +84,7 @@ def _measured(data: DataSet, options: Options) -> Iterator[Record]:
 
 
 def _table(source: Source) -> Table:
-    """Return the table of a set; what it warns of is measured here."""
+    """Return the table of a set, without warnings: their subject is measured here."""
     from pvfiblets.query.measures.table import table
 
     with warnings.catch_warnings():
@@ -93,7 +93,7 @@ def _table(source: Source) -> Table:
 
 
 def _numbers(source: Source, original: Streamlines) -> dict[str, Floats]:
-    """Return what is measured of a set, on grids about the points that were given."""
+    """Return the measures of a set, on grids about the original points."""
     from pvfiblets.query.connectome.matrix import connectome
     from pvfiblets.query.density.volume import density
 

@@ -18,16 +18,16 @@ from .errors import median_step
 __all__ = ["STUDY", "PixelsStudy", "beyond", "lines_of"]
 
 SIZE, QUICK_SIZE = (960, 720), (240, 180)
-STREAMLINES, QUICK_STREAMLINES = 300, 40  # a few, as in the paper: of more, pixels show the nearest of many
+STREAMLINES, QUICK_STREAMLINES = 300, 40  # a few, as in the paper: in a dense set, pixels show the nearest of many
 STEP = 0.1  # mm
-FINE = 1e-3  # steps; so closely kept, what is left is how lines are rasterised
+FINE = 1e-3  # steps; so small an error leaves only the effect of rasterising
 VIEWS = {"far": 1.0, "close": 8.0}  # zoom
 
 Pixels = npt.NDArray[np.bool_]
 
 
 class PixelsStudy:
-    """Pixels of compressed lines that are not those of raw ones."""
+    """Pixels of compressed lines that differ from the raw lines'."""
 
     name = "pixels"
     title = "Pixels of compressed lines"
@@ -36,11 +36,12 @@ class PixelsStudy:
     across = ("errors/other", "errors/beyond a pixel")
     notes = (
         "Figure 8 of Schertzer et al. 2022: a few streamlines, one pixel wide, without light, far (all in view) and "
-        "close (8 times nearer). *other*: pixels that one picture shows and the other does not, of those that either "
-        "shows; *beyond a pixel*: of them those with no pixel of the other picture next to them, corners included.",
-        "*by VTK*: decoded points through VTK's own lines, as the raw ones are: what compression moves, and no more. "
+        "close (8 times nearer). *other*: pixels covered in only one of the two pictures, as a share of those covered "
+        "in either; *beyond a pixel*: differing pixels whose neighbours in the other picture, corners included, are "
+        "empty.",
+        "*by VTK*: decoded points through VTK's own lines, as the raw ones are: the effect of compression alone. "
         "*fiblets, drawn*: by this program, which snaps ends of segments to pixels; *kept to a thousandth of a step*: "
-        "the same without an error to speak of, which leaves what the two ways of rasterising differ by.",
+        "the same with a negligible error, which leaves the difference between the two ways of rasterising.",
     )
 
     def run(self, options: Options) -> Iterator[Record]:

@@ -139,21 +139,22 @@ class CodecStudy:
         "Errors are distances of decoded points from the originals, as float64, point by point. A step is the median "
         "distance between consecutive points. *direction* is the angle between the tangents of the original and of the "
         "decoded line, over both ends of all segments longer than a pixel of a full-screen view, a 2000th of the "
-        "bounds' diagonal; a tangent is the mean direction of the two segments at a point; a fiblet is drawn with that "
-        "of its first segment at its first point. Raw points are float32: 12 bytes each. All variants count 4 bytes a "
+        "bounds' diagonal; a tangent is the mean direction of the two segments at a point; at its first point, a "
+        "fiblet is drawn with the direction of its first segment. "
+        "Raw points are float32: 12 bytes each. All variants count 4 bytes a "
         "streamline for its number of points where decoding needs it. Times are of one thread, in memory: no file is "
         "read or written. "
         "Sets are cut to a bounded number of points by leaving streamlines out evenly, which their names say. Those of "
-        f"fewer than {SMALL:,} points are measured but not drawn: their times are those of a call.",
+        f"fewer than {SMALL:,} points are measured but not drawn: their times are the cost of a call.",
         "*fiblets*: greedy encoder, with the error bound as the setting (*default*: a tenth of the step, where steps "
         "vary or are coarse a 4000th of a view's diagonal at most, and directions within 10°; others do not bound "
         "directions); *look-ahead*: effort high; *fiblets of 30 "
-        "points*: records of at most so many points instead of 60. *QFib*, *paper's fiblets*: from their description "
+        "points*: records of at most 30 points instead of 60. *QFib*, *paper's fiblets*: from their description "
         "in Schertzer et al. 2022 (pvfiblets/report/studies/codec/baselines/directions.py says what it leaves open), "
         "with the file's "
         "median step: what steps vary by adds up. *dipy linearised*: `compress_streamlines` with the tolerance as the "
-        "setting; its points cannot be had back, so its error is the distance from the line that is left, and there is "
-        "nothing to decompress. *zlib* (level 6) and *zstd* (level 3) lose nothing.",
+        "setting; its points cannot be had back, so its error is the distance from the remaining line, and nothing is "
+        "decompressed. *zlib* (level 6) and *zstd* (level 3) lose nothing.",
         "Made-up sets: whole-brain-like tracking of constant step (pvfiblets.synthetic); *noisy* ones turn by an "
         "independent random angle at every step as well, 4° per axis at 0.2 mm and in proportion to the step's root "
         "otherwise, much as iFOD1 does.",
@@ -220,7 +221,7 @@ def measured(
 
 @contextmanager
 def one_thread() -> Iterator[None]:
-    """Run compiled loops on one thread: speeds are then of one core, as those of other methods are."""
+    """Run compiled loops on one thread: speeds are then of one core, like other methods' speeds."""
     import numba
 
     before = numba.get_num_threads()

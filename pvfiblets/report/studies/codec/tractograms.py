@@ -45,13 +45,13 @@ class TractogramsStudy:
         "times/decompress",
     )
     notes = (
-        "Table 1 of Schertzer et al. 2022 with other data: made-up tractograms that turn as those of four algorithms "
-        "do (pvfiblets/synthetic/trackers.py says how), of steps from 0.05 to 1 mm and about "
+        "Table 1 of Schertzer et al. 2022 with other data: synthetic tractograms with the turns of four tracking "
+        "algorithms (see pvfiblets/synthetic/trackers.py), of steps from 0.05 to 1 mm and about "
         f"{POINTS / 1e6:g} million points each, and whole files: nothing is left out of a set. The paper's has iFOD1 "
         "and SD_STREAM at 0.05 and 0.1 mm.",
         "*ratio*: bytes of the .tck file, 12 a point and 12 a streamline, over those of the method; *max*, *mean*: "
         "distances of decoded points from the originals, as float64, point by point; a step is the median one. "
-        "*fiblets*: at their default, which promises a tenth of the step; *QFib*, *paper's fiblets*: from their "
+        "*fiblets*: at their default error bound, a tenth of the step; *QFib*, *paper's fiblets*: from their "
         "description (pvfiblets/report/studies/codec/baselines/directions.py). Times are of one thread, in memory. "
         "Sizes and errors "
         "do not depend on the machine.",

@@ -1,1 +1,1 @@
-"""The study of culling: what is left out of a picture, and what that saves."""
+"""The study of culling: the culled fiblets of a picture, and the time saved."""

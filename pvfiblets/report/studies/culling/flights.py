@@ -1,4 +1,4 @@
-"""A camera that flies from picture to picture, as when somebody turns what they look at."""
+"""A camera that flies from picture to picture, as when a user turns the scene."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Read = TypeVar("Read")
 class Flight:
     """A camera that flies through views, and back the next time: every picture is one step from the one before.
 
-    ``renderer.render(view, style)`` draws, and returns what is to be read; the first view is where the camera starts.
+    ``renderer.render(view, style)`` draws, and returns the picture to read; the first view is where the camera starts.
     """
 
     def __init__(self, ctx: Any, renderer: Any, path: Sequence[Any], style: Any) -> None:
@@ -25,7 +25,7 @@ class Flight:
         return len(self._path) - 1
 
     def pictures(self, read: Callable[[Any], Read]) -> list[Read]:
-        """Fly forth from the beginning, and return what is shown on the way, as a function reads it."""
+        """Fly forth from the beginning, and return each picture on the way, as a function reads it."""
         self._renderer.render(self._path[0], self._style)
         return [read(self._renderer.render(view, self._style)) for view in self._path[1:]]
 

@@ -1,4 +1,4 @@
-"""What a picture of fiblets shows, how far it is from another, and from where it is taken."""
+"""Pictures of fiblets: their contents, differences and cameras."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ __all__ = [
 ]
 
 DISTANCES = {"far": 1.0, "close": 1.0 / 3.0, "inside": 0.06}
-"""Of the eye from the middle, by the distance from which the whole set fits the picture."""
+"""Distances of the eye from the middle, by the distance from which the whole set fits the picture."""
 
 NEAR = 2e-3  # of the set's radius
 
@@ -41,7 +41,7 @@ Words = npt.NDArray[np.uint32]
 
 @dataclass(frozen=True, eq=False)
 class Visible:
-    """What the pixels of a picture show."""
+    """The contents of a picture's pixels."""
 
     streamline: npt.NDArray[np.int64]  # `(height, width)` int64; -1 where there is none
     # `(height, width)` uint32, directions as the G-buffer packs them; without meaning where there is no streamline
@@ -110,7 +110,7 @@ def difference(pictures: Sequence[Singles], truth: Sequence[Singles]) -> Figure:
 
 
 def errors(pictures: Sequence[Visible], truth: Sequence[Visible]) -> dict[str, Figure]:
-    """Say how far pictures are from the right ones, as shares of the pixels in which those show a streamline."""
+    """Return how far pictures are from the right ones, as shares of the pixels in which those show a streamline."""
     wrong = coverage = covered = 0
     for one, other in zip(pictures, truth, strict=True):
         a, b = one.streamline, other.streamline

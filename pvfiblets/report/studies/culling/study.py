@@ -1,4 +1,4 @@
-"""The study of culling: what is left out of a picture, by what hides it or by how small it is, and what that spares."""
+"""The study of culling: fiblets culled because they are hidden or small, and the time saved."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ class Variant:
 
 
 def detail(tolerance: float) -> str:
-    """Say to how many pixels points are left out."""
+    """Return the pixels of error within which points are left out, in words."""
     return f"{tolerance:g} px" if tolerance else "every point"
 
 
@@ -95,7 +95,7 @@ class Scene:
 
 
 class _Basis:
-    """What pictures are compared with, each drawn once: right ones, and means of several samples a pixel."""
+    """Reference pictures, each drawn once: right ones, and means of several samples a pixel."""
 
     def __init__(self, ctx: Any, scene: Scene) -> None:
         self._ctx, self._scene = ctx, scene
@@ -142,15 +142,15 @@ class CullingStudy:
     )
     notes = (
         "The right picture draws every point of every fiblet in the view volume. *wrong*: pixels that show another "
-        "streamline than that, or one where there is none, or none where there is one, as a share of those that show "
-        "one; *coverage*: only the latter two; *colour*: how far the colours of directions are apart, black where "
-        "nothing is; *fine*: the same from a picture of 3×3 samples a pixel, averaged: lines are thinner "
-        "than their distance, so that which of them a pixel shows is chance, and this says how far the right picture "
-        "is off itself. *wrong by culling*: as *wrong*, from the picture of the same level of detail without "
-        "culling, so that it is what culling alone changes.",
-        "*none*: what is outside the view volume is left out, nothing else. *two-phase*: what this very picture hides "
-        "is left out, which changes no pixel. *coverage*: what the last picture hid, as Schertzer et al. 2022 have it "
-        "(section 3.4). *auto*, the default: two-phase while it is the faster one. The setting is the level of "
+        "streamline than the right picture, a line where it has none, or none where it has one, as a share of its "
+        "covered pixels; *coverage*: only the latter two; *colour*: the difference of the colours of directions, with "
+        "black where nothing is; *fine*: the same from a picture of 3×3 samples a pixel, averaged: lines are thinner "
+        "than the space between them, so chance decides which line a pixel shows; this is the error of the right "
+        "picture itself. *wrong by culling*: as *wrong*, from the picture of the same level of detail without "
+        "culling, which isolates the effect of culling.",
+        "*none*: only fiblets outside the view volume are left out. *two-phase*: fiblets hidden in the same picture "
+        "are left out, which changes no pixel. *coverage*: fiblets hidden in the last picture, as in Schertzer et al. "
+        "2022, section 3.4. *auto*, the default: two-phase while it is the faster one. The setting is the level of "
         "detail: a fiblet whose points all lie so near to the segment between its ends is drawn as that segment "
         "(section 3.4.4); *every point* turns it off. *fewer streamlines*: one of two or four, two-phase.",
         "Names of data say where the eye is and how far it turns between frames: *far*, from where the whole set fits "

@@ -1,4 +1,4 @@
-"""Effects on a whole picture as features of a plain scene: what stands for the picture that VTK would have drawn."""
+"""Effects on a whole picture as features of a plain scene, on a stand-in for VTK's picture."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def lens_of(camera: Camera) -> Projection:
 
 @dataclass(frozen=True)
 class PictureEffect:
-    """What a whole picture is changed by: tones, and whether it is in focus in the scene's middle only."""
+    """The effect on a whole picture: tones, and whether it is in focus in the scene's middle only."""
 
     name: str
     tone: Tone = field(default_factory=Tone)
@@ -51,7 +51,7 @@ class WholePicture:
     """Pictures with colours and depths, one for each camera, and what changes them.
 
     Depths are the scene's; colours are synthetic of the streamlines' numbers, on white. Both lie in textures of one
-    sample a pixel. They are made when a camera is seen first, from the G-buffer: what is drawn from it later is the
+    sample a pixel. They are made when a camera is used first, from the G-buffer: later times are of the
     effect alone.
     """
 
@@ -88,7 +88,7 @@ class WholePicture:
         ]
 
     def pixels(self) -> Any:
-        """Return what was drawn last, (height, width, 4) uint8, row 0 at the bottom."""
+        """Return the last picture, (height, width, 4) uint8, row 0 at the bottom."""
         return np.frombuffer(self._shown.read(), np.uint8).reshape(*self._shown.size[::-1], 4)
 
     def explain(self) -> dict[str, list[dict[str, Any]]]:

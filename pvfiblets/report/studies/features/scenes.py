@@ -25,7 +25,7 @@ Effect = Callable[["Drawn", Any, Camera, View], None]
 class Feature:
     """One feature alone."""
 
-    # What it belongs to, and what it is called; the method and the setting of its record
+    # Its group and name; the method and the setting of its record
     group: str
     name: str
     # Keywords of the engine's renderer that differ from the defaults
@@ -33,7 +33,7 @@ class Feature:
     style: dict[str, Any] = field(default_factory=dict)  # Fields of the style that differ
     view: dict[str, Any] = field(default_factory=dict)  # Fields of the view that differ
     prepare: Callable[[Any], None] | None = None  # Called with the renderer before the first picture
-    effect: Effect | None = None  # Called with what is drawn, the G-buffer, the camera and the view after each picture
+    effect: Effect | None = None  # Called with its passes, the G-buffer, the camera and the view after each picture
     passes: Callable[[Any], Any] | None = None  # Makes, of a context, what `effect` draws with
 
 
@@ -69,7 +69,7 @@ class Drawn:
                 feature.prepare(self.renderer)
             if feature.passes is not None:
                 self.passes = feature.passes(ctx)
-            for camera in self._path:  # what is compiled or measured once is so then
+            for camera in self._path:  # compiles and measures everything that happens once
                 self.render(camera)
         except BaseException:
             self.release()

@@ -49,13 +49,13 @@ class FeatureStudy:
         "Plain streamlines are thin, coloured by direction, culled in two phases; plain spline tubes and lines with "
         "halos have one colour, the latter straight halos of one width; the plain volume shows greatest values. "
         "Each feature alone is added to that. *memory*: all buffers and textures on the GPU, those of the picture "
-        "included; *more memory*, *more time*: beside the plain scene; less than nothing is a gain, as of what leaves "
-        "less to draw. The camera turns 1.14° a frame, and the frames of all features take turns.",
+        "included; *more memory*, *more time*: beside the plain scene; negative numbers are a gain, as of features "
+        "that leave less to draw. The camera turns 1.14° a frame, and the frames of all features take turns.",
         "Pictures are of the engine without VTK, each waited for. Where OpenGL is software, times are the processor "
-        "time of all its threads; on a graphics card they are elapsed. What is measured or compiled once, when a "
-        "feature is set, is not in them.",
-        "Effects on a whole *picture* are given the scene's depths and synthetic colours of one sample a pixel, where "
-        "VTK's picture would be; that is not counted, what they keep is.",
+        "time of all its threads; on a graphics card they are elapsed. Measurements and compilation that happen once, "
+        "when a feature is set, are not included.",
+        "Effects on a whole *picture* receive the scene's depths and synthetic colours of one sample a pixel in place "
+        "of VTK's picture; that input is not counted, the memory of the effects is.",
         "*in a window*: the same streamlines in a PyVista window, all of VTK's work included, with colours, depth "
         "cueing and illuminated lines, which VTK's shader writes. Frames with and without a feature take turns. "
         "*change*: the feature is set anew and drawn at once, which is what dragging costs.",

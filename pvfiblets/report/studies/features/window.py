@@ -150,7 +150,7 @@ def in_window(
                 continue
             frames: dict[str, list[float]] = {"draw": [], "change": []} if feature.varies else {"draw": []}
             feature.change(actor, 0)
-            window.seconds()  # what is measured or compiled once is so then
+            window.seconds()  # compiles and measures everything that happens once
             for n in range(1, options.repeats + 1):
                 change = window.seconds(partial(feature.change, actor, n))
                 if feature.varies:

@@ -48,11 +48,11 @@ class Camera:
         return points @ self.matrix[:, :3].T + self.matrix[:, 3]
 
     def pixels(self, clip: Array) -> Array:
-        """Where clip coordinates are in the window."""
+        """Return clip coordinates in pixels of the window."""
         return (clip[..., :2] / clip[..., 3:] + 1.0) / 2.0 * self.size
 
     def motion(self, clip: Array, way: Array) -> Array:
-        """Pixels by which a place of the window moves per length of a way in clip coordinates, behind the eye too."""
+        """Pixels that a place of the window moves per length of a way in clip coordinates, behind the eye too."""
         w = clip[..., 3:]
         return (way[..., :2] * w - clip[..., :2] * way[..., 3:]) / w**2 * self.size / 2.0
 
@@ -84,7 +84,7 @@ def between(ends: Array, t: Array | float) -> Array:
 
 
 def kept(a: Array, b: Array) -> tuple[float, float]:
-    """From where to where a segment is on the kept side of everything, by the heights of its ends; 1, 0 for nowhere."""
+    """Return the part of a segment on the kept side of everything, by the heights of its ends; 1, 0 for nowhere."""
     if (np.minimum(a, b) >= 0.0).all():
         return 0.0, 1.0
     if (np.maximum(a, b) < 0.0).any():

@@ -1,4 +1,4 @@
-"""How far pictures of halos are from what they mean: a float64 reference of every pixel, and the widths of gaps."""
+"""Errors of pictures of halos: a float64 reference of every pixel, and the widths of gaps."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ __all__ = ["Crossings", "crossings", "gaps", "kinds", "pixel_errors"]
 
 PIXEL = 0.25  # mm, of the picture of crossings
 LINE_WIDTH, STRIP_WIDTH, DEEPEST = 2.0, 8.0, 8.0  # mm
-DEPTHS = (1.0, 2.3, 3.1, 4.05, 5.2, 6.35, 7.4, 9.0)  # mm that the lines behind lie behind those in front
+DEPTHS = (1.0, 2.3, 3.1, 4.05, 5.2, 6.35, 7.4, 9.0)  # mm from the lines in front to the lines behind
 APART = 12.0  # mm between neighbours: more than strips are wide
 IN_FRONT = 12
 

@@ -1,4 +1,4 @@
-"""Pictures of lines and points with halos: what is drawn, from where, with how many samples, and how far off."""
+"""Pictures of lines and points with halos: their data, camera and samples, and their errors."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ Singles = npt.NDArray[np.float32]
 
 
 class Viewpoint(Protocol):
-    """What a picture is taken by: a camera, or a matrix alone."""
+    """The camera of a picture, or a matrix alone."""
 
     @property
     def size(self) -> tuple[int, int]:

@@ -32,20 +32,20 @@ NOTHING, LINE, HALO = range(3)
 
 @dataclass(frozen=True, eq=False)
 class Picture:
-    """What the pixels show; all are ``(height, width)``, row 0 at the bottom."""
+    """The contents of the pixels; all are ``(height, width)``, row 0 at the bottom."""
 
     kind: Ints  # int64: `NOTHING` 0, `LINE` 1 (points too), `HALO` 2
-    owner: Ints  # int64 point, or first point of the segment, that the fragment belongs to; -1 where there is nothing
+    owner: Ints  # int64 point, or first point of the segment, that the fragment belongs to; -1 in empty pixels
     t: Array  # float64 place along that segment, 0..1; 0 of points
-    depth: Array  # float64 window depth, 0..1; 1 where there is nothing
+    depth: Array  # float64 window depth, 0..1; 1 in empty pixels
     ink: Array  # float64: 1 on a line, 0 elsewhere, and between where edges are smooth
     # float64 pixels, to first order: how far the pixel's centre is from where a fragment begins, ends or turns from
-    # line into halo that would change what shows. Inf away from all of them. 0 where a bend is so sharp for its
+    # line into halo that would change the pixel. Inf away from all of them. 0 where a bend is so sharp for its
     # strip's width that it is open whether a nearer fragment is there.
     margin: Array
-    gap: Array  # float64 window depth between what shows and what is next behind it. Inf where nothing else is.
-    # float64 window depth between what shows and the next of the other kind: as `gap`, but for fragments that would
-    # look alike, such as those of both segments at a bend
+    gap: Array  # float64 window depth between the visible fragment and the next behind it. Inf without a second.
+    # float64 window depth between the visible fragment and the next of the other kind: as `gap`, but for fragments that
+    # would look alike, such as the ends of both segments at a bend
     other: Array
     # float64 pixels, to first order: at least so far is the pixel from where there may be nothing; 0 where there is
     # nothing. The bisector of a bend does not count where both segments are there.
@@ -89,7 +89,7 @@ def _singles(numbers: npt.ArrayLike) -> Array:
 
 
 def _depths(clip: Array) -> Array:
-    """How far places are behind the near and before the far plane; both are negative nowhere in the view."""
+    """Return distances behind the near and before the far plane; both are negative nowhere in the view."""
     return np.stack([clip[:, 3] + clip[:, 2], clip[:, 3] - clip[:, 2]], axis=1)
 
 
@@ -144,7 +144,7 @@ def _nearest(fragments: list[Fragments], camera: Camera, look: HaloStyle) -> Pic
         _, one, next_one = np.intersect1d(before, after, assume_unique=True, return_indices=True)
         one, next_one = ends[one], starts[next_one]
         np.maximum.at(cover, every.pixel[one], np.minimum(every.at_end[one], every.at_start[next_one]))
-        # Of what lies behind the pixel's depth even as line, no edge matters.
+        # Edges behind the pixel's depth, even as line, do not matter.
         matters = (kind[every.pixel] == NOTHING) | (at_axis <= depth[every.pixel])
         near = np.minimum(np.abs(every.inside), np.where(every.inside > -1.0, every.edge, np.inf))
         np.minimum.at(margin, every.pixel[matters], near[matters])

@@ -144,7 +144,7 @@ def _bend(camera: Camera, look: HaloStyle, clip: Array, vertex: int, neighbour: 
 
 @dataclass(frozen=True, eq=False)
 class _Varying:
-    """What varies along one segment, by its two ends."""
+    """Quantities that vary along one segment, by its two ends."""
 
     camera: Camera
     look: HaloStyle
@@ -155,12 +155,12 @@ class _Varying:
     steep: Array  # of the numbers, per mm
 
     def places(self, s: Array, part: tuple[float, float]) -> Array:
-        """Where on the segment is what is linearly s along a part of it in the window."""
+        """Places on the segment that are linearly s along a part of it in the window."""
         w = between(self.clip[:, 3], np.asarray(part))
         return part[0] + (part[1] - part[0]) * (s / w[1] / ((1.0 - s) / w[0] + s / w[1]))
 
     def half_widths(self, t: Array) -> tuple[Array, Array]:
-        """Of line and strip without the mask, pixels."""
+        """Return the widths of line and strip without the mask, pixels."""
         return self.camera.widths(between(self.clip[:, 3], t), between(self.cue, t))
 
     def edges(self, t: Array) -> tuple[Array, Array, Array | None]:
@@ -235,13 +235,13 @@ def _strip(
 
 
 def _in_pixels(above: Array, per_pixel: Array) -> Array:
-    """How far it is along the axis to where what is so far above 0 meets it; infinitely far if it does not change."""
+    """Distance along the axis at which a value so far above 0 reaches it; infinite if it does not change."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(per_pixel != 0.0, above / np.abs(per_pixel), np.where(above >= 0.0, np.inf, -np.inf))
 
 
 def _folded(own: Array, length: float, reach: float, bends: tuple[Array | None, Array | None]) -> bool:
-    """Say whether the edges across both ends of a strip meet within its reach."""
+    """Return whether the edges across both ends of a strip meet within its reach."""
     left = np.array([-own[1], own[0]])
     start, end = (0.0 if bend is None or not bend.any() else float(left @ bend) / float(own @ bend) for bend in bends)
     return length < abs(end - start) * reach

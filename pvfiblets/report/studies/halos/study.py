@@ -1,4 +1,4 @@
-"""The study of halos: what samples, smooth edges and halos of finished pictures are off by, and what they cost."""
+"""The study of halos: the errors and costs of samples, smooth edges and halos of finished pictures."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class Variant:
 
     @property
     def setting(self) -> str:
-        """How many samples a pixel has."""
+        """Number of samples of a pixel."""
         return samples(self.times)
 
     @property
@@ -76,7 +76,7 @@ class Variant:
 
 
 def samples(times: int) -> str:
-    """Say how many samples a pixel has."""
+    """Return how many samples a pixel has."""
     return "1 sample" if times == 1 else f"{times**2} samples"
 
 
@@ -134,10 +134,11 @@ class HaloStudy:
         "a crossing is from appendix A's width, pixels, mean and greatest.",
         "The camera turns by 1.14° between frames. Pictures are of the engine without VTK, each waited for. Where "
         "OpenGL is software, times are the processor time of all its threads; on a graphics card they are elapsed. "
-        "*memory*: what grows with the data. *fibres-subset*, *office* and *shape-small* (points) are synthetic, of "
+        "*memory*: the part that grows with the data. "
+        "*fibres-subset*, *office* and *shape-small* (points) are synthetic, of "
         "sizes in the paper's table 1; tractograms are cut by leaving streamlines out evenly, which their names say.",
         "*in a window*: all sets of the paper's table 1 in PyVista windows, seen from six places, beside VTK's plain "
-        "lines of one pixel, or plain points as large as those with halos.",
+        "lines of one pixel, or plain points of the same size.",
     )
 
     def run(self, options: Options) -> Iterator[Record]:

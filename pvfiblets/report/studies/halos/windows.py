@@ -49,7 +49,7 @@ class HaloWindow(Window):
 
 
 class PlainWindow(Window):
-    """VTK's lines, one pixel wide, or its points, as large as those with halos are in the middle of the frame."""
+    """VTK's lines, one pixel wide, or its points, of the size of points with halos in the middle of the frame."""
 
     method, ours = "VTK, plain", False
 
@@ -89,7 +89,7 @@ def _measured(data: str, drawn: Any, options: Options) -> Iterator[Record]:
     try:
         for kind in (HaloWindow, PlainWindow):
             made.append(kind(drawn, look, cameras[0]))
-            for camera in cameras:  # programs are compiled, and what is made when first needed is made
+            for camera in cameras:  # compiles programs and makes everything that is made once
                 made[-1].draw(camera)
         compared = Comparison(data, options, made[0].turns, len(cameras))
         for window in made:

@@ -1,4 +1,4 @@
-"""How soon the streamlines of a painted region are answered after a stroke, with the spatial index and without."""
+"""Time from a stroke to the streamlines of the painted region, with the spatial index and without."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ __all__ = ["painted"]
 RADII, QUICK_RADII = (2.0, 5.0, 10.0), (5.0,)  # mm, of the brush
 STROKES, QUICK_STROKES = 15, 5  # that count: the first does not
 DRAGGED = 30  # mm
-POINTS_ASKED = 100_000  # streamlines up to which all points are asked
+POINTS_ASKED = 100_000  # streamlines up to which all points are tested
 
 
 def painted(fiblets: FibletSet, options: Options) -> Iterator[Record]:

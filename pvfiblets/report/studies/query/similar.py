@@ -22,7 +22,7 @@ LIKE = 100  # streamlines that others are compared with
 REACH = 8.0  # mm
 THRESHOLDS = (20.0, 10.0)  # mm
 POINTS = 12
-REFERENCE = 10_000  # streamlines up to which the references are asked
+REFERENCE = 10_000  # streamlines up to which the references are computed
 
 Floats = npt.NDArray[np.float64]
 

@@ -22,23 +22,21 @@ class QueryStudy:
     name = "query"
     title = "Similar streamlines, clusters, painted regions"
     approximates = (
-        "Answers by resampled streamlines (similar ones, QuickBundles), and those of painted regions by a spatial "
-        "index."
+        "Streamlines found after resampling (similar ones, QuickBundles), and by the spatial index of painted regions."
     )
     axes = (
         Axes("answer", "times/answer", "errors/elsewhere", "ns per streamline", "streamlines answered otherwise, %"),
     )
     notes = (
         "Synthetic whole brains, 0.5 mm between points; queries are of compressed sets, decoding and resampling "
-        "included. Times are of the processor, all threads. *elsewhere*: streamlines for which the reference answers "
-        "otherwise.",
+        "included. Times are CPU times of all threads. *elsewhere*: streamlines on which the reference differs.",
         "*like n*: streamlines within 8 mm of n of the set's own. The reference resamples and compares in NumPy's "
         "float64; *apart*: the greatest difference of a distance from it. *clusters*: QuickBundles; the reference is "
         "dipy's, of the same lines. dipy's times leave out that lines were decoded and resampled beforehand.",
         "*balls*: a ball is painted at a streamline, or erased, or dragged along one by 1 mm, on a grid of 1 mm; each "
-        "answer is the streamlines that pass all that is painted. *index*: the spatial index; *decoded*: the share of "
-        "the fiblets near the stroke that it decodes. The reference decodes all that is near. *points*: all points are "
-        "asked, which misses streamlines that pass between two.",
+        "answer is the streamlines that pass all painted regions. *index*: the spatial index; *decoded*: the share of "
+        "the fiblets near the stroke that it decodes. The reference decodes all fiblets near it. *points*: only points "
+        "are tested, which misses streamlines that pass between two.",
     )
 
     def run(self, options: Options) -> Iterator[Record]:

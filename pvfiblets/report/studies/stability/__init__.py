@@ -1,7 +1,6 @@
 """Stiff and extreme cases of every system, as objects that both the tests and the report run.
 
-A `studies.stability.case.Case` says what it does and what must hold, and measures one figure by which that is judged,
-against
+A `studies.stability.case.Case` states its input and a condition, and judges one measured figure against
 something independent: an error bound, a formula, NumPy in float64. A statement that does not hold is an error of the
 program, reported by the report and failed by the tests.
 

@@ -1,4 +1,4 @@
-"""Capsules that culling trusts, and tubes about lines: every point within, and rays meet what they meet in float64."""
+"""Capsules that culling trusts, and tubes about lines: every point lies within, and rays hit the same as in float64."""
 
 from __future__ import annotations
 
@@ -135,7 +135,7 @@ def _inside(setting: Setting) -> Outcome:
     return Outcome(float(wrong), 0.0, "pixels of the tube about the eye")
 
 
-@CASES.add("radii that are none", "0, negative, NaN and infinite", "an error that says what is expected")
+@CASES.add("invalid radii", "0, negative, NaN and infinite", "an error that names the expected values")
 def _bad_radii(_: Setting) -> Outcome:
     values = (0.0, -1.0, np.nan, np.inf)
     return refused(

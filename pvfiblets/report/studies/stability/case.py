@@ -1,4 +1,4 @@
-"""What an extreme case is: what it does, what must hold, and the figure by which that is judged."""
+"""An extreme case: its input, a condition on the result, and the figure that decides whether it holds."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ __all__ = ["Case", "Cases", "Outcome", "Setting", "refused"]
 
 @dataclass(frozen=True)
 class Setting:
-    """What a case is run with."""
+    """The input of a case."""
 
-    whole: bool = False  # Whether the largest cases are of their full size. Their text says what they are otherwise.
+    whole: bool = False  # Whether the largest cases are of their full size. Otherwise their text names the smaller one.
     ctx: moderngl.Context | None = None  # Current; only cases that draw need it
 
     @property
@@ -32,7 +32,7 @@ class Setting:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a case found."""
+    """The result of a case."""
 
     # What must hold does if `measured` is no larger than `limit`; NaN is larger than any
     measured: float
@@ -97,7 +97,7 @@ def refused(kind: type[Exception], message: str, *calls: Callable[[], object]) -
     for call in calls:
         try:
             call()
-        except Exception as error:  # noqa: BLE001 - another kind is what is to be found out
+        except Exception as error:  # noqa: BLE001 - other kinds are failures to report
             said = said or str(error)
             if not isinstance(error, kind) or re.search(message, str(error)) is None:
                 wrong, said = wrong + 1, f"{type(error).__name__}: {error}"

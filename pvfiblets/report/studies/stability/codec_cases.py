@@ -1,4 +1,4 @@
-"""Extreme streamlines through the codec: every point within the promise, or one clear error."""
+"""Extreme streamlines through the codec: every point within the error bound, or one clear error."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ MANY, LONG, LONG_IN_TESTS = 1_000_000, 10_000_000, 1_000_000
 def kept(
     sets: Iterable[Streamlines], efforts: Iterable[Effort] = EFFORTS, max_error: float | None = None, note: str = ""
 ) -> Outcome:
-    """Compress with every effort and decode in float64; measure the largest error over the promise."""
+    """Compress with every effort and decode in float64; measure the largest error over the error bound."""
     found = []
     efforts = tuple(efforts)
     for streamlines in sets:

@@ -1,4 +1,4 @@
-"""Decoding, and what is known without it: the same numbers by every method, and every point in its capsule."""
+"""Decoding, and bounds without it: the same numbers by every method, and every point in its capsule."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ IN_STEPS = "steps"
 
 
 def stiff() -> dict[str, Streamlines]:
-    """Lines that the codec codes in all its ways, at the ends of what it takes."""
+    """Lines that need every way of the codec, at the limits of its input."""
     rng = np.random.default_rng(3)
     mixed = np.cumsum(10.0 ** rng.uniform(-6.0, 6.0, (200, 1)) * rng.normal(size=(200, 3)), axis=0)
     base = tracking(3)
@@ -148,7 +148,7 @@ def _all_measures(fiblets: FibletSet) -> dict[str, Array]:
     return found | {"ends": end_points(fiblets), "connectome": fiblets.connectome(parcels, radius=0.0).matrix}
 
 
-@CASES.add("curvatures of stiff lines", "straight, back and forth, at one place", "finite, 0 of what is straight")
+@CASES.add("curvatures of stiff lines", "straight, back and forth, at one place", "finite, 0 where straight")
 def _curvatures(_: Setting) -> Outcome:
     straight = compress(lines_of(0.5 * np.arange(200)[:, None] * [1.0, 0.0, 0.0]), max_error=1e-5)
     curvature = np.asarray(measure(straight, "curvature").array())

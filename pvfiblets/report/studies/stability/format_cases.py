@@ -55,7 +55,7 @@ def _written(streamlines: Streamlines) -> Iterator[tuple[str, Streamlines]]:
 def _far(_: Setting) -> Outcome:
     base = tracking(3)
     huge = lines_of((np.random.default_rng(5).normal(size=(70, 3)) * 1e30).astype(np.float32))
-    away = [(base.points + by).astype(np.float32) for by in (1e7, -1e7)]  # of float64, writers say what is rounded
+    away = [(base.points + by).astype(np.float32) for by in (1e7, -1e7)]  # in float64, writers report rounding
     sets = [*(Streamlines(points, base.offsets) for points in away), huge]
     return worst([through_files(some) for some in sets])
 
@@ -103,7 +103,7 @@ def _fiblets(_: Setting) -> Outcome:
 @CASES.add(
     "files that end too soon",
     "no bytes, one, and the first half of good files, in every format",
-    "an error, or what was lost is counted",
+    "an error, or counted losses",
 )
 def _cut(_: Setting) -> Outcome:
     wrong, said = 0, ""

@@ -1,4 +1,4 @@
-"""Picking and regions at their ends: what lies under an area, or in a shape, equals a search through all points."""
+"""Picking and regions at their limits: lines under an area, or in a shape, equal a search through all points."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ CASES = Cases("picking and regions")
 SIZE = (160, 120)
 ALL = [[0.0, 0.0], [160.0, 0.0], [160.0, 120.0], [0.0, 120.0]]
 BOX = np.array([[74.0, 54.0], [86.0, 54.0], [86.0, 66.0], [74.0, 66.0]])
-SAME = "the streamlines that a search through their places in float64 finds, but for those at the area's edge"
+SAME = "the streamlines found by a float64 search through their points, but for those at the area's edge"
 WRONG = "wrong streamlines"
 
 
@@ -104,8 +104,8 @@ def _many(_: Setting) -> Outcome:
 
 
 @CASES.add(
-    "what pixels name",
-    "ids in a picture of stiff lines, and what lies under each such pixel",
+    "ids of pixels",
+    "ids in a picture of stiff lines, and the lines under each such pixel",
     "the id is among those picked there",
     draws=True,
 )

@@ -63,7 +63,7 @@ def camera(
 
 @dataclass(frozen=True, eq=False)
 class Picture:
-    """What a G-buffer of fiblets holds; arrays are ``(height, width, …)``, row 0 at the bottom."""
+    """Contents of a G-buffer of fiblets; arrays are ``(height, width, …)``, row 0 at the bottom."""
 
     key: npt.NDArray[np.uint32]
     ids: npt.NDArray[np.uint32]

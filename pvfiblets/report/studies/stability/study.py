@@ -20,13 +20,13 @@ __all__ = ["STUDY", "StabilityStudy", "result_of"]
 
 
 def result_of(case: Case, setting: Setting) -> CaseResult:
-    """Run one case; an error that it did not expect is what was found. Warnings count as errors."""
+    """Run one case; an unexpected error is its result. Warnings count as errors."""
     begun = time.perf_counter()
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             found = case.run(setting)
-    except Exception as error:  # noqa: BLE001 - whatever it is, the report goes on and says so
+    except Exception as error:  # noqa: BLE001 - the report records any error and goes on
         said, figure, limit, held = f"{type(error).__name__}: {error}", Figure(math.nan, ""), math.nan, False
     else:
         said, figure, limit, held = found.note, Figure(found.measured, found.unit), found.limit, found.held
@@ -54,8 +54,8 @@ class StabilityStudy:
     name = "stability"
     title = "Stiff and extreme cases"
     approximates = (
-        "What must hold whatever the data, the camera or the file: each case says it, and measures one figure by which "
-        "it is judged, against an error bound, a formula, or NumPy in float64."
+        "Conditions on any data, camera or file: each case states one, and judges a measured figure "
+        "by an error bound, a formula, or NumPy in float64."
     )
     axes: Sequence[Axes] = ()
     notes = (

@@ -1,4 +1,4 @@
-"""Spline tubes that hardly are any: rays meet on the GPU what they meet in float64."""
+"""Spline tubes that hardly are any: rays hit the same on the GPU as in float64."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ CASES = Cases("spline tubes", draws=True)
 SIZE = (72, 54)
 RAYS = 250
 LINE = [[-1.0, 0, 0], [0, 0, 0], [1, 0, 0]]
-MET = "hits within a thousandth of the size of those in float64, for 99 % of the rays that do not graze"
+MET = "hits within a thousandth of the size of the float64 hits, for 99 % of the rays that do not graze"
 SHARE = "of the rays are off"
 SHOWN = "all pixels but 2 in 1,000 as in float64, where a fiftieth of the radius does not decide"
 

@@ -51,7 +51,7 @@ TABLES = {
 
 @dataclass(frozen=True, eq=False)
 class Cast:
-    """What a picture of a volume shows, ``(height, width, …)``."""
+    """Contents of a volume's picture, ``(height, width, …)``."""
 
     there: npt.NDArray[np.bool_]
     depth: Array
@@ -102,13 +102,13 @@ def looking_at(volume: RaycastVolume, away: float = 1.9, *, near: float = 0.02, 
 def surface(
     setting: Setting, volume: RaycastVolume, value: float, matrix: Array, size: tuple[int, int] = SIZE
 ) -> Outcome:
-    """Compare an isosurface with float64: depths in the least voxel spacings; what is missed, or invented, is inf."""
+    """Compare an isosurface with float64: depths in the least voxel spacings; missed or invented surfaces are inf."""
     shown = cast(setting, volume, RaycastOptions(values=(value,), step=0.25, iterations=8), matrix, size)
     through = rays(matrix, size, volume)
     wanted = reference.isosurface(volume, value, through)
     voxel = float(volume.spacing.min())
     there = wanted.value >= 0
-    sure = ~(wanted.chord < 0.5 * voxel)  # what is thinner than two steps may be stepped over
+    sure = ~(wanted.chord < 0.5 * voxel)  # parts thinner than two steps may be stepped over
     wrong = (shown.there != there) & sure
     if not shown.sound or wrong.mean() > 0.002 or not (there & sure).any():
         return Outcome(np.inf, NEAR, DEPTH, f"{int(wrong.sum())} pixels are wrong")

@@ -1,4 +1,4 @@
-"""The study of lines that one looks through: what each way of blending is off by, and what it costs."""
+"""The study of translucent lines: the error and the cost of each way of blending."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The methods of drawing spline tubes that their study compares: each draws a picture and tells what is visible."""
+"""The methods of drawing spline tubes that their study compares: each draws a picture and returns the visible tubes."""
 
 from __future__ import annotations
 

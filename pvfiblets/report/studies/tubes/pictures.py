@@ -49,7 +49,7 @@ def outline(mask: Mask) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Truth:
-    """What a picture of tubes should show, in all pixels or in some."""
+    """The right picture of tubes, in all pixels or in some."""
 
     lens: Lens
     pixels: npt.NDArray[np.int64]  # `(n,)` int64, counted in rows from below
@@ -58,7 +58,7 @@ class Truth:
     forwards: Array  # `(n,)` mm forwards by mm of ray
 
     @classmethod
-    def of(cls, tubes: SplineTubes, lens: Lens, pixels: npt.NDArray[np.int64] | None = None) -> Truth:
+    def from_tubes(cls, tubes: SplineTubes, lens: Lens, pixels: npt.NDArray[np.int64] | None = None) -> Truth:
         """Meet the rays of pixels, all by default, with all halves, in float64."""
         halves = curves.controls(tubes).reshape(-1, 3, 4)
         pixels = np.arange(lens.size[0] * lens.size[1]) if pixels is None else pixels
@@ -75,7 +75,7 @@ class Truth:
         return np.isfinite(self.along)
 
     def errors(self, shown: Array, there: Mask) -> dict[str, float]:
-        """Return how far a picture is off, of which this holds all pixels."""
+        """Return the errors of a picture; this reference holds all its pixels."""
         width, height = self.lens.size
         length = outline(self.there.reshape(height, width))
         off = self.depth_errors(shown, there)
@@ -126,7 +126,7 @@ FORMATS: dict[str, Callable[[Array], Array]] = {
     "24 bits": _fixed(24),
     "key of 32 bits, rounded once": _fixed(32),
 }
-"""What depth may be stored as: functions of 1 less the window depth, which give what is left of it."""
+"""Stored formats of depth: functions of 1 less the window depth, which return it after rounding."""
 
 
 def reversed_depth_of(keys: npt.NDArray[np.uint32]) -> Array:

@@ -1,4 +1,4 @@
-"""Rays at halves of spline tubes, what is right for them, and how far off an answer is: for the tubes' error report.
+"""Rays at halves of spline tubes, their right hits, and the errors of answers: for the tubes' error report.
 
 The error of a ray, over the radius of the sphere that it should meet: along the ray, where it meets the tube and
 should; where it meets the tube and should not, or the other way round, how far it passes from the silhouette, which is
@@ -51,7 +51,7 @@ class Rays:
 
     @cached_property
     def truth(self) -> Hits:
-        """What each ray meets, from its origin or from before it."""
+        """The hit of each ray, from its origin or from before it."""
         return hits(self.controls, self.origins, self.directions)
 
     @cached_property
@@ -70,7 +70,7 @@ class Rays:
 
 
 def summary(error: Array, missed: Mask, false: Mask) -> dict[str, float]:
-    """Return the figures of errors over the radius, of rays some of which miss or meet what they should not."""
+    """Return the figures of errors over the radius, for rays with some missed or false hits."""
     flipped = missed | false
     middle, high, higher = np.quantile(error, (0.5, 0.99, 0.999)) if len(error) else (0.0, 0.0, 0.0)
     return {
@@ -160,7 +160,7 @@ def of_set(tubes: Any, count: int, size: tuple[int, int], seed: int = 0) -> Rays
     rng = np.random.default_rng([seed, 7])
     parts = []
     for view in ("far", "close"):
-        lens = Lens.of(orbit(tubes, view, 4, size)[0])
+        lens = Lens.from_camera(orbit(tubes, view, 4, size)[0])
         chosen = rng.integers(0, tubes.n_segments, 40 * count)
         middle = tubes.points[tubes.segments[chosen]].mean(axis=1)
         reach = tubes.radius[tubes.segments[chosen]].max(axis=1)

@@ -40,7 +40,7 @@ Ints = npt.NDArray[np.int64]
 MISS, ENTRY, EXIT, CAP = range(4)
 
 _BLOCK = 1 << 13
-"""Pairs of ray and half solved at a time: what they need in between stays in cache."""
+"""Pairs of ray and half solved at a time: their working arrays stay in cache."""
 
 _PAIRS = 1 << 21
 """Pairs whose bounding spheres are tried at a time."""
@@ -48,7 +48,7 @@ _PAIRS = 1 << 21
 
 @dataclass(frozen=True, eq=False)
 class Hits:
-    """What rays meet."""
+    """Hits of rays."""
 
     # `(n,)` float64 mm along the ray from its origin; NaN for a miss
     l: Array  # noqa: E741 - the paper's name for it
@@ -58,7 +58,7 @@ class Hits:
 
 @dataclass(frozen=True, eq=False)
 class Nearest(Hits):
-    """What rays meet first of many halves."""
+    """The first hits of rays with many halves."""
 
     half: Ints  # `(n,)` int64 index of the half; -1 for a miss
 
@@ -115,7 +115,7 @@ def nearest_hits(
     end: npt.ArrayLike = np.inf,
     capped: bool = False,
 ) -> Nearest:
-    """Meet each ray with every half, and keep what is nearest."""
+    """Meet each ray with every half, and keep the nearest hit."""
     halves, origins, unit = _halves(controls), _vectors(origins, "origins"), _directions(directions)
     low, high = _limits(start, "start"), _limits(end, "end")
     n = np.broadcast_shapes(origins.shape[:1], unit.shape[:1], low.shape, high.shape)[0]
@@ -141,7 +141,7 @@ def nearest_hits(
 
 
 def surface_distance(controls: npt.ArrayLike, points: npt.ArrayLike) -> Array:
-    """How far points are from the surface of one half each: the least ``|p - p(t)| - r(t)``."""
+    """Return distances of points from the surface of one half each: the least ``|p - p(t)| - r(t)``."""
     halves, places = _halves(controls), _vectors(points, "points")
     n = np.broadcast_shapes(halves.shape[:1], places.shape[:1])[0]
     halves, places = np.broadcast_to(halves, (n, 3, 4)), np.broadcast_to(places, (n, 3))
@@ -159,7 +159,7 @@ def _near(centres: Array, reach: Array, origins: Array, unit: Array, low: Array,
     along = unit @ centres.T - np.einsum("ni,ni->n", unit, origins)[:, None]
     squares = np.einsum("mi,mi->m", centres, centres), np.einsum("ni,ni->n", origins, origins)
     away = squares[0] + squares[1][:, None] - 2.0 * (origins @ centres.T) - along**2
-    # Squares of large coordinates cancel: what is lost to that must not cost a hit.
+    # Squares of large coordinates cancel: the loss must not cost a hit.
     slack = 1e-12 * (squares[0].max() + squares[1].max() + (reach**2).max())
     close = away <= (reach**2 + slack)
     within = reach + np.sqrt(slack)

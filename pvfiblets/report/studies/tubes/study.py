@@ -44,7 +44,7 @@ def picture_sweeps(ctx: Any, options: Options) -> Iterator[Record]:
         errors: dict[str, dict[str, Figure]] = {}
         for ratio in ratios[:: 3 if options.quick else 1]:
             tubes, lens = make(ratio)
-            truth = Truth.of(tubes, lens)
+            truth = Truth.from_tubes(tubes, lens)
             by = {}
             for solver in ("auto", "bisection"):
                 drawn = CastTubes(ctx, tubes, solver)
@@ -99,7 +99,7 @@ def _helices(where: str, makers: Makers, options: Options) -> Iterator[Record]:
         if not options.allows(name):
             continue
         camera = orbit(tubes, view, 2, size)[0]
-        truth = Truth.of(tubes, Lens.of(camera))
+        truth = Truth.from_tubes(tubes, Lens.from_camera(camera))
         within = options.share()  # the reference took longer than pictures do
         yield from _measured(name, "pictures", camera, makers(tubes, size), _errors_of(truth), within)
 
@@ -122,7 +122,7 @@ def _sets(where: str, makers: Makers, options: Options) -> Iterator[Record]:
         tubes = tube_set(name, options.seed)
         for view in VIEWS:
             camera = orbit(tubes, view, 2, size)[0]
-            errors = _sampled_errors(tubes, Lens.of(camera), options)
+            errors = _sampled_errors(tubes, Lens.from_camera(camera), options)
             data = f"the set {name}, {view}{where}"
             yield from _measured(data, "sets", camera, makers(tubes, size), errors, options)
 
@@ -136,7 +136,7 @@ def _sampled_errors(tubes: SplineTubes, lens: Lens, options: Options) -> Callabl
         if not truths:
             rng = np.random.default_rng([options.seed, 1])
             count = QUICK_SAMPLE if options.quick else SAMPLE
-            truths.append(Truth.of(tubes, lens, sampled(there.reshape(lens.size[::-1]), count, rng)))
+            truths.append(Truth.from_tubes(tubes, lens, sampled(there.reshape(lens.size[::-1]), count, rng)))
         (truth,) = truths
         here, should = there[truth.pixels], truth.there
         off = truth.depth_errors(shown[truth.pixels], here)
@@ -190,11 +190,11 @@ def _measured(
 
 
 def stored(ctx: Any, options: Options) -> Iterator[Record]:
-    """Yield records of depth by what it is stored as, and by how far the near and the far plane lie apart."""
+    """Yield records of depth by its stored format, and by the distance between the near and the far plane."""
     tubes, size = helices(2), QUICK_SIZE
     far = orbit(tubes, "far", 2, size)[0]
-    lens = Lens.of(far)
-    truth = Truth.of(tubes, lens)
+    lens = Lens.from_camera(far)
+    truth = Truth.from_tubes(tubes, lens)
     drawn = CastTubes(ctx, tubes)
     names = [f"p99 at far/near {ratio:g}" for ratio in (QUICK_RANGES if options.quick else RANGES)]
     errors: dict[str, dict[str, Figure]] = {name: {} for name in ("key of 32 bits, as drawn", *FORMATS)}
@@ -203,7 +203,7 @@ def stored(ctx: Any, options: Options) -> Iterator[Record]:
             if not options.allows(f"stored depth: {name}"):
                 continue
             camera = replace(far, near=far.far / ratio)
-            seen = replace(truth, lens=Lens.of(camera))
+            seen = replace(truth, lens=Lens.from_camera(camera))
             drawn.draw(camera)
             shown = seen.errors(*drawn.visible(seen.lens))["depth p99"]
             errors["key of 32 bits, as drawn"][name] = Figure(shown, "radii")
@@ -245,7 +245,7 @@ PARTS: dict[Part, float] = {
     solvers: 3.0, pictures: 5.0, sets: 4.0, ray_sweeps: 2.0, picture_sweeps: 1.0, stored: 1.0, halves: 1.0,
 }  # fmt: skip
 IN_WINDOWS: dict[WindowPart, float] = {in_windows: 4.0}
-"""What is measured, and by what weight each part has its share of the time."""
+"""Measurements, and the weight of each part's share of the time."""
 
 
 class TubesStudy:
@@ -254,8 +254,8 @@ class TubesStudy:
     name = "tubes"
     title = "Ray-cast spline tubes"
     approximates = (
-        "Where rays meet tubes of varying radius, found in float32 by a bounded number of steps: solvers by "
-        "iterations, beside the paper's; whole pictures, beside tessellation; depth, by what it is stored as."
+        "Intersections of rays with tubes of varying radius, found in float32 by a bounded number of steps: solvers by "
+        "iterations, beside the paper's; whole pictures, beside tessellation; depth, by its stored format."
     )
     axes = (
         Axes("hit-p99", "times/hit", "errors/hit p99", "ns per ray", "99th percentile of errors, radii"),
@@ -266,7 +266,7 @@ class TubesStudy:
         Axes("stored", "", "errors/p99 at far/near ", "far over near plane", "99th percentile, radii", series=True),
     )
     notes = (
-        "What is right is found in float64 by another method (report/studies/tubes/reference.py: eigenvalues of "
+        "The right answer is found in float64 by another method (report/studies/tubes/reference.py: eigenvalues of "
         "companion matrices, nothing is bracketed). Errors are in radii of the sphere that is met: along the ray, "
         "where it meets "
         "the tube and should; where only one of both is so, by how much the radius would have to change to make the "
@@ -282,12 +282,12 @@ class TubesStudy:
         "true one, over the true one's length. *depth* errors are along the ray, where a tube shows and should; "
         "their 99th percentile is that of inner outlines, where another tube shows.",
         f"Sets: the five of Russig et al. 2020, section 4, {SET_SIZE[0]}×{SET_SIZE[1]}; each solver against float64 in "
-        f"{SAMPLE} pixels, half of them covered, half empty beside these. *holes*: of the empty ones, those that a "
-        "tube covers; *false*: of the covered ones, those that none does; *depth p99 by storing*: what the right depth "
-        f"would be off by if stored as float32; *off by {GOAL:g}*: share of covered pixels with a larger error.",
-        "*stored depth*: what rounding the right depth to a format costs, and the depths of a picture as drawn and "
+        f"{SAMPLE} pixels, half of them covered, half empty beside these. *holes*: empty pixels that a "
+        "tube covers; *false*: covered pixels without a tube; *depth p99 by storing*: the error of the right depth "
+        f"if stored as float32; *off by {GOAL:g}*: share of covered pixels with a larger error.",
+        "*stored depth*: the error of rounding the right depth to a format, and the depths of a picture as drawn and "
         "stored, as a key of 32 bits; the near plane moves towards the eye. Where software draws, times are of the "
-        "processor, of all threads; those of cards are by the clock.",
+        "processor, of all threads; on a graphics card they are elapsed.",
         "*in a window*: the same pictures in PyVista windows with one light at the eye: `plotter.add_spline_tubes`, "
         "VTK's tube filter around the nodes' polylines, or around more samples of each segment, and VTK's lines shaded "
         "as tubes, as wide as the mean radius. Meshes of more than 12 million corners are left out.",

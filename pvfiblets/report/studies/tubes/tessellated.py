@@ -98,7 +98,7 @@ class TessellatedTubes:
             self._array.render(moderngl.PATCHES)
 
     def depth(self) -> Array:
-        """Return the last picture's window depth: (height, width), the bottom row first, 1 where there is nothing."""
+        """Return the last picture's window depth: (height, width), the bottom row first, 1 in empty pixels."""
         width, height = self._size
         depth = np.frombuffer(self._target.read(attachment=-1, components=1, dtype="f4"), np.float32)
         return depth.reshape(height, width).astype(np.float64)
@@ -149,7 +149,7 @@ def carried_normals(tangents: Array, segments: npt.NDArray[np.int64]) -> Array:
 
 
 def across(unit: Array) -> Array:
-    """Return a unit vector across each of some, (n, 3); any one of those that are zero."""
+    """Return a unit vector across each of some, (n, 3); any one for zero vectors."""
     axis = np.where(np.abs(unit[:, :1]) < math.sqrt(1.0 / 3.0) + 1e-3, [[1.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]])
     found: Array = axis - unit * np.einsum("ij,ij->i", axis, unit)[:, None]
     found /= np.linalg.norm(found, axis=1, keepdims=True)

@@ -1,4 +1,4 @@
-"""How the study of volumes draws."""
+"""Drawing for the study of volumes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Fields and transfer functions that are gentle, that jump, and that are nothing but for one entry."""
+"""Fields and transfer functions that are gentle, that jump, and that are zero but for one entry."""
 
 from __future__ import annotations
 

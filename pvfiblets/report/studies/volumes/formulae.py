@@ -1,7 +1,7 @@
 """How the rendering equation is integrated from samples along a ray, and how far each way is from a closed form.
 
 Source: Lesar, "Real-time ray casting of volumetric data" (2015), section III-E. Along a ray towards the eye light obeys
-``dI/ds = g - kappa I`` (equation 6). That is linear: whatever happens over a stretch, what comes out of its front is
+``dI/ds = g - kappa I`` (equation 6). That is linear: for every stretch, the light out of its front is
 
     I_front = b + a I_back
 
@@ -19,14 +19,14 @@ integrator          steps  samples  a and b, with h the length of a step and tau
 ``preintegrated``   1      ends     exact where the value is linear over the step: a table by both ends' values
 ==================  =====  =======  =============================================================================
 
-Stability. What multiplies the light behind must not exceed 1, whatever the optical depth ``x = kappa h`` of a step:
+Stability. The factor of the light behind must not exceed 1, whatever the optical depth ``x = kappa h`` of a step:
 
 * ``riemann`` has ``a = 1 - x``: negative, so that light turns dark and back, from 1 on, and unbounded from 2 on.
 * ``rk4`` has over its two steps ``a = 1 - y + y^2/2 - y^3/6 + y^4/24`` with ``y = 2 x``: unbounded from y = 2.785 on.
 * ``simpson`` and ``romberg`` have an ``a`` in 0..1 always, as all their weights are positive, but a ``b`` of about
   ``x / 3`` and ``14 x / 45`` where x is large: not unstable, and yet of no use beyond x of about 1.
 * ``exponential`` and ``preintegrated`` have ``a`` in 0..1 and a ``b`` that is a mean of colours times ``1 - a``: the
-  result is in 0..1 always. Of the two, only the latter sees what lies between samples.
+  result is in 0..1 always. Only the latter accounts for values between samples.
 """
 
 from __future__ import annotations
@@ -54,16 +54,16 @@ PANELS = {"riemann": 1, "exponential": 1, "simpson": 2, "romberg": 4, "rk4": 2}
 INTEGRATORS = (*PANELS, "preintegrated")
 
 MIDDLE = ("riemann", "exponential")
-"""Those that take a sample in the middle of each step, not at its ends."""
+"""Integrators that take a sample in the middle of each step, not at its ends."""
 
 STABLE_UP_TO = {"riemann": 2.0, "rk4": 2.785293563405282 / 2.0}
-"""Largest ``kappa h`` for which light does not grow from panel to panel, of those that have one."""
+"""Largest ``kappa h`` at which light does not grow from panel to panel, for the integrators with a limit."""
 
 PHASES = 5
 """Rays of a profile in a study. They begin at different places, so that no sample lies well or badly by chance."""
 
 LATEST = 1 / 16
-"""Part of a profile before which they begin; all are as much shorter than it."""
+"""Part of a profile before which they begin; all are shorter than it by this part."""
 
 
 def integrate(method: str, kappa: npt.ArrayLike, colour: npt.ArrayLike, ds: npt.ArrayLike) -> tuple[Floats, Floats]:
@@ -162,7 +162,7 @@ def _romberg(kappa: Floats, colour: Floats, h: Floats) -> tuple[Floats, Floats]:
 
 
 def _rk4(kappa: Floats, colour: Floats, h: Floats) -> tuple[Floats, Floats]:
-    """The method is affine in the light that comes in: b is what it makes of none, and a of 1 without emission."""
+    """The method is affine in the incoming light: b is its result for none, and a for 1 without emission."""
     front, middle, back = (kappa[..., k, None] for k in range(3))
     emission = kappa[..., None] * colour
     h = (2 * h)[..., None]

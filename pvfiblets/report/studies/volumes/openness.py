@@ -1,4 +1,4 @@
-"""How open surfaces of volumes are (Lesar 2015, equation 10): what is looked at, and what is right, in float64."""
+"""Openness of volumes' surfaces (Lesar 2015, equation 10): the scenes, and the right values, in float64."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Array = npt.NDArray[np.float64]
 
 
 def opened_head(n: int) -> RaycastVolume:
-    """Return a head without its upper third, of which the brain's folds show from above."""
+    """Return a head without its upper third, so that the brain's folds show from above."""
     head = brain_like(n)
     return RaycastVolume(head.values[:, :, : round(0.66 * n)], head.affine)
 

@@ -1,4 +1,4 @@
-"""What a picture of a ray-cast volume shows, and how far it is off: colours, and where surfaces are."""
+"""Pictures of ray-cast volumes, and their errors: colours, and places of surfaces."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class GroundTruth:
 
 
 def ground_truth_of(volume: RaycastVolume, look: Look, cameras: list[Camera], count: int, filter: str) -> GroundTruth:  # noqa: A002
-    """Return what is right in so many pixels of each camera's picture."""
+    """Return the right values in so many pixels of each camera's picture."""
     colours = truth(volume, look, cameras, count, filter)
     rays = [
         reference.rays(camera.model_view_projection, camera.size, volume)[at[:, 0], at[:, 1]]
@@ -72,7 +72,7 @@ def ground_truth_of(volume: RaycastVolume, look: Look, cameras: list[Camera], co
 
 
 def along_of(keys: Words, rays: Any) -> Array:
-    """Return how far along rays the depths are that a G-buffer's keys mean: ``(n,)`` mm, NaN where there is nothing."""
+    """Return the distance along each ray of a depth key of a G-buffer: ``(n,)`` mm, NaN for empty pixels."""
     depth = 2.0 * (1.0 - (0xFFFFFFFF - keys.astype(np.float64)) / 2.0**32) - 1.0
     z, w = np.moveaxis(rays.origins @ rays.matrix[2:, :3].T + rays.matrix[2:, 3], -1, 0)
     dz, dw = np.moveaxis(rays.directions @ rays.matrix[2:, :3].T, -1, 0)

@@ -6,7 +6,7 @@ to 9; local maxima: Sato et al., "Local maximum intensity projection (LMIP)" (19
 No ray is sampled. Between voxel centres the field is a polynomial in each coordinate, and so one along a ray within a
 cell, which is found exactly (:mod:`.reference_cells`), and taken apart where it turns. Crossings are roots between two
 such places, maxima lie at them, and the integral of equation 7 is smooth between them and the entries of the transfer
-function's table. No answer depends on a step, and none misses what is thinner than one.
+function's table. No answer depends on a step, and none misses a feature thinner than one.
 """
 
 from __future__ import annotations
@@ -224,7 +224,7 @@ def sample(volume: RaycastVolume, points: npt.ArrayLike, filter: str = "trilinea
 def gradient(volume: RaycastVolume, points: npt.ArrayLike, filter: str = "trilinear") -> Array:  # noqa: A002
     """The field's gradient at places, by central differences (section III-A).
 
-    Differences are those of the field one voxel to either side along each axis of the grid, or at the edge of the box
+    Differences are of the field one voxel to either side along each axis of the grid, or at the edge of the box
     of the voxels' centres where that is nearer, over the distance between the two.
     """
     points = np.asarray(points, np.float64)

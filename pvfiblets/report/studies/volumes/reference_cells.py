@@ -2,7 +2,7 @@
 
 Within a cell the field is a polynomial in each coordinate: constant, linear or cubic by the filter. Along the stretch
 of a ray from ``a`` to ``b`` in the cell it is therefore one of degree 0, 3 or 9 in ``s``, 0 at ``a`` to 1 at ``b``.
-Such polynomials are held here by Bernstein coefficients: with ``c[i, j, k]`` those of the field over the box with the
+They are held here by Bernstein coefficients: with ``c[i, j, k]`` the coefficients of the field over the box with the
 corners ``a`` and ``b``, of degree ``m`` along each axis, the coefficients on its diagonal are::
 
     p[r] = sum over i + j + k = r of c[i, j, k] * C(m, i) C(m, j) C(m, k) / C(3m, r)
@@ -43,7 +43,7 @@ class Scratch(NamedTuple):
     ends: Any  # (2, 3) where a ray enters and leaves the cell, 0 to 1
     tensor: Any  # (64,) values of 4 x 4 x 4 voxels, then coefficients
     polynomial: Any  # (10,) coefficients along the ray
-    table: Any  # (10, 10) those of its derivatives
+    table: Any  # (10, 10) coefficients of its derivatives
     places: Any  # (10,) 0, where it turns, 1
     work: Any  # (10,)
 
@@ -224,7 +224,7 @@ def solved(polynomial: Any, degree: int, low: float, high: float, value: float, 
         else:
             high = s
         step = height / slope if slope != 0.0 else math.inf
-        # Steps that have ceased to shrink are those of rounding.
+        # Steps that have ceased to shrink are rounding errors.
         if abs(step) <= 1e-16 or (abs(step) < 1e-12 and abs(step) >= 0.5 * last):
             return min(max(s - step, low), high)
         s, last = (s - step if abs(step) < 0.5 * before else 0.5 * (low + high)), abs(step)
@@ -251,7 +251,7 @@ def extrema(degree: int, memory: Scratch) -> int:
             table[n, i] = table[n - 1, i + 1] - table[n - 1, i]
     count = 2
     for n in range(degree - 2, -1, -1):
-        # `found` splits 0..1 where derivative n + 1 has its roots; take those of derivative n instead.
+        # `found` splits 0..1 at the roots of derivative n + 1; replace it with the roots of derivative n.
         previous, kept, low = evaluated(table[n], degree - 1 - n, 0.0, work)[0], 1, 0.0
         for i in range(1, count):
             high = found[i]

@@ -1,8 +1,8 @@
 """Compiled kernels: rays walked through the cells of a volume, one after the other; see :mod:`.reference`.
 
 Rays are in voxel coordinates, for the nearest voxel's filter half a voxel further, so that every cell begins at whole
-numbers. Each cell's stretch is taken apart where the field turns (:func:`.reference_cells.extrema`); what lies between
-is monotone. Of rays whose far end is not beyond their near one, or is NaN, nothing is filled in.
+numbers. Each cell's stretch is taken apart where the field turns (:func:`.reference_cells.extrema`); between these
+places it is monotone. Rays whose far end is not beyond their near one, or is NaN, are not filled in.
 """
 
 from __future__ import annotations
@@ -111,7 +111,7 @@ def _first_crossing(
         # What is shorter is rounding's, and would seem level.
         if until - t > SHORTEST * until:
             low, high = limits(field, how, memory.cell)
-            # Nearest voxels jump past levels that none of them has.
+            # Nearest voxels jump past levels that no voxel has.
             if how == NEAREST or not started or _open(low, high, levels, level):
                 degree = stretch(field, how, origin, direction, t, until, memory)
                 if not started:

@@ -25,7 +25,7 @@ from .reference_kernels import step, stretch
 __all__ = ["integrals"]
 
 DEEPEST = 60
-"""Halvings of a piece after which there is nothing between its ends."""
+"""Halvings of a piece after which its ends are neighbouring floats."""
 
 ROUNDING = 1e-15
 """Of a part; no halving makes it less."""
@@ -84,7 +84,7 @@ def _integrate(
     memory: Scratch, degree: int, a: float, b: float, length: float, piece: Any, rule: Any, cap: float,
     tolerance: float, stack: Any, light: Any,
 ) -> None:  # fmt: skip
-    """Let light come through a piece of a stretch without kinks: `light` (4,) is RGB and transparency so far.
+    """Add the light of a piece of a stretch without kinks: `light` (4,) is RGB and transparency so far.
 
     What both halves of a part give together is kept if the part itself gives the same, else they are parts.
     """
@@ -134,7 +134,7 @@ def _through(
     memory: Scratch, degree: int, a: float, b: float, length: float, knots: Any, pieces: Any, rule: Any, cap: float,
     tolerance: float, stack: Any, light: Any,
 ) -> None:  # fmt: skip
-    """Let light come through a stretch from ``a`` to ``b``, between which the field is monotone."""
+    """Add the light of a stretch from ``a`` to ``b``, between which the field is monotone."""
     first = evaluated(memory.polynomial, degree, a, memory.work)[0]
     last = evaluated(memory.polynomial, degree, b, memory.work)[0]
     if first == last:
@@ -172,7 +172,7 @@ def _integral(
     field: Any, how: int, origin: Any, direction: Any, near: float, far: float, knots: Any, pieces: Any, unit: float,
     rule: Any, cap: float, tolerance: float, memory: Scratch, stack: Any, light: Any,
 ) -> None:  # fmt: skip
-    """Let light come through the cells of a ray until it ends, or what lies behind changes nothing any more."""
+    """Add the light of a ray's cells until it ends, or the rest changes nothing any more."""
     t = near
     enter(field, how, origin, direction, t, memory.cell)
     while True:

@@ -36,7 +36,7 @@ DENSE = 0.9
 
 @dataclass(frozen=True, eq=False)
 class Profile:
-    """``(m,)`` values along a ray of so many mm, evenly spaced and linear between, and what they mean."""
+    """``(m,)`` values along a ray of so many mm, evenly spaced and linear between, and their transfer function."""
 
     name: str
     values: Array

@@ -30,7 +30,7 @@ class Rays:
     # `(..., 3)` float64, mm. Directions are unit vectors, so that lengths along rays are mm.
     origins: Array
     directions: Array
-    # `(...)` float64: from where to where along it the ray is in the volume. NaN of those that never are.
+    # `(...)` float64: the stretch of each ray within the volume. NaN for rays that miss it.
     near: Array
     far: Array
     matrix: Array  # `(4, 4)` data coordinates in mm to clip coordinates

@@ -1,8 +1,7 @@
-"""What the studies of ray-cast volumes look at: transfer functions, cameras, and what is right.
+"""Scenes of the studies of ray-cast volumes: transfer functions, cameras, and the right values.
 
 Everything that shows a volume here shows the same: light by one transfer function, greatest values in grey, one surface
-in white that a lamp at the eye lights, on black. What is right is computed ray by ray in float64, without steps
-(`pvfiblets.report.studies.volumes.reference`), for a sample of the pixels whose rays meet the volume.
+in white that a lamp at the eye lights, on black. The right values are computed ray by ray in float64, without steps
 """
 
 from __future__ import annotations
@@ -25,7 +24,7 @@ __all__ = ["Look", "Truth", "circle", "grey_of", "ground_truth", "lit", "look_of
 GOLDEN = 360.0 * (1.0 - 2.0 / (1.0 + math.sqrt(5.0)))  # degrees: however few frames are drawn, they lie all around
 NEARER = 0.65  # of the distance from which all of the box is seen however it is turned
 TOLERANCE = 1e-5  # of the reference's light
-UNIT = 1.0  # mm, of which the opacities are
+UNIT = 1.0  # mm that opacities are for
 ENTRIES = 256
 
 Array = npt.NDArray[np.float64]
@@ -51,7 +50,7 @@ class Look:
 
 
 def look_of(volume: RaycastVolume, mode: str) -> Look:
-    """Return what is shown of a volume: what is dim is transparent, what is bright is opaque within some mm."""
+    """Return the appearance of a volume: dim voxels are transparent, bright ones opaque within some mm."""
     low, high = volume.value_range
     x = np.linspace(0.0, 1.0, ENTRIES)
     table = np.zeros((ENTRIES, 4))
@@ -99,7 +98,7 @@ class Truth:
 
 
 def truth(volume: RaycastVolume, look: Look, cameras: list[Camera], count: int, filter: str = "trilinear") -> Truth:  # noqa: A002
-    """Return what is right in so many pixels at most of each camera's picture."""
+    """Return the right values in so many pixels at most of each camera's picture."""
     rng = np.random.default_rng(0)
     pixels, colours = [], []
     for camera in cameras:

@@ -38,7 +38,7 @@ DIFFERS = 4  # levels of 255: pixels farther from the default's are counted
 
 
 def settings(mode: str, quick: bool, spread: float) -> Iterator[tuple[str, str, dict[str, Any]]]:
-    """Yield what is varied, how, and the fields of `RaycastOptions` that are not its defaults, the default first."""
+    """Yield the varied field, its value, and the non-default fields of `RaycastOptions`; the default is first."""
     yield "default", "", {}
     steps: tuple[float, ...] = QUICK_PICTURE_STEPS if quick else PICTURE_STEPS
     if mode == "isosurface":
@@ -175,12 +175,12 @@ class VolumeStudy:
         Axes("openness", "times/occlusion", "errors/openness rms", "ms per frame", "rms error of openness, of 1"),
     )
     notes = (
-        "What is right is found in float64, ray by ray and cell by cell, without steps "
+        "The right answer is found in float64, ray by ray and cell by cell, without steps "
         "(report/studies/volumes/reference.py), in a sample of the pixels whose rays meet the volume. Colours and "
         "opacities are from 0 to 1; pictures keep them in 8 bits, which makes up 0.003 of largest errors and 0.001 of "
         "rms.",
         f"Integrators: a ball and a slope of {SIDE}³ voxels, {LIGHT_SIZE[0]}×{LIGHT_SIZE[1]} pixels; transfer "
-        "functions that rise gently (*ramp*), that jump (*edge*), and that are nothing but for one entry (*peak*) or "
+        "functions that rise gently (*ramp*), that jump (*edge*), and that are zero but for one entry (*peak*) or "
         "several (*peaks*). κΔ is the optical depth of a step of half a voxel where they are densest. The default is "
         "*adaptive*: it halves steps where one look-up in a pre-integrated table is not enough, and is *preintegrated* "
         "elsewhere. *bare formulae*: in float32 on profiles of 64 steps whose light has a closed form, without the "
@@ -189,12 +189,12 @@ class VolumeStudy:
         "at each step: its length in voxels; *early end*, the opacity at which a ray ends; *homogeneous nodes*, whose "
         " values are taken as one if they differ by no more; *nodes as one*, where neither colour nor opacity "
         "changes; *sparse*, rays for every other or fourth pixel first, and between them where those differ by more "
-        "than the threshold. Surfaces: *place* is the mean distance along the ray from where the surface is, what is "
-        f"missed or false counted as a voxel. *unlike the default*: pixels more than {DIFFERS} of 255 levels off it.",
+        "than the threshold. Surfaces: *place* is the mean distance along the ray from the right surface; a missed or "
+        f"false one counts as a voxel. *unlike the default*: pixels more than {DIFFERS} of 255 levels off it.",
         f"Occlusion: the share of a surface's open side that rays of {RADIUS:g} mm find empty (Lesar 2015, equation "
-        "10), beside a rule of 48² directions whose rays end at exact roots; *independent rays*: the rms that as many "
-        "rays have by chance. The time is that of the pass alone. Where software draws, times are of the processor, of "
-        "all threads; those of cards are by the clock.",
+        "10), beside a rule of 48² directions whose rays end at exact roots; *independent rays*: the rms of the same "
+        "number of random rays. The time is that of the pass alone. Where software draws, times are of the processor, "
+        "all threads; on a graphics card they are elapsed.",
         "*in a window*: `plotter.add_raycast_volume` and `plotter.add_volume(mapper='gpu')` in PyVista windows, one "
         "light at the eye, one transfer function, the same lengths of steps: compare times at equal errors. *cast*: "
         "the share of the octree's leaves that is not skipped.",

@@ -57,7 +57,7 @@ class Calls:
 
 @contextmanager
 def counted() -> Iterator[Calls]:
-    """Count the calls of what is drawn meanwhile."""
+    """Count the calls of everything drawn meanwhile."""
     calls, where = Calls(), [""]
 
     def counting(owner: type, name: str, counter: Counter[str]) -> Any:
@@ -108,13 +108,13 @@ class PassWork:
 
 def pipeline_of(renderer: FibletRenderer) -> ComputePipeline:
     """Return the compute pipeline that a renderer draws with."""
-    pipeline = renderer._pipeline  # noqa: SLF001 - its counts are nobody else's business
+    pipeline = renderer._pipeline  # noqa: SLF001 - its counts are of use only here
     assert isinstance(pipeline, ComputePipeline)
     return pipeline
 
 
 def pass_work(renderer: FibletRenderer, pixels: int, owned: int) -> dict[str, PassWork]:
-    """Return the work of the last frame by pass, of a picture of so many pixels, so many of which show something."""
+    """Return the work of the last frame by pass, given its pixels, and how many of them show something."""
     pipeline, fiblets = pipeline_of(renderer), renderer.explain()["fiblets"]
     n = int(fiblets["total"])
     lengths = pipeline.list_lengths().sum(axis=(0, 2))

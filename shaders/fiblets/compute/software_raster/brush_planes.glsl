@@ -1,4 +1,4 @@
-// What planes of the caller's cut off the round brush of a wide line. Without planes all is kept.
+// Cuts of the round brush of a wide line by the caller's planes. Without planes all is kept.
 //
 // h / w, the height above a plane over clip w, is linear in the window: it is found at both ends of a piece, and no division
 // is left to do at a pixel. `away` is how far the pixel is from the piece's point s.

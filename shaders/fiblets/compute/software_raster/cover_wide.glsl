@@ -1,6 +1,6 @@
 // The pixels of a wide line's segment: all whose centre is at most half the width r from it: a capsule, whose round ends join
-// segments without notches. The round end at a segment's start is left out where another segment ends: it is that one's, and
-// of that what lies beside the next segment is left out (fiblets/segments/joint.glsl).
+// segments without notches. The round end at a segment's start is left out where another segment ends: that segment draws it,
+// without the pixels beside the next segment (fiblets/segments/joint.glsl).
 //
 // Algorithm: column by column of the longer axis, those rows that the capsule may reach; each pixel's distance decides.
 //
@@ -10,7 +10,7 @@
 //   away         from there to the pixel
 //
 // FEATURE_SUBSAMPLES: sixteen of the pixels are samples of one of the picture. PLACES tells how far each lies from the middle of its square,
-// in these squares: together they are those of pvfiblets/engine/effects/sample_positions.py.
+// in these squares: together they are the positions of pvfiblets/engine/effects/sample_positions.py.
 
 #include "fiblets/compute/software_raster/brush_planes.glsl"
 #include "fiblets/segments/joint.glsl"

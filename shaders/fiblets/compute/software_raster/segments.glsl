@@ -6,16 +6,16 @@
 //                its run and that of the next one
 //   vec3 shown_normal(Hit hit)                                   of tubes, the normal that a pixel is given
 //
-// What covers a pixel is told by the file of cover() that is included:
+// The included file of cover() decides which pixels are covered:
 //   thin lines   fiblets/compute/software_raster/cover_thin.glsl: the pixels of fiblets/segments/thin_line_rule.glsl
 //   wide lines   fiblets/compute/software_raster/cover_wide.glsl: capsules in the window
 //   tubes        fiblets/compute/software_raster/cover_tube.glsl: where rays through pixels meet capsules in space
 //
-// At a plane of the caller's a thin line ends in the pixel of the cut. A wide line ends in a round brush, of which the
-// pixels are left out that lie beyond a plane at the depth that they show: a cut seen from the side is a straight edge,
+// At a plane of the caller's a thin line ends in the pixel of the cut. A wide line ends in a round brush, without the
+// pixels that lie beyond a plane at the depth that they show: a cut seen from the side is a straight edge,
 // and a line cut head-on shows the whole brush.
 //
-// FEATURE_SUBSAMPLES: segments that run straight on are merged into one. Points deviate by less than a sample from what is drawn.
+// FEATURE_SUBSAMPLES: segments that run straight on are merged into one. Points deviate by less than a sample from the drawn line.
 //
 // Depth is interpolated in the window, where it is linear; everything else is corrected for perspective (along()).
 
@@ -34,7 +34,7 @@ struct Segment {
     bool goes_on;    // whether the line does
 };
 
-// What a segment shows in a pixel.
+// A segment's hit in a pixel.
 struct Fragment {
     ivec2 pixel;
     float z;         // window depth
@@ -54,7 +54,7 @@ void put(Fragment fragment, Segment segment) {
     if (behind_layers(fragment.pixel, depth_key(fragment.z))) plot(fragment, segment);
 }
 
-// Where on the segment a pixel lies.
+// Place of a pixel on the segment.
 float along(Fragment fragment, Segment segment) {
     return along_segment(segment.from, segment.to, segment.piece, fragment.s);
 }
@@ -77,7 +77,7 @@ vec3 next_run(Segment segment) {
 #endif
 
 #if FEATURE_SUBSAMPLES
-const float MERGED_DEVIATION = 0.25;   // samples, of which a pixel has four along each axis
+const float MERGED_DEVIATION = 0.25;   // samples; a pixel has four along each axis
 
 // Whether the line from a vertex to a point goes on to the next one as it began, in `direction`.
 bool goes_straight(Vertex from, vec3 direction, vec3 here, vec3 next) {

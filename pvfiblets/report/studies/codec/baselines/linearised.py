@@ -62,7 +62,7 @@ def _from_line(points: npt.NDArray[np.float64], line: npt.NDArray[np.float64]) -
 
 
 def linearised(tolerance: float) -> Callable[[npt.NDArray[np.floating], npt.NDArray[np.int64]], LinesPacked]:
-    """Leave points out that are no farther than ``tolerance`` (mm) from what remains; segments of 10 mm at most."""
+    """Leave points out within ``tolerance`` (mm) of the remaining line; segments of 10 mm at most."""
     compress: Any = import_module("dipy.tracking.streamlinespeed").compress_streamlines
 
     def pack(points: npt.NDArray[np.floating], offsets: npt.NDArray[np.int64]) -> LinesPacked:

@@ -20,7 +20,7 @@ TOP = 65535.0
 
 @dataclass
 class NumbersPacked:
-    """Coordinates in ``content``, ``unpack`` of which are the points."""
+    """Coordinates in ``content``; ``unpack`` returns the points."""
 
     content: Any
     unpack: Callable[[Any], npt.NDArray[np.floating]]

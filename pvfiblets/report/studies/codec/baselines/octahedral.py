@@ -8,7 +8,7 @@ Stretching: Rousseau and Boubekeur, "Unorganized unit vectors sets quantization"
 ``alpha`` around X is mapped to the sphere (``spread = 2``; QFib) or to the half with ``x >= 0`` (``spread = 1``; the
 fiblets paper, appendix A) so that areas keep their ratios: ``c' = 1 - spread (1 - c) / Ratio``,
 ``Ratio = 1 - cos alpha``, where ``c`` is a vector's x. All of the cap's rim falls on the one point ``-X`` of the
-sphere, around which codes tell azimuths badly or not at all; what lies near the rim or beyond it is therefore kept
+sphere, around which codes hold azimuths badly or not at all; vectors near the rim or beyond it are therefore kept
 ``limit`` away from X at most.
 """
 

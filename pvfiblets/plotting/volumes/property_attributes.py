@@ -1,4 +1,4 @@
-"""What of a volume's ``prop`` changes its picture, by mode, and what to say of the rest.
+"""Attributes of a volume's ``prop`` that change its picture, by mode, and warnings for the rest.
 
 Actors of meshes and of ``add_volume`` have settings in their property that mean nothing to rays through values, or mean
 something in some modes only. Each is declared once here.
@@ -16,7 +16,7 @@ from pvfiblets.plotting.volumes.settings import LIGHT, SURFACE
 if TYPE_CHECKING:
     from pvfiblets.plotting.volumes.actor import VolumeActor
 
-__all__ = ["PropertyWords", "tell_given"]
+__all__ = ["PropertyAttributes", "tell_given"]
 
 _PEAKS = "what peaks and projections show is the colour of a value, which no lamp shines on"
 _RAYS = "rays through a volume have neither lines nor points"
@@ -30,9 +30,9 @@ class _Word:
     used: tuple[str, ...]
     instead: str
     light: str = ""
-    """What to say where light could use it, and its ``shade`` is off; empty: light never uses it."""
+    """Message where light could use it, and its ``shade`` is off; empty: light never uses it."""
     reset: bool = False
-    """Whether it goes back to what it was, as VTK would do something else by it."""
+    """Whether the old value is restored, because VTK would draw something else by the new one."""
 
 
 _PEAK_MODES = ("mip", "local-mip", "minimum", "average")
@@ -55,8 +55,8 @@ _WORDS = {
 }  # fmt: skip
 
 
-class PropertyWords:
-    """What an actor's property said last.
+class PropertyAttributes:
+    """The last state of an actor's property.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ class PropertyWords:
         self._prop, self._said = actor.prop, _read(actor.prop)
 
     def look(self, actor: VolumeActor) -> None:
-        """Warn of what was changed and changes nothing; another property than before is taken as it is."""
+        """Warn of changes without effect; a replaced property is taken as it is."""
         prop, known, before = actor.prop, self._prop, self._said
         self.note(actor)
         if prop is not known:
@@ -97,7 +97,7 @@ def tell_given(actor: VolumeActor, given: Mapping[str, Any]) -> None:
         if word.light and given.get(name) is not None and not _used(word, actor)
     }
     if given.get("shade") is False and actor.mode == LIGHT:
-        return  # whoever says so knows
+        return  # an explicit shade=False needs no warning
     if given.get("shade") and actor.mode in _PEAK_MODES:
         unused["shade"] = _PEAKS
     if unused:

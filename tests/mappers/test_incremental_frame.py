@@ -7,7 +7,7 @@ import pytest
 import pyvista as pv
 
 from pvfiblets.engine import pieces
-from pvfiblets.mappers.ahead import draw_ahead
+from pvfiblets.mappers.incremental_frame import draw_in_pieces
 from pvfiblets.mappers.windows import contexts_with
 from pvfiblets.synthetic import brain_streamlines
 
@@ -64,7 +64,7 @@ def test_a_frame_finds_its_fiblets_drawn_and_shows_the_same(shown, antialias):
     for angle in (20.0, 25.0):
         for plotter in (ahead, usual):
             turn(plotter, angle)
-        assert sum(1 for _ in draw_ahead(ahead.render_window)) > 3
+        assert sum(1 for _ in draw_in_pieces(ahead.render_window)) > 3
         drawn = engine._generation
         for plotter in (ahead, usual):
             plotter.render()
@@ -79,7 +79,7 @@ def test_samples_find_their_fiblets_drawn_and_the_mean_is_the_same(shown):
         plotter.render()
     more, count = True, 0
     while more:
-        pieces_drawn = sum(1 for _ in draw_ahead(ahead.render_window, refining=True))
+        pieces_drawn = sum(1 for _ in draw_in_pieces(ahead.render_window, refining=True))
         drawn = engine._generation
         more = ahead.picture.refine()
         if pieces_drawn:
@@ -96,7 +96,7 @@ def test_what_changes_meanwhile_is_in_the_frame(shown):
     (ahead, _, actor), (usual, _, other) = shown(), shown()
     for plotter in (ahead, usual):
         turn(plotter, 20.0)
-    steps = draw_ahead(ahead.render_window)
+    steps = draw_in_pieces(ahead.render_window)
     next(steps)
     turn(ahead, 40.0)
     next(steps)
@@ -106,7 +106,7 @@ def test_what_changes_meanwhile_is_in_the_frame(shown):
     usual.render()
     assert np.array_equal(pixels(ahead), pixels(usual))
     turn(ahead, 5.0)
-    steps = draw_ahead(ahead.render_window)
+    steps = draw_in_pieces(ahead.render_window)
     next(steps)
     ahead.remove_actor(actor)
     usual.remove_actor(other)
@@ -121,9 +121,9 @@ def test_windows_of_other_kinds_are_left_to_the_frame(shown):
     plotter, _, actor = shown()
     turn(plotter, 20.0)
     plotter.enable_ssao()
-    assert not list(draw_ahead(plotter.render_window))
+    assert not list(draw_in_pieces(plotter.render_window))
     plotter.disable_ssao()
     actor.visibility = False
-    assert not list(draw_ahead(plotter.render_window))
+    assert not list(draw_in_pieces(plotter.render_window))
     actor.visibility = True
-    assert list(draw_ahead(plotter.render_window))
+    assert list(draw_in_pieces(plotter.render_window))

@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 
     Work = Callable[[Progress, Cancel], Any]
 
-__all__ = ["Beside"]
+__all__ = ["BackgroundWork"]
 
 MOST_WAITING = 16
 LATEST = 0.2  # seconds between two reports of progress
 
 
-class Beside(Actions):
-    """What takes long, while the page goes on."""
+class BackgroundWork(Actions):
+    """Long tasks in a thread, while the page goes on."""
 
     def __init__(self, app: Any) -> None:
         super().__init__(app)
@@ -34,7 +34,7 @@ class Beside(Actions):
         self._waiting: list[str] = []  # for their turn, for people
         self.tell: Callable[[str], None] = lambda _: None  # called with the opened file's name, "" after it
 
-    async def beside(self, name: str, work: Work, what: str, *, cancellable: bool = True) -> Any:
+    async def run_in_background(self, name: str, work: Work, what: str, *, cancellable: bool = True) -> Any:
         """Do what takes long in a thread of its own, with progress; the page goes on.
 
         One task at a time: others wait, and the page names them.
@@ -79,7 +79,7 @@ class Beside(Actions):
 
     @property
     def _then(self) -> str:
-        """What waits, for people."""
+        """Return the names of waiting tasks, for people."""
         return f"then {', '.join(self._waiting)}" if self._waiting else ""
 
     @contextlib.asynccontextmanager

@@ -1,4 +1,4 @@
-"""What to say of arguments of ``add_mesh`` and ``add_volume`` that are none of ours: why, and what to give instead."""
+"""Messages for unsupported arguments of ``add_mesh`` and ``add_volume``: the reason, and the replacement."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ _SPECIAL = {
 
 
 def why_not(add: str, name: str) -> str | None:
-    """Return what to say of an argument that a method of plotters does not take; None for one that nobody has."""
+    """Return the message for an argument that a method of plotters does not take; None for unknown names."""
     why = _SPECIAL.get(add, {}).get(name) or _WORDS.get(name)
     if name in _OURS:
         why = f"give {_OURS[name]}"

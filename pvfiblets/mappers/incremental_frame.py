@@ -1,8 +1,8 @@
-"""What the next frame of a window shows, drawn before it and piece by piece.
+"""The next frame of a window, drawn before it and piece by piece.
 
-VTK draws a frame in one call, within which nobody is heard. Most of its time goes into the G-buffers of fiblets where
-OpenGL runs on the CPU. So whoever may have to leave a frame has those drawn beforehand by `draw_ahead`: the frame finds
-them drawn if nothing has changed since, and shows what it would have shown in any case.
+VTK draws a frame in one call, without events in between. Most of its time goes into the G-buffers of fiblets where
+OpenGL runs on the CPU. So code that may have to abort a frame has them drawn beforehand by `draw_in_pieces`: the frame
+finds them drawn if nothing has changed since, and shows the same in any case.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from pvfiblets.mappers.antialias_windows import picture_of
 from pvfiblets.mappers.fiblets import FibletMapper
 from pvfiblets.mappers.scene import actors_in, items_of
 
-__all__ = ["draw_ahead"]
+__all__ = ["draw_in_pieces"]
 
 
-def draw_ahead(window: Any, *, refining: bool = False) -> Iterator[None]:
+def draw_in_pieces(window: Any, *, refining: bool = False) -> Iterator[None]:
     """Draw the fiblets of a window's next frame, and yield after each piece.
 
-    Nothing is drawn of what cannot be drawn in pieces, such as by a GPU, and of what is not an ordinary frame: an
+    Scenes that cannot be drawn in pieces, as on a GPU, are skipped, and so are frames that are not ordinary: an
     enlarged one, or one with a render pass.
     """
     if tuple(window.GetTileScale()) != (1, 1) or window.GetStereoRender():
@@ -43,7 +43,7 @@ def draw_ahead(window: Any, *, refining: bool = False) -> Iterator[None]:
                 continue
             drawn.add(mapper.GetAddressAsString(""))
             began = time.perf_counter()
-            for _ in mapper.draw_ahead(renderer, camera):
+            for _ in mapper.draw_in_pieces(renderer, camera):
                 if refinement is not None:
                     refinement.spend(time.perf_counter() - began)
                 yield
