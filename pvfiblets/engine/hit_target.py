@@ -6,9 +6,11 @@ Spline tubes and lines with halos are drawn into it; `HitDrawable` is what their
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import moderngl
+import numpy as np
+import numpy.typing as npt
 
 from .culling.two_phase_items import LEAST_SEGMENTS, Listing, supports_listing
 from .drawable import AnyStyle, Drawable
@@ -18,6 +20,11 @@ from .gl.bindings import HIT_KEYS
 from .gl.depth_texture import depth_texture
 from .gl.moderngl_extras import GLExtras
 from .gl.shaders import Programs
+from .lattice import TOP
+
+if TYPE_CHECKING:
+    from .regions.ray_intervals import RegionIntervals
+    from .view import View
 
 __all__ = ["HitDrawable", "HitTarget"]
 
@@ -139,6 +146,18 @@ class HitDrawable(Drawable[AnyStyle]):
 
     _listing: Listing | None = None
     _listed = False  # whether the last picture was drawn from lists
+    _filtering: npt.NDArray[np.bool_] | None = None
+    _cutter: RegionIntervals | None = None
+
+    @property
+    def filtering(self) -> npt.NDArray[np.bool_] | None:
+        """Which segments or points are drawn, ``(n,)``; None for all."""
+        return self._filtering
+
+    @filtering.setter
+    def filtering(self, wanted: npt.NDArray[np.bool_] | None) -> None:
+        self._filtering = wanted
+        self._outdate()
 
     @classmethod
     def _check_culling(cls, culling: str | None) -> None:
@@ -149,6 +168,19 @@ class HitDrawable(Drawable[AnyStyle]):
         """Have what others hide left out, where that is wanted, possible, and worth it for ``n`` segments."""
         if culling is not None and n >= LEAST_SEGMENTS and supports_listing(self._ctx):
             self._listing = self._keep(Listing(self._ctx, self._gl, self._programs, n_items, **how))
+
+    def _cut_by_region(self, view: View, origin: npt.NDArray[np.float64], scale: npt.NDArray[np.float64]) -> bool:
+        """Find where the view's region begins and ends in each pixel; return True if there is a region."""
+        if view.region is None:
+            if self._cutter is not None:
+                self._drop(self._cutter)
+                self._cutter = None
+            return False
+        if self._cutter is None:
+            from .regions.ray_intervals import RegionIntervals
+
+            self._cutter = self._keep(RegionIntervals(self._ctx, self._gl, self._programs), "region")
+        return self._cutter.prepare(view, origin, scale, TOP)
 
     def _hit_target(self, size: tuple[int, int], *, coloured: bool, edges: bool) -> HitTarget:
         """Return what the next picture is drawn into."""
@@ -212,6 +244,8 @@ class HitDrawable(Drawable[AnyStyle]):
         """Tell a program where the data are."""
         for sampler, unit in self.SAMPLERS.items():
             self._gl.set_sampler(program, sampler, unit)
+        if self._cutter is not None:
+            self._cutter.bind(program)
 
     def _prepare_listing(self, program: moderngl.ComputeShader) -> None:
         """Tell a program that lists items all that it needs of them."""

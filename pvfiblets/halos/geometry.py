@@ -72,6 +72,21 @@ class HaloLines:
         return int(np.maximum(np.diff(self.offsets) - 1, 0).sum())
 
     @cached_property
+    def segment_starts(self) -> npt.NDArray[np.int64]:
+        """``(n_segments,)`` int64: the point at which each segment starts; it ends at the next."""
+        inner = np.ones(self.n_points, bool)
+        inner[self.offsets[1:][np.diff(self.offsets) > 0] - 1] = False
+        return np.flatnonzero(inner)
+
+    def pieces(self, kept: npt.NDArray[np.bool_]) -> npt.NDArray[np.int64]:
+        """Return offsets of what is left of the lines with some of the segments, ``(n_segments,)`` bool.
+
+        All points are in pieces, those without a segment each in its own.
+        """
+        found: npt.NDArray[np.int64] = np.union1d(self.offsets, self.segment_starts[~kept] + 1)
+        return found
+
+    @cached_property
     def _references(self) -> dict[str, float]:
         return {name: value_reference(held) for name, held in self.values.items() if held.ndim == 1}
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -29,7 +31,7 @@ def samples(lines, count=200):
     dense = []
     for line in lines:
         share = np.linspace(0.0, 1.0, count)[:, None]
-        steps = [a + share * (b - a) for a, b in zip(line[:-1], line[1:], strict=True)]
+        steps = [a + share * (b - a) for a, b in pairwise(line)]
         dense.append(np.concatenate(steps) if steps else line)
     return Streamlines.from_list(dense)
 

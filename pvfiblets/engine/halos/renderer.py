@@ -59,7 +59,7 @@ class HaloDrawStyle(Style):
 
 
 class HaloRenderer(HitDrawable[HaloDrawStyle]):
-    """Draws one set of lines or points with halos; a view's region is not looked at.
+    """Draws one set of lines or points with halos.
 
     In its `GBuffer` ``owner`` holds segments, each by its first point, or points, and nothing where a halo shows;
     ``ids`` lines and tangents; ``position`` the point's index within its line plus the fraction along the segment, and
@@ -127,9 +127,10 @@ class HaloRenderer(HitDrawable[HaloDrawStyle]):
             look = replace(look, smooth=False)
         reads = vertices.show_values(style.values)
         filtered = vertices.show_filter(look.filter_by)
-        vertices.show_mask(look.n_tapered, look.t_tapered)
+        vertices.show_mask(look.n_tapered, look.t_tapered, self.filtering)
         target = self._hit_target(view.size, coloured=reads == "HALO_COLOURS", edges=style.edges)
         reference = self._drawn.value_reference(look.filter_by)
+        region = self._cut_by_region(view, vertices.origin, vertices.scale)
         planes, beside = self._blocks.write(view, look, self._n, style.drawn_width, reference)
         wanted = {
             "HALO_TAPER": look.n_tapered > 0 and not self._kind,
@@ -137,7 +138,9 @@ class HaloRenderer(HitDrawable[HaloDrawStyle]):
             "HALO_FILTER": filtered,
             "HALO_BENT": look.displacement != "linear",
             "HALO_CUT": (beside or planes) and not self._kind,
+            "HALO_SOME": bool(self._kind) and self.filtering is not None,
             "CLIP_PLANES": planes,
+            "CLIP_REGION": region,
             "EDGES": style.edges,
         }
         features = [*self._kind, *(name for name, on in wanted.items() if on)]

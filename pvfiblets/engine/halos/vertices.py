@@ -60,6 +60,7 @@ class Vertices:
         self._ctx, self._gl, self._drawn = ctx, gl, drawn
         self._textures: dict[str, BufferTexture] = {}
         self._holds: dict[str, object] = {}
+        self._filtering: npt.NDArray[np.bool_] | None = None
         self.buffers: dict[str, moderngl.Buffer] = {}
         self.origin, self.scale = lattice(drawn.points, "points with halos")
         self.n_items = max(drawn.n_points - 1, 0) if isinstance(drawn, HaloLines) else drawn.n_points
@@ -73,14 +74,20 @@ class Vertices:
             self.release()
             raise
 
-    def show_mask(self, n_tapered: int, t_tapered: float) -> None:
-        """Have the places of all vertices on their lines' masks, as the ends shall taper."""
+    def show_mask(self, n_tapered: int, t_tapered: float, filtering: npt.NDArray[np.bool_] | None = None) -> None:
+        """Have the places of vertices on the masks of lines, whose ends taper; of points, which are hidden."""
         drawn = self._drawn
-        if not isinstance(drawn, HaloLines) or not self.n_items:
-            return
         key = n_tapered, t_tapered
-        if self._holds.get("mask_texels") != key:
-            self._put("mask_texels", "r16ui", mask_places(drawn.offsets, n_tapered, t_tapered), key)
+        if not self.n_items or (filtering is self._filtering and self._holds.get("mask_texels") == key):
+            return
+        self._filtering = filtering
+        if isinstance(drawn, HaloLines):
+            offsets = drawn.offsets if filtering is None else drawn.pieces(filtering)
+            self._put("mask_texels", "r16ui", mask_places(offsets, n_tapered, t_tapered), key)
+        elif filtering is None:
+            self._drop("mask_texels")
+        else:
+            self._put("mask_texels", "r16ui", np.where(filtering, 0, LAST).astype("<u2"), key)
 
     def show_filter(self, name: str | None) -> bool:
         """Have the numbers that filter, and no others; say whether there are."""

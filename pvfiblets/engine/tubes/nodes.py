@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 __all__ = ["Nodes"]
 
 
+HIDDEN = 4
+"""Flag of segments that are not drawn (``shaders/tubes/write_varyings.glsl``)."""
+
 _LARGEST = float(np.finfo(np.float32).max)
 
 
@@ -57,12 +60,13 @@ class Nodes:
         self._textures: dict[str, BufferTexture] = {}
         self.buffers: dict[str, moderngl.Buffer] = {}
         self._shown: NodeValues | None = None
+        self._filtering: npt.NDArray[np.bool_] | None = None
         self.origin, self.scale = lattice(tubes.points, "nodes of spline tubes")
         if not tubes.n_segments:
             return
         try:
             self._put("node_texels", "nodes", "rgba32ui", self._node_words())
-            self._put("segment_texels", "segments", "rgba32ui", self._segment_words())
+            self._put("segment_texels", "segments", "rgba32ui", self._segment_words(None))
         except BaseException:
             self.release()
             raise
@@ -76,13 +80,23 @@ class Nodes:
         words[:, 7] = _float_bits(tubes.radius_slopes, "radius_slopes")
         return words
 
-    def _segment_words(self) -> npt.NDArray[np.uint32]:
+    def _segment_words(self, filtering: npt.NDArray[np.bool_] | None) -> npt.NDArray[np.uint32]:
         tubes = self._tubes
         words: npt.NDArray[np.uint32] = np.empty((tubes.n_segments, 4), "<u4")
         words[:, :2] = tubes.segments
         words[:, 2] = tubes.tubes
-        words[:, 3] = tubes.joined_ends @ np.array([1, 2])
+        words[:, 3] = HIDDEN
+        if filtering is None:
+            words[:, 3] = tubes.joined_ends @ np.array([1, 2])
+        else:
+            words[filtering, 3] = tubes.with_segments(filtering).joined_ends @ np.array([1, 2])
         return words
+
+    def filter(self, filtering: npt.NDArray[np.bool_] | None) -> None:
+        """Have segments hidden but for some; those left end where others are hidden."""
+        if filtering is not self._filtering and self._tubes.n_segments:
+            self.buffers["segments"].write(np.ascontiguousarray(self._segment_words(filtering)).tobytes())
+        self._filtering = filtering
 
     def _put(self, sampler: str, name: str, texel: str, data: npt.NDArray[Any]) -> None:
         limit = self._gl.get_integer("GL_MAX_TEXTURE_BUFFER_SIZE") * (16 if texel.startswith("rgba") else 8)

@@ -26,7 +26,7 @@ __all__ = ["TubeRenderer"]
 
 
 class TubeRenderer(HitDrawable[TubeStyle]):
-    """Draws one set of spline tubes; a view's region is not looked at.
+    """Draws one set of spline tubes.
 
     In its `GBuffer` ``owner`` holds segments, ``ids`` tubes and tangents, ``position`` the parameter in 0..1 of the
     segment and the value, ``across`` normals. `explain` also says ``tubes_total``, ``segments_total``, ``primitives``
@@ -100,6 +100,7 @@ class TubeRenderer(HitDrawable[TubeStyle]):
         self._inside = EyeInsideTest(tubes, self._middle)
 
     def _draw(self, view: View, style: TubeStyle, outside: moderngl.Texture | None) -> GBuffer:  # noqa: ARG002
+        self._nodes.filter(self.filtering)
         reads = self._nodes.show(self._attribute(style))
         target = self._hit_target(view.size, coloured=reads == "TUBE_COLOURS", edges=style.edges)
         cut = self._blocks.write(
@@ -112,8 +113,9 @@ class TubeRenderer(HitDrawable[TubeStyle]):
             n_segments=self._tubes.n_segments,
         )
         hollow = self._inside.touched(view, style.drawn_width)
-        common = ["TUBES", *(["CLIP_PLANES"] if cut else [])]
-        rounds = self._rounds(common, cut=cut, hollow=hollow)
+        region = self._cut_by_region(view, self._nodes.origin, self._nodes.scale)
+        common = ["TUBES", *(["CLIP_PLANES"] if cut else []), *(["CLIP_REGION"] if region else [])]
+        rounds = self._rounds(common, cut=cut, whole=not (hollow or region), hollow=hollow)
         self._nodes.bind()
         self._draw_hits(
             target,
@@ -125,6 +127,8 @@ class TubeRenderer(HitDrawable[TubeStyle]):
         )
         features = [*common, *([reads] if reads else []), *(["EDGES"] if style.edges else [])]
         hits = [("hits", target.hits, TUBES["hits"])]
+        if region:
+            hits.append(("depths", target.depths, TUBES["depths"]))
         self._find_attributes(target, "tubes/attributes.frag", features, self._silhouettes.whole, hits)
         return target.buffer
 
@@ -142,7 +146,7 @@ class TubeRenderer(HitDrawable[TubeStyle]):
                 self._listing.bind(program)
                 self._silhouettes.draw_listed(program, commands)
 
-    def _rounds(self, common: list[str], *, cut: bool, hollow: bool) -> list[tuple[list[str], int]]:
+    def _rounds(self, common: list[str], *, cut: bool, whole: bool, hollow: bool) -> list[tuple[list[str], int]]:
         """Return features of each round, and which side of the planes it draws.
 
         What nothing cuts, seen from outside, is met in one loop. The rest needs where rays leave as well, and so the
@@ -154,7 +158,7 @@ class TubeRenderer(HitDrawable[TubeStyle]):
         chained = [*common, "TUBE_CHAIN"]
         if hollow:
             return [([*chained, "TUBE_HOLLOW"], 3)]
-        if solving is None:
+        if solving is None or not whole:
             return [(chained, 3)]
         return [(common, 1), (chained, 2)] if cut else [(common, 3)]
 
