@@ -168,7 +168,9 @@ def _tube_values(tubes: Any, name: str, segments: npt.NDArray[np.int64]) -> npt.
 # Halos -----------------------------------------------------------------------------------------------
 
 
-def halo_lines(drawn: Any, look: Any, colouring: Colouring | None, ids: npt.NDArray[np.int64]) -> LineData:
+def halo_lines(
+    drawn: Any, look: Any, colouring: Colouring | None, ids: npt.NDArray[np.int64], filtering: Any = None
+) -> LineData:
     """Return lines with halos, or points as lines of one point, without filtered ones."""
     points = np.asarray(drawn.points)
     offsets = getattr(drawn, "offsets", np.arange(len(points) + 1))
@@ -182,10 +184,17 @@ def halo_lines(drawn: Any, look: Any, colouring: Colouring | None, ids: npt.NDAr
         return _bytes(found.astype(np.float64)) if colours else found
 
     lines = _coloured(lines, colouring, values)
+    kept = np.ones(len(rows), bool)
     if look.filter_by is not None:
         values = np.asarray(drawn.values[look.filter_by])[rows]
-        lines = lines.kept((values >= look.low) & (values <= look.high))
-    return lines
+        kept = (values >= look.low) & (values <= look.high)
+    if filtering is None:
+        return lines.kept(kept)
+    if not hasattr(drawn, "offsets"):
+        return lines.kept(kept & filtering[rows])
+    goes_on = np.zeros(len(points), bool)
+    goes_on[drawn.segment_starts[filtering]] = True
+    return lines.with_segments(goes_on[rows] & kept & np.append(kept[1:], False))
 
 
 # Colours ---------------------------------------------------------------------------------------------

@@ -17,7 +17,8 @@ import numpy as np
 
 from pvfiblets.images.sources import as_image, is_image
 from pvfiblets.plotting.clipping import ClippedActor, without
-from pvfiblets.plotting.fiblets.filter_state import (
+from pvfiblets.plotting.fiblets.scalars import warn_if_apart
+from pvfiblets.plotting.filter_state import (
     Choices,
     Condition,
     Criterion,
@@ -26,23 +27,19 @@ from pvfiblets.plotting.fiblets.filter_state import (
     in_groups,
     unique_name,
 )
-from pvfiblets.plotting.fiblets.painted import follow_painted
-from pvfiblets.plotting.fiblets.scalars import warn_if_apart
 from pvfiblets.plotting.region_sources import as_region
-from pvfiblets.query.bundles.bundle_list import Bundles, hidden_groups
-from pvfiblets.query.selection.predicates import select
 
 if TYPE_CHECKING:
-    from pvfiblets.codec.fibletset import FibletSet
-    from pvfiblets.mappers.fiblets import FibletMapper
+    from pvfiblets.mappers.engine_mapper import FilteredMapper
+    from pvfiblets.plotting.filter_state import Subject
     from pvfiblets.query.selection.predicates import Predicate
 
 
 class FilteredActor(ClippedActor):
-    """Actor of fiblets with filters; changes apply from the next render on."""
+    """Actor of lines with filters; changes apply from the next render on."""
 
-    _mapper: FibletMapper
-    _fiblets: FibletSet
+    _mapper: FilteredMapper[Any]
+    _subject: Subject
     _choices: Choices
 
     # Values -------------------------------------------------------------------------------------
@@ -101,11 +98,9 @@ class FilteredActor(ClippedActor):
         elif name in known and _same(known[name].what, what):
             values = known[name].values
         else:
-            from pvfiblets.query.measures.measures import measure
-
-            values = measure(self._fiblets, what)
+            values = self._subject.measure(what)
             if is_image(what) and not keep_nan and np.isnan(values.array()).all():
-                warn_if_apart(self._fiblets, as_image(what), "nothing is shown", stacklevel=3)
+                warn_if_apart(self._subject.lines, as_image(what), "nothing is shown", stacklevel=3)
         if name is None:
             by_name = isinstance(what, str) and not is_image(what)
             is_new_file = isinstance(what, (str, os.PathLike)) and values.name not in known
@@ -140,54 +135,6 @@ class FilteredActor(ClippedActor):
         """
         return self._add_condition(as_predicate(condition, as_region), name, "include")
 
-    def include_painted(self, live: Any, *, name: str | None = None, **how: Any) -> str:
-        """Show only streamlines that satisfy conditions on painted regions, updated after each stroke.
-
-        Parameters
-        ----------
-        live : LiveRegions
-            Of this actor's fiblets (:class:`pvfiblets.regions.LiveRegions`).
-        name : str, optional
-            Replaces the condition of the same name.
-        **how
-            Of :meth:`.LiveRegions.select`: ``include``, ``exclude``, ``ends_in``, ``stays_in``, ``in_order``, each
-            names of regions.
-
-        Returns
-        -------
-        str
-            The name, for :meth:`remove_condition`, after which strokes change nothing here.
-
-        Raises
-        ------
-        KeyError
-            If there is no region of a name.
-        ValueError
-            If the painted regions are about other fiblets.
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> import pyvista as pv
-        >>> from pvfiblets import Streamlines, regions
-        >>> lines = [np.array([(0, y, 0), (9, y, 0)], float) for y in (1, 5)]
-        >>> pl = pv.Plotter(off_screen=True)
-        >>> actor = pl.add_fiblets(Streamlines.from_list(lines))
-        >>> painter = regions.RegionPainter(((10, 10, 3), np.eye(4)))
-        >>> region = painter.add("A")
-        >>> live = regions.LiveRegions(actor.fiblets, painter)
-        >>> _ = painter.paint("A", (4, 5, 0), 1.0)
-        >>> name = actor.include_painted(live, include="A")
-        >>> actor.shown.tolist()
-        [False, True]
-        >>> _ = painter.paint("A", (4, 1, 0), 1.0)
-        >>> actor.shown.tolist()
-        [True, True]
-        """
-        if live.fiblets is not self._fiblets:
-            raise ValueError("live is of other fiblets; make it of this actor's: regions.LiveRegions(actor.fiblets, …)")
-        return follow_painted(self, live, name, how)
-
     def exclude(self, condition: Any, *, name: str | None = None) -> str:
         """Hide streamlines that satisfy a condition; parameters and result as for :meth:`include`."""
         return self._add_condition(~as_predicate(condition, as_region), name, "exclude")
@@ -215,7 +162,7 @@ class FilteredActor(ClippedActor):
             (n_streamlines,) bool, True if it holds. Computed on the GPU where possible, with the
             same answer.
         """
-        return select(self._fiblets, as_predicate(condition, as_region), flags=self._mapper.region_flags)
+        return self._subject.where(as_predicate(condition, as_region))
 
     # Subsets ------------------------------------------------------------------------------------
 
@@ -236,7 +183,7 @@ class FilteredActor(ClippedActor):
         ValueError
             If the amount or ``every`` is out of range, or both are given. Neither shows all again.
         """
-        self._choose(subset=_subset(self._fiblets.n_streamlines, amount, seed, every))
+        self._choose(subset=_subset(len(self._subject.lines), amount, seed, every))
 
     @property
     def groups_shown(self) -> tuple[str, ...] | None:
@@ -247,23 +194,8 @@ class FilteredActor(ClippedActor):
     def groups_shown(self, names: Iterable[str] | None) -> None:
         wanted = None if names is None else tuple([names] if isinstance(names, str) else names)
         if wanted is not None:
-            in_groups(self._fiblets, wanted)
+            in_groups(self._subject.lines, wanted)
         self._choose(groups=wanted, ungrouped=False)
-
-    @property
-    def bundles(self) -> Bundles:
-        """The groups as an ordered list; changes of visibility, and of colours by ``"group"``, are shown.
-
-        Streamlines in no bundle stay shown whichever bundles are hidden.
-        """
-        return Bundles(self._fiblets, self._bundles_changed)
-
-    def _bundles_changed(self) -> None:
-        hidden = hidden_groups(self._fiblets.per_group) & set(self._fiblets.groups)
-        shown = tuple(name for name in self._fiblets.groups if name not in hidden) if hidden else None
-        self._choose(groups=shown, ungrouped=hidden != set())
-        if isinstance(self.scalars, str) and self.scalars == "group":
-            self.scalars = "group" if self._fiblets.groups else None
 
     def show_only(self, ids: Any) -> None:
         """Show the streamlines of these `ids` only: numbers, a mask or a slice; None for all."""
@@ -271,15 +203,15 @@ class FilteredActor(ClippedActor):
         if ids is not None:
             from pvfiblets.codec.decompress import select_streamlines
 
-            mask = np.zeros(self._fiblets.n_streamlines, bool)
-            mask[select_streamlines(self._fiblets.n_streamlines, ids)] = True
+            mask = np.zeros(len(self._subject.lines), bool)
+            mask[select_streamlines(len(self._subject.lines), ids)] = True
         self._choose(ids=mask)
 
     @property
     def shown(self) -> np.ndarray:
         """Which streamlines are shown as far as they are chosen as a whole, (n_streamlines,) bool."""
-        mask = self._choices.mask(self._fiblets)
-        return np.ones(self._fiblets.n_streamlines, bool) if mask is None else mask.copy()
+        mask = self._choices.mask(self._subject.lines)
+        return np.ones(len(self._subject.lines), bool) if mask is None else mask.copy()
 
     def show_all(self) -> None:
         """Take all criteria, conditions, subsets and cuts back."""
@@ -292,7 +224,7 @@ class FilteredActor(ClippedActor):
     def _add_condition(self, predicate: Predicate, name: str | None, stem: str) -> str:
         known = self._choices.conditions
         name = unique_name(known, stem) if name is None else name
-        mask = select(self._fiblets, predicate, flags=self._mapper.region_flags)
+        mask = self._subject.where(predicate)
         self._choose(conditions={**known, name: Condition(name, predicate, mask)})
         return name
 
@@ -302,10 +234,13 @@ class FilteredActor(ClippedActor):
         for key, value in changes.items():
             setattr(self._choices, key, value)
         try:
-            self._mapper.filtering = self._choices.filter(self._fiblets)
+            self._choices.show(self._subject)
         except Exception:
             self._choices = before
             raise
+
+    def _explain_choices(self) -> dict[str, Any]:
+        return {**self._choices.explain(self._subject.lines), "clips": list(self._clips)}
 
     def _values_of_criterion(self, scalars: Any) -> Any:
         """Return what a criterion was made of, where its name colours; all else as it is."""

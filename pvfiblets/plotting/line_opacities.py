@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from pvfiblets.plotting.coloured import ColouredActor
 from pvfiblets.plotting.fiblets.opacities import Opacities, as_transfer, check_range
+from pvfiblets.plotting.filtering import FilteredActor
 
 __all__ = ["LineActor"]
 
 
-class LineActor(ColouredActor):
+class LineActor(FilteredActor):
     """Actor of tubes or halos: its lines have opacities."""
 
     def _lines_and_values(self) -> tuple[Any, Mapping[str, Any]]:

@@ -17,10 +17,10 @@ import pyvista as pv
 from pvfiblets.plotting.actor_registry import ActorRegistry
 from pvfiblets.plotting.call_signature import plotter_method
 from pvfiblets.plotting.fiblets import widgets
-from pvfiblets.plotting.fiblets.filter_state import unique_name
 from pvfiblets.plotting.fiblets.picking import MousePicking
 from pvfiblets.plotting.fiblets.settings import FibletSettings
 from pvfiblets.plotting.fiblets.slabs import FibletSlab
+from pvfiblets.plotting.filter_state import unique_name
 from pvfiblets.plotting.region_sources import as_region
 from pvfiblets.plotting.setting_places import OPTIONS
 from pvfiblets.plotting.settings import Given, Setting

@@ -12,13 +12,14 @@ import pyvista as pv
 from pvfiblets.mappers.highlight import Highlight
 from pvfiblets.mappers.picking import Layer
 from pvfiblets.plotting.coloured import added_up
-from pvfiblets.plotting.fiblets.filtering import FilteredActor
+from pvfiblets.plotting.fiblets.filtering import BundledActor
 from pvfiblets.plotting.fiblets.pick_result import Picked
 from pvfiblets.plotting.fiblets.profiles import Profile, values_of
 
 if TYPE_CHECKING:
     from os import PathLike
 
+    from pvfiblets.mappers.fiblets import FibletMapper
     from pvfiblets.plotting.fiblets.selection_overlay import SelectionOverlay
     from pvfiblets.plotting.scalars import Scalars
     from pvfiblets.query.measures.table import Table
@@ -55,9 +56,10 @@ class SelectionStyle:
     silhouette: tuple[float, float, float] | None = None
 
 
-class SelectableActor(FilteredActor):
+class SelectableActor(BundledActor):
     """Actor of fiblets with a selection."""
 
+    _mapper: FibletMapper
     _selected: np.ndarray | None = None
     _selection_style = SelectionStyle()
     _standout: SelectionOverlay | None = None

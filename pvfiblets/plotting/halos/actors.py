@@ -13,10 +13,12 @@ from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.halos import HaloMapper, HaloOptions
 from pvfiblets.plotting.coloured import added_up
+from pvfiblets.plotting.filter_state import Choices
 from pvfiblets.plotting.halos.settings import LOOKS, HaloLineSettings, HaloPointSettings
-from pvfiblets.plotting.halos.sources import Held, coloured, filtered, find_halo_scalars
+from pvfiblets.plotting.halos.sources import Held, coloured, filtered, find_halo_scalars, halo_parts
 from pvfiblets.plotting.halos.style import LookSettings, Spacing
 from pvfiblets.plotting.line_opacities import LineActor
+from pvfiblets.plotting.line_subject import LineSubject
 from pvfiblets.plotting.mapper_words import PlottedLines
 from pvfiblets.plotting.setting_places import OPTIONS
 from pvfiblets.plotting.settings import Given
@@ -76,6 +78,8 @@ class HaloActor(LineActor):
         self._halo_choice = _halo_choice(given["halo_color"])
         look = self._looks.look(held.drawn, self._spacing)
         mapper = PlottedHalos(held.drawn, look, options=HaloOptions(**given.at(OPTIONS)))
+        self._choices = Choices()
+        self._subject = self._subject_of(self._held, mapper)
         super().__init__(mapper, held.scalars, given, name=name, theme=theme)
         self._own_color = self._settings.color is not None
         self._settings.color = pv.Color(self._settings.color, default_color=self._ink)
@@ -205,7 +209,12 @@ class HaloActor(LineActor):
         drawn = self._held.drawn
         if isinstance(drawn, HaloLines):
             total |= {"lines_total": drawn.n_lines, "segments_total": drawn.n_segments}
-        return {**total, "points_total": drawn.n_points, "culling": latest.get("culling")}
+        return {
+            **total,
+            "points_total": drawn.n_points,
+            "culling": latest.get("culling"),
+            **self._explain_choices(),
+        }
 
     # Inside -------------------------------------------------------------------------------------
 
@@ -261,6 +270,7 @@ class HaloActor(LineActor):
         elif look != self._mapper.look:
             self._mapper.look = look
         self._held, self._looks = held, looks
+        self._subject = self._subject_of(held, self._mapper)
 
     def _draw_others(self, drawn: Any) -> None:
         """Draw other lines or points by the same settings."""
@@ -271,12 +281,20 @@ class HaloActor(LineActor):
         found = find_halo_scalars(held)
         spacing = Spacing(drawn)
         look = self._looks.look(held.drawn, spacing)
-        # Colours for another number of lines go first.
-        self._mapper.colouring = Colouring("solid")
+        subject = self._subject_of(held, self._mapper)
+        choices = self._choices.made_for(subject, self._subject)
+        # Colours and choices for another number of lines go first.
+        self._mapper.colouring, self._mapper.filtering = Colouring("solid"), None
         self._mapper.set_drawn(held.drawn, look)
         self._held, self._spacing = held, spacing
         self._choice = held.scalars
         self._show(found)
+        self._choices, self._subject = choices, subject
+        self._choose()
+
+    @staticmethod
+    def _subject_of(held: Held, mapper: PlottedHalos) -> LineSubject:
+        return LineSubject(mapper, lambda: halo_parts(held))
 
     def _colour_halos(self) -> None:
         color = self._read_halo_color()

@@ -15,8 +15,9 @@ from pvfiblets.halos import HaloLines, HaloPoints
 from pvfiblets.halos.build import FILTER, SCALARS, as_halo_lines, as_halo_points
 from pvfiblets.halos.measures import arc_lengths, line_lengths
 from pvfiblets.images.sources import as_image, is_image
-from pvfiblets.lines import has_name, read_lines, with_values
-from pvfiblets.plotting.fiblets.filter_state import unique_name
+from pvfiblets.lines import SourceData, gather, has_name, read_lines, with_values
+from pvfiblets.plotting.filter_state import unique_name
+from pvfiblets.plotting.line_subject import Parts
 from pvfiblets.plotting.same_names import Preference, with_preference
 from pvfiblets.plotting.scalars import (
     DIRECTIONS,
@@ -28,6 +29,7 @@ from pvfiblets.plotting.scalars import (
     find_scalars,
     point_scalars,
 )
+from pvfiblets.streamlines import Streamlines
 
 ARC_LENGTH, LENGTH = "arc_length", "length"
 BUILT_IN = (*DIRECTIONS, ARC_LENGTH, LENGTH)
@@ -50,12 +52,15 @@ class Held:
         Which of its values filter.
     line_values : mapping of str to array
         A row for each line.
+    source : SourceData
+        All that criteria may name besides.
     """
 
     drawn: Drawn
     scalars: Any = None
     filter_by: str | None = None
     line_values: Mapping[str, Any] = field(default_factory=dict)
+    source: SourceData = field(default_factory=SourceData)
 
 
 def as_lines(
@@ -75,11 +80,13 @@ def as_lines(
     if is_values_file(filter_by, source):
         source, filter_by = with_values(source, filter_by)
     stored, filters = (None if _later(source, what) else what for what in (scalars, filter_by))
+    gathered = gather(source, "lines with halos", keep_single=True)
     try:
-        lines, line_values = as_halo_lines(source, scalars=stored, rgb=rgb, filter_by=filters)
+        lines, line_values = as_halo_lines(gathered, scalars=stored, rgb=rgb, filter_by=filters)
     except ValueError as error:
         raise _unknown(source, (stored, filters), error) from None
-    held = _named(Held(lines, stored, _filter_name(filters), line_values))
+    data = SourceData.of_lines(gathered, source, gathered.ids)
+    held = _named(Held(lines, stored, _filter_name(filters), line_values, data))
     if stored is not scalars:
         held = coloured(held, scalars)
     return held if filters is filter_by else filtered(held, filter_by)
@@ -146,6 +153,25 @@ def filtered(held: Held, filter_by: Any) -> Held:
     if isinstance(drawn, HaloLines) and filter_by == LENGTH:
         return replace(held, drawn=_with(drawn, LENGTH, line_lengths(drawn)), filter_by=filter_by)
     raise KeyError(_missing("filter_by", filter_by, held))
+
+
+def halo_parts(held: Held) -> Parts:
+    """Return lines as criteria and conditions find them; points are lines of one point each."""
+    drawn = held.drawn
+    if isinstance(drawn, HaloPoints):
+        ids = np.arange(drawn.n_points)
+        points = Streamlines(drawn.points, np.arange(drawn.n_points + 1), drawn.values)
+        return Parts(points, np.stack([ids, ids], axis=1), ids)
+    starts = drawn.segment_starts
+    lines = Streamlines(
+        drawn.points,
+        drawn.offsets,
+        {**held.source.per_point, **drawn.values},
+        {**held.source.per_line, **held.line_values},
+        held.source.groups,
+    )
+    owners = np.repeat(np.arange(drawn.n_lines), np.diff(drawn.offsets))[starts]
+    return Parts(lines, np.stack([starts, starts + 1], axis=1), owners)
 
 
 def find_halo_scalars(held: Held) -> Scalars | None:

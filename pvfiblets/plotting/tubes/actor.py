@@ -8,14 +8,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyvista as pv
 
+from pvfiblets.lines import SourceData
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.shading import Silhouette
 from pvfiblets.mappers.tubes import TubeMapper, TubeOptions
 from pvfiblets.plotting.coloured import added_up
+from pvfiblets.plotting.filter_state import Choices
 from pvfiblets.plotting.line_opacities import LineActor
+from pvfiblets.plotting.line_subject import LineSubject
 from pvfiblets.plotting.mapper_words import PlottedLines
 from pvfiblets.plotting.setting_places import OPTIONS
 from pvfiblets.plotting.settings import Given
+from pvfiblets.plotting.tubes.parts import tube_parts
 from pvfiblets.plotting.tubes.settings import TubeSettings
 from pvfiblets.plotting.tubes.sources import find_tube_scalars, with_built_in, with_node_values
 from pvfiblets.tubes.spline_tubes import SplineTubes
@@ -56,6 +60,8 @@ class TubeActor(TubeSettings, LineActor):
         Under which the plotter knows the actor.
     theme : pyvista theme, optional
         Gives what is not given.
+    data : SourceData, optional
+        All that criteria may name besides what the tubes have.
 
     Notes
     -----
@@ -74,11 +80,15 @@ class TubeActor(TubeSettings, LineActor):
         settings: Mapping[str, Any] | None = None,
         name: str | None = None,
         theme: Any = None,
+        data: SourceData | None = None,
     ) -> None:
         given = Given(TubeSettings, settings)
+        self._data = SourceData() if data is None else data
         self._tubes, scalars = with_node_values(_checked(tubes), scalars)
         self._shown = with_built_in(self._tubes, scalars)  # what is computed for colours is not the user's
         mapper = PlottedSplines(self._shown, options=TubeOptions(**given.at(OPTIONS)))
+        self._choices = Choices()
+        self._subject = self._subject_of(self._tubes, mapper)
         super().__init__(mapper, scalars, given, name=name, theme=theme)
         self._recolour()
         self.opacity = given["opacity"]
@@ -103,9 +113,14 @@ class TubeActor(TubeSettings, LineActor):
         tubes, choice = with_node_values(_checked(tubes), self._choice)
         shown = with_built_in(tubes, choice)
         found = self._find(shown, choice)
+        subject = self._subject_of(tubes, self._mapper)
+        choices = self._choices.made_for(subject, self._subject)
+        self._mapper.filtering = None  # it is of the tubes before
         self._draw(tubes, shown)
         self._choice = choice
         self._show(found)
+        self._choices, self._subject = choices, subject
+        self._choose()
 
     @property
     def scalars(self) -> str | np.ndarray | None:
@@ -141,7 +156,7 @@ class TubeActor(TubeSettings, LineActor):
         TubeActor
             Not in any plotter yet.
         """
-        twin = TubeActor(self._tubes, scalars=self._choice, settings=self._kept(), theme=self._theme)
+        twin = TubeActor(self._tubes, scalars=self._choice, settings=self._kept(), theme=self._theme, data=self._data)
         twin._be_like(self, deep)
         return twin
 
@@ -171,6 +186,7 @@ class TubeActor(TubeSettings, LineActor):
             "solver": latest.get("solver"),
             "iterations": latest.get("iterations"),
             "culling": latest.get("culling"),
+            **self._explain_choices(),
         }
 
     def pick_at(self, x: int, y: int) -> tuple[int, float] | None:
@@ -237,9 +253,14 @@ class TubeActor(TubeSettings, LineActor):
             self._mapper.colouring = Colouring("solid")
         self._mapper.set_tubes(shown)
         before, self._tubes, self._shown = self._tubes, tubes, shown
+        self._subject = self._subject_of(tubes, self._mapper)
         outline = self.silhouette
         if before.n_tubes != tubes.n_tubes and isinstance(outline, dict):
             self.silhouette = outline["tubes"] is None and outline  # numbers mean other tubes now
+
+    def _subject_of(self, tubes: SplineTubes, mapper: PlottedSplines) -> LineSubject:
+        data = self._data
+        return LineSubject(mapper, lambda: tube_parts(tubes, data))
 
     def _lines_and_values(self) -> tuple[Any, Mapping[str, Any]]:
         return self._tubes, self._tubes.tube_values

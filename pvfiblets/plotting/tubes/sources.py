@@ -9,7 +9,18 @@ import numpy as np
 
 from pvfiblets.formats.attachments import is_values_file
 from pvfiblets.images.sources import as_image, is_image
-from pvfiblets.lines import are_words, has_name, names_of, read_lines, refuse_words, rows_of, with_values
+from pvfiblets.lines import (
+    Lines,
+    SourceData,
+    are_words,
+    gather,
+    has_name,
+    names_of,
+    read_lines,
+    refuse_words,
+    rows_of,
+    with_values,
+)
 from pvfiblets.plotting.same_names import Preference, with_preference
 from pvfiblets.plotting.scalars import (
     DIRECTIONS,
@@ -34,13 +45,21 @@ _GIVEN = "scalars"  # what as_spline_tubes calls an array without a name
 
 def as_tubes(
     source: Any, *, scalars: Any = None, rgb: bool | None = None, preference: Preference = "point", **shape: Any
-) -> tuple[SplineTubes, Any]:
-    """Return the tubes that a source means, and what colours them."""
+) -> tuple[SplineTubes, Any, SourceData]:
+    """Return the tubes that a source means, what colours them, and all data of their nodes and lines."""
     if isinstance(source, SplineTubes):
-        return with_node_values(as_spline_tubes(source, **shape), scalars, rgb=rgb)
+        return *with_node_values(as_spline_tubes(source, **shape), scalars, rgb=rgb), SourceData()
     source = with_preference(read_lines(source), preference)
     if is_values_file(scalars, source):
         source, scalars = with_values(source, scalars)
+    lines = gather(source)
+    tubes, scalars = _made(source, lines, scalars, rgb, **shape)
+    at_ids = np.array_equal(tubes.points, lines.points[lines.ids])
+    return tubes, scalars, SourceData.of_lines(lines, source, lines.ids if at_ids else None)
+
+
+def _made(source: Any, lines: Lines, scalars: Any, rgb: bool | None, **shape: Any) -> tuple[SplineTubes, Any]:
+    """Return tubes around the lines of a source, and what colours them."""
     named = UNNAMED
     if is_image(scalars) and not (isinstance(scalars, str) and has_name(source, scalars)):
         scalars = as_image(scalars)
@@ -50,8 +69,8 @@ def as_tubes(
             raise KeyError(_missing(scalars, **dict(zip(("per point", "per line"), names_of(source), strict=True))))
         if shape.pop("scalar_slopes", None) is not None:
             raise ValueError(f"scalar_slopes came with {scalars!r}, which has its own; leave them out")
-        return as_spline_tubes(source, **shape), scalars
-    tubes = as_spline_tubes(source, scalars=scalars, rgb=rgb, **shape)
+        return as_spline_tubes(lines, **shape), scalars
+    tubes = as_spline_tubes(lines, scalars=scalars, rgb=rgb, **shape)
     if scalars is None or isinstance(scalars, str):
         return tubes, scalars
     if _GIVEN in tubes.values:
