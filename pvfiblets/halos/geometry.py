@@ -134,8 +134,8 @@ class HaloPoints:
 
     @property
     def n_streamlines(self) -> int:
-        """One: colours by streamline mean nothing to points."""
-        return 1
+        """The points: each counts as a line."""
+        return self.n_points
 
     @property
     def n_points(self) -> int:

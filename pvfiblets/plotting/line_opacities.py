@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 
 from pvfiblets.plotting.fiblets.opacities import Opacities, as_transfer, check_range
-from pvfiblets.plotting.filtering import FilteredActor
+from pvfiblets.plotting.selection import SelectedActor
 
 __all__ = ["LineActor"]
 
 
-class LineActor(FilteredActor):
+class LineActor(SelectedActor):
     """Actor of tubes or halos: its lines have opacities."""
 
     def _lines_and_values(self) -> tuple[Any, Mapping[str, Any]]:

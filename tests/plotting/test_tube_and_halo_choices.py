@@ -367,3 +367,57 @@ def test_points_with_halos_are_chosen_one_by_one(plotter):
     assert picked
     assert (np.abs(cloud[list(picked)][:, 0]) <= 5.0).all()
     assert (number[list(picked)] >= 0.5).all()
+
+
+def test_a_selection_stands_out_and_the_rest_fades(stage, tract):
+    plotter, actor, kind = stage
+    plain = shot(plotter)
+    actor.select([2, -1, 30])
+    np.testing.assert_array_equal(actor.selection, [2, 30, 59])
+    actor.selection_style(color="lime", dim=1.0)  # into the black background
+    found = shot(plotter)
+    hits = {(x, y): actor.pick_at(x, y) for x in range(0, 200, 2) for y in range(0, 200, 2)}
+    chosen = others = 0
+    for (x, y), hit in hits.items():
+        pixel = found[199 - y, x].astype(int)
+        if hit is None or not plain[199 - y, x].any():
+            continue
+        line = actor.tubes.tubes[hit[0]] if kind == "tubes" else hit[0]
+        if line in (2, 30, 59) and pixel[1] > 60 and pixel[1] > 2 * max(pixel[0], pixel[2]):
+            chosen += 1
+        elif line not in (2, 30, 59) and kind == "tubes" and pixel.max() < 30:
+            others += 1
+    assert chosen > 3
+    assert kind == "lines" or others > 30
+    twin = actor.copy()
+    np.testing.assert_array_equal(twin.selection, actor.selection)
+    actor.select(np.arange(60) < 5, mode="toggle")
+    np.testing.assert_array_equal(actor.selection, [0, 1, 3, 4, 30, 59])
+    actor.invert_selection()
+    assert len(actor.selection) == 54
+    actor.selection = slice(0, 4)
+    actor.deselect(1)
+    np.testing.assert_array_equal(actor.selection, [0, 2, 3])
+    with pytest.raises(ValueError, match="mode is 'some'"):
+        actor.select(0, mode="some")
+    with pytest.raises(ValueError, match="dim is 2"):
+        actor.selection_style(dim=2)
+    actor.deselect()
+    np.testing.assert_array_equal(shot(plotter), plain)
+
+
+def test_a_selection_of_points(plotter):
+    places = np.array([(x, 0.0, 0.0) for x in (-10.0, 0.0, 10.0)])
+    actor = plotter.add_halo_points(places, point_size=4.0, halo_size=6.0, color="white", width_cue=0.0)
+    plotter.camera_position = [(0.0, -60.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)]
+    shot(plotter)
+    columns = [[x for x in range(200) if actor.pick_at(x, 100) == point] for point in range(3)]
+    middles = [column[len(column) // 2] for column in columns]
+    actor.select(1)
+    actor.selection_style(color="lime", dim=1.0)
+    assert [tuple(pixel) for pixel in shot(plotter)[99, middles].tolist()] == [(0, 0, 0), (0, 255, 0), (0, 0, 0)]
+    actor.deselect()
+    actor.opacity = [1.0, 0.2, 1.0]
+    brightness = shot(plotter)[99, middles].max(axis=1)
+    assert min(brightness[0], brightness[2]) > 200
+    assert brightness[1] < 80

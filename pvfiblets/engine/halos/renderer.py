@@ -62,9 +62,10 @@ class HaloRenderer(HitDrawable[HaloDrawStyle]):
     """Draws one set of lines or points with halos.
 
     In its `GBuffer` ``owner`` holds segments, each by its first point, or points, and nothing where a halo shows;
-    ``ids`` lines and tangents; ``position`` the point's index within its line plus the fraction along the segment, and
-    the value; ``across`` the ink, 1 on a line, 0 on a halo. `explain` also says ``points_total``, ``lines_total`` (0 of
-    points), ``primitives`` (triangles without culling) and ``culling`` (as the last picture was drawn).
+    ``ids`` lines, or points, and tangents; ``position`` the point's index within its line plus the fraction along the
+    segment, and the value; ``across`` the ink, 1 on a line, 0 on a halo. `explain` also says ``points_total``,
+    ``lines_total`` (0 of points), ``primitives`` (triangles without culling) and ``culling`` (as the last picture was
+    drawn).
 
     Parameters
     ----------

@@ -525,7 +525,7 @@ class FibletActor(FibletSettings, SelectableActor):
             self._mapper.colouring = Colouring()
         self._mapper.set_fiblets(fiblets)
         self._fiblets, self._subject = fiblets, FibletSubject(fiblets, self._mapper)
-        self._reselect()
+        self._reselect(fiblets.n_streamlines)
 
     def _find(self, fiblets: FibletSet, choice: str | np.ndarray | VolumeSource | None) -> Scalars | None:
         if choice is None and self._settings.color is not None:

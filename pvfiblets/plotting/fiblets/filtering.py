@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from pvfiblets.plotting.fiblets.painted import follow_painted
-from pvfiblets.plotting.filtering import FilteredActor
+from pvfiblets.plotting.selection import SelectedActor
 from pvfiblets.query.bundles.bundle_list import Bundles, hidden_groups
 from pvfiblets.query.selection.predicates import Predicate, select
 
@@ -47,7 +47,7 @@ class FibletSubject:
         self.mapper.filtering = None if mask is None and words is None else Filter(mask, words)
 
 
-class BundledActor(FilteredActor):
+class BundledActor(SelectedActor):
     """Actor of fiblets with bundles."""
 
     _fiblets: FibletSet

@@ -291,6 +291,7 @@ class HaloActor(LineActor):
         self._show(found)
         self._choices, self._subject = choices, subject
         self._choose()
+        self._reselect(len(subject.lines))
 
     @staticmethod
     def _subject_of(held: Held, mapper: PlottedHalos) -> LineSubject:

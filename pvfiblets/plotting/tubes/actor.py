@@ -121,6 +121,7 @@ class TubeActor(TubeSettings, LineActor):
         self._show(found)
         self._choices, self._subject = choices, subject
         self._choose()
+        self._reselect(tubes.n_tubes)
 
     @property
     def scalars(self) -> str | np.ndarray | None:
