@@ -20,8 +20,38 @@ Values = Mapping[str, npt.NDArray[Any]]
 _NONE: Values = MappingProxyType({})
 
 
+class _AtPoints:
+    """Points, and values at them."""
+
+    points: npt.NDArray[np.floating[Any]]
+    values: Values
+
+    @property
+    def n_points(self) -> int:
+        """Points of all lines."""
+        return len(self.points)
+
+    @cached_property
+    def _references(self) -> dict[str, float]:
+        return {name: value_reference(held) for name, held in self.values.items() if held.ndim == 1}
+
+    def value_reference(self, name: Any) -> float:
+        """Return the number to subtract from values on the graphics card; see `pvfiblets.support.value_reference`."""
+        return self._references.get(name, 0.0)
+
+    @property
+    def promise(self) -> float:
+        """Nothing lies outside the bounds."""
+        return 0.0
+
+    @cached_property
+    def bounds(self) -> tuple[float, ...]:
+        """(xmin, xmax, ymin, ymax, zmin, zmax) of the points, mm; zeros without any."""
+        return _bounds(self.points)
+
+
 @dataclass(frozen=True, eq=False)
-class HaloLines:
+class HaloLines(_AtPoints):
     """Polylines with halos.
 
     Parameters
@@ -61,11 +91,6 @@ class HaloLines:
         """The same, by the name that colours ask for."""
         return self.n_lines
 
-    @property
-    def n_points(self) -> int:
-        """Points of all lines."""
-        return len(self.points)
-
     @cached_property
     def n_segments(self) -> int:
         """Segments between neighbouring points of a line, those without length included."""
@@ -86,27 +111,9 @@ class HaloLines:
         found: npt.NDArray[np.int64] = np.union1d(self.offsets, self.segment_starts[~kept] + 1)
         return found
 
-    @cached_property
-    def _references(self) -> dict[str, float]:
-        return {name: value_reference(held) for name, held in self.values.items() if held.ndim == 1}
-
-    def value_reference(self, name: Any) -> float:
-        """Return the number to subtract from values on the graphics card; see `pvfiblets.support.value_reference`."""
-        return self._references.get(name, 0.0)
-
-    @property
-    def promise(self) -> float:
-        """Nothing lies outside the bounds."""
-        return 0.0
-
-    @cached_property
-    def bounds(self) -> tuple[float, ...]:
-        """(xmin, xmax, ymin, ymax, zmin, zmax) of the points, mm; zeros without any."""
-        return _bounds(self.points)
-
 
 @dataclass(frozen=True, eq=False)
-class HaloPoints:
+class HaloPoints(_AtPoints):
     """Points with halos.
 
     Parameters
@@ -136,29 +143,6 @@ class HaloPoints:
     def n_streamlines(self) -> int:
         """The points: each counts as a line."""
         return self.n_points
-
-    @property
-    def n_points(self) -> int:
-        """Points."""
-        return len(self.points)
-
-    @cached_property
-    def _references(self) -> dict[str, float]:
-        return {name: value_reference(held) for name, held in self.values.items() if held.ndim == 1}
-
-    def value_reference(self, name: Any) -> float:
-        """Return the number to subtract from values on the graphics card; see `pvfiblets.support.value_reference`."""
-        return self._references.get(name, 0.0)
-
-    @property
-    def promise(self) -> float:
-        """Nothing lies outside the bounds."""
-        return 0.0
-
-    @cached_property
-    def bounds(self) -> tuple[float, ...]:
-        """(xmin, xmax, ymin, ymax, zmin, zmax) of the points, mm; zeros without any."""
-        return _bounds(self.points)
 
 
 def _checked_points(points: Any, what: str) -> npt.NDArray[np.floating[Any]]:

@@ -19,7 +19,10 @@ if TYPE_CHECKING:
     from pvfiblets.mappers.colouring import Colouring
     from pvfiblets.streamlines import Streamlines
 
-__all__ = ["fiblet_lines", "halo_lines", "near_ray", "shown_points", "shown_streamlines", "thinned", "tube_lines"]
+__all__ = [
+    "fiblet_lines", "halo_lines", "near_ray", "point_flags", "shown_points", "shown_streamlines", "thinned",
+    "tube_lines",
+]  # fmt: skip
 
 
 def thinned(counts: npt.NDArray[Any], budget: int) -> npt.NDArray[np.int64]:
@@ -82,7 +85,7 @@ def fiblet_lines(
     lines = lines.with_columns(**{name: rows for name, rows in decoded.per_point.items() if rows.ndim == 1})
     lines = _coloured(lines, colouring, partial(_fiblet_values, lines, decoded), decoded.per_point)
     if filtering is not None and filtering.points is not None:
-        lines = lines.kept(_point_flags(fiblets, filtering.points, ids))
+        lines = lines.kept(point_flags(fiblets, filtering.points, ids))
     return lines
 
 
@@ -105,7 +108,7 @@ def _measured(name: str, lines: LineData) -> npt.NDArray[Any]:
     return found
 
 
-def _point_flags(
+def point_flags(
     fiblets: FibletSet, words: npt.NDArray[np.uint32], ids: npt.NDArray[np.int64]
 ) -> npt.NDArray[np.bool_]:
     """Bits of the points of some streamlines, end to end."""

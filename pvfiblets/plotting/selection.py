@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 import pyvista as pv
 
 from pvfiblets.mappers.highlight import Highlight
 from pvfiblets.plotting.filtering import FilteredActor
+
+if TYPE_CHECKING:
+    from pvfiblets.plotting.filter_state import Subject
 
 __all__ = ["AS_BEFORE", "SelectedActor", "SelectionStyle"]
 
@@ -197,6 +202,20 @@ class SelectedActor(FilteredActor):
     def _stands_apart(self) -> bool:
         """Whether another actor draws the selection."""
         return False
+
+    @contextmanager
+    def _choosing_from(self, subject: Subject) -> Iterator[None]:
+        """Keep filters and selection, as far as they fit, for other lines that are put in the place of all."""
+        choices = self._choices.made_for(subject, self._subject)
+        before, self._mapper.filtering = self._mapper.filtering, None  # it is of the lines before
+        try:
+            yield
+        except Exception:
+            self._mapper.filtering = before
+            raise
+        self._choices, self._subject = choices, subject
+        self._choose()
+        self._reselect(len(subject.lines))
 
     def _reselect(self, count: int) -> None:
         """Follow other data: the selection stays if the number of lines is the same."""

@@ -130,12 +130,9 @@ class FibletActor(FibletSettings, SelectableActor):
     @fiblets.setter
     def fiblets(self, fiblets: FibletSet) -> None:
         scalars = self._find(fiblets, self._choice)
-        choices = self._choices.made_for(FibletSubject(fiblets, self._mapper), self._subject)
-        self._mapper.filtering = None  # its bits are of the fiblets before
-        self._draw(fiblets)
-        self._show(scalars)
-        self._choices = choices
-        self._choose()
+        with self._choosing_from(FibletSubject(fiblets, self._mapper)):
+            self._draw(fiblets)
+            self._show(scalars)
 
     def update(self, source: Any, **options: Any) -> None:
         """Draw other streamlines from the next render on, as they move or grow; settings stay.
@@ -154,23 +151,8 @@ class FibletActor(FibletSettings, SelectableActor):
         """
         self.fiblets = as_fiblets(source, scalars=self._choice, rgb=self._rgb, **options)[0]
 
-    def copy(self, deep: bool = True) -> FibletActor:
-        """Return another actor that draws the same fiblets with the same colours and place.
-
-        Parameters
-        ----------
-        deep : bool, default: True
-            Give the copy a property of its own; else both share one. A mapper serves one actor,
-            so each has its own in any case; the compressed data is shared.
-
-        Returns
-        -------
-        FibletActor
-            Not in any plotter yet.
-        """
-        twin = FibletActor(self._fiblets, scalars=self._choice, settings=self._kept(), theme=self._theme)
-        twin._be_like(self, deep)
-        return twin
+    def _made_with(self) -> dict[str, Any]:
+        return {"fiblets": self._fiblets, "scalars": self._choice}
 
     def explain(self) -> dict[str, Any]:
         """Return the active features of this actor and their cost, over all windows that show it.

@@ -111,8 +111,7 @@ class SelectableActor(BundledActor):
             How much of the colours of all others gives way to the background, 0 to 1.
         as_tubes : bool
             Draw them as tubes that bend smoothly through their points. (Straight from point to
-            point where the actor is cut by a region, filtered point by point or coloured by a
-            volume, and where more than 400,000 points are selected.)
+            point where a volume colours the actor, and where more than 400,000 points are selected.)
         radius : float
             Of the tubes, mm.
         silhouette : bool or color-like

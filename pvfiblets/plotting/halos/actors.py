@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, ClassVar, Self, cast
+from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 import numpy as np
 import pyvista as pv
@@ -173,23 +173,8 @@ class HaloActor(LineActor):
         looks = replace(self._looks, filter_by=held.filter_by, threshold=threshold)
         self._hold(held, looks)
 
-    def copy(self, deep: bool = True) -> Self:
-        """Return another actor that draws the same with the same looks, colours and place.
-
-        Parameters
-        ----------
-        deep : bool, default: True
-            Give the copy a property of its own; else both share one. A mapper serves one actor,
-            so each has its own in any case; the data are shared.
-
-        Returns
-        -------
-        HaloLineActor or HaloPointActor
-            Not in any plotter yet.
-        """
-        twin = type(self)(self._held, settings=self._kept(), theme=self._theme)
-        twin._be_like(self, deep)  # noqa: SLF001 - another of the same
-        return twin
+    def _made_with(self) -> dict[str, Any]:
+        return {"held": self._held}
 
     def explain(self) -> dict[str, Any]:
         """Return what is active for this actor and what it costs, over all windows that show it.
@@ -281,17 +266,12 @@ class HaloActor(LineActor):
         found = find_halo_scalars(held)
         spacing = Spacing(drawn)
         look = self._looks.look(held.drawn, spacing)
-        subject = self._subject_of(held, self._mapper)
-        choices = self._choices.made_for(subject, self._subject)
-        # Colours and choices for another number of lines go first.
-        self._mapper.colouring, self._mapper.filtering = Colouring("solid"), None
-        self._mapper.set_drawn(held.drawn, look)
-        self._held, self._spacing = held, spacing
-        self._choice = held.scalars
-        self._show(found)
-        self._choices, self._subject = choices, subject
-        self._choose()
-        self._reselect(len(subject.lines))
+        with self._choosing_from(self._subject_of(held, self._mapper)):
+            self._mapper.colouring = Colouring("solid")  # that for another number of lines goes first
+            self._mapper.set_drawn(held.drawn, look)
+            self._held, self._spacing = held, spacing
+            self._choice = held.scalars
+            self._show(found)
 
     @staticmethod
     def _subject_of(held: Held, mapper: PlottedHalos) -> LineSubject:

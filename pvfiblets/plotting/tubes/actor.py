@@ -113,15 +113,10 @@ class TubeActor(TubeSettings, LineActor):
         tubes, choice = with_node_values(_checked(tubes), self._choice)
         shown = with_built_in(tubes, choice)
         found = self._find(shown, choice)
-        subject = self._subject_of(tubes, self._mapper)
-        choices = self._choices.made_for(subject, self._subject)
-        self._mapper.filtering = None  # it is of the tubes before
-        self._draw(tubes, shown)
-        self._choice = choice
-        self._show(found)
-        self._choices, self._subject = choices, subject
-        self._choose()
-        self._reselect(tubes.n_tubes)
+        with self._choosing_from(self._subject_of(tubes, self._mapper)):
+            self._draw(tubes, shown)
+            self._choice = choice
+            self._show(found)
 
     @property
     def scalars(self) -> str | np.ndarray | None:
@@ -143,23 +138,8 @@ class TubeActor(TubeSettings, LineActor):
             self._draw(tubes, shown)
         self._colour_by(scalars, found)
 
-    def copy(self, deep: bool = True) -> TubeActor:
-        """Return another actor that draws the same tubes with the same colours and place.
-
-        Parameters
-        ----------
-        deep : bool, default: True
-            Give the copy a property of its own; else both share one. A mapper serves one actor,
-            so each has its own in any case; the tubes are shared.
-
-        Returns
-        -------
-        TubeActor
-            Not in any plotter yet.
-        """
-        twin = TubeActor(self._tubes, scalars=self._choice, settings=self._kept(), theme=self._theme, data=self._data)
-        twin._be_like(self, deep)
-        return twin
+    def _made_with(self) -> dict[str, Any]:
+        return {"tubes": self._tubes, "scalars": self._choice, "data": self._data}
 
     def explain(self) -> dict[str, Any]:
         """Return what is active for this actor and what it costs, over all windows that show it.
