@@ -20,11 +20,9 @@ from .gl.bindings import HIT_KEYS
 from .gl.depth_texture import depth_texture
 from .gl.moderngl_extras import GLExtras
 from .gl.shaders import Programs
-from .lattice import TOP
 
 if TYPE_CHECKING:
-    from .regions.ray_intervals import RegionIntervals
-    from .view import View
+    from .regions.region_cut import RegionCut
 
 __all__ = ["HitDrawable", "HitTarget"]
 
@@ -147,7 +145,7 @@ class HitDrawable(Drawable[AnyStyle]):
     _listing: Listing | None = None
     _listed = False  # whether the last picture was drawn from lists
     _filtering: npt.NDArray[np.bool_] | None = None
-    _cutter: RegionIntervals | None = None
+    _region: RegionCut
 
     @property
     def filtering(self) -> npt.NDArray[np.bool_] | None:
@@ -168,19 +166,6 @@ class HitDrawable(Drawable[AnyStyle]):
         """Have what others hide left out, where that is wanted, possible, and worth it for ``n`` segments."""
         if culling is not None and n >= LEAST_SEGMENTS and supports_listing(self._ctx):
             self._listing = self._keep(Listing(self._ctx, self._gl, self._programs, n_items, **how))
-
-    def _cut_by_region(self, view: View, origin: npt.NDArray[np.float64], scale: npt.NDArray[np.float64]) -> bool:
-        """Find where the view's region begins and ends in each pixel; return True if there is a region."""
-        if view.region is None:
-            if self._cutter is not None:
-                self._drop(self._cutter)
-                self._cutter = None
-            return False
-        if self._cutter is None:
-            from .regions.ray_intervals import RegionIntervals
-
-            self._cutter = self._keep(RegionIntervals(self._ctx, self._gl, self._programs), "region")
-        return self._cutter.prepare(view, origin, scale, TOP)
 
     def _hit_target(self, size: tuple[int, int], *, coloured: bool, edges: bool) -> HitTarget:
         """Return what the next picture is drawn into."""
@@ -244,8 +229,7 @@ class HitDrawable(Drawable[AnyStyle]):
         """Tell a program where the data are."""
         for sampler, unit in self.SAMPLERS.items():
             self._gl.set_sampler(program, sampler, unit)
-        if self._cutter is not None:
-            self._cutter.bind(program)
+        self._region.bind(program)
 
     def _prepare_listing(self, program: moderngl.ComputeShader) -> None:
         """Tell a program that lists items all that it needs of them."""

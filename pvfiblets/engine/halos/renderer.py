@@ -13,6 +13,8 @@ from ..gbuffer import EMPTY, GBuffer
 from ..gl.bindings import HALOS
 from ..gl.vertex_pulling import PulledShapes
 from ..hit_target import HitDrawable, HitTarget
+from ..lattice import TOP
+from ..regions.region_cut import RegionCut
 from ..view import Style, View
 from .uniform_blocks import CONSTANTS, ITEM_SHIFT, HaloBlocks
 from .vertices import Vertices
@@ -110,6 +112,8 @@ class HaloRenderer(HitDrawable[HaloDrawStyle]):
         self._kind = ["HALO_POINTS"] if points else []
         with self._making():
             self._vertices = self._keep(Vertices(ctx, self._gl, drawn))
+            place = self._vertices.origin, self._vertices.scale, TOP
+            self._region = self._keep(RegionCut(ctx, self._gl, self._programs, place))
             self._blocks = self._keep(HaloBlocks(ctx, self._vertices.origin, self._vertices.scale, drawn.bounds))
             self._n = self._vertices.n_items
             # Lists have whole items; entries beyond the last quad draw nothing.
@@ -131,7 +135,7 @@ class HaloRenderer(HitDrawable[HaloDrawStyle]):
         vertices.show_mask(look.n_tapered, look.t_tapered, self.filtering)
         target = self._hit_target(view.size, coloured=reads == "HALO_COLOURS", edges=style.edges)
         reference = self._drawn.value_reference(look.filter_by)
-        region = self._cut_by_region(view, vertices.origin, vertices.scale)
+        region = self._region.update(view)
         planes, beside = self._blocks.write(view, look, self._n, style.drawn_width, reference)
         wanted = {
             "HALO_TAPER": look.n_tapered > 0 and not self._kind,
@@ -141,7 +145,7 @@ class HaloRenderer(HitDrawable[HaloDrawStyle]):
             "HALO_CUT": (beside or planes) and not self._kind,
             "HALO_SOME": bool(self._kind) and self.filtering is not None,
             "CLIP_PLANES": planes,
-            "CLIP_REGION": region,
+            "CLIP_REGION": bool(region),
             "EDGES": style.edges,
         }
         features = [*self._kind, *(name for name, on in wanted.items() if on)]

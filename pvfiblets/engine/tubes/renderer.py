@@ -12,6 +12,7 @@ from ..gbuffer import GBuffer
 from ..gl.bindings import TUBES
 from ..hit_target import HitDrawable, HitTarget
 from ..lattice import TOP
+from ..regions.region_cut import RegionCut
 from ..view import View
 from .eye_inside import EyeInsideTest
 from .nodes import Nodes
@@ -93,6 +94,7 @@ class TubeRenderer(HitDrawable[TubeStyle]):
         with self._making():
             self._nodes = self._keep(Nodes(ctx, self._gl, tubes))
             place = self._nodes.origin, self._nodes.scale, TOP
+            self._region = self._keep(RegionCut(ctx, self._gl, self._programs, place))
             self._blocks = self._keep(TubeBlocks(ctx, place, tubes.scaled))
             self._silhouettes = self._keep(ProxyGeometry(ctx, self._programs, self.pipeline, tubes.n_segments))
             listable = tubes.n_segments if self.pipeline == "rectangles" else 0
@@ -113,8 +115,8 @@ class TubeRenderer(HitDrawable[TubeStyle]):
             n_segments=self._tubes.n_segments,
         )
         hollow = self._inside.touched(view, style.drawn_width)
-        region = self._cut_by_region(view, self._nodes.origin, self._nodes.scale)
-        common = ["TUBES", *(["CLIP_PLANES"] if cut else []), *(["CLIP_REGION"] if region else [])]
+        region = self._region.update(view)
+        common = ["TUBES", *(["CLIP_PLANES"] if cut else []), *region]
         rounds = self._rounds(common, cut=cut, whole=not (hollow or region), hollow=hollow)
         self._nodes.bind()
         self._draw_hits(

@@ -211,9 +211,6 @@ class HaloActor(LineActor):
     def _paper(self) -> str:
         return "black" if self._light_on_dark else "white"
 
-    def _lines_and_values(self) -> tuple[Any, Mapping[str, Any]]:
-        return self._held.drawn, self._held.line_values
-
     @property
     def _drawn(self) -> Held:
         return self._held

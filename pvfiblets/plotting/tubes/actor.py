@@ -243,9 +243,6 @@ class TubeActor(TubeSettings, LineActor):
         data = self._data
         return LineSubject(mapper, lambda: tube_parts(tubes, data))
 
-    def _lines_and_values(self) -> tuple[Any, Mapping[str, Any]]:
-        return self._tubes, self._tubes.tube_values
-
     def _find(self, tubes: SplineTubes, choice: Any) -> Scalars | None:
         return None if choice is None else find_tube_scalars(tubes, choice)
 
