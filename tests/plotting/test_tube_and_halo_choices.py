@@ -323,6 +323,23 @@ def test_copies_and_other_lines_are_chosen_from_alike(stage, tract):
         np.testing.assert_array_equal(np.flatnonzero(actor.shown), np.arange(5, 10))
 
 
+def test_numbers_of_the_source_stay_with_tubes_of_the_same_nodes_only(plotter, tract):
+    actor = add(plotter, "tubes", tract[:20])
+    actor.tubes = replace(actor.tubes, radius=2.0 * actor.tubes.radius)
+    actor.criterion("fa", (0.5, None))
+    fa = tract[:20].per_point["fa"]
+    kept = (fa >= 0.5)[actor.tubes.segments].all(axis=1)
+    np.testing.assert_array_equal(actor.mapper.filtering, kept)
+    turned = replace(actor.tubes, segments=actor.tubes.segments[:, ::-1])
+    with pytest.raises(KeyError, match="criterion 'fa' does not fit these lines"):
+        actor.tubes = turned
+    np.testing.assert_array_equal(actor.mapper.filtering, kept)
+    actor.remove_criterion()
+    actor.tubes = turned
+    with pytest.raises(KeyError, match="there is no measure 'fa'"):
+        actor.criterion("fa", (0.5, None))
+
+
 def test_refused_choices_leave_all_as_it_was(stage):
     _, actor, _ = stage
     actor.include(BALL)

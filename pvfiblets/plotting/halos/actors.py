@@ -185,7 +185,8 @@ class HaloActor(LineActor):
             ``passes``: name and milliseconds of the last redraw; ``features``: pieces of the
             shaders in use; ``buffers``: name and bytes of what lies on the GPU; ``gpu_bytes``:
             their sum; ``points_total``, and of lines ``lines_total`` and ``segments_total``;
-            ``culling``: the one in use, ``None`` before the first picture.
+            ``culling``: the one in use, ``None`` before the first picture; ``streamlines``: lines
+            or points in ``total`` and ``shown``; ``criteria``, ``conditions``, ``groups_shown``, ``clips``.
         """
         report = self._mapper.explain()
         total = added_up(report)

@@ -88,7 +88,7 @@ class TubeActor(TubeSettings, LineActor):
         self._shown = with_built_in(self._tubes, scalars)  # what is computed for colours is not the user's
         mapper = PlottedSplines(self._shown, options=TubeOptions(**given.at(OPTIONS)))
         self._choices = Choices()
-        self._subject = self._subject_of(self._tubes, mapper)
+        self._subject = _subject_of(self._tubes, self._data, mapper)
         super().__init__(mapper, scalars, given, name=name, theme=theme)
         self._recolour()
         self.opacity = given["opacity"]
@@ -113,7 +113,10 @@ class TubeActor(TubeSettings, LineActor):
         tubes, choice = with_node_values(_checked(tubes), self._choice)
         shown = with_built_in(tubes, choice)
         found = self._find(shown, choice)
-        with self._choosing_from(self._subject_of(tubes, self._mapper)):
+        same = tubes.n_tubes == self._tubes.n_tubes and np.array_equal(tubes.segments, self._tubes.segments)
+        data = self._data if same else SourceData()
+        with self._choosing_from(_subject_of(tubes, data, self._mapper)):
+            self._data = data
             self._draw(tubes, shown)
             self._choice = choice
             self._show(found)
@@ -151,7 +154,8 @@ class TubeActor(TubeSettings, LineActor):
             shaders in use; ``buffers``: name and bytes of what lies on the GPU; ``gpu_bytes``:
             their sum; ``tubes_total``, ``segments_total``; ``primitives``: triangles of the last
             redraw without culling, 0 before the first; ``silhouettes``, ``solver``, ``iterations``,
-            ``culling``: those in use, ``None`` before the first picture.
+            ``culling``: those in use, ``None`` before the first picture; ``streamlines``: tubes in
+            ``total`` and ``shown``; ``criteria``, ``conditions``, ``groups_shown``, ``clips``.
         """
         report = self._mapper.explain()
         total = added_up(report)
@@ -234,17 +238,17 @@ class TubeActor(TubeSettings, LineActor):
             self._mapper.colouring = Colouring("solid")
         self._mapper.set_tubes(shown)
         before, self._tubes, self._shown = self._tubes, tubes, shown
-        self._subject = self._subject_of(tubes, self._mapper)
+        self._subject = _subject_of(tubes, self._data, self._mapper)
         outline = self.silhouette
         if before.n_tubes != tubes.n_tubes and isinstance(outline, dict):
             self.silhouette = outline["tubes"] is None and outline  # numbers mean other tubes now
 
-    def _subject_of(self, tubes: SplineTubes, mapper: PlottedSplines) -> LineSubject:
-        data = self._data
-        return LineSubject(mapper, lambda: tube_parts(tubes, data))
-
     def _find(self, tubes: SplineTubes, choice: Any) -> Scalars | None:
         return None if choice is None else find_tube_scalars(tubes, choice)
+
+
+def _subject_of(tubes: SplineTubes, data: SourceData, mapper: PlottedSplines) -> LineSubject:
+    return LineSubject(mapper, lambda: tube_parts(tubes, data))
 
 
 def _checked(tubes: Any) -> SplineTubes:
