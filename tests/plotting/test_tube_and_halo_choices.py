@@ -323,6 +323,24 @@ def test_copies_and_other_lines_are_chosen_from_alike(stage, tract):
         np.testing.assert_array_equal(np.flatnonzero(actor.shown), np.arange(5, 10))
 
 
+def test_any_numbers_of_the_source_colour_later(stage, tract):
+    plotter, actor, kind = stage
+    other = add(plotter, kind, tract, cmap="viridis", reset_camera=False)
+    other.scalars = tract.per_point["other"]
+    wanted = shot(plotter, only=other)
+    actor.cmap = "viridis"
+    actor.scalars = "other"
+    np.testing.assert_array_equal(shot(plotter, only=actor), wanted)
+    assert actor.scalars == "other"
+    actor.scalars = "weight"
+    assert actor.scalars_title == "weight"
+    if kind == "lines":
+        actor.filter_by = "fa"
+        actor.threshold = 0.5
+    with pytest.raises(KeyError, match="'other'.*Name one of these, or give an array"):
+        actor.scalars = "nothing"
+
+
 def test_numbers_of_the_source_stay_with_tubes_of_the_same_nodes_only(plotter, tract):
     actor = add(plotter, "tubes", tract[:20])
     actor.tubes = replace(actor.tubes, radius=2.0 * actor.tubes.radius)

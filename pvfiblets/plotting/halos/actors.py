@@ -134,7 +134,7 @@ class HaloActor(LineActor):
     def scalars(self) -> str | np.ndarray | None:
         """What colours the actor; ``None`` for one colour.
 
-        The name of numbers or colours that it was made with, or an array with one number or one
+        The name of numbers of its source or colours that it was made with, or an array with one number or one
         colour (3 or 4 columns) per point. Lines also have ``"orientation"`` (the absolute direction
         as red, green, blue), ``"arc_length"`` (mm from the line's first point) and ``"length"``
         (mm), and take arrays with a row per line.

@@ -21,6 +21,7 @@ from pvfiblets.plotting.line_subject import Parts
 from pvfiblets.plotting.same_names import Preference, with_preference
 from pvfiblets.plotting.scalars import (
     DIRECTIONS,
+    NAME_ONE,
     UNNAMED,
     Numbers,
     Scalars,
@@ -240,9 +241,16 @@ def _is_image(source: Any, what: Any) -> bool:
 
 
 def _sampled(held: Held, what: Any) -> tuple[Held, Any]:
-    """Store the values of an image at the points, and return their name; anything else is returned as it is."""
-    drawn = held.drawn
-    if not is_image(what) or (isinstance(what, str) and (what in drawn.values or what in held.line_values)):
+    """Store numbers of the source, or of an image at the points, and return their name; all else stays as it is."""
+    drawn, source = held.drawn, held.source
+    if isinstance(what, str):
+        if what in drawn.values or what in held.line_values:
+            return held, what
+        if what in source.per_point:
+            return replace(held, drawn=replace(drawn, values={**drawn.values, what: source.per_point[what]})), what
+        if what in source.per_line:
+            return replace(held, line_values={**held.line_values, what: source.per_line[what]}), what
+    if not is_image(what):
         return held, what
     image = as_image(what)
     values, name = image.at(drawn.points), image.name or "volume"
@@ -261,11 +269,9 @@ def _unknown(source: Any, names: tuple[Any, Any], error: ValueError) -> Exceptio
 
 def _missing(what: str, name: str, held: Held) -> str:
     """Say that there are no numbers ``name``, and which there are."""
-    known: dict[str, Any] = {"at points": held.drawn.values}
+    known: dict[str, Any] = {"at points": {**held.drawn.values, **held.source.per_point}}
     if isinstance(held.drawn, HaloLines):
-        known |= {"per line": held.line_values, "built in": BUILT_IN if what == "scalars" else (ARC_LENGTH, LENGTH)}
+        per_line = {**held.line_values, **held.source.per_line}
+        known |= {"per line": per_line, "built in": BUILT_IN if what == "scalars" else (ARC_LENGTH, LENGTH)}
     listed = [f"{title}: {', '.join(map(repr, names)) or 'none'}" for title, names in known.items()]
-    return (
-        f"{what} is {name!r}, and there are no such numbers; {'; '.join(listed)}. Of a source only what was asked for "
-        "is kept: give an array, or add the source anew with it"
-    )
+    return f"{what} is {name!r}, and there are no such numbers; {'; '.join(listed)}. {NAME_ONE}"

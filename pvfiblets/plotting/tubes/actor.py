@@ -84,7 +84,7 @@ class TubeActor(TubeSettings, LineActor):
     ) -> None:
         given = Given(TubeSettings, settings)
         self._data = SourceData() if data is None else data
-        self._tubes, scalars = with_node_values(_checked(tubes), scalars)
+        self._tubes, scalars = with_node_values(_checked(tubes), scalars, data=self._data)
         self._shown = with_built_in(self._tubes, scalars)  # what is computed for colours is not the user's
         mapper = PlottedSplines(self._shown, options=TubeOptions(**given.at(OPTIONS)))
         self._choices = Choices()
@@ -125,7 +125,7 @@ class TubeActor(TubeSettings, LineActor):
     def scalars(self) -> str | np.ndarray | None:
         """What colours the actor; ``None`` for one colour.
 
-        The name of ``tubes.values`` or ``tubes.tube_values``; ``"radius"``, ``"arc_length"`` (mm
+        The name of ``tubes.values``, ``tubes.tube_values`` or numbers of the source; ``"radius"``, ``"arc_length"`` (mm
         from the tube's first node), ``"length"`` (mm, of the whole tube), ``"orientation"`` (the
         absolute direction as red, green, blue); or an array with one number or one colour (3 or 4
         columns) per node or per tube.
@@ -134,7 +134,7 @@ class TubeActor(TubeSettings, LineActor):
 
     @scalars.setter
     def scalars(self, scalars: Any) -> None:
-        tubes, scalars = with_node_values(self._tubes, scalars)
+        tubes, scalars = with_node_values(self._tubes, scalars, data=self._data)
         shown = with_built_in(self._shown if tubes is self._tubes else tubes, scalars)
         found = self._find(shown, scalars)
         if shown is not self._shown:
@@ -244,7 +244,7 @@ class TubeActor(TubeSettings, LineActor):
             self.silhouette = outline["tubes"] is None and outline  # numbers mean other tubes now
 
     def _find(self, tubes: SplineTubes, choice: Any) -> Scalars | None:
-        return None if choice is None else find_tube_scalars(tubes, choice)
+        return None if choice is None else find_tube_scalars(tubes, choice, self._data)
 
 
 def _subject_of(tubes: SplineTubes, data: SourceData, mapper: PlottedSplines) -> LineSubject:

@@ -24,6 +24,7 @@ from pvfiblets.lines import (
 from pvfiblets.plotting.same_names import Preference, with_preference
 from pvfiblets.plotting.scalars import (
     DIRECTIONS,
+    NAME_ONE,
     UNNAMED,
     Numbers,
     Scalars,
@@ -88,8 +89,10 @@ def with_built_in(tubes: SplineTubes, scalars: Any) -> SplineTubes:
     return with_arc_length(tubes) if scalars == ARC_LENGTH else tubes
 
 
-def with_node_values(tubes: SplineTubes, scalars: Any, *, rgb: bool | None = None) -> tuple[SplineTubes, Any]:
-    """Store ``scalars`` with the tubes if they are an array with a row for each node.
+def with_node_values(
+    tubes: SplineTubes, scalars: Any, *, rgb: bool | None = None, data: SourceData | None = None
+) -> tuple[SplineTubes, Any]:
+    """Store ``scalars`` with the tubes if they are an array with a row for each node, or name one of their source.
 
     Notes
     -----
@@ -98,6 +101,10 @@ def with_node_values(tubes: SplineTubes, scalars: Any, *, rgb: bool | None = Non
     if is_image(scalars) and not (isinstance(scalars, str) and scalars in {**tubes.values, **tubes.tube_values}):
         image = as_image(scalars)
         return _with_rows(tubes, image.name or "volume", image.at(tubes.points))
+    if isinstance(scalars, str) and data is not None and scalars not in {**tubes.values, **tubes.tube_values}:
+        rows = data.per_point.get(scalars)
+        if rows is not None and len(rows) == tubes.n_nodes:
+            return _with_rows(tubes, scalars, rows.astype(np.float64))
     if scalars is None or isinstance(scalars, str):
         return tubes, scalars
     given = rows_of(scalars, (tubes.n_nodes, tubes.n_tubes))
@@ -122,13 +129,13 @@ def _with_rows(tubes: SplineTubes, name: str, rows: np.ndarray) -> tuple[SplineT
     return replace(tubes, values={**tubes.values, name: NodeValues(rows, node_slopes(tubes, rows))}), name
 
 
-def find_tube_scalars(tubes: SplineTubes, scalars: Any) -> Scalars:
+def find_tube_scalars(tubes: SplineTubes, scalars: Any, data: SourceData) -> Scalars:
     """Find what ``scalars`` means for tubes."""
-    missing = ". Only what was asked for as scalars is kept at nodes: give an array, or add the tubes with it"
     numbers = Numbers(
         "tube", tubes.n_tubes, lambda name: _at_nodes(name, tubes), tubes.tube_values,
         {**direction_scalars(), LENGTH: lambda: tube_lengths(tubes)},
-        lambda name: _missing(name, **{"at nodes": tubes.values, "per tube": tubes.tube_values}) + missing,
+        lambda name: _missing(name, **{"at nodes": {**tubes.values, **data.per_point}, "per tube": tubes.tube_values})
+        + f". {NAME_ONE}",
     )  # fmt: skip
     return find_scalars(numbers, scalars)
 
