@@ -28,14 +28,7 @@ __all__ = ["HaloDrawStyle", "HaloRenderer"]
 
 @dataclass(frozen=True)
 class HaloDrawStyle(Style):
-    """How lines or points with halos become pixels.
-
-    Parameters
-    ----------
-    values : str, optional
-        Name of numbers or colours of the points, to write beside each pixel.
-    look : HaloStyle
-    """
+    """How lines or points with halos become pixels."""
 
     look: HaloStyle = field(kw_only=True)
 
@@ -68,28 +61,6 @@ class HaloRenderer(HitDrawable[HaloDrawStyle]):
     segment, and the value; ``across`` the ink, 1 on a line, 0 on a halo. `explain` also says ``points_total``,
     ``lines_total`` (0 of points), ``primitives`` (triangles without culling) and ``culling`` (as the last picture was
     drawn).
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-        OpenGL 3.3 or later.
-    drawn : HaloLines or HaloPoints
-        Copied to the GPU here.
-    culling : {'two-phase', None}
-        How items behind others are found out, where OpenGL 4.3 and many of them are there for it
-        (:mod:`pvfiblets.engine.culling.two_phase_items`). It changes no pixel.
-
-    Attributes
-    ----------
-    pipeline : str
-        ``'strips'`` of lines, ``'discs'`` of points.
-
-    Raises
-    ------
-    EngineError
-        If memory does not suffice or numbers are too large; nothing stays behind on the GPU.
-    ValueError
-        If a choice is none.
 
     Notes
     -----

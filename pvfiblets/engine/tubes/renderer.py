@@ -33,41 +33,9 @@ class TubeRenderer(HitDrawable[TubeStyle]):
     segment and the value, ``across`` normals. `explain` also says ``tubes_total``, ``segments_total``, ``primitives``
     (triangles without culling), ``culling``, ``solver`` and ``iterations``.
 
-    Parameters
-    ----------
-    ctx : moderngl.Context
-        OpenGL 3.3 or later.
-    tubes : SplineTubes
-        Copied to the GPU here.
-    silhouettes : str
-        How segments cover pixels, of :data:`.SILHOUETTES`; ``'auto'`` takes the fastest.
-    solver : str
-        How roots are found, of :data:`.SOLVERS`; ``'auto'`` takes the fastest that is exact.
-    iterations : int, optional
-        Steps of one search for a root; the solver's own number by default.
-    culling : {'two-phase', None}
-        How segments behind others are found out, where rectangles, OpenGL 4.3 and many segments are there for
-        it (:mod:`pvfiblets.engine.culling.two_phase_items`). It changes no pixel.
-    middle : float
-        Share c of a derivative between control points (``shaders/tubes/segment.glsl``); the paper has 1/3.
-    discard : bool
-        Throw every fragment away at once: what is left is the cost of the silhouettes, the hatched bars of the paper's
-        figure 5.
-
-    Attributes
-    ----------
-    pipeline : str
-        The silhouettes in use.
-    solver : str
-        The one in use.
-    iterations : int
-
-    Raises
-    ------
-    EngineError
-        If memory does not suffice or numbers are too large; nothing stays behind on the GPU.
-    ValueError
-        If a choice is none.
+    `middle` is the share c of a derivative between control points (``shaders/tubes/segment.glsl``); the paper has 1/3.
+    With `discard` every fragment goes at once: what is left is the cost of the silhouettes, the hatched bars of the
+    paper's figure 5.
     """
 
     STYLE = TubeStyle

@@ -31,15 +31,7 @@ BACKGROUND = "background"
 
 
 class PlottedHalos(PlottedLines[HaloOptions], HaloMapper):
-    """A mapper of lines or points with halos, with scalar bars.
-
-    Parameters
-    ----------
-    drawn : HaloLines or HaloPoints
-        What to draw.
-    look : HaloStyle
-        How.
-    """
+    """A mapper of lines or points with halos, with scalar bars."""
 
 
 class HaloActor(LineActor):

@@ -41,21 +41,7 @@ Drawn: TypeAlias = HaloLines | HaloPoints
 
 @dataclass(frozen=True)
 class Held:
-    """What an actor draws, with the numbers that colour and filter it.
-
-    Parameters
-    ----------
-    drawn : HaloLines or HaloPoints
-        With all values at points that are needed.
-    scalars : str or array, optional
-        What colours it, for :func:`find_halo_scalars`.
-    filter_by : str, optional
-        Which of its values filter.
-    line_values : mapping of str to array
-        A row for each line.
-    source : SourceData
-        All that criteria may name besides.
-    """
+    """What an actor draws, with the numbers that colour and filter it; `source` has all that may be named besides."""
 
     drawn: Drawn
     scalars: Any = None

@@ -32,13 +32,7 @@ _OUTLINE = {"color": "white", "width": 2.0, "tubes": None}
 
 
 class PlottedSplines(PlottedLines[TubeOptions], TubeMapper):
-    """A mapper of spline tubes with scalar bars.
-
-    Parameters
-    ----------
-    tubes : SplineTubes
-        What to draw.
-    """
+    """A mapper of spline tubes with scalar bars."""
 
 
 class TubeActor(TubeSettings, LineActor):
