@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
 
 __all__ = [
-    "Lines", "are_words", "flat", "gather", "joined", "numbers_or_colours", "refuse_words", "rows_of", "with_values"
+    "Lines", "SourceData", "are_words", "flat", "gather", "joined", "numbers_or_colours", "refuse_words", "rows_of",
+    "with_values",
 ]  # fmt: skip
 
 Ints = npt.NDArray[np.int64]
@@ -116,8 +117,42 @@ class Lines:
         return given, tubes if self.tube_of is None else self.tube_of
 
 
+@dataclass(frozen=True, eq=False)
+class SourceData:
+    """All numbers and groups of the lines that something was made of, for criteria.
+
+    Parameters
+    ----------
+    per_point, per_line : mapping of str to ndarray
+        ``(n_points,)`` numbers, and arrays with a row for each line.
+    groups : mapping of str to ndarray
+        Numbers of lines.
+    """
+
+    per_point: Mapping[str, npt.NDArray[Any]] = field(default_factory=dict)
+    per_line: Mapping[str, npt.NDArray[Any]] = field(default_factory=dict)
+    groups: Mapping[str, npt.NDArray[Any]] = field(default_factory=dict)
+
+    @classmethod
+    def of_lines(cls, lines: Lines, source: Any, rows: Ints | None) -> SourceData:
+        """Return the data of a source from which lines were gathered; `rows` are its points in their order."""
+        per_point = {
+            name: array.reshape(len(array)) if rows is None else array.reshape(len(array))[rows]
+            for name, array in lines.point_data.items()
+            if array.dtype.kind in "biuf" and array.size == len(array)
+        }
+        if lines.order is not None:  # line data are of segments
+            return cls(per_point)
+        groups = {name: np.asarray(ids, np.int64) for name, ids in (getattr(source, "groups", None) or {}).items()}
+        if lines.given is not None:
+            groups = {name: np.flatnonzero(np.isin(lines.given, ids)) for name, ids in groups.items()}
+        return cls(per_point, lines.line_data, groups)
+
+
 def gather(source: Any, noun: str = "tubes", *, keep_single: bool = False) -> Lines:
     """Take the lines out of a source, cut where a point is NaN or infinite, which is warned of."""
+    if isinstance(source, Lines):
+        return source
     lines, dropped = _cut(_gather(source, noun, keep_single))
     warn_of_losses(type(source).__name__, dropped, stacklevel=2)
     return lines

@@ -6,9 +6,11 @@ Spline tubes and lines with halos are drawn into it; `HitDrawable` is what their
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import moderngl
+import numpy as np
+import numpy.typing as npt
 
 from .culling.two_phase_items import LEAST_SEGMENTS, Listing, supports_listing
 from .drawable import AnyStyle, Drawable
@@ -18,6 +20,9 @@ from .gl.bindings import HIT_KEYS
 from .gl.depth_texture import depth_texture
 from .gl.moderngl_extras import GLExtras
 from .gl.shaders import Programs
+
+if TYPE_CHECKING:
+    from .regions.region_cut import RegionCut
 
 __all__ = ["HitDrawable", "HitTarget"]
 
@@ -139,6 +144,18 @@ class HitDrawable(Drawable[AnyStyle]):
 
     _listing: Listing | None = None
     _listed = False  # whether the last picture was drawn from lists
+    _filtering: npt.NDArray[np.bool_] | None = None
+    _region: RegionCut
+
+    @property
+    def filtering(self) -> npt.NDArray[np.bool_] | None:
+        """Which segments or points are drawn, ``(n,)``; None for all."""
+        return self._filtering
+
+    @filtering.setter
+    def filtering(self, wanted: npt.NDArray[np.bool_] | None) -> None:
+        self._filtering = wanted
+        self._outdate()
 
     @classmethod
     def _check_culling(cls, culling: str | None) -> None:
@@ -212,6 +229,7 @@ class HitDrawable(Drawable[AnyStyle]):
         """Set the data's texture units in a program."""
         for sampler, unit in self.SAMPLERS.items():
             self._gl.set_sampler(program, sampler, unit)
+        self._region.bind(program)
 
     def _prepare_listing(self, program: moderngl.ComputeShader) -> None:
         """Set everything that a program that lists items needs of them."""

@@ -20,8 +20,38 @@ Values = Mapping[str, npt.NDArray[Any]]
 _NONE: Values = MappingProxyType({})
 
 
+class _AtPoints:
+    """Points, and values at them."""
+
+    points: npt.NDArray[np.floating[Any]]
+    values: Values
+
+    @property
+    def n_points(self) -> int:
+        """Points of all lines."""
+        return len(self.points)
+
+    @cached_property
+    def _references(self) -> dict[str, float]:
+        return {name: value_reference(held) for name, held in self.values.items() if held.ndim == 1}
+
+    def value_reference(self, name: Any) -> float:
+        """Return the number to subtract from values on the graphics card; see `pvfiblets.support.value_reference`."""
+        return self._references.get(name, 0.0)
+
+    @property
+    def promise(self) -> float:
+        """Nothing lies outside the bounds."""
+        return 0.0
+
+    @cached_property
+    def bounds(self) -> tuple[float, ...]:
+        """(xmin, xmax, ymin, ymax, zmin, zmax) of the points, mm; zeros without any."""
+        return _bounds(self.points)
+
+
 @dataclass(frozen=True, eq=False)
-class HaloLines:
+class HaloLines(_AtPoints):
     """Polylines with halos.
 
     Parameters
@@ -61,37 +91,29 @@ class HaloLines:
         """The same, by the name that colours ask for."""
         return self.n_lines
 
-    @property
-    def n_points(self) -> int:
-        """Points of all lines."""
-        return len(self.points)
-
     @cached_property
     def n_segments(self) -> int:
         """Segments between neighbouring points of a line, those without length included."""
         return int(np.maximum(np.diff(self.offsets) - 1, 0).sum())
 
     @cached_property
-    def _references(self) -> dict[str, float]:
-        return {name: value_reference(held) for name, held in self.values.items() if held.ndim == 1}
+    def segment_starts(self) -> npt.NDArray[np.int64]:
+        """``(n_segments,)`` int64: the point at which each segment starts; it ends at the next."""
+        inner = np.ones(self.n_points, bool)
+        inner[self.offsets[1:][np.diff(self.offsets) > 0] - 1] = False
+        return np.flatnonzero(inner)
 
-    def value_reference(self, name: Any) -> float:
-        """Return the number to subtract from values on the graphics card; see `pvfiblets.support.value_reference`."""
-        return self._references.get(name, 0.0)
+    def pieces(self, kept: npt.NDArray[np.bool_]) -> npt.NDArray[np.int64]:
+        """Return offsets of what is left of the lines with some of the segments, ``(n_segments,)`` bool.
 
-    @property
-    def promise(self) -> float:
-        """Nothing lies outside the bounds."""
-        return 0.0
-
-    @cached_property
-    def bounds(self) -> tuple[float, ...]:
-        """(xmin, xmax, ymin, ymax, zmin, zmax) of the points, mm; zeros without any."""
-        return _bounds(self.points)
+        All points are in pieces, those without a segment each in its own.
+        """
+        found: npt.NDArray[np.int64] = np.union1d(self.offsets, self.segment_starts[~kept] + 1)
+        return found
 
 
 @dataclass(frozen=True, eq=False)
-class HaloPoints:
+class HaloPoints(_AtPoints):
     """Points with halos.
 
     Parameters
@@ -119,31 +141,8 @@ class HaloPoints:
 
     @property
     def n_streamlines(self) -> int:
-        """One: colours by streamline mean nothing to points."""
-        return 1
-
-    @property
-    def n_points(self) -> int:
-        """Points."""
-        return len(self.points)
-
-    @cached_property
-    def _references(self) -> dict[str, float]:
-        return {name: value_reference(held) for name, held in self.values.items() if held.ndim == 1}
-
-    def value_reference(self, name: Any) -> float:
-        """Return the number to subtract from values on the graphics card; see `pvfiblets.support.value_reference`."""
-        return self._references.get(name, 0.0)
-
-    @property
-    def promise(self) -> float:
-        """Nothing lies outside the bounds."""
-        return 0.0
-
-    @cached_property
-    def bounds(self) -> tuple[float, ...]:
-        """(xmin, xmax, ymin, ymax, zmin, zmax) of the points, mm; zeros without any."""
-        return _bounds(self.points)
+        """The points: each counts as a line."""
+        return self.n_points
 
 
 def _checked_points(points: Any, what: str) -> npt.NDArray[np.floating[Any]]:

@@ -19,7 +19,10 @@ if TYPE_CHECKING:
     from pvfiblets.mappers.colouring import Colouring
     from pvfiblets.streamlines import Streamlines
 
-__all__ = ["fiblet_lines", "halo_lines", "near_ray", "shown_points", "shown_streamlines", "thinned", "tube_lines"]
+__all__ = [
+    "fiblet_lines", "halo_lines", "near_ray", "point_flags", "shown_points", "shown_streamlines", "thinned",
+    "tube_lines",
+]  # fmt: skip
 
 
 def thinned(counts: npt.NDArray[Any], budget: int) -> npt.NDArray[np.int64]:
@@ -82,7 +85,7 @@ def fiblet_lines(
     lines = lines.with_columns(**{name: rows for name, rows in decoded.per_point.items() if rows.ndim == 1})
     lines = _coloured(lines, colouring, partial(_fiblet_values, lines, decoded), decoded.per_point)
     if filtering is not None and filtering.points is not None:
-        lines = lines.kept(_point_flags(fiblets, filtering.points, ids))
+        lines = lines.kept(point_flags(fiblets, filtering.points, ids))
     return lines
 
 
@@ -105,7 +108,7 @@ def _measured(name: str, lines: LineData) -> npt.NDArray[Any]:
     return found
 
 
-def _point_flags(
+def point_flags(
     fiblets: FibletSet, words: npt.NDArray[np.uint32], ids: npt.NDArray[np.int64]
 ) -> npt.NDArray[np.bool_]:
     """Bits of the points of some streamlines, end to end."""
@@ -168,7 +171,9 @@ def _tube_values(tubes: Any, name: str, segments: npt.NDArray[np.int64]) -> npt.
 # Halos -----------------------------------------------------------------------------------------------
 
 
-def halo_lines(drawn: Any, look: Any, colouring: Colouring | None, ids: npt.NDArray[np.int64]) -> LineData:
+def halo_lines(
+    drawn: Any, look: Any, colouring: Colouring | None, ids: npt.NDArray[np.int64], filtering: Any = None
+) -> LineData:
     """Return lines with halos, or points as lines of one point, without filtered ones."""
     points = np.asarray(drawn.points)
     offsets = getattr(drawn, "offsets", np.arange(len(points) + 1))
@@ -182,10 +187,17 @@ def halo_lines(drawn: Any, look: Any, colouring: Colouring | None, ids: npt.NDAr
         return _bytes(found.astype(np.float64)) if colours else found
 
     lines = _coloured(lines, colouring, values)
+    kept = np.ones(len(rows), bool)
     if look.filter_by is not None:
         values = np.asarray(drawn.values[look.filter_by])[rows]
-        lines = lines.kept((values >= look.low) & (values <= look.high))
-    return lines
+        kept = (values >= look.low) & (values <= look.high)
+    if filtering is None:
+        return lines.kept(kept)
+    if not hasattr(drawn, "offsets"):
+        return lines.kept(kept & filtering[rows])
+    goes_on = np.zeros(len(points), bool)
+    goes_on[drawn.segment_starts[filtering]] = True
+    return lines.with_segments(goes_on[rows] & kept & np.append(kept[1:], False))
 
 
 # Colours ---------------------------------------------------------------------------------------------

@@ -694,6 +694,33 @@ class CutMapper(EngineMapper[AnyOptions]):
         return np.concatenate([planes, more]), region
 
 
+class FilteredMapper(CutMapper[AnyOptions]):
+    """Mapper of lines of which some can be left out."""
+
+    COPIED = (*CutMapper.COPIED, "_filtering")
+
+    _filtering: Any = None
+
+    @property
+    def filtering(self) -> Any:
+        """What the engine's ``filtering`` says of the visible lines; None for all."""
+        return self._filtering
+
+    @filtering.setter
+    def filtering(self, wanted: Any) -> None:
+        self._filtering = wanted
+        self._link.modified()
+
+    def _engine(self, context: WindowContext, slot: Slot) -> Any:
+        before = slot.renderer
+        engine = super()._engine(context, slot)
+        if engine is not before:
+            slot.versions.pop("filtering", None)
+        if slot.versions.get("filtering") is not self._filtering:
+            engine.filtering = slot.versions["filtering"] = self._filtering
+        return engine
+
+
 # Functions, since bound methods would keep the mapper alive for ever.
 
 

@@ -12,7 +12,7 @@ from vtkmodules.vtkRenderingCore import vtkRenderer
 from pvfiblets.engine.fiblets.style import FibletStyle
 from pvfiblets.engine.view import Style, View
 from pvfiblets.mappers.colouring import Colouring
-from pvfiblets.mappers.engine_mapper import CutMapper
+from pvfiblets.mappers.engine_mapper import FilteredMapper
 from pvfiblets.mappers.engine_options import EngineOptions, engine_renderer
 from pvfiblets.mappers.line_data import SIDES
 from pvfiblets.mappers.picking import nearest_pixel
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 _OVER = object()
 
 
-class FibletMapper(CutMapper[EngineOptions]):
+class FibletMapper(FilteredMapper[EngineOptions]):
     """Mapper that draws a `FibletSet`, or lines that it compresses, through VTK's own lights, passes and selection.
 
     ``actor.SetMapper(mapper)`` gives it to an actor, or `attach`. One mapper serves one actor, in any number of
@@ -62,7 +62,7 @@ class FibletMapper(CutMapper[EngineOptions]):
     _NAME = "FibletMapper"
     _HAS_EDGES = True
 
-    COPIED = (*CutMapper.COPIED, "_line_width", "_filtering", "_compression", "_compressed")
+    COPIED = (*FilteredMapper.COPIED, "_line_width", "_compression", "_compressed")
 
     def __init__(
         self,
@@ -75,7 +75,6 @@ class FibletMapper(CutMapper[EngineOptions]):
         renderer_factory: Callable[..., Any] = engine_renderer,
         progress: bool = False,
     ) -> None:
-        self._filtering: Any = None
         self._compression = dict(compression or {})
         self._compressed: tuple[Any, Any] = (None, None)
         self._detail = 0.0
@@ -146,16 +145,6 @@ class FibletMapper(CutMapper[EngineOptions]):
             return style.line_width <= 1.0
         return 2.0 * style.radius * frame.least_scale(self._drawn.bounds) < style.min_width
 
-    @property
-    def filtering(self) -> Any:
-        """`pvfiblets.engine.fiblets.data.filter_textures.Filter` of the visible fiblets; None for all."""
-        return self._filtering
-
-    @filtering.setter
-    def filtering(self, wanted: Any) -> None:
-        self._filtering = wanted
-        self._link.modified()
-
     def _made_of(self, data: Any) -> tuple[Any, Colouring]:
         from pvfiblets.mappers.vtk_lines import fiblets_of, geometry_of, painted_fiblets
 
@@ -201,12 +190,7 @@ class FibletMapper(CutMapper[EngineOptions]):
         return self._readable_ids(ids, colours=False, segments=False)
 
     def _engine(self, context: WindowContext, slot: Slot) -> Any:
-        before = slot.renderer
         engine = super()._engine(context, slot)
-        if engine is not before:
-            slot.versions.pop("filtering", None)
-        if slot.versions.get("filtering") is not self._filtering:
-            engine.filtering = slot.versions["filtering"] = self._filtering
         if wanted_share(context.window) < 1.0 and not self._sums_up:
             from pvfiblets.mappers.thinned import thinned_engine
 

@@ -15,7 +15,7 @@ from vtkmodules.vtkRenderingCore import vtkRenderer
 
 from pvfiblets.halos import HaloLines
 from pvfiblets.mappers.colouring import Colouring
-from pvfiblets.mappers.engine_mapper import EngineMapper
+from pvfiblets.mappers.engine_mapper import FilteredMapper
 from pvfiblets.mappers.engine_options import Options
 from pvfiblets.mappers.line_tubes import thickened
 from pvfiblets.mappers.picking import nearest_pixel
@@ -103,7 +103,7 @@ class Strips(ShaderEffect):
         program.SetUniform3f("fibletStripUpper", upper)
 
 
-class HaloMapper(EngineMapper[HaloOptions]):
+class HaloMapper(FilteredMapper[HaloOptions]):
     """Mapper that draws `HaloLines` or `HaloPoints` through VTK's own passes, clipping planes and selection.
 
     Parameters
@@ -136,7 +136,7 @@ class HaloMapper(EngineMapper[HaloOptions]):
     _NAME = "HaloMapper"
     _HAS_EDGES = True
 
-    COPIED = (*EngineMapper.COPIED, "_look", "_measured")
+    COPIED = (*FilteredMapper.COPIED, "_look", "_measured")
 
     def __init__(
         self,
@@ -253,7 +253,7 @@ class HaloMapper(EngineMapper[HaloOptions]):
         lines = isinstance(self._drawn, HaloLines)
         counts = np.diff(self._drawn.offsets) if lines else np.ones(self._drawn.n_points, np.int64)
         ids = thinned(counts, budget)
-        found = halo_lines(self._drawn, self._look, self._colouring if colours else None, ids)
+        found = halo_lines(self._drawn, self._look, self._colouring if colours else None, ids, self._filtering)
         return self._within_cuts(found).to_polydata(segments=segments and lines, vertices=not lines)
 
     def _made_of(self, data: Any) -> tuple[Any, Colouring]:

@@ -84,6 +84,12 @@ class LineData:
         rows = np.flatnonzero(points)
         return self._runs(rows, np.zeros(len(rows)), begins[points])
 
+    def with_segments(self, goes_on: Flags) -> LineData:
+        """Return some of the segments: of each point, whether the one that starts there is kept."""
+        before = np.concatenate([np.zeros(1, bool), goes_on])[:-1]
+        rows = np.flatnonzero(goes_on | before)
+        return self._runs(rows, np.zeros(len(rows)), ~before[rows])
+
     def inside(self, contains: Callable[[Floats], Flags]) -> LineData:
         """Return the lines within a region, cut at its boundary; one that a segment leaves and enters is not found."""
         within = contains(np.asarray(self.points, np.float64))

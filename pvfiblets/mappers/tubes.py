@@ -1,8 +1,7 @@
 """`TubeMapper`: Hermite spline tubes as geometry of an ordinary VTK actor.
 
 The engine (`pvfiblets.engine.tubes`) finds for each pixel where its ray enters the tubes; its G-buffer holds depth,
-surface normal, tube, segment and value, and the resolve that serves fiblets shows it. It has no regions, filters and
-layers.
+surface normal, tube, segment and value, and the resolve that serves fiblets shows it. It has no layers.
 """
 
 from __future__ import annotations
@@ -15,7 +14,7 @@ from vtkmodules.vtkRenderingCore import vtkRenderer
 
 from pvfiblets.engine.tubes import TubeStyle, check_choices
 from pvfiblets.mappers.colouring import Colouring
-from pvfiblets.mappers.engine_mapper import EngineMapper
+from pvfiblets.mappers.engine_mapper import FilteredMapper
 from pvfiblets.mappers.engine_options import Options
 from pvfiblets.mappers.line_data import SIDES, STEPS
 from pvfiblets.mappers.line_tubes import SurfaceNormals
@@ -71,7 +70,7 @@ def tube_renderer(ctx: Any, tubes: Any, **options: Any) -> Any:
     return TubeRenderer(ctx, tubes, **options)
 
 
-class TubeMapper(EngineMapper[TubeOptions]):
+class TubeMapper(FilteredMapper[TubeOptions]):
     """Mapper that draws `SplineTubes` through VTK's own lights, passes, clipping planes and selection.
 
     Parameters
@@ -101,7 +100,7 @@ class TubeMapper(EngineMapper[TubeOptions]):
     _NAME = "TubeMapper"
     _HAS_EDGES = True
 
-    COPIED = (*EngineMapper.COPIED, "_shape")
+    COPIED = (*FilteredMapper.COPIED, "_shape")
 
     def __init__(
         self,
@@ -171,7 +170,8 @@ class TubeMapper(EngineMapper[TubeOptions]):
         from pvfiblets.mappers.drawn_lines import tube_lines
         from pvfiblets.mappers.line_data import tube_surface
 
-        lines = self._within_cuts(tube_lines(self._drawn, self._colouring if colours else None, budget // SIDES))
+        shown = self._drawn if self._filtering is None else self._drawn.with_segments(self._filtering)
+        lines = self._within_cuts(tube_lines(shown, self._colouring if colours else None, budget // SIDES))
         return lines.to_polydata(segments=True) if segments else tube_surface(lines)
 
     def _made_of(self, data: Any) -> tuple[Any, Colouring]:

@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self
 
 from pvfiblets.plotting.coloured import ColouredActor
-from pvfiblets.plotting.fiblets.filter_state import unique_name
+from pvfiblets.plotting.filter_state import unique_name
 from pvfiblets.plotting.region_sources import as_region, slab
 
 if TYPE_CHECKING:

@@ -87,6 +87,29 @@ class ColouredActor(Settings, pv.Actor):
         """Return the numbers or colours of a choice of scalars; ``None`` for one colour."""
         raise NotImplementedError
 
+    def copy(self, deep: bool = True) -> Self:
+        """Return another actor that draws the same with the same looks, colours and place.
+
+        Parameters
+        ----------
+        deep : bool, default: True
+            Give the copy a property of its own; else both share one. A mapper serves one actor,
+            so each has its own in any case; the data are shared.
+
+        Returns
+        -------
+        actor
+            Of the same class, not in any plotter yet.
+        """
+        make: Any = type(self)
+        twin: Self = make(**self._made_with(), settings=self._kept(), theme=self._theme)
+        twin._be_like(self, deep)
+        return twin
+
+    def _made_with(self) -> dict[str, Any]:
+        """Return the arguments that an actor of the same data is made with, beside its settings."""
+        raise NotImplementedError
+
     def _be_like(self, other: Self, deep: bool) -> None:
         """Take over place, property and all settings that an actor is not made with."""
         self.prop = other.prop.copy() if deep else other.prop

@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-from pvfiblets.plotting.coloured import ColouredActor
 from pvfiblets.plotting.fiblets.opacities import Opacities, as_transfer, check_range
+from pvfiblets.plotting.selection import SelectedActor
 
 __all__ = ["LineActor"]
 
 
-class LineActor(ColouredActor):
+class LineActor(SelectedActor):
     """Actor of tubes or halos: its lines have opacities."""
-
-    def _lines_and_values(self) -> tuple[Any, Mapping[str, Any]]:
-        """Return what is drawn, with ``n_streamlines`` and ``n_points``, and arrays with a row for each line."""
-        raise NotImplementedError
 
     def _write_opacity(self, opacity: Any) -> None:
         if opacity is None or isinstance(opacity, float):
@@ -31,8 +26,8 @@ class LineActor(ColouredActor):
             self._fade_by(choice, Opacities() if choice is None else self._find_opacities(choice), "line")
 
     def _find_opacities(self, choice: Any) -> Opacities:
-        drawn, named = self._lines_and_values()
-        n_lines = drawn.n_streamlines
+        lines = self._subject.lines
+        n_lines, named = len(lines), lines.per_streamline
         if isinstance(choice, str) and choice not in named:
             return Opacities(transfer=as_transfer(choice, named))
         values = np.asarray(named[choice] if isinstance(choice, str) else choice)
@@ -44,7 +39,7 @@ class LineActor(ColouredActor):
         if len(values) == n_lines:
             check_range("opacity", values)
             return Opacities(streamlines=values.astype(np.float64))
-        if len(values) == drawn.n_points:
+        if len(values) == lines.n_points:
             raise ValueError(
                 f"opacity has {len(values)} numbers, one per point; here there is one per line: give {n_lines}, or "
                 "colours of points with an alpha as scalars, (n_points, 4) with rgb=True"

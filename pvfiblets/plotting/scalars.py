@@ -37,6 +37,7 @@ UNITS = {
 }
 COUNTED = "streamlines per pixel"
 UNNAMED = "Data"
+NAME_ONE = "Name one of these, or give an array"
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ import numpy as np
 from pvfiblets.tubes.curves import controls, derivative
 from pvfiblets.tubes.spline_tubes import NodeValues, SplineTubes
 
-__all__ = ["ARC_LENGTH", "RADIUS", "node_slopes", "tube_lengths", "with_arc_length", "with_radius"]
+__all__ = ["ARC_LENGTH", "RADIUS", "node_slopes", "segment_lengths", "tube_lengths", "with_arc_length", "with_radius"]
 
 RADIUS, ARC_LENGTH = "radius", "arc_length"
 
@@ -19,11 +19,11 @@ _GAUSS = ((0.5 - 0.15**0.5, 5 / 18), (0.5, 4 / 9), (0.5 + 0.15**0.5, 5 / 18))
 
 def tube_lengths(tubes: SplineTubes) -> np.ndarray:
     """Return the length of each tube's centre line."""
-    found: np.ndarray = np.bincount(tubes.tubes, _segment_lengths(tubes), tubes.n_tubes)
+    found: np.ndarray = np.bincount(tubes.tubes, segment_lengths(tubes), tubes.n_tubes)
     return found
 
 
-def _segment_lengths(tubes: SplineTubes) -> np.ndarray:
+def segment_lengths(tubes: SplineTubes) -> np.ndarray:
     """Lengths of centre lines, mm, by Gauss's rule of three points for each half of a segment."""
     lengths = np.zeros(tubes.n_segments)
     for first in range(0, tubes.n_segments, _BLOCK):
@@ -45,7 +45,7 @@ def with_arc_length(tubes: SplineTubes) -> SplineTubes:
     A node that is at two places at once, as one that tubes share or at which one closes, becomes a node for each.
     """
     order = np.argsort(tubes.tubes, kind="stable")
-    until = np.cumsum(_segment_lengths(tubes)[order])
+    until = np.cumsum(segment_lengths(tubes)[order])
     begin = np.concatenate([np.zeros(1), until])[: len(until)]
     first = np.searchsorted(tubes.tubes[order], tubes.tubes[order])
     places = np.empty((tubes.n_segments, 2))

@@ -10,7 +10,7 @@ belongs to is kept beside, for colours and picking only.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, TypeAlias, cast
 
@@ -291,6 +291,10 @@ class SplineTubes:
             chord = self.points[ends[:, 1]] - self.points[ends[:, 0]]
             result[first : first + _BLOCK] = chord_lengths(chord)
         return result
+
+    def with_segments(self, kept: npt.NDArray[np.bool_]) -> SplineTubes:
+        """Return the same nodes and tubes with some of the segments, ``(n_segments,)`` bool."""
+        return replace(self, segments=self.segments[kept], tubes=self.tubes[kept])
 
     def subset(self, tubes: npt.ArrayLike) -> SplineTubes:
         """Some tubes, in the order given, with the nodes they use and all values.

@@ -54,7 +54,7 @@ void main() {
     out_ink = float(hit.y >> 8u & 0xFFu) / 255.0;
 #if FEATURE_HALO_POINTS
     int other = item;
-    out_ids = uvec2(0u, packed_tangent(vec3(0.0), 0u));
+    out_ids = uvec2(hit.x, packed_tangent(vec3(0.0), 0u));
     out_position = vec2(float(item), 0.0);
 #else
     int other = item + 1, line = line_of(item);

@@ -13,6 +13,9 @@
 #if FEATURE_HALO_FILTER
 uniform samplerBuffer filter_texels;
 #endif
+#if FEATURE_HALO_SOME
+uniform usamplerBuffer mask_texels;      // not 0 of points that the caller does not want
+#endif
 
 void main() {
     int point = item_of_vertex();
@@ -26,6 +29,9 @@ void main() {
     varying_filter = vec4(0.0);
 #endif
     if (point >= halo_items) return;
+#if FEATURE_HALO_SOME
+    if (texelFetch(mask_texels, point).x != 0u) return;
+#endif
     vec3 here = local_place(point);
     vec4 at = window_of(here);
     if (!(at.w > 0.0 && at.z >= 0.0 && at.z <= at.w)) return;

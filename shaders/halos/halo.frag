@@ -28,6 +28,9 @@ layout(location = 0) out uvec2 shown;
 #include "frame/edges.glsl"
 layout(location = 1) out uint edges;
 #endif
+#if FEATURE_CLIP_REGION
+#include "regions/boundaries.glsl"
+#endif
 
 float displacement(float x) {
 #if FEATURE_HALO_BENT
@@ -59,6 +62,9 @@ void main() {
     over_w = (1.0 - s) * over_w + s * varying_depths.y;
     far += s * (varying_depths.w - far);
     t = s * varying_depths.y / over_w;
+#endif
+#if FEATURE_CLIP_REGION
+    if (!region_keeps(ivec2(gl_FragCoord.xy), 1.0 - far)) discard;       // of a halo its line counts
 #endif
     float w = 1.0 / over_w, m = 1.0, cue = 0.0;
 #if FEATURE_HALO_CUE

@@ -14,6 +14,11 @@
 uniform sampler2DArray region_boundaries;
 uniform int region_layers;
 
+// The boundary number k, from 0; 2 behind the last.
+float region_boundary(ivec2 pixel, int k) {
+    return k < 4 * region_layers ? texelFetch(region_boundaries, ivec3(pixel, k >> 2), 0)[k & 3] : 2.0;
+}
+
 bool region_keeps(ivec2 pixel, float z) {
     bool kept = false;
     for (int layer = 0; layer < region_layers; ++layer) {

@@ -21,6 +21,11 @@
 #endif
 
 uniform usampler2D hits;
+#if FEATURE_CLIP_REGION
+uniform sampler2D depths;
+#endif
+
+const uint REGION = 15u;     // of tubes/tube.frag
 
 layout(location = 0) out uint out_depth;
 layout(location = 1) out uint out_owner;
@@ -72,8 +77,16 @@ void main() {
     float t = (float(hit.y & 0xFFFFFFu) + 0.5) / 16777216.0;
     vec3 normal = -ray.d;
     float l = 0.0;
+#if FEATURE_CLIP_REGION
+    if (kind == 3u && hit.y >> 27u == REGION) {
+        // Of a region only its depth is known here: its face is lit as one that faces the viewer.
+        float far = texelFetch(depths, pixel, 0).x;
+        l = (far * ray.depth.y - ray.depth.x) / (ray.rise.x - far * ray.rise.y);
+        t = deepest(p0, p1, p2, ray.o + l * ray.d);
+    }
+#endif
 #if FEATURE_CLIP_PLANES
-    if (kind == 3u) {
+    if (kind == 3u && hit.y >> 27u != REGION) {
         vec3 plane = clip_planes[hit.y >> 27u].xyz;
         float height = clip_height_of(int(hit.y >> 27u), s.centre) / s.size + dot(plane, ray.o);
         l = -height / dot(plane, ray.d);

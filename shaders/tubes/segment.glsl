@@ -19,7 +19,7 @@
 #include "tubes/block.glsl"
 
 uniform usamplerBuffer node_texels;      // two of each node: place, radius; derivatives of both
-uniform usamplerBuffer segment_texels;   // nodes i and j, tube, flags: 1, 2: another segment goes on before i, after j
+uniform usamplerBuffer segment_texels;   // nodes i and j, tube, flags: 1, 2: another segment goes on before i, after j; 4: hidden
 
 struct Segment {
     vec3 centre;        // of the control points, local mm

@@ -17,8 +17,8 @@
 // Ends. A sphere closes each end of a half. Where another one goes on, an entry or exit there that is not also one of f' = 0
 // is inside the other: it is left to that, or looking along the inside of a tube would show a wall at each node.
 //
-// The ray is looked at from `first` on. What it is inside of there is cut open (kind CUT) where a plane of the caller's made
-// `first`; where the near plane did, its exit shows (EXIT): one is inside and sees the wall.
+// The ray is looked at from `first` on. What it is inside of there is cut open (kind CUT) where a plane or region of the
+// caller's made `first`; where the near plane did, its exit shows (EXIT): one is inside and sees the wall.
 
 // Needs tubes/functions.glsl before it.
 
@@ -143,7 +143,7 @@ void part_seen(float l, float t, float lo, float hi, float first, bool cut, floa
         if (l < best.l) best = Found(l, t, ENTRY);
         return;
     }
-#if FEATURE_CLIP_PLANES || FEATURE_TUBE_HOLLOW
+#if FEATURE_CLIP_PLANES || FEATURE_CLIP_REGION || FEATURE_TUBE_HOLLOW
     if (first >= best.l) return;
 #if !FEATURE_TUBE_HOLLOW
     if (!cut || l >= first) return;
@@ -189,7 +189,7 @@ void meet_half(vec4 k0, vec4 k1, vec4 k2, float first, bool cut, bvec2 joined, i
             if (l < best.l) best = Found(l, t, ENTRY);
             return;
         }
-#if !FEATURE_CLIP_PLANES && !FEATURE_TUBE_HOLLOW
+#if !FEATURE_CLIP_PLANES && !FEATURE_CLIP_REGION && !FEATURE_TUBE_HOLLOW
         return;
 #endif
     }

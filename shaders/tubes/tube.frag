@@ -4,7 +4,7 @@
 // Output
 //   shown.x      segment
 //   shown.y      bits 0-23: t of its half in 2^-24; 24: which half; 25, 26: kind of hit (tubes/solver.glsl);
-//                27-30: of a cut, the plane
+//                27-30: of a cut, the plane, or REGION
 
 #version 430
 
@@ -22,8 +22,22 @@
 #else
 #include "tubes/quick.glsl"
 #endif
+#if FEATURE_CLIP_REGION
+#include "regions/boundaries.glsl"
+#endif
 
 layout(location = 0) out uvec2 shown;
+
+const uint REGION = 15u;     // in place of a plane's number
+
+#if FEATURE_CLIP_REGION
+// Where on the ray a window depth is, within first..last.
+float place_of_depth(Ray ray, float z, float first, float last) {
+    float far = 1.0 - z, rise = ray.rise.x - far * ray.rise.y;
+    if (z <= 0.0 || z >= 1.0 || rise == 0.0) return z >= 1.0 ? last : first;
+    return clamp((far * ray.depth.y - ray.depth.x) / rise, first, last);
+}
+#endif
 
 void main() {
 #if FEATURE_TUBE_DISCARD
@@ -61,6 +75,22 @@ void main() {
     // One half after the other; but where the ray can meet only one, that one at once: neighbours then search together. The
     // loop is left at its end, as some processors go through all of a body that any of their lanes has entered.
     if (!in_first && !in_second) discard;
+#if FEATURE_CLIP_REGION
+    // What the region holds of the ray, stretch by stretch, until one shows something.
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    float begin = first, end = last;
+    bool plane_cut = cut;
+    uint plane = by;
+    for (int k = 0; best.kind == MISS; k += 2) {
+        float enter = region_boundary(pixel, k);
+        if (enter > 1.0) break;
+        first = place_of_depth(ray, enter, begin, end);
+        last = place_of_depth(ray, region_boundary(pixel, k + 1), begin, end);
+        if (first > last || last <= begin) continue;
+        cut = plane_cut || first > begin;
+        by = first > begin ? REGION : plane;
+        best.l = last;
+#endif
     bool again = in_first && in_second;
     bool second = !in_first;
     for (;;) {
@@ -72,6 +102,9 @@ void main() {
         again = false;
         second = true;
     }
+#if FEATURE_CLIP_REGION
+    }
+#endif
     if (best.kind == MISS) discard;
     float far = reversed_depth_along(ray, best.l);
     if (!(far > 0.0 && far <= 1.0)) discard;

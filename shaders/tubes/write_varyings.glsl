@@ -10,8 +10,11 @@
 uniform int drawn_sides;     // 1: segments clear of all planes of the caller's; 2: those that one may cut
 #endif
 
-// Whether a segment is for this round. Those beyond a plane are for none.
+const uint HIDDEN = 4u;      // flag of segments that the caller does not want (pvfiblets/engine/tubes/nodes.py)
+
+// Whether a segment is for this round. Hidden ones and those beyond a plane are for none.
 bool has_turn(Segment s) {
+    if ((s.ids.y & HIDDEN) != 0u) return false;
 #if FEATURE_CLIP_PLANES
     vec4 balls[4] = vec4[4](s.a1, s.a2, s.b2, s.b3);
     int side = 1;

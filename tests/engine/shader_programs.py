@@ -89,6 +89,7 @@ NEEDS: dict[str, tuple[tuple[str, ...], ...]] = {
     "TUBE_HOLLOW": (("TUBE_CHAIN",),),
     "HALO_TAPER": (("!HALO_POINTS",),),
     "HALO_CUT": (("!HALO_POINTS",),),
+    "HALO_SOME": (("HALO_POINTS",),),
 }
 
 
@@ -342,18 +343,19 @@ def _others():
         kinds[f"{name} {outputs}"] = Kind(
             {"vert": "screen/triangle.vert", "frag": f"{name}.frag"}, SCREEN, constants=constants
         )
-    screen("tubes/probe", needs={"CLIP_PLANES": (("TUBE_CHAIN",),)})
-    plain = {"CLIP_PLANES": ()}
+    screen("tubes/probe", needs={"CLIP_PLANES": (("TUBE_CHAIN",),), "CLIP_REGION": (("TUBE_CHAIN",),)})
+    plain = {"CLIP_PLANES": (), "CLIP_REGION": (("TUBE_CHAIN",),)}
     for shape, vertex in (("rectangles", "rectangles"), ("pulled boxes", "boxes"), ("boxes", "pass")):
         stages = {"vert": f"tubes/{vertex}.vert", "frag": "tubes/tube.frag"}
         if vertex == "pass":
             stages["geom"] = "tubes/boxes.geom"
         kinds[f"tubes {shape}"] = Kind(stages, SCREEN, always=("TUBES",), needs=plain)
-    screen("tubes/attributes", vertex="screen/near.vert", always=("TUBES",), needs=plain)
+    whole = {"CLIP_PLANES": (), "CLIP_REGION": ()}
+    screen("tubes/attributes", vertex="screen/near.vert", always=("TUBES",), needs=whole)
     for shape, points in (("strips", False), ("discs", True)):
         point = {"always": ("HALO_POINTS",)} if points else {"never": ("HALO_POINTS",)}
         stages = {"vert": f"halos/{shape}.vert", "frag": "halos/halo.frag"}
-        cut = {"CLIP_PLANES": () if points else (("HALO_CUT",),), "TUBES": ()}
+        cut = {"CLIP_PLANES": () if points else (("HALO_CUT",),), "TUBES": (), "CLIP_REGION": ()}
         never = (*point.get("never", ()), "TUBES")
         kinds[f"halos {shape}"] = Kind(stages, SCREEN, point.get("always", ()), never, cut, OF_HALOS)
     screen("halos/attributes", vertex="screen/near.vert", never=("TUBES",), constants=OF_HALOS)

@@ -281,6 +281,20 @@ CHANGED = {
     ),
     "spline tubes: solver": What(features="-TUBE_ILLINOIS, TUBE_NEWTON"),
     "spline tubes: planes": What(features="CLIP_PLANES, TUBE_CHAIN", buffers="clip_planes"),
+    "spline tubes: region": What(
+        ran="screen/triangle.vert, regions/combine.frag",
+        features="CLIP_REGION, TUBE_CHAIN",
+        buffers="region",
+        modules="engine.regions.ray_intervals, regions",
+    ),
+    "spline tubes: some": What(),
+    "halo lines: region": What(
+        ran="screen/triangle.vert, regions/combine.frag",
+        features="CLIP_REGION",
+        buffers="region",
+        modules="engine.regions.ray_intervals, regions",
+    ),
+    "halo lines: some": What(),
     "halo lines: tapered": What(features="HALO_TAPER"),
     "halo lines: cue": What(features="HALO_CUE"),
     "halo lines: bent": What(features="HALO_BENT"),
@@ -296,6 +310,12 @@ CHANGED = {
         features="HALO_POINTS",
         passes="-strips, discs",
         buffers="-masks, -offsets",
+    ),
+    "halo points: some": What(
+        ran="-halos/strips.vert, halos/discs.vert",
+        features="HALO_POINTS, HALO_SOME",
+        passes="-strips, discs",
+        buffers="-offsets",
     ),
     "volume: local mip": What(features="VOLUME_LOCAL"),
     "volume: surface": What(

@@ -57,7 +57,7 @@ def test_tubes_follow_what_their_actor_does_by_whichever_way_can(scene):
 
     actor.clip(pv.Sphere(radius=12, center=(0, 0, 0)))  # a region
     cut = front()
-    assert drawn_by(actor) is FibletMapper
+    assert drawn_by(actor) is TubeMapper
     assert at(first, 6.0, 11.0).any()
     assert not at(cut, 6.0, 11.0).any()
     actor.show_all()
@@ -66,7 +66,7 @@ def test_tubes_follow_what_their_actor_does_by_whichever_way_can(scene):
 
     actor.criterion("along", (0.0, 0.5))  # point by point
     half = front()
-    assert drawn_by(actor) is FibletMapper
+    assert drawn_by(actor) is TubeMapper
     assert not half[:, 130:].any()
     actor.show_all()
     assert (front() == first).all()
@@ -183,11 +183,11 @@ def test_an_outline_goes_around_what_is_drawn(scene, style):
 
 
 @pytest.mark.parametrize("spline", [True, False])
-def test_shading_of_the_actor_is_that_of_its_tubes(scene, spline):
+def test_shading_of_the_actor_is_that_of_its_tubes(scene, monkeypatch, spline):
     """The cue's default distances are those of all bars, of which the selected one is in the middle."""
     actor, front = scene
     if not spline:
-        actor.clip(pv.Box((-50, 50, -50, 50, -50, 50)), name="all")
+        monkeypatch.setattr(selection_overlay, "MOST_POINTS", 0)
     actor.position = (0.0, 30.0, 0.0)
     actor.orientation = (90.0, 0.0, 0.0)  # z away from the viewer
     actor.select([1])

@@ -159,10 +159,13 @@ NEARER_PART = Scope(
 together(FIBLET_DATA, MASKS, SAMPLED, PEELING, GATHERING, REGIONS, CULLING, FIBLET_ROUNDS)
 
 # Tubes.
-TUBES = Scope("tubes", {"hits": 10, "node_texels": 16, "segment_texels": 17, "value_texels": 18, "colour_texels": 19})
+TUBES = Scope(
+    "tubes",
+    {"hits": 10, "depths": 11, "node_texels": 16, "segment_texels": 17, "value_texels": 18, "colour_texels": 19},
+)
 TUBE_PROBE = Scope("the probe of tubes' solvers", {"cases": 16})
-together(TUBES, ITEMS, ITEMS_SHOWN)
-together(Scope("tubes' nodes", {k: v for k, v in TUBES.items() if k != "hits"}), CULLING, ITEMS)
+together(TUBES, ITEMS, ITEMS_SHOWN, REGIONS)
+together(Scope("tubes' nodes", {k: v for k, v in TUBES.items() if k.endswith("_texels")}), CULLING, ITEMS)
 
 # Halos.
 HALOS = Scope(
@@ -172,7 +175,7 @@ HALOS = Scope(
         "colour_texels": 17, "offset_texels": 18,
     },
 )  # fmt: skip
-together(HALOS, ITEMS, ITEMS_SHOWN)
+together(HALOS, ITEMS, ITEMS_SHOWN, REGIONS)
 together(Scope("halos' vertices", {k: v for k, v in HALOS.items() if k.endswith("_texels")}), CULLING, ITEMS)
 
 # Volumes.

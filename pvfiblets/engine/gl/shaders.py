@@ -104,6 +104,7 @@ FEATURES: dict[str, str] = {
     "HALO_CUE": "lines with halos that are narrower far away",
     "HALO_CUT": "lines with halos that planes or the edges of the picture cut",
     "HALO_BENT": "halos that do not fall back evenly",
+    "HALO_SOME": "some of the points with halos only",
     "HALO_FILTER": "lines and points with halos whose numbers lie between thresholds",
     "HALO_VALUES": "numbers along lines with halos",
     "HALO_COLOURS": "colours along lines with halos",

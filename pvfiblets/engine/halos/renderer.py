@@ -13,6 +13,8 @@ from ..gbuffer import EMPTY, GBuffer
 from ..gl.bindings import HALOS
 from ..gl.vertex_pulling import PulledShapes
 from ..hit_target import HitDrawable, HitTarget
+from ..lattice import TOP
+from ..regions.region_cut import RegionCut
 from ..view import Style, View
 from .uniform_blocks import CONSTANTS, ITEM_SHIFT, HaloBlocks
 from .vertices import Vertices
@@ -26,14 +28,7 @@ __all__ = ["HaloDrawStyle", "HaloRenderer"]
 
 @dataclass(frozen=True)
 class HaloDrawStyle(Style):
-    """How lines or points with halos become pixels.
-
-    Parameters
-    ----------
-    values : str, optional
-        Name of numbers or colours of the points, to write beside each pixel.
-    look : HaloStyle
-    """
+    """How lines or points with halos become pixels."""
 
     look: HaloStyle = field(kw_only=True)
 
@@ -59,34 +54,13 @@ class HaloDrawStyle(Style):
 
 
 class HaloRenderer(HitDrawable[HaloDrawStyle]):
-    """Draws one set of lines or points with halos; a view's region is not looked at.
+    """Draws one set of lines or points with halos.
 
     In its `GBuffer` ``owner`` holds segments, each by its first point, or points, and nothing where a halo shows;
-    ``ids`` lines and tangents; ``position`` the point's index within its line plus the fraction along the segment, and
-    the value; ``across`` the ink, 1 on a line, 0 on a halo. `explain` also says ``points_total``, ``lines_total`` (0 of
-    points), ``primitives`` (triangles without culling) and ``culling`` (as the last picture was drawn).
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-        OpenGL 3.3 or later.
-    drawn : HaloLines or HaloPoints
-        Copied to the GPU here.
-    culling : {'two-phase', None}
-        How items behind others are found out, where OpenGL 4.3 and many of them are there for it
-        (:mod:`pvfiblets.engine.culling.two_phase_items`). It changes no pixel.
-
-    Attributes
-    ----------
-    pipeline : str
-        ``'strips'`` of lines, ``'discs'`` of points.
-
-    Raises
-    ------
-    EngineError
-        If memory does not suffice or numbers are too large; nothing stays behind on the GPU.
-    ValueError
-        If a choice is none.
+    ``ids`` lines, or points, and tangents; ``position`` the point's index within its line plus the fraction along the
+    segment, and the value; ``across`` the ink, 1 on a line, 0 on a halo. `explain` also says ``points_total``,
+    ``lines_total`` (0 of points), ``primitives`` (triangles without culling) and ``culling`` (as the last picture was
+    drawn).
 
     Notes
     -----
@@ -109,6 +83,8 @@ class HaloRenderer(HitDrawable[HaloDrawStyle]):
         self._kind = ["HALO_POINTS"] if points else []
         with self._making():
             self._vertices = self._keep(Vertices(ctx, self._gl, drawn))
+            place = self._vertices.origin, self._vertices.scale, TOP
+            self._region = self._keep(RegionCut(ctx, self._gl, self._programs, place))
             self._blocks = self._keep(HaloBlocks(ctx, self._vertices.origin, self._vertices.scale, drawn.bounds))
             self._n = self._vertices.n_items
             # Lists have whole items; entries beyond the last quad draw nothing.
@@ -127,9 +103,10 @@ class HaloRenderer(HitDrawable[HaloDrawStyle]):
             look = replace(look, smooth=False)
         reads = vertices.show_values(style.values)
         filtered = vertices.show_filter(look.filter_by)
-        vertices.show_mask(look.n_tapered, look.t_tapered)
+        vertices.show_mask(look.n_tapered, look.t_tapered, self.filtering)
         target = self._hit_target(view.size, coloured=reads == "HALO_COLOURS", edges=style.edges)
         reference = self._drawn.value_reference(look.filter_by)
+        region = self._region.update(view)
         planes, beside = self._blocks.write(view, look, self._n, style.drawn_width, reference)
         wanted = {
             "HALO_TAPER": look.n_tapered > 0 and not self._kind,
@@ -137,7 +114,9 @@ class HaloRenderer(HitDrawable[HaloDrawStyle]):
             "HALO_FILTER": filtered,
             "HALO_BENT": look.displacement != "linear",
             "HALO_CUT": (beside or planes) and not self._kind,
+            "HALO_SOME": bool(self._kind) and self.filtering is not None,
             "CLIP_PLANES": planes,
+            "CLIP_REGION": bool(region),
             "EDGES": style.edges,
         }
         features = [*self._kind, *(name for name, on in wanted.items() if on)]

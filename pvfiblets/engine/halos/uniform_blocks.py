@@ -13,7 +13,7 @@ from ...halos.style import DISPLACEMENTS, TABLE_SIZE, HaloStyle
 from ...support.value_reference import relative
 from ..clipping import CLIP_PLANES_BLOCK, clip_planes_block
 from ..frame import FRAME_BLOCK, frame_block, local_frame
-from ..gl.bindings import BLOCKS
+from ..gl.block_buffers import BlockBuffers
 from ..gl.uniform_struct import Field, UniformStruct
 from ..lattice import TOP
 from ..view import Style, View
@@ -61,40 +61,23 @@ HALOS_BLOCK = UniformStruct(
 Array = npt.NDArray[np.float64]
 
 
-class HaloBlocks:
-    """The blocks of one set.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    origin, scale : numpy.ndarray
-        (3,) float64, of the points' lattice.
-    bounds : sequence of float
-        Of the points, (xmin, xmax, ymin, ymax, zmin, zmax) mm.
-
-    Attributes
-    ----------
-    buffers : dict of str to moderngl.Buffer
-    """
+class HaloBlocks(BlockBuffers):
+    """The blocks of one set; `origin` and `scale` are those of the points' lattice."""
 
     def __init__(self, ctx: moderngl.Context, origin: Array, scale: Array, bounds: tuple[float, ...]) -> None:
-        self._ctx, self._place = ctx, (origin, scale, TOP)
+        super().__init__(ctx)
+        self._place = origin, scale, TOP
         low, high = np.array(bounds).reshape(3, 2).T
         self._corners = np.array([np.where(pick, high, low) for pick in np.ndindex(2, 2, 2)])
-        self.buffers: dict[str, moderngl.Buffer] = {}
 
     def write(
         self, view: View, look: HaloStyle, n_items: int, drawn_width: float, reference: float
     ) -> tuple[bool, bool]:
         """Bring all up to date and bind them."""
-        self._put("frame", FRAME_BLOCK, frame_block(view, Style(), *self._place)[0])
-        self._put("halos", HALOS_BLOCK, self._block(view, look, n_items, drawn_width, reference))
+        self.put("frame", FRAME_BLOCK, frame_block(view, Style(), *self._place)[0])
+        self.put("halos", HALOS_BLOCK, self._block(view, look, n_items, drawn_width, reference))
         planes = clip_planes_block(view, 0.0, *self._place, 0.0)
-        if planes is not None:
-            self._put("clip_planes", CLIP_PLANES_BLOCK, planes)
-        elif "clip_planes" in self.buffers:
-            self.buffers.pop("clip_planes").release()
-        return planes is not None, self._beside(view)
+        return self.put("clip_planes", CLIP_PLANES_BLOCK, planes), self._beside(view)
 
     def _beside(self, view: View) -> bool:
         x, y, z, w = view.model_view_projection @ np.column_stack([self._corners, np.ones(8)]).T
@@ -158,18 +141,6 @@ class HaloBlocks:
         if strength == 0.0 or not farthest > nearest:
             return (0.0, 0.0, 0.0, 0.0)
         return (*(strength / (farthest - nearest) * axis), -strength * nearest / (farthest - nearest))
-
-    def _put(self, name: str, struct: UniformStruct, data: bytes) -> None:
-        if name not in self.buffers:
-            self.buffers[name] = self._ctx.buffer(reserve=struct.nbytes)
-        self.buffers[name].write(data)
-        self.buffers[name].bind_to_uniform_block(BLOCKS[struct.name])
-
-    def release(self) -> None:
-        """Give the buffers back; twice is harmless."""
-        for buffer in self.buffers.values():
-            buffer.release()
-        self.buffers.clear()
 
 
 def _axis(z: Array, w: Array) -> tuple[Array, float, bool]:

@@ -17,7 +17,8 @@ from ...halos.geometry import HaloLines, HaloPoints
 from ...support.value_reference import relative
 from ..errors import EngineError
 from ..gl.bindings import HALOS
-from ..gl.moderngl_extras import TEXEL_FORMATS, BufferTexture, GLExtras
+from ..gl.moderngl_extras import GLExtras
+from ..gl.texel_buffers import LARGEST, TexelBuffers, as_singles
 from ..lattice import lattice, places
 
 __all__ = ["LAST", "MOST", "Vertices", "mask_places"]
@@ -26,41 +27,22 @@ __all__ = ["LAST", "MOST", "Vertices", "mask_places"]
 LAST = 65535
 """Place on the mask of a line's last vertex, and of no other."""
 
-_LARGEST = float(np.finfo(np.float32).max)
-
-MOST = _LARGEST / 2.0
+MOST = LARGEST / 2.0
 """Numbers that filter, and thresholds, count as no larger, infinity neither: what lies between two is a number then."""
 
 
-class Vertices:
+class Vertices(TexelBuffers):
     """What shaders read of lines or points.
 
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    gl : GLExtras
-    drawn : HaloLines or HaloPoints
-
-    Attributes
-    ----------
-    origin, scale : numpy.ndarray
-        (3,) float64: mm of place 0, and mm per integer, the same thrice.
-    n_items : int
-        Segments, counted from every vertex to the next whether they are on one line or not; or points.
-    buffers : dict of str to moderngl.Buffer
-
-    Raises
-    ------
-    EngineError
-        If there are more vertices than this OpenGL reads from one buffer, memory does not suffice, or the extent is
-        too large for float32.
+    `origin` and `scale` are mm of place 0 and mm per integer, (3,) float64; `n_items` are segments, counted from every
+    vertex to the next whether they are on one line or not, or points.
     """
 
     def __init__(self, ctx: moderngl.Context, gl: GLExtras, drawn: HaloLines | HaloPoints) -> None:
-        self._ctx, self._gl, self._drawn = ctx, gl, drawn
-        self._textures: dict[str, BufferTexture] = {}
+        super().__init__(ctx, gl, HALOS)
+        self._drawn = drawn
         self._holds: dict[str, object] = {}
-        self.buffers: dict[str, moderngl.Buffer] = {}
+        self._filtering: npt.NDArray[np.bool_] | None = None
         self.origin, self.scale = lattice(drawn.points, "points with halos")
         self.n_items = max(drawn.n_points - 1, 0) if isinstance(drawn, HaloLines) else drawn.n_points
         if not self.n_items:
@@ -73,14 +55,20 @@ class Vertices:
             self.release()
             raise
 
-    def show_mask(self, n_tapered: int, t_tapered: float) -> None:
-        """Have the places of all vertices on their lines' masks, as the ends shall taper."""
+    def show_mask(self, n_tapered: int, t_tapered: float, filtering: npt.NDArray[np.bool_] | None = None) -> None:
+        """Have the places of vertices on the masks of lines, whose ends taper; of points, which are hidden."""
         drawn = self._drawn
-        if not isinstance(drawn, HaloLines) or not self.n_items:
-            return
         key = n_tapered, t_tapered
-        if self._holds.get("mask_texels") != key:
-            self._put("mask_texels", "r16ui", mask_places(drawn.offsets, n_tapered, t_tapered), key)
+        if not self.n_items or (filtering is self._filtering and self._holds.get("mask_texels") == key):
+            return
+        self._filtering = filtering
+        if isinstance(drawn, HaloLines):
+            offsets = drawn.offsets if filtering is None else drawn.pieces(filtering)
+            self._put("mask_texels", "r16ui", mask_places(offsets, n_tapered, t_tapered), key)
+        elif filtering is None:
+            self.drop("mask_texels")
+        else:
+            self._put("mask_texels", "r16ui", np.where(filtering, 0, LAST).astype("<u2"), key)
 
     def show_filter(self, name: str | None) -> bool:
         """Have the numbers that filter, and no others; say whether there are."""
@@ -106,47 +94,23 @@ class Vertices:
 
     def _show(self, sampler: str, values: npt.NDArray[Any] | None, name: Any, most: float = np.inf) -> bool:
         if values is None:
-            self._drop(sampler)
+            self.drop(sampler)
         elif self.n_items and self._holds.get(sampler) is not values:
             if values.ndim == 2:
                 self._put(sampler, "r32ui", _packed(values), values)
             else:
                 reference = self._drawn.value_reference(name)
-                self._put(sampler, "r32f", _singles(values, reference, most), values)
+                self._put(sampler, "r32f", as_singles(relative(values, reference), most), values)
         return values is not None
 
     def _put(self, sampler: str, texel: str, data: npt.NDArray[Any], holds: object) -> None:
-        self._drop(sampler)
-        limit = self._gl.get_integer("GL_MAX_TEXTURE_BUFFER_SIZE") * TEXEL_FORMATS[texel][1]
-        n = self._drawn.n_points
-        if data.nbytes > limit:
-            raise EngineError(
-                f"{n} points with halos take {data.nbytes} bytes, more than the {limit} that this OpenGL reads from "
-                "one buffer; draw them as several actors"
-            )
-        name = sampler.removesuffix("_texels") + "s"
-        try:
-            self.buffers[name] = self._ctx.buffer(np.ascontiguousarray(data))
-        except moderngl.Error as error:
-            raise EngineError(f"no memory for {n} points with halos ({data.nbytes} bytes)") from error
-        self._textures[sampler] = self._gl.texture_buffer(self.buffers[name], texel)
+        self.put(sampler, texel, data, f"{self._drawn.n_points} points with halos")
         self._holds[sampler] = holds
 
-    def _drop(self, sampler: str) -> None:
-        if sampler in self._textures:
-            self._textures.pop(sampler).release()
-            self.buffers.pop(sampler.removesuffix("_texels") + "s").release()
-            self._holds.pop(sampler)
-
-    def bind(self) -> None:
-        """Bind all to their units."""
-        for sampler, texture in self._textures.items():
-            texture.bind(HALOS[sampler])
-
-    def release(self) -> None:
-        """Give everything back; twice is harmless."""
-        for sampler in list(self._textures):
-            self._drop(sampler)
+    def drop(self, sampler: str) -> None:
+        """Give an array back, if there is one."""
+        super().drop(sampler)
+        self._holds.pop(sampler, None)
 
 
 def mask_places(offsets: npt.NDArray[np.int64], n_tapered: int, t_tapered: float) -> npt.NDArray[np.uint16]:
@@ -176,14 +140,6 @@ def mask_places(offsets: npt.NDArray[np.int64], n_tapered: int, t_tapered: float
     places[from_end > 0.0] = np.clip(places[from_end > 0.0], 1, LAST - 1)
     places[offsets[1:][filled] - 1] = LAST
     return places
-
-
-def _singles(numbers: npt.NDArray[Any], reference: float, most: float) -> npt.NDArray[np.float32]:
-    """Less the reference as float32, none beyond +-most; what float32 does not hold becomes its largest."""
-    if numbers.dtype == np.float32 and most == np.inf and not reference:
-        return np.asarray(numbers, "<f4")
-    wide = np.clip(relative(numbers, reference), -most, most)
-    return np.where(np.isfinite(wide), np.clip(wide, -_LARGEST, _LARGEST), wide).astype("<f4")
 
 
 def _packed(colours: npt.NDArray[np.float32]) -> npt.NDArray[np.uint32]:

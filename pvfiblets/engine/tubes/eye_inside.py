@@ -25,19 +25,7 @@ Array = npt.NDArray[np.float64]
 
 
 class EyeInsideTest:
-    """The boxes of one set's segments.
-
-    Parameters
-    ----------
-    tubes : SplineTubes
-    middle : float
-        Share of a derivative between control points.
-
-    Attributes
-    ----------
-    reach : float
-        Mm that tubes lie outside the box of the nodes at most.
-    """
+    """The boxes of one set's segments; tubes lie `reach` mm outside the box of the nodes at most."""
 
     def __init__(self, tubes: SplineTubes, middle: float) -> None:
         self._tubes, self._middle = tubes, middle

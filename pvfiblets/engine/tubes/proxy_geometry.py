@@ -26,21 +26,7 @@ _DEPTH_CLAMP = 0x864F
 
 
 class ProxyGeometry:
-    """Draws the segments of one set.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    programs : Programs
-    kind : str
-        Of :data:`pvfiblets.engine.tubes.options.SILHOUETTES`.
-    n_segments : int
-
-    Attributes
-    ----------
-    primitives : int
-        Triangles of one picture.
-    """
+    """Draws the segments of one set; `primitives` are triangles of one picture."""
 
     def __init__(self, ctx: moderngl.Context, programs: Programs, kind: str, n_segments: int) -> None:
         self._ctx, self._programs, self._n = ctx, programs, n_segments

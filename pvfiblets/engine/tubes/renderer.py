@@ -12,6 +12,7 @@ from ..gbuffer import GBuffer
 from ..gl.bindings import TUBES
 from ..hit_target import HitDrawable, HitTarget
 from ..lattice import TOP
+from ..regions.region_cut import RegionCut
 from ..view import View
 from .eye_inside import EyeInsideTest
 from .nodes import Nodes
@@ -26,47 +27,15 @@ __all__ = ["TubeRenderer"]
 
 
 class TubeRenderer(HitDrawable[TubeStyle]):
-    """Draws one set of spline tubes; a view's region is not looked at.
+    """Draws one set of spline tubes.
 
     In its `GBuffer` ``owner`` holds segments, ``ids`` tubes and tangents, ``position`` the parameter in 0..1 of the
     segment and the value, ``across`` normals. `explain` also says ``tubes_total``, ``segments_total``, ``primitives``
     (triangles without culling), ``culling``, ``solver`` and ``iterations``.
 
-    Parameters
-    ----------
-    ctx : moderngl.Context
-        OpenGL 3.3 or later.
-    tubes : SplineTubes
-        Copied to the GPU here.
-    silhouettes : str
-        How segments cover pixels, of :data:`.SILHOUETTES`; ``'auto'`` takes the fastest.
-    solver : str
-        How roots are found, of :data:`.SOLVERS`; ``'auto'`` takes the fastest that is exact.
-    iterations : int, optional
-        Steps of one search for a root; the solver's own number by default.
-    culling : {'two-phase', None}
-        How segments behind others are found out, where rectangles, OpenGL 4.3 and many segments are there for
-        it (:mod:`pvfiblets.engine.culling.two_phase_items`). It changes no pixel.
-    middle : float
-        Share c of a derivative between control points (``shaders/tubes/segment.glsl``); the paper has 1/3.
-    discard : bool
-        Throw every fragment away at once: what is left is the cost of the silhouettes, the hatched bars of the paper's
-        figure 5.
-
-    Attributes
-    ----------
-    pipeline : str
-        The silhouettes in use.
-    solver : str
-        The one in use.
-    iterations : int
-
-    Raises
-    ------
-    EngineError
-        If memory does not suffice or numbers are too large; nothing stays behind on the GPU.
-    ValueError
-        If a choice is none.
+    `middle` is the share c of a derivative between control points (``shaders/tubes/segment.glsl``); the paper has 1/3.
+    With `discard` every fragment goes at once: what is left is the cost of the silhouettes, the hatched bars of the
+    paper's figure 5.
     """
 
     STYLE = TubeStyle
@@ -93,6 +62,7 @@ class TubeRenderer(HitDrawable[TubeStyle]):
         with self._making():
             self._nodes = self._keep(Nodes(ctx, self._gl, tubes))
             place = self._nodes.origin, self._nodes.scale, TOP
+            self._region = self._keep(RegionCut(ctx, self._gl, self._programs, place))
             self._blocks = self._keep(TubeBlocks(ctx, place, tubes.scaled))
             self._silhouettes = self._keep(ProxyGeometry(ctx, self._programs, self.pipeline, tubes.n_segments))
             listable = tubes.n_segments if self.pipeline == "rectangles" else 0
@@ -100,6 +70,7 @@ class TubeRenderer(HitDrawable[TubeStyle]):
         self._inside = EyeInsideTest(tubes, self._middle)
 
     def _draw(self, view: View, style: TubeStyle, outside: moderngl.Texture | None) -> GBuffer:  # noqa: ARG002
+        self._nodes.filter(self.filtering)
         reads = self._nodes.show(self._attribute(style))
         target = self._hit_target(view.size, coloured=reads == "TUBE_COLOURS", edges=style.edges)
         cut = self._blocks.write(
@@ -112,8 +83,9 @@ class TubeRenderer(HitDrawable[TubeStyle]):
             n_segments=self._tubes.n_segments,
         )
         hollow = self._inside.touched(view, style.drawn_width)
-        common = ["TUBES", *(["CLIP_PLANES"] if cut else [])]
-        rounds = self._rounds(common, cut=cut, hollow=hollow)
+        region = self._region.update(view)
+        common = ["TUBES", *(["CLIP_PLANES"] if cut else []), *region]
+        rounds = self._rounds(common, cut=cut, whole=not (hollow or region), hollow=hollow)
         self._nodes.bind()
         self._draw_hits(
             target,
@@ -125,6 +97,8 @@ class TubeRenderer(HitDrawable[TubeStyle]):
         )
         features = [*common, *([reads] if reads else []), *(["EDGES"] if style.edges else [])]
         hits = [("hits", target.hits, TUBES["hits"])]
+        if region:
+            hits.append(("depths", target.depths, TUBES["depths"]))
         self._find_attributes(target, "tubes/attributes.frag", features, self._silhouettes.whole, hits)
         return target.buffer
 
@@ -142,7 +116,7 @@ class TubeRenderer(HitDrawable[TubeStyle]):
                 self._listing.bind(program)
                 self._silhouettes.draw_listed(program, commands)
 
-    def _rounds(self, common: list[str], *, cut: bool, hollow: bool) -> list[tuple[list[str], int]]:
+    def _rounds(self, common: list[str], *, cut: bool, whole: bool, hollow: bool) -> list[tuple[list[str], int]]:
         """Return features of each round, and which side of the planes it draws.
 
         What nothing cuts, seen from outside, is met in one loop. The rest needs where rays leave as well, and so the
@@ -154,7 +128,7 @@ class TubeRenderer(HitDrawable[TubeStyle]):
         chained = [*common, "TUBE_CHAIN"]
         if hollow:
             return [([*chained, "TUBE_HOLLOW"], 3)]
-        if solving is None:
+        if solving is None or not whole:
             return [(chained, 3)]
         return [(common, 1), (chained, 2)] if cut else [(common, 3)]
 

@@ -27,27 +27,7 @@ _ROW = 1024
 
 
 class SolverProbe:
-    """Meets rays with halves on the GPU, by the same code as the picture.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    solver : str
-        Of :data:`.SOLVERS`.
-    iterations : int, optional
-        Of one search; the solver's own by default.
-    chain : bool
-        By the chain of derivatives, as the paper's bisection always is.
-    hollow : bool
-        Look for exits where a ray begins inside.
-    clock : callable
-        Clock of drawing, in seconds.
-
-    Attributes
-    ----------
-    seconds : float
-        That the last call's drawing took.
-    """
+    """Meets rays with halves on the GPU, by the same code as the picture; `seconds` are of the last call's drawing."""
 
     def __init__(
         self,

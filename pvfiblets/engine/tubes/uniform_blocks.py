@@ -12,7 +12,7 @@ import numpy.typing as npt
 from ..clipping import CLIP_PLANES_BLOCK, clip_planes_block
 from ..fiblets.line_tubes import TUBES_BLOCK, tubes_block
 from ..frame import FRAME_BLOCK, frame_block, local_frame
-from ..gl.bindings import BLOCKS
+from ..gl.block_buffers import BlockBuffers
 from ..gl.uniform_struct import Field, UniformStruct
 from ..view import Style, View
 
@@ -32,25 +32,12 @@ SPLINES_BLOCK = UniformStruct(
 Array = npt.NDArray[np.float64]
 
 
-class TubeBlocks:
-    """The blocks of one set.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    place : tuple
-        Origin (3,), scale (3,) and largest integer of the nodes' lattice.
-    scaled : bool
-        Whether derivatives are by length.
-
-    Attributes
-    ----------
-    buffers : dict of str to moderngl.Buffer
-    """
+class TubeBlocks(BlockBuffers):
+    """The blocks of one set: `place` is origin, scale and largest integer of the nodes' lattice."""
 
     def __init__(self, ctx: moderngl.Context, place: tuple[Array, Array, int], scaled: bool) -> None:
-        self._ctx, self._place, self._scaled = ctx, place, scaled
-        self.buffers: dict[str, moderngl.Buffer] = {}
+        super().__init__(ctx)
+        self._place, self._scaled = place, scaled
 
     def write(
         self,
@@ -77,16 +64,10 @@ class TubeBlocks:
             tube_segments=n_segments,
             tube_window_rows=self._rows(view),
         )
-        self._put("frame", FRAME_BLOCK, frame_block(view, Style(), *self._place)[0])
-        self._put("tubes", TUBES_BLOCK, tubes)
-        self._put("splines", SPLINES_BLOCK, splines)
-        planes = clip_planes_block(view, 0.0, *self._place, reach)
-        if planes is None:
-            if "clip_planes" in self.buffers:
-                self.buffers.pop("clip_planes").release()
-            return False
-        self._put("clip_planes", CLIP_PLANES_BLOCK, planes)
-        return True
+        self.put("frame", FRAME_BLOCK, frame_block(view, Style(), *self._place)[0])
+        self.put("tubes", TUBES_BLOCK, tubes)
+        self.put("splines", SPLINES_BLOCK, splines)
+        return self.put("clip_planes", CLIP_PLANES_BLOCK, clip_planes_block(view, 0.0, *self._place, reach))
 
     def _rows(self, view: View) -> Array:
         """(8, 4): from local mm to X, Y, W of the window and to W - Z, each in two parts."""
@@ -95,15 +76,3 @@ class TubeBlocks:
         rows = np.array([width / 2 * (x + w), height / 2 * (y + w), w, (w - z) / 2])
         high = rows.astype(np.float32).astype(np.float64)
         return np.stack([high, rows - high], axis=1).reshape(8, 4)
-
-    def _put(self, name: str, struct: UniformStruct, data: bytes) -> None:
-        if name not in self.buffers:
-            self.buffers[name] = self._ctx.buffer(reserve=struct.nbytes)
-        self.buffers[name].write(data)
-        self.buffers[name].bind_to_uniform_block(BLOCKS[struct.name])
-
-    def release(self) -> None:
-        """Give the buffers back; twice is harmless."""
-        for buffer in self.buffers.values():
-            buffer.release()
-        self.buffers.clear()

@@ -13,10 +13,10 @@ from ..drawable import Drawable
 from ..gbuffer import GBuffer
 from ..gl.bindings import BLOCKS, VOLUME_COARSE, VOLUMES
 from ..gl.work_limits import WorkLimits
+from ..regions.region_cut import RegionCut
 from ..view import Style, View
 from .interpolation import interpolates_finely
 from .nodes import NodeList
-from .ray_parts import VolumeRegionIntervals
 from .targets import RayTarget
 from .textures import ColourTexture, VolumeTexture
 from .transfer_textures import TransferTextures
@@ -28,6 +28,9 @@ if TYPE_CHECKING:
     from .shading import Shading
 
 __all__ = ["VolumeRenderer", "VolumeStyle"]
+
+LATTICE = 1 << 16
+"""Steps over the volume's bounds, of which one point is the origin of local coordinates where a region cuts."""
 
 
 _OF_MODE = {
@@ -128,7 +131,9 @@ class VolumeRenderer(Drawable[VolumeStyle]):
             self._nodes = self._keep(NodeList(ctx, self._gl, volume))
             self._tables = self._keep(TransferTextures(ctx, volume))
             self._work = WorkLimits.of(ctx)
-            self._cuts = self._keep(VolumeRegionIntervals(ctx, self._gl, self._programs, volume))
+            bounds = np.array(volume.bounds).reshape(3, 2)
+            place = bounds[:, 0], np.ptp(bounds, axis=1) / LATTICE, LATTICE
+            self._cuts = self._keep(RegionCut(ctx, self._gl, self._programs, place))
 
     def _draw(self, view: View, style: VolumeStyle, outside: moderngl.Texture | None) -> GBuffer:
         if self._offset:

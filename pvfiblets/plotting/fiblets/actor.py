@@ -18,7 +18,7 @@ from pvfiblets.mappers.line_tubes import Tubes, TubeShading
 from pvfiblets.mappers.shading import Ink
 from pvfiblets.plotting.coloured import added_up
 from pvfiblets.plotting.colours import limits
-from pvfiblets.plotting.fiblets.filter_state import Choices
+from pvfiblets.plotting.fiblets.filtering import FibletSubject
 from pvfiblets.plotting.fiblets.looks import PLAIN, look_of, settings_of
 from pvfiblets.plotting.fiblets.opacities import Opacities, find_opacities
 from pvfiblets.plotting.fiblets.pick_result import Picked, checked_box, everything, visible
@@ -26,6 +26,7 @@ from pvfiblets.plotting.fiblets.scalars import find_fiblet_scalars
 from pvfiblets.plotting.fiblets.selection import SelectableActor
 from pvfiblets.plotting.fiblets.settings import ALL, STYLES, THINNEST, TONES, WIDEST, FibletSettings
 from pvfiblets.plotting.fiblets.sources import as_fiblets, with_point_values
+from pvfiblets.plotting.filter_state import Choices
 from pvfiblets.plotting.linked_property import own_writes
 from pvfiblets.plotting.mapper_words import PlottedLines
 from pvfiblets.plotting.scalars import Scalars, refuse_numbers
@@ -103,6 +104,7 @@ class FibletActor(FibletSettings, SelectableActor):
         self._transparency: str | int | None = None  # until it is set
         self._choices = Choices()
         mapper = PlottedMapper(fiblets, options=EngineOptions(**given.at(OPTIONS)), progress=progress)
+        self._subject = FibletSubject(fiblets, mapper)
         super().__init__(mapper, scalars, given, name=name, theme=theme)
         self.line_width = self._theme.line_width if given["line_width"] is None else given["line_width"]
         self._recolour()
@@ -128,12 +130,9 @@ class FibletActor(FibletSettings, SelectableActor):
     @fiblets.setter
     def fiblets(self, fiblets: FibletSet) -> None:
         scalars = self._find(fiblets, self._choice)
-        choices = self._choices.made_for(fiblets, self._fiblets)
-        self._mapper.filtering = None  # its bits are of the fiblets before
-        self._draw(fiblets)
-        self._show(scalars)
-        self._choices = choices
-        self._choose()
+        with self._choosing_from(FibletSubject(fiblets, self._mapper)):
+            self._draw(fiblets)
+            self._show(scalars)
 
     def update(self, source: Any, **options: Any) -> None:
         """Draw other streamlines from the next render on, as they move or grow; settings stay.
@@ -152,23 +151,8 @@ class FibletActor(FibletSettings, SelectableActor):
         """
         self.fiblets = as_fiblets(source, scalars=self._choice, rgb=self._rgb, **options)[0]
 
-    def copy(self, deep: bool = True) -> FibletActor:
-        """Return another actor that draws the same fiblets with the same colours and place.
-
-        Parameters
-        ----------
-        deep : bool, default: True
-            Give the copy a property of its own; else both share one. A mapper serves one actor,
-            so each has its own in any case; the compressed data is shared.
-
-        Returns
-        -------
-        FibletActor
-            Not in any plotter yet.
-        """
-        twin = FibletActor(self._fiblets, scalars=self._choice, settings=self._kept(), theme=self._theme)
-        twin._be_like(self, deep)
-        return twin
+    def _made_with(self) -> dict[str, Any]:
+        return {"fiblets": self._fiblets, "scalars": self._choice}
 
     def explain(self) -> dict[str, Any]:
         """Return the active features of this actor and their cost, over all windows that show it.
@@ -199,8 +183,7 @@ class FibletActor(FibletSettings, SelectableActor):
             "share": self.share,
             "look": self.look,
             "colours": self._explain_colours(),
-            **self._choices.explain(self._fiblets),
-            "clips": list(self._clips),
+            **self._explain_choices(),
         }
 
     def pick_at(self, x: int, y: int) -> tuple[int, float] | None:
@@ -523,8 +506,8 @@ class FibletActor(FibletSettings, SelectableActor):
         if fiblets.n_streamlines != self._fiblets.n_streamlines:
             self._mapper.colouring = Colouring()
         self._mapper.set_fiblets(fiblets)
-        self._fiblets = fiblets
-        self._reselect()
+        self._fiblets, self._subject = fiblets, FibletSubject(fiblets, self._mapper)
+        self._reselect(fiblets.n_streamlines)
 
     def _find(self, fiblets: FibletSet, choice: str | np.ndarray | VolumeSource | None) -> Scalars | None:
         if choice is None and self._settings.color is not None:

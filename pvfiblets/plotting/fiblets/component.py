@@ -17,9 +17,9 @@ import pyvista as pv
 from pvfiblets.plotting.actor_registry import ActorRegistry
 from pvfiblets.plotting.call_signature import plotter_method
 from pvfiblets.plotting.components import register
-from pvfiblets.plotting.fiblets.filter_state import unique_name
 from pvfiblets.plotting.fiblets.picking import MousePicking
 from pvfiblets.plotting.fiblets.settings import FibletSettings
+from pvfiblets.plotting.filter_state import unique_name
 from pvfiblets.plotting.setting_places import OPTIONS
 from pvfiblets.plotting.settings import Given, Setting
 from pvfiblets.plotting.unsupported_arguments import why_not

@@ -171,7 +171,7 @@ def missing_message(fiblets: FibletSet | Streamlines, name: str) -> str:
     )
 
 
-def warn_if_apart(fiblets: FibletSet, image: Image, effect: str, *, stacklevel: int) -> None:
+def warn_if_apart(fiblets: FibletSet | Streamlines, image: Image, effect: str, *, stacklevel: int) -> None:
     """Warn where no point lies in an image, and say what a picture shows then."""
     if meets_image(fiblets, image):
         return

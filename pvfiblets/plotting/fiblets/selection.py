@@ -2,64 +2,29 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pyvista as pv
 
-from pvfiblets.mappers.highlight import Highlight
 from pvfiblets.mappers.picking import Layer
 from pvfiblets.plotting.coloured import added_up
-from pvfiblets.plotting.fiblets.filtering import FilteredActor
-from pvfiblets.plotting.fiblets.pick_result import Picked
+from pvfiblets.plotting.fiblets.filtering import BundledActor
+from pvfiblets.plotting.selection import AS_BEFORE, SelectionStyle
 
 if TYPE_CHECKING:
     from os import PathLike
 
+    from pvfiblets.mappers.fiblets import FibletMapper
     from pvfiblets.plotting.fiblets.profiles import Profile
     from pvfiblets.plotting.fiblets.selection_overlay import SelectionOverlay
     from pvfiblets.plotting.scalars import Scalars
     from pvfiblets.query.measures.table import Table
 
-MODES = ("replace", "add", "remove", "toggle")
-_AS_BEFORE: Any = object()
-
-
-@dataclass(frozen=True)
-class SelectionStyle:
-    """How selected streamlines stand out.
-
-    Attributes
-    ----------
-    color : tuple of 3 floats or None
-        RGB of those selected; ``None`` leaves them their own colours.
-    width : float or None
-        Pixels; ``None`` draws them as wide as all.
-    dim : float
-        How much of the others' colours gives way to the background, 0 to 1.
-    as_tubes : bool
-        Whether they are drawn as tubes.
-    radius : float
-        Of the tubes, mm.
-    silhouette : tuple of 3 floats or None
-        RGB of an outline around them.
-    """
-
-    color: tuple[float, ...] | None = None
-    width: float | None = None
-    dim: float = 0.8
-    as_tubes: bool = False
-    radius: float = 0.5
-    silhouette: tuple[float, float, float] | None = None
-
-
-class SelectableActor(FilteredActor):
+class SelectableActor(BundledActor):
     """Actor of fiblets with a selection."""
 
-    _selected: np.ndarray | None = None
-    _selection_style = SelectionStyle()
+    _mapper: FibletMapper
     _standout: SelectionOverlay | None = None
 
     @property
@@ -73,21 +38,8 @@ class SelectableActor(FilteredActor):
         """What colours the actor, as found; ``None`` for one colour."""
         return self._scalars
 
-    # The selection ------------------------------------------------------------------------------
-
-    @property
-    def selection(self) -> np.ndarray:
-        """``(n,)`` int64: ids of the selected streamlines, rising."""
-        if self._selected is None:
-            return np.zeros(0, np.int64)
-        return np.flatnonzero(self._selected).astype(np.int64)
-
-    @selection.setter
-    def selection(self, ids: Any) -> None:
-        self.select(ids)
-
     def select(
-        self, ids: Any, *, mode: str = "replace", as_tubes: bool = _AS_BEFORE, radius: float = _AS_BEFORE
+        self, ids: Any, *, mode: str = "replace", as_tubes: bool = AS_BEFORE, radius: float = AS_BEFORE
     ) -> None:
         """Select streamlines.
 
@@ -110,33 +62,13 @@ class SelectableActor(FilteredActor):
         ValueError
             If there is no such mode or radius.
         """
-        from pvfiblets.codec.decompress import select_streamlines
-
-        if mode not in MODES:
-            raise ValueError(f"mode is {mode!r}; choose one of {', '.join(MODES)}")
-        chosen = np.zeros(self._fiblets.n_streamlines, np.bool_)
-        given = ids.ids if isinstance(ids, Picked) else ids
-        chosen[select_streamlines(self._fiblets.n_streamlines, given)] = True
-        if self._selected is not None and mode != "replace":
-            before = self._selected
-            chosen = {"add": before | chosen, "remove": before & ~chosen, "toggle": before ^ chosen}[mode]
-        elif mode == "remove":
-            chosen[:] = False
-        if as_tubes is not _AS_BEFORE or radius is not _AS_BEFORE:
-            self.selection_style(as_tubes=as_tubes, radius=radius)
-        self._select(chosen)
-
-    def deselect(self, ids: Any = None) -> None:
-        """Take streamlines out of the selection, or all of them; ``ids`` as for :meth:`select`."""
-        if ids is None:
-            self._select(None)
-        else:
-            self.select(ids, mode="remove")
-
-    def invert_selection(self) -> None:
-        """Invert the selection."""
-        nothing = np.zeros(self._fiblets.n_streamlines, np.bool_)
-        self._select(~(nothing if self._selected is None else self._selected))
+        before = self._selection_style
+        self._selection_style = before.changed(as_tubes=as_tubes, radius=radius)
+        try:
+            super().select(ids, mode=mode)
+        except Exception:
+            self._selection_style = before
+            raise
 
     def grow_selection(self, distance: float) -> None:
         """Add the streamlines that begin and end near the ends of a selected one.
@@ -155,21 +87,17 @@ class SelectableActor(FilteredActor):
 
         self.select(similar_ends(self._fiblets, self.selection, distance), mode="add")
 
-    def _select(self, selected: np.ndarray | None) -> None:
-        self._selected = selected if selected is not None and selected.any() else None
-        self._show_selection()
-
     # How it looks -------------------------------------------------------------------------------
 
     def selection_style(
         self,
         *,
-        color: Any = _AS_BEFORE,
-        width: float | None = _AS_BEFORE,
-        dim: float = _AS_BEFORE,
-        as_tubes: bool = _AS_BEFORE,
-        radius: float = _AS_BEFORE,
-        silhouette: Any = _AS_BEFORE,
+        color: Any = AS_BEFORE,
+        width: float | None = AS_BEFORE,
+        dim: float = AS_BEFORE,
+        as_tubes: bool = AS_BEFORE,
+        radius: float = AS_BEFORE,
+        silhouette: Any = AS_BEFORE,
     ) -> SelectionStyle:
         """Change the style of selected streamlines; omitted arguments stay unchanged.
 
@@ -183,8 +111,7 @@ class SelectableActor(FilteredActor):
             How much of the colours of all others gives way to the background, 0 to 1.
         as_tubes : bool
             Draw them as tubes that bend smoothly through their points. (Straight from point to
-            point where the actor is cut by a region, filtered point by point or coloured by a
-            volume, and where more than 400,000 points are selected.)
+            point where a volume colours the actor, and where more than 400,000 points are selected.)
         radius : float
             Of the tubes, mm.
         silhouette : bool or color-like
@@ -200,50 +127,21 @@ class SelectableActor(FilteredActor):
         ValueError
             If a number has no meaning; all stays as it was.
         """
-        style = self._selection_style
-        if color is not _AS_BEFORE:
-            style = replace(style, color=None if color is None else pv.Color(color).float_rgb)
-        if width is not _AS_BEFORE:
-            if width is not None and not 1.0 <= float(width) <= 64.0:
-                raise ValueError(f"width is {width!r}; give pixels from 1 to 64, or None")
-            style = replace(style, width=None if width is None else float(width))
-        if dim is not _AS_BEFORE:
-            if not 0.0 <= float(dim) <= 1.0:
-                raise ValueError(f"dim is {dim!r}; give a number from 0 to 1")
-            style = replace(style, dim=float(dim))
-        if as_tubes is not _AS_BEFORE:
-            style = replace(style, as_tubes=bool(as_tubes))
-        if radius is not _AS_BEFORE:
-            if not 0.0 < float(radius) < float("inf"):
-                raise ValueError(f"radius is {radius!r}; give a length in mm above 0")
-            style = replace(style, radius=float(radius))
-        if silhouette is not _AS_BEFORE:
-            outline = "white" if silhouette is True else silhouette
-            style = replace(style, silhouette=pv.Color(outline).float_rgb if _is_colour(outline) else None)
-        if style != self._selection_style:
-            self._selection_style = style
-            self._show_selection()
-        return style
+        return self._restyle(
+            color=color, width=width, dim=dim, as_tubes=as_tubes, radius=radius, silhouette=silhouette
+        )
+
+    @property
+    def _stands_apart(self) -> bool:
+        return self._selection_style.width is not None or self._selection_style.as_tubes
 
     def _show_selection(self) -> None:
-        """Bring the picture up to date; an empty selection leaves nothing behind."""
-        selected, style = self._selected, self._selection_style
-        highlight = silhouette = None
-        if selected is not None and (style.dim > 0.0 or style.color is not None):
-            highlight = Highlight(selected, style.color, style.dim)
-        apart = selected is not None and (style.width is not None or style.as_tubes)
-        if selected is not None and style.silhouette is not None and not apart:
-            from pvfiblets.mappers.shading import Silhouette
-
-            silhouette = Silhouette(selected, style.silhouette)
-        for name, effect in (("selection", highlight), ("selection silhouette", silhouette)):
-            if effect is not None or name in self._mapper.effects:
-                self._mapper.set_effect(name, effect)
+        super()._show_selection()
         if self._standout is not None:
             self._standout.leave()
             self._standout = None
-        if apart:
-            self._standout = self._make_standout(style)
+        if self._selected is not None and self._stands_apart:
+            self._standout = self._make_standout(self._selection_style)
 
     def _make_standout(self, style: SelectionStyle) -> SelectionOverlay:
         from pvfiblets.plotting.fiblets.selection_overlay import SelectionOverlay
@@ -398,11 +296,6 @@ class SelectableActor(FilteredActor):
             self._standout.leave_with_owner()
             self._standout.mapper.release(window)
 
-    def _be_like(self, other: Self, deep: bool) -> None:
-        super()._be_like(other, deep)
-        self._selection_style = other._selection_style
-        self._select(None if other._selected is None else other._selected.copy())
-
     def _explain_selection(self) -> dict[str, Any]:
         """How many are selected; where they are drawn apart, wider or as tubes, what that takes."""
         apart = None if self._standout is None else added_up(self._standout.mapper.explain())
@@ -412,13 +305,3 @@ class SelectableActor(FilteredActor):
             "features": [] if apart is None else apart["features"],
             "gpu_bytes": 0 if apart is None else apart["gpu_bytes"],
         }
-
-    def _reselect(self) -> None:
-        """Follow other fiblets: the selection stays if the number of streamlines is the same."""
-        if self._selected is not None and len(self._selected) != self._fiblets.n_streamlines:
-            self._selected = None
-        self._show_selection()
-
-
-def _is_colour(outline: Any) -> bool:
-    return outline is not None and outline is not False

@@ -3,9 +3,9 @@
 A small set of their own on a mapper of its own: the rest is drawn as before. What is drawn follows the owner: before
 each picture its place, looks, shading, cuts and filters are looked at, and taken over where they changed.
 
-Tubes are spline tubes (`pvfiblets.mappers.tubes`), smooth through the points. Where the owner is cut to a region,
-filtered point by point or coloured by a volume, which those cannot do, and where there are very many points, tubes are
-the engine's own, straight from point to point, of compressed fiblets (`FibletSet.extract`).
+Tubes are spline tubes (`pvfiblets.mappers.tubes`), smooth through the points. Where the owner is coloured by a volume,
+which those cannot do, and where there are very many points, tubes are the engine's own, straight from point to point,
+of compressed fiblets (`FibletSet.extract`).
 """
 
 from __future__ import annotations
@@ -61,16 +61,10 @@ class _Splines:
 
     Attributes
     ----------
-    ids : numpy.ndarray
-        ``(n,)`` int64 streamlines.
-    kept : numpy.ndarray or None
-        The owner's mask of streamlines, which contains `ids`.
     values : str or None
         Name of the per-point value that they are coloured by.
     """
 
-    ids: np.ndarray
-    kept: np.ndarray | None
     values: str | None
 
 
@@ -128,7 +122,7 @@ class SelectionOverlay:
         """What picking sees: pixels that show these streamlines show the owner's."""
         if self._plan is None:
             return Layer(self.mapper, self.ids)
-        return Layer(self.mapper, self._plan.ids, self._starts)
+        return Layer(self.mapper, self.ids, self._starts)
 
     def enter(self, renderer: Any) -> None:
         """Be drawn by a renderer that draws the owner."""
@@ -195,32 +189,41 @@ class SelectionOverlay:
             if self._changed(name, effects.get(name)):
                 effect = effects.get(name)
                 self.mapper.set_effect(name, None if effect is None else _OfAll(effect, self._fiblets))
-        if self._plan is not None:
-            return
-        if self._changed("options", mapper.options):
-            self.mapper.options = mapper.options
         if self._changed("region", mapper.region):
             self.mapper.region = mapper.region
         if self._changed("filtering", mapper.filtering):
-            self.mapper.filtering = part_of_filter(mapper.filtering, self._fiblets, self.ids)
+            part = part_of_filter if self._plan is None else self._segments_of_filter
+            self.mapper.filtering = part(mapper.filtering, self._fiblets, self.ids)
+        if self._plan is None and self._changed("options", mapper.options):
+            self.mapper.options = mapper.options
 
     def _plan_for(self, mapper: Any) -> _Splines | None:
         """What spline tubes have to be made of that do as the owner's mapper does; None where none can."""
-        filtering = mapper.filtering
-        masked = filtering is not None and filtering.points is not None
         values = None if self._color is not None else mapper.colouring.point_source
         packed = self._color is None and mapper.colouring.mode == "point_packed"  # which tubes cannot read
-        if packed or not self._few or mapper.region is not None or masked or not isinstance(values, str | None):
+        if packed or not self._few or not isinstance(values, str | None):
             return None
-        kept = None if filtering is None else filtering.streamlines
-        if self._plan is not None and self._plan.kept is kept and self._plan.values == values:
+        if self._plan is not None and self._plan.values == values:
             return self._plan
-        return _Splines(self.ids if kept is None else self.ids[kept[self.ids]], kept, values)
+        return _Splines(values)
+
+    def _segments_of_filter(self, filtering: Any, fiblets: FibletSet, ids: np.ndarray) -> np.ndarray | None:
+        """Return which segments of the spline tubes a filter of the whole set shows."""
+        if filtering is None:
+            return None
+        tubes = self.mapper.tubes
+        mask = np.ones(len(ids), bool) if filtering.streamlines is None else filtering.streamlines[ids]
+        shown: np.ndarray = mask[tubes.tubes]
+        if filtering.points is not None:
+            from pvfiblets.mappers.drawn_lines import point_flags
+
+            shown &= point_flags(fiblets, filtering.points, ids)[tubes.segments].all(axis=1)
+        return shown
 
     def _make(self, plan: _Splines | None) -> Any:
         """Return the mapper that a plan asks for."""
         if plan is not None:
-            tubes = spline_tubes_of(self._fiblets, plan.ids, float(self._radius or 0.0), plan.values)
+            tubes = spline_tubes_of(self._fiblets, self.ids, float(self._radius or 0.0), plan.values)
             # Of a line of n points the segments begin at its points 0 to n - 2.
             self._starts = np.arange(tubes.n_segments) - np.searchsorted(tubes.tubes, tubes.tubes)
             mapper: Any = TubeMapper(tubes)
@@ -229,8 +232,7 @@ class SelectionOverlay:
             if self._radius is not None:
                 mapper.set_effect("tubes", Tubes(self._radius))
         if self._outline is not None:
-            ids = self.ids if plan is None else plan.ids
-            mapper.set_effect("silhouette", Silhouette(np.ones(len(ids), np.bool_), self._outline))
+            mapper.set_effect("silhouette", Silhouette(np.ones(len(self.ids), np.bool_), self._outline))
         return mapper
 
     def _remake(self, plan: _Splines | None) -> None:
@@ -258,8 +260,7 @@ class SelectionOverlay:
         if self._color is not None:
             return Colouring("solid", color=self._color)
         if colouring.mode in ("streamline_rgba", "streamline_scalar") and colouring.values is not None:
-            ids = self.ids if self._plan is None else self._plan.ids
-            return replace(colouring, values=np.asarray(colouring.values)[ids])
+            return replace(colouring, values=np.asarray(colouring.values)[self.ids])
         return colouring
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, ClassVar, Self, cast
+from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 import numpy as np
 import pyvista as pv
@@ -13,10 +13,12 @@ from pvfiblets.halos import HaloLines, HaloPoints, HaloStyle
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.halos import HaloMapper, HaloOptions
 from pvfiblets.plotting.coloured import added_up
+from pvfiblets.plotting.filter_state import Choices
 from pvfiblets.plotting.halos.settings import LOOKS, HaloLineSettings, HaloPointSettings
-from pvfiblets.plotting.halos.sources import Held, coloured, filtered, find_halo_scalars
+from pvfiblets.plotting.halos.sources import Held, coloured, filtered, find_halo_scalars, halo_parts
 from pvfiblets.plotting.halos.style import LookSettings, Spacing
 from pvfiblets.plotting.line_opacities import LineActor
+from pvfiblets.plotting.line_subject import LineSubject
 from pvfiblets.plotting.mapper_words import PlottedLines
 from pvfiblets.plotting.setting_places import OPTIONS
 from pvfiblets.plotting.settings import Given
@@ -29,15 +31,7 @@ BACKGROUND = "background"
 
 
 class PlottedHalos(PlottedLines[HaloOptions], HaloMapper):
-    """A mapper of lines or points with halos, with scalar bars.
-
-    Parameters
-    ----------
-    drawn : HaloLines or HaloPoints
-        What to draw.
-    look : HaloStyle
-        How.
-    """
+    """A mapper of lines or points with halos, with scalar bars."""
 
 
 class HaloActor(LineActor):
@@ -76,6 +70,8 @@ class HaloActor(LineActor):
         self._halo_choice = _halo_choice(given["halo_color"])
         look = self._looks.look(held.drawn, self._spacing)
         mapper = PlottedHalos(held.drawn, look, options=HaloOptions(**given.at(OPTIONS)))
+        self._choices = Choices()
+        self._subject = self._subject_of(self._held, mapper)
         super().__init__(mapper, held.scalars, given, name=name, theme=theme)
         self._own_color = self._settings.color is not None
         self._settings.color = pv.Color(self._settings.color, default_color=self._ink)
@@ -130,7 +126,7 @@ class HaloActor(LineActor):
     def scalars(self) -> str | np.ndarray | None:
         """What colours the actor; ``None`` for one colour.
 
-        The name of numbers or colours that it was made with, or an array with one number or one
+        The name of numbers of its source or colours that it was made with, or an array with one number or one
         colour (3 or 4 columns) per point. Lines also have ``"orientation"`` (the absolute direction
         as red, green, blue), ``"arc_length"`` (mm from the line's first point) and ``"length"``
         (mm), and take arrays with a row per line.
@@ -169,23 +165,8 @@ class HaloActor(LineActor):
         looks = replace(self._looks, filter_by=held.filter_by, threshold=threshold)
         self._hold(held, looks)
 
-    def copy(self, deep: bool = True) -> Self:
-        """Return another actor that draws the same with the same looks, colours and place.
-
-        Parameters
-        ----------
-        deep : bool, default: True
-            Give the copy a property of its own; else both share one. A mapper serves one actor,
-            so each has its own in any case; the data are shared.
-
-        Returns
-        -------
-        HaloLineActor or HaloPointActor
-            Not in any plotter yet.
-        """
-        twin = type(self)(self._held, settings=self._kept(), theme=self._theme)
-        twin._be_like(self, deep)  # noqa: SLF001 - another of the same
-        return twin
+    def _made_with(self) -> dict[str, Any]:
+        return {"held": self._held}
 
     def explain(self) -> dict[str, Any]:
         """Return what is active for this actor and what it costs, over all windows that show it.
@@ -196,7 +177,8 @@ class HaloActor(LineActor):
             ``passes``: name and milliseconds of the last redraw; ``features``: pieces of the
             shaders in use; ``buffers``: name and bytes of what lies on the GPU; ``gpu_bytes``:
             their sum; ``points_total``, and of lines ``lines_total`` and ``segments_total``;
-            ``culling``: the one in use, ``None`` before the first picture.
+            ``culling``: the one in use, ``None`` before the first picture; ``streamlines``: lines
+            or points in ``total`` and ``shown``; ``criteria``, ``conditions``, ``groups_shown``, ``clips``.
         """
         report = self._mapper.explain()
         total = added_up(report)
@@ -205,7 +187,12 @@ class HaloActor(LineActor):
         drawn = self._held.drawn
         if isinstance(drawn, HaloLines):
             total |= {"lines_total": drawn.n_lines, "segments_total": drawn.n_segments}
-        return {**total, "points_total": drawn.n_points, "culling": latest.get("culling")}
+        return {
+            **total,
+            "points_total": drawn.n_points,
+            "culling": latest.get("culling"),
+            **self._explain_choices(),
+        }
 
     # Inside -------------------------------------------------------------------------------------
 
@@ -216,9 +203,6 @@ class HaloActor(LineActor):
     @property
     def _paper(self) -> str:
         return "black" if self._light_on_dark else "white"
-
-    def _lines_and_values(self) -> tuple[Any, Mapping[str, Any]]:
-        return self._held.drawn, self._held.line_values
 
     @property
     def _drawn(self) -> Held:
@@ -261,6 +245,7 @@ class HaloActor(LineActor):
         elif look != self._mapper.look:
             self._mapper.look = look
         self._held, self._looks = held, looks
+        self._subject = self._subject_of(held, self._mapper)
 
     def _draw_others(self, drawn: Any) -> None:
         """Draw other lines or points by the same settings."""
@@ -271,12 +256,16 @@ class HaloActor(LineActor):
         found = find_halo_scalars(held)
         spacing = Spacing(drawn)
         look = self._looks.look(held.drawn, spacing)
-        # Colours for another number of lines go first.
-        self._mapper.colouring = Colouring("solid")
-        self._mapper.set_drawn(held.drawn, look)
-        self._held, self._spacing = held, spacing
-        self._choice = held.scalars
-        self._show(found)
+        with self._choosing_from(self._subject_of(held, self._mapper)):
+            self._mapper.colouring = Colouring("solid")  # that for another number of lines goes first
+            self._mapper.set_drawn(held.drawn, look)
+            self._held, self._spacing = held, spacing
+            self._choice = held.scalars
+            self._show(found)
+
+    @staticmethod
+    def _subject_of(held: Held, mapper: PlottedHalos) -> LineSubject:
+        return LineSubject(mapper, lambda: halo_parts(held))
 
     def _colour_halos(self) -> None:
         color = self._read_halo_color()

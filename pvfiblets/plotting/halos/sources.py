@@ -15,11 +15,13 @@ from pvfiblets.halos import HaloLines, HaloPoints
 from pvfiblets.halos.build import FILTER, SCALARS, as_halo_lines, as_halo_points
 from pvfiblets.halos.measures import arc_lengths, line_lengths
 from pvfiblets.images.sources import as_image, is_image
-from pvfiblets.lines import has_name, read_lines, with_values
-from pvfiblets.plotting.fiblets.filter_state import unique_name
+from pvfiblets.lines import SourceData, gather, has_name, read_lines, with_values
+from pvfiblets.plotting.filter_state import unique_name
+from pvfiblets.plotting.line_subject import Parts
 from pvfiblets.plotting.same_names import Preference, with_preference
 from pvfiblets.plotting.scalars import (
     DIRECTIONS,
+    NAME_ONE,
     UNNAMED,
     Numbers,
     Scalars,
@@ -28,6 +30,7 @@ from pvfiblets.plotting.scalars import (
     find_scalars,
     point_scalars,
 )
+from pvfiblets.streamlines import Streamlines
 
 ARC_LENGTH, LENGTH = "arc_length", "length"
 BUILT_IN = (*DIRECTIONS, ARC_LENGTH, LENGTH)
@@ -38,24 +41,13 @@ Drawn: TypeAlias = HaloLines | HaloPoints
 
 @dataclass(frozen=True)
 class Held:
-    """What an actor draws, with the numbers that colour and filter it.
-
-    Parameters
-    ----------
-    drawn : HaloLines or HaloPoints
-        With all values at points that are needed.
-    scalars : str or array, optional
-        What colours it, for :func:`find_halo_scalars`.
-    filter_by : str, optional
-        Which of its values filter.
-    line_values : mapping of str to array
-        A row for each line.
-    """
+    """What an actor draws, with the numbers that colour and filter it; `source` has all that may be named besides."""
 
     drawn: Drawn
     scalars: Any = None
     filter_by: str | None = None
     line_values: Mapping[str, Any] = field(default_factory=dict)
+    source: SourceData = field(default_factory=SourceData)
 
 
 def as_lines(
@@ -75,11 +67,13 @@ def as_lines(
     if is_values_file(filter_by, source):
         source, filter_by = with_values(source, filter_by)
     stored, filters = (None if _later(source, what) else what for what in (scalars, filter_by))
+    gathered = gather(source, "lines with halos", keep_single=True)
     try:
-        lines, line_values = as_halo_lines(source, scalars=stored, rgb=rgb, filter_by=filters)
+        lines, line_values = as_halo_lines(gathered, scalars=stored, rgb=rgb, filter_by=filters)
     except ValueError as error:
         raise _unknown(source, (stored, filters), error) from None
-    held = _named(Held(lines, stored, _filter_name(filters), line_values))
+    data = SourceData.of_lines(gathered, source, gathered.ids)
+    held = _named(Held(lines, stored, _filter_name(filters), line_values, data))
     if stored is not scalars:
         held = coloured(held, scalars)
     return held if filters is filter_by else filtered(held, filter_by)
@@ -148,6 +142,25 @@ def filtered(held: Held, filter_by: Any) -> Held:
     raise KeyError(_missing("filter_by", filter_by, held))
 
 
+def halo_parts(held: Held) -> Parts:
+    """Return lines as criteria and conditions find them; points are lines of one point each."""
+    drawn = held.drawn
+    if isinstance(drawn, HaloPoints):
+        ids = np.arange(drawn.n_points)
+        points = Streamlines(drawn.points, np.arange(drawn.n_points + 1), drawn.values)
+        return Parts(points, np.stack([ids, ids], axis=1), ids)
+    starts = drawn.segment_starts
+    lines = Streamlines(
+        drawn.points,
+        drawn.offsets,
+        {**held.source.per_point, **drawn.values},
+        {**held.source.per_line, **held.line_values},
+        held.source.groups,
+    )
+    owners = np.repeat(np.arange(drawn.n_lines), np.diff(drawn.offsets))[starts]
+    return Parts(lines, np.stack([starts, starts + 1], axis=1), owners)
+
+
 def find_halo_scalars(held: Held) -> Scalars | None:
     """Find the numbers or colours by which something is coloured."""
     choice, drawn = held.scalars, held.drawn
@@ -214,9 +227,16 @@ def _is_image(source: Any, what: Any) -> bool:
 
 
 def _sampled(held: Held, what: Any) -> tuple[Held, Any]:
-    """Store the values of an image at the points, and return their name; anything else is returned as it is."""
-    drawn = held.drawn
-    if not is_image(what) or (isinstance(what, str) and (what in drawn.values or what in held.line_values)):
+    """Store numbers of the source, or of an image at the points, and return their name; all else stays as it is."""
+    drawn, source = held.drawn, held.source
+    if isinstance(what, str):
+        if what in drawn.values or what in held.line_values:
+            return held, what
+        if what in source.per_point:
+            return replace(held, drawn=replace(drawn, values={**drawn.values, what: source.per_point[what]})), what
+        if what in source.per_line:
+            return replace(held, line_values={**held.line_values, what: source.per_line[what]}), what
+    if not is_image(what):
         return held, what
     image = as_image(what)
     values, name = image.at(drawn.points), image.name or "volume"
@@ -235,11 +255,9 @@ def _unknown(source: Any, names: tuple[Any, Any], error: ValueError) -> Exceptio
 
 def _missing(what: str, name: str, held: Held) -> str:
     """Say that there are no numbers ``name``, and which there are."""
-    known: dict[str, Any] = {"at points": held.drawn.values}
+    known: dict[str, Any] = {"at points": {**held.drawn.values, **held.source.per_point}}
     if isinstance(held.drawn, HaloLines):
-        known |= {"per line": held.line_values, "built in": BUILT_IN if what == "scalars" else (ARC_LENGTH, LENGTH)}
+        per_line = {**held.line_values, **held.source.per_line}
+        known |= {"per line": per_line, "built in": BUILT_IN if what == "scalars" else (ARC_LENGTH, LENGTH)}
     listed = [f"{title}: {', '.join(map(repr, names)) or 'none'}" for title, names in known.items()]
-    return (
-        f"{what} is {name!r}, and there are no such numbers; {'; '.join(listed)}. Of a source only what was asked for "
-        "is kept: give an array, or add the source anew with it"
-    )
+    return f"{what} is {name!r}, and there are no such numbers; {'; '.join(listed)}. {NAME_ONE}"

@@ -25,13 +25,7 @@ _OF_POINTS = (("line_width", "point_size"), ("strip_width", "halo_size"))
 
 
 class Spacing:
-    """What is measured of lines or points for those settings that are not given, each once and when first needed.
-
-    Parameters
-    ----------
-    drawn : HaloLines or HaloPoints
-        What is drawn.
-    """
+    """What is measured of lines or points for those settings that are not given, each once and when first needed."""
 
     def __init__(self, drawn: HaloLines | HaloPoints) -> None:
         self._drawn = drawn
@@ -65,22 +59,7 @@ class Spacing:
 class LookSettings:
     """What a user may set about lines, or points, with halos; ``None`` means what suits the data.
 
-    Parameters
-    ----------
-    line_width, strip_width, max_displacement : float, optional
-        mm; as of `HaloStyle`. Of points the first two are the diameters of point and halo.
-    displacement : str, tuple of float or callable
-        As of :func:`pvfiblets.halos.displacement.as_displacement`.
-    tapering : bool or tuple
-        Vertices over which ends narrow, and where along the mask those end; True for the paper's.
-    width_cue, min_width, smooth
-        As of `HaloStyle`.
-    filter_by : str, optional
-        Numbers at the points that filter.
-    threshold : float or tuple of float, optional
-        The least that is kept, or the least and the greatest.
-    filter_taper : float, optional
-        mm over which what is filtered narrows; by default two mean segments.
+    Of points `line_width` and `strip_width` are the diameters of point and halo, mm.
     """
 
     line_width: float | None = None

@@ -8,14 +8,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyvista as pv
 
+from pvfiblets.lines import SourceData
 from pvfiblets.mappers.colouring import Colouring
 from pvfiblets.mappers.shading import Silhouette
 from pvfiblets.mappers.tubes import TubeMapper, TubeOptions
 from pvfiblets.plotting.coloured import added_up
+from pvfiblets.plotting.filter_state import Choices
 from pvfiblets.plotting.line_opacities import LineActor
+from pvfiblets.plotting.line_subject import LineSubject
 from pvfiblets.plotting.mapper_words import PlottedLines
 from pvfiblets.plotting.setting_places import OPTIONS
 from pvfiblets.plotting.settings import Given
+from pvfiblets.plotting.tubes.parts import tube_parts
 from pvfiblets.plotting.tubes.settings import TubeSettings
 from pvfiblets.plotting.tubes.sources import find_tube_scalars, with_built_in, with_node_values
 from pvfiblets.tubes.spline_tubes import SplineTubes
@@ -28,13 +32,7 @@ _OUTLINE = {"color": "white", "width": 2.0, "tubes": None}
 
 
 class PlottedSplines(PlottedLines[TubeOptions], TubeMapper):
-    """A mapper of spline tubes with scalar bars.
-
-    Parameters
-    ----------
-    tubes : SplineTubes
-        What to draw.
-    """
+    """A mapper of spline tubes with scalar bars."""
 
 
 class TubeActor(TubeSettings, LineActor):
@@ -56,6 +54,8 @@ class TubeActor(TubeSettings, LineActor):
         Under which the plotter knows the actor.
     theme : pyvista theme, optional
         Gives what is not given.
+    data : SourceData, optional
+        All that criteria may name besides what the tubes have.
 
     Notes
     -----
@@ -74,11 +74,15 @@ class TubeActor(TubeSettings, LineActor):
         settings: Mapping[str, Any] | None = None,
         name: str | None = None,
         theme: Any = None,
+        data: SourceData | None = None,
     ) -> None:
         given = Given(TubeSettings, settings)
-        self._tubes, scalars = with_node_values(_checked(tubes), scalars)
+        self._data = SourceData() if data is None else data
+        self._tubes, scalars = with_node_values(_checked(tubes), scalars, data=self._data)
         self._shown = with_built_in(self._tubes, scalars)  # what is computed for colours is not the user's
         mapper = PlottedSplines(self._shown, options=TubeOptions(**given.at(OPTIONS)))
+        self._choices = Choices()
+        self._subject = _subject_of(self._tubes, self._data, mapper)
         super().__init__(mapper, scalars, given, name=name, theme=theme)
         self._recolour()
         self.opacity = given["opacity"]
@@ -103,15 +107,19 @@ class TubeActor(TubeSettings, LineActor):
         tubes, choice = with_node_values(_checked(tubes), self._choice)
         shown = with_built_in(tubes, choice)
         found = self._find(shown, choice)
-        self._draw(tubes, shown)
-        self._choice = choice
-        self._show(found)
+        same = tubes.n_tubes == self._tubes.n_tubes and np.array_equal(tubes.segments, self._tubes.segments)
+        data = self._data if same else SourceData()
+        with self._choosing_from(_subject_of(tubes, data, self._mapper)):
+            self._data = data
+            self._draw(tubes, shown)
+            self._choice = choice
+            self._show(found)
 
     @property
     def scalars(self) -> str | np.ndarray | None:
         """What colours the actor; ``None`` for one colour.
 
-        The name of ``tubes.values`` or ``tubes.tube_values``; ``"radius"``, ``"arc_length"`` (mm
+        The name of ``tubes.values``, ``tubes.tube_values`` or numbers of the source; ``"radius"``, ``"arc_length"`` (mm
         from the tube's first node), ``"length"`` (mm, of the whole tube), ``"orientation"`` (the
         absolute direction as red, green, blue); or an array with one number or one colour (3 or 4
         columns) per node or per tube.
@@ -120,30 +128,15 @@ class TubeActor(TubeSettings, LineActor):
 
     @scalars.setter
     def scalars(self, scalars: Any) -> None:
-        tubes, scalars = with_node_values(self._tubes, scalars)
+        tubes, scalars = with_node_values(self._tubes, scalars, data=self._data)
         shown = with_built_in(self._shown if tubes is self._tubes else tubes, scalars)
         found = self._find(shown, scalars)
         if shown is not self._shown:
             self._draw(tubes, shown)
         self._colour_by(scalars, found)
 
-    def copy(self, deep: bool = True) -> TubeActor:
-        """Return another actor that draws the same tubes with the same colours and place.
-
-        Parameters
-        ----------
-        deep : bool, default: True
-            Give the copy a property of its own; else both share one. A mapper serves one actor,
-            so each has its own in any case; the tubes are shared.
-
-        Returns
-        -------
-        TubeActor
-            Not in any plotter yet.
-        """
-        twin = TubeActor(self._tubes, scalars=self._choice, settings=self._kept(), theme=self._theme)
-        twin._be_like(self, deep)
-        return twin
+    def _made_with(self) -> dict[str, Any]:
+        return {"tubes": self._tubes, "scalars": self._choice, "data": self._data}
 
     def explain(self) -> dict[str, Any]:
         """Return what is active for this actor and what it costs, over all windows that show it.
@@ -155,7 +148,8 @@ class TubeActor(TubeSettings, LineActor):
             shaders in use; ``buffers``: name and bytes of what lies on the GPU; ``gpu_bytes``:
             their sum; ``tubes_total``, ``segments_total``; ``primitives``: triangles of the last
             redraw without culling, 0 before the first; ``silhouettes``, ``solver``, ``iterations``,
-            ``culling``: those in use, ``None`` before the first picture.
+            ``culling``: those in use, ``None`` before the first picture; ``streamlines``: tubes in
+            ``total`` and ``shown``; ``criteria``, ``conditions``, ``groups_shown``, ``clips``.
         """
         report = self._mapper.explain()
         total = added_up(report)
@@ -171,6 +165,7 @@ class TubeActor(TubeSettings, LineActor):
             "solver": latest.get("solver"),
             "iterations": latest.get("iterations"),
             "culling": latest.get("culling"),
+            **self._explain_choices(),
         }
 
     def pick_at(self, x: int, y: int) -> tuple[int, float] | None:
@@ -237,15 +232,17 @@ class TubeActor(TubeSettings, LineActor):
             self._mapper.colouring = Colouring("solid")
         self._mapper.set_tubes(shown)
         before, self._tubes, self._shown = self._tubes, tubes, shown
+        self._subject = _subject_of(tubes, self._data, self._mapper)
         outline = self.silhouette
         if before.n_tubes != tubes.n_tubes and isinstance(outline, dict):
             self.silhouette = outline["tubes"] is None and outline  # numbers mean other tubes now
 
-    def _lines_and_values(self) -> tuple[Any, Mapping[str, Any]]:
-        return self._tubes, self._tubes.tube_values
-
     def _find(self, tubes: SplineTubes, choice: Any) -> Scalars | None:
-        return None if choice is None else find_tube_scalars(tubes, choice)
+        return None if choice is None else find_tube_scalars(tubes, choice, self._data)
+
+
+def _subject_of(tubes: SplineTubes, data: SourceData, mapper: PlottedSplines) -> LineSubject:
+    return LineSubject(mapper, lambda: tube_parts(tubes, data))
 
 
 def _checked(tubes: Any) -> SplineTubes:

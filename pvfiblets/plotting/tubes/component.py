@@ -154,7 +154,7 @@ class SplineTubesComponent(ActorRegistry["TubeActor"]):
         TubeOptions(**settings.at(OPTIONS))  # errors are raised before the slow part
         if scalars is None:
             scalars = active_scalars(source, settings["color"], rgb)
-        tubes, choice = as_tubes(
+        tubes, choice, data = as_tubes(
             source,
             scalars=scalars,
             rgb=rgb,
@@ -171,7 +171,7 @@ class SplineTubesComponent(ActorRegistry["TubeActor"]):
         renderer = self._plotter.renderer
         if choice is None and settings["color"] is None and renderer._color_cycle is not None:  # noqa: SLF001
             settings["color"] = renderer.next_color  # as `add_mesh` does after `set_color_cycler`
-        actor = TubeActor(tubes, scalars=choice, settings=settings, theme=self._plotter.theme)
+        actor = TubeActor(tubes, scalars=choice, settings=settings, theme=self._plotter.theme, data=data)
         refuse_numbers(actor.scalars_title, rgb)
         return actor
 

@@ -9,10 +9,22 @@ import numpy as np
 
 from pvfiblets.formats.attachments import is_values_file
 from pvfiblets.images.sources import as_image, is_image
-from pvfiblets.lines import are_words, has_name, names_of, read_lines, refuse_words, rows_of, with_values
+from pvfiblets.lines import (
+    Lines,
+    SourceData,
+    are_words,
+    gather,
+    has_name,
+    names_of,
+    read_lines,
+    refuse_words,
+    rows_of,
+    with_values,
+)
 from pvfiblets.plotting.same_names import Preference, with_preference
 from pvfiblets.plotting.scalars import (
     DIRECTIONS,
+    NAME_ONE,
     UNNAMED,
     Numbers,
     Scalars,
@@ -34,13 +46,21 @@ _GIVEN = "scalars"  # what as_spline_tubes calls an array without a name
 
 def as_tubes(
     source: Any, *, scalars: Any = None, rgb: bool | None = None, preference: Preference = "point", **shape: Any
-) -> tuple[SplineTubes, Any]:
-    """Return the tubes that a source means, and what colours them."""
+) -> tuple[SplineTubes, Any, SourceData]:
+    """Return the tubes that a source means, what colours them, and all data of their nodes and lines."""
     if isinstance(source, SplineTubes):
-        return with_node_values(as_spline_tubes(source, **shape), scalars, rgb=rgb)
+        return *with_node_values(as_spline_tubes(source, **shape), scalars, rgb=rgb), SourceData()
     source = with_preference(read_lines(source), preference)
     if is_values_file(scalars, source):
         source, scalars = with_values(source, scalars)
+    lines = gather(source)
+    tubes, scalars = _made(source, lines, scalars, rgb, **shape)
+    at_ids = np.array_equal(tubes.points, lines.points[lines.ids])
+    return tubes, scalars, SourceData.of_lines(lines, source, lines.ids if at_ids else None)
+
+
+def _made(source: Any, lines: Lines, scalars: Any, rgb: bool | None, **shape: Any) -> tuple[SplineTubes, Any]:
+    """Return tubes around the lines of a source, and what colours them."""
     named = UNNAMED
     if is_image(scalars) and not (isinstance(scalars, str) and has_name(source, scalars)):
         scalars = as_image(scalars)
@@ -50,8 +70,8 @@ def as_tubes(
             raise KeyError(_missing(scalars, **dict(zip(("per point", "per line"), names_of(source), strict=True))))
         if shape.pop("scalar_slopes", None) is not None:
             raise ValueError(f"scalar_slopes came with {scalars!r}, which has its own; leave them out")
-        return as_spline_tubes(source, **shape), scalars
-    tubes = as_spline_tubes(source, scalars=scalars, rgb=rgb, **shape)
+        return as_spline_tubes(lines, **shape), scalars
+    tubes = as_spline_tubes(lines, scalars=scalars, rgb=rgb, **shape)
     if scalars is None or isinstance(scalars, str):
         return tubes, scalars
     if _GIVEN in tubes.values:
@@ -69,8 +89,10 @@ def with_built_in(tubes: SplineTubes, scalars: Any) -> SplineTubes:
     return with_arc_length(tubes) if scalars == ARC_LENGTH else tubes
 
 
-def with_node_values(tubes: SplineTubes, scalars: Any, *, rgb: bool | None = None) -> tuple[SplineTubes, Any]:
-    """Store ``scalars`` with the tubes if they are an array with a row for each node.
+def with_node_values(
+    tubes: SplineTubes, scalars: Any, *, rgb: bool | None = None, data: SourceData | None = None
+) -> tuple[SplineTubes, Any]:
+    """Store ``scalars`` with the tubes if they are an array with a row for each node, or name one of their source.
 
     Notes
     -----
@@ -79,6 +101,10 @@ def with_node_values(tubes: SplineTubes, scalars: Any, *, rgb: bool | None = Non
     if is_image(scalars) and not (isinstance(scalars, str) and scalars in {**tubes.values, **tubes.tube_values}):
         image = as_image(scalars)
         return _with_rows(tubes, image.name or "volume", image.at(tubes.points))
+    if isinstance(scalars, str) and data is not None and scalars not in {**tubes.values, **tubes.tube_values}:
+        rows = data.per_point.get(scalars)
+        if rows is not None and len(rows) == tubes.n_nodes:
+            return _with_rows(tubes, scalars, rows.astype(np.float64))
     if scalars is None or isinstance(scalars, str):
         return tubes, scalars
     given = rows_of(scalars, (tubes.n_nodes, tubes.n_tubes))
@@ -103,13 +129,13 @@ def _with_rows(tubes: SplineTubes, name: str, rows: np.ndarray) -> tuple[SplineT
     return replace(tubes, values={**tubes.values, name: NodeValues(rows, node_slopes(tubes, rows))}), name
 
 
-def find_tube_scalars(tubes: SplineTubes, scalars: Any) -> Scalars:
+def find_tube_scalars(tubes: SplineTubes, scalars: Any, data: SourceData) -> Scalars:
     """Find what ``scalars`` means for tubes."""
-    missing = ". Only what was asked for as scalars is kept at nodes: give an array, or add the tubes with it"
     numbers = Numbers(
         "tube", tubes.n_tubes, lambda name: _at_nodes(name, tubes), tubes.tube_values,
         {**direction_scalars(), LENGTH: lambda: tube_lengths(tubes)},
-        lambda name: _missing(name, **{"at nodes": tubes.values, "per tube": tubes.tube_values}) + missing,
+        lambda name: _missing(name, **{"at nodes": {**tubes.values, **data.per_point}, "per tube": tubes.tube_values})
+        + f". {NAME_ONE}",
     )  # fmt: skip
     return find_scalars(numbers, scalars)
 

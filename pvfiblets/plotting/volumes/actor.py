@@ -303,22 +303,8 @@ class VolumeActor(VolumeSettings, ClippedActor):
             "clips": list(self._clips),
         }
 
-    def copy(self, deep: bool = True) -> VolumeActor:
-        """Return another actor that draws the same volume in the same way and place.
-
-        Parameters
-        ----------
-        deep : bool, default: True
-            Give the copy a property of its own; else both share one. The volume is shared.
-
-        Returns
-        -------
-        VolumeActor
-            Not in any plotter yet.
-        """
-        twin = VolumeActor(self._source, settings=self._kept(), given=self._given, theme=self._theme)
-        twin._be_like(self, deep)
-        return twin
+    def _made_with(self) -> dict[str, Any]:
+        return {"volume": self._source, "given": self._given}
 
     # Inside -------------------------------------------------------------------------------------
 

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from ...streamlines import Streamlines
 from ..selection.endpoints import anchor_points
 
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
     from ...images.image import Image
-    from ...streamlines import Streamlines
 
 __all__ = ["longest_length", "mean_direction", "meets_image", "rounding_of"]
 
@@ -47,7 +47,7 @@ def _even_sample(fiblets: FibletSet) -> Streamlines:
     return fiblets.decompress(np.unique(np.linspace(0, fiblets.n_streamlines - 1, count).astype(np.int64)))
 
 
-def meets_image(fiblets: FibletSet, image: Image) -> bool:
+def meets_image(fiblets: FibletSet | Streamlines, image: Image) -> bool:
     """Return True if some point lies in an image."""
     sides = np.array(image.shape[:3])
 
@@ -55,6 +55,8 @@ def meets_image(fiblets: FibletSet, image: Image) -> bool:
         at = points.astype(np.float64) @ image.inverse[:3, :3].T + image.inverse[:3, 3]
         return bool(((at >= -0.5) & (at <= sides - 0.5)).all(axis=1).any())
 
+    if isinstance(fiblets, Streamlines):
+        return not fiblets.n_points or meets(fiblets.points)
     # Anchors are points that need no decoding, and nearly always one of some lies inside.
     some = np.unique(np.linspace(0, max(fiblets.n_fiblets - 1, 0), _SAMPLE).astype(np.int64))
     if not fiblets.n_points or meets(anchor_points(fiblets, some)):

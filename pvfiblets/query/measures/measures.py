@@ -61,6 +61,7 @@ __all__ = [
 
 Kind = Literal["streamline", "point"]
 Floats = npt.NDArray[np.float64]
+CODING_ERROR = "coding_error"
 CURVATURE = "_curvature"
 """Attribute of a set, no field of it: a set that is made of another has other points."""
 SLACK = 0.99  # of an error bound: it is a tenth of a step but for rounding
@@ -143,13 +144,15 @@ class Distance:
         return apart
 
 
-def measure_names(fiblets: FibletSet, kind: Kind | None = None) -> list[str]:
+def measure_names(fiblets: FibletSet | Streamlines, kind: Kind | None = None) -> list[str]:
     """Names that :func:`measure` takes: computed ones, then the stored arrays of single numbers."""
     names: list[str] = []
     if kind != "point":
         names += [*COMPUTED["streamline"], *(k for k, v in fiblets.per_streamline.items() if _is_scalar(v))]
     if kind != "streamline":
-        names += [*COMPUTED["point"], *fiblets.per_point]
+        coded = not isinstance(fiblets, Streamlines)
+        names += [name for name in COMPUTED["point"] if coded or name != CODING_ERROR]
+        names += [k for k, v in fiblets.per_point.items() if coded or _is_scalar(np.asarray(v))]
     return list(dict.fromkeys(names))
 
 
@@ -158,19 +161,25 @@ def _is_scalar(rows: npt.NDArray[Any]) -> bool:
 
 
 def measure(
-    fiblets: FibletSet, what: str | Distance | Values | npt.ArrayLike, *, original: Streamlines | None = None
+    fiblets: FibletSet | Streamlines,
+    what: str | Distance | Values | npt.ArrayLike,
+    *,
+    original: Streamlines | None = None,
 ) -> Values:
-    """Measure every streamline or every point."""
+    """Measure every streamline or every point, of compressed or other streamlines."""
     if isinstance(what, Values):
         return what
     try:
         return _measured(fiblets, what, original)
     except IndexError:
-        fiblets.verify()  # raises for a damaged file; other errors pass
+        if not isinstance(fiblets, Streamlines):
+            fiblets.verify()  # raises for a damaged file; other errors pass
         raise
 
 
-def _measured(fiblets: FibletSet, what: str | Distance | npt.ArrayLike, original: Streamlines | None) -> Values:
+def _measured(
+    fiblets: FibletSet | Streamlines, what: str | Distance | npt.ArrayLike, original: Streamlines | None
+) -> Values:
     if isinstance(what, Distance):
         return _distance(fiblets, what)
     stored = isinstance(what, str) and (what in fiblets.per_streamline or what in fiblets.per_point)
@@ -184,32 +193,34 @@ def _measured(fiblets: FibletSet, what: str | Distance | npt.ArrayLike, original
     rows = fiblets.per_streamline.get(what)
     if original is None and rows is not None and _is_scalar(rows):
         return Values("streamline", np.asarray(rows, np.float64).reshape(len(rows)), what)
-    if original is None and what in fiblets.per_point:
-        return Values("point", fiblets.per_point[what], what)
+    column = fiblets.per_point.get(what)
+    if original is None and column is not None and (isinstance(column, PointValues) or _is_scalar(column)):
+        return Values("point", column if isinstance(column, PointValues) else column.reshape(len(column)), what)
     for kind, units in COMPUTED.items():
-        if what in units:
+        if what in units and not (what == CODING_ERROR and isinstance(fiblets, Streamlines)):
             return Values(kind, _computed(fiblets, what, original), what, units[what])
     kept = f". Compression left it out: keep it by per_point=[{what!r}]" if _is_left_out(fiblets, what) else ""
     raise KeyError(f"there is no measure {what!r}; there are {', '.join(measure_names(fiblets))}{kept}")
 
 
-def _is_left_out(fiblets: FibletSet, name: str) -> bool:
+def _is_left_out(fiblets: FibletSet | Streamlines, name: str) -> bool:
     said = next((reason for reason in fiblets.dropped if reason.startswith("per-point arrays not kept (")), "()")
     return name in said[said.index("(") + 1 : -1].split(", ")
 
 
-def _own(fiblets: FibletSet, given: npt.ArrayLike) -> Values:
+def _own(fiblets: FibletSet | Streamlines, given: npt.ArrayLike) -> Values:
     try:
         rows = np.asarray(given)
     except ValueError:  # of rows of unlike lengths
         rows = np.asarray(given, object)
-    if rows.shape == (fiblets.n_streamlines,) and rows.dtype.kind in "biuf":
+    if rows.shape == (len(fiblets),) and rows.dtype.kind in "biuf":
         return Values("streamline", rows.astype(np.float64), "values")
     if rows.shape == (fiblets.n_points,) and rows.dtype.kind in "biuf":
         kept = np.float32 if rows.dtype in (np.float32, np.float16) else np.float64  # of times, float32 keeps minutes
-        return Values("point", fiblets.in_coded_order(rows).astype(kept), "values")
+        ordered = rows if isinstance(fiblets, Streamlines) else fiblets.in_coded_order(rows)
+        return Values("point", ordered.astype(kept), "values")
     raise ValueError(
-        f"values of {rows.dtype}{rows.shape}; one number for each of the {fiblets.n_streamlines} streamlines or "
+        f"values of {rows.dtype}{rows.shape}; one number for each of the {len(fiblets)} streamlines or "
         f"{fiblets.n_points} points is needed"
     )
 
@@ -239,8 +250,13 @@ def decoded_by_rank(fiblets: FibletSet, most: int, dtype: npt.DTypeLike) -> Iter
             yield from iter_chunks(by_rank(part), most, dtype)
 
 
-def _coded_chunks(fiblets: FibletSet) -> Iterator[tuple[int, int, Streamlines]]:
+def _coded_chunks(fiblets: FibletSet | Streamlines) -> Iterator[tuple[int, int, Streamlines]]:
     """Yield first rank, first point and float64 streamlines, in coded order."""
+    if isinstance(fiblets, Streamlines):
+        if fiblets.n_points:
+            begins = fiblets.offsets[:-1][fiblets.counts > 0]
+            yield 0, 0, Streamlines(np.asarray(fiblets.points, np.float64), np.append(begins, fiblets.n_points))
+        return
     rank = point = 0
     for chunk in decoded_by_rank(fiblets, CHUNK, np.float64):
         yield rank, point, chunk
@@ -248,7 +264,7 @@ def _coded_chunks(fiblets: FibletSet) -> Iterator[tuple[int, int, Streamlines]]:
 
 
 def _per_point(
-    fiblets: FibletSet, make: Callable[[int, Streamlines], Any], kept: npt.DTypeLike = np.float32
+    fiblets: FibletSet | Streamlines, make: Callable[[int, Streamlines], Any], kept: npt.DTypeLike = np.float32
 ) -> npt.NDArray[Any]:
     out = np.empty(fiblets.n_points, kept)
     for rank, point, chunk in _coded_chunks(fiblets):
@@ -256,19 +272,20 @@ def _per_point(
     return out
 
 
-def _per_streamline(fiblets: FibletSet, make: Callable[[Streamlines], Any], without: float) -> Floats:
-    ranked = np.empty(fiblets.n_ranks)
-    for rank, _, chunk in _coded_chunks(fiblets):
-        ranked[rank : rank + len(chunk)] = make(chunk)
-    return _placed(fiblets, ranked, without)
+def _per_streamline(
+    fiblets: FibletSet | Streamlines, make: Callable[[Streamlines], Any], without: float
+) -> Floats:
+    found = [np.asarray(make(chunk), np.float64) for _, _, chunk in _coded_chunks(fiblets)]
+    return _placed(fiblets, np.concatenate(found) if found else np.empty(0), without)
 
 
-def _placed(fiblets: FibletSet, ranked: Floats, without: float) -> Floats:
+def _placed(fiblets: FibletSet | Streamlines, ranked: Floats, without: float) -> Floats:
     """Values of ranks as values of streamlines; those without points get one of their own."""
-    if fiblets.rank_to_id is None:
+    ids = np.flatnonzero(fiblets.counts) if isinstance(fiblets, Streamlines) else fiblets.rank_to_id
+    if ids is None:
         return ranked
-    out = np.full((fiblets.n_streamlines, *ranked.shape[1:]), without)
-    out[fiblets.rank_to_id] = ranked
+    out = np.full((len(fiblets), *ranked.shape[1:]), without)
+    out[ids] = ranked
     return out
 
 
@@ -328,7 +345,7 @@ class Curvatures:
         return out
 
 
-def _computed(fiblets: FibletSet, name: str, original: Streamlines | None) -> npt.NDArray[Any]:
+def _computed(fiblets: FibletSet | Streamlines, name: str, original: Streamlines | None) -> npt.NDArray[Any]:
     from . import measure_kernels as kernels
 
     def arc_lengths(_: int, chunk: Streamlines) -> npt.NDArray[np.float32]:
@@ -339,11 +356,14 @@ def _computed(fiblets: FibletSet, name: str, original: Streamlines | None) -> np
     if name == "length":
         return _per_streamline(fiblets, lambda chunk: chunk.lengths(), 0.0)
     if name == "n_points":
-        return np.diff(fiblets.offsets()).astype(np.float64)
+        counts = fiblets.counts if isinstance(fiblets, Streamlines) else np.diff(fiblets.offsets())
+        return counts.astype(np.float64)
     if name == "mean_curvature":
         with Curvatures(fiblets) as found:
             return _per_streamline(fiblets, lambda chunk: found.means(chunk.points, chunk.offsets), np.nan)
     if name == "end_distance":
+        if isinstance(fiblets, Streamlines):
+            return _per_streamline(fiblets, _end_distances, np.nan)
         from ..selection.endpoints import end_points
 
         ends = end_points(fiblets)
@@ -353,10 +373,16 @@ def _computed(fiblets: FibletSet, name: str, original: Streamlines | None) -> np
         return curvature_values(fiblets)
     if name == "arc_length":
         return _per_point(fiblets, arc_lengths)
+    assert not isinstance(fiblets, Streamlines)
     return _coding_error(fiblets, original)
 
 
-def curvature_values(fiblets: FibletSet) -> npt.NDArray[np.float32]:
+def _end_distances(lines: Streamlines) -> Floats:
+    apart: Floats = np.linalg.norm(lines.points[lines.offsets[1:] - 1] - lines.points[lines.offsets[:-1]], axis=1)
+    return apart
+
+
+def curvature_values(fiblets: FibletSet | Streamlines) -> npt.NDArray[np.float32]:
     """Curvature at every point, in coded order, measured once a set: tables, criteria and colours have the same."""
     found: npt.NDArray[np.float32] | None = fiblets.__dict__.get(CURVATURE)
     if found is None:
@@ -366,7 +392,7 @@ def curvature_values(fiblets: FibletSet) -> npt.NDArray[np.float32]:
     return found
 
 
-def _distance(fiblets: FibletSet, what: Distance) -> Values:
+def _distance(fiblets: FibletSet | Streamlines, what: Distance) -> Values:
     from . import measure_kernels as kernels
 
     def least(chunk: Streamlines) -> Floats:

@@ -18,6 +18,7 @@ from ..measures.measures import Values
 
 if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
+    from ...streamlines import Streamlines
 
 __all__ = ["Criterion", "as_criterion", "point_words", "rank_words", "streamline_mask", "stretch"]
 
@@ -62,7 +63,7 @@ def as_criterion(given: Criterion | tuple[Any, ...]) -> Criterion:
     return given if isinstance(given, Criterion) else Criterion(*given)
 
 
-def point_words(fiblets: FibletSet, criteria: Iterable[Criterion | tuple[Any, ...]]) -> Words:
+def point_words(fiblets: FibletSet | Streamlines, criteria: Iterable[Criterion | tuple[Any, ...]]) -> Words:
     """One bit for each point, set where every criterion holds.
 
     Notes
@@ -104,9 +105,9 @@ def _kept(values: npt.NDArray[Any], criterion: Criterion) -> Mask:
     return found | np.isnan(number) if criterion.keep_nan else found
 
 
-def streamline_mask(fiblets: FibletSet, criteria: Iterable[Criterion | tuple[Any, ...]]) -> Mask:
+def streamline_mask(fiblets: FibletSet | Streamlines, criteria: Iterable[Criterion | tuple[Any, ...]]) -> Mask:
     """Streamlines that satisfy every criterion."""
-    mask = np.ones(fiblets.n_streamlines, bool)
+    mask = np.ones(len(fiblets), bool)
     for criterion in map(as_criterion, criteria):
         values = criterion.values
         if isinstance(values, Values):

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 import numpy as np
 import numpy.typing as npt
 
+from ...streamlines import Streamlines
 from ..regions.region import Region
 from .point_flags import ALL, ANY, FIRST, LAST, Sampling, check_sampling
 
@@ -65,7 +66,7 @@ class Predicate:
         """Return where it holds, ``(n_streamlines,)`` bool, from the flags of the conditions' regions."""
         raise NotImplementedError
 
-    def choose(self, fiblets: FibletSet, *, flags: FlagsOf | None = None) -> Mask:
+    def choose(self, fiblets: FibletSet | Streamlines, *, flags: FlagsOf | None = None) -> Mask:
         """Return the streamlines of a set that satisfy it; see :func:`select`."""
         return select(fiblets, self, flags=flags)
 
@@ -197,8 +198,8 @@ def ends_in(region: Region, which: Ends = "any") -> Predicate:
     return Condition(_region(region, "ends_in"), needed, every=which == "both")
 
 
-def select(fiblets: FibletSet, predicate: Predicate, *, flags: FlagsOf | None = None) -> Mask:
-    """Return the streamlines that satisfy a condition."""
+def select(fiblets: FibletSet | Streamlines, predicate: Predicate, *, flags: FlagsOf | None = None) -> Mask:
+    """Return the streamlines, compressed or not, that satisfy a condition."""
     if not isinstance(predicate, Predicate):
         hint = "; ask passes(region), ends_in(region) or stays_in(region)" if isinstance(predicate, Region) else ""
         raise TypeError(f"a {type(predicate).__name__} is no condition on streamlines{hint}")
@@ -207,15 +208,17 @@ def select(fiblets: FibletSet, predicate: Predicate, *, flags: FlagsOf | None = 
     for (region, sampling), bits in needed.items():
         if flags is not None:
             found[region, sampling] = flags(region, sampling)
+        elif isinstance(fiblets, Streamlines):
+            from .line_flags import line_flags
+
+            found[region, sampling] = line_flags(fiblets.points, fiblets.offsets, region, sampling)
         else:
             from .passing import region_flags
 
             found[region, sampling] = region_flags(fiblets, region, sampling, bits=bits)
     for listed in _listed(predicate):
-        if listed.mask.shape != (fiblets.n_streamlines,):
-            raise ValueError(
-                f"a mask of streamlines has the shape {listed.mask.shape}; give {fiblets.n_streamlines:,}"
-            )
+        if listed.mask.shape != (len(fiblets),):
+            raise ValueError(f"a mask of streamlines has the shape {listed.mask.shape}; give {len(fiblets):,}")
     return predicate.holds(lambda condition: found[_key(condition, needed)])
 
 

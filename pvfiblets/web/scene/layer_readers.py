@@ -25,7 +25,7 @@ def read_tubes(place: Path) -> tuple[Any, dict[str, Any]]:
                 f"{place.name} has {points:,} points, more than the {LARGEST_AS_TUBES:,} that spline tubes are made of "
                 "here; open it as a tractogram, and give that a tube radius"
             )
-    tubes, _ = as_tubes(place)
+    tubes, _, _ = as_tubes(place)
     return tubes, {"tubes": tubes.n_tubes, "segments": tubes.n_segments}
 
 

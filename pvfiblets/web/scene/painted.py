@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pvfiblets.plotting.fiblets.filter_state import unique_name
+from pvfiblets.plotting.filter_state import unique_name
 from pvfiblets.query.bundles.colours import distinct_colour, hex_colour
 from pvfiblets.query.painting.painter import Stroke
 from pvfiblets.web.session.document import Layer

@@ -13,6 +13,7 @@ from ....codec import direction_codebook, layout
 from ...clipping import CLIP_PLANES_BLOCK, clip_planes_block
 from ...frame import FRAME_BLOCK, frame_block, segment_pixels
 from ...gl.bindings import BLOCKS
+from ...gl.block_buffers import BlockBuffers
 from ...gl.uniform_struct import Field, UniformStruct
 from ..line_tubes import TUBES_BLOCK, tubes_block
 
@@ -54,7 +55,7 @@ def decoding_features(fiblets: FibletSet, chunks: list[Chunk]) -> list[str]:
     return [name for name, on in wanted.items() if on]
 
 
-class SharedBlocks:
+class SharedBlocks(BlockBuffers):
     """The blocks of one set.
 
     Parameters
@@ -69,7 +70,7 @@ class SharedBlocks:
     """
 
     def __init__(self, ctx: moderngl.Context, fiblets: FibletSet) -> None:
-        self._ctx = ctx
+        super().__init__(ctx)
         self._fiblets = fiblets
         self.top = 2**32 - 1 if fiblets.anchors_low is not None else 2**16 - 1
         self._view: View | None = None
@@ -82,7 +83,7 @@ class SharedBlocks:
             end_vector_scale=fiblets.parameters.end_scale,
             rotation_scales=direction_codebook.packed_scales().reshape(4, 4),
         )
-        self.buffers: dict[str, moderngl.Buffer] = {
+        self.buffers |= {
             "rotations": ctx.buffer(ROTATIONS_BLOCK.pack(rotations=direction_codebook.packed().reshape(-1, 4))),
             "coding": ctx.buffer(coding),
             "frame": ctx.buffer(bytes(FRAME_BLOCK.nbytes)),
@@ -109,35 +110,13 @@ class SharedBlocks:
         block, margin = frame_block(view, style, *self.place)
         radius = self._fiblets.parameters.largest_radius
         self.buffers["frame"].write(block)
-        if style.radius is None:
-            self._drop("tubes")
-        else:
-            self._write("tubes", TUBES_BLOCK, tubes_block(view, style.radius, *self.place))
-            radius += style.radius
+        tubes = None if style.radius is None else tubes_block(view, style.radius, *self.place)
+        self.put("tubes", TUBES_BLOCK, tubes)
+        radius += style.radius or 0.0
         planes = clip_planes_block(view, style.half_width, *self.place, radius)
-        if planes is None:
-            self._drop("clip_planes")
-        else:
-            self._write("clip_planes", CLIP_PLANES_BLOCK, planes)
-        return margin < radius, planes is not None
+        return margin < radius, self.put("clip_planes", CLIP_PLANES_BLOCK, planes)
 
     def segment(self) -> float:
         """Return roughly how many pixels the longest segments take in the last view."""
         # Where steps vary, four times their mean stands for the longest.
         return 0.0 if self._view is None else segment_pixels(self._view, *self.place, 4.0 * self._fiblets.step)
-
-    def _write(self, name: str, struct: UniformStruct, data: bytes) -> None:
-        if name not in self.buffers:
-            self.buffers[name] = self._ctx.buffer(reserve=struct.nbytes)
-        self.buffers[name].write(data)
-        self.buffers[name].bind_to_uniform_block(BLOCKS[struct.name])
-
-    def _drop(self, name: str) -> None:
-        if name in self.buffers:
-            self.buffers.pop(name).release()
-
-    def release(self) -> None:
-        """Give the buffers back; twice is harmless."""
-        for buffer in self.buffers.values():
-            buffer.release()
-        self.buffers.clear()

@@ -1,7 +1,7 @@
-"""What a user chose of a tractogram, as the engine draws by it: a mask of streamlines, bits of points, a region.
+"""What a user chose of lines, as the engine draws by it: a mask of lines, and bits of points.
 
-Everything that is chosen is joined by *and*. Nothing here knows an actor or a window: asking the GPU is somebody
-else's function, given where it is needed.
+Everything that is chosen is joined by *and*. Nothing here knows an actor or a window: what is chosen from is a
+:class:`Subject`, which may ask the GPU.
 """
 
 from __future__ import annotations
@@ -11,18 +11,47 @@ import operator
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from functools import reduce
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeAlias
 
 import numpy as np
 
-from pvfiblets.query.selection.predicates import Listed, Predicate, passes, select
+from pvfiblets.query.selection.predicates import Listed, Predicate, passes
 
 if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
-    from pvfiblets.engine.fiblets.data.filter_textures import Filter
+    from pvfiblets.query.measures.measures import Values
     from pvfiblets.regions import Region
+    from pvfiblets.streamlines import Streamlines
 
-__all__ = ["Choices", "Condition", "Criterion", "as_predicate", "checked_range", "in_groups", "unique_name"]
+    Lines: TypeAlias = FibletSet | Streamlines
+
+__all__ = [
+    "Choices", "Condition", "Criterion", "Subject", "as_predicate", "checked_range", "in_groups", "unique_name"
+]  # fmt: skip
+
+
+class Subject(Protocol):
+    """Lines that an actor draws, of which a user chooses some."""
+
+    NOUN: ClassVar[str]
+
+    @property
+    def lines(self) -> Lines:
+        """What criteria and conditions are about."""
+        ...
+
+    def where(self, predicate: Predicate) -> np.ndarray:
+        """Return where a condition holds, (n_lines,) bool."""
+        ...
+
+    def measure(self, what: Any) -> Values:
+        """Return a value for each line or point."""
+        ...
+
+    def show(self, mask: np.ndarray | None, words: np.ndarray | None) -> None:
+        """Draw those lines of a mask, and of these what lies between points that have bits; None for all."""
+        ...
+
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +93,7 @@ class Condition:
 
 @dataclass
 class Choices:
-    """All that a user chose; see :class:`~pvfiblets.plotting.fiblets.filtering.FilteredActor`."""
+    """All that a user chose; see :class:`~pvfiblets.plotting.filtering.FilteredActor`."""
 
     criteria: dict[str, Criterion] = field(default_factory=dict)
     conditions: dict[str, Condition] = field(default_factory=dict)
@@ -75,24 +104,30 @@ class Choices:
     # Bits of the points, and the criteria that they are of: these stay while others change.
     _words: tuple[tuple[Criterion, ...], np.ndarray] | None = None
 
+    @property
+    def any(self) -> bool:
+        """Whether something is chosen."""
+        whole = self.subset is None and self.ids is None and self.groups is None
+        return bool(self.criteria or self.conditions) or not whole
+
     def copy(self) -> Choices:
         """The same choices, to be changed on their own."""
         return replace(self, criteria=dict(self.criteria), conditions=dict(self.conditions))
 
-    def mask(self, fiblets: FibletSet) -> np.ndarray | None:
+    def mask(self, lines: Lines) -> np.ndarray | None:
         """Which streamlines are shown, (n_streamlines,) bool; None for all."""
         masks = [condition.mask for condition in self.conditions.values()]
         if per_streamline := self._of_kind("streamline"):
             from pvfiblets.query.selection.bits import streamline_mask
 
-            masks.append(streamline_mask(fiblets, [c.within() for c in per_streamline]))
+            masks.append(streamline_mask(lines, [c.within() for c in per_streamline]))
         masks += [mask for mask in (self.subset, self.ids) if mask is not None]
         if self.groups is not None:
-            shown = in_groups(fiblets, self.groups)
-            masks.append(shown | ~in_groups(fiblets, fiblets.groups) if self.ungrouped else shown)
+            shown = in_groups(lines, self.groups)
+            masks.append(shown | ~in_groups(lines, lines.groups) if self.ungrouped else shown)
         return reduce(operator.and_, masks) if masks else None
 
-    def points(self, fiblets: FibletSet) -> np.ndarray | None:
+    def points(self, lines: Lines) -> np.ndarray | None:
         """Bits of the points that are shown, uint32, in coded order; None for all."""
         per_point = self._of_kind("point")
         if not per_point:
@@ -100,46 +135,47 @@ class Choices:
         if self._words is None or self._words[0] != per_point:
             from pvfiblets.query.selection.bits import point_words
 
-            self._words = per_point, point_words(fiblets, [c.within() for c in per_point])
+            self._words = per_point, point_words(lines, [c.within() for c in per_point])
         return self._words[1]
 
     def _of_kind(self, kind: str) -> tuple[Criterion, ...]:
         return tuple(c for c in self.criteria.values() if c.values.kind == kind)
 
-    def filter(self, fiblets: FibletSet) -> Filter | None:
-        """What the engine is told; None where everything is shown."""
-        from pvfiblets.engine.fiblets.data.filter_textures import Filter
+    def show(self, subject: Subject) -> None:
+        """Have shown what is chosen."""
+        if self.any:
+            subject.show(self.mask(subject.lines), self.points(subject.lines))
+        else:
+            subject.show(None, None)
 
-        mask, points = self.mask(fiblets), self.points(fiblets)
-        return None if mask is None and points is None else Filter(mask, points)
-
-    def made_for(self, fiblets: FibletSet, before: FibletSet) -> Choices:
-        """Return the same choices for other fiblets than those before."""
-        from pvfiblets.query.measures.measures import measure
-
-        criteria = {}
+    def made_for(self, subject: Subject, before: Subject) -> Choices:
+        """Return the same choices for other lines than those before."""
+        if not self.any:
+            return Choices()
+        lines, criteria = subject.lines, {}
         for name, c in self.criteria.items():
             try:
-                values = measure(fiblets, c.what)
+                values = subject.measure(c.what)
             except (KeyError, ValueError) as error:
                 raise type(error)(
-                    f"criterion {name!r} does not fit these fiblets: {error.args[0]}; remove_criterion({name!r}) first"
+                    f"criterion {name!r} does not fit these {subject.NOUN}: {error.args[0]}; "
+                    f"remove_criterion({name!r}) first"
                 ) from error
             criteria[name] = replace(c, values=values)
-        conditions = {n: replace(c, mask=select(fiblets, c.predicate)) for n, c in self.conditions.items()}
-        same = fiblets.n_streamlines == before.n_streamlines
+        conditions = {n: replace(c, mask=subject.where(c.predicate)) for n, c in self.conditions.items()}
+        same = len(lines) == len(before.lines)
         return Choices(
             criteria=criteria,
             conditions=conditions,
-            groups=self.groups if self.groups and set(self.groups) <= set(fiblets.groups) else None,
+            groups=self.groups if self.groups and set(self.groups) <= set(lines.groups) else None,
             ungrouped=self.ungrouped,
             subset=self.subset if same else None,
             ids=self.ids if same else None,
         )
 
-    def explain(self, fiblets: FibletSet) -> dict[str, Any]:
+    def explain(self, lines: Lines) -> dict[str, Any]:
         """Return what is chosen, and of how many streamlines."""
-        mask, total = self.mask(fiblets), fiblets.n_streamlines
+        mask, total = self.mask(lines), len(lines)
         return {
             "streamlines": {"total": total, "shown": total if mask is None else int(mask.sum())},
             "criteria": {name: c.range for name, c in self.criteria.items()},
@@ -148,14 +184,14 @@ class Choices:
         }
 
 
-def in_groups(fiblets: FibletSet, names: Iterable[str]) -> np.ndarray:
+def in_groups(lines: Lines, names: Iterable[str]) -> np.ndarray:
     """Which streamlines are in any of some groups, (n_streamlines,) bool."""
-    mask = np.zeros(fiblets.n_streamlines, bool)
+    mask = np.zeros(len(lines), bool)
     for name in names:
-        if name not in fiblets.groups:
-            there = ", ".join(repr(group) for group in fiblets.groups) or "none"
+        if name not in lines.groups:
+            there = ", ".join(repr(group) for group in lines.groups) or "none"
             raise KeyError(f"there is no group {name!r}; there are: {there}")
-        mask[np.asarray(fiblets.groups[name])] = True
+        mask[np.asarray(lines.groups[name])] = True
     return mask
 
 

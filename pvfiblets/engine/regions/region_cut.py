@@ -1,44 +1,36 @@
-"""Where a region begins and ends along rays through a volume: what ``shaders/volumes/parts.glsl`` reads."""
+"""The region of a view, by which volumes, tubes and halos are cut."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 
 if TYPE_CHECKING:
     import moderngl
 
-    from ...volumes.volume import RaycastVolume
     from ..gl.moderngl_extras import GLExtras
     from ..gl.shaders import Programs
-    from ..regions.ray_intervals import RegionIntervals
     from ..view import View
+    from .ray_intervals import RegionIntervals
 
-__all__ = ["VolumeRegionIntervals"]
+__all__ = ["RegionCut"]
 
-TOP = 1 << 16
-"""Steps of the lattice over the volume's bounds of which one point is the origin of local coordinates."""
+Array = npt.NDArray[np.float64]
 
 
-class VolumeRegionIntervals:
-    """The boundaries of a view's region, which fiblets are cut by, too (:mod:`pvfiblets.engine.regions.ray_intervals`).
+class RegionCut:
+    """Where a view's region begins and ends along rays (:mod:`.ray_intervals`); `place` is the data's lattice.
 
     Nothing is on the GPU, and nothing imported, while views have no region.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    gl : GLExtras
-    programs : Programs
-    volume : RaycastVolume
     """
 
-    def __init__(self, ctx: moderngl.Context, gl: GLExtras, programs: Programs, volume: RaycastVolume) -> None:
-        self._made_of = ctx, gl, programs
+    def __init__(
+        self, ctx: moderngl.Context, gl: GLExtras, programs: Programs, place: tuple[Array, Array, int]
+    ) -> None:
+        self._made_of, self._place = (ctx, gl, programs), place
         self._cutter: RegionIntervals | None = None
-        bounds = np.array(volume.bounds).reshape(3, 2)
-        self._origin, self._scale = bounds[:, 0], np.ptp(bounds, axis=1) / TOP
 
     def update(self, view: View) -> list[str]:
         """Bring the boundaries up to date and return the features of programs that look at them."""
@@ -46,10 +38,10 @@ class VolumeRegionIntervals:
             self.release()
             return []
         if self._cutter is None:
-            from ..regions.ray_intervals import RegionIntervals
+            from .ray_intervals import RegionIntervals
 
             self._cutter = RegionIntervals(*self._made_of)
-        self._cutter.prepare(view, self._origin, self._scale, TOP)
+        self._cutter.prepare(view, *self._place)
         return ["CLIP_REGION"]
 
     def bind(self, program: Any) -> None:
