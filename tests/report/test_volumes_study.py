@@ -87,7 +87,7 @@ def test_all_parts_are_measured_and_what_converges_is_right(gl, small):
     assert of_step["composite"][0] < of_step["composite"][1] < 1e-3
     plain = shown["24³ vessels, composite", "default", ""]["colour rms"].value
     unlike = {key[1]: errors["unlike the default"].value for key, errors in shown.items() if "isosurface" in key[0]}
-    assert unlike["default"] == unlike["no octree"] == 0.0 < unlike["step"]
+    assert unlike["default"] == unlike["no octree"] == 0.0 < unlike["no refinement"]
     assert shown["24³ vessels, composite", "no octree", ""]["colour rms"].value == pytest.approx(plain, rel=1e-6)
     surface = "24³ vessels, isosurface"
     place = {method: shown[surface, method, ""]["place"].value for method in ("default", "no refinement")}
