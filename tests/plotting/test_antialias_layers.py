@@ -15,6 +15,7 @@ import pyvista as pv
 from pvfiblets.engine.effects.sample_positions import sample_positions
 from pvfiblets.engine.errors import EngineError
 from pvfiblets.engine.fiblets import sample_layers
+from pvfiblets.engine.fiblets.data import chunks
 from pvfiblets.engine.fiblets.sample_layers import SampleLayers
 from pvfiblets.engine.gl import shaders
 from pvfiblets.mappers import antialias_windows
@@ -121,6 +122,26 @@ def test_the_picture_is_that_of_samples_one_after_the_other(scene, change, parts
     actor.scalars = None
     at_once, mean = shown(plotter, monkeypatch)[0], shown(plotter, monkeypatch, singly=True)[0]
     assert np.sqrt((off_by(at_once, mean) ** 2.0).mean()) < 6.0
+
+
+@pytest.mark.parametrize("clustered", [1 << 21, 1])
+def test_what_is_hidden_changes_no_sample(lines, clustered, monkeypatch):
+    monkeypatch.setattr(chunks, "CLUSTERED", clustered)
+    pictures = []
+    for culling in (None, "two-phase"):
+        plotter = pv.Plotter(off_screen=True, window_size=SIZE)
+        actor = plotter.add_fiblets([*lines, *(0.9 * line for line in lines)], culling=culling, line_width=2.0)
+        plotter.show(auto_close=False)
+        for zoom in (1.0, 1.7):
+            plotter.camera.zoom(zoom)
+            plotter.camera.azimuth = 25.0 * zoom
+            picture, frames = shown(plotter, monkeypatch)
+            assert frames == 1
+            pictures.append(picture)
+        counts = actor.explain()["fiblets"]
+        plotter.close()
+    assert counts["drawn"] < counts["in_frustum"], "the last one's culling finds something"
+    np.testing.assert_array_equal(pictures[:2], pictures[2:])
 
 
 @pytest.mark.parametrize("colours", ["values", "arc length", "image", "tangents", "kept"])

@@ -278,7 +278,15 @@ class FibletRenderer(LinesBehind):
         from .sample_layers import draw_samples
 
         assert isinstance(self._pipeline, ComputePipeline)
-        draw_samples(self._ctx, self._pipeline, self._request(view, style, target))
+        culled = self._occlusion is not None and self._occlusion.halfway
+        pyramid = make_occlusion("two-phase" if culled else None, self._ctx, self._gl, self._programs, self._fiblets)
+        try:
+            if pyramid is not None:
+                pyramid.before(target, view, style)
+            draw_samples(self._ctx, self._pipeline, replace(self._request(view, style, target), occlusion=pyramid))
+        finally:
+            if pyramid is not None:
+                pyramid.release()
         yield from ()
 
     def value_range(self, values: str | VolumeSource) -> tuple[float, float]:

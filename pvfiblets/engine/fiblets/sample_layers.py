@@ -300,7 +300,7 @@ def draw_samples(ctx: moderngl.Context, pipeline: ComputePipeline, wanted: DrawR
     kept = ctx.buffer(reserve=marks.size)
     _copy(ctx, kept, marks)
     try:
-        pipeline.draw(replace(wanted, occlusion=None, samples=("SUBSAMPLES",)))
+        pipeline.draw(replace(wanted, samples=("SUBSAMPLES",)))
     finally:
         _copy(ctx, marks, kept)
         kept.release()

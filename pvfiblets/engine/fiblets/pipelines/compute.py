@@ -380,7 +380,8 @@ class ComputePipeline:
         Software OpenGL has finished the plan when the call returns, and takes 0.3 s to compile a program's first
         run: before a class gets a program, its fiblets are counted. Cards would have to be waited for.
         """
-        classes = [(part, [*features, *self._int64]) for part, features in request.classes(one=self._one_class)]
+        looks = (request.occlusion.feature,) if request.occlusion is not None and self._tests_segments(request) else ()
+        classes = [(part, [*features, *self._int64, *looks]) for part, features in request.classes(one=self._one_class)]
         name = f"fiblets/compute/{stage}.comp"
         made = all(self._programs.has_compute(name, each) for _, each in classes)
         if made or not (READ_LISTS and self._software and self._marks):
@@ -390,6 +391,11 @@ class ComputePipeline:
         lengths = [held.read(4 * CLASSES, offset=of.length_at(number)) for of in self._marks]
         longest = np.frombuffer(b"".join(lengths), np.uint32).reshape(-1, CLASSES).max(axis=0)
         return [one for one in classes if one[0] == 0 or longest[one[0]] > 0]
+
+    @staticmethod
+    def _tests_segments(request: DrawRequest) -> bool:
+        """Whether drawing programs of samples leave out segments that a pyramid hides, not only fiblets."""
+        return bool(request.samples) and request.occlusion is not None and request.occlusion.halfway
 
     def _run_listed(
         self,
@@ -409,8 +415,11 @@ class ComputePipeline:
                 request.peel.bind(program)
             if request.gather is not None:
                 request.gather.bind(program)
-            if number in (TESTED, LAST_LEFT, NOW_LEFT) and request.occlusion is not None:
+            segments = self._tests_segments(request) and number in (SEEN, REST, CANDIDATES, TIED)
+            if request.occlusion is not None and (number in (TESTED, LAST_LEFT, NOW_LEFT) or segments):
                 request.occlusion.bind(program)
+            if segments:
+                set_uniforms(program, tests_segments=int(number != SEEN))  # before them there is no pyramid
             set_uniforms(program, drawing=number, **uniforms)
 
         for program, _ in parts:

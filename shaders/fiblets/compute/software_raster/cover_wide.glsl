@@ -9,11 +9,23 @@
 //   foot, s      where on the piece a pixel is nearest to it, and the same within the piece
 //   away         from there to the pixel
 //
+// FEATURE_CULL_PYRAMID: a segment behind the farthest depth of the pixels around it is left out (culling/pyramid_lookup.glsl).
+//
 // FEATURE_SUBSAMPLES: sixteen of the pixels are samples of one of the picture. PLACES tells how far each lies from the middle of its square,
 // in these squares: together they are the positions of pvfiblets/engine/effects/sample_positions.py.
 
 #include "fiblets/compute/software_raster/brush_planes.glsl"
 #include "fiblets/segments/joint.glsl"
+#if FEATURE_CULL_PYRAMID
+#include "culling/pyramid_lookup.glsl"
+uniform int tests_segments;      // 0 as long as there is no pyramid
+
+bool segment_hidden(ClippedSegment piece, float r) {
+    vec2 low = min(piece.a.xy, piece.b.xy) - r - 1.0, high = max(piece.a.xy, piece.b.xy) + r + 1.0;
+    float farthest = farthest_in(ivec2(clamp(low, vec2(0.0), viewport - 1.0)), ivec2(clamp(high, vec2(0.0), viewport - 1.0)));
+    return min(piece.a.z, piece.b.z) > farthest + 4e-7;
+}
+#endif
 
 uniform uvec2 share;  // of every fiblet: first segment, and the one after the last; see pvfiblets/engine/fiblets/pipelines/compute.py
 
@@ -36,6 +48,9 @@ void cover(Segment segment) {
     ClippedSegment piece = segment.piece;
     BrushHeights heights = brush_heights(segment.from.local, segment.to.local, piece);
     float r = half_line_width;
+#if FEATURE_CULL_PYRAMID
+    if (tests_segments != 0 && segment_hidden(piece, r)) return;
+#endif
     vec2 d = piece.b.xy - piece.a.xy;
     peel_segment(piece.a.xy, piece.b.xy, r, segment.steps);
     bool steep = abs(d.y) > abs(d.x);
