@@ -7,7 +7,7 @@ import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path, PurePosixPath
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,6 +20,10 @@ from pvfiblets.support.whole_files import made_folder, replacing
 from pvfiblets.volumes.freesurfer_files import VALUES
 from pvfiblets.volumes.gifti_files import VALUES as OF_GIFTI
 from pvfiblets.web.values import plain
+
+if TYPE_CHECKING:
+    from pvfiblets.codec.fibletset import FibletSet
+    from pvfiblets.streamlines import Streamlines
 
 OF_VERTICES = (*OF_GIFTI, *VALUES)
 VTK = (".vtk", ".vtp")
@@ -90,13 +94,13 @@ def show(paths: list[str], **looks: Any) -> None:
             scene.close()
 
 
-def make_plotter(*, off_screen: bool, size: tuple[int, int] | None) -> Any:
+def make_plotter(*, off_screen: bool, size: tuple[int, int] | None, **panels: Any) -> Any:
     """Return a plotter; off screen on Linux without X, VTK need not try X first and complain."""
     if off_screen and sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
         os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
     import pyvista
 
-    return pyvista.Plotter(off_screen=off_screen, window_size=None if size is None else list(size))
+    return pyvista.Plotter(off_screen=off_screen, window_size=None if size is None else list(size), **panels)
 
 
 def fill(
@@ -243,7 +247,9 @@ def read_volume(path: str) -> Any:
 
 def demo(*, output: str, streamlines: int, step: float, seed: int, json: bool) -> None:
     """Make, compress, measure and draw a whole-brain-like tractogram."""
+    from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.codec.files.convert import compress_file
+    from pvfiblets.streamlines import Streamlines
     from pvfiblets.synthetic import brain_streamlines
 
     def say(text: str) -> None:
@@ -254,22 +260,20 @@ def demo(*, output: str, streamlines: int, step: float, seed: int, json: bool) -
     original, compressed, picture = (folder / f"brain.{end}" for end in ("tck", "fiblets", "png"))
 
     say(f"Making a whole-brain-like tractogram of {streamlines:,} streamlines ...")
-    brain = brain_streamlines(streamlines, step, seed)
-    formats.write(original, brain)
+    brain = brain_streamlines(streamlines, step, seed, fa=True)
+    formats.write(original, Streamlines(brain.points, brain.offsets))
     say("Compressing it ...")
     result = compress_file(original, compressed, progress=not json)
 
     say("Drawing it ...")
     begin = time.perf_counter()
-    plotter = make_plotter(off_screen=True, size=(1600, 1200))  # before PyVista is imported by anything else
+    # Before PyVista is imported by anything else.
+    plotter = make_plotter(
+        off_screen=True, size=(1600, 600), shape=(2, 4), groups=[(slice(None), slice(0, 2))], border=False
+    )
     try:
-        from pvfiblets.plotting.viewpoints import point_camera
-
-        plotter.set_background("black")
-        actor = plotter.add_fiblets(compressed, line_width=1.0, render=False)
-        point_camera(plotter, "oblique")
+        gpu_bytes = _show_colourings(plotter, FibletSet.open(compressed), brain)
         plotter.screenshot(picture, return_img=False)
-        gpu_bytes = actor.explain()["gpu_bytes"]
     finally:
         plotter.close()
     result["original_bytes"] = original.stat().st_size
@@ -280,6 +284,39 @@ def demo(*, output: str, streamlines: int, step: float, seed: int, json: bool) -
         print_json(result)
     else:
         print(demo_table(plain(result), original, compressed))
+
+
+def _show_colourings(plotter: Any, fiblets: FibletSet, brain: Streamlines) -> int:
+    """Show a brain from the left, large, and beside it in four colourings; return the bytes of the large one."""
+    from pvfiblets.codec.compress import compress
+    from pvfiblets.plotting.viewpoints import point_camera
+    from pvfiblets.query.bundles.colours import distinct_colours
+
+    bundle = brain.per_streamline["bundle"]
+    bar = {"color": "white", "vertical": True, "position_x": 0.86, "position_y": 0.2, "height": 0.6, "fmt": "%.3g"}
+    bar |= {"title_font_size": 14, "label_font_size": 14}
+    colourings: dict[str, dict[str, Any]] = {
+        "": {},
+        "orientation": {},
+        "length": {"scalars": "length", "cmap": "plasma", "scalar_bar_args": {**bar, "title": "mm"}},
+        "FA in each point": {"scalars": "fa", "cmap": "viridis", "clim": (0.1, 0.7),
+                             "scalar_bar_args": {**bar, "title": "FA"}},
+        "bundles": {"scalars": distinct_colours(int(bundle.max()) + 1)[bundle]},
+    }
+    with_fa = compress(brain, per_point=["fa"])
+    places = [(0, 0), (0, 2), (0, 3), (1, 2), (1, 3)]
+    actors = []
+    for place, (title, colours) in zip(places, colourings.items(), strict=True):
+        plotter.subplot(*place)
+        plotter.set_background("black")
+        shown = with_fa if title.startswith("FA") else fiblets
+        actors.append(plotter.add_fiblets(shown, line_width=1.0, render=False, **colours))
+        if title:
+            plotter.add_text(title, font_size=9, color="white")
+        point_camera(plotter, "sagittal")
+    plotter.render()
+    nbytes: int = actors[0].explain()["gpu_bytes"]
+    return nbytes
 
 
 def demo_table(result: dict[str, Any], original: Path, compressed: Path) -> str:

@@ -153,6 +153,18 @@ def test_peaks_are_those_before_a_mesh(make_plotter, tools):
     assert hit.voxel[1] == 32
 
 
+def test_peaks_are_those_before_a_slanted_mesh(make_plotter, tools):
+    mapper, actor = made(volume(ramp), RaycastOptions("mip"), colouring=through_table((-HALF, HALF)))
+    plotter = look(make_plotter())
+    plotter.add_actor(actor, reset_camera=False)
+    slanted = pv.Plane(center=(0.0, 3.0, 0.0), direction=(0.5, -1.0, 0.7), i_size=60, j_size=60)
+    plotter.add_mesh(slanted, color="red", lighting=False, reset_camera=False)
+    image = tools.picture(look(plotter), mapper)
+    inside = image[90:110, 110:130].astype(float)
+    assert np.abs(inside[..., 0] - inside[..., 2]).max() <= 2.5, "nothing red shows"
+    assert np.ptp(inside[..., 1]) > 3.0
+
+
 def test_local_peaks_are_the_first_and_others_the_greatest(make_plotter, tools):
     bumps = volume(lambda p: 0.6 * np.exp(-((p[..., 1] + 8) ** 2) / 8) + np.exp(-((p[..., 1] - 8) ** 2) / 8))
     mapper, actor = made(bumps, RaycastOptions("mip"), colouring=through_table((0.0, 1.0)))
