@@ -39,7 +39,7 @@ def by_numbers(settings: Any) -> bool:
     return settings["scalars"] not in (None, "orientation", "ends", "random")
 
 
-def _colour_map(name: str, value: Any) -> Any:
+def colour_map(name: str, value: Any) -> Any:
     """Return a colour map; raise ValueError for an unknown name, even if no numbers colour yet."""
     if isinstance(value, str):
         from pyvista.plotting.colors import get_cmap_safe
@@ -106,7 +106,7 @@ CMAP: Setting[Any] = Setting(
     kind=COLORMAP,
     header="str, list, colormap or LookupTable, optional",
     where=COLOURS,
-    check=_colour_map,
+    check=colour_map,
     read=lambda actor: actor._theme.cmap if actor._settings.cmap is None else actor._settings.cmap,  # noqa: SLF001
     row=Row("Map", "Colours from the low to the high end of the range.", type="choice",
             choices=[(None, "default"), *MAPS], matters=by_numbers),

@@ -49,3 +49,26 @@ def test_homes_are_the_entry_points():
 def test_a_component_is_imported_when_it_is_asked_for(name, how):
     done = subprocess.run([sys.executable, "-c", SCRIPT, name, how], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
+
+
+ADDED = """
+import sys
+import numpy as np
+import pyvista as pv
+
+line = np.stack([np.linspace(0.0, 9.0, 12), np.zeros(12), np.sin(np.arange(12.0))], axis=1)
+cube = np.arange(125.0).reshape(5, 5, 5)
+given = {"add_halo_points": line, "add_raycast_volume": cube, "add_slices": cube}
+plotter = pv.Plotter(off_screen=True)
+actor = getattr(plotter, sys.argv[1])(given.get(sys.argv[1], [line, line + 1.0]))
+plotter.show(auto_close=False)
+plotter.close()
+"""
+
+
+@pytest.mark.parametrize("name", [name for name in HOMES if name.startswith("add_")])
+def test_each_kind_of_actor_needs_no_other(name):
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", ADDED, name], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr

@@ -234,7 +234,7 @@ def opengl_objects() -> dict[str, int]:
     for kind in KINDS:
         is_one = ctypes.CFUNCTYPE(ctypes.c_ubyte, ctypes.c_uint)(address_of(f"glIs{kind}"))
         found[kind] = sum(bool(is_one(name)) for name in range(1, gpu_memory.MOST_NAMES))
-    found["bytes"] = gpu_memory.taken() or 0
+    found["bytes"] = gpu_memory.allocated() or 0
     error_of_current()  # it asks textures for levels that they lack
     return found
 

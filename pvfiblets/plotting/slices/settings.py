@@ -8,7 +8,7 @@ from typing import Any
 
 from pvfiblets.plotting.setting_places import Place
 from pvfiblets.plotting.settings import Argument, Row, Setting, Settings, truth
-from pvfiblets.plotting.shared_settings import CMAP, LIMITS, MAPS, Common
+from pvfiblets.plotting.shared_settings import LIMITS, MAPS, Common, colour_map
 
 __all__ = ["LAYER", "MEANING", "SliceCommon", "SliceSettings"]
 
@@ -94,7 +94,7 @@ class SliceSettings(Settings):
         kind="ColormapOptions | pv.LookupTable",
         header='str, list, colormap or LookupTable, default: "gray"',
         where=LAYER,
-        check=lambda _name, value: CMAP.check(value),
+        check=colour_map,
         row=Row("Map", "Colours from the low to the high end of the window.", type="choice",
                 choices=[("gray", "gray"), *(one for one in MAPS if one[0] != "gray")], matters=_of("scalars")),
     )
