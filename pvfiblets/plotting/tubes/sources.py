@@ -101,7 +101,8 @@ def with_node_values(
     if is_image(scalars) and not (isinstance(scalars, str) and scalars in {**tubes.values, **tubes.tube_values}):
         image = as_image(scalars)
         return _with_rows(tubes, image.name or "volume", image.at(tubes.points))
-    if isinstance(scalars, str) and data is not None and scalars not in {**tubes.values, **tubes.tube_values}:
+    known = {*tubes.values, *tubes.tube_values, *BUILT_IN}  # the radius is the drawn one, not the source's array
+    if isinstance(scalars, str) and data is not None and scalars not in known:
         rows = data.per_point.get(scalars)
         if rows is not None and len(rows) == tubes.n_nodes:
             return _with_rows(tubes, scalars, rows.astype(np.float64))
