@@ -41,7 +41,7 @@ class FibletDrawable(Drawable[FibletStyle]):
         style : FibletStyle
             Of which, with the view, :meth:`layers_samples` is true.
         rectangle : tuple of 4 ints
-            x, y, width, height of the part of the picture in which anything can be.
+            x, y, width, height of the part of the picture outside of which the set draws nothing.
         """
 
     def sample_layers(self) -> SampleLayers:

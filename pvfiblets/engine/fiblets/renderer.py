@@ -140,7 +140,8 @@ class FibletRenderer(LinesBehind):
             self._fiblets = fiblets = fitted.kept()
             self.share = fitted.share
             self._shared = self._keep(SharedBlocks(ctx, fiblets))
-            self._kept = self._keep(Visibility(ctx, self._gl, self._programs, whole, fiblets, self._chunks))
+            place = self._shared.place
+            self._kept = self._keep(Visibility(ctx, self._gl, self._programs, whole, fiblets, self._chunks, place))
             if culling == "auto" and fiblets.n_fiblets < FEW_FIBLETS:
                 culling = None
             self._culling = make_occlusion(culling, ctx, self._gl, self._programs, fiblets)
@@ -235,7 +236,7 @@ class FibletRenderer(LinesBehind):
         decoding = self._decoding_features()
         source = values.activate(style.values, decoding)
         clipping, planes = shared.write_camera(view, style)
-        kept.update(view, *shared.place)
+        kept.update(view)
         values.locate(local_frame(view, *shared.place)[1])
         return DrawRequest(
             chunks=self._chunks,

@@ -167,7 +167,7 @@ class SampleLayers:
         Raises
         ------
         EngineError
-            If memory does not suffice, or there are more sets than can be told apart.
+            If memory does not suffice, or there are more than `MOST_SETS` sets.
         """
         self._sets = len(sets)
         if len(sets) > MOST_SETS:
@@ -359,7 +359,7 @@ def _parts(rectangle: Rectangle, most: int) -> tuple[tuple[int, int], list[tuple
 
 
 def _subsampled(lines: SampledLines, corner: tuple[int, int], size: tuple[int, int]) -> tuple[View, FibletStyle]:
-    """Return view and style of a part of a picture, whose samples are pixels: so many, from a pixel of the picture."""
+    """Return view and style of the part of a picture from a pixel on, of `size` samples that are drawn as pixels."""
     view, style = lines.view, lines.style
     width, tolerance = SIDE * style.line_width, SIDE * style.tolerance
     matrix = np.eye(4)

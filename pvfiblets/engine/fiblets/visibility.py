@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-import numpy.typing as npt
-
 from ..frame import local_frame
+from ..regions.region_cut import RegionCut
 from .data.filter_textures import Filter, FilterTextures
 
 if TYPE_CHECKING:
@@ -17,7 +15,7 @@ if TYPE_CHECKING:
     from ...codec.fibletset import FibletSet
     from ..gl.moderngl_extras import GLExtras
     from ..gl.shaders import Programs
-    from ..regions.ray_intervals import RegionIntervals
+    from ..regions.region_cut import Place
     from ..regions.uniform_block import RegionBlock
     from ..view import View
     from .data.chunks import Chunk
@@ -36,6 +34,8 @@ class Visibility:
     whole, drawn : FibletSet
         The set that filters refer to, and the set on the GPU: the same, or some of its streamlines.
     chunks : sequence of Chunk
+    place : tuple
+        The lattice of the anchors, as of `RegionCut`.
     """
 
     def __init__(
@@ -46,12 +46,13 @@ class Visibility:
         whole: FibletSet,
         drawn: FibletSet,
         chunks: Sequence[Chunk],
+        place: Place,
     ) -> None:
         self._ctx = ctx
         self._gl = gl
-        self._programs = programs
+        self._place = place
         self._filter = FilterTextures(ctx, whole, drawn, chunks)
-        self._cutter: RegionIntervals | None = None
+        self._cut = RegionCut(ctx, gl, programs, place)
         self._block: RegionBlock | None = None
 
     @property
@@ -63,22 +64,17 @@ class Visibility:
     def filtering(self, wanted: Filter | None) -> None:
         self._filter.filtering = wanted
 
-    def update(
-        self, view: View, origin: npt.NDArray[np.float64], scale: npt.NDArray[np.float64], top: int
-    ) -> None:
+    def update(self, view: View) -> None:
         """Bring what depends on the region and the camera up to date."""
+        self._cut.update(view)
         if view.region is None:
-            self._drop_region()
+            self._drop_block()
             return
-        if self._cutter is None:
-            from ..regions.ray_intervals import RegionIntervals
+        if self._block is None:
             from ..regions.uniform_block import RegionBlock
 
-            self._cutter = RegionIntervals(self._ctx, self._gl, self._programs)
             self._block = RegionBlock(self._ctx, self._gl)
-        assert self._block is not None
-        self._cutter.prepare(view, origin, scale, top)
-        self._block.write(view.region, local_frame(view, origin, scale, top)[1])
+        self._block.write(view.region, local_frame(view, *self._place)[1])
 
     @property
     def culling(self) -> tuple[str, ...]:
@@ -88,7 +84,7 @@ class Visibility:
     @property
     def cutting(self) -> tuple[str, ...]:
         """Features of programs that draw parts of fiblets."""
-        return (*self._filter.cutting, *(("CLIP_REGION",) if self._cutter is not None else ()))
+        return (*self._filter.cutting, *self._cut.features)
 
     def _region_features(self) -> tuple[str, ...]:
         return () if self._block is None else self._block.features
@@ -96,8 +92,8 @@ class Visibility:
     def bind(self, program: Any) -> None:
         """Bind what a program looks at whichever chunk it goes through, and tell it where everything is."""
         self._filter.bind(program)
-        if self._cutter is not None and self._block is not None:
-            self._cutter.bind(program)
+        self._cut.bind(program)
+        if self._block is not None:
             self._block.bind(program)
 
     def bind_chunk(self, chunk: int) -> None:
@@ -107,20 +103,18 @@ class Visibility:
     @property
     def buffers(self) -> dict[str, int]:
         """Bytes on the GPU, by name."""
-        sizes = {"filter": self._filter.nbytes}
-        if self._cutter is not None:
-            sizes["region"] = self._cutter.nbytes
+        sizes = {"filter": self._filter.nbytes, **self._cut.sizes}
         if self._block is not None:
             sizes["region shapes"] = self._block.nbytes
         return {name: size for name, size in sizes.items() if size}
 
-    def _drop_region(self) -> None:
-        for thing in (self._cutter, self._block):
-            if thing is not None:
-                thing.release()
-        self._cutter = self._block = None
+    def _drop_block(self) -> None:
+        if self._block is not None:
+            self._block.release()
+            self._block = None
 
     def release(self) -> None:
         """Give everything on the GPU back; twice is harmless."""
         self._filter.release()
-        self._drop_region()
+        self._cut.release()
+        self._drop_block()

@@ -1,4 +1,4 @@
-"""The region of a view, by which volumes, tubes and halos are cut."""
+"""The region of a view, by which everything that the engine draws is cut."""
 
 from __future__ import annotations
 
@@ -15,9 +15,11 @@ if TYPE_CHECKING:
     from ..view import View
     from .ray_intervals import RegionIntervals
 
-__all__ = ["RegionCut"]
+__all__ = ["Place", "RegionCut"]
 
 Array = npt.NDArray[np.float64]
+Place = tuple[Array, Array, int]
+"""Origin of a lattice and mm per integer, ``(3,)`` float64, and the largest integer."""
 
 
 class RegionCut:
@@ -26,9 +28,7 @@ class RegionCut:
     Nothing is on the GPU, and nothing imported, while views have no region.
     """
 
-    def __init__(
-        self, ctx: moderngl.Context, gl: GLExtras, programs: Programs, place: tuple[Array, Array, int]
-    ) -> None:
+    def __init__(self, ctx: moderngl.Context, gl: GLExtras, programs: Programs, place: Place) -> None:
         self._made_of, self._place = (ctx, gl, programs), place
         self._cutter: RegionIntervals | None = None
 
@@ -42,7 +42,12 @@ class RegionCut:
 
             self._cutter = RegionIntervals(*self._made_of)
         self._cutter.prepare(view, *self._place)
-        return ["CLIP_REGION"]
+        return self.features
+
+    @property
+    def features(self) -> list[str]:
+        """Features of programs that look at the boundaries."""
+        return [] if self._cutter is None else ["CLIP_REGION"]
 
     def bind(self, program: Any) -> None:
         """Bind what a program looks at and tell it where that is."""
