@@ -314,6 +314,8 @@ def _show_colourings(plotter: Any, fiblets: FibletSet, brain: Streamlines) -> in
         if title:
             plotter.add_text(title, font_size=9, color="white")
         point_camera(plotter, "sagittal")
+    for scalar_bar in plotter.scalar_bars.values():
+        scalar_bar.SetVerticalTitleSeparation(10)  # a title does not stand on the first number
     plotter.render()
     nbytes: int = actors[0].explain()["gpu_bytes"]
     return nbytes
