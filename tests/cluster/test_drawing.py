@@ -274,16 +274,21 @@ def test_a_plotter_shows_what_workers_draw(client, brain):
     assert told["parts"] == 2
 
 
-@pytest.mark.parametrize("mesh", [False, True])
-def test_samples_of_what_workers_draw_are_those_of_one_machine(client, brain, mesh, monkeypatch):
+@pytest.mark.parametrize("other", [None, "mesh", "lines before", "lines after"])
+def test_samples_of_what_workers_draw_are_those_of_one_machine(client, brain, other, monkeypatch):
     monkeypatch.setattr(sample_layers, "MOST_TEXELS", 2**17)
+    among = [line + 0.5 for line in brain.decompress()][::2]
 
     def shot(**options):
         plotter = pv.Plotter(off_screen=True, window_size=(160, 120))
         plotter.picture.antialias = "refined"
-        if mesh:
+        if other == "mesh":
             plotter.add_mesh(pv.Sphere(radius=40.0, center=(0, 0, 20)), color="white")
+        if other == "lines before":
+            plotter.add_fiblets(among, color="white")
         actor = plotter.add_fiblets(brain, scalars="height", **options)
+        if other == "lines after":
+            plotter.add_fiblets(among, color="white")
         actor.include(regions.Sphere((20, 0, 20), 40.0))
         plotter.show(auto_close=False)
         found = plotter.screenshot(None)

@@ -51,6 +51,7 @@ import moderngl
 import numpy as np
 from pvfiblets import compress, synthetic
 from pvfiblets.engine import FibletRenderer, FibletStyle, View
+from pvfiblets.engine.gbuffer import GBuffer
 from pvfiblets.engine.gl import shaders
 from pvfiblets.engine.fiblets.pipelines import compute
 from pvfiblets.report.studies.stability.render_checks import camera
@@ -75,6 +76,11 @@ def again(self, stage, parts, number, *rest, **uniforms):
         self._barrier()
 
 
+def others(culling):
+    moved = type(lines)(lines.points + [3.0, 1.0, 2.0], lines.offsets)
+    return FibletRenderer(ctx, compress(moved), pipeline="compute", culling=culling)
+
+
 def pictures(culling):
     renderer = FibletRenderer(ctx, fiblets, pipeline="compute", culling=culling)
     cut = [[1.0, 0.2, 0.1, 5.0]]
@@ -83,6 +89,15 @@ def pictures(culling):
         matrix = camera((200, 150), eye=np.array([0, -18, 8]) + 300 * side, target=(0, -18, 8), near=100.0, far=500.0)
         gbuffer = renderer.render(View((200, 150), matrix, planes), FibletStyle(width, values="arc_length"))
         yield [t.read() for t in (gbuffer.depth, gbuffer.owner)], [t.read() for t in (gbuffer.ids, gbuffer.position)]
+    view, style, other = View((200, 150), matrix), FibletStyle(4.0, values="arc_length"), others(culling)
+    target = GBuffer(ctx, (200, 150))
+    for adds, drawn in enumerate((renderer, other)):
+        for lines in drawn.sampled(view, style, (0, 0, 200, 150)):
+            for _ in lines.draw(view, style, target, bool(adds)):
+                pass
+    yield [t.read() for t in (target.depth, target.owner)], [t.read() for t in (target.ids, target.position)]
+    target.release()
+    other.release()
     names = [p["name"] for p in renderer.explain()["passes"]]
     print(*names)
     buffers = {b["name"]: b["bytes"] for b in renderer.explain()["buffers"]}

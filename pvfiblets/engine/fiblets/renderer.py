@@ -275,7 +275,7 @@ class FibletRenderer(LinesBehind):
         self._check_alive()
         return [SampledLines(view, style, rectangle, self._draw_samples)]
 
-    def _draw_samples(self, view: View, style: FibletStyle, target: GBuffer) -> Iterator[None]:
+    def _draw_samples(self, view: View, style: FibletStyle, target: GBuffer, adds: bool) -> Iterator[None]:
         from .sample_layers import draw_samples
 
         assert isinstance(self._pipeline, ComputePipeline)
@@ -284,7 +284,8 @@ class FibletRenderer(LinesBehind):
         try:
             if pyramid is not None:
                 pyramid.before(target, view, style)
-            draw_samples(self._ctx, self._pipeline, replace(self._request(view, style, target), occlusion=pyramid))
+            request = replace(self._request(view, style, target), occlusion=pyramid, adds=adds)
+            draw_samples(self._ctx, self._pipeline, request)
         finally:
             if pyramid is not None:
                 pyramid.release()

@@ -3,7 +3,8 @@
 Fiblets are decoded once for all samples of a pixel, which lie side by side in a picture four times as wide and high
 (``FEATURE_SUBSAMPLES``): each has a depth test of its own. The samples of a pixel that show the same fiblet are lit
 once: layer k holds each pixel's line with the k-th most samples, and their share of the pixel. Several sets, and the
-parts of a set that is drawn in parts, are drawn one after the other into the same samples.
+parts of a set that is drawn in parts, are drawn one after the other into the same samples: what earlier ones hide of
+later ones is culled.
 """
 
 from __future__ import annotations
@@ -19,7 +20,6 @@ from typing import TYPE_CHECKING
 import moderngl
 import numpy as np
 
-from ..drawable import AnyResource
 from ..errors import EngineError
 from ..gbuffer import EMPTY, GBuffer
 from ..gl.bindings import SAMPLE_LAYER
@@ -27,7 +27,7 @@ from ..gl.moderngl_extras import GLExtras
 from ..gl.queries import Query
 from ..gl.shaders import Programs
 from ..view import View
-from .parts.part_pictures import PictureTarget, textures_of
+from .parts.part_pictures import PictureTarget
 from .style import FibletStyle
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ WHOLE = 2**16
 """Share of a layer that is alone in a pixel."""
 
 MOST_TEXELS = 2**23
-"""Samples that are kept at a time: 24 bytes each, of several sets twice."""
+"""Samples that are kept at a time: 24 bytes each, 28 of several sets."""
 
 MOST_SETS = 2**15
 
@@ -63,13 +63,14 @@ class SampledLines:
         x, y, width, height of the part of the picture in which any of them can be.
     draw : callable
         Draws the samples of a part of the picture, whose view, style and G-buffer it is given, and yields where it
-        waits.
+        waits. The fourth argument says whether nearer samples in the G-buffer stay; otherwise it begins with none.
+        Then the owner is `EMPTY` where these lines do not show.
     """
 
     view: View
     style: FibletStyle
     rectangle: Rectangle
-    draw: Callable[[View, FibletStyle, GBuffer], Iterator[None]]
+    draw: Callable[[View, FibletStyle, GBuffer, bool], Iterator[None]]
 
 
 @dataclass(frozen=True)
@@ -86,54 +87,6 @@ class Layer:
 
     shares: moderngl.Texture
     of: Callable[[int], GBuffer]
-
-
-class _Buffers:
-    """A picture of samples, made anew for another size."""
-
-    def __init__(self, ctx: moderngl.Context) -> None:
-        self._ctx = ctx
-        self._made: GBuffer | None = None
-
-    def of(self, size: tuple[int, int]) -> GBuffer:
-        """Return one for pixels of a size."""
-        if self._made is None or self._made.size != _times(SIDE, size):
-            self.release()
-            self._made = GBuffer(self._ctx, _times(SIDE, size))
-        return self._made
-
-    def release(self) -> None:
-        """Give it back; twice is harmless."""
-        if self._made is not None:
-            self._made.release()
-            self._made = None
-
-
-class _Together:
-    """Samples of several sets or parts in one picture, and what draws into it."""
-
-    def __init__(self, ctx: moderngl.Context, gl: GLExtras, size: tuple[int, int]) -> None:
-        self._gl = gl
-        with ExitStack() as held:
-            self.picture = GBuffer(ctx, size)
-            held.callback(self.picture.release)
-            try:
-                depths = ctx.depth_renderbuffer(size)
-                held.callback(depths.release)
-                self.framebuffer = ctx.framebuffer(list(textures_of(self.picture).values()), depths)
-                held.callback(self.framebuffer.release)
-                self._depths = ctx.framebuffer(depth_attachment=depths)
-                held.callback(self._depths.release)
-            except moderngl.Error as error:
-                raise EngineError(f"no memory for samples of {size[0]} x {size[1]} pixels") from error
-            self.release = held.pop_all().close
-
-    def clear(self) -> None:
-        """Begin with nothing."""
-        with self._gl.framebuffers_kept():
-            self._depths.clear(depth=1.0)
-        for attachment in (0, 1):
-            self._gl.clear_integers(self.framebuffer, (EMPTY,), attachment)
 
 
 class SampleLayers:
@@ -174,56 +127,54 @@ class SampleLayers:
             raise EngineError(f"{len(sets)} sets are more than samples at once can tell apart; hide some")
         lines = [(number, part) for number, parts in enumerate(sets) for part in parts]
         whole = lines[0][1].view.size
-        size, corners = _parts(_union([one.rectangle for _, one in lines]), MOST_TEXELS // min(len(lines), 2))
-        drawn = self._keep(_Buffers(self._ctx))
-        entries, listed = _target(self._ctx, size, 4)
-        self._keep(entries)
-        self._keep(listed)
-        kept = self._keep(_Together(self._ctx, self._gl, _times(SIDE, size))) if len(lines) > 1 else None
+        size, corners = _parts(_union([one.rectangle for _, one in lines]), MOST_TEXELS)
+        samples = GBuffer(self._ctx, _times(SIDE, size))
+        self._held.callback(samples.release)
+        entries, listed = self._target(size, 4)
+        shown, claimed = self._target(samples.size, 1) if len(sets) > 1 else (samples.owner, None)
         steps = len(corners) * len(lines)
         for part, corner in enumerate(corners):
-            self._ctx.scissor = None
-            if kept is not None:
-                kept.clear()
+            adds = False
             for step, (number, one) in enumerate(lines, part * len(lines)):
-                place = _common(one.rectangle, (*corner, *size)) if kept is not None else (*corner, *size)
-                if place is not None:
-                    picture = drawn.of(place[2:])
-                    for _ in one.draw(*_subsampled(one, place[:2], picture.size), picture):
+                if _meet(one.rectangle, (*corner, *size)) or (step + 1 == (part + 1) * len(lines) and not adds):
+                    self._ctx.scissor = None
+                    for _ in one.draw(*_subsampled(one, corner, samples.size), samples, adds):
                         yield step / steps
-                    if kept is not None:
-                        begin = place[0] - corner[0], place[1] - corner[1]
-                        self._merge(picture, kept, _times(SIDE, begin), number)
+                    adds = True
+                    if claimed is not None:
+                        self._claim(samples, claimed, number)
                 if step + 1 < (part + 1) * len(lines):
                     yield (step + 1) / steps
             with self._gl.framebuffers_kept():
-                self._sort(whole, drawn.of(size) if kept is None else kept.picture, entries, listed, corner)
+                self._sort(whole, samples, shown, entries, listed, corner)
             yield (part + 1) / len(corners)
         self._held.close()
         for target in self._targets:
             yield Layer(target.picture.owner, partial(self._of_set, target.picture))
 
-    def _keep(self, kept: AnyResource) -> AnyResource:
-        self._held.callback(kept.release)
-        return kept
+    def _target(self, size: tuple[int, int], components: int) -> tuple[moderngl.Texture, moderngl.Framebuffer]:
+        """Return a texture that is held until all is drawn, and what draws into it."""
+        target = _target(self._ctx, size, components)
+        for one in target:
+            self._held.callback(one.release)
+        return target
 
-    def _merge(self, drawn: GBuffer, kept: _Together, corner: tuple[int, int], number: int) -> None:
-        """Put samples of a set to those before, where they are nearer."""
-        program, array = self._programs.screen("fiblets/samples/merge.frag", [])
-        _use(program, {f"drawn_{name}": getattr(drawn, name) for name in ("depth", "ids", "position")})
-        program["corner"], program["set"] = corner, number
+    def _claim(self, samples: GBuffer, claimed: moderngl.Framebuffer, number: int) -> None:
+        """Note the set of the samples in which it has shown."""
+        program, array = self._programs.screen("fiblets/samples/claim.frag", [])
+        _use(program, {"drawn_owner": samples.owner})
+        program["set"] = number
         self._ctx.scissor = None
-        self._ctx.enable_only(moderngl.DEPTH_TEST)
-        self._ctx.depth_func = "<="
+        self._ctx.enable_only(moderngl.NOTHING)
         with self._gl.framebuffers_kept():
-            kept.framebuffer.use()
-            kept.framebuffer.viewport = (*corner, *drawn.size)
+            claimed.use()
             array.render(moderngl.TRIANGLES, vertices=3)
 
     def _sort(
         self,
         size: tuple[int, int],
         samples: GBuffer,
+        sets: moderngl.Texture,
         entries: moderngl.Texture,
         listed: moderngl.Framebuffer,
         corner: tuple[int, int],
@@ -232,13 +183,13 @@ class SampleLayers:
         self._ctx.enable_only(moderngl.NOTHING)
         self._ctx.scissor = None
         program, array = self._programs.screen("fiblets/samples/entries.frag", [])
-        _use(program, {f"drawn_{name}": getattr(samples, name) for name in ("depth", "owner", "ids")})
+        drawn = {"drawn_depth": samples.depth, "drawn_ids": samples.ids, "drawn_set": sets}
+        _use(program, drawn)
         program["several"] = int(self._sets > 1)
         listed.use()
         array.render(moderngl.TRIANGLES, vertices=3)
         program, array = self._programs.screen("fiblets/samples/layer.frag", [])
-        drawn = {f"drawn_{name}": getattr(samples, name) for name in ("depth", "owner", "ids", "position")}
-        _use(program, {"entries": entries, **drawn})
+        _use(program, {"entries": entries, "drawn_position": samples.position, **drawn})
         program["corner"], program["several"] = corner, int(self._sets > 1)
         for number in range(LAYERS):
             if number == len(self._targets):
@@ -336,11 +287,11 @@ def _union(rectangles: Iterable[Rectangle]) -> Rectangle:
     return min(left), min(low), max(right) - min(left), max(top) - min(low)
 
 
-def _common(one: Rectangle, other: Rectangle) -> Rectangle | None:
-    """Return what two rectangles share."""
-    x, y = (max(one[axis], other[axis]) for axis in (0, 1))
-    width, height = (min(r[axis] + r[axis + 2] for r in (one, other)) - low for axis, low in enumerate((x, y)))
-    return (x, y, width, height) if width > 0 and height > 0 else None
+def _meet(one: Rectangle, other: Rectangle) -> bool:
+    """Say whether two rectangles have a pixel in common."""
+    return all(
+        max(one[axis], other[axis]) < min(one[axis] + one[axis + 2], other[axis] + other[axis + 2]) for axis in (0, 1)
+    )
 
 
 def _times(factor: int, pair: tuple[int, int]) -> tuple[int, int]:

@@ -146,7 +146,8 @@ BETWEEN_ROUNDS = Scope("the pass between rounds", {"depth_key": 13, "owner": 14,
 LAYER_COPY = Scope("copies of layers", {"depth": 12, "ids": 13, "position": 14, "across": 15})
 SAMPLE_LAYER = Scope(
     "layers of samples",
-    {"drawn_owner": 12, "entries": 13, "drawn_depth": 14, "drawn_ids": 15, "drawn_position": 16, "shares": 17},
+    {"drawn_owner": 12, "entries": 13, "drawn_depth": 14, "drawn_ids": 15, "drawn_position": 16, "shares": 17,
+     "drawn_set": 18},
 )
 NEARER_PART = Scope(
     "the nearer of two parts",

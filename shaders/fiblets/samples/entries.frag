@@ -4,7 +4,7 @@
 //
 //   drawn_depth   by sample (FEATURE_SUBSAMPLES), 4 x 4 texels a pixel; 0xFFFFFFFF where no line is
 //   drawn_ids     streamlines and tangents
-//   drawn_owner   sets, where there are several
+//   drawn_set     sets, where there are several
 //   entries       16 bytes, from the lowest, that of no line first, then those with most samples: 16 (samples - 1) + the
 //                 sample's number
 
@@ -12,7 +12,7 @@
 
 uniform usampler2D drawn_depth;
 uniform usampler2D drawn_ids;
-uniform usampler2D drawn_owner;
+uniform usampler2D drawn_set;
 uniform int several;
 out uvec4 entries;
 
@@ -40,7 +40,7 @@ void main() {
         uvec2 ids = empty ? uvec2(0u) : texelFetch(drawn_ids, sample_at, 0).xy;
         lines[i] = ids.x;
         tangents[i] = ids.y;
-        sets[i] = several != 0 && !empty ? texelFetch(drawn_owner, sample_at, 0).x : 0u;
+        sets[i] = several != 0 && !empty ? texelFetch(drawn_set, sample_at, 0).x : 0u;
         none |= empty ? 1u << i : 0u;
         differing |= (lines[i] ^ lines[0]) | (sets[i] ^ sets[0]) | (alike(tangents[i], tangents[0]) ? 0u : 1u);
     }

@@ -3,14 +3,14 @@
 // those that are left out count in proportion to the lines that are not: what no line covers keeps its share.
 //
 //   entries, drawn_depth, drawn_ids, drawn_position   of the samples of a part of the picture
-//   drawn_owner                                       where there are several sets: a sample's
+//   drawn_set                                         where there are several sets: a sample's
 //   corner                                            pixel of the picture where that part begins
 
 #version 430
 
 uniform usampler2D entries;
 uniform usampler2D drawn_depth;
-uniform usampler2D drawn_owner;
+uniform usampler2D drawn_set;
 uniform usampler2D drawn_ids;
 uniform sampler2D drawn_position;
 uniform int layer;
@@ -46,7 +46,7 @@ void main() {
     uint of_lines = 4096u * (16u - none), lines = max(listed - none, 1u), from = before - min(before, none);
     uint part = layer == 0 && none > 0u ? 4096u * none
         : of_lines * (from + samples_of(entry)) / lines - of_lines * from / lines;
-    share = part | (several != 0 ? texelFetch(drawn_owner, at, 0).x << 17u : 0u);
+    share = part | (several != 0 ? texelFetch(drawn_set, at, 0).x << 17u : 0u);
     ids = texelFetch(drawn_ids, at, 0).xy;
     position = texelFetch(drawn_position, at, 0).xy;
 }

@@ -226,14 +226,14 @@ class ClusterRenderer(NearestOnly):
         self._check_alive()
         return [SampledLines(view, style, rectangle, self._draw_samples)]
 
-    def _draw_samples(self, view: View, style: FibletStyle, target: GBuffer) -> Iterator[None]:
+    def _draw_samples(self, view: View, style: FibletStyle, target: GBuffer, adds: bool) -> Iterator[None]:
         _, root = self._submit(view, style, samples=True)
         while not root.done():
             self._wait(root, LOOK)
             if not root.done():
                 self._workers()
                 yield
-        write_picture(_told(root), target)
+        write_picture(_told(root), target, adds=adds)
 
     def _forget(self) -> None:
         # dask gives up what nobody holds any more; told to cancel, it would stop at tasks that have just ended.

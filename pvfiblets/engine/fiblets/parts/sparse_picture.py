@@ -114,14 +114,22 @@ def _keys(picture: SparsePicture) -> npt.NDArray[np.uint64]:
     return keys
 
 
-def write_picture(found: SparsePicture, target: GBuffer) -> None:
-    """Fill a G-buffer of the same size and kind; pixels outside the picture are empty."""
+def write_picture(found: SparsePicture, target: GBuffer, *, adds: bool = False) -> None:
+    """Fill a G-buffer of the same size and kind; with `adds`, nearer pixels in it stay, but for their owner.
+
+    The other pixels are empty.
+    """
     count = found.size[0] * found.size[1]
+    shown: Any = slice(None)
+    if adds:
+        shown = found.textures["depth"] <= _read(target.depth, "<u4", 1)[found.pixels]
     for name, array in found.textures.items():
         texture = getattr(target, name)
-        empty = EMPTY if name in ("depth", "owner") else 0
-        whole = np.full((count, *array.shape[1:]), empty, array.dtype)
-        whole[found.pixels] = array
+        if adds and name != "owner":
+            whole = _read(texture, array.dtype.str, 1 if array.ndim == 1 else array.shape[1]).copy()
+        else:
+            whole = np.full((count, *array.shape[1:]), EMPTY if name in ("depth", "owner") else 0, array.dtype)
+        whole[found.pixels[shown]] = array[shown]
         texture.write(whole.tobytes())
 
 

@@ -13,7 +13,6 @@ from collections import OrderedDict
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from functools import reduce
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -136,17 +135,16 @@ class _Drawing:
             raise EngineError(f"a worker has no compute shaders for samples; its pipeline is {renderer.pipeline!r}")
         target = GBuffer(self._ctx, view.size)
         try:
-            found = []
+            adds = False
             for lines in renderer.sampled(view, style, (0, 0, *view.size)):
-                for _ in lines.draw(view, style, target):
+                for _ in lines.draw(view, style, target, adds):
                     pass
-                found.append(read_picture(target, order))
-            if not found:  # no part is in the view
+                adds = True
+            if not adds:  # no part is in the view
                 target.depth.write(EMPTY.to_bytes(4, "little") * (view.size[0] * view.size[1]))
-                found.append(read_picture(target, order))
+            return read_picture(target, order)
         finally:
             target.release()
-        return reduce(nearer, found)
 
 
 _drawing: _Drawing | None = None

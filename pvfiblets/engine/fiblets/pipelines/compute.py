@@ -3,7 +3,7 @@
 =============  =================================================================================================
 pass           task
 =============  =================================================================================================
-clear          empties depth and owners
+clear          empties depth and owners; only owners where lines are added to others
 cull           plans the drawing: which fiblets can show, which were visible last time, which others will probably show
                by the last picture's depth, and the class of each
 visible        draws the depth of the fiblets visible last time with imageAtomicMin; marks the ones that came nearest
@@ -220,6 +220,7 @@ class ComputePipeline:
         target, occlusion, passes = request.target, request.occlusion, request.passes
         with passes.timed("clear"):
             clear = self._program("clear", self._int64)
+            set_uniforms(clear, adds=int(request.adds))
             dispatch(clear, target.size[1], self._max_groups)
         with passes.timed("cull"):
             features = self._planning(request)

@@ -57,6 +57,8 @@ class DrawRequest:
         The picture begins behind these layers.
     gather : Gather, optional
         Where all lines are added up, in place of the nearest's picture.
+    adds : bool
+        Whether nearer pixels in the target stay, but for their owner. Only the pipeline ``compute`` can.
     """
 
     chunks: Sequence[Chunk]
@@ -77,6 +79,7 @@ class DrawRequest:
     samples: tuple[str, ...] = ()
     peel: Peel | None = None
     gather: Gather | None = None
+    adds: bool = False
 
     @property
     def wide(self) -> tuple[str, ...]:
