@@ -29,26 +29,15 @@ Found = TypeVar("Found")
 
 
 class Pieces:
-    """Ends of one picture's pieces, by the times of earlier ones.
-
-    Parameters
-    ----------
-    passes : Passes
-        Whose clock stands while others draw.
-    again : callable
-        Binds what drawing programs need, as others may have bound something else.
-    known : dict
-        Seconds of a work group and the most groups so far, by stage: learnt here, and kept from picture to picture.
-    seconds : float
-        Of a piece.
-    """
+    """Ends of one picture's pieces, by the times of earlier ones."""
 
     def __init__(
         self,
-        passes: Passes,
-        again: Callable[[], Any],
+        passes: Passes,  # whose clock stands while others draw
+        again: Callable[[], Any],  # binds what drawing programs need, as others may have bound something else
+        # seconds of a work group and the most groups so far, by stage: learnt here, and kept from picture to picture
         known: dict[str, tuple[float, int]],
-        seconds: float = PIECE,
+        seconds: float = PIECE,  # of a piece
     ) -> None:
         self._passes = passes
         self._again = again

@@ -22,12 +22,7 @@ over a line by less than 6 degrees does not count: neighbours in a flat bundle a
 
 
 class AmbientOcclusionPass(ScreenEffect):
-    """Openness of each pixel of a G-buffer.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    """
+    """Openness of each pixel of a G-buffer."""
 
     def __init__(self, ctx: moderngl.Context) -> None:
         super().__init__(ctx, {"gain": GAIN, "bias": BIAS})

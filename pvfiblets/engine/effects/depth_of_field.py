@@ -29,24 +29,12 @@ TILE = 8
 
 @dataclass(frozen=True)
 class Focus:
-    """Settings of a lens.
+    """Settings of a lens."""
 
-    Parameters
-    ----------
-    distance : float
-        mm from the viewer's plane to the plane in focus; above 0.
-    aperture : float
-        mm: the lens's diameter. In a parallel view it is that of a lens at the viewer's place.
-    max_blur : float
-        Pixels, 1 to `WIDEST`: no disc has a greater radius.
-    darkening : float
-        0 to 1: the share of light lost by pixels with the widest disc.
-    """
-
-    distance: float
-    aperture: float
-    max_blur: float
-    darkening: float = 0.0
+    distance: float  # mm from the viewer's plane to the plane in focus; above 0
+    aperture: float  # mm: the lens's diameter. In a parallel view it is that of a lens at the viewer's place.
+    max_blur: float  # pixels, 1 to `WIDEST`: no disc has a greater radius
+    darkening: float = 0.0  # 0 to 1: the share of light lost by pixels with the widest disc
 
     def uniforms(self, lens: Projection) -> dict[str, object]:
         """Return what ``shaders/effects/picture/blur.frag`` asks for."""

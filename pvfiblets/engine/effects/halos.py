@@ -20,12 +20,7 @@ TILE = 8
 
 
 class HaloPass(ScreenEffect):
-    """Pixels of the halos of a G-buffer's lines, and their depths.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    """
+    """Pixels of the halos of a G-buffer's lines, and their depths."""
 
     def __init__(self, ctx: moderngl.Context) -> None:
         super().__init__(ctx, {"tile": TILE})

@@ -17,12 +17,7 @@ ROW = 4096
 
 
 class OutlinePass(ScreenEffect):
-    """Pixels of the outline of chosen streamlines.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    """
+    """Pixels of the outline of chosen streamlines."""
 
     def __init__(self, ctx: moderngl.Context) -> None:
         super().__init__(ctx, {})

@@ -21,21 +21,11 @@ _BYTES = {"f1": 1, "f4": 4, "u4": 4}
 
 @dataclass(frozen=True)
 class Attachment:
-    """A texture of somebody else's framebuffer.
+    """A texture of somebody else's framebuffer."""
 
-    Attributes
-    ----------
-    name : int
-        OpenGL's.
-    samples : int
-        Per pixel; 0 for a plain texture.
-    floats : bool
-        Whether its colours are floats, not bytes.
-    """
-
-    name: int
-    samples: int
-    floats: bool = False
+    name: int  # OpenGL's
+    samples: int  # per pixel; 0 for a plain texture
+    floats: bool = False  # whether its colours are floats, not bytes
 
     def features(self, *, alike: bool = False) -> list[str]:
         """Return features of shaders that read it; `alike`: all samples of a pixel are the same."""
@@ -45,12 +35,7 @@ class Attachment:
 class PicturePasses:
     """Programs, textures and framebuffers of passes over a picture.
 
-    Parameters
-    ----------
-    ctx : moderngl.Context
-        Current, as for every method. Nothing is made on it until a picture is changed.
-    constants : mapping
-        Values of ``{{ name }}`` in the shaders.
+    Nothing is made on the context until a picture is changed.
     """
 
     def __init__(self, ctx: moderngl.Context, constants: Mapping[str, object]) -> None:

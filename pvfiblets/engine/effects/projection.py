@@ -15,22 +15,10 @@ _FROM_COMPLEMENT = np.array([[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0
 
 @dataclass(frozen=True, eq=False)
 class Projection:
-    """A picture's size and projection.
+    """A picture's size and projection."""
 
-    Parameters
-    ----------
-    size : tuple of int
-        Width and height in pixels.
-    projection : array_like
-        ``(4, 4)`` float64: view coordinates (mm, the viewer at the origin, looking along -z) to clip coordinates.
-
-    Raises
-    ------
-    ValueError
-        If the projection is not a finite (4, 4) matrix that can be inverted.
-    """
-
-    size: tuple[int, int]
+    size: tuple[int, int]  # width and height in pixels
+    # `(4, 4)` float64: view coordinates (mm, the viewer at the origin, looking along -z) to clip coordinates
     projection: npt.NDArray[np.float64]
     pixel_to_view: npt.NDArray[np.float64] = field(init=False, repr=False)
     """``(4, 4)``: (x, y in [-1, 1], 1 - window depth, 1) to view coordinates, homogeneous, largest entry 1."""

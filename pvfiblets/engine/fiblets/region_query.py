@@ -44,34 +44,16 @@ Bytes = npt.NDArray[np.uint8]
 
 
 class RegionQuery:
-    """Asks one set that is on the GPU.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    gl : GLExtras
-    programs : Programs
-    fiblets : FibletSet
-        The whole set, with its codes.
-    chunks : sequence of Chunk
-        What of it is on the GPU.
-    max_groups : int
-        Work groups per axis of a dispatch; 0 for as many as the driver allows.
-
-    Attributes
-    ----------
-    unsure : int
-        How many streamlines of the last query were settled in float64.
-    """
+    """Asks one set that is on the GPU."""
 
     def __init__(
         self,
         ctx: moderngl.Context,
         gl: GLExtras,
         programs: Programs,
-        fiblets: FibletSet,
-        chunks: Sequence[Chunk],
-        max_groups: int,
+        fiblets: FibletSet,  # the whole set, with its codes
+        chunks: Sequence[Chunk],  # what of it is on the GPU
+        max_groups: int,  # work groups per axis of a dispatch; 0 for as many as the driver allows
     ) -> None:
         self._ctx = ctx
         self._gl = gl
@@ -81,7 +63,7 @@ class RegionQuery:
         self._max_groups = max_groups
         self._block = RegionBlock(ctx, gl)
         self._frame: moderngl.Buffer | None = None
-        self.unsure = 0
+        self.unsure = 0  # how many streamlines of the last query were settled in float64
 
     @property
     def available(self) -> bool:

@@ -60,24 +60,10 @@ class BindingError(ValueError):
 
 
 class Scope(Mapping[str, int]):
-    """Binding numbers by name.
-
-    Parameters
-    ----------
-    name : str
-        Of the programs, for messages.
-    numbers : mapping of str to int
-    first, last : int
-        The least and the greatest number that there may be.
-
-    Raises
-    ------
-    BindingError
-        If two names share a number, or one is out of range.
-    """
+    """Binding numbers by name."""
 
     def __init__(self, name: str, numbers: Mapping[str, int], *, first: int = FIRST_UNIT, last: int = 47) -> None:
-        self.name = name
+        self.name = name  # of the programs, for messages
         self._numbers = dict(numbers)
         for bound, number in self._numbers.items():
             if not first <= number <= last:

@@ -32,14 +32,7 @@ class _Read(NamedTuple):
 
 
 class DelayedRead:
-    """Reads float32 numbers of framebuffers, later.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-        Must be current in every call.
-    gl : GLExtras
-    """
+    """Reads float32 numbers of framebuffers, later."""
 
     def __init__(self, ctx: moderngl.Context, gl: GLExtras) -> None:
         self._ctx, self._gl = ctx, gl

@@ -37,28 +37,9 @@ _WORDS = {"f": ctypes.c_float, "i": ctypes.c_int, "ui": ctypes.c_uint}
 
 
 class MeshProgram:
-    """A linked program of a task, a mesh and a fragment stage.
+    """A linked program of a task, a mesh and a fragment stage, whose sources have moderngl's names.
 
-    Parameters
-    ----------
-    ctx : moderngl.Context
-        Must be current in every call.
-    sources : mapping of str to str
-        GLSL by moderngl's names: ``task_shader``, ``mesh_shader``, ``fragment_shader``.
-    blocks : mapping of str to int
-        Bindings of uniform blocks; missing ones are skipped.
-    nvidia : bool
-        Whether the sources are of GL_NV_mesh_shader.
-
-    Raises
-    ------
-    moderngl.Error
-        If a stage does not compile, or the stages do not link; with what the driver says.
-
-    Attributes
-    ----------
-    extra : object
-        Whatever its users keep about it, as programs of moderngl have it.
+    ``nvidia`` sources are of GL_NV_mesh_shader. ``blocks`` are bindings of uniform blocks; missing ones are skipped.
     """
 
     def __init__(
@@ -66,7 +47,7 @@ class MeshProgram:
     ) -> None:
         self._gl = GLExtras(ctx)
         self._nvidia = nvidia
-        self.extra: Any = None
+        self.extra: Any = None  # whatever its users keep about it, as programs of moderngl have it
         self.glo = 0
         self._link_either(sources)
         self._array = ctypes.c_uint(0)

@@ -64,17 +64,10 @@ _PASSED = (0x911A, 0x911C)  # already, or within the time that was given
 
 
 class Uniform(NamedTuple):
-    """The location of a uniform of a program that moderngl did not make.
-
-    Attributes
-    ----------
-    location : int
-    kind : int
-        OpenGL's number of its type.
-    """
+    """The location of a uniform of a program that moderngl did not make."""
 
     location: int
-    kind: int
+    kind: int  # OpenGL's number of its type
 
 
 class BufferTexture:
@@ -82,23 +75,15 @@ class BufferTexture:
 
     Made by :meth:`GLExtras.texture_buffer`. It holds no copy: shaders read the buffer itself.
     Release it before the buffer.
-
-    Attributes
-    ----------
-    internal_format : str
-        Of :data:`TEXEL_FORMATS`.
-    nbytes : int
-        Bytes that can be read: whole texels only.
-    texels : int
     """
 
     def __init__(self, gl: GLExtras, glo: int, buffer: moderngl.Buffer, internal_format: str) -> None:
         self._gl = gl
         self._glo = glo
         self._buffer: moderngl.Buffer | None = buffer  # must outlive the texture
-        self.internal_format = internal_format
+        self.internal_format = internal_format  # of `TEXEL_FORMATS`
         self.texels = buffer.size // TEXEL_FORMATS[internal_format][1]
-        self.nbytes = self.texels * TEXEL_FORMATS[internal_format][1]
+        self.nbytes = self.texels * TEXEL_FORMATS[internal_format][1]  # bytes that can be read: whole texels only
 
     @property
     def glo(self) -> int:
@@ -121,13 +106,7 @@ class BufferTexture:
 
 
 class GLExtras:
-    """Functions of the context that is current, looked up when first needed.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-        Must be current in every call.
-    """
+    """Functions of the context that is current, looked up when first needed."""
 
     def __init__(self, ctx: moderngl.Context) -> None:
         self._ctx = ctx

@@ -30,10 +30,6 @@ class Passes:
 
     A GPU is measured with timer queries. Mesa's software OpenGL returns 0 from them for compute work, but runs it
     before the dispatching call returns: there the clock is read instead.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
     """
 
     def __init__(self, ctx: moderngl.Context) -> None:

@@ -36,13 +36,7 @@ class PictureClock(Protocol):
 
 
 class CallClock:
-    """Seconds until a call returns: where OpenGL works on the CPU before it returns.
-
-    Parameters
-    ----------
-    clock : callable
-        Seconds.
-    """
+    """Seconds until a call returns: where OpenGL works on the CPU before it returns."""
 
     def __init__(self, clock: Callable[[], float] = time.perf_counter) -> None:
         self._clock = clock
@@ -65,13 +59,7 @@ class CallClock:
 
 
 class TimestampClock:
-    """Seconds between two marks in the GPU's own queue; marks may lie around timer queries, which cannot be nested.
-
-    Parameters
-    ----------
-    gl : GLExtras
-        OpenGL 3.3 or later.
-    """
+    """Seconds between two marks in the GPU's own queue; marks may lie around timer queries, which cannot be nested."""
 
     def __init__(self, gl: GLExtras) -> None:
         self._gl = gl

@@ -283,18 +283,12 @@ class Programs:
     """Programs of one context, built when first asked for and kept.
 
     Whoever draws asks for a program each time it runs, so that :meth:`noting` knows what a picture was made of.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    constants : mapping
-        Values of ``{{ name }}`` in every source.
     """
 
     def __init__(self, ctx: moderngl.Context, constants: Mapping[str, object]) -> None:
         tell_of_compiling(ctx.info["GL_RENDERER"], ctx.info["GL_VERSION"])
         self._ctx = ctx
-        self._constants = dict(constants)
+        self._constants = dict(constants)  # values of `{{ name }}` in every source
         self._programs: dict[str, moderngl.ComputeShader] = {}
         self._requests: dict[tuple[str, frozenset[str]], moderngl.ComputeShader] = {}
         self._linked: dict[tuple[tuple[tuple[str, str], ...], frozenset[str]], moderngl.Program] = {}

@@ -62,8 +62,6 @@ class HaloRenderer(HitDrawable[HaloDrawStyle]):
     ``lines_total`` (0 of points), ``primitives`` (triangles without culling) and ``culling`` (as the last picture was
     drawn).
 
-    Notes
-    -----
     Source: Everts, Bekker, Roerdink and Isenberg, "Depth-dependent halos" (2009), section 3.
     """
 

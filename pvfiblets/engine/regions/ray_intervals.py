@@ -55,15 +55,7 @@ _LAYERS = 2
 
 
 class RegionIntervals:
-    """Keeps the boundaries of a region along the rays of a picture.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-        OpenGL 3.3 or later.
-    gl : GLExtras
-    programs : Programs
-    """
+    """Keeps the boundaries of a region along the rays of a picture."""
 
     def __init__(self, ctx: moderngl.Context, gl: GLExtras, programs: Programs) -> None:
         self._ctx = ctx

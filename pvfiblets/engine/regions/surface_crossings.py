@@ -49,22 +49,12 @@ _DEPTH_CLAMP, _CLIP_DISTANCE_0 = 0x864F, 0x3000
 
 @dataclass(frozen=True)
 class Peeled:
-    """Textures of a surface's layers.
+    """Textures of a surface's layers."""
 
-    Attributes
-    ----------
-    rectangle : tuple of int
-        Pixels that the surface may touch: left, lower, right, upper.
-    first, layers : int
-        Numbers of the first, and how many.
-    tallies : int
-        First of its tallies, or -1.
-    """
-
-    rectangle: Rectangle
-    first: int
+    rectangle: Rectangle  # pixels that the surface may touch: left, lower, right, upper
+    first: int  # numbers of the first, and how many
     layers: int
-    tallies: int
+    tallies: int  # first of its tallies, or -1
     crossings: int
 
 
@@ -132,14 +122,7 @@ class _Mesh:
 
 
 class SurfaceLayers:
-    """Draws the layers of a region's surfaces.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    gl : GLExtras
-    programs : Programs
-    """
+    """Draws the layers of a region's surfaces."""
 
     def __init__(self, ctx: moderngl.Context, gl: GLExtras, programs: Programs) -> None:
         self._ctx = ctx

@@ -26,25 +26,13 @@ Range = tuple[slice, slice, slice]
 
 @dataclass(frozen=True)
 class BrickLayout:
-    """A volume in bricks.
+    """A volume in bricks."""
 
-    Parameters
-    ----------
-    shape : tuple of int
-        Voxels of the volume.
-    size : tuple of int
-        Voxels of a brick. The last along the first two axes is the first of the next brick, if there is one.
-    counts : tuple of int
-        Bricks along each axis.
-    in_page : tuple of int
-        Columns and rows of bricks in a page.
-    pages : int
-    """
-
-    shape: tuple[int, int, int]
+    shape: tuple[int, int, int]  # voxels of the volume
+    # voxels of a brick. The last along the first two axes is the first of the next brick, if there is one.
     size: tuple[int, int, int]
-    counts: tuple[int, int, int]
-    in_page: tuple[int, int]
+    counts: tuple[int, int, int]  # bricks along each axis
+    in_page: tuple[int, int]  # columns and rows of bricks in a page
     pages: int
 
     @property

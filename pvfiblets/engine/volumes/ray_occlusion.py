@@ -51,12 +51,6 @@ _NAME, _MEAN = "ray occlusion", "mean ray occlusion"
 class RayOcclusionPass(ScreenEffect):
     """How open each pixel's point of a surface is, by equation 10.
 
-    Parameters
-    ----------
-    ctx : moderngl.Context
-
-    Notes
-    -----
     Source: Lesar, "Real-time ray casting of volumetric data" (2015), section III.G.
     """
 

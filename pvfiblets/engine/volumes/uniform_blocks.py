@@ -77,18 +77,10 @@ Array = npt.NDArray[np.float64]
 
 
 class RayBlock:
-    """The block of one volume.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    volume : RaycastVolume
-    reading : tuple of 2 floats
-        Scale and shift from what shaders read to values.
-    """
+    """The block of one volume."""
 
     def __init__(self, ctx: moderngl.Context, volume: RaycastVolume, reading: tuple[float, float]) -> None:
-        self._volume, self._reading = volume, reading
+        self._volume, self._reading = volume, reading  # scale and shift from what shaders read to values
         self.buffer = ctx.buffer(reserve=RAYCAST_BLOCK.nbytes)
 
     @property

@@ -59,26 +59,14 @@ CLUSTERED = 1 << 21
 
 @dataclass(frozen=True)
 class ChunkPlan:
-    """Consecutive whole pages that fit into buffers together.
+    """Consecutive whole pages that fit into buffers together."""
 
-    Attributes
-    ----------
-    pages : tuple of int
-        First page and one past the last.
-    fiblets, codes, points : tuple of int
-        The same for fiblets, bytes of codes, and points, counted over the whole set.
-    sizes : dict of str to int
-        Bytes of each buffer that holds the records.
-    values : int
-        Bytes of the largest buffer that a per-point value may ask for.
-    """
-
-    pages: tuple[int, int]
-    fiblets: tuple[int, int]
+    pages: tuple[int, int]  # first page and one past the last
+    fiblets: tuple[int, int]  # the same for fiblets, bytes of codes, and points, counted over the whole set
     codes: tuple[int, int]
     points: tuple[int, int]
-    sizes: dict[str, int]
-    values: int
+    sizes: dict[str, int]  # bytes of each buffer that holds the records
+    values: int  # bytes of the largest buffer that a per-point value may ask for
 
     @property
     def nbytes(self) -> int:

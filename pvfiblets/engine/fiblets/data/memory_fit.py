@@ -53,21 +53,11 @@ _ADVICE = "draw fewer streamlines, an even share of them by fit='sample', or all
 
 @dataclass(frozen=True)
 class Fitted:
-    """The drawn part of a set.
+    """The drawn part of a set."""
 
-    Attributes
-    ----------
-    fiblets : FibletSet
-        The set, or a part of it.
-    plans : list of ChunkPlan
-        Its chunks.
-    share : float
-        How many of the set's streamlines with points it has: 1.0 for all.
-    """
-
-    fiblets: FibletSet
-    plans: list[ChunkPlan]
-    share: float
+    fiblets: FibletSet  # the set, or a part of it
+    plans: list[ChunkPlan]  # its chunks
+    share: float  # how many of the set's streamlines with points it has: 1.0 for all
 
     def kept(self) -> FibletSet:
         """Return the set to keep once it is on the GPU: a part, without its codes."""
@@ -76,27 +66,13 @@ class Fitted:
 
 @dataclass(frozen=True)
 class MemoryBudget:
-    """Memory that a set may take; made by :meth:`of`.
+    """Memory that a set may take; made by :meth:`of`."""
 
-    Attributes
-    ----------
-    limits : Limits
-        Of the pipeline.
-    video : int or None
-        Bytes free for buffers and pictures, None where that cannot be known.
-    host : int or None
-        Bytes free for what stays in the machine's memory.
-    shared : bool
-        Whether both are the same memory.
-    largest : int or None
-        Bytes that all buffers together may have, if the caller limits them.
-    """
-
-    limits: Limits
-    video: int | None
-    host: int | None
-    shared: bool
-    largest: int | None = None
+    limits: Limits  # of the pipeline
+    video: int | None  # bytes free for buffers and pictures, None where that cannot be known
+    host: int | None  # bytes free for what stays in the machine's memory
+    shared: bool  # whether both are the same memory
+    largest: int | None = None  # bytes that all buffers together may have, if the caller limits them
 
     @classmethod
     def of(cls, ctx: moderngl.Context, gl: GLExtras, limits: Limits, largest: int | None) -> MemoryBudget:

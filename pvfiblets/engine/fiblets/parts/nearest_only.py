@@ -29,17 +29,10 @@ _NO_SUMS = (
 
 
 class NearestOnly(FibletDrawable):
-    """Draws a set of fiblets in parts.
+    """Draws a set of fiblets in parts."""
 
-    Attributes
-    ----------
-    hurried : bool
-        Whether pictures show the available data at once.
-    patience : float or None
-        Seconds after which a picture is given back as it is; None for complete pictures only.
-    """
-
-    hurried = False
+    hurried = False  # whether pictures show the available data at once
+    # seconds after which a picture is given back as it is; None for complete pictures only
     patience: float | None = None
     _filter: Filter | None = None
 

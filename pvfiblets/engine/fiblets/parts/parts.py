@@ -62,23 +62,14 @@ class Parts(Protocol):
 
 
 class Stretches:
-    """Parts of a set in memory or mapped: stretches of streamlines that are coded one after another.
-
-    Parameters
-    ----------
-    fiblets : FibletSet
-    gpu_bytes : int
-        GPU memory that all of it would take.
-    part_bytes : int
-        What a part may take, about.
-    """
+    """Parts of a set in memory or mapped: stretches of streamlines that are coded one after another."""
 
     by_streamline = False
 
     def __init__(self, fiblets: FibletSet, gpu_bytes: int, part_bytes: int) -> None:
         self.whole = fiblets
         self._share = min(part_bytes / max(gpu_bytes, 1), 1.0)
-        self._gpu_bytes = gpu_bytes
+        self._gpu_bytes = gpu_bytes  # GPU memory that all of it would take
 
     @classmethod
     def of_count(cls, fiblets: FibletSet, count: int) -> Stretches:

@@ -67,51 +67,21 @@ THINNED = -1  # number of the even share among the parts
 
 
 class StreamedRenderer(NearestOnly):
-    """Draws a set with one part at a time on the GPU.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-    parts : Parts
-    room : int
-        Bytes of GPU memory for all parts that are there at a time.
-    needed : callable
-        Returns the GPU bytes of a part.
-    pipeline : str
-        As of :class:`.FibletRenderer`.
-    alike : int, optional
-        As of :class:`.FibletRenderer`; the whole set's fiblets by default.
-    clock : callable
-        Seconds.
-
-    Attributes
-    ----------
-    pipeline : str
-        The one in use.
-    share : float
-        How many of the parts in the view the last picture shows.
-
-    Raises
-    ------
-    EngineError
-        If OpenGL is older than the pipeline.
-    GPUMemoryError
-        If not even two parts fit.
-    """
+    """Draws a set with one part at a time on the GPU."""
 
     def __init__(
         self,
         ctx: moderngl.Context,
         parts: Parts,
-        room: int,
-        needed: Callable[[FibletSet], int],
+        room: int,  # bytes of GPU memory for all parts that are there at a time
+        needed: Callable[[FibletSet], int],  # returns the GPU bytes of a part
         *,
-        pipeline: str = "auto",
-        alike: int | None = None,
+        pipeline: str = "auto",  # as of `.FibletRenderer`
+        alike: int | None = None,  # as of `.FibletRenderer`; the whole set's fiblets by default
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         super().__init__(ctx, CONSTANTS)
-        self.pipeline = choose(ctx, pipeline)
+        self.pipeline = choose(ctx, pipeline)  # the one in use
         self._parts = parts
         self._room = room
         self._needed = needed
