@@ -67,20 +67,10 @@ class _Held:
 
 @dataclass(frozen=True)
 class Layers(ShaderEffect):
-    """Shows several layers where the actor is translucent.
+    """Shows several layers where the actor is translucent."""
 
-    Parameters
-    ----------
-    count : int, default 4
-        Layers, 2 to 64. What lies behind the last is not seen. Each takes 44 bytes a pixel and is drawn from all
-        fiblets in view, whenever the camera, the data or the style has changed.
-
-    Raises
-    ------
-    ValueError
-        If there are fewer or more.
-    """
-
+    # layers, 2 to 64. What lies behind the last is not seen. Each takes 44 bytes a pixel and is drawn from all fiblets
+    # in view, whenever the camera, the data or the style has changed.
     count: int = 4
     features: ClassVar[frozenset[str]] = frozenset({"layers", "layers_covered", "layers_geometry"})
 

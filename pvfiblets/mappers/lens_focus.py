@@ -34,33 +34,16 @@ LONGEST = 0.1
 
 @dataclass(frozen=True)
 class DepthOfField:
-    """The focus of a lens, and the blur around it.
+    """The focus of a lens, and the blur around it."""
 
-    Parameters
-    ----------
-    focal_distance : float, None or str
-        mm from the viewer's plane; None for the camera's focal point; ``'cursor'`` for the nearest surface under the
-        mouse, or ``'center'`` for the nearest in the middle, or the last one found.
-    aperture : float, optional
-        mm: diameter of the lens. `APERTURE` of the height that is seen at the distance in focus by default.
-    darkening : float
-        0 to 1: share of the light that things with the greatest blur lose.
-    max_blur : float
-        Pixels of the window, 1 to `WIDEST`: the greatest radius of a blurred point.
-    smooth : float
-        Seconds in which a focus that follows comes 63 % of the way; 0 for at once.
-
-    Raises
-    ------
-    ValueError
-        A value has no meaning.
-    """
-
+    # mm from the viewer's plane; None for the camera's focal point; `'cursor'` for the nearest surface under the mouse,
+    # or `'center'` for the nearest in the middle, or the last one found
     focal_distance: float | str | None = None
+    # mm: diameter of the lens. `APERTURE` of the height that is seen at the distance in focus by default.
     aperture: float | None = None
-    darkening: float = 0.0
-    max_blur: float = 16.0
-    smooth: float = 0.0
+    darkening: float = 0.0  # 0 to 1: share of the light that things with the greatest blur lose
+    max_blur: float = 16.0  # pixels of the window, 1 to `WIDEST`: the greatest radius of a blurred point
+    smooth: float = 0.0  # seconds in which a focus that follows comes 63 % of the way; 0 for at once
 
     def __post_init__(self) -> None:
         focal = self.focal_distance
@@ -80,19 +63,11 @@ class DepthOfField:
 
 
 class Focusing:
-    """The lens of one renderer: where its focus is, and on its way to.
-
-    Attributes
-    ----------
-    distance : float or None
-        mm, in focus in the last picture.
-    clock : callable
-        Tells seconds.
-    """
+    """The lens of one renderer: where its focus is, and on its way to."""
 
     def __init__(self) -> None:
-        self.distance: float | None = None
-        self.clock: Callable[[], float] = time.monotonic
+        self.distance: float | None = None  # mm, in focus in the last picture
+        self.clock: Callable[[], float] = time.monotonic  # tells seconds
         self._aim: float | None = None
         self._moved = 0.0
 

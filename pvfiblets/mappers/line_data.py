@@ -36,24 +36,12 @@ _HALVINGS = 30
 
 @dataclass(frozen=True, eq=False)
 class LineData:
-    """Lines with rows of data for each point.
+    """Lines with rows of data for each point."""
 
-    Parameters
-    ----------
-    points : numpy.ndarray
-        ``(n, 3)`` floats, mm of the data.
-    offsets : numpy.ndarray
-        ``(k + 1,)`` int64: line ``i`` is ``points[offsets[i]:offsets[i + 1]]``.
-    ids : numpy.ndarray
-        ``(k,)`` int64: the streamline of each line.
-    columns : mapping of str to numpy.ndarray
-        Arrays with a row for each point.
-    """
-
-    points: npt.NDArray[Any]
-    offsets: Ints
-    ids: Ints
-    columns: Mapping[str, npt.NDArray[Any]] = field(default_factory=dict)
+    points: npt.NDArray[Any]  # `(n, 3)` floats, mm of the data
+    offsets: Ints  # `(k + 1,)` int64: line `i` is `points[offsets[i]:offsets[i + 1]]`
+    ids: Ints  # `(k,)` int64: the streamline of each line
+    columns: Mapping[str, npt.NDArray[Any]] = field(default_factory=dict)  # arrays with a row for each point
 
     @property
     def owners(self) -> Ints:

@@ -61,21 +61,8 @@ class _Job:
 class Picture:
     """Effects on everything that a renderer draws.
 
-    Parameters
-    ----------
-    renderer : vtkRenderer
-
-    Notes
-    -----
     An exception while drawing cannot pass through VTK: it is stored, the picture stays as it was drawn, and
     `raise_pending` raises it.
-
-    Attributes
-    ----------
-    drawn : callable or None
-        Called after each frame of a picture that is refined.
-    paced : callable
-        Says whether somebody asks for more frames of the picture while it rests.
     """
 
     def __init__(self, renderer: vtkRenderer) -> None:
@@ -94,7 +81,8 @@ class Picture:
         self._error: BaseException | None = None
         self._untextured = weak(None)  # the render pass that does not draw into textures
         self.focusing = Focusing()
-        self.drawn: Callable[[], None] | None = None
+        self.drawn: Callable[[], None] | None = None  # called after each frame of a picture that is refined
+        # says whether somebody asks for more frames of the picture while it rests
         self.paced: Callable[[], bool] = lambda: False
         self._job: _Job | None = None
         self._lacks_memory = False

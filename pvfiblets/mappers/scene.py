@@ -35,24 +35,12 @@ _FROM_COMPLEMENT = np.array([[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """One draw of one actor: viewport and matrices, all float64, column vectors.
+    """One draw of one actor: viewport and matrices, all float64, column vectors."""
 
-    Attributes
-    ----------
-    viewport : tuple of 4 ints
-        x, y, width, height in pixels of the bound framebuffer.
-    model : numpy.ndarray
-        (4, 4), data mm to world coordinates: the actor.
-    view : numpy.ndarray
-        (4, 4), world to view coordinates: the camera.
-    projection : numpy.ndarray
-        (4, 4), view to clip coordinates.
-    """
-
-    viewport: tuple[int, int, int, int]
-    model: Matrix
-    view: Matrix
-    projection: Matrix
+    viewport: tuple[int, int, int, int]  # x, y, width, height in pixels of the bound framebuffer
+    model: Matrix  # (4, 4), data mm to world coordinates: the actor
+    view: Matrix  # (4, 4), world to view coordinates: the camera
+    projection: Matrix  # (4, 4), view to clip coordinates
 
     @cached_property
     def model_view(self) -> Matrix:

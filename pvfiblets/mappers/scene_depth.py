@@ -26,16 +26,10 @@ void main() { gl_Position = vec4(gl_VertexID % 2 * 4 - 1, gl_VertexID / 2 * 4 - 
 
 
 class OutsideDepth:
-    """Copies the depth of VTK's framebuffer into a texture of keys.
-
-    Parameters
-    ----------
-    ctx : moderngl.Context
-        Of the window.
-    """
+    """Copies the depth of VTK's framebuffer into a texture of keys."""
 
     def __init__(self, ctx: moderngl.Context) -> None:
-        self._ctx = ctx
+        self._ctx = ctx  # of the window
         self._gl = GLExtras(ctx)
         self._programs: dict[int, tuple[Any, Any]] = {}
         self._target: moderngl.Framebuffer | None = None

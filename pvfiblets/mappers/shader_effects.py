@@ -23,42 +23,19 @@ AnyStyle = TypeVar("AnyStyle", bound="Style")
 
 @dataclass(frozen=True, eq=False)
 class Draw:
-    """One draw of a mapper, as its effects see it.
+    """One draw of a mapper, as its effects see it."""
 
-    Attributes
-    ----------
-    ctx : moderngl.Context
-        Of the window; current.
-    engine : Any
-        The engine's renderer.
-    buffer : Any
-        Its G-buffer, up to date.
-    frame : Frame
-        Viewport and matrices.
-    view, style : Any
-        As given to the engine.
-    renderer : vtkRenderer
-    fiblets : FibletSet
-        What is drawn.
-    actor : vtkActor
-        Of the mapper.
-    colouring : Colouring
-        Where its colours come from.
-    textures : mapping of str to Any
-        Of the colours, by the names of their samplers.
-    """
-
-    ctx: Any
-    engine: Any
-    buffer: Any
-    frame: Frame
-    view: Any
+    ctx: Any  # of the window; current
+    engine: Any  # the engine's renderer
+    buffer: Any  # its G-buffer, up to date
+    frame: Frame  # viewport and matrices
+    view: Any  # as given to the engine
     style: Any
     renderer: Any
-    fiblets: Any
-    actor: Any
-    colouring: Any = None
-    textures: Mapping[str, Any] = field(default_factory=dict)
+    fiblets: Any  # what is drawn
+    actor: Any  # of the mapper
+    colouring: Any = None  # where its colours come from
+    textures: Mapping[str, Any] = field(default_factory=dict)  # of the colours, by the names of their samplers
 
 
 class GpuResource(Protocol):

@@ -61,31 +61,17 @@ def _attach() -> Any:
 
 
 class Slot:
-    """A mapper's state in one window.
-
-    Attributes
-    ----------
-    renderer : Any
-        The engine's renderer, None until first needed.
-    textures : dict
-        Name to moderngl texture.
-    versions : dict
-        Name to the object the texture was made from.
-    drawn : dict
-        Address of a vtkRenderer to its last frame (see ``FibletMapper.pick_at``).
-    effects : dict
-        Name of an effect to its class and its GPU resources (`pvfiblets.mappers.shader_effects`).
-    thinned : dict
-        Share of the streamlines to a renderer of these, for frames of reduced detail (`pvfiblets.mappers.thinned`).
-    """
+    """A mapper's state in one window."""
 
     def __init__(self, mapper: Any) -> None:
         self.mapper = weak(mapper)
-        self.renderer: Any = None
-        self.textures: dict[str, Any] = {}
-        self.versions: dict[str, Any] = {}
-        self.drawn: dict[str, Any] = {}
+        self.renderer: Any = None  # the engine's renderer, None until first needed
+        self.textures: dict[str, Any] = {}  # name to moderngl texture
+        self.versions: dict[str, Any] = {}  # name to the object the texture was made from
+        self.drawn: dict[str, Any] = {}  # address of a vtkRenderer to its last frame (see `FibletMapper.pick_at`)
+        # name of an effect to its class and its GPU resources (`pvfiblets.mappers.shader_effects`)
         self.effects: dict[str, tuple[type, Any]] = {}
+        # share of the streamlines to a renderer of these, for frames of reduced detail (`pvfiblets.mappers.thinned`)
         self.thinned: dict[float, Any] = {}
         self._outside: OutsideDepth | None = None
 
@@ -145,16 +131,10 @@ class Slot:
 
 
 class WindowContext:
-    """GL context of a render window; make it with `context_of`.
-
-    Parameters
-    ----------
-    window : vtkOpenGLRenderWindow
-        Its context must be current.
-    """
+    """GL context of a render window; make it with `context_of`."""
 
     def __init__(self, window: Any) -> None:
-        self._window = weak(window)
+        self._window = weak(window)  # its context must be current
         self.slots: dict[str, Slot] = {}
         self.ctx: Any = None
         self._told_lost = False
