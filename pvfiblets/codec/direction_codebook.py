@@ -95,8 +95,6 @@ def packed() -> npt.NDArray[np.uint32]:
 def quaternions() -> npt.NDArray[np.float32]:
     """The rotation that each code stands for, unpacked from :func:`packed`.
 
-    Notes
-    -----
     The float32 operations and their order are as in ``shaders/fiblets/decode/words.glsl``.
     """
     words = packed()

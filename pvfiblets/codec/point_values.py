@@ -51,30 +51,18 @@ CELLS = 12  # bits of a float32 that do not tell cells apart: each is 2 ** -11 o
 
 @dataclass(frozen=True)
 class PointValues:
-    """A value for each point of a set.
+    """A value for each point of a set."""
 
-    Attributes
-    ----------
-    codes : numpy.ndarray
-        ``(n_points,)`` uint8 or uint16 where there is a `table`; else the values themselves, of any type of numbers.
-    lo, hi : float
-        Least and largest finite value of the original.
-    max_error, mean_error : float
-        Differences to the finite values of the original, in their unit (measured, not estimated).
-    table : numpy.ndarray or None
-        ``(256,)`` or ``(65536,)``: what codes mean, in the original's type, rising as far as codes are used; of floats
-        the last is NaN.
-    reference : float
-        What graphics cards subtract first (:mod:`pvfiblets.support.value_reference`).
-    """
-
+    # `(n_points,)` uint8 or uint16 where there is a `table`; else the values themselves, of any type of numbers
     codes: Array
-    lo: float
+    lo: float  # least and largest finite value of the original
     hi: float
-    max_error: float
+    max_error: float  # differences to the finite values of the original, in their unit (measured, not estimated)
     mean_error: float = 0.0
+    # `(256,)` or `(65536,)`: what codes mean, in the original's type, rising as far as codes are used; of floats the
+    # last is NaN
     table: Array | None = None
-    reference: float = 0.0
+    reference: float = 0.0  # what graphics cards subtract first (`pvfiblets.support.value_reference`)
 
     @property
     def dtype(self) -> np.dtype[Any]:

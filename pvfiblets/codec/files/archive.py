@@ -39,21 +39,11 @@ _DATE = (1980, 1, 1, 0, 0, 0)  # equal sets make equal files
 
 @dataclass(frozen=True)
 class Member:
-    """An array to be written, perhaps in pieces.
+    """An array to be written, perhaps in pieces."""
 
-    Attributes
-    ----------
-    dtype : numpy.dtype
-        Type of its values.
-    shape : tuple of int
-        Its shape.
-    pieces : callable
-        Gives its bytes in C order, piece by piece.
-    """
-
-    dtype: np.dtype[Any]
-    shape: tuple[int, ...]
-    pieces: Callable[[], Iterable[bytes | memoryview]]
+    dtype: np.dtype[Any]  # type of its values
+    shape: tuple[int, ...]  # its shape
+    pieces: Callable[[], Iterable[bytes | memoryview]]  # gives its bytes in C order, piece by piece
 
 
 def array_member(array: npt.NDArray[Any]) -> Member:
