@@ -201,13 +201,7 @@ class _Sums:
 
 
 class Visits:
-    """How many voxels of a grid each of some bundles visits.
-
-    Parameters
-    ----------
-    grid : VoxelGrid
-    n_bundles : int
-    """
+    """How many voxels of a grid each of some bundles visits."""
 
     def __init__(self, grid: VoxelGrid, n_bundles: int) -> None:
         _check_memory(grid, 4 * grid.n_voxels)

@@ -28,25 +28,12 @@ class VoxelGrid:
 
     Voxel (i, j, k) holds the positions whose indices ``v = inverse(affine) p`` have ``i - 1/2 <= v_1 < i + 1/2``, and
     so on: a position on a face belongs to the voxel above it.
-
-    Parameters
-    ----------
-    shape : tuple of int
-        ``(nx, ny, nz)``.
-    affine : array_like
-        ``(4, 4)`` voxel indices, whole at the voxels' centres as in NIfTI, to mm; may be oblique, flipped or sheared.
-    space_code : int
-        NIfTI's code of the space that these mm are of; 1 is the scanner's.
-
-    Raises
-    ------
-    ValueError
-        If the affine cannot be inverted, or a side is no whole number above 0.
     """
 
-    shape: tuple[int, int, int]
+    shape: tuple[int, int, int]  # `(nx, ny, nz)`
+    # `(4, 4)` voxel indices, whole at the voxels' centres as in NIfTI, to mm; may be oblique, flipped or sheared
     affine: Array
-    space_code: int = 1
+    space_code: int = 1  # NIfTI's code of the space that these mm are of; 1 is the scanner's
     linear: Array = field(init=False, repr=False)  # (3, 3) mm to voxels
 
     def __post_init__(self) -> None:

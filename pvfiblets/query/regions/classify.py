@@ -54,27 +54,13 @@ _EPS = 16.0 * 2.0**-52
 
 @dataclass(frozen=True, eq=False)
 class Packed:
-    """A region as arrays; see the module for their columns.
+    """A region as arrays; see the module for their columns."""
 
-    Parameters
-    ----------
-    ops : numpy.ndarray
-        ``(n,)`` int32: the program.
-    rows : numpy.ndarray
-        ``(n_leaves, 20)`` float64.
-    grids : numpy.ndarray
-        ``(n_fields, 16)`` float64.
-    values : numpy.ndarray
-        float32: all fields' values.
-    fields : tuple of Field
-        Each once.
-    """
-
-    ops: npt.NDArray[np.int32]
-    rows: Array
-    grids: Array
-    values: npt.NDArray[np.float32]
-    fields: tuple[Field, ...]
+    ops: npt.NDArray[np.int32]  # `(n,)` int32: the program
+    rows: Array  # `(n_leaves, 20)` float64
+    grids: Array  # `(n_fields, 16)` float64
+    values: npt.NDArray[np.float32]  # float32: all fields' values
+    fields: tuple[Field, ...]  # each once
 
     @property
     def arrays(self) -> tuple[Any, ...]:

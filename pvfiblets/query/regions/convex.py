@@ -13,8 +13,6 @@ Array = npt.NDArray[np.float64]
 def box_distance(linear: Array, unit: Array) -> Array:
     """Distances of positions from the box ``max |u_i| <= 1``.
 
-    Notes
-    -----
     The nearest point lies in the box itself, within a face, an edge or a corner. For each of the 26 the nearest point
     of its whole plane or line follows from least squares. Candidates outside of their face or edge are dropped; the
     least distance is right, as each is the distance to a point of the box, and the true nearest point is among them.
@@ -47,8 +45,6 @@ def box_distance(linear: Array, unit: Array) -> Array:
 def ellipsoid_distance(linear: Array, unit: Array) -> Array:
     """Distances of positions from the ellipsoid ``u . u <= 1``.
 
-    Notes
-    -----
     With semi-axes ``s_i`` and ``y`` in the ellipsoid's own frame the nearest point is ``x_i = s_i^2 y_i / (t + s_i^2)``
     for the root ``t >= 0`` of ``sum (s_i y_i / (t + s_i^2))^2 = 1`` (Eberly 2013, "Distance from a point to an ellipse,
     an ellipsoid, or a hyperellipsoid"), which falls with t, bracketed by ``max s_i |y_i| - s_i^2`` and ``|s y| - min
