@@ -20,18 +20,7 @@ from pvfiblets.errors import FormatError
 
 
 class MappedFile:
-    """A file's bytes, read-only, through the operating system's page cache.
-
-    Parameters
-    ----------
-    path : str or PathLike
-
-    Attributes
-    ----------
-    path : str
-    size : int
-        Bytes.
-    """
+    """A file's bytes, read-only, through the operating system's page cache."""
 
     def __init__(self, path: str | PathLike[str]) -> None:
         self.path = fspath(path)

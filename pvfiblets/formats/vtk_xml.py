@@ -64,20 +64,7 @@ class Element:
 
 
 class XmlFile:
-    """A VTK XML file.
-
-    Parameters
-    ----------
-    path : path-like
-    kind : {"PolyData", "ImageData"} or None
-        What it must hold; ``None``: whatever it says.
-
-    Attributes
-    ----------
-    path : str
-    content : Element
-        Of that kind.
-    """
+    """A VTK XML file."""
 
     def __init__(self, path: str | PathLike[str], kind: str | None = "PolyData") -> None:
         self.file = MappedFile(path)
@@ -100,7 +87,7 @@ class XmlFile:
             raise FormatError(
                 self.path, root.position, f"{root.tag} of type {found!r}", f"VTKFile of type {kind!r}{remedy}"
             )
-        self.content = content
+        self.content = content  # of that kind
         order = ">" if root.attributes.get("byte_order") == "BigEndian" else "<"
         self._order = order
         wide = root.attributes.get("header_type") == "UInt64"

@@ -50,16 +50,7 @@ _ZIP_ERRORS = (
 
 
 class ZipArrays:
-    """The arrays of a zip archive.
-
-    Attributes
-    ----------
-    path : str
-    entries : list of ArrayEntry
-        Those whose name ends in a known type.
-    odd_names : int
-        How many files have a name that says no type, besides ``header.json``.
-    """
+    """The arrays of a zip archive."""
 
     def __init__(self, path: str | PathLike[str]) -> None:
         self.file = MappedFile(path)
@@ -68,8 +59,8 @@ class ZipArrays:
             raise FormatError(self.path, 0, "an empty file", "a zip archive")
         with self.damage(0, "the archive"):
             self.archive = ZipFile(self.path)
-        self.entries: list[ArrayEntry] = []
-        self.odd_names = 0
+        self.entries: list[ArrayEntry] = []  # those whose name ends in a known type
+        self.odd_names = 0  # how many files have a name that says no type, besides `header.json`
         try:
             self._list()
         except BaseException:
