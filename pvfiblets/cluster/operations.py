@@ -277,29 +277,16 @@ def _errors(result: dict[str, Any]) -> dict[str, float]:
 
 @dataclass(frozen=True)
 class Operation:
-    """An operation, its result, and its options.
-
-    Attributes
-    ----------
-    name : str
-    run : callable
-        ``(source, target, **options) -> columns``.
-    check_file : callable or None
-        Refuses options whose file, with the suffix ``to``, cannot be written; None if it makes no file.
-    takes : tuple of str
-        Suffixes of sources; any format if empty.
-    paths : tuple of str
-        Options that may be paths, in which names between braces stand for what a source's name says.
-    needs : tuple of tuple of str
-        Options; exactly one must be given.
-    """
+    """An operation, its result, and its options."""
 
     name: str
-    run: Callable[..., Columns]
+    run: Callable[..., Columns]  # `(source, target, **options) -> columns`
+    # refuses options whose file, with the suffix `to`, cannot be written; None if it makes no file
     check_file: Callable[[Mapping[str, Any]], object] | None = None
-    takes: tuple[str, ...] = ()
+    takes: tuple[str, ...] = ()  # suffixes of sources; any format if empty
+    # options that may be paths, in which names between braces stand for what a source's name says
     paths: tuple[str, ...] = ()
-    needs: tuple[tuple[str, ...], ...] = ()
+    needs: tuple[tuple[str, ...], ...] = ()  # options; exactly one must be given
 
     def defaults(self) -> dict[str, Any]:
         """Options and their values where none are given."""

@@ -48,24 +48,12 @@ _WHOLE = 2.0  # radius that reaches from anywhere in a box of size 1 to anywhere
 
 @dataclass(frozen=True)
 class Frame:
-    """The bounds that points are measured in, so that numbers are near 1 whatever the millimetres are.
+    """The bounds that points are measured in, so that numbers are near 1 whatever the millimetres are."""
 
-    Parameters
-    ----------
-    origin : ndarray
-        ``(3,)`` float64, mm: their lower corner.
-    size : float
-        mm, their largest extent.
-    diagonal : float
-        mm.
-    same : float
-        Distance, by `size`, up to which places are one and the same.
-    """
-
-    origin: Doubles
-    size: float
-    diagonal: float
-    same: float
+    origin: Doubles  # `(3,)` float64, mm: their lower corner
+    size: float  # mm, their largest extent
+    diagonal: float  # mm
+    same: float  # distance, by `size`, up to which places are one and the same
 
     @classmethod
     def around(cls, points: npt.NDArray[Any]) -> Frame:
@@ -104,17 +92,10 @@ class _Things(Protocol):
 
 
 class Paths:
-    """Lines of two points and more, end to end: a place is a line and an arc length from the first one's start.
-
-    Parameters
-    ----------
-    lines : HaloLines
-    frame : Frame
-        Of all their points.
-    """
+    """Lines of two points and more, end to end: a place is a line and an arc length from the first one's start."""
 
     def __init__(self, lines: HaloLines, frame: Frame) -> None:
-        self.frame, self.points = frame, lines.points
+        self.frame, self.points = frame, lines.points  # of all their points
         some = np.flatnonzero(np.diff(lines.offsets) > 1)
         self.starts, self.ends = lines.offsets[some], lines.offsets[some + 1] - 1
         steps = np.zeros(lines.n_points)
@@ -168,18 +149,10 @@ class Paths:
 
 
 class Cloud:
-    """Points, each a thing of its own and of no length.
-
-    Parameters
-    ----------
-    points : ndarray
-        ``(n, 3)``, mm.
-    frame : Frame
-        Of all of them.
-    """
+    """Points, each a thing of its own and of no length."""
 
     def __init__(self, points: npt.NDArray[Any], frame: Frame) -> None:
-        self.points, self.frame = points, frame
+        self.points, self.frame = points, frame  # `(n, 3)` mm, and the frame of all of them
 
     def at(self, thing: Ints, where: Doubles | None = None) -> Doubles:
         """Points by index."""

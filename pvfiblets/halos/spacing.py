@@ -17,17 +17,7 @@ _ALONE = 1.0 / 60.0
 
 
 def line_spacing(lines: HaloLines, samples: int = 2000, seed: int = 0) -> float:
-    """Return the spacing of lines.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from pvfiblets.halos import HaloLines
-    >>> from pvfiblets.halos.spacing import line_spacing
-    >>> points = [[0, 0, 0], [100, 0, 0], [0, 2, 0], [100, 2, 0]]
-    >>> round(line_spacing(HaloLines(np.array(points), [0, 2, 4])), 3)
-    2.0
-    """
+    """Return the spacing of lines."""
     _check_samples(samples)
     frame = Frame.around(lines.points)
     paths = Paths(lines, frame)
@@ -60,8 +50,6 @@ def default_widths(
 ) -> tuple[float, float, float]:
     """Widths and the displacement that suit the data.
 
-    Notes
-    -----
     Everts et al. 2009, section 4.3, have strips 4 to 8 times as wide as their lines, and 8 to 27 times for points
     (printed the other way round), and thinner lines for more of them.
 
@@ -91,25 +79,13 @@ def default_widths(
 
 @dataclass(frozen=True)
 class _Proportions:
-    """Limits of widths, by the widths of lines or as parts of the diagonal of the bounds.
+    """Limits of widths, by the widths of lines or as parts of the diagonal of the bounds."""
 
-    Parameters
-    ----------
-    thinnest, thickest : float
-        A line is at least and at most one such part of the diagonal.
-    strip : float
-        A strip is at least so many times as wide as its line.
-    narrowest : float
-        It is at least such a part of the diagonal too, if it can be with `widest`.
-    widest : float
-        It is at most so many times as wide as its line.
-    """
-
-    thinnest: float
+    thinnest: float  # A line is at least and at most one such part of the diagonal
     thickest: float
-    strip: float
-    narrowest: float
-    widest: float
+    strip: float  # A strip is at least so many times as wide as its line
+    narrowest: float  # it is at least such a part of the diagonal too, if it can be with `widest`
+    widest: float  # it is at most so many times as wide as its line
 
 
 _LINES = _Proportions(1200.0, 200.0, 6.0, 150.0, 8.0)

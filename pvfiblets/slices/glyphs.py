@@ -31,18 +31,10 @@ TENSORS = {
 
 @dataclass(frozen=True, eq=False)
 class Glyphs:
-    """Points of all glyphs of a plane, and their colours.
+    """Points of all glyphs of a plane, and their colours."""
 
-    Attributes
-    ----------
-    points : numpy.ndarray
-        ``(n, m, 3)`` mm: m points of each of n glyphs.
-    colours : numpy.ndarray
-        ``(n, m, 3)`` uint8: directions to the right, front and up as red, green and blue.
-    """
-
-    points: Array
-    colours: npt.NDArray[np.uint8]
+    points: Array  # `(n, m, 3)` mm: m points of each of n glyphs
+    colours: npt.NDArray[np.uint8]  # `(n, m, 3)` uint8: directions to the right, front and up as red, green and blue
 
 
 def axes_of_glyphs(kind: str, tensor: str, vectors: str | None) -> str:

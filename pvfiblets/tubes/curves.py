@@ -43,8 +43,6 @@ def controls(tubes: SplineTubes, segments: npt.ArrayLike | None = None, middle: 
 
     Negative control radii are raised to 0 before the halves are joined, so that they still meet with one derivative.
 
-    Notes
-    -----
     Russig et al. 2020, section 3.2, "Segment subdivision".
     """
     if not 0.0 <= middle <= 1.0:
@@ -100,21 +98,11 @@ def sample_spheres(controls: npt.ArrayLike, count: int = 33) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Boxes:
-    """Oriented boxes.
+    """Oriented boxes."""
 
-    Attributes
-    ----------
-    centre : numpy.ndarray
-        ``(k, 3)`` mm.
-    axes : numpy.ndarray
-        ``(k, 3, 3)``: rows are the unit vectors of a right-handed frame, in the paper ``R``.
-    half : numpy.ndarray
-        ``(k, 3)`` mm, half of each edge.
-    """
-
-    centre: Array
-    axes: Array
-    half: Array
+    centre: Array  # `(k, 3)` mm
+    axes: Array  # `(k, 3, 3)`: rows are the unit vectors of a right-handed frame, in the paper `R`
+    half: Array  # `(k, 3)` mm, half of each edge
 
     @property
     def corners(self) -> Array:
@@ -143,8 +131,6 @@ def boxes(controls: npt.ArrayLike) -> Boxes:
     The first axis runs from start to end, the second to the side that the curve bends to. Where the curve ends at its
     start, the first axis is that of its bend; where it does not bend, the second is any one across.
 
-    Notes
-    -----
     Russig et al. 2020, section 3.2, "Silhouettes": the extrema of ``q(t) - r(t)`` and ``q(t) + r(t)``, which lie at the
     ends or where the derivative, linear in ``t``, is 0.
     """

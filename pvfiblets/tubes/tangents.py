@@ -37,18 +37,12 @@ and every reduction squares that share: 2**-64 after six, however long the line 
 
 @dataclass(frozen=True, eq=False)
 class Steps:
-    """The steps from node to node of ragged lines.
+    """The steps from node to node of ragged lines."""
 
-    Parameters
-    ----------
-    lengths : ndarray
-        ``(n_nodes,)`` float64, mm: from each node to the next of its line; 0 at each line's last node, which has none.
-    behind, ahead : ndarray
-        ``(n_nodes,)`` int64: the steps that lead to and from each node, as rows of `lengths`. Where there is none, a
-        row whose length is 0. Closed lines go on at their other end.
-    """
-
+    # `(n_nodes,)` float64, mm: from each node to the next of its line; 0 at each line's last node, which has none
     lengths: Doubles
+    # `(n_nodes,)` int64: the steps that lead to and from each node, as rows of `lengths`. Where there is none, a row
+    # whose length is 0. Closed lines go on at their other end.
     behind: Ints
     ahead: Ints
 
@@ -77,8 +71,6 @@ class Steps:
 def derivatives(values: npt.ArrayLike, steps: Steps, method: str = "finite") -> Doubles:
     """Derivatives of positions or values at all nodes.
 
-    Notes
-    -----
     The natural spline's equations for derivatives D are, row by row, ``u D[i-1] + 2 D[i] + (1 - u) D[i+1] =
     3 (u s[i-1] + (1 - u) s[i])`` with the slopes s of the two chords and the share u of the step ahead in both. They
     are solved by cyclic reduction of all rows at once.

@@ -56,19 +56,11 @@ Flags = list[npt.NDArray[np.uint8]]
 
 @dataclass(frozen=True, eq=False)
 class Level:
-    """All nodes of one level: three arrays ``(bx, by, bz)``.
+    """All nodes of one level: three arrays ``(bx, by, bz)``."""
 
-    Parameters
-    ----------
-    least, greatest : ndarray
-        Bounds of the field in each node.
-    mean : ndarray
-        float32, of the trilinear field over the node's cells.
-    """
-
-    least: npt.NDArray[Any]
+    least: npt.NDArray[Any]  # bounds of the field in each node
     greatest: npt.NDArray[Any]
-    mean: npt.NDArray[np.float32]
+    mean: npt.NDArray[np.float32]  # float32, of the trilinear field over the node's cells
 
     @property
     def shape(self) -> tuple[int, int, int]:
@@ -79,22 +71,13 @@ class Level:
 
 @dataclass(frozen=True, eq=False)
 class Octree:
-    """A full octree.
+    """A full octree."""
 
-    Parameters
-    ----------
-    levels : tuple of Level
-        The leaves first; node ``(i, j, k)`` of level ``l`` covers the cells from ``leaf * 2^l * (i, j, k)`` on. The
-        last level has one node.
-    leaf : int, default: 8
-        Cells along each side of a leaf.
-    margin : int, default: 1
-        1: bounds hold of the nearest and the trilinear field. 2: of the tricubic field too.
-    """
-
+    # the leaves first; node `(i, j, k)` of level `l` covers the cells from `leaf * 2^l * (i, j, k)` on. The last level
+    # has one node.
     levels: tuple[Level, ...]
-    leaf: int = LEAF
-    margin: int = 1
+    leaf: int = LEAF  # cells along each side of a leaf
+    margin: int = 1  # 1: bounds hold of the nearest and the trilinear field. 2: of the tricubic field too.
 
     @cached_property
     def nbytes(self) -> int:

@@ -210,30 +210,15 @@ class Transfer:
         return np.clip(share, 0.0, 1.0) * (len(self.table) - 1)
 
     def preintegrated(self, step: float) -> npt.NDArray[np.float32]:
-        """Colour and opacity of a step along which the value changes linearly, for all pairs of values.
+        """Return colour and opacity of a step in mm along which the value changes linearly, for all pairs of values.
 
-        Parameters
-        ----------
-        step : float
-            mm.
+        (n, n, 4) float32: for the value at the step's front, first, and back, second, each evenly over ``clim``, the
+        RGB, multiplied by opacity, and the opacity. n is at least 256, and such that each entry of the table is among
+        the values. Read-only: it is cached.
 
-        Returns
-        -------
-        ndarray
-            ``(n, n, 4)`` float32: for the value at the step's front, first, and back, second, each evenly over
-            ``clim``, the RGB, multiplied by opacity, and the opacity. n is at least 256, and such that each entry of
-            the table is among the values. Read-only: it is cached.
-
-        Raises
-        ------
-        ValueError
-            If the step is not finite and above 0, or the table has more than 1024 entries.
-
-        Notes
-        -----
-        The optical depth is exact: over a piece in which alpha is linear, -ln(1 - alpha) has the primitive
-        (1 - alpha) ln(1 - alpha) + alpha. So is what light loses within the step: with u = 1 - exp(-tau), the colour is
-        int c du, piece by piece by parts, so that only exp(-tau), smooth within a piece, is left to a quadrature.
+        The optical depth is exact: over a piece in which alpha is linear, -ln(1 - alpha) has the primitive (1 - alpha)
+        ln(1 - alpha) + alpha. So is what light loses within the step: with u = 1 - exp(-tau), the colour is int c du,
+        piece by piece by parts, so that only exp(-tau), smooth within a piece, is left to a quadrature.
         """
         if not 0.0 < step < np.inf:
             raise ValueError(f"the step is {step!r} mm; expected a finite length above 0")
@@ -249,19 +234,9 @@ class Transfer:
     def media(self, least: int = PLACES) -> tuple[npt.NDArray[np.float32], int]:
         """What light of stretches in which the value is linear is calculated from (``shaders/volumes/adaptive.glsl``).
 
-        Parameters
-        ----------
-        least : int
-            Least number of places at which kappa is known; the same number lies between all entries of the table.
-
-        Returns
-        -------
-        media : ndarray
-            ``(2, n, 4)`` float32. First colour and extinction, 1/mm, at places evenly over ``clim``; then the integral
-            of extinction over places from the first on, in two numbers, the second the remainder of the first, its
-            growth to the next place, and 0.
-        places : int
-            From each entry of the table to the next.
+        (2, n, 4) float32, and the number of places from each entry of the table to the next. First colour and
+        extinction, 1/mm, at places evenly over ``clim``; then the integral of extinction over places from the first on,
+        in two numbers, the second the remainder of the first, its growth to the next place, and 0.
         """
         from .preintegration import unit_depths
 

@@ -77,8 +77,6 @@ def hits(
     Of every interval of the curve that the ray runs inside of: its entry, if that is not before `start`; else, if the
     ray is inside still at `start`, its exit, or with `capped` the cut at `start` itself. The nearest of these counts.
 
-    Notes
-    -----
     Russig et al. 2020, section 3.2, "Intersection". Where a ray only touches, rounding decides.
     """
     halves, origins, unit = _halves(controls), _vectors(origins, "origins"), _directions(directions)
