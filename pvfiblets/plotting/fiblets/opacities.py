@@ -22,21 +22,12 @@ POINTS = "opacity"
 
 @dataclass(frozen=True, eq=False)
 class Opacities:
-    """A choice of opacities for some fiblets; one of these is given.
+    """A choice of opacities for some fiblets; one of these is given."""
 
-    Attributes
-    ----------
-    transfer : str or numpy.ndarray, optional
-        Of the colour map: PyVista's name of a transfer function, or opacities 0 to 1 from the first colour to the last.
-    streamlines : numpy.ndarray, optional
-        (n_streamlines,) float64, 0 to 1.
-    points : str, optional
-        Name of a per-point array.
-    """
-
+    # of the colour map: PyVista's name of a transfer function, or opacities 0 to 1 from the first colour to the last
     transfer: Any = None
-    streamlines: np.ndarray | None = None
-    points: str | None = None
+    streamlines: np.ndarray | None = None  # (n_streamlines,) float64, 0 to 1
+    points: str | None = None  # name of a per-point array
 
 
 def find_opacities(fiblets: FibletSet, choice: Any) -> tuple[FibletSet, Opacities]:

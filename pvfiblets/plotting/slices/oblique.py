@@ -43,14 +43,7 @@ _RING = 12
 
 
 class Trace:
-    """The line in which the oblique slice cuts a pane.
-
-    Parameters
-    ----------
-    pane : Pane
-    plane : SlicePlane
-    color : color-like
-    """
+    """The line in which the oblique slice cuts a pane."""
 
     def __init__(self, pane: Pane, plane: SlicePlane, color: Any) -> None:
         self.pane, self._plane = pane, plane
@@ -133,24 +126,16 @@ class ObliqueSlice:
     """The oblique slice of a workspace; ``workspace.add_oblique(...)`` makes it.
 
     Its properties may be set at any time and show with the next render.
-
-    Attributes
-    ----------
-    plane : SlicePlane
-        In the 3-D view.
-    pane : Pane or None
-        None where the plotter has no fifth view.
-    drag : int or None
-        Which drag of a handle turns it now, counted from 1; None while none is held.
     """
 
     def __init__(self, workspace: Workspace, plane: SlicePlane, pane: Pane | None, color: Any) -> None:
         self._workspace: Any = weakref.proxy(workspace)
-        self.plane, self.pane = plane, pane
+        # none where the plotter has no fifth view
+        self.plane, self.pane = plane, pane  # in the 3-D view
         self.traces = {
             name: Trace(one, plane, color) for name, one in workspace.panes.items() if one.plane is not plane
         }
-        self.drag: int | None = None
+        self.drag: int | None = None  # which drag of a handle turns it now, counted from 1; None while none is held
         self._drags = 0
         self._widget: Any = None
         self._callbacks: list[Callable[[Array], None]] = []

@@ -94,8 +94,6 @@ def with_node_values(
 ) -> tuple[SplineTubes, Any]:
     """Store ``scalars`` with the tubes if they are an array with a row for each node, or name one of their source.
 
-    Notes
-    -----
     The slope at a node is the mean of those of the segments that meet there.
     """
     if is_image(scalars) and not (isinstance(scalars, str) and scalars in {**tubes.values, **tubes.tube_values}):

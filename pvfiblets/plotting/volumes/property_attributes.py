@@ -56,13 +56,7 @@ _WORDS = {
 
 
 class PropertyAttributes:
-    """The last state of an actor's property.
-
-    Parameters
-    ----------
-    actor : VolumeActor
-        Whole, with its property.
-    """
+    """The last state of an actor's property."""
 
     def __init__(self, actor: VolumeActor) -> None:
         self.note(actor)
