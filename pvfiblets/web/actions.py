@@ -12,16 +12,10 @@ __all__ = ["Actions", "LineActions"]
 
 
 class Actions:
-    """Some of an application's actions.
-
-    Parameters
-    ----------
-    app : Explorer
-        Whose scene and page these act on.
-    """
+    """Some of an application's actions."""
 
     def __init__(self, app: Any) -> None:
-        self._app = app
+        self._app = app  # whose scene and page these act on
 
 
 class LineActions(Actions):

@@ -34,19 +34,11 @@ def histogram_chart(counts: ArrayLike) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Band:
-    """A mean with its band along streamlines.
+    """A mean with its band along streamlines."""
 
-    Attributes
-    ----------
-    name, color : str
-        What it is of, and how it is drawn.
-    mean, low, high : numpy.ndarray, shape (n,)
-        Values; non-finite ones leave a gap.
-    """
-
-    name: str
+    name: str  # what it is of, and how it is drawn
     color: str
-    mean: np.ndarray
+    mean: np.ndarray  # (n,): values; non-finite ones leave a gap
     low: np.ndarray
     high: np.ndarray
 

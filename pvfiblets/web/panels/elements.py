@@ -22,16 +22,10 @@ PLAIN = frozenset(
 
 
 class Elements:
-    """The elements of a module of trame's.
-
-    Parameters
-    ----------
-    module : module
-        Such as ``trame.widgets.html``.
-    """
+    """The elements of a module of trame's."""
 
     def __init__(self, module: ModuleType) -> None:
-        self._module = module
+        self._module = module  # such as `trame.widgets.html`
 
     def __getattr__(self, name: str) -> Callable[..., Any]:
         kind = getattr(self._module, name)

@@ -65,21 +65,11 @@ LONGEST_NAME = 1024
 
 @dataclass(frozen=True)
 class Change:
-    """A change, as listeners receive it.
+    """A change, as listeners receive it."""
 
-    Attributes
-    ----------
-    what : str
-        What was done, for a list of things to undo.
-    key : tuple or None
-        Changes of one key that follow each other at once are one, as a slider's are.
-    whole : bool
-        They are one step however long they pause, like the moves of a drag.
-    """
-
-    what: str
-    key: tuple[str, ...] | None = None
-    whole: bool = False
+    what: str  # what was done, for a list of things to undo
+    key: tuple[str, ...] | None = None  # changes of one key that follow each other at once are one, as a slider's are
+    whole: bool = False  # they are one step however long they pause, like the moves of a drag
 
 
 @dataclass(frozen=True)
@@ -96,27 +86,14 @@ class Scene:
     """The scene of a session.
 
     All methods but :meth:`load` are for the thread that renders. None of them renders: call ``plotter.render()``.
-
-    Parameters
-    ----------
-    plotter : pyvista.Plotter
-        Drawn into; it is the scene's own.
-    root : Path, optional
-        Folder that paths are relative to and confined to; any path is allowed without.
-    allowed : iterable of Path
-        Files and folders outside of the root that may be opened all the same.
-    look : str, optional
-        That streamlines begin with (`pvfiblets.plotting.fiblets.looks`).
-    cluster : str, optional
-        Whose workers draw fiblets, as of ``plotter.add_fiblets``.
     """
 
     def __init__(
         self, plotter: Any, root: Path | None = None, *, allowed: Any = (), look: str | None = None,
-        cluster: str | None = None,
+        cluster: str | None = None,  # whose workers draw fiblets, as of `plotter.add_fiblets`
     ) -> None:  # fmt: skip
-        self.plotter = plotter
-        self._look, self._cluster = look, cluster
+        self.plotter = plotter  # drawn into; it is the scene's own
+        self._look, self._cluster = look, cluster  # that streamlines begin with (`pvfiblets.plotting.fiblets.looks`)
         self.files = Files(root, allowed)
         self._state = State(background=plotter.background_color.hex_rgb)
         self._drawn: dict[str, _Drawn] = {}

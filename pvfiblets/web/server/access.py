@@ -25,36 +25,20 @@ CHUNK_HEADER = 12
 
 
 class RefusedError(Exception):
-    """A request that is turned away.
-
-    Parameters
-    ----------
-    status : int
-        The HTTP status.
-    reason : str
-        Message for the browser and the log: no secrets, no paths of the server.
-    """
+    """A request that is turned away."""
 
     def __init__(self, status: int, reason: str) -> None:
-        self.status = status
-        self.reason = reason
+        self.status = status  # the HTTP status
+        self.reason = reason  # message for the browser and the log: no secrets, no paths of the server
         super().__init__(reason)
 
 
 class Access:
-    """The checks of one server.
-
-    Parameters
-    ----------
-    options : Options
-        The token, the host and other origins.
-    secret : bytes
-        A key of this run of the server: cookies of an earlier run open nothing.
-    """
+    """The checks of one server."""
 
     def __init__(self, options: Options, secret: bytes) -> None:
         self._token = options.token
-        self._secret = secret
+        self._secret = secret  # A key of this run of the server: cookies of an earlier run open nothing
         self._loopback = options.on_loopback
         self._origins = {origin.rstrip("/").lower() for origin in options.origins}
 

@@ -38,21 +38,11 @@ LOGS = ("pvfiblets.web", "aiohttp.server", "asyncio")
 
 
 class FrontServer:
-    """The public server.
-
-    Parameters
-    ----------
-    options : Options
-        Checked options.
-    command : sequence of str, optional
-        What a session's process runs.
-    patience : float, optional
-        Seconds that a connection may take for a whole request.
-    """
+    """The public server."""
 
     def __init__(self, options: Options, command: Sequence[str] = WORKER, patience: float = PATIENCE) -> None:
-        self.options = options
-        self.patience = patience
+        self.options = options  # checked options
+        self.patience = patience  # seconds that a connection may take for a whole request
         self.connections = Connections(options.connections, options.by_address, options.proxies)
         self._quiet = LogLimiter()
         self._counting: asyncio.Task[None] | None = None

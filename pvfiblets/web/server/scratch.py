@@ -65,13 +65,7 @@ class Scratch:
 
 
 class Notes:
-    """Unfinished files that a session writes outside of its folder.
-
-    Parameters
-    ----------
-    folder : Path, optional
-        The session's; without, nothing is noted.
-    """
+    """Unfinished files that a session writes outside of its folder."""
 
     def __init__(self, folder: Path | None) -> None:
         self._file = None if folder is None else folder / _NOTES

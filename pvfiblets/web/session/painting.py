@@ -63,19 +63,10 @@ class Strokes:
 
 @dataclass(frozen=True)
 class Painting:
-    """The painted regions of a scene, on the voxels of one image.
-
-    Attributes
-    ----------
-    shape : tuple of 3 ints
-    affine : tuple of 16 floats
-        Voxels to mm, row by row.
-    regions : tuple of Painted
-    strokes : Strokes or None
-    """
+    """The painted regions of a scene, on the voxels of one image."""
 
     shape: tuple[int, int, int]
-    affine: tuple[float, ...]
+    affine: tuple[float, ...]  # voxels to mm, row by row
     regions: tuple[Painted, ...] = ()
     strokes: Strokes | None = None
 

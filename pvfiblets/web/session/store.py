@@ -28,16 +28,10 @@ class _Ends:
 
 
 class Store:
-    """Data of a scene.
-
-    Parameters
-    ----------
-    files : Files
-        Where it is read from.
-    """
+    """Data of a scene."""
 
     def __init__(self, files: Files) -> None:
-        self.files = files
+        self.files = files  # where it is read from
         self.loaded: dict[tuple[str, Source], Loaded] = {}
         self.shapes: dict[tuple[str, Source], Any] = {}
         self.ends: list[_Ends] = []
