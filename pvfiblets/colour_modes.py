@@ -22,7 +22,7 @@ class ColourMode:
 
     name: str  # of `pvfiblets.mappers.Colouring.mode`
     doc: str
-    # what has a number or a colour each; `''` where colours need none
+    # the things that have a number or a colour each; `''` where colours need none
     numbers: Literal["", "lines", "points", "pixels"] = ""
     table: bool = False  # whether a look-up table maps numbers
     # texture of the G-buffer that holds the number or the colour of a pixel

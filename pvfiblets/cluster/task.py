@@ -44,7 +44,7 @@ class Job:
     operation: str
     source: str  # absolute path
     name: str  # the source below the folder that all have in common
-    target: str  # what is made, below `folder`; `target` is empty where there is no file
+    target: str  # the result, below `folder`; empty where there is no file
     rows: str
     folder: str  # where results go, and where they are made
     scratch: str

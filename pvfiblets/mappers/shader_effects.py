@@ -32,7 +32,7 @@ class Draw:
     view: Any  # as given to the engine
     style: Any
     renderer: Any
-    fiblets: Any  # what is drawn
+    fiblets: Any  # the drawn data
     actor: Any  # of the mapper
     colouring: Any = None  # where its colours come from
     textures: Mapping[str, Any] = field(default_factory=dict)  # of the colours, by the names of their samplers

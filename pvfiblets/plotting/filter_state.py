@@ -59,7 +59,7 @@ class Criterion:
     """A range of values outside of which nothing is shown."""
 
     name: str
-    what: Any  # what was asked for: a name, an array, a `Distance`
+    what: Any  # as given: a name, an array, a `Distance`
     values: Any  # `pvfiblets.query.measures.measures.Values`
     range: tuple[float, float]  # both ends included
     keep_nan: bool  # whether NaN is shown

@@ -80,7 +80,7 @@ class Argument:
         # its type, as numpydoc says it; found from `kind`, `choices` and `default` by default
         header: str | None = None,
         choices: tuple[Any, ...] = (),  # all that it may be, if these are few
-        where: Place | None = None,  # what is made of it
+        where: Place | None = None,  # its target
         field: str = "",  # its name there; the same by default
         # returns the value as it is kept, or raises an error that names it. A place that checks needs none.
         check: Callable[[str, Any], Any] | None = None,
@@ -115,7 +115,7 @@ class Argument:
 class Setting(Argument, Generic[T]):
     """Something that can be set of an actor at any time, and when it is made."""
 
-    where: Place  # what it changes
+    where: Place  # its target
 
     def __init__(
         self,
@@ -244,7 +244,7 @@ class Given(dict[str, Any]):
         self._known = arguments(settings)
         given = given or {}
         said = (name for name, value in given.items() if name in self._known and value is not None)
-        # those that were given, and are not None
+        # the given settings that are not None
         self.named: frozenset[str] = given.named if isinstance(given, Given) else frozenset(said)
         super().__init__((name, one.given(given.get(name, one.default))) for name, one in self._known.items())
 

@@ -38,7 +38,7 @@ class Fixels:
     # `(n,)` numbers of fixels that have been read
     arrays: Mapping[str, npt.NDArray[np.float32]] = field(default_factory=dict)
     folder: Path | None = None  # where more numbers are
-    shown: str | None = None  # those that a file was opened for
+    shown: str | None = None  # the fixels that a file was opened for
 
     def __len__(self) -> int:
         return len(self.directions)

@@ -73,7 +73,7 @@ class PipelineInfo:
 
     name: str  # for `pipeline=`
     available: bool
-    why_not: str | None  # what is missing; None where it is available
+    why_not: str | None  # the missing requirements; None where it is available
     needs: str  # the OpenGL version and extension
 
 

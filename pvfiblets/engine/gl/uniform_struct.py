@@ -68,7 +68,7 @@ class Field:
     # `float`, `int`, `uint`, `vec2` to `vec4` and their kin of integers (`ivec3`, `uvec4`), `mat3` or `mat4`, and
     # arrays of these, `vec4[6]`
     type: str
-    doc: str  # what it is, with its unit: a line, which GLSL gets as a comment
+    doc: str  # its meaning and unit: a line, which GLSL gets as a comment
 
     def __post_init__(self) -> None:
         if not re.fullmatch(r"[a-z]\w*", self.name, re.ASCII):

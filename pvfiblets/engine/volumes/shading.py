@@ -27,12 +27,12 @@ class Lamp:
 
     place: tuple[float, float, float]  # mm; of a directional one the direction towards it
     positional: bool = False
-    # RGB of what it adds to colours and to reflections of itself, times its intensity
+    # RGB of its light on surfaces, and in their reflections, times its intensity
     colour: tuple[float, float, float] = (1.0, 1.0, 1.0)
     highlight: tuple[float, float, float] = (1.0, 1.0, 1.0)
     way: tuple[float, float, float] = (0.0, 0.0, -1.0)  # in which it shines
     cone: float = 180.0  # half the angle of its cone, degrees; 90 or more for none
-    exponent: float = 0.0  # power of the cosine by which it fades within its cone
+    exponent: float = 0.0  # power of the cosine; light fades by it within the cone
     fading: tuple[float, float, float] = (1.0, 0.0, 0.0)  # constant, linear and quadratic, by distance
 
 

@@ -59,7 +59,7 @@ class Fewer:
 class Look:
     """One look."""
 
-    doc: str  # what it shows, for people
+    doc: str  # its description, for people
     settings: Mapping[str, Any]  # by name; values as they are set, or an `Apart` or `Fewer`
 
 

@@ -25,7 +25,7 @@ class FibletSlab:
     def __init__(
         self,
         plotter: Any,  # where the slice is drawn
-        actors: Sequence[FibletActor],  # what is cut
+        actors: Sequence[FibletActor],  # the fiblets to cut
         name: str,  # of the cut in each actor
         *,
         normal: Any,  # (3,): `"x"`, `"y"`, `"z"`, or a direction

@@ -78,7 +78,7 @@ COMPUTED: dict[Kind, dict[str, str]] = {
 class Values:
     """A value for each streamline or each point."""
 
-    kind: Kind  # what has a value
+    kind: Kind  # streamlines or points
     # `(n_streamlines,)` float64; or `(n_points,)` float32 in coded order, codes where the set stores them
     values: npt.NDArray[Any] | PointValues
     name: str  # `unit` is empty where there is none or it is not known

@@ -36,7 +36,7 @@ def histogram_chart(counts: ArrayLike) -> str:
 class Band:
     """A mean with its band along streamlines."""
 
-    name: str  # what it is of, and how it is drawn
+    name: str  # its subject, and its colour
     color: str
     mean: np.ndarray  # (n,): values; non-finite ones leave a gap
     low: np.ndarray

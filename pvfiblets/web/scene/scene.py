@@ -67,7 +67,7 @@ LONGEST_NAME = 1024
 class Change:
     """A change, as listeners receive it."""
 
-    what: str  # what was done, for a list of things to undo
+    what: str  # its name in a list of things to undo
     key: tuple[str, ...] | None = None  # changes of one key that follow each other at once are one, as a slider's are
     whole: bool = False  # they are one step however long they pause, like the moves of a drag
 

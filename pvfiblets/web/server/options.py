@@ -39,7 +39,7 @@ class Options:
     timeout: float = 300.0  # seconds that a session without a browser is kept
     upload: int = 2048 * MEBIBYTE  # the greatest size of an uploaded file, in bytes
     codec: str = "jpeg"  # how pictures travel: 'jpeg', 'png' or 'webp'
-    # who draws: 'here' this server, 'there' browsers where they can, 'auto' browsers with a graphics card
+    # where pictures are drawn: 'here' on the server, 'there' in browsers that can, 'auto' if they have a graphics card
     draw: str = "auto"
     look: str | None = None  # that lines begin with, as of `plotter.add_fiblets`
     antialias: str | int | None = None  # as of `plotter.picture`; None for the default

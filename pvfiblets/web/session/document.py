@@ -254,7 +254,7 @@ class State:
     background: str = "#000000"
     measurements: tuple[Measurement, ...] = ()
     painting: Painting | None = None  # regions that are painted on slices
-    # those of sources whose bundles were edited
+    # bundles of the sources whose bundles were edited
     bundles: tuple[tuple[Source, tuple[Bundle, ...]], ...] = ()
     matrix: Matrix | None = None  # that which is shown beside the picture
     oblique: tuple[float, float] | None = None  # tilt and turn of the oblique slice, degrees

@@ -23,7 +23,7 @@ class Level(NamedTuple):
     size: float  # share of the width and of the height that is drawn
     off: float  # error of lines in drawn pixels
     share: float  # of the streamlines of large sets
-    cost: float  # what is expected of it before it has drawn anything, if the finest takes 1
+    cost: float  # its expected cost before it has drawn anything, if the finest takes 1
 
 
 LEVELS = (

@@ -64,7 +64,7 @@ class SliceDistances:
 
     @classmethod
     def from_box(cls, view: View, low: npt.ArrayLike, high: npt.ArrayLike) -> SliceDistances:
-        """Return them for a view of data between two corners in mm: what lies farther counts as at the far end."""
+        """Return them for a view of data between two corners in mm: farther points count as at the far end."""
         matrix = np.asarray(view.model_view_projection, np.float64)
         box = np.stack([np.asarray(low, np.float64), np.asarray(high, np.float64)], 1)
         corners = np.array([[box[0, i], box[1, j], box[2, k], 1.0] for i, j, k in np.ndindex(2, 2, 2)])

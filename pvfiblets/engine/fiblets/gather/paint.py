@@ -21,9 +21,9 @@ class Paint:
     """The contribution of a line to its pixels, beside its count."""
 
     mode: str = ""  # one of `pvfiblets.colour_modes.MODES`; `''`: no colour
-    # those of `shaders/colour` by their samplers: `colour_list` or `colour_table`
+    # textures of `shaders/colour` by their samplers: `colour_list` or `colour_table`
     textures: Mapping[str, Any] = field(default_factory=dict)
-    uniforms: Mapping[str, Any] = field(default_factory=dict)  # those of `shaders/colour`
+    uniforms: Mapping[str, Any] = field(default_factory=dict)  # uniforms of `shaders/colour`
     logarithm: bool = False  # whether the table is spread over logarithms
     # unit vector, data coordinates, to a light that dims lines which run towards it. None: colours as they are.
     light: tuple[float, ...] | None = None
