@@ -52,11 +52,9 @@ _ALL = (
     ColourMode("pixel_count", "the lines of a pixel through a table", "pixels", table=True, shader="point_scalar"),
 )
 
-MODES = {mode.name: mode for mode in _ALL}
-"""Every mode by its name."""
+MODES = {mode.name: mode for mode in _ALL}  # every mode by its name
 
-SHADERS = {mode.shader: MODES[mode.shader] for mode in _ALL}
-"""Modes that have a file of shaders."""
+SHADERS = {mode.shader: MODES[mode.shader] for mode in _ALL}  # modes that have a file of shaders
 
 
 def glsl_source() -> str:

@@ -17,8 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = ["NOT_LINES", "field_of", "parts_of_cells", "parts_of_polydata", "polydata_of"]
 
-NOT_LINES = "cells that are not lines"
-"""Why cells were left out, of ``dropped``."""
+NOT_LINES = "cells that are not lines"  # why cells were left out, of `dropped`
 _GROUP = "groups/"
 _PER_GROUP = "per_group/"
 _GROUPS_OF = "groups_of"

@@ -15,8 +15,7 @@ from pvfiblets.support.whole_files import replacing
 
 __all__ = ["Columns", "join_parts", "write_part"]
 
-Columns = Mapping[str, Any]
-"""By name: numbers and texts for every row, or one for all rows."""
+Columns = Mapping[str, Any]  # by name: numbers and texts for every row, or one for all rows
 
 
 def write_part(path: Path, said: Mapping[str, str], columns: Columns) -> None:

@@ -43,8 +43,7 @@ __all__ = [
 Array = npt.NDArray[Any]
 Floats = npt.NDArray[np.float64]
 
-SPREAD = 100.0
-"""Factor between the percentiles of positive values from which on their logarithms count too."""
+SPREAD = 100.0  # factor between the percentiles of positive values from which on their logarithms count too
 SAMPLE = 1 << 16  # values of each array whose percentiles are taken
 CELLS = 12  # bits of a float32 that do not tell cells apart: each is 2 ** -11 of its values wide
 

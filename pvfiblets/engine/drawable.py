@@ -58,8 +58,7 @@ class Drawable(ABC, Generic[AnyStyle]):
     its programs and targets: pictures of both go into the same textures.
     """
 
-    STYLE: ClassVar[type[Style]]
-    """Class of its styles."""
+    STYLE: ClassVar[type[Style]]  # class of its styles
 
     pipeline: str  # how it draws
     share = 1.0  # how much of the data is drawn: 1.0 for all

@@ -19,8 +19,7 @@ from .view import Style, View
 
 __all__ = ["FRAME_BLOCK", "frame_block", "local_frame", "reference_anchor", "segment_pixels"]
 
-FAR_SIZE = 4.0
-"""Pixels up to which a fiblet is drawn as one segment (paper: Schertzer et al. 2022, section 3.4.4)."""
+FAR_SIZE = 4.0  # pixels up to which a fiblet is drawn as one segment (paper: Schertzer et al. 2022, section 3.4.4).
 
 FRAME_BLOCK = UniformStruct(
     "Frame",
@@ -40,8 +39,7 @@ FRAME_BLOCK = UniformStruct(
 Array = npt.NDArray[np.float64]
 
 EPSILON = float(np.finfo(np.float32).eps)
-CORNERS = np.array(list(np.ndindex(2, 2, 2)))
-"""Corners of a box from 0 to 1."""
+CORNERS = np.array(list(np.ndindex(2, 2, 2)))  # corners of a box from 0 to 1
 
 
 def reference_anchor(matrix: Array, origin: Array, scale: Array, top: int) -> npt.NDArray[np.int64]:

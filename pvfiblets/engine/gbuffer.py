@@ -35,8 +35,7 @@ __all__ = ["EMPTY", "GBuffer"]
 
 EMPTY = 0xFFFFFFFF
 
-RELIEF = {"across": "f2", "ink": "f2", "normal": "u4"}
-"""Type of the texture ``across`` by its contents."""
+RELIEF = {"across": "f2", "ink": "f2", "normal": "u4"}  # type of the texture `across` by its contents
 
 
 class GBuffer:

@@ -104,17 +104,13 @@ class HitTarget:
 class HitDrawable(Drawable[AnyStyle]):
     """A `Drawable` that finds hits and their depths first, and all else in one pass over the picture."""
 
-    CULLING: ClassVar[tuple[str | None, ...]] = ("two-phase", None)
-    """Methods of occlusion culling."""
+    CULLING: ClassVar[tuple[str | None, ...]] = ("two-phase", None)  # methods of occlusion culling
 
-    RELIEF: ClassVar[str] = "normal"
-    """Contents of ``GBuffer.across``."""
+    RELIEF: ClassVar[str] = "normal"  # contents of `GBuffer.across`
 
-    EDGES: ClassVar[str] = "attributes"
-    """Pass that writes ``GBuffer.edges``, if requested: ``'hits'`` or ``'attributes'``."""
+    EDGES: ClassVar[str] = "attributes"  # pass that writes `GBuffer.edges`, if requested: `'hits'` or `'attributes'`
 
-    SAMPLERS: ClassVar[Mapping[str, int]]
-    """Texture units of the data, by the names of their samplers."""
+    SAMPLERS: ClassVar[Mapping[str, int]]  # texture units of the data, by the names of their samplers
 
     _listing: Listing | None = None
     _listed = False  # whether the last picture was drawn from lists

@@ -16,14 +16,11 @@ if TYPE_CHECKING:
 
 __all__ = ["PIECE", "Pieces", "finish"]
 
-PIECE = 0.05
-"""Seconds of a piece, about: as long as an event waits that comes while one is drawn."""
+PIECE = 0.05  # seconds of a piece, about: as long as an event waits that comes while one is drawn
 
-FIRST = 8
-"""Work groups of a stage whose time is not known yet: some 2,000 fiblets."""
+FIRST = 8  # work groups of a stage whose time is not known yet: some 2,000 fiblets
 
-GROWTH = 4
-"""Greatest ratio of groups tried at once to the most so far."""
+GROWTH = 4  # greatest ratio of groups tried at once to the most so far
 
 Found = TypeVar("Found")
 

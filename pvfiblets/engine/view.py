@@ -16,8 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = ["MAX_CLIP_PLANES", "Style", "View", "check_at_least"]
 
-MAX_CLIP_PLANES = 8
-"""As many as OpenGL itself promises (GL_MAX_CLIP_DISTANCES); a box takes six."""
+MAX_CLIP_PLANES = 8  # as many as OpenGL itself promises (GL_MAX_CLIP_DISTANCES); a box takes six
 
 
 @dataclass(frozen=True, eq=False)

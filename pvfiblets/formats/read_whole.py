@@ -8,8 +8,7 @@ from typing import Any
 from pvfiblets.formats.rows import finite
 from pvfiblets.streamlines import Streamlines
 
-TEXT_ARRAYS = "text arrays"
-"""The reason under which `dropped` counts arrays of strings."""
+TEXT_ARRAYS = "text arrays"  # the reason under which `dropped` counts arrays of strings
 
 
 def only_finite(streamlines: Streamlines, more: dict[str, int] | None = None) -> Streamlines:

@@ -53,13 +53,11 @@ __all__ = ["HOLDS", "info", "iter_chunks", "read", "write"]
 Array = NDArray[Any]
 Ints = NDArray[np.int64]
 
-HOLDS = ("per_point", "per_streamline")
-"""Parts of Streamlines besides the points that the format can carry."""
+HOLDS = ("per_point", "per_streamline")  # parts of Streamlines besides the points that the format can carry
 
 AFTER_LAST = "bytes after the last streamline"
 
-_READ_BYTES = 1 << 20
-"""Compressed files are inflated by this much at a time."""
+_READ_BYTES = 1 << 20  # compressed files are inflated by this much at a time
 
 
 class _Words(Protocol):

@@ -11,25 +11,20 @@ from numpy.typing import NDArray
 from pvfiblets.errors import FormatError
 
 HEADER_SIZE = 1000
-_SCALAR_NAMES, _PROPERTY_NAMES = 38, 240
-"""Bytes at which the two tables of ten names begin."""
+_SCALAR_NAMES, _PROPERTY_NAMES = 38, 240  # bytes at which the two tables of ten names begin
 
 
 class Header(NamedTuple):
     """Contents of a trk header."""
 
-    order: str
-    """Byte order, ``"<"`` or ``">"``."""
-    n_streamlines: int
-    """Streamlines; 0 where not recorded."""
+    order: str  # byte order, `"<"` or `">"`
+    n_streamlines: int  # streamlines; 0 where not recorded
     n_scalars: int
     n_properties: int
-    scalars: dict[str, slice]
-    """Name to columns among the scalars' rows, x, y, z included."""
+    scalars: dict[str, slice]  # name to columns among the scalars' rows, x, y, z included
     properties: dict[str, slice]
     affine: NDArray[np.float64]
-    to_ras: NDArray[np.float64]
-    """(4, 4): coordinates of the file to RAS+ mm."""
+    to_ras: NDArray[np.float64]  # (4, 4): coordinates of the file to RAS+ mm
     space: dict[str, Any]
 
     @property

@@ -33,8 +33,7 @@ _MOST_TEXT = 1 << 16  # bytes
 _COMPRESSORS = {
     "": None, "vtkZLibDataCompressor": "zlib", "vtkLZMADataCompressor": "lzma", "vtkLZ4DataCompressor": "lz4"
 }  # fmt: skip
-_DENSEST_LZ4 = 256
-"""Bytes that a byte of LZ4 can become, rounded up."""
+_DENSEST_LZ4 = 256  # bytes that a byte of LZ4 can become, rounded up
 
 
 class Element:

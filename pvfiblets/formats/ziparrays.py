@@ -27,11 +27,9 @@ _TYPES = {
 } | {"bit": np.dtype(bool), "bool": np.dtype(bool)}
 """Type by the last part of an entry's name; truth values take a byte each."""
 
-_DEFLATE_LIMIT = 1040
-"""Deflate cannot compress by more than 1032 to 1: a larger promise is damage."""
+_DEFLATE_LIMIT = 1040  # deflate cannot compress by more than 1032 to 1: a larger promise is damage
 
-_PIECE = 1 << 24
-"""Bytes inflated at a time where they are not wanted, or go to disk."""
+_PIECE = 1 << 24  # bytes inflated at a time where they are not wanted, or go to disk
 
 _ZIP_ERRORS = (
     BadZipFile,

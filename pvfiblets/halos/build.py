@@ -20,8 +20,7 @@ if TYPE_CHECKING:
 
 __all__ = ["FILTER", "SCALARS", "LinesAndValues", "as_halo_lines", "as_halo_points"]
 
-SCALARS, FILTER = "scalars", "filter"
-"""Names of unnamed arrays."""
+SCALARS, FILTER = "scalars", "filter"  # names of unnamed arrays
 
 Array = npt.NDArray[Any]
 

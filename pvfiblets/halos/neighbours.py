@@ -28,11 +28,9 @@ Ints = npt.NDArray[np.int64]
 _SAME = {np.dtype(np.float32): 1e-6, np.dtype(np.float64): 1e-9}
 """Distances, by the largest coordinate, up to which places are one and the same."""
 
-_EXACT = 0.01
-"""A distance is found when none can be less by more than this share of it."""
+_EXACT = 0.01  # A distance is found when none can be less by more than this share of it
 
-_SKIPPED = 8
-"""Things through a place that are passed over before the place is given up."""
+_SKIPPED = 8  # things through a place that are passed over before the place is given up
 
 _BLOCK = 1 << 17  # arcs handled at a time, a few MB
 _COARSE = 1 << 19  # arcs at most that all lines are covered by to begin with, and one more for each line

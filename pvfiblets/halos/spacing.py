@@ -12,8 +12,7 @@ from .neighbours import Cloud, Frame, Paths, distances
 
 __all__ = ["default_widths", "line_spacing", "point_spacing"]
 
-_ALONE = 1.0 / 60.0
-"""Spacing of data without neighbours, as a share of the bounds' diagonal."""
+_ALONE = 1.0 / 60.0  # spacing of data without neighbours, as a share of the bounds' diagonal
 
 
 def line_spacing(lines: HaloLines, samples: int = 2000, seed: int = 0) -> float:

@@ -19,8 +19,7 @@ if TYPE_CHECKING:
 
 __all__ = ["TONES", "Density"]
 
-TONES = ("log", "sqrt", "linear")
-"""Functions from the number of lines to brightness."""
+TONES = ("log", "sqrt", "linear")  # functions from the number of lines to brightness
 
 
 @dataclass(frozen=True)

@@ -65,8 +65,7 @@ if TYPE_CHECKING:
 
 _ONE_ACTOR = "give each actor a mapper of its own (mapper.ShallowCopy(other) shares the data)"
 
-SMOOTHED_BESIDE = 3.0
-"""Pixels beside lines that may take a share of them."""
+SMOOTHED_BESIDE = 3.0  # pixels beside lines that may take a share of them
 
 AnyOptions = TypeVar("AnyOptions", bound=Options)
 

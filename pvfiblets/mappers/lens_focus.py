@@ -16,20 +16,15 @@ from pvfiblets.mappers.scene import in_motion, pixel_scale, samples_per_pixel, t
 
 __all__ = ["FOLLOWED", "DepthOfField", "Focusing", "lens_of"]
 
-FOLLOWED = ("cursor", "center")
-"""Places in the picture whose depth may be the one in focus."""
+FOLLOWED = ("cursor", "center")  # places in the picture whose depth may be the one in focus
 
-APERTURE = 0.06
-"""Default diameter of the lens, as a share of the visible height at the distance in focus."""
+APERTURE = 0.06  # default diameter of the lens, as a share of the visible height at the distance in focus
 
-NEAR_CURSOR = 2
-"""Pixels around the mouse in which things are looked for: lines are thin."""
+NEAR_CURSOR = 2  # pixels around the mouse in which things are looked for: lines are thin
 
-SETTLED = 1e-3
-"""Relative error at which a moving focus counts as arrived."""
+SETTLED = 1e-3  # relative error at which a moving focus counts as arrived
 
-LONGEST = 0.1
-"""Seconds that count as passed at most: a focus that has rested starts slowly, too."""
+LONGEST = 0.1  # seconds that count as passed at most: a focus that has rested starts slowly, too
 
 
 @dataclass(frozen=True)

@@ -28,8 +28,7 @@ COLOURS, RADIUS, STREAMLINE = "colours", "radius", "streamline"
 SIDES = 12
 """Flat sides of a tube around a line: its surface lies inside of the round one by 3.4 % of the radius at most."""
 
-STEPS = 8
-"""Straight pieces of a segment of spline tubes."""
+STEPS = 8  # straight pieces of a segment of spline tubes
 
 _HALVINGS = 30
 

@@ -19,8 +19,7 @@ from pvfiblets.mappers.shifted_cameras import with_exact_depths
 from pvfiblets.mappers.windows import WindowContext, contexts_with
 
 EMPTY = 0xFFFFFFFF
-DEPTH_ERROR = 3e-7
-"""Window depth: as much as a depth buffer of 24 bits and the shader's float32 round."""
+DEPTH_ERROR = 3e-7  # window depth: as much as a depth buffer of 24 bits and the shader's float32 round
 
 
 @dataclass(frozen=True, eq=False)

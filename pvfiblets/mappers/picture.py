@@ -44,8 +44,7 @@ __all__ = ["DepthOfField", "Picture"]
 _EVENTS = ("StartEvent", "EndEvent", "ActiveCameraEvent")
 
 _COVERAGE = "coverage"
-ANTIALIAS = ("off", _COVERAGE)
-"""Methods of smoothing edges of lines."""
+ANTIALIAS = ("off", _COVERAGE)  # methods of smoothing edges of lines
 
 
 @dataclass(slots=True)

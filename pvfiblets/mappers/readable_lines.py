@@ -28,8 +28,7 @@ if TYPE_CHECKING:
 
 __all__ = ["MOST_POINTS", "LineReading", "readable", "reading_of"]
 
-MOST_POINTS = 2_000_000
-"""Most points for exporters and pickers: some 60 MB, or 100 MB as a .gltf or .obj file."""
+MOST_POINTS = 2_000_000  # most points for exporters and pickers: some 60 MB, or 100 MB as a .gltf or .obj file
 
 _CELLS = 1  # vtkDataObject.FIELD_ASSOCIATION_CELLS; 0 are points
 
@@ -37,8 +36,7 @@ _CELLS = 1  # vtkDataObject.FIELD_ASSOCIATION_CELLS; 0 are points
 class LineReading:
     """Real lines as VTK's data of one mapper, which is not kept alive, for a while."""
 
-    purpose = ""
-    """VTK's purpose of drawing the lines: ``"selection"``, ``"export"``, or nothing."""
+    purpose = ""  # VTK's purpose of drawing the lines: `"selection"`, `"export"`, or nothing
 
     def __init__(self, mapper: EngineMapper[Any], connection: Connection, link: ActorLink) -> None:
         self._weak = weak(mapper)

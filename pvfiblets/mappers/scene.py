@@ -26,8 +26,7 @@ streamed: dict[str, WeakSet[Any]] = {}
 """Engines that have parts of their sets at a time (`pvfiblets.mappers.streaming`), by the address of their
 vtkRenderer."""
 
-USUAL_DPI = 72
-"""Default dots per inch of a vtkRenderWindow."""
+USUAL_DPI = 72  # default dots per inch of a vtkRenderWindow
 
 # 1 - window depth = w stands in the third place: NDC depth is 2 * depth - 1 = 1 - 2 * w.
 _FROM_COMPLEMENT = np.array([[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, -2.0, 1.0], [0.0, 0.0, 0.0, 1.0]])

@@ -86,8 +86,7 @@ class ShaderEffect:
     translucent: ClassVar[bool] = False
     """Whether VTK must draw the actor in its translucent pass, whatever its opacity is."""
 
-    smooth_edges: ClassVar[bool] = True
-    """Whether the edges of the nearest lines are edges of the picture."""
+    smooth_edges: ClassVar[bool] = True  # whether the edges of the nearest lines are edges of the picture
 
     @property
     def style(self) -> Mapping[str, Any]:

@@ -26,8 +26,7 @@ __all__ = ["AmbientOcclusion", "DepthCue", "Halos", "Illuminated", "Ink", "Silho
 
 Colour = tuple[float, float, float]
 
-LUMINANCE = (0.2126, 0.7152, 0.0722)
-"""Shares of red, green and blue (Rec. 709)."""
+LUMINANCE = (0.2126, 0.7152, 0.0722)  # shares of red, green and blue (Rec. 709).
 
 HALO_WIDTH, LEAST_HALO, MOST_HALO = 0.5, 1.25, 5.0
 """Default width of a halo: by the distance between lines; at least and at most so many pixels of the window."""
@@ -37,8 +36,7 @@ OCCLUSION_RADIUS, LEAST_OCCLUSION, MOST_OCCLUSION = 16.0, 8.0, 0.05
 """Default radius of occlusion: by the distance between lines; at least so many pixels, at most this share of the data's
 diagonal."""
 
-MAX_OUTLINE = 16.0
-"""Pixels of the window; an outline's cost grows with the square of its width."""
+MAX_OUTLINE = 16.0  # pixels of the window; an outline's cost grows with the square of its width
 
 
 class Illuminated(ShaderEffect):

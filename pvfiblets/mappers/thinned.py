@@ -15,8 +15,7 @@ from pvfiblets.mappers.scene import wanted_share
 
 __all__ = ["LEAST_FIBLETS", "thinned_engine"]
 
-LEAST_FIBLETS = 20_000
-"""Smaller sets are never thinned: they are fast, and each of their lines may count."""
+LEAST_FIBLETS = 20_000  # smaller sets are never thinned: they are fast, and each of their lines may count
 
 
 def thinned_engine(

@@ -26,8 +26,7 @@ from pvfiblets.mappers.scene import renderers_of
 from pvfiblets.mappers.scene_depth import OutsideDepth
 
 GL_VIEWPORT = 0x0BA2
-MAX_ROW = 4096
-"""Greatest width of a texture that holds a list: below every driver's limit."""
+MAX_ROW = 4096  # greatest width of a texture that holds a list: below every driver's limit
 
 _contexts: dict[str, WindowContext] = {}
 

@@ -81,12 +81,9 @@ class Registered(Protocol):
 
 A = TypeVar("A", bound=Registered)
 
-LETTER = 0.5
-"""Width of a letter per size of its font, about."""
-NAMES_FONT = 18
-"""Size of the font of names beside a scalar bar that VTK chooses in a small window, about."""
-NAMES_SHARE = 0.42
-"""Share of the window's width for names beside a scalar bar."""
+LETTER = 0.5  # width of a letter per size of its font, about
+NAMES_FONT = 18  # size of the font of names beside a scalar bar that VTK chooses in a small window, about
+NAMES_SHARE = 0.42  # share of the window's width for names beside a scalar bar
 
 
 CAMERA_REACH = 2.0**53

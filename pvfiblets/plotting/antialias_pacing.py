@@ -10,11 +10,9 @@ from typing import Any
 
 __all__ = ["REST", "Pacer"]
 
-REST = 0.15
-"""Seconds without a frame after which a picture is at rest."""
+REST = 0.15  # seconds without a frame after which a picture is at rest
 
-PAUSE = 1
-"""Milliseconds between samples, in which events of mouse and keys are heard."""
+PAUSE = 1  # milliseconds between samples, in which events of mouse and keys are heard
 
 EARLY = 0.002  # seconds that a timer may come before its time
 

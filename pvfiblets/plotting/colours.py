@@ -20,11 +20,9 @@ if TYPE_CHECKING:
     from pvfiblets.codec.fibletset import FibletSet
     from pvfiblets.plotting.scalars import Scalars
 
-MOST_COLOURS = 65536
-"""Entries of a look-up table."""
+MOST_COLOURS = 65536  # entries of a look-up table
 
-MOST_WORDS = 64
-"""Names of categories beside a scalar bar: of more, the bar shows the numbers, as names would not fit."""
+MOST_WORDS = 64  # names of categories beside a scalar bar: of more, the bar shows the numbers, as names would not fit
 
 
 def label_colours(count: int) -> list[Any]:

@@ -46,8 +46,7 @@ class LinkedTable:
     A method of the actor, ``modified``, is called at each change by other code, which may not have finished.
     """
 
-    touched = False
-    """Whether others have changed it since `note`."""
+    touched = False  # whether others have changed it since `note`
 
     def __init__(self, table: pv.LookupTable, modified: Callable[[], None]) -> None:
         self._table = table

@@ -16,8 +16,7 @@ import pyvista as pv
 
 from pvfiblets.plotting.actor_registry import A, ActorRegistry
 
-ONE_BIT_FORMATS = (".png", ".tif", ".tiff", ".bmp")
-"""Kinds of files that hold one bit for a pixel."""
+ONE_BIT_FORMATS = (".png", ".tif", ".tiff", ".bmp")  # kinds of files that hold one bit for a pixel
 
 _HALF = 128
 

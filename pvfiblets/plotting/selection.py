@@ -19,8 +19,7 @@ if TYPE_CHECKING:
 __all__ = ["AS_BEFORE", "SelectedActor", "SelectionStyle"]
 
 MODES = ("replace", "add", "remove", "toggle")
-AS_BEFORE: Any = object()
-"""Default of arguments that change nothing."""
+AS_BEFORE: Any = object()  # default of arguments that change nothing
 
 
 @dataclass(frozen=True)

@@ -15,8 +15,7 @@ __all__ = ["COLOURS", "LATER", "MAPPER", "OPTIONS", "OWN", "PROPERTY", "Effect",
 class Place:
     """A place where an actor keeps a setting: it reads the setting, and applies its changes."""
 
-    checks: ClassVar[bool] = False
-    """Whether choices are looked at there, not before."""
+    checks: ClassVar[bool] = False  # whether choices are looked at there, not before
 
     def read(self, actor: Any, setting: Setting[Any]) -> Any:
         """Return the present value."""

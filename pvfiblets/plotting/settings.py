@@ -33,8 +33,7 @@ __all__ = [
 
 T = TypeVar("T")
 
-SAME: Any = object()
-"""Default of a row: that of the setting."""
+SAME: Any = object()  # default of a row: that of the setting
 
 
 @dataclass(frozen=True)

@@ -12,11 +12,9 @@ from .study import Options, Unavailable
 
 __all__ = ["Part", "WindowPart", "data_bytes", "drawing_context", "run_parts"]
 
-Part: TypeAlias = Callable[[Any, Options], Iterator[Record]]
-"""A part of a study: from a context and options to records."""
+Part: TypeAlias = Callable[[Any, Options], Iterator[Record]]  # A part of a study: from a context and options to records
 
-WindowPart: TypeAlias = Callable[[Options], Iterator[Record]]
-"""A part of a study that draws in windows."""
+WindowPart: TypeAlias = Callable[[Options], Iterator[Record]]  # A part of a study that draws in windows
 
 OF_THE_PICTURE = ("gbuffer", "occlusion", "framebuffer", "depth", "depth of tubes", "marks of tubes")
 """Buffers that grow with the picture, not with the data."""

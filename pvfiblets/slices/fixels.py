@@ -24,8 +24,7 @@ __all__ = ["Fixels", "files_beside", "read_fixels"]
 Array = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
-SUFFIXES = (".mif", ".mif.gz", ".nii", ".nii.gz")
-"""Suffixes of the files of a folder."""
+SUFFIXES = (".mif", ".mif.gz", ".nii", ".nii.gz")  # suffixes of the files of a folder
 
 
 @dataclass(frozen=True, eq=False)

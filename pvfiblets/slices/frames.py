@@ -28,8 +28,7 @@ _EDGES = [
     if bin(a ^ b).count("1") == 1  # corners whose numbers differ in one bit
 ]
 
-MOST_PIXELS = 2048
-"""Along a side of a slice."""
+MOST_PIXELS = 2048  # along a side of a slice
 
 
 @dataclass(frozen=True, eq=False)

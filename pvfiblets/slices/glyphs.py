@@ -20,8 +20,7 @@ Array = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
 KINDS = ("peaks", "tensor", "sh", "fixels")
-LINES = ("peaks", "fixels")
-"""Kinds that are drawn as lines."""
+LINES = ("peaks", "fixels")  # kinds that are drawn as lines
 
 TENSORS = {
     "mrtrix": (0, 3, 4, 3, 1, 5, 4, 5, 2), "dipy": (0, 1, 3, 1, 2, 4, 3, 4, 5), "fsl": (0, 1, 2, 1, 3, 4, 2, 4, 5),

@@ -51,8 +51,7 @@ ENVIRONMENT = {"MALLOC_ARENA_MAX": "1"}
 what each of them got, though all of it is free."""
 _MEMORY = Path("/proc/meminfo")
 _GROUP = Path("/sys/fs/cgroup")
-RESERVE = 48 * MEBIBYTE
-"""Bytes that must remain after something was loaded, so that the rest of the program goes on."""
+RESERVE = 48 * MEBIBYTE  # bytes that must remain after something was loaded, so that the rest of the program goes on
 _UNITS = {"K": 1 << 10, "M": 1 << 20, "G": 1 << 30, "T": 1 << 40}
 
 Result = TypeVar("Result")

@@ -35,8 +35,7 @@ __all__ = [
 
 Space: TypeAlias = Literal["RAS", "LPS"]
 
-FIELD = "SPACE"
-"""Name of the field array of strings."""
+FIELD = "SPACE"  # name of the field array of strings
 OURS: Space = "RAS"
 
 _NAMES: dict[str, Space] = {

@@ -31,11 +31,9 @@ __all__ = ["MIDDLE", "Boxes", "boxes", "controls", "cubic", "derivative", "devia
 Array = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
-MIDDLE = 0.25
-"""Distance of the middle control points along the end tangents: ``c`` above."""
+MIDDLE = 0.25  # distance of the middle control points along the end tangents: `c` above
 
-_BLOCK = 1 << 14
-"""Segments measured at a time, so that the samples of millions of them need no gigabytes."""
+_BLOCK = 1 << 14  # segments measured at a time, so that the samples of millions of them need no gigabytes
 
 
 def controls(tubes: SplineTubes, segments: npt.ArrayLike | None = None, middle: float = MIDDLE) -> Array:

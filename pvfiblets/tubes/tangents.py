@@ -27,8 +27,7 @@ _STEEPEST = 3.0
 """How far a derivative may lead along the longer step, in changes of value: a monotone cubic's limit (Fritsch and
 Carlson 1980). Changes in proportion to lengths come nowhere near it."""
 
-_HUGE = 1e300
-"""Slopes end here: a segment's curve takes a few of their sums before its length makes them small."""
+_HUGE = 1e300  # slopes end here: a segment's curve takes a few of their sums before its length makes them small
 
 _SWEEPS = 6
 """Reductions after which a spline's equations are solved. A row's two neighbours weigh at most half of the row itself,

@@ -39,17 +39,14 @@ __all__ = [
     "HOMOGENEOUS", "LEAF", "OVERSHOOT", "SKIP", "VISIT", "Level", "Octree", "build_octree", "flags", "homogeneous",
 ]  # fmt: skip
 
-LEAF = 8
-"""Cells along each side of a leaf: level 3."""
+LEAF = 8  # cells along each side of a leaf: level 3
 
 AT_ONCE = 1 << 22
 """Numbers of a volume's leaves that are brought together along one axis at a time: six bytes each, more or less."""
 
-SKIP, VISIT, HOMOGENEOUS = 0, 1, 2
-"""Actions of rays at a node: nothing, look into it, or take it as its mean."""
+SKIP, VISIT, HOMOGENEOUS = 0, 1, 2  # actions of rays at a node: nothing, look into it, or take it as its mean
 
-OVERSHOOT = 61 / 128
-"""Greatest excess of the tricubic field over the range of its voxels, as a part of that range."""
+OVERSHOOT = 61 / 128  # greatest excess of the tricubic field over the range of its voxels, as a part of that range
 
 Flags = list[npt.NDArray[np.uint8]]
 

@@ -21,8 +21,7 @@ MODES = ("composite", "isosurface", "mip", "local-mip", "minimum", "average")
 """What a ray shows: all that it passes through, a surface, the greatest value, the first peak above a threshold,
 the least value, or the mean one."""
 
-PROJECTIONS = ("mip", "local-mip", "minimum", "average")
-"""Modes that show one value of a ray."""
+PROJECTIONS = ("mip", "local-mip", "minimum", "average")  # modes that show one value of a ray
 
 REFINEMENTS = ("exact", "regula-falsi", "newton", "none")
 """Searches for surfaces: in each cell of eight voxels, or between two steps (paper: equations 3 and 4)."""
@@ -30,8 +29,7 @@ REFINEMENTS = ("exact", "regula-falsi", "newton", "none")
 INTEGRATORS = ("adaptive", "preintegrated", "exponential", "riemann", "simpson", "romberg", "rk4")
 """Methods of integrating the rendering equation over a step."""
 
-MAX_VALUES = 8
-"""Isosurfaces of one volume."""
+MAX_VALUES = 8  # isosurfaces of one volume
 
 MOST_STEPS = 30_000
 """Steps of a ray up to which flat voxels may shorten them: software OpenGL ends a loop after 65,535 turns."""
@@ -39,8 +37,7 @@ MOST_STEPS = 30_000
 DEEPEST, MOST_SHORTER = 16.0, 4.0
 """Optical depth of a step beyond which it is shortened, and to what part of itself at the most."""
 
-LARGEST = (2.0 - 2.0**-23) * 2.0**127
-"""The largest number that float32 holds."""
+LARGEST = (2.0 - 2.0**-23) * 2.0**127  # the largest number that float32 holds
 
 
 @dataclass(frozen=True)

@@ -27,8 +27,7 @@ LARGEST_DEPTH = 24.0 * np.log(2.0)
 """Largest optical depth of one unit, 16.6: there alpha is 1 - 2^-24, which float32 hardly tells from 1. Full opacity
 would take an infinite one."""
 
-PREINTEGRATED = 256
-"""Least number of values along each side of a pre-integrated table."""
+PREINTEGRATED = 256  # least number of values along each side of a pre-integrated table
 
 LARGEST_PREINTEGRATED = 1024
 """Largest number of entries of tables that can be pre-integrated: time grows with its third power."""
@@ -36,17 +35,13 @@ LARGEST_PREINTEGRATED = 1024
 EVEN_COLOURS, EVEN_EXTINCTION = 1.0 / 512.0, 1e-3
 """Differences of colours, and their part of extinction, up to which both count as the same."""
 
-PLACES = 4080
-"""Least number of pieces of the finer table that light is calculated from: 16 for each of 255."""
+PLACES = 4080  # least number of pieces of the finer table that light is calculated from: 16 for each of 255
 
-KEPT = 8
-"""Number of cached pre-integrated tables: each takes a moment, and some colours need two."""
+KEPT = 8  # number of cached pre-integrated tables: each takes a moment, and some colours need two
 
-ALLOWED = 1e-3
-"""Difference of light between a stretch and its halves up to which ``'adaptive'`` does not halve it again."""
+ALLOWED = 1e-3  # difference of light between a stretch and its halves up to which `'adaptive'` does not halve it again
 
-FINEST = 64
-"""Parts of two steps below which it does not."""
+FINEST = 64  # parts of two steps below which it does not
 
 Array = npt.NDArray[np.float64]
 

@@ -27,8 +27,7 @@ __all__ = ["Cache", "Folder", "Remote", "store_at"]
 
 PIECE = 1 << 22
 TRIES = 5
-PAUSE = 0.5
-"""Seconds before the second try; each further one waits twice as long."""
+PAUSE = 0.5  # seconds before the second try; each further one waits twice as long
 
 
 def store_at(place: str | PathLike[str], cache: Cache | None = None, **options: Any) -> Folder | Remote:

@@ -18,8 +18,7 @@ from .picture_passes import Attachment, PicturePasses
 
 __all__ = ["Coverage", "SmoothedLines"]
 
-TILE = 32
-"""Pixels of the side of the squares that are looked at, or are not since no line is near."""
+TILE = 32  # pixels of the side of the squares that are looked at, or are not since no line is near
 
 
 @dataclass(frozen=True)

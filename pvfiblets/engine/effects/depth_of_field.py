@@ -16,15 +16,13 @@ from .projection import Projection
 
 __all__ = ["STEPS", "TILE", "WIDEST", "Focus", "disc_areas", "distance_of"]
 
-WIDEST = 64.0
-"""Pixels: the greatest radius of a disc, as a pixel reads all pixels whose discs may reach it."""
+WIDEST = 64.0  # pixels: the greatest radius of a disc, as a pixel reads all pixels whose discs may reach it
 
 STEPS = 16
 """Radii a pixel, in the table of the pixels that discs cover; the number is linear between halves of a pixel's width,
 and few distances of pixels from a centre lie between two steps."""
 
-TILE = 8
-"""Pixels of the side of a square that stores how far discs reach into it."""
+TILE = 8  # pixels of the side of a square that stores how far discs reach into it
 
 
 @dataclass(frozen=True)

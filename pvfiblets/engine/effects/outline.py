@@ -12,8 +12,7 @@ from .screen import ScreenEffect
 
 __all__ = ["OutlinePass"]
 
-ROW = 4096
-"""Streamlines in a row of the texture: below every driver's limit."""
+ROW = 4096  # streamlines in a row of the texture: below every driver's limit
 
 
 class OutlinePass(ScreenEffect):

@@ -23,8 +23,7 @@ from .tone import Tone
 
 __all__ = ["FAINTEST", "Attachment", "PictureEffects", "SeenThrough"]
 
-FAINTEST = 0.02
-"""Opacity below which things that one sees something through are not what one looks at."""
+FAINTEST = 0.02  # opacity below which things that one sees something through are not what one looks at
 
 _LARGEST = float(np.finfo(np.float32).max)
 

@@ -11,8 +11,7 @@ __all__ = ["OPERATORS", "Tone", "is_number"]
 OPERATORS = ("none", "reinhard", "exponential", "aces", "hable")
 """Operators of tone mapping; the formulas are in the shader."""
 
-_WHITE = {"hable": 11.2}
-"""Default white point; the other operators take the brightest colour drawn."""
+_WHITE = {"hable": 11.2}  # default white point; the other operators take the brightest colour drawn
 
 _BRIGHTEST = 1e4
 

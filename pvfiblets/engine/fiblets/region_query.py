@@ -32,8 +32,7 @@ if TYPE_CHECKING:
 
 __all__ = ["ALL", "ANY", "FIRST", "LAST", "RegionQuery", "nearest_anchor"]
 
-BATCH = 1 << 20
-"""Fiblets asked at a time, so that no dispatch runs for long."""
+BATCH = 1 << 20  # fiblets asked at a time, so that no dispatch runs for long
 
 _STAGES = 3
 

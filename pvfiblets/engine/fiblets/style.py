@@ -9,8 +9,7 @@ from ..view import Style, check_at_least
 
 __all__ = ["FibletStyle"]
 
-NO_WIDTH = 1e-3
-"""Pixels: a brush that reaches none. 0 stands for thin lines."""
+NO_WIDTH = 1e-3  # pixels: a brush that reaches none. 0 stands for thin lines.
 
 
 @dataclass(frozen=True)

@@ -53,12 +53,10 @@ _NEEDS: dict[str, tuple[int, str | None]] = {
     "geometry": (330, None),
 }
 
-PIPELINES = (AUTO, *_NEEDS)
-"""Values of ``pipeline``."""
+PIPELINES = (AUTO, *_NEEDS)  # values of `pipeline`
 CULLINGS = ("auto", "none", "coverage", "two-phase")
 """Values of ``culling``; None means ``'none'``, and ``'auto'`` two-phase where that is measured to be faster."""
-FITS = (None, "sample", "stream")
-"""Values of ``fit``."""
+FITS = (None, "sample", "stream")  # values of `fit`
 
 # Any of these sets lets a shader take the least of 64-bit words atomically.
 _ATOMICS_64 = (

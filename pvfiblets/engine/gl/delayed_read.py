@@ -16,8 +16,7 @@ from .moderngl_extras import GLExtras
 
 __all__ = ["DelayedRead"]
 
-AT_ONCE = 3
-"""Pictures that may be on their way: drivers queue two or three."""
+AT_ONCE = 3  # pictures that may be on their way: drivers queue two or three
 
 _FLOAT = 4
 

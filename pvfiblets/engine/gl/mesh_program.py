@@ -23,8 +23,7 @@ _ACTIVE_UNIFORMS, _INVALID_INDEX = 0x8B86, 0xFFFFFFFF
 _STRICT = {"flat perprimitive": "perprimitive", "#extension GL_NV_mesh_shader : enable\n": "\n"}
 """How a fragment stage declares a primitive's data for Khronos' compiler, and the form that drivers take: Mesa's wants
 no ``flat`` there, and OpenGL programs on NVIDIA's cards have neither that nor the extension's name."""
-_LONGEST = 256
-"""Characters of a uniform's name, the closing zero included."""
+_LONGEST = 256  # characters of a uniform's name, the closing zero included
 
 # Of a uniform's type: components, and the letters of the function that sets it. Others are samplers, of one int.
 _KINDS = {

@@ -82,8 +82,7 @@ class Passes:
         self._ran.clear()
 
 
-GROUP_SIZE = 64
-"""Invocations of a compute work group, ``group_size`` to the sources."""
+GROUP_SIZE = 64  # invocations of a compute work group, `group_size` to the sources
 
 
 @contextlib.contextmanager

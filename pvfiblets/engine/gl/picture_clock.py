@@ -12,8 +12,7 @@ from .moderngl_extras import GLExtras
 
 __all__ = ["CallClock", "PictureClock", "TimestampClock", "Which"]
 
-Which: TypeAlias = tuple[int, bool]
-"""Label of a frame, chosen by the caller."""
+Which: TypeAlias = tuple[int, bool]  # label of a frame, chosen by the caller
 
 _TIMESTAMP, _RESULT, _AVAILABLE = 0x8E28, 0x8866, 0x8867
 

@@ -151,8 +151,7 @@ FEATURES: dict[str, str] = {
 }
 """Features of programs, by the names of their switches."""
 
-NEWEST = 430
-"""GLSL that sources are written for, unless they say otherwise."""
+NEWEST = 430  # GLSL that sources are written for, unless they say otherwise
 
 EXTENDED = 450
 """GLSL that sources are raised to for an extension: mesh shaders, with all stages beside them, and 64-bit atomics."""

@@ -47,8 +47,7 @@ MODULES = {
 }
 """Modules of the engine, by the names of the blocks that they pack."""
 
-LARGEST = 16384
-"""Bytes that OpenGL promises to a uniform block."""
+LARGEST = 16384  # bytes that OpenGL promises to a uniform block
 
 _TYPE = re.compile(
     r"(?:(?P<scalar>float|int|uint)|(?P<of>[iu]?)vec(?P<lanes>[234])|mat(?P<columns>[34]))(?:\[(?P<count>[1-9]\d*)\])?"

@@ -15,14 +15,11 @@ from .gl_version import version_of
 
 __all__ = ["BATCH", "QUAD", "PulledShapes"]
 
-BATCH = 65536
-"""Vertices of a call: what an index of 16 bits reaches."""
+BATCH = 65536  # vertices of a call: what an index of 16 bits reaches
 
-INDIRECT = 430
-"""OpenGL from which on one call makes all others."""
+INDIRECT = 430  # OpenGL from which on one call makes all others
 
-QUAD = np.array([0, 1, 2, 2, 1, 3])
-"""Indices of two triangles between four corners."""
+QUAD = np.array([0, 1, 2, 2, 1, 3])  # indices of two triangles between four corners
 
 
 class PulledShapes:

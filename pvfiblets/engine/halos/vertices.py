@@ -24,8 +24,7 @@ from ..lattice import lattice, places
 __all__ = ["LAST", "MOST", "Vertices", "mask_places"]
 
 
-LAST = 65535
-"""Place on the mask of a line's last vertex, and of no other."""
+LAST = 65535  # place on the mask of a line's last vertex, and of no other
 
 MOST = LARGEST / 2.0
 """Numbers that filter, and thresholds, count as no larger, infinity neither: what lies between two is a number then."""

@@ -16,11 +16,9 @@ from ..gl.shaders import Programs
 __all__ = ["LayerStack", "Rectangle", "Squares"]
 
 Array = npt.NDArray[np.float32]
-Rectangle = tuple[int, int, int, int]
-"""Pixels: left, lower, right, upper."""
+Rectangle = tuple[int, int, int, int]  # pixels: left, lower, right, upper
 
-SQUARE = 4
-"""Pixels of a side of the squares that a program of :class:`Squares` reduces; the programs state it too."""
+SQUARE = 4  # pixels of a side of the squares that a program of `Squares` reduces; the programs state it too
 
 
 class LayerStack:

@@ -47,11 +47,9 @@ __all__ = ["RegionIntervals"]
 _OVERFLOW = "regions/overflow.frag"
 _SCISSOR_TEST = 0x0C11
 
-_FORMS = 8
-"""Programs kept."""
+_FORMS = 8  # programs kept
 
-_LAYERS = 2
-"""Layers of boundaries, until a pixel is known to have more."""
+_LAYERS = 2  # layers of boundaries, until a pixel is known to have more
 
 
 class RegionIntervals:

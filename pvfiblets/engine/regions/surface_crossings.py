@@ -36,11 +36,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Peeled", "SurfaceLayers", "rectangle_of"]
 
-MOST = 4095
-"""Fragments of front or of back faces that a count holds."""
+MOST = 4095  # fragments of front or of back faces that a count holds
 
-IN_A_LAYER = 4
-"""Crossings that a layer holds."""
+IN_A_LAYER = 4  # crossings that a layer holds
 
 _INSPECT = "regions/inspect.frag"
 _NONE = -3.0

@@ -31,8 +31,7 @@ if TYPE_CHECKING:
 
 __all__ = ["REGIONS_BLOCK", "FieldTextures", "RegionBlock", "region_block", "region_features"]
 
-UNDECIDED = -1
-"""Kind of a leaf whose numbers float32 cannot hold: nothing is ever sure about it."""
+UNDECIDED = -1  # kind of a leaf whose numbers float32 cannot hold: nothing is ever sure about it
 
 REGIONS_BLOCK = UniformStruct(
     "Regions",

@@ -13,15 +13,13 @@ from dataclasses import dataclass
 
 __all__ = ["MOST_PAGES", "BrickLayout", "Range", "lay_out", "pieces", "voxels_of_page"]
 
-MOST_PAGES = 8
-"""Textures of one volume."""
+MOST_PAGES = 8  # textures of one volume
 
 PIECE = 1 << 24
 """Voxels that are handed to OpenGL at a time, at the most, if a slice has no more: what a volume takes of the host's
 memory beside itself."""
 
-Range = tuple[slice, slice, slice]
-"""A box of voxels."""
+Range = tuple[slice, slice, slice]  # A box of voxels
 
 
 @dataclass(frozen=True)

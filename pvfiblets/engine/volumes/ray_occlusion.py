@@ -26,8 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = ["GOLDEN", "LIFT", "MAX_SAMPLES", "RayOcclusionPass"]
 
-MAX_SAMPLES = 2048
-"""Rays of a pixel: the most that float16 counts one by one."""
+MAX_SAMPLES = 2048  # rays of a pixel: the most that float16 counts one by one
 
 MOST_TURNS = 20_000
 """Turns of loops in one draw of a pixel. Mesa's software OpenGL leaves all loops after 65,535 without a word, lanes of

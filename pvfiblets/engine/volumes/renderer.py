@@ -42,8 +42,7 @@ _OF_MODE = {
     "average": ["VOLUME_AVERAGE"],
 }
 FEATURES_OF_FILTER = {"nearest": ["VOLUME_NEAREST"], "trilinear": [], "tricubic": ["VOLUME_TRICUBIC"]}
-_TAPS = {"tricubic": 8}
-"""Look-ups of a sample, where there are several."""
+_TAPS = {"tricubic": 8}  # look-ups of a sample, where there are several
 _OF_REFINEMENT = {"exact": [], "none": ["VOLUME_UNREFINED"], "regula-falsi": [], "newton": ["VOLUME_NEWTON"]}
 _OF_INTEGRATOR = {
     "adaptive": ["VOLUME_PREINTEGRATED"],  # and more where that does not do

@@ -25,8 +25,7 @@ _FORMATS: dict[Any, tuple[str, float, float]] = {
 }
 """moderngl's type, and what takes what a shader reads to values: times the first, plus the second."""
 
-UNLIMITED = 2.0**62
-"""Voxels of a texture where nothing is known of a limit."""
+UNLIMITED = 2.0**62  # voxels of a texture where nothing is known of a limit
 
 _BYTES = {"f1": 1, "nu2": 2, "f4": 4}
 

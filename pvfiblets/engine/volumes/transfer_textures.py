@@ -20,8 +20,7 @@ if TYPE_CHECKING:
 
 __all__ = ["TransferTextures"]
 
-SIZE = 1024
-"""Entries of colours by value: opacities are linear between those of the user, extinctions are not."""
+SIZE = 1024  # entries of colours by value: opacities are linear between those of the user, extinctions are not
 
 
 class TransferTextures:

@@ -63,8 +63,7 @@ class Look:
     settings: Mapping[str, Any]  # by name; values as they are set, or an `Apart` or `Fewer`
 
 
-WINDOW = 1000.0
-"""Pixels that the data take of a window, roughly, where they fill it."""
+WINDOW = 1000.0  # pixels that the data take of a window, roughly, where they fill it
 
 RADIUS = Apart(0.35, 1.0 / 1600.0, 1.0 / 400.0)
 THICK = Apart(0.5, 1.0 / 1100.0, 1.0 / 270.0)

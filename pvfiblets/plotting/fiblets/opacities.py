@@ -16,8 +16,7 @@ __all__ = ["TRANSFERS", "Opacities", "find_opacities"]
 TRANSFERS = ("linear", "linear_r", "geom", "geom_r", "sigmoid", "sigmoid_r")
 """Transfer functions that a page offers; PyVista has more sigmoids."""
 
-POINTS = "opacity"
-"""Name of an array of opacities per point among the fiblets' own."""
+POINTS = "opacity"  # name of an array of opacities per point among the fiblets' own
 
 
 @dataclass(frozen=True, eq=False)

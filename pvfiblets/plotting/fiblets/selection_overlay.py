@@ -32,11 +32,9 @@ if TYPE_CHECKING:
     from pvfiblets.tubes.spline_tubes import SplineTubes
 
 
-MOST_POINTS = 400_000
-"""Of spline tubes: they take 50 bytes for each on the GPU, fiblets two."""
+MOST_POINTS = 400_000  # of spline tubes: they take 50 bytes for each on the GPU, fiblets two
 
-SHADES = ("ambient_occlusion", "depth_cue")
-"""Names of effects whose defaults are the extent of all that the owner has."""
+SHADES = ("ambient_occlusion", "depth_cue")  # names of effects whose defaults are the extent of all that the owner has
 
 
 class _OfAll:

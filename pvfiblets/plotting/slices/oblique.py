@@ -27,17 +27,13 @@ __all__ = ["NAME", "ObliqueSlice", "Trace", "add_oblique_slice", "turned_about"]
 
 Array = npt.NDArray[np.float64]
 
-NAME = "oblique"
-"""Name of the plane and of its pane."""
+NAME = "oblique"  # name of the plane and of its pane
 
-HANDLE = 0.36
-"""Distance of handles from the cross-hair, per the smaller side of a pane."""
+HANDLE = 0.36  # distance of handles from the cross-hair, per the smaller side of a pane
 HANDLE_RADIUS, REACH = 5.0, 14.0
 """Pixels: how large handles are drawn, and how near one takes hold of them, which fingers do, too."""
-GAP = 12.0
-"""Pixels of the line's middle that stay free for the cross-hair's."""
-FLATTEST = 1e-3
-"""Sine of the angle below which a pane lies in the slice, and no line shows where they meet."""
+GAP = 12.0  # pixels of the line's middle that stay free for the cross-hair's
+FLATTEST = 1e-3  # sine of the angle below which a pane lies in the slice, and no line shows where they meet
 
 _RING = 12
 

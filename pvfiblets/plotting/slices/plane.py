@@ -25,10 +25,8 @@ __all__ = ["SliceActor", "SlicePlane", "before_render", "on_events", "prepare"]
 
 Array = npt.NDArray[np.float64]
 
-OVERSAMPLED = 2
-"""Pixels of a slice in the 3-D view along the finest voxel of all layers."""
-MOST_ACROSS = 768
-"""Pixels along a side of a slice in the 3-D view, whatever its voxels are."""
+OVERSAMPLED = 2  # pixels of a slice in the 3-D view along the finest voxel of all layers
+MOST_ACROSS = 768  # pixels along a side of a slice in the 3-D view, whatever its voxels are
 
 _PREPARE = "UserEvent"
 

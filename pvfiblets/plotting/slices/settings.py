@@ -26,8 +26,7 @@ class _Layer(Place):
 LAYER = _Layer()
 
 
-MEANING = "meaning"
-"""A row of the page that is no setting of layers: what the numbers of the image mean."""
+MEANING = "meaning"  # A row of the page that is no setting of layers: what the numbers of the image mean
 
 
 def _of(*meanings: str) -> Any:

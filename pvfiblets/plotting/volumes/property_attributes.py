@@ -29,10 +29,8 @@ class _Word:
     vtk: str
     used: tuple[str, ...]
     instead: str
-    light: str = ""
-    """Message where light could use it, and its ``shade`` is off; empty: light never uses it."""
-    reset: bool = False
-    """Whether the old value is restored, because VTK would draw something else by the new one."""
+    light: str = ""  # message where light could use it, and its `shade` is off; empty: light never uses it
+    reset: bool = False  # whether the old value is restored, because VTK would draw something else by the new one
 
 
 _PEAK_MODES = ("mip", "local-mip", "minimum", "average")

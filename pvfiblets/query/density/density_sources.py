@@ -52,11 +52,9 @@ class Part:
 class Source(Protocol):
     """The source of density maps."""
 
-    name: str
-    """Name of the values."""
+    name: str  # name of the values
     unit: str
-    per_point: bool
-    """Whether values are of points, or of streamlines."""
+    per_point: bool  # whether values are of points, or of streamlines
 
     @property
     def most_streamlines(self) -> int:

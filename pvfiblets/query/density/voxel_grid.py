@@ -18,8 +18,7 @@ __all__ = ["VoxelGrid", "grid_about", "grid_like"]
 
 Array = npt.NDArray[np.float64]
 
-MOST = 1 << 40
-"""Largest number of voxels."""
+MOST = 1 << 40  # largest number of voxels
 
 
 @dataclass(frozen=True, eq=False)

@@ -62,8 +62,7 @@ __all__ = [
 Kind = Literal["streamline", "point"]
 Floats = npt.NDArray[np.float64]
 CODING_ERROR = "coding_error"
-CURVATURE = "_curvature"
-"""Attribute of a set, no field of it: a set that is made of another has other points."""
+CURVATURE = "_curvature"  # attribute of a set, no field of it: a set that is made of another has other points
 SLACK = 0.99  # of an error bound: it is a tenth of a step but for rounding
 UNCERTAIN = 0.05  # of the streamlines may be too short for their curvature: every set has some
 

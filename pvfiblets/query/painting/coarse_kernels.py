@@ -19,10 +19,8 @@ from .walk_kernels import ANY, CHANGED, HERE
 
 __all__ = ["ADDED", "ALL_FLAGS", "GONE", "OPEN", "REMOVED", "SAME", "SURE", "close_parts", "settle"]
 
-ADDED, REMOVED, ALL_FLAGS = 0, 1, 2
-"""Query: of added or removed voxels, whether they are passed; otherwise all flags."""
-SAME, SURE, GONE, OPEN = 0, 1, 2, 3
-"""Nothing changes for a fiblet; it passes now; it does no more; it must be decoded."""
+ADDED, REMOVED, ALL_FLAGS = 0, 1, 2  # query: of added or removed voxels, whether they are passed; otherwise all flags
+SAME, SURE, GONE, OPEN = 0, 1, 2, 3  # nothing changes for a fiblet; it passes now; it does no more; it must be decoded
 BLOCK, FEW = 256, 16
 STEP = 0.7  # voxels between discs, at most
 WIDEST = 2.0  # voxels: a larger radius settles nothing

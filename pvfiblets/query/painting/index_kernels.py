@@ -21,10 +21,8 @@ __all__ = ["LEAF", "chords", "leaf_boxes", "leaf_pieces", "near_leaves", "next_a
 
 LEAF = 32
 BLOCK = 1024
-ROWS = 65
-"""Points that a record can name, and the next fiblet's first."""
-UP = 1.0 + 1e-6
-"""Rounds a length in float32 up."""
+ROWS = 65  # points that a record can name, and the next fiblet's first
+UP = 1.0 + 1e-6  # rounds a length in float32 up
 
 
 @kernel

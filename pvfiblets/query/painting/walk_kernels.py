@@ -19,8 +19,7 @@ __all__ = ["ANY", "BAD", "CHANGED", "DAMAGED", "FIRST", "HERE", "LAST", "OUT", "
 ANY, OUT, FIRST, LAST = 1, 2, 4, 8
 """Flags of a fiblet: some position lies in the region, some does not, its first point does, its last point does."""
 BAD, DAMAGED = 255, -(1 << 62)
-HERE, CHANGED = 1, 2
-"""Flags of a voxel: it is in the region, and this stroke changed it."""
+HERE, CHANGED = 1, 2  # flags of a voxel: it is in the region, and this stroke changed it
 BLOCK = 64
 
 

@@ -48,8 +48,7 @@ Array = npt.NDArray[np.float64]
 
 _PLANE, _SLAB, _BOX, _SPHERE, _SURFACE, _LABELS = range(6)
 _AND, _OR, _NOT = -1, -2, -3
-_EPS = 16.0 * 2.0**-52
-"""Relative float64 error of a ball's centre, a position in it, and their distance."""
+_EPS = 16.0 * 2.0**-52  # relative float64 error of a ball's centre, a position in it, and their distance
 
 
 @dataclass(frozen=True, eq=False)

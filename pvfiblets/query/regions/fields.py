@@ -29,11 +29,9 @@ __all__ = ["CELLS", "MOST_VALUES", "Field", "label_field", "rounded_towards_zero
 Array = npt.NDArray[np.float64]
 
 CELLS = 64
-MARGIN = 2
-"""Cells beyond a surface's bounds on each side."""
+MARGIN = 2  # cells beyond a surface's bounds on each side
 
-MOST_VALUES = 256**3
-"""64 MiB of float32."""
+MOST_VALUES = 256**3  # 64 MiB of float32
 
 
 @dataclass(frozen=True, eq=False)

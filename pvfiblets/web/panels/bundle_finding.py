@@ -23,10 +23,8 @@ if TYPE_CHECKING:
 
 __all__ = ["FindingActions", "build"]
 
-LISTED = 50
-"""Clusters that become bundles; the others are counted."""
-COMPARED = 1000
-"""Streamlines that all others are compared with; of more, an even share."""
+LISTED = 50  # clusters that become bundles; the others are counted
+COMPARED = 1000  # streamlines that all others are compared with; of more, an even share
 
 
 class FindingActions(LineActions):

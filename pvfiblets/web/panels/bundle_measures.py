@@ -24,12 +24,9 @@ if TYPE_CHECKING:
 
 __all__ = ["FORMATS", "MeasureActions", "build"]
 
-FORMATS = ("csv", "tsv", "parquet")
-"""Of the tables that are fetched."""
-PROFILED = 24
-"""Bundles in one chart."""
-MEASURED = 2000
-"""Bundles in one table."""
+FORMATS = ("csv", "tsv", "parquet")  # of the tables that are fetched
+PROFILED = 24  # bundles in one chart
+MEASURED = 2000  # bundles in one table
 PLACES = 100
 SHOWN = 200  # rows of a table on the page
 KINDS = ("profile", "table")

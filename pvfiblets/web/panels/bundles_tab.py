@@ -15,11 +15,9 @@ from pvfiblets.web.session.document import LINES
 
 __all__ = ["BundleActions", "build"]
 
-LISTED = 300
-"""Rows of the list; more are counted, and found by their names."""
+LISTED = 300  # rows of the list; more are counted, and found by their names
 
-MANY = 20
-"""Bundles beyond which one looks for them by name."""
+MANY = 20  # bundles beyond which one looks for them by name
 
 
 class BundleActions(LineActions):

@@ -29,10 +29,8 @@ if TYPE_CHECKING:
 
 __all__ = ["MatrixActions", "build", "matrix_image"]
 
-KEPT = 4
-"""Matrices that undo finds without work."""
-LISTED = 200
-"""Files that may be labels, or their names."""
+KEPT = 4  # matrices that undo finds without work
+LISTED = 200  # files that may be labels, or their names
 COLOURS = "inferno"
 
 

@@ -20,8 +20,7 @@ from pvfiblets.web.session.painting import USES
 
 __all__ = ["PAINTING", "PaintActions", "build", "over"]
 
-PAINTING = f"{list(TOOLS)}.includes(tool)"
-"""Whether a tool that paints is in hand, for the page."""
+PAINTING = f"{list(TOOLS)}.includes(tool)"  # whether a tool that paints is in hand, for the page
 
 ICONS = (
     ("brush", "mdi-brush", "Brush (N)"),
@@ -32,8 +31,7 @@ ICONS = (
     ("grow", "mdi-auto-fix", "Grow over voxels of like values (W)"),
 )
 SUFFIXES = (".nii.gz", ".nii")
-AT_ONCE = ("fill", "outline", "sphere", "grow")
-"""Tools that need one list of places."""
+AT_ONCE = ("fill", "outline", "sphere", "grow")  # tools that need one list of places
 
 
 class PaintActions(Actions):

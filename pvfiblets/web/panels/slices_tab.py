@@ -29,8 +29,7 @@ ICONS = {
     "grid": "mdi-view-grid-outline",
     "oblique": "mdi-square-outline",
 }
-TILTED = [30.0, 0.0]
-"""Angles that an oblique slice begins with, degrees."""
+TILTED = [30.0, 0.0]  # angles that an oblique slice begins with, degrees
 MOST_STEP = 100  # voxels at once
 
 

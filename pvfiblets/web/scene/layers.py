@@ -85,15 +85,12 @@ SELECTION = {
 }
 """Properties of lines that are arguments of ``actor.selection_style``, by the names that they have there."""
 
-LOOK = "look"
-"""A property of lines that stands for others: their actor gets these, with the look's values of effects."""
+LOOK = "look"  # A property of lines that stands for others: their actor gets these, with the look's values of effects
 
-PERCENTILES = (1.0, 99.0)
-"""Percentiles of non-zero voxels: the default window of volumes, as of slices."""
+PERCENTILES = (1.0, 99.0)  # percentiles of non-zero voxels: the default window of volumes, as of slices
 FEW = 64  # numbers; a volume of no more is one of labels
 
-RADIUS_SCALE = "radius_scale"
-"""A look of tubes that is no attribute of their actor: its tubes are others."""
+RADIUS_SCALE = "radius_scale"  # A look of tubes that is no attribute of their actor: its tubes are others
 
 _BY_NAME = {kind: {prop.name: prop for prop in table} for kind, table in TABLES.items()}
 

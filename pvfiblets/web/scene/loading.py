@@ -46,12 +46,9 @@ __all__ = ["Cancelled", "Files", "Loaded", "Watch"]
 
 MOST_REMEMBERED = 16  # exports whose points are not coded again
 
-Progress = Callable[[str, float], None]
-"""Called with the step's name and its finished share, from 0 to 1."""
-Cancel = Callable[[], bool]
-"""Whether to stop."""
-Stamp = tuple[int, int]
-"""When a file was changed last, in nanoseconds, and its bytes."""
+Progress = Callable[[str, float], None]  # called with the step's name and its finished share, from 0 to 1
+Cancel = Callable[[], bool]  # whether to stop
+Stamp = tuple[int, int]  # when a file was changed last, in nanoseconds, and its bytes
 
 
 class Cancelled(Exception):  # noqa: N818 - not an error: somebody wanted it

@@ -20,10 +20,8 @@ if TYPE_CHECKING:
 
 __all__ = ["SceneMatrix", "as_json", "check_connection", "check_matrix", "choices"]
 
-PARCELS = 1024
-"""Greatest number of parcels of a matrix."""
-WIDEST = 100.0
-"""mm about an end in which its parcel is looked for."""
+PARCELS = 1024  # greatest number of parcels of a matrix
+WIDEST = 100.0  # mm about an end in which its parcel is looked for
 
 
 class SceneMatrix:

@@ -15,8 +15,7 @@ __all__ = ["Place", "Wanted", "arrange"]
 Measure = Callable[[str, int], float]
 """Function from a text and the size of its letters to its width, in pixels of the window."""
 
-FONTS = (13, 11, 9)
-"""Sizes of letters, from the one that is taken where there is room; 72 points are an inch."""
+FONTS = (13, 11, 9)  # sizes of letters, from the one that is taken where there is room; 72 points are an inch
 SMALLEST_NAMES = 7
 BAR = 15.0  # width of the colours; all of these are pixels at 72 to an inch
 GAP = 12.0  # between what belongs to two bars

@@ -59,8 +59,7 @@ __all__ = ["Change", "Scene"]
 
 MOST_LAYERS = 64
 MOST_VALUES = 64  # files of values of one layer
-LONGEST_NAME = 1024
-"""Largest number of characters of a layer's name."""
+LONGEST_NAME = 1024  # largest number of characters of a layer's name
 
 
 @dataclass(frozen=True)

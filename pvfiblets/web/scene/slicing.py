@@ -41,14 +41,11 @@ LAYOUTS = {
 """Layouts of views, for people."""
 
 CONVENTIONS = ("radiological", "neurological")
-NAMES = ("axial", "coronal", "sagittal", "3d", "oblique")
-"""Views in the order of the plotter's renderers."""
-VIEWS = (1, len(NAMES))
-"""The ``shape`` of a plotter that has all of them."""
+NAMES = ("axial", "coronal", "sagittal", "3d", "oblique")  # views in the order of the plotter's renderers
+VIEWS = (1, len(NAMES))  # the `shape` of a plotter that has all of them
 _THREE_D = NAMES.index("3d")
 
-WEIGHTS = "modulate"
-"""The setting that names the image which a direction-coded one is as bright as."""
+WEIGHTS = "modulate"  # the setting that names the image which a direction-coded one is as bright as
 
 OBLIQUE = "oblique"
 _THICKEST = 1000.0  # mm

@@ -16,8 +16,7 @@ logger = logging.getLogger("pvfiblets.web")
 
 # What a browser sends is small: state changes, pointer events. Files come by POST.
 LARGEST_MESSAGE = MEBIBYTE
-LARGEST_SESSION = 256 * MEBIBYTE
-"""Bytes of a session file: no larger one is written or read."""
+LARGEST_SESSION = 256 * MEBIBYTE  # bytes of a session file: no larger one is written or read
 REFUSED = "The server refused what this page sent"
 # wslink cuts messages into chunks with a header each: an identifier, an offset, and the size of the whole message, as
 # little-endian uint32 (wslink/chunking.py). Its receiver allocates that size at once, so it is looked at here first.

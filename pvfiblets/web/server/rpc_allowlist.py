@@ -41,8 +41,7 @@ KEYS = frozenset({"keyPress", "keyDown", "keyUp", "KeyPress", "KeyDown", "KeyUp"
 LIFECYCLE = frozenset({"client_connected", "client_exited", "client_unmounted", "client_unmounting"})
 
 
-Check = Callable[..., list[Any] | None]
-"""Turns a message's arguments into a method's; ``None``: nothing to call."""
+Check = Callable[..., list[Any] | None]  # turns a message's arguments into a method's; `None`: nothing to call
 
 
 # What wrong input raises; anything else is a mistake in this program, and its traceback is for the log.

@@ -23,8 +23,7 @@ except ImportError:  # Windows, where folders of dead gates stay until its own c
 __all__ = ["PRIVATE", "Notes", "Scratch", "remove_abandoned"]
 
 PREFIX = "pvfiblets-serve-"
-PRIVATE = ".pvfiblets-"
-"""Prefix of names that sessions record: nothing else is ever removed."""
+PRIVATE = ".pvfiblets-"  # prefix of names that sessions record: nothing else is ever removed
 _LOCK, _NOTES = "lock", "notes"
 _SESSION, _RESTORE = "session.json", "restore.json"
 

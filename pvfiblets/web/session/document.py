@@ -37,11 +37,9 @@ __all__ = [
     "volumes_of",
 ]
 
-KINDS = ("tractogram", "tubes", "volume", "mesh", "selection", "image")
-"""Kinds of layers."""
+KINDS = ("tractogram", "tubes", "volume", "mesh", "selection", "image")  # kinds of layers
 
-LINES = ("tractogram", "selection")
-"""Kinds that are drawn from fiblets: they can be filtered, cut and picked."""
+LINES = ("tractogram", "selection")  # kinds that are drawn from fiblets: they can be filtered, cut and picked
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,8 +11,7 @@ from pvfiblets.web.values import shown
 
 __all__ = ["numbers_in", "pack", "runs_of", "unpack"]
 
-_STEPS = {"u1": 1, "u2": 2, "u4": 4, "u8": 8}
-"""Types of steps, and their bytes; little-endian."""
+_STEPS = {"u1": 1, "u2": 2, "u4": 4, "u8": 8}  # types of steps, and their bytes; little-endian
 
 
 def runs_of(numbers: np.ndarray) -> np.ndarray:

@@ -14,8 +14,7 @@ from pvfiblets.web.session.document import LINES, Layer, Source, State
 
 __all__ = ["Store"]
 
-KEPT = 3
-"""Tables of the parcels in which streamlines end: eight bytes a streamline."""
+KEPT = 3  # tables of the parcels in which streamlines end: eight bytes a streamline
 
 
 @dataclass(frozen=True, eq=False)

@@ -25,11 +25,9 @@ if TYPE_CHECKING:
 
 __all__ = ["LARGEST", "URL", "SentScene", "SentScenes"]
 
-LARGEST = 64_000_000
-"""Bytes of data up to which ``--draw auto`` lets browsers draw: pictures may never add up to more."""
+LARGEST = 64_000_000  # bytes of data up to which `--draw auto` lets browsers draw: pictures may never add up to more
 
-MOST = 1_000_000_000
-"""Bytes of data up to which ``--draw there`` does: browsers hold little more of one page's."""
+MOST = 1_000_000_000  # bytes of data up to which `--draw there` does: browsers hold little more of one page's
 
 URL = "/there"
 

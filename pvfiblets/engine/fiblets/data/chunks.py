@@ -50,11 +50,9 @@ CHUNK_BLOCK = UniformStruct(
 
 
 CLUSTER = 64
-CLUSTER_BIAS, CLUSTER_STEP = 32768.0, 2.0
-"""Fiblets of a cluster (:mod:`.clusters`), and what its box counts in."""
+CLUSTER_BIAS, CLUSTER_STEP = 32768.0, 2.0  # fiblets of a cluster (`.clusters`), and what its box counts in
 
-CLUSTERED = 1 << 21
-"""Fiblets of a set that has clusters: fewer are tested one by one in as little time."""
+CLUSTERED = 1 << 21  # fiblets of a set that has clusters: fewer are tested one by one in as little time
 
 
 @dataclass(frozen=True)

@@ -28,11 +28,9 @@ if TYPE_CHECKING:
 __all__ = ["MASK_BITS", "Filter", "FilterTextures"]
 
 
-MASK_BITS = 12
-"""A row of a mask holds two to the power of this many words of 32 bits; the sources know it, too."""
+MASK_BITS = 12  # A row of a mask holds two to the power of this many words of 32 bits; the sources know it, too
 
-AHEAD = 2
-"""Points of the next chunk that shaders of this one ask about."""
+AHEAD = 2  # points of the next chunk that shaders of this one ask about
 
 Words = npt.NDArray[np.uint32]
 

@@ -36,16 +36,13 @@ if TYPE_CHECKING:
 
 __all__ = ["PICTURE", "RESERVE", "Fitted", "MemoryBudget", "free_memory"]
 
-PICTURE = 1920 * 1080
-"""Pixels of the picture that is reckoned with; larger ones live on the reserve."""
+PICTURE = 1920 * 1080  # pixels of the picture that is reckoned with; larger ones live on the reserve
 
 PICTURE_BYTES = 48 * PICTURE  # G-buffer 24; depth buffers, state kept between rounds, pyramid: 24 at most
 
-SHARED_BYTES = 20_000
-"""Bytes of the uniform blocks that all chunks share, with a reserve."""
+SHARED_BYTES = 20_000  # bytes of the uniform blocks that all chunks share, with a reserve
 
-RESERVE = 0.1
-"""Share of the free memory that a sample leaves free."""
+RESERVE = 0.1  # share of the free memory that a sample leaves free
 
 _ADVICE = "draw fewer streamlines, an even share of them by fit='sample', or all of them part by part by fit='stream'"
 

@@ -50,8 +50,7 @@ SAMPLING_BLOCK = UniformStruct(
     Field("volume_per_unit", "float", "value per texel unit"),
     Field("volume_whole", "int", "1: values are whole numbers of units"),
 )
-LARGEST_WHOLE = 2**24
-"""Up to here float32 holds every whole number."""
+LARGEST_WHOLE = 2**24  # up to here float32 holds every whole number
 
 Array = npt.NDArray[np.float64]
 

@@ -40,11 +40,9 @@ if TYPE_CHECKING:
 
 __all__ = ["SLICES", "Gather", "Gathered", "SliceDistances", "slice_edges"]
 
-SLICES = 4
-"""Sums of a pixel behind its nearest line; the shaders' three edges between them must agree."""
+SLICES = 4  # sums of a pixel behind its nearest line; the shaders' three edges between them must agree
 
-GROWTH = 2.5
-"""Ratio of each slice's depth to the depth of the one before."""
+GROWTH = 2.5  # ratio of each slice's depth to the depth of the one before
 
 Array = npt.NDArray[np.float64]
 

@@ -19,18 +19,15 @@ if TYPE_CHECKING:
 
 __all__ = ["Parts", "Stretches", "in_view", "reach_of"]
 
-Box = npt.NDArray[np.float64]
-"""``(2, 3)`` float64: least and greatest coordinates, mm."""
+Box = npt.NDArray[np.float64]  # `(2, 3)` float64: least and greatest coordinates, mm
 
 
 class Parts(Protocol):
     """The parts of a set. Each streamline is in one part, as a whole, with its number in the set."""
 
-    whole: FibletSet
-    """The set: what filters and colours go by."""
+    whole: FibletSet  # the set: what filters and colours go by
 
-    by_streamline: bool
-    """Whether the set is coded in the order of its streamlines' numbers, but not part by part."""
+    by_streamline: bool  # whether the set is coded in the order of its streamlines' numbers, but not part by part
 
     def __len__(self) -> int:
         """Return how many parts there are."""

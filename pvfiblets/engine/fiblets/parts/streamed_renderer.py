@@ -57,11 +57,9 @@ __all__ = ["PARTS", "THINNED_SHARE", "StreamedRenderer", "streamed_renderer"]
 PARTS = 12
 """How many parts that are not the even share fit into the memory: few are drawn in fewer calls, many fit it better."""
 
-THINNED_SHARE = 0.25
-"""Share of the memory for the streamlines that hurried pictures show."""
+THINNED_SHARE = 0.25  # share of the memory for the streamlines that hurried pictures show
 
-LEAST_ROOM = 60_000
-"""Bytes of memory below which a part's overhead exceeds its records."""
+LEAST_ROOM = 60_000  # bytes of memory below which a part's overhead exceeds its records
 
 THINNED = -1  # number of the even share among the parts
 

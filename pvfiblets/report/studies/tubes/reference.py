@@ -39,11 +39,9 @@ Ints = npt.NDArray[np.int64]
 
 MISS, ENTRY, EXIT, CAP = range(4)
 
-_BLOCK = 1 << 13
-"""Pairs of ray and half solved at a time: their working arrays stay in cache."""
+_BLOCK = 1 << 13  # pairs of ray and half solved at a time: their working arrays stay in cache
 
-_PAIRS = 1 << 21
-"""Pairs whose bounding spheres are tried at a time."""
+_PAIRS = 1 << 21  # pairs whose bounding spheres are tried at a time
 
 
 @dataclass(frozen=True, eq=False)

@@ -27,8 +27,7 @@ __all__ = ["Crossings", "Maxima", "Rays", "composite", "gradient", "isosurface",
 Array = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
-ORDER = 8
-"""Nodes of the Gauss rule: exact for polynomials of degree 15."""
+ORDER = 8  # nodes of the Gauss rule: exact for polynomials of degree 15
 
 ROUNDING = 1e-14
 """Part of the largest value that may be rounding's: so near to a value, the field is at it; so little behind a local

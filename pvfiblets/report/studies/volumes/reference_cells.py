@@ -32,8 +32,7 @@ OVERSHOOT = ((4.0 / 3.0) ** 3 - 1.0) / 2.0
 """By how much of the spread of 64 voxels Catmull-Rom's coefficients lie beyond them at most: along each axis by a sixth
 of the spread to either side."""
 
-HALVINGS = 200
-"""More than Newton's method, kept in its bracket, ever takes."""
+HALVINGS = 200  # more than Newton's method, kept in its bracket, ever takes
 
 
 class Scratch(NamedTuple):

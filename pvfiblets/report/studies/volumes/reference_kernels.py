@@ -18,8 +18,7 @@ from .reference_cells import NEAREST, Scratch, along, enter, evaluated, extrema,
 
 __all__ = ["first_crossings", "gradients", "greatest", "samples", "step", "stretch"]
 
-SHORTEST = 1e-14
-"""Part of its distance along a ray that a stretch takes at least to count."""
+SHORTEST = 1e-14  # part of its distance along a ray that a stretch takes at least to count
 
 
 @kernel

@@ -24,11 +24,9 @@ from .reference_kernels import step, stretch
 
 __all__ = ["integrals"]
 
-DEEPEST = 60
-"""Halvings of a piece after which its ends are neighbouring floats."""
+DEEPEST = 60  # halvings of a piece after which its ends are neighbouring floats
 
-ROUNDING = 1e-15
-"""Of a part; no halving makes it less."""
+ROUNDING = 1e-15  # of a part; no halving makes it less
 
 
 @kernel
