@@ -79,10 +79,8 @@ class Lines:
         return int(np.searchsorted(self.offsets, row, side="right")) - 1
 
     def segments(self) -> tuple[Ints, Ints]:
-        """Return ``(n_segments, 2)`` rows of `ids` and ``(n_segments,)`` tubes.
-
-        A line of one point has one segment, from its point to itself.
-        """
+        """Return ``(n_segments, 2)`` rows of `ids` and ``(n_segments,)`` tubes."""
+        # A line of one point has one segment, from its point to itself.
         counts = self.counts
         starts = np.ones(len(self.ids), bool)
         starts[self.offsets[1:][counts > 1] - 1] = False
@@ -289,11 +287,9 @@ def _from_segments(points: npt.NDArray[Any], segments: Ints) -> Lines:
 
 
 def _before(segments: Ints, n_points: int) -> Ints:
-    """The segment that each one goes on from, itself for none.
-
-    It is the only one that ends where this one starts, if no other starts there: where more than two meet, the data do
-    not show which of them go on as one, and the order in which they are listed must not decide it.
-    """
+    """The segment that each one goes on from, itself for none."""
+    # It is the only one that ends where this one starts, if no other starts there: where more than two meet, the data
+    # do not show which of them go on as one, and the order in which they are listed must not decide it.
     n = len(segments)
     own = np.arange(n)
     start, end = segments.T
@@ -342,10 +338,8 @@ def with_values(source: Any, path: str | PathLike[str]) -> tuple[Streamlines, st
 
 
 def told_lines(source: Any) -> Any:
-    """Return the Streamlines of another library's object or of a MultiBlock, with its data; all else as it is.
-
-    PolyData and grids stay: their lines may share points, as at bifurcations.
-    """
+    """Return the Streamlines of another library's object or of a MultiBlock, with its data; all else as it is."""
+    # PolyData and grids stay: their lines may share points, as at bifurcations.
     from pvfiblets.other_libraries import streamlines_of
 
     if hasattr(source, "IsA") and not source.IsA("vtkMultiBlockDataSet"):

@@ -164,10 +164,8 @@ def _chosen(source: Path, wanted: Any, counts: list[int]) -> Iterator[Streamline
 
 
 def profile(source: Path, target: None = None, *, values: str, positions: int = 100) -> Columns:
-    """Mean values at places along each group of streamlines, or along all; as :func:`.query.profile.mean_profile`.
-
-    `values` names an array or a computed measure, or is an image, which is sampled at the points.
-    """
+    """Mean values at places along each group of streamlines, or along all; as :func:`.query.profile.mean_profile`."""
+    # `values` names an array or a computed measure, or is an image, which is sampled at the points.
     del target
     from pvfiblets.images.sources import is_image
     from pvfiblets.query.measures.profile import mean_profile

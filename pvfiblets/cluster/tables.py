@@ -35,10 +35,8 @@ def _single(value: Any) -> bool:
 
 
 def join_parts(parts: Iterable[Path], target: Path) -> int:
-    """Write the rows of all parts to one file, which appears when it is whole.
-
-    A column that a part lacks is null in its rows.
-    """
+    """Write the rows of all parts to one file, which appears when it is whole."""
+    # A column that a part lacks is null in its rows.
     import pyarrow as pa
     from pyarrow import parquet
 

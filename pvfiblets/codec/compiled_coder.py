@@ -62,11 +62,9 @@ class CompiledCoder:
         return slots, per
 
     def code_directions(self, slots: Ints, end: npt.NDArray[np.uint8], out: tuple[npt.NDArray[Any], ...]) -> None:
-        """Try to code every slot with direction bytes.
-
-        ``out`` is ``ok``, ``shape``, ``step``, ``cap``, ``radius`` (mm), ``end_words`` of ``m`` slots, and ``codes
-        (n,)``, where a slot's codes stand where its points stand.
-        """
+        """Try to code every slot with direction bytes."""
+        # `out` is `ok`, `shape`, `step`, `cap`, `radius` (mm), `end_words` of `m` slots, and `codes (n,)`, where a
+        # slot's codes stand where its points stand.
         p = self._parameters
         ok, shape, step, cap, radius, end_words, codes = out
         self._kernels.encode_directions(

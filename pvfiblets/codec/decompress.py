@@ -174,11 +174,9 @@ def iter_chunks(
 
 
 def held_in_bounds(fiblets: FibletSet, chunks: Iterable[Streamlines]) -> Iterator[Streamlines]:
-    """Bring decoded points that lie outside of the original points' bounds back to them, in place.
-
-    That brings them nearer to their originals, if anything. Programs such as dipy refuse a file whose points leave its
-    image, and originals do lie on its very edge.
-    """
+    """Bring decoded points that lie outside of the original points' bounds back to them, in place."""
+    # That brings them nearer to their originals, if anything. Programs such as dipy refuse a file whose points leave
+    # its image, and originals do lie on its very edge.
     edges, promise = np.reshape(fiblets.bounds, (3, 2)), fiblets.promise
     for chunk in chunks:
         for column, (low, high) in zip(chunk.points.T, edges.astype(chunk.points.dtype), strict=True):

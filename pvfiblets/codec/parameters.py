@@ -146,10 +146,8 @@ def _scan(
 
 
 def _scanned(offsets: npt.NDArray[np.int64]) -> Iterator[tuple[npt.NDArray[np.int64], bool]]:
-    """Yield the offsets of each block's streamlines; a very long one comes in parts that overlap.
-
-    And whether it goes on behind this part.
-    """
+    """Yield the offsets of each block's streamlines; a very long one comes in parts that overlap."""
+    # And whether it goes on behind this part.
     for a, b in blocks(offsets, BLOCK_POINTS):
         first, stop = int(offsets[a]), int(offsets[b])
         if b > a + 1 or not is_long(stop - first):
@@ -305,12 +303,10 @@ def _anchor_error(extent: Vector, bits: int) -> float:
 
 
 def _default_promise(segments: Vector, step: float, extent: Vector) -> float:
-    """Greatest error in mm, for such segments in bounds of this extent.
-
-    Direction codes err by some hundredths of a step, and where steps are constant a finer bound would take a second
-    byte a point. Lattice codes err by all that they may: there a tenth of a long step shows. So it does in a view along
-    an axis whose unit dominates the others, as metres do degrees.
-    """
+    """Greatest error in mm, for such segments in bounds of this extent."""
+    # Direction codes err by some hundredths of a step, and where steps are constant a finer bound would take a second
+    # byte a point. Lattice codes err by all that they may: there a tenth of a long step shows. So it does in a view
+    # along an axis whose unit dominates the others, as metres do degrees.
     segments = segments[:: max(1, len(segments) // OF_VIEWS)]
     moving, diagonal = _moving(segments), math.hypot(*extent)
     even = moving.size and float((np.abs(moving - step) <= STEP_BAND * step).mean()) >= EVEN_SHARE

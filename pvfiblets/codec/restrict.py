@@ -34,12 +34,10 @@ BEHIND = 64  # pages read of a mapped file before their memory is given back
 
 
 def even_share(fiblets: FibletSet, share: float) -> Ints:
-    """Choose an even share of the streamlines, always the same one.
-
-    Rank ``r`` is chosen where the fraction of ``r`` times the golden ratio lies below the share: these fractions are
-    spread more evenly than random numbers, over every stretch of consecutive ranks, and streamlines that are coded one
-    after another may lie side by side (:mod:`.ordering`).
-    """
+    """Choose an even share of the streamlines, always the same one."""
+    # Rank `r` is chosen where the fraction of `r` times the golden ratio lies below the share: these fractions are
+    # spread more evenly than random numbers, over every stretch of consecutive ranks, and streamlines that are coded
+    # one after another may lie side by side (`.ordering`).
     if not 0.0 <= share <= 1.0:
         raise ValueError(f"share is {share}; a number from 0 to 1 is needed")
     parts = []

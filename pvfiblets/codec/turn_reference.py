@@ -88,11 +88,9 @@ def may_turn(line: Array, shortest: float, angle: float) -> Turns:
 
 
 def cut(turns: Turns, angle: float) -> list[int]:
-    """Return the starts of a streamline's slots, at most 60 points after each other.
-
-    A slot ends before its 60th point where the line bends there by more than the first point of a fiblet may: at the
-    next point before at which it does not, or at that of the least bend among 20.
-    """
+    """Return the starts of a streamline's slots, at most 60 points after each other."""
+    # A slot ends before its 60th point where the line bends there by more than the first point of a fiblet may: at the
+    # next point before at which it does not, or at that of the least bend among 20.
     n = len(turns.units) + 1
     enough = FIRST_SHARE * 2.0 * np.sin(0.5 * np.radians(angle))
 

@@ -97,11 +97,9 @@ class Drawable(ABC, Generic[AnyStyle]):
     # Drawing
 
     def render(self, view: View, style: AnyStyle | None = None, *, outside: moderngl.Texture | None = None) -> GBuffer:
-        """Draw, unless the last picture was of the same view and style, and return the renderer's own G-buffer.
-
-        ``outside`` is the depth of other things in the scene, r32ui keys as in the G-buffer, of the view's size. A
-        picture that read it serves this one call only: the next one draws anew.
-        """
+        """Draw, unless the last picture was of the same view and style, and return the renderer's own G-buffer."""
+        # `outside` is the depth of other things in the scene, r32ui keys as in the G-buffer, of the view's size. A
+        # picture that read it serves this one call only: the next one draws anew.
         style = self._checked(style)
         self._check_alive()
         if self._buffer is not None and self._made == (view, style) and self._serves(outside):
@@ -116,11 +114,9 @@ class Drawable(ABC, Generic[AnyStyle]):
         return self._buffer
 
     def render_in_pieces(self, view: View, style: AnyStyle | None = None) -> Iterator[None]:
-        """Draw what :meth:`render` would, which then finds it drawn, and yield after each piece of about 50 ms.
-
-        Other things may be drawn in between, and this drawable too: then the rest of it is left. Nothing is drawn, nor
-        yielded, where that cannot be done in pieces.
-        """
+        """Draw what :meth:`render` would, which then finds it drawn, and yield after each piece of about 50 ms."""
+        # Other things may be drawn in between, and this drawable too: then the rest of it is left. Nothing is drawn,
+        # nor yielded, where that cannot be done in pieces.
         style = self._checked(style)
         self._check_alive()
         steps = None if self._buffer is not None and self._made == (view, style) else self._pieces(view, style)

@@ -27,10 +27,8 @@ def inflate(path: str, stream: gzip.GzipFile, n: int) -> bytes:
 
 
 def stated_size(path: str | PathLike[str]) -> int:
-    """Return how many bytes a file says that it inflates to; it may lie, and counts only to 4 GB.
-
-    What cannot be true is 0.
-    """
+    """Return how many bytes a file says that it inflates to; it may lie, and counts only to 4 GB."""
+    # What cannot be true is 0.
     place = Path(path)
     size = place.stat().st_size
     if size < 18:  # of the smallest gzip file

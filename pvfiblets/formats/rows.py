@@ -168,11 +168,9 @@ def finite(
     dropped: dict[str, int],
     **rest: Any,
 ) -> Streamlines:
-    """Streamlines of the points whose three coordinates are finite.
-
-    The others are left out with their data, lines are cut there, and ``dropped`` counts both; a
-    streamline that has none left stays as a streamline without points.
-    """
+    """Streamlines of the points whose three coordinates are finite."""
+    # The others are left out with their data, lines are cut there, and `dropped` counts both; a streamline that has
+    # none left stays as a streamline without points.
     streamlines = Streamlines(points, offsets_from_counts(counts), per_point, dropped=dropped, **rest)
     values = points if points.flags.c_contiguous else np.ascontiguousarray(points)
     bad = nonfinite(values.reshape(-1))

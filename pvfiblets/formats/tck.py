@@ -322,11 +322,9 @@ def timestamp_in(space: Mapping[str, Any]) -> str | None:
 
 
 def timestamp_of(streamlines: Streamlines) -> str:
-    """Return the timestamp of a ``.tck`` file of these streamlines.
-
-    MRtrix compares it as text, to tell which ``.tsf`` files belong to which tracks. New ones are made from the points,
-    not from the time, so that the same points give the same file.
-    """
+    """Return the timestamp of a ``.tck`` file of these streamlines."""
+    # MRtrix compares it as text, to tell which `.tsf` files belong to which tracks. New ones are made from the points,
+    # not from the time, so that the same points give the same file.
     now = _rows_of(streamlines)
     kept = timestamp_in(streamlines.space) if streamlines.space.get(ROWS) == now else None
     return kept or f"0.{zlib.crc32(now.encode()):010d}"

@@ -166,11 +166,9 @@ class _Batch(NamedTuple):
 
 
 def _walk(words: Array, header: Header, max_points: int, max_records: int) -> _Batch:
-    """Hop from record to record through complete records; stop before the first that is not.
-
-    Each record says where the next begins, so this is sequential by nature: one integer is read
-    per streamline. A negative count stops the walk too.
-    """
+    """Hop from record to record through complete records; stop before the first that is not."""
+    # Each record says where the next begins, so this is sequential by nature: one integer is read per streamline. A
+    # negative count stops the walk too.
     ints = np.ascontiguousarray(words, np.int32).data
     k, p, n_words = header.row_words, header.n_properties, len(ints)
     starts = array("q")

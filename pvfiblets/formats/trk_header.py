@@ -152,13 +152,10 @@ def _sizes_of(
 def trackvis_to_ras(
     sizes: NDArray[Any], dimensions: NDArray[Any], voxel_order: str, affine: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """(4, 4) float64 matrix from the file's coordinates to RAS+ mm.
-
-    From millimetres to voxels; by half a voxel, since the file counts from a voxel's corner; then
-    axes permuted and flipped from the header's voxel order to the affine's; then the affine. This
-    is what nibabel computes, without its rounding of the result to float32, which for images far
-    from the origin is coarser than the coordinates.
-    """
+    """(4, 4) float64 matrix from the file's coordinates to RAS+ mm."""
+    # From millimetres to voxels; by half a voxel, since the file counts from a voxel's corner; then axes permuted and
+    # flipped from the header's voxel order to the affine's; then the affine. This is what nibabel computes, without its
+    # rounding of the result to float32, which for images far from the origin is coarser than the coordinates.
     from nibabel import orientations as orient
 
     to_voxel = np.diag([*(1.0 / sizes), 1.0])

@@ -83,11 +83,9 @@ def info(path: str | PathLike[str], *, space: Space | None = None) -> dict[str, 
 
 
 def write(path: str | PathLike[str], streamlines: Streamlines, *, double: bool = False) -> None:
-    """Write a binary legacy vtk file (see :func:`pvfiblets.formats.write`).
-
-    Version 4.2, which programs other than VTK read too; 5.1 where the indices need 64 bits. MRtrix's tckconvert takes
-    double coordinates for floats, so they are float32 unless `double`.
-    """
+    """Write a binary legacy vtk file (see :func:`pvfiblets.formats.write`)."""
+    # Version 4.2, which programs other than VTK read too; 5.1 where the indices need 64 bits. MRtrix's tckconvert takes
+    # double coordinates for floats, so they are float32 unless `double`.
     from vtkmodules.vtkIOLegacy import vtkPolyDataWriter
 
     writer = vtkPolyDataWriter()

@@ -262,10 +262,8 @@ class ArrayEntry:
         return native[:, 0] if self.columns == 1 else native
 
     def take(self, first: int, last: int, *, long: bool = False) -> Array:
-        """Return rows ``[first, last)`` as stored; `first` must not go back, if compressed.
-
-        Inflated rows that are `long` lie on disk (:mod:`.scratch`).
-        """
+        """Return rows ``[first, last)`` as stored; `first` must not go back, if compressed."""
+        # Inflated rows that are `long` lie on disk (`.scratch`).
         if self._info.compress_type == ZIP_STORED:
             return self._mapped(first, last)
         if self._stream is None or first < self._next:

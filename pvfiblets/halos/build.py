@@ -40,12 +40,10 @@ def as_halo_lines(
     rgb: bool | None = None,
     filter_by: str | npt.ArrayLike | None = None,
 ) -> LinesAndValues:
-    """Make lines with halos of line data.
-
-    A point with NaN or infinity ends its line: each piece is a line with the data of the whole, and a warning counts
-    them. A point that several lines use becomes a point of each. Where cells of two points were joined to lines, their
-    data is that of segments: a point has the mean of the two that meet there.
-    """
+    """Make lines with halos of line data."""
+    # A point with NaN or infinity ends its line: each piece is a line with the data of the whole, and a warning counts
+    # them. A point that several lines use becomes a point of each. Where cells of two points were joined to lines,
+    # their data is that of segments: a point has the mean of the two that meet there.
     if isinstance(source, HaloLines):
         ids = np.arange(source.n_points)
         made = _Lines(Lines(source.points, ids, source.offsets, source.n_lines, source.values), source.values)

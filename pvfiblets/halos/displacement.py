@@ -20,12 +20,10 @@ _ROUNDING = 1e-9
 
 
 def as_displacement(given: Displacement) -> str | tuple[float, ...]:
-    """Bring a displacement function into the form that :class:`.HaloStyle` takes.
-
-    Source: Everts et al. 2009, section 3.3, equation 3 and figure 17. Between its places a table is linear, so that a
-    square root given as a function has an error of 1/32 close to 0, and of less than 0.001 from 0.15 on; the three
-    that have names are exact.
-    """
+    """Bring a displacement function into the form that :class:`.HaloStyle` takes."""
+    # Source: Everts et al. 2009, section 3.3, equation 3 and figure 17. Between its places a table is linear, so that a
+    # square root given as a function has an error of 1/32 close to 0, and of less than 0.001 from 0.15 on; the three
+    # that have names are exact.
     if isinstance(given, str):
         if given not in DISPLACEMENTS:
             raise ValueError(f"displacement is {given!r}; choose one of {DISPLACEMENTS}, or give a table or a function")

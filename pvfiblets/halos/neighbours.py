@@ -290,11 +290,9 @@ def _known(things: _Things, pairs: _Pairs, radius: float) -> Doubles:
 
 
 def _nearest(things: _Things, pairs: _Pairs) -> tuple[Doubles, Ints]:
-    """Distance from each place to the nearest of its arcs, and whose that is.
-
-    No place of an arc is farther from its middle than half its length: so an arc whose middle is by more than that
-    farther away than another's is out. The others are divided, until none can be nearer by what matters.
-    """
+    """Distance from each place to the nearest of its arcs, and whose that is."""
+    # No place of an arc is farther from its middle than half its length: so an arc whose middle is by more than that
+    # farther away than another's is out. The others are divided, until none can be nearer by what matters.
     best, which = np.full(len(pairs.places), np.inf), np.full(len(pairs.places), -1)
     while len(pairs.place):
         distance = _lengths(things.at(pairs.thing, pairs.where) - pairs.places[pairs.place])

@@ -47,21 +47,19 @@ def default_widths(
     strip_width: float | None = None,
     max_displacement: float | None = None,
 ) -> tuple[float, float, float]:
-    """Widths and the displacement that suit the data.
-
-    Everts et al. 2009, section 4.3, have strips 4 to 8 times as wide as their lines, and 8 to 27 times for points
-    (printed the other way round), and thinner lines for more of them.
-
-    - A line takes 2/5 of the spacing, so that a sheet of lines that all lie in front is half white, half black.
-      Where the data fill a window of 1000 pixels, that is at least about a pixel (1/1200 of the diagonal of the bounds;
-      of points 1/1500), however dense they are: thinner ones would be as thick on the screen, and all of it grey. It
-      is at most 1/200.
-    - A strip is 6 times as wide (of points 10 times), and so reaches over one to two neighbours (of points two). Of
-      dense data it is wider, up to 8 (19) times, for its halo to be about three pixels wide in such a window.
-    - Its edge lies 4 times its width behind. So within a strip a line behind is seen if it is at most 8 times as far
-      behind as it is away on the screen: bundles and surfaces stay together at all but grazing angles, and lines that
-      cross farther behind are set apart. Doubling it lets layers behind a sheet of lines show through it.
-    """
+    """Widths and the displacement that suit the data."""
+    # Everts et al. 2009, section 4.3, have strips 4 to 8 times as wide as their lines, and 8 to 27 times for points
+    # (printed the other way round), and thinner lines for more of them.
+    #
+    # - A line takes 2/5 of the spacing, so that a sheet of lines that all lie in front is half white, half black.
+    #   Where the data fill a window of 1000 pixels, that is at least about a pixel (1/1200 of the diagonal of the
+    #   bounds; of points 1/1500), however dense they are: thinner ones would be as thick on the screen, and all of it
+    #   grey. It is at most 1/200.
+    # - A strip is 6 times as wide (of points 10 times), and so reaches over one to two neighbours (of points two). Of
+    #   dense data it is wider, up to 8 (19) times, for its halo to be about three pixels wide in such a window.
+    # - Its edge lies 4 times its width behind. So within a strip a line behind is seen if it is at most 8 times as far
+    #   behind as it is away on the screen: bundles and surfaces stay together at all but grazing angles, and lines that
+    #   cross farther behind are set apart. Doubling it lets layers behind a sheet of lines show through it.
     diagonal = Frame.around(drawn.points).diagonal or 1.0
     shape = _LINES if isinstance(drawn, HaloLines) else _POINTS
     if line_width is None:

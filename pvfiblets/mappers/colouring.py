@@ -186,10 +186,8 @@ class Colouring:
     def scaled_range(
         self, clim: tuple[float, float] | None = None, *, reference: float = 0.0
     ) -> tuple[float, float, float]:
-        """Return lo, hi and entries per unit of the table's scale, or of other ends, less a reference of the values.
-
-        On a log scale, lo and hi are logarithms, and above 0 the reference's own is subtracted.
-        """
+        """Return lo, hi and entries per unit of the table's scale, or of other ends, less a reference of the values."""
+        # On a log scale, lo and hi are logarithms, and above 0 the reference's own is subtracted.
         clim = self.clim if clim is None else clim
         if self.lut is None or clim is None:
             raise ValueError(f"mode {self.mode!r} has no look-up table")

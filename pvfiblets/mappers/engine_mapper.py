@@ -209,12 +209,10 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         return self._link.actor
 
     def attach(self, actor: vtkActor) -> None:
-        """Make this the mapper of an actor and add the shader pieces to it.
-
-        ``actor.SetMapper(mapper)`` does the same, once VTK draws the actor. Shader replacements of others stay. The
-        representation stays at surface whatever a key or a menu sets for all actors: lines have no wireframe and no
-        edges, and all that shows is a front.
-        """
+        """Make this the mapper of an actor and add the shader pieces to it."""
+        # `actor.SetMapper(mapper)` does the same, once VTK draws the actor. Shader replacements of others stay. The
+        # representation stays at surface whatever a key or a menu sets for all actors: lines have no wireframe and no
+        # edges, and all that shows is a front.
         self._link.attach(actor)
 
     def detach(self) -> None:
@@ -368,10 +366,8 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         return SeenThrough(buffer.depth)
 
     def cut_in(self, renderer: vtkRenderer, planes: Any) -> None:
-        """Cut by (k, 4) planes in world mm in one of the renderers that show it, and not in the others.
-
-        A point is kept where ax + by + cz + d >= 0; None for no cut.
-        """
+        """Cut by (k, 4) planes in world mm in one of the renderers that show it, and not in the others."""
+        # A point is kept where ax + by + cz + d >= 0; None for no cut.
         address = renderer.GetAddressAsString("")
         wanted = None if planes is None else np.array(planes, np.float64).reshape(-1, 4)
         if np.array_equal(wanted, self._cuts_in.get(address)):  # type: ignore[arg-type]  # None, too
@@ -504,10 +500,8 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
         super().ColorByArrayComponent(array, component)
 
     def ShallowCopy(self, other: Any) -> None:  # noqa: N802 - VTK's name
-        """Become like another mapper: its input, its settings of ``vtkMapper`` and, of one of these, all others.
-
-        Compressed and other data are shared, not copied. Each mapper serves an actor of its own.
-        """
+        """Become like another mapper: its input, its settings of ``vtkMapper`` and, of one of these, all others."""
+        # Compressed and other data are shared, not copied. Each mapper serves an actor of its own.
         super().ShallowCopy(other)
         self._component = other.GetArrayComponent()
         if not isinstance(other, type(self)):
@@ -621,10 +615,8 @@ class EngineMapper(vtkOpenGLPolyDataMapper, Generic[AnyOptions]):
     # Memory
 
     def release(self, window: Any = None) -> None:
-        """Delete the GL objects of one window, or of all; twice is harmless.
-
-        Call it before a window is closed, to have the memory back at once.
-        """
+        """Delete the GL objects of one window, or of all; twice is harmless."""
+        # Call it before a window is closed, to have the memory back at once.
         address = None if window is None else window.GetAddressAsString("")
         for context in contexts_with(self):
             if address in (None, context.address):

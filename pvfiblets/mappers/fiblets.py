@@ -192,13 +192,11 @@ class FibletMapper(FilteredMapper[EngineOptions]):
         return engine
 
     def draw_in_pieces(self, renderer: vtkRenderer, sample_camera: Any = None) -> Iterator[None]:
-        """Draw, piece by piece, what the next frame of a renderer needs; the frame then finds it drawn.
-
-        Yields after each piece (`pvfiblets.engine.drawable.Drawable.render_in_pieces`). Others may draw in between, and
-        anything may change: the picture is then useless. Nothing is drawn for a window that has not shown the actor
-        yet, while `vtkHardwareSelector` selects, or where VTK draws real lines. ``sample_camera`` is that of the next
-        frame, if that is a sample (`antialias_refinement.py`).
-        """
+        """Draw, piece by piece, what the next frame of a renderer needs; the frame then finds it drawn."""
+        # Yields after each piece (`pvfiblets.engine.drawable.Drawable.render_in_pieces`). Others may draw in between,
+        # and anything may change: the picture is then useless. Nothing is drawn for a window that has not shown the
+        # actor yet, while `vtkHardwareSelector` selects, or where VTK draws real lines. `sample_camera` is that of the
+        # next frame, if that is a sample (`antialias_refinement.py`).
         window, actor, context = renderer.GetRenderWindow(), self.actor, self._context_in(renderer)
         if context is None or actor is None or self.is_readable or self._empty or renderer.GetSelector() is not None:
             return
@@ -274,11 +272,9 @@ class FibletMapper(FilteredMapper[EngineOptions]):
     def pick_at(
         self, x: float, y: float, *, renderer: vtkRenderer | None = None, tolerance: int = 2
     ) -> tuple[int, float] | None:
-        """Return the streamline nearest to a pixel of the last frame, and the position along it; None for no fiblet.
-
-        x and y count from the window's lower left corner. The position is the index of the point before plus the
-        fraction of the segment. Other actors in front are not looked at.
-        """
+        """Return the streamline nearest to a pixel of the last frame, and the position along it; None for no fiblet."""
+        # x and y count from the window's lower left corner. The position is the index of the point before plus the
+        # fraction of the segment. Other actors in front are not looked at.
         found = nearest_pixel(self, (x, y), ("ids", "position"), renderer=renderer, tolerance=tolerance)
         return None if found is None else (int(found.texels["ids"][0]), float(found.texels["position"][0]))
 

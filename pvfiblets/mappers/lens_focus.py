@@ -125,10 +125,8 @@ def lens_of(renderer: Any, size: tuple[int, int]) -> Projection:
 def _seen_at(
     place: str, renderer: Any, effects: PictureEffects, lens: Projection, samples: float, *, wait: bool
 ) -> float | None:
-    """Return the distance (mm) of the nearest surface at a pixel; None over the background, and in tiles.
-
-    Without waiting for the GPU, it is that of a picture before; None if nothing new is known of any.
-    """
+    """Return the distance (mm) of the nearest surface at a pixel; None over the background, and in tiles."""
+    # Without waiting for the GPU, it is that of a picture before; None if nothing new is known of any.
     window = renderer.GetRenderWindow()
     if tuple(window.GetTileScale()) != (1, 1):
         return None

@@ -104,10 +104,8 @@ class LineData:
         return np.asarray(np.where(inside, low, high))
 
     def _runs(self, before: Ints, share: Floats, begins: Flags) -> LineData:
-        """Return lines through places, a share of the way behind points, a new one where one begins.
-
-        What is left of a line as a lone point goes.
-        """
+        """Return lines through places, a share of the way behind points, a new one where one begins."""
+        # What is left of a line as a lone point goes.
         starts = np.flatnonzero(begins)
         counts = np.diff(starts, append=len(before))
         owners = self.owners[before[starts]]

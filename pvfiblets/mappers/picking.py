@@ -115,10 +115,8 @@ class PixelHit:
 def nearest_pixel(
     mapper: Any, place: tuple[float, float], read: Sequence[str], *, renderer: Any = None, tolerance: int = 0
 ) -> PixelHit | None:
-    """Return the pixel nearest to a place that shows something.
-
-    Of several as near the one in front is taken. The G-buffer is drawn again if it shows another view by now.
-    """
+    """Return the pixel nearest to a place that shows something."""
+    # Of several as near the one in front is taken. The G-buffer is drawn again if it shows another view by now.
     shown = shown_by(mapper, renderer)
     if shown is None or tolerance < 0:
         return None
@@ -147,12 +145,10 @@ def nearest_pixel(
 def pick_area(
     layers: Sequence[Layer], polygon: npt.ArrayLike, *, renderer: Any = None, tolerance: float = 0.0
 ) -> Hits | None:
-    """Return the visible objects in an area of the window, pixel by pixel.
-
-    Pixels in which something else is nearer, by VTK's depth of the last frame, are left out: opaque actors do hide
-    streamlines. What is translucent leaves no depth and hides nothing. Under supersampling a pixel of the window
-    counts as a whole.
-    """
+    """Return the visible objects in an area of the window, pixel by pixel."""
+    # Pixels in which something else is nearer, by VTK's depth of the last frame, are left out: opaque actors do hide
+    # streamlines. What is translucent leaves no depth and hides nothing. Under supersampling a pixel of the window
+    # counts as a whole.
     from pvfiblets.query.selection.screen import area_distances
 
     pictures = [(shown_by(layer.mapper, renderer), layer) for layer in layers]

@@ -141,10 +141,8 @@ class Picture:
         return self._refinement.taken if job is None else int(job.share * self._refinement.samples)
 
     def draw_part(self) -> bool:
-        """Draw a part of all samples at once, if that can be done; return whether there are more parts.
-
-        Called between frames of a picture that is unfinished: the next frame shows what all parts together are.
-        """
+        """Draw a part of all samples at once, if that can be done; return whether there are more parts."""
+        # Called between frames of a picture that is unfinished: the next frame shows what all parts together are.
         renderer, refinement = self.renderer, self._refinement
         assert refinement is not None
         state = self._state(renderer)

@@ -75,12 +75,10 @@ class LineReading:
             self._link.modified()
 
     def data(self, *, colours: bool = False, segments: bool = False, budget: int | None = MOST_POINTS) -> vtkPolyData:
-        """Return the lines that are shown, made anew only when something else is shown.
-
-        ``colours``: with RGBA as active scalars of the points. ``segments``: a cell for each segment, not each line.
-        Streamlines are left out evenly beyond ``budget`` points; None is without limit. Cell data ``'streamline'`` are
-        the numbers of streamlines, tubes or points.
-        """
+        """Return the lines that are shown, made anew only when something else is shown."""
+        # `colours`: with RGBA as active scalars of the points. `segments`: a cell for each segment, not each line.
+        # Streamlines are left out evenly beyond `budget` points; None is without limit. Cell data `'streamline'` are
+        # the numbers of streamlines, tubes or points.
         mapper, count = self.mapper, self.points
         if count is None:
             return vtkPolyData()
@@ -151,10 +149,8 @@ def reading_of(mapper: Any) -> LineReading | None:
 
 
 def _clear_errors(mapper: Any, selector: Any) -> None:
-    """Drop, after a selection, the error of OpenGL that VTK leaves when its data become lines after triangles.
-
-    It binds a buffer that it has deleted (9.7, mappers of its own too); the next caller would see the error.
-    """
+    """Drop, after a selection, the error of OpenGL that VTK leaves when its data become lines after triangles."""
+    # It binds a buffer that it has deleted (9.7, mappers of its own too); the next caller would see the error.
     follower = weak(mapper)
 
     def ended(ended_selector: Any, _event: str) -> None:

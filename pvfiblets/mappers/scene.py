@@ -55,21 +55,17 @@ class Frame:
 
     @property
     def pixel_to_view(self) -> Matrix:
-        """(4, 4), (x, y in [-1, 1], 1 - window depth, 1) to view coordinates, homogeneous.
-
-        Scaled so that its largest entry is 1, which changes no position and keeps float32 in range.
-        """
+        """(4, 4), (x, y in [-1, 1], 1 - window depth, 1) to view coordinates, homogeneous."""
+        # Scaled so that its largest entry is 1, which changes no position and keeps float32 in range.
         inverse = np.linalg.inv(self.projection) @ _FROM_COMPLEMENT
         scaled: Matrix = inverse / np.abs(inverse).max()
         return scaled
 
     @property
     def directions_to_view(self) -> Matrix:
-        """(3, 3), tangents in data coordinates to view coordinates, scaled to keep float32 in range.
-
-        A camera whose position is its focal point, as far from the origin as both round to the same number, turns
-        nothing: all is zero. Nothing is seen by it, and the unit matrix is as good as another.
-        """
+        """(3, 3), tangents in data coordinates to view coordinates, scaled to keep float32 in range."""
+        # A camera whose position is its focal point, as far from the origin as both round to the same number, turns
+        # nothing: all is zero. Nothing is seen by it, and the unit matrix is as good as another.
         linear = self.model_view[:3, :3]
         largest = np.abs(linear).max()
         scaled: Matrix = linear / largest if largest > 0.0 else np.eye(3)
@@ -117,10 +113,8 @@ class Frame:
 
 
 def frame_of(renderer: vtkRenderer, actor: Any, viewport: tuple[int, int, int, int], camera: Any = None) -> Frame:
-    """Return viewport and matrices of an actor as a renderer draws it now, stereo eye included.
-
-    Or as it would by another camera.
-    """
+    """Return viewport and matrices of an actor as a renderer draws it now, stereo eye included."""
+    # Or as it would by another camera.
     camera = renderer.GetActiveCamera() if camera is None else camera
     model = vtkMatrix4x4()
     actor.GetModelToWorldMatrix(model)
@@ -138,12 +132,10 @@ def to_array(matrix: vtkMatrix4x4) -> Matrix:
 
 
 def pixel_scale(renderer: vtkRenderer, viewport: tuple[int, int, int, int]) -> float:
-    """Return the pixels to draw for each pixel in which users give a width.
-
-    A width is what the viewer sees in the finished picture. Users count pixels of the window, so a line takes the same
-    share of the picture whether it is drawn as it is, in an enlarged picture (``screenshot(scale=3)``), from many
-    samples, or with fewer dots per inch than usual, as its letters are. More dots per inch alone widen no line.
-    """
+    """Return the pixels to draw for each pixel in which users give a width."""
+    # A width is what the viewer sees in the finished picture. Users count pixels of the window, so a line takes the
+    # same share of the picture whether it is drawn as it is, in an enlarged picture (`screenshot(scale=3)`), from many
+    # samples, or with fewer dots per inch than usual, as its letters are. More dots per inch alone widen no line.
     window = renderer.GetRenderWindow()
     fewer_dots = min(1.0, window.GetDPI() / USUAL_DPI)
     return float(samples_per_pixel(renderer, viewport) * window.GetTileScale()[0] * fewer_dots)
@@ -180,11 +172,9 @@ def wanted_share(window: Any) -> float:
 
 
 def in_motion(renderer: vtkRenderer) -> bool:
-    """Whether the window wants pictures at the rate of interaction.
-
-    VTK's interactor styles and widgets raise that rate as they begin, and when they end they set it back and render
-    once more; so nothing has to be observed, and whatever drives an interactor is followed, on a server too.
-    """
+    """Whether the window wants pictures at the rate of interaction."""
+    # VTK's interactor styles and widgets raise that rate as they begin, and when they end they set it back and render
+    # once more; so nothing has to be observed, and whatever drives an interactor is followed, on a server too.
     window = renderer.GetRenderWindow()
     interactor = window.GetInteractor()
     still = window.GetDesiredUpdateRate() if interactor is None else interactor.GetStillUpdateRate()
@@ -216,10 +206,8 @@ def actors_in(prop: vtkProp) -> Iterator[vtkActor]:
 
 
 def others_before(renderer: vtkRenderer, actor: vtkProp) -> bool:
-    """Return whether VTK has drawn something opaque before an actor, whose depth may be looked at.
-
-    False while VTK selects, which draws an invisible frame.
-    """
+    """Return whether VTK has drawn something opaque before an actor, whose depth may be looked at."""
+    # False while VTK selects, which draws an invisible frame.
     if renderer.GetSelector() is not None:
         return False
     props = renderer.GetViewProps()

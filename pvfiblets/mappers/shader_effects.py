@@ -64,10 +64,8 @@ class MapperEffect(Protocol):
         ...
 
     def prepare(self, kept: Any, draw: Draw) -> Mapping[str, Any]:
-        """Bring textures up to date and return them by the names of their samplers. OpenGL state is free to change.
-
-        A name that is there already (``fibletDepthMap``) is replaced.
-        """
+        """Bring textures up to date and return them by the names of their samplers. OpenGL state is free to change."""
+        # A name that is there already (`fibletDepthMap`) is replaced.
         ...
 
     def set_uniforms(self, kept: Any, program: Any, draw: Draw) -> None:

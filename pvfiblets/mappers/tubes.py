@@ -133,11 +133,9 @@ class TubeMapper(FilteredMapper[TubeOptions]):
     def pick_at(
         self, x: float, y: float, *, renderer: vtkRenderer | None = None, tolerance: int = 2
     ) -> tuple[int, float] | None:
-        """Return the segment nearest to a pixel of the last frame, and its parameter, 0 to 1; None for no tube.
-
-        x and y count from the window's lower left corner. The pixel shows the sphere at that parameter. Other actors in
-        front are not looked at.
-        """
+        """Return the segment nearest to a pixel of the last frame, and its parameter, 0 to 1; None for no tube."""
+        # x and y count from the window's lower left corner. The pixel shows the sphere at that parameter. Other actors
+        # in front are not looked at.
         found = nearest_pixel(self, (x, y), ("owner", "position"), renderer=renderer, tolerance=tolerance)
         return None if found is None else (int(found.texels["owner"][0]), float(found.texels["position"][0]))
 

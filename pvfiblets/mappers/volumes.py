@@ -201,10 +201,8 @@ class VolumeMapper(CutMapper[Options]):
         self.show(self._casting, colouring)
 
     def pick_at(self, x: float, y: float, *, renderer: vtkRenderer | None = None, tolerance: int = 0) -> RayHit | None:
-        """Return what a pixel of the picture that was drawn last shows of the volume; None for nothing.
-
-        x and y count from the window's lower left corner. Other actors are not looked at.
-        """
+        """Return what a pixel of the picture that was drawn last shows of the volume; None for nothing."""
+        # x and y count from the window's lower left corner. Other actors are not looked at.
         found = nearest_pixel(self, (x, y), ("owner", "position"), renderer=renderer, tolerance=tolerance)
         if found is None:
             return None

@@ -47,10 +47,8 @@ def gl_viewport(window: Any) -> tuple[int, int, int, int]:
 
 
 def _attach() -> Any:
-    """Return a moderngl context of its own on the current GL context.
-
-    ``moderngl.create_context`` may return one that was made for another window.
-    """
+    """Return a moderngl context of its own on the current GL context."""
+    # `moderngl.create_context` may return one that was made for another window.
     moderngl.init_context()
     ctx = moderngl.get_context()
     # It asks for properties of the default framebuffer, which a headless context lacks: an error of no
@@ -163,10 +161,8 @@ class WindowContext:
         return self.window is not None and self._witness.GetHandle() != 0
 
     def tell_lost(self, renderer: Any) -> None:
-        """Warn once that VTK shows nothing translucent: where its depth peeling failed, with an error left behind.
-
-        Some drivers refuse the copy of a multi-sampled depth that peeling begins with; meshes vanish as well.
-        """
+        """Warn once that VTK shows nothing translucent: where its depth peeling failed, with an error left behind."""
+        # Some drivers refuse the copy of a multi-sampled depth that peeling begins with; meshes vanish as well.
         if self._told_lost or not renderer.GetUseDepthPeeling() or self.window.GetMultiSamples() < 2:
             return
         if self.ctx.error != "GL_NO_ERROR":
@@ -184,14 +180,12 @@ class WindowContext:
 
     @contextmanager
     def foreign(self) -> Iterator[None]:
-        """Keep VTK's record of the GL state true around GL calls that are not VTK's.
-
-        And moderngl's: whenever it has made a framebuffer, it binds the one that it remembers, and the one bound
-        when it was attached may be gone. Framebuffer 0 never is; VTK binds its own again at the end.
-
-        An error of OpenGL that VTK has left behind (peeling of depth in a multi-sampled window does) is dropped: the
-        next caller, such as after making a buffer, would take it for its own.
-        """
+        """Keep VTK's record of the GL state true around GL calls that are not VTK's."""
+        # And moderngl's: whenever it has made a framebuffer, it binds the one that it remembers, and the one bound when
+        # it was attached may be gone. Framebuffer 0 never is; VTK binds its own again at the end.
+        #
+        # An error of OpenGL that VTK has left behind (peeling of depth in a multi-sampled window does) is dropped: the
+        # next caller, such as after making a buffer, would take it for its own.
         state = self.window.GetState()
         state.Reset()
         state.Push()
@@ -205,10 +199,8 @@ class WindowContext:
             state.Pop()
 
     def texture_units(self, count: int) -> list[int]:
-        """Return units that VTK does not use at this moment, the highest first.
-
-        VTK hands out the lowest free ones. moderngl makes textures on the very last.
-        """
+        """Return units that VTK does not use at this moment, the highest first."""
+        # VTK hands out the lowest free ones. moderngl makes textures on the very last.
         manager = self.window.GetState().GetTextureUnitManager()
         last = min(manager.GetNumberOfTextureUnits(), self.ctx.max_texture_units) - 1
         units = [unit for unit in range(last - 1, -1, -1) if not manager.IsAllocated(unit)]
@@ -286,10 +278,8 @@ def _windows_of(mapper: Any) -> dict[str, Any]:
 
 
 def make_current_again(mapper: Any) -> None:
-    """Make the window current that draws a mapper whose actor is in several.
-
-    VTK has just deleted objects of another of them, and on EGL leaves that one current.
-    """
+    """Make the window current that draws a mapper whose actor is in several."""
+    # VTK has just deleted objects of another of them, and on EGL leaves that one current.
     windows = _windows_of(mapper)
     for window in windows.values() if len(windows) > 1 else ():
         if window.CheckInRenderStatus():

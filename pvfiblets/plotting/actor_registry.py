@@ -207,10 +207,8 @@ class ActorRegistry(Generic[A]):
         reset_camera: bool | None,
         render: bool,
     ) -> A:
-        """Add an actor to the plotter's active renderer as ``add_mesh`` does, and keep it.
-
-        Where an argument is refused, the actor is not left behind.
-        """
+        """Add an actor to the plotter's active renderer as ``add_mesh`` does, and keep it."""
+        # Where an argument is refused, the actor is not left behind.
         for word, text in (("name", name), ("label", label)):
             if text is not None and not isinstance(text, str):
                 raise TypeError(f"{word} is {text!r}; give a string")

@@ -71,10 +71,8 @@ def replace_method(
     module: str,
     more: str = "",
 ) -> None:
-    """Put a function in the place of a method of plotters, as PyVista provides for.
-
-    ``pyvista.unregister_plotter_component(name)`` undoes it.
-    """
+    """Put a function in the place of a method of plotters, as PyVista provides for."""
+    # `pyvista.unregister_plotter_component(name)` undoes it.
     owner = next(kind for kind in pv.Plotter.__mro__ if name in vars(kind))
     original = vars(owner)[name]
 

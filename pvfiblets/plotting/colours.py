@@ -112,10 +112,8 @@ def update_table(
     theme: Any,
     fiblets: FibletSet | None = None,
 ) -> None:
-    """Bring ``table`` in step with the settings; the object stays, so scalar bars follow.
-
-    ``fiblets`` are needed where there are categories, to count them.
-    """
+    """Bring ``table`` in step with the settings; the object stays, so scalar bars follow."""
+    # `fiblets` are needed where there are categories, to count them.
     count = as_count(settings.n_colors)
     low, high = limits(settings, scalars)
     labels = scalars.categories is not None

@@ -200,10 +200,8 @@ def _range_and_positive(values: np.ndarray) -> dict[str, Any]:
 
 
 def row_scalars(name: str, values: Any, count: int, *, whole: str = "streamline") -> Scalars:
-    """Make :class:`Scalars` of one number, or one colour, per streamline, or whatever the ``whole`` is called.
-
-    Colours are (n, 3) or (n, 4): uint8 from 0 to 255, or floats from 0 to 1.
-    """
+    """Make :class:`Scalars` of one number, or one colour, per streamline, or whatever the ``whole`` is called."""
+    # Colours are (n, 3) or (n, 4): uint8 from 0 to 255, or floats from 0 to 1.
     values = np.asarray(values)
     if values.ndim == 2 and values.shape[1] == 1:
         values = values[:, 0]

@@ -111,10 +111,8 @@ def _sampled_once(plotter: Any) -> AbstractContextManager[None]:
 
 
 def _taken(plotter: Any, scale: int, window_size: tuple[int, int] | None) -> npt.NDArray[np.uint8]:
-    """Return ``(height, width, 3)`` of a plotter as it is now.
-
-    Tiles of an enlarged picture are drawn past the plotter's callbacks: errors in them are raised here.
-    """
+    """Return ``(height, width, 3)`` of a plotter as it is now."""
+    # Tiles of an enlarged picture are drawn past the plotter's callbacks: errors in them are raised here.
     errors: list[Exception] = []
 
     def collect(*_: Any) -> None:

@@ -28,10 +28,8 @@ def visible_bounds(plotter: Any) -> tuple[float, ...]:
 
 
 def point_camera(plotter: Any, view: str) -> None:
-    """Look at all that is visible from one of the named directions, as near as the picture's edges allow.
-
-    Nothing is rendered.
-    """
+    """Look at all that is visible from one of the named directions, as near as the picture's edges allow."""
+    # Nothing is rendered.
     direction, up = DIRECTIONS[view]
     plotter.renderer.view_vector(direction, viewup=up, render=False)  # the plotter's own methods render
     plotter.renderer.reset_camera(render=False)

@@ -45,10 +45,8 @@ def run_parts(
     options: Options,
     windows: Mapping[WindowPart, float] = MappingProxyType({}),
 ) -> Iterator[Record]:
-    """Yield records part by part, each with its share of what time is left, by weights.
-
-    Parts in windows come after the bare context is gone: a window that VTK closes takes older ones' display along.
-    """
+    """Yield records part by part, each with its share of what time is left, by weights."""
+    # Parts in windows come after the bare context is gone: a window that VTK closes takes older ones' display along.
     weights = [*parts.values(), *windows.values()]
 
     def share(number: int) -> Options:

@@ -37,10 +37,8 @@ class CellProcess:
         return cls([sys.executable, "-m", module])
 
     def measure(self, cell: Row, seconds: float) -> Row:
-        """Return a cell's row, or ``unmeasured``: it took too long, or what the process died of.
-
-        The next cell then has a new process.
-        """
+        """Return a cell's row, or ``unmeasured``: it took too long, or what the process died of."""
+        # The next cell then has a new process.
         if self._process is None:
             self._errors = tempfile.TemporaryFile("w+")  # noqa: SIM115 - closed with the process
             self._process = subprocess.Popen(

@@ -63,10 +63,8 @@ def check_glyphs(image: SliceImage, kind: str, basis: str, full: bool, tensor: s
 
 
 def voxels_on_plane(image: SliceImage, position: Array, normal: Array) -> Ints:
-    """Return ``(n, 3)`` the voxels nearest to a plane: along a grid's axis one layer, not all zero and all finite.
-
-    For fixels, voxels with any.
-    """
+    """Return ``(n, 3)`` the voxels nearest to a plane: along a grid's axis one layer, not all zero and all finite."""
+    # For fixels, voxels with any.
     step = image.affine[:3, :3].T @ normal
     start = float((image.affine[:3, 3] - position) @ normal)
     thick = float(abs(step).max())

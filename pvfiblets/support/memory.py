@@ -148,10 +148,8 @@ def limit(size: int) -> None:
 
 @contextmanager
 def limited(size: int | None) -> Iterator[None]:
-    """Limit this process to some bytes of memory in this scope, where the system can limit it.
-
-    A limit that it has already stays, if it is lower.
-    """
+    """Limit this process to some bytes of memory in this scope, where the system can limit it."""
+    # A limit that it has already stays, if it is lower.
     before = resource.getrlimit(resource.RLIMIT_DATA) if CAN_LIMIT and resource is not None else None
     if size is None or before is None or (before[0] != resource.RLIM_INFINITY and before[0] <= size):
         yield

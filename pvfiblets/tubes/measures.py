@@ -40,10 +40,8 @@ def with_radius(tubes: SplineTubes) -> SplineTubes:
 
 
 def with_arc_length(tubes: SplineTubes) -> SplineTubes:
-    """Tubes whose nodes say how far they are along their tube, in the order of its segments, mm.
-
-    A node that is at two places at once, as one that tubes share or at which one closes, becomes a node for each.
-    """
+    """Tubes whose nodes say how far they are along their tube, in the order of its segments, mm."""
+    # A node that is at two places at once, as one that tubes share or at which one closes, becomes a node for each.
     order = np.argsort(tubes.tubes, kind="stable")
     until = np.cumsum(segment_lengths(tubes)[order])
     begin = np.concatenate([np.zeros(1), until])[: len(until)]

@@ -68,12 +68,10 @@ class Steps:
 
 
 def derivatives(values: npt.ArrayLike, steps: Steps, method: str = "finite") -> Doubles:
-    """Derivatives of positions or values at all nodes.
-
-    The natural spline's equations for derivatives D are, row by row, ``u D[i-1] + 2 D[i] + (1 - u) D[i+1] =
-    3 (u s[i-1] + (1 - u) s[i])`` with the slopes s of the two chords and the share u of the step ahead in both. They
-    are solved by cyclic reduction of all rows at once.
-    """
+    """Derivatives of positions or values at all nodes."""
+    # The natural spline's equations for derivatives D are, row by row, `u D[i-1] + 2 D[i] + (1 - u) D[i+1] = 3 (u
+    # s[i-1] + (1 - u) s[i])` with the slopes s of the two chords and the share u of the step ahead in both. They are
+    # solved by cyclic reduction of all rows at once.
     if method not in METHODS:
         raise ValueError(f"method is {method!r}, expected one of {', '.join(map(repr, METHODS))}")
     if method == "catmull-rom":

@@ -154,14 +154,12 @@ class RaycastOptions:
         )
 
     def step_mm(self, spacing: npt.ArrayLike, shape: tuple[int, int, int]) -> float:
-        """Return the length of a step, mm.
-
-        Of voxels that are much shorter along one axis than along others, the mean spacing would step over things many
-        of the short ones wide: a step is no longer than one of those, or than `step` of them if that is more, unless
-        a ray through the whole volume took more than `MOST_STEPS` then. Light as dense as fog, where
-        ``'adaptive'`` is to miss no corner, has shorter ones: of an optical depth of `DEEPEST` at most, but no shorter
-        than one by `MOST_SHORTER` of that.
-        """
+        """Return the length of a step, mm."""
+        # Of voxels that are much shorter along one axis than along others, the mean spacing would step over things many
+        # of the short ones wide: a step is no longer than one of those, or than `step` of them if that is more, unless
+        # a ray through the whole volume took more than `MOST_STEPS` then. Light as dense as fog, where `'adaptive'` is
+        # to miss no corner, has shorter ones: of an optical depth of `DEEPEST` at most, but no shorter than one by
+        # `MOST_SHORTER` of that.
         lengths = np.asarray(spacing, np.float64)
         mean, least = self.step * float(lengths.mean()), max(self.step, 1.0) * float(lengths.min())
         through = float(np.linalg.norm(lengths * shape))

@@ -138,11 +138,9 @@ class Transfer:
         return rgba[..., :3] * (_depth(rgba[..., 3]) / self.unit)[..., None]
 
     def visible_range(self, low: npt.ArrayLike, high: npt.ArrayLike) -> npt.NDArray[np.bool_]:
-        """Return whether anything between two values, themselves included, has an opacity above 0.
-
-        For arrays of bounds, as in :func:`pvfiblets.volumes.octree.flags`; the cost does not depend on the length
-        of the table lies between.
-        """
+        """Return whether anything between two values, themselves included, has an opacity above 0."""
+        # For arrays of bounds, as in `pvfiblets.volumes.octree.flags`; the cost does not depend on the length of the
+        # table lies between.
         first, last = self._places(low), self._places(high)
         # Opacity is linear between entries: it is 0 all through if it is at both ends and at the entries between.
         n = self._opaque_before
@@ -164,11 +162,9 @@ class Transfer:
         )
 
     def even_range(self, low: npt.ArrayLike, high: npt.ArrayLike) -> npt.NDArray[np.bool_]:
-        """Return whether between two values neither colours nor extinction change by more than rounding does.
-
-        For arrays of bounds, as `visible_range`. Colours may change by `EVEN_COLOURS`, extinction by `EVEN_EXTINCTION`
-        of the least of it, all ups and downs added up.
-        """
+        """Return whether between two values neither colours nor extinction change by more than rounding does."""
+        # For arrays of bounds, as `visible_range`. Colours may change by `EVEN_COLOURS`, extinction by
+        # `EVEN_EXTINCTION` of the least of it, all ups and downs added up.
         first, last = self._places(low), self._places(high)
         entries = np.arange(len(self.table))
         colour, depth = self._changes_before
@@ -205,16 +201,14 @@ class Transfer:
         return np.clip(share, 0.0, 1.0) * (len(self.table) - 1)
 
     def preintegrated(self, step: float) -> npt.NDArray[np.float32]:
-        """Return colour and opacity of a step in mm along which the value changes linearly, for all pairs of values.
-
-        (n, n, 4) float32: for the value at the step's front, first, and back, second, each evenly over ``clim``, the
-        RGB, multiplied by opacity, and the opacity. n is at least 256, and such that each entry of the table is among
-        the values. Read-only: it is cached.
-
-        The optical depth is exact: over a piece in which alpha is linear, -ln(1 - alpha) has the primitive (1 - alpha)
-        ln(1 - alpha) + alpha. So is what light loses within the step: with u = 1 - exp(-tau), the colour is int c du,
-        piece by piece by parts, so that only exp(-tau), smooth within a piece, is left to a quadrature.
-        """
+        """Return colour and opacity of a step in mm along which the value changes linearly, for all pairs of values."""
+        # (n, n, 4) float32: for the value at the step's front, first, and back, second, each evenly over `clim`, the
+        # RGB, multiplied by opacity, and the opacity. n is at least 256, and such that each entry of the table is among
+        # the values. Read-only: it is cached.
+        #
+        # The optical depth is exact: over a piece in which alpha is linear, -ln(1 - alpha) has the primitive (1 -
+        # alpha) ln(1 - alpha) + alpha. So is what light loses within the step: with u = 1 - exp(-tau), the colour is
+        # int c du, piece by piece by parts, so that only exp(-tau), smooth within a piece, is left to a quadrature.
         if not 0.0 < step < np.inf:
             raise ValueError(f"the step is {step!r} mm; expected a finite length above 0")
         k = len(self.table)

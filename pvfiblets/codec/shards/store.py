@@ -99,10 +99,8 @@ class Cache:
         return path
 
     def make_room(self, needed: int) -> None:
-        """Remove the least recently used files until the given number of bytes fits.
-
-        A set that has a file mapped goes on reading it: its name goes, its bytes stay until it is closed.
-        """
+        """Remove the least recently used files until the given number of bytes fits."""
+        # A set that has a file mapped goes on reading it: its name goes, its bytes stay until it is closed.
         files = []
         for path in self.folder.iterdir():
             try:

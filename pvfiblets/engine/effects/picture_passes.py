@@ -59,10 +59,8 @@ class PicturePasses:
 
     @contextmanager
     def _onto(self, attachment: Attachment, viewport: tuple[int, int, int, int]) -> Iterator[moderngl.Framebuffer]:
-        """Lend what draws into a part of somebody else's texture, within :meth:`_plain_state`.
-
-        The framebuffer is kept, its attachment is not: its owner may delete it, and its name may be used again.
-        """
+        """Lend what draws into a part of somebody else's texture, within :meth:`_plain_state`."""
+        # The framebuffer is kept, its attachment is not: its owner may delete it, and its name may be used again.
         if self._lent is None:
             x, y, width, height = viewport
             self._lent = self._ctx.framebuffer([self._outside(attachment, 4, (x + width, y + height))])

@@ -33,10 +33,8 @@ class Projection:
 
     @property
     def scale(self) -> tuple[float, float, float]:
-        """(k, w0, w1): a mm at a distance (mm) from the viewer's plane is ``k / (w0 + w1 * distance)`` pixels.
-
-        Measured up the picture, at its middle.
-        """
+        """(k, w0, w1): a mm at a distance (mm) from the viewer's plane is ``k / (w0 + w1 * distance)`` pixels."""
+        # Measured up the picture, at its middle.
         k = 0.5 * self.size[1] * float(np.linalg.norm(self.projection[1, :3]))
         return k, float(self.projection[3, 3]), -float(self.projection[3, 2])
 

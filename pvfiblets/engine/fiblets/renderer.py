@@ -223,10 +223,8 @@ class FibletRenderer(LinesBehind):
         )
 
     def needs_outside(self, view: View, style: Style) -> bool:
-        """Say whether :meth:`render` would gain from the depth of other things in the scene.
-
-        Only where the camera has just moved: the second picture of a view is drawn whole, to be used from then on.
-        """
+        """Say whether :meth:`render` would gain from the depth of other things in the scene."""
+        # Only where the camera has just moved: the second picture of a view is drawn whole, to be used from then on.
         two_phase = self._occlusion is not None and self._occlusion.halfway
         return two_phase and self._last != (view, style)
 
@@ -277,10 +275,8 @@ class FibletRenderer(LinesBehind):
         self._kept.filtering = wanted
 
     def query(self, region: Region, sampling: Sampling = "lines") -> npt.NDArray[np.uint8]:
-        """Return how each streamline of the set lies to a region, whatever is filtered or drawn.
-
-        On the GPU where it can (:attr:`.RegionQuery.available`), and equal to :func:`.region_flags` on the CPU.
-        """
+        """Return how each streamline of the set lies to a region, whatever is filtered or drawn."""
+        # On the GPU where it can (`.RegionQuery.available`), and equal to `.region_flags` on the CPU.
         from .region_query import RegionQuery
 
         self._check_alive()

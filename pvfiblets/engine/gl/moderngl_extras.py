@@ -185,21 +185,17 @@ class GLExtras:
         return texture
 
     def set_sampler(self, program: Any, name: str, unit: int) -> None:
-        """Set the texture unit that a sampler of a program reads, once and for all draws.
-
-        moderngl does not know samplers of buffer textures: setting their ``value`` does nothing.
-        """
+        """Set the texture unit that a sampler of a program reads, once and for all draws."""
+        # moderngl does not know samplers of buffer textures: setting their `value` does nothing.
         uniform = program.get(name, None)
         if isinstance(uniform, (moderngl.Uniform, Uniform)):
             self.function("glUseProgram")(program.glo)
             self.function("glUniform1i")(uniform.location, unit)
 
     def add_levels(self, texture: moderngl.Texture, levels: int) -> None:
-        """Give a texture storage for smaller levels, each half as wide and high (rounded down) as the one before.
-
-        moderngl makes them only by filtering, which integers do not allow. Contents are undefined. Allowed levels
-        become 0 to ``levels - 1``.
-        """
+        """Give a texture storage for smaller levels, each half as wide and high (rounded down) as the one before."""
+        # moderngl makes them only by filtering, which integers do not allow. Contents are undefined. Allowed levels
+        # become 0 to `levels - 1`.
         kind = (texture.dtype, texture.components)
         if kind not in _LEVEL_FORMATS:
             raise EngineError(f"no levels for a texture of {kind}; use one of {list(_LEVEL_FORMATS)}")
@@ -211,12 +207,10 @@ class GLExtras:
         self.limit_levels(texture, 0, levels - 1)
 
     def limit_levels(self, texture: moderngl.Texture, first: int, last: int, unit: int | None = None) -> None:
-        """Limit the levels of a texture that shaders may read; ``texelFetch`` counts them from ``first``.
-
-        The texture stays bound to the unit, moderngl's own by default.
-
-        Reading one level while drawing into another of the same texture is defined only if the one drawn is left out.
-        """
+        """Limit the levels of a texture that shaders may read; ``texelFetch`` counts them from ``first``."""
+        # The texture stays bound to the unit, moderngl's own by default.
+        #
+        # Reading one level while drawing into another of the same texture is defined only if the one drawn is left out.
         texture.use(self._ctx.default_texture_unit if unit is None else unit)
         limit = self.function("glTexParameteri")
         limit(_TEXTURE_2D, _BASE_LEVEL, first)
@@ -224,11 +218,9 @@ class GLExtras:
 
     @contextmanager
     def framebuffers_kept(self) -> Iterator[None]:
-        """Bind again, at the end, the framebuffers that were bound, and have moderngl remember the one it did.
-
-        moderngl binds the one that it remembers whenever it has made another, so a released one must not stay there.
-        ``ctx.detect_framebuffer`` cannot find the bound one: on VTK's framebuffers it leaves an OpenGL error.
-        """
+        """Bind again, at the end, the framebuffers that were bound, and have moderngl remember the one it did."""
+        # moderngl binds the one that it remembers whenever it has made another, so a released one must not stay there.
+        # `ctx.detect_framebuffer` cannot find the bound one: on VTK's framebuffers it leaves an OpenGL error.
         draw = self.get_integer("GL_DRAW_FRAMEBUFFER_BINDING")
         read = self.get_integer("GL_READ_FRAMEBUFFER_BINDING")
         remembered = self._ctx.fbo, self._ctx.mglo.fbo
@@ -248,10 +240,8 @@ class GLExtras:
     def attach_level(
         self, framebuffer: moderngl.Framebuffer, texture: moderngl.Texture, level: int, attachment: int | None = 0
     ) -> None:
-        """Make a framebuffer draw into one level of a texture, and set its viewport to that level's size.
-
-        One framebuffer per level, attached when the texture is made, spares the frame these calls.
-        """
+        """Make a framebuffer draw into one level of a texture, and set its viewport to that level's size."""
+        # One framebuffer per level, attached when the texture is made, spares the frame these calls.
         point = _DEPTH_ATTACHMENT if attachment is None else _COLOR_ATTACHMENT_0 + attachment
         with self.framebuffers_kept():
             self.function("glBindFramebuffer")(_FRAMEBUFFER, framebuffer.glo)
@@ -278,10 +268,8 @@ class GLExtras:
             self.function("glClearBufferuiv")(_COLOR, attachment, padded)
 
     def clear_words(self, buffer: moderngl.Buffer, offset: int = 0, size: int | None = None) -> None:
-        """Fill a buffer, or a part of it, with zeros on the GPU (OpenGL 4.3).
-
-        moderngl's ``clear`` maps the buffer, and so waits for draws that use it.
-        """
+        """Fill a buffer, or a part of it, with zeros on the GPU (OpenGL 4.3)."""
+        # moderngl's `clear` maps the buffer, and so waits for draws that use it.
         size = buffer.size - offset if size is None else size
         internal, pixels, number = _LEVEL_FORMATS["u4", 1]
         self.function("glBindBuffer")(_COPY_WRITE_BUFFER, buffer.glo)

@@ -106,10 +106,8 @@ def work_groups(ctx: moderngl.Context) -> int:
 
 
 def dispatch(program: moderngl.ComputeShader, groups: int, max_groups: int) -> None:
-    """Run work groups, in rows where there are more than one axis may have.
-
-    The shader's ``group_index()`` undoes the folding; groups past the last find nothing to do.
-    """
+    """Run work groups, in rows where there are more than one axis may have."""
+    # The shader's `group_index()` undoes the folding; groups past the last find nothing to do.
     if groups <= 0:
         return
     if groups <= max_groups:

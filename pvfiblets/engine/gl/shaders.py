@@ -297,10 +297,8 @@ class Programs:
 
     @contextmanager
     def noting(self) -> Iterator[set[str]]:
-        """Yield a set that collects the features of all programs requested meanwhile.
-
-        They are read from the programs' text: what a caller switches on and no stage looks at is not among them.
-        """
+        """Yield a set that collects the features of all programs requested meanwhile."""
+        # They are read from the programs' text: what a caller switches on and no stage looks at is not among them.
         noted: set[str] = set()
         self._noted.append(noted)
         try:
@@ -314,10 +312,8 @@ class Programs:
             noted.update(features)
 
     def compute(self, name: str, features: Iterable[str] = ()) -> moderngl.ComputeShader:
-        """Return the program of a stage with some features on.
-
-        Programs are kept by composed source: a feature that a stage does not look at makes no second program.
-        """
+        """Return the program of a stage with some features on."""
+        # Programs are kept by composed source: a feature that a stage does not look at makes no second program.
         request = name, frozenset(features)
         if request in self._requests:
             self.note(self._switches[request])

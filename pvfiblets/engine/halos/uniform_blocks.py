@@ -126,10 +126,8 @@ class HaloBlocks(BlockBuffers):
     def _cue(
         self, to_data: Array, axis: Array, w: Array, scale_of_w: float, perspective: bool, strength: float
     ) -> tuple[float, ...]:
-        """Return (a, d): 1 - a . p - d of a place p (local mm) is the share that depth cueing leaves of a width.
-
-        How near and far goes by the box of the data; what lies behind the eye counts as beside it.
-        """
+        """Return (a, d): 1 - a . p - d of a place p (local mm) is the share that depth cueing leaves of a width."""
+        # How near and far goes by the box of the data; what lies behind the eye counts as beside it.
         local = self._corners - to_data[:3, 3]
         along = local @ axis
         if perspective:

@@ -113,11 +113,9 @@ class Vertices(TexelBuffers):
 
 
 def mask_places(offsets: npt.NDArray[np.int64], n_tapered: int, t_tapered: float) -> npt.NDArray[np.uint16]:
-    """Return where along its line's mask every vertex is.
-
-    Everts et al. 2009, section 3.4: u goes from 0 to t over the first n vertices and from 1 - t to 1 over the last
-    ones. Lines of less than 2 n + 1 vertices go as far as their middle, from both ends.
-    """
+    """Return where along its line's mask every vertex is."""
+    # Everts et al. 2009, section 3.4: u goes from 0 to t over the first n vertices and from 1 - t to 1 over the last
+    # ones. Lines of less than 2 n + 1 vertices go as far as their middle, from both ends.
     counts = np.diff(offsets)
     filled = counts > 0
     total = np.repeat(counts[filled] - 1, counts[filled]).astype(np.float32)

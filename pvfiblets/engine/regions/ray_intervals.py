@@ -73,10 +73,8 @@ class RegionIntervals:
         self._reads = DelayedRead(ctx, gl)
 
     def prepare(self, view: View, origin: Array, scale: Array, top: int) -> bool:
-        """Update the boundaries; unchanged region, size and camera cost nothing.
-
-        Changes the framebuffer's binding for a while, and leaves blending, culling and the depth test off.
-        """
+        """Update the boundaries; unchanged region, size and camera cost nothing."""
+        # Changes the framebuffer's binding for a while, and leaves blending, culling and the depth test off.
         region = view.region
         if region is None:
             self.release()

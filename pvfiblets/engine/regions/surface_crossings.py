@@ -145,10 +145,7 @@ class SurfaceLayers:
         *,
         waits: bool = True,
     ) -> list[Peeled]:
-        """Draw all layers of some surfaces.
-
-        Leaves no framebuffer of the caller's bound, and blending off.
-        """
+        """Draw all layers of some surfaces. Leaves no framebuffer of the caller's bound, and blending off."""
         self._keep_meshes(surfaces)
         matrices, rectangles = [], []
         for surface in surfaces:
@@ -203,10 +200,8 @@ class SurfaceLayers:
     def _draw_one(
         self, k: int, mesh: _Mesh, matrix: Array, rectangle: Rectangle, first: int, waits: bool
     ) -> _Found:
-        """Draw the number of layers of the last picture, and then the missing ones, as far as there is room.
-
-        Returns what :meth:`_inspect` does; of earlier pictures, if it must not wait.
-        """
+        """Draw the number of layers of the last picture, and then the missing ones, as far as there is room."""
+        # Returns what `_inspect` does; of earlier pictures, if it must not wait.
         if rectangle[0] == rectangle[2] or rectangle[1] == rectangle[3]:
             return _Found(0, 0, False)
         known = self._known[k]

@@ -190,10 +190,8 @@ class SlicePlane:
 
 
 def before_render(renderer: Any, owner: Any, method: str) -> Any:
-    """Call an owner's method whenever a renderer begins to draw; returns and rules as of :func:`on_events`.
-
-    :func:`prepare` calls it, too, for renderers that may have nothing to draw.
-    """
+    """Call an owner's method whenever a renderer begins to draw; returns and rules as of :func:`on_events`."""
+    # `prepare` calls it, too, for renderers that may have nothing to draw.
     return on_events(renderer, ("StartEvent", _PREPARE), owner, method)
 
 

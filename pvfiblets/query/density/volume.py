@@ -211,10 +211,8 @@ class Visits:
         _compile(self._visitor.dtype)
 
     def add(self, points: npt.NDArray[np.floating[Any]], line: Any, owner: Any) -> None:
-        """Add points, ``(n, 3)`` mm: ``line`` is the streamline of each, ``owner`` its bundle, which never falls.
-
-        Points that are not finite end a line.
-        """
+        """Add points, ``(n, 3)`` mm: ``line`` is the streamline of each, ``owner`` its bundle, which never falls."""
+        # Points that are not finite end a line.
         from . import density_kernels as kernels
 
         known = np.isfinite(points).all(axis=1)

@@ -57,10 +57,8 @@ class VoxelGrid:
 
 
 def grid_about(low: npt.ArrayLike, high: npt.ArrayLike, voxel_size: float | npt.ArrayLike) -> VoxelGrid:
-    """Return the grid along the axes of space that holds a box.
-
-    Faces lie at whole multiples of the voxel's size, so that grids of one size fit each other.
-    """
+    """Return the grid along the axes of space that holds a box."""
+    # Faces lie at whole multiples of the voxel's size, so that grids of one size fit each other.
     size = np.asarray(voxel_size, np.float64)
     if size.shape not in ((), (3,)) or not np.isfinite(size).all() or not (size > 0.0).all():
         raise ValueError(f"voxel_size is {voxel_size!r}; give a finite number of mm above 0, or three")

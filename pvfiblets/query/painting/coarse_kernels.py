@@ -156,10 +156,8 @@ def _along(u: Any, k: int, enter: float, leave: float, reach: Any, kept: Any, ra
 @kernel
 def _part(u: Any, k: int, kept: Any, radius: float, rows: Any, slack: float, box: Any, mask: Any, shape: Any,
           touching: int, inside: int, steps: Any, first: Any, reach: Any, low: Any, high: Any) -> Any:  # fmt: skip
-    """Whether part ``k`` may meet voxels of the bit ``touching``, and surely meets voxels of the bit ``inside``.
-
-    ``inside`` 0: not asked.
-    """
+    """Whether part ``k`` may meet voxels of the bit ``touching``, and surely meets voxels of the bit ``inside``."""
+    # `inside` 0: not asked.
     for axis in range(3):
         reach[axis] = radius * rows[axis] * (1.0 + 1e-9) + slack
     enter, leave = _cut(u, k, reach, box)
@@ -233,10 +231,8 @@ def _clear(mean: Any, k: int, leaves: Any, leaf: int, rows: Any, slack: float, b
 @parallel_kernel
 def close_parts(near: Any, leaves: Any, parts: int, linear: Any, corner: Any, rows: Any, box: Any, free: Any,
                 found: Any) -> None:  # fmt: skip
-    """Bits of the parts of some leaves whose capsules come near voxels in a box, ``found (n,)`` uint8.
-
-    ``free`` is the box's :class:`.FreeSpace` about these voxels.
-    """
+    """Bits of the parts of some leaves whose capsules come near voxels in a box, ``found (n,)`` uint8."""
+    # `free` is the box's `.FreeSpace` about these voxels.
     steps, first = free
     nodes = parts + 1
     for block in numba.prange((len(near) + BLOCK - 1) // BLOCK):

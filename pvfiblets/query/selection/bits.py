@@ -49,10 +49,8 @@ def as_criterion(given: Criterion | tuple[Any, ...]) -> Criterion:
 
 
 def point_words(fiblets: FibletSet | Streamlines, criteria: Iterable[Criterion | tuple[Any, ...]]) -> Words:
-    """One bit for each point, set where every criterion holds.
-
-    Values are compared as float64; coded values by the meaning of their code, without decoding.
-    """
+    """One bit for each point, set where every criterion holds."""
+    # Values are compared as float64; coded values by the meaning of their code, without decoding.
     from .bit_kernels import keep_codes, keep_values
 
     n = fiblets.n_points

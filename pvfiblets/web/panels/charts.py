@@ -14,10 +14,8 @@ COLOURS = ("#4e9ad6", "#e8953a", "#58b368", "#d65a7c", "#9d7fd1", "#b8a13b", "#5
 
 
 def histogram_chart(counts: ArrayLike) -> str:
-    """Return bars of the square roots of counts, so that rare values are seen beside frequent ones.
-
-    A few bars that stand far above the others, such as that of the air around a head, are cut off.
-    """
+    """Return bars of the square roots of counts, so that rare values are seen beside frequent ones."""
+    # A few bars that stand far above the others, such as that of the air around a head, are cut off.
     heights = np.sqrt(np.maximum(np.nan_to_num(np.asarray(counts, np.float64)), 0.0))
     if not heights.size or heights.max() <= 0.0:
         return ""

@@ -241,10 +241,8 @@ class Scene:
         self, path: str | Path, kind: str | None = None, progress: Progress | None = None, cancel: Cancel | None = None,
         space: Space | None = None,
     ) -> Loaded:  # fmt: skip
-        """Read a file, and compress it if need be, for :meth:`add`; may run in a thread of its own.
-
-        A file of VTK that names no space has coordinates of `space`.
-        """
+        """Read a file, and compress it if need be, for :meth:`add`; may run in a thread of its own."""
+        # A file of VTK that names no space has coordinates of `space`.
         if kind == "selection" or (kind is not None and kind not in layers.KINDS):
             raise ValueError(
                 f"kind is {kind!r}; choose one of {', '.join(k for k in layers.KINDS if k != 'selection')}"
@@ -425,10 +423,8 @@ class Scene:
         self.store.keep([self._state, *states])
 
     def volume_choices(self, layer: Layer) -> list[tuple[Any, str]]:
-        """Return what colours a layer by a volume, and how that is called.
-
-        These are the scene's volumes, its other images of one number per voxel, and what colours the layer now.
-        """
+        """Return what colours a layer by a volume, and how that is called."""
+        # These are the scene's volumes, its other images of one number per voxel, and what colours the layer now.
         others = [other for other in self.layers if other.kind == "image" and other.id != layer.id]
         named = {one.source.bare: one.name for one in others if self.data(one).data.n_volumes == 1}
         named |= {other.source: other.name for other in self.layers if other.kind == "volume"}

@@ -242,10 +242,8 @@ class Slicing:
     # Layers
 
     def add(self, layer: Layer, image: LabelledImage, colours: Colours) -> Any:
-        """Show an image above the others; return its layer of the stack.
-
-        ``colours`` gives the image that a direction-coded one is as bright as.
-        """
+        """Show an image above the others; return its layer of the stack."""
+        # `colours` gives the image that a direction-coded one is as bright as.
         meaning = layer.settings[MEANING]
         made = {"kind": meaning, "labels": image.table if meaning == "labels" else None}
         if meaning == "direction" and layer.settings[VECTORS] != "scanner":

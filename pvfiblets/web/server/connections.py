@@ -182,11 +182,9 @@ class Connection(web.RequestHandler):
 
 
 def room(wanted: int, sessions: int) -> int:
-    """Return how many connections this process has file descriptors for, up to the number that is wanted.
-
-    The limit of this process is raised as far as that takes and the system allows. A connection may take two: one to
-    the browser, and one to its session.
-    """
+    """Return how many connections this process has file descriptors for, up to the number that is wanted."""
+    # The limit of this process is raised as far as that takes and the system allows. A connection may take two: one to
+    # the browser, and one to its session.
     try:
         import resource
     except ImportError:  # Windows has no such limit

@@ -270,10 +270,8 @@ class FrontServer:
         return web.json_response(told, headers=HEADERS)
 
     def _first_page(self, request: web.Request) -> web.StreamResponse:
-        """Answer a browser that opens the page: with the application, or with why not yet or not at all.
-
-        Nothing is started: clients that only fetch pages run no script, and need no more than this page.
-        """
+        """Answer a browser that opens the page: with the application, or with why not yet or not at all."""
+        # Nothing is started: clients that only fetch pages run no script, and need no more than this page.
         session = self._session(request)
         if session is None and not self.launcher.has_room:
             self._log(request, "the limit of sessions")

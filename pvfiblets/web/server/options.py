@@ -118,11 +118,9 @@ class Options:
 
 
 def chosen_memory(text: str, sessions: int) -> int | None:
-    """Return the bytes that ``--max-memory auto|SIZE`` means, for each session; ``None`` where none can be set.
-
-    By default, sessions share four fifths of the machine's memory. Few are full at once, so that none has less than a
-    fifth of the machine: four full ones leave the server enough.
-    """
+    """Return the bytes that ``--max-memory auto|SIZE`` means, for each session; ``None`` where none can be set."""
+    # By default, sessions share four fifths of the machine's memory. Few are full at once, so that none has less than a
+    # fifth of the machine: four full ones leave the server enough.
     if text != "auto":
         try:
             return parse(text)

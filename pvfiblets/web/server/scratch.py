@@ -73,11 +73,9 @@ class Notes:
 
     @contextlib.contextmanager
     def private(self, beside: Path) -> Iterator[Path]:
-        """Give a hidden folder in another, which is gone afterwards, whatever happens.
-
-        If this process is killed before, files beside the folder that have a second name in it, the same one, go with
-        it. Where a file system has no hard links, they stay.
-        """
+        """Give a hidden folder in another, which is gone afterwards, whatever happens."""
+        # If this process is killed before, files beside the folder that have a second name in it, the same one, go with
+        # it. Where a file system has no hard links, they stay.
         found = Path(tempfile.mkdtemp(prefix=PRIVATE, dir=beside))
         self._open.append(found)
         self._write()

@@ -59,10 +59,8 @@ class Prepared:
 def read_session(
     scene: Scene, data: Any, folder: Path | None, progress: Progress | None, cancel: Cancel | None
 ) -> Prepared:
-    """Return the document and the camera of a session whose files are read and found to fit.
-
-    Parameters and errors as of :func:`.files.prepare`.
-    """
+    """Return the document and the camera of a session whose files are read and found to fit."""
+    # Parameters and errors as of `.files.prepare`.
     if not isinstance(data, Mapping):
         raise ValueError(f"it is {shown(data)} and no object")
     if data.get("program") != "pvfiblets":

@@ -30,11 +30,9 @@ def numbers_in(runs: np.ndarray) -> np.ndarray:
 
 
 def pack(runs: np.ndarray) -> str:
-    """Return runs as text, in the shorter of two forms.
-
-    ``bits:`` and, in base64, a bit for each number up to the last one, the lowest bit of a byte first; or ``u1:``,
-    ``u2:``, ``u4:`` or ``u8:`` and integers of so many bytes: the numbers between runs and in runs, in turns.
-    """
+    """Return runs as text, in the shorter of two forms."""
+    # `bits:` and, in base64, a bit for each number up to the last one, the lowest bit of a byte first; or `u1:`, `u2:`,
+    # `u4:` or `u8:` and integers of so many bytes: the numbers between runs and in runs, in turns.
     ends = np.asarray(runs, np.int64).reshape(-1)
     steps = np.diff(ends, prepend=0)
     kind = next(kind for kind, size in _STEPS.items() if int(steps.max(initial=0)) < 1 << 8 * size)

@@ -224,11 +224,9 @@ class PictureStream:
         return encode(self._read(), "png", 100)
 
     def picture_of(self, width: int, height: int, *, transparent: bool = False) -> NDArray[np.uint8]:
-        """Return the view at any size, drawn now and finished.
-
-        Lines and letters are as large beside the picture's height as on the page. What is larger than that is drawn in
-        pieces: enlarged windows have wider lines, more dots to an inch have not.
-        """
+        """Return the view at any size, drawn now and finished."""
+        # Lines and letters are as large beside the picture's height as on the page. What is larger than that is drawn
+        # in pieces: enlarged windows have wider lines, more dots to an inch have not.
         pieces = max(-(-height // self._size[1]), -(-max(width, height) // LARGEST_WINDOW))
         size = -(-width // pieces), -(-height // pieces)
         window, interactor = self._plotter.render_window, self._plotter.iren.interactor
@@ -300,10 +298,8 @@ class PictureStream:
             await self._refine()
 
     async def _ahead(self) -> bool:
-        """Draw what takes longest of the whole picture in pieces; ``False`` as soon as somebody acts meanwhile.
-
-        Then the picture that is shown stays, and the next one comes as soon as if nothing had been drawn.
-        """
+        """Draw what takes longest of the whole picture in pieces; ``False`` as soon as somebody acts meanwhile."""
+        # Then the picture that is shown stays, and the next one comes as soon as if nothing had been drawn.
         if self._level is not LEVELS[0]:
             self._resize(LEVELS[0])
         moved = self._moved
@@ -327,10 +323,8 @@ class PictureStream:
         return True
 
     async def _refine(self) -> None:
-        """Draw the samples of the picture at rest and send it, unless something happens meanwhile.
-
-        While parts of a set are fetched, partial frames are sent now and then.
-        """
+        """Draw the samples of the picture at rest and send it, unless something happens meanwhile."""
+        # While parts of a set are fetched, partial frames are sent now and then.
         # No event is handled while a sample is drawn: slow samples wait for a pause of events.
         picture = self._plotter.picture
         heavy = self.times[-1] if self.times and self.times[-1] > HEAVY and not picture.fetching else 0.0
@@ -347,10 +341,8 @@ class PictureStream:
             await self._send(self._read(), self.still_quality)
 
     async def _practise(self) -> None:
-        """Draw an invisible frame of a moving camera, to compile its programs in advance.
-
-        Programs are compiled and a share of a large set is copied to the GPU before somebody drags, not meanwhile.
-        """
+        """Draw an invisible frame of a moving camera, to compile its programs in advance."""
+        # Programs are compiled and a share of a large set is copied to the GPU before somebody drags, not meanwhile.
         if self._wanted.is_set() or not self._pace.untried:
             return
         self._show(self._pace.level)

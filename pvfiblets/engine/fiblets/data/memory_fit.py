@@ -138,10 +138,8 @@ class MemoryBudget:
 
     @property
     def room(self) -> int | None:
-        """Bytes that buffers may take beside a picture, :data:`RESERVE` less than are free; None if unknown.
-
-        Half of that where both are the same memory: parts stand in it twice.
-        """
+        """Bytes that buffers may take beside a picture, :data:`RESERVE` less than are free; None if unknown."""
+        # Half of that where both are the same memory: parts stand in it twice.
         rooms = [] if self.largest is None else [self.largest - SHARED_BYTES]
         if self.video is not None:
             free = (1.0 - RESERVE) * self.video - PICTURE_BYTES - SHARED_BYTES

@@ -74,12 +74,10 @@ class LinesBehind(FibletDrawable):
         outside: Callable[[], moderngl.Texture | None] | None = None,
         state: Any = None,
     ) -> Gathered:
-        """Add up what all lines show in each pixel; nothing is done that has been done for this picture.
-
-        Without ``paint``, lines are counted. ``sliced`` leaves the nearest line out, and parts the others by how far
-        behind it they are. ``outside`` returns depth keys of other things in the scene, r32ui of the view's size: lines
-        behind those are left out. ``state`` is another object where that depth may be another.
-        """
+        """Add up what all lines show in each pixel; nothing is done that has been done for this picture."""
+        # Without `paint`, lines are counted. `sliced` leaves the nearest line out, and parts the others by how far
+        # behind it they are. `outside` returns depth keys of other things in the scene, r32ui of the view's size: lines
+        # behind those are left out. `state` is another object where that depth may be another.
         from .gathering import SLICES
         from .paint import Paint
 
@@ -117,11 +115,9 @@ class LinesBehind(FibletDrawable):
         nearest: GBuffer,
         hides: moderngl.Texture | None,
     ) -> None:
-        """Add all lines of this part to the sums of its set, ``held``.
-
-        ``nearest`` is the picture of all parts: where there are slices, a line of this part that is as near is left
-        out.
-        """
+        """Add all lines of this part to the sums of its set, ``held``."""
+        # `nearest` is the picture of all parts: where there are slices, a line of this part that is as near is left
+        # out.
         picture = self.render(view, style) if held.slices > 1 else nearest
         gatherer = self._with_gatherer()
         with self._noting():
@@ -136,10 +132,8 @@ class LinesBehind(FibletDrawable):
         return self._gatherer
 
     def most_lines(self, *, wait: bool = True) -> float:
-        """Return the greatest weight of a pixel in what :meth:`gather` made last: lines, where it was not sliced.
-
-        Without ``wait``, it may be that of some pictures earlier.
-        """
+        """Return the greatest weight of a pixel in what :meth:`gather` made last: lines, where it was not sliced."""
+        # Without `wait`, it may be that of some pictures earlier.
         if self._gatherer is None:
             return 0.0
         with self._noting():

@@ -120,10 +120,8 @@ def _numbered(part: FibletSet, ids: npt.NDArray[np.int64]) -> FibletSet:
 
 
 def reach_of(part: FibletSet) -> Box | None:
-    """Return bounds of all points of a set, from its anchors; None if it has none.
-
-    Each fiblet lies in a sphere of the set's largest radius that its anchor lies in too.
-    """
+    """Return bounds of all points of a set, from its anchors; None if it has none."""
+    # Each fiblet lies in a sphere of the set's largest radius that its anchor lies in too.
     if not part.n_fiblets:
         return None
     words, low = np.asarray(part.anchors), part.anchors_low

@@ -238,10 +238,8 @@ class StreamedRenderer(NearestOnly):
         outside: Callable[[], moderngl.Texture | None] | None = None,
         state: Any = None,
     ) -> Gathered:
-        """Add up what all lines show, part by part; see :meth:`.LinesBehind.gather`.
-
-        While the picture is not complete, the sums are of the parts that are there, or of the even share.
-        """
+        """Add up what all lines show, part by part; see :meth:`.LinesBehind.gather`."""
+        # While the picture is not complete, the sums are of the parts that are there, or of the even share.
         from ..gather.gatherer import Gatherer
         from ..gather.gathering import SLICES
         from ..gather.paint import Paint
@@ -282,10 +280,8 @@ class StreamedRenderer(NearestOnly):
             renderer.drop_gathered()
 
     def value_range(self, values: str | VolumeSource) -> tuple[float, float]:
-        """Return the least and the greatest of a per-point value; see :meth:`.FibletRenderer.value_range`.
-
-        What is measured is measured in every part, which takes as long as to fetch them all.
-        """
+        """Return the least and the greatest of a per-point value; see :meth:`.FibletRenderer.value_range`."""
+        # What is measured is measured in every part, which takes as long as to fetch them all.
         self._check_alive()
         ranges = []
         for number in range(len(self._parts)):

@@ -165,11 +165,9 @@ def value_range_of_part(
 
 
 def source_of(fiblets: FibletSet) -> tuple[str, str | None]:
-    """Return key and path of a set: of the file that it is mapped from, if it is from one.
-
-    The key tells files apart by size and time of change, sets in shards by their manifests, and sets in memory by where
-    they are.
-    """
+    """Return key and path of a set: of the file that it is mapped from, if it is from one."""
+    # The key tells files apart by size and time of change, sets in shards by their manifests, and sets in memory by
+    # where they are.
     if isinstance(fiblets, UnreadSet):
         manifest = fiblets.shards.manifest.to_json().encode()
         return f"{fiblets.shards.name} {hashlib.sha256(manifest).hexdigest()}", None

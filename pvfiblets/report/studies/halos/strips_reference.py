@@ -65,10 +65,8 @@ def places_along(count: int, n_tapered: int, t_tapered: float) -> Array:
 
 
 def rates(points: Array, offsets: Ints, numbers: Array) -> Array:
-    """Change of numbers per mm at the vertices: the mean over the segments beside each, 0 where there is none.
-
-    Segments without length, or with a NaN, do not count.
-    """
+    """Change of numbers per mm at the vertices: the mean over the segments beside each, 0 where there is none."""
+    # Segments without length, or with a NaN, do not count.
     first = _firsts(offsets)
     with np.errstate(divide="ignore", invalid="ignore"):
         steep = np.abs(numbers[first + 1] - numbers[first]) / np.linalg.norm(points[first + 1] - points[first], axis=1)

@@ -126,11 +126,9 @@ def _exponential(kappa: Floats, colour: Floats, h: Floats) -> tuple[Floats, Floa
 
 
 def _transparencies(kappa: Floats, h: Floats) -> Floats:
-    """``exp(-tau)`` at each sample, by the polynomial through all of them.
-
-    Such a polynomial may dip below 0 where extinction rises steeply; tau is kept from falling, and from getting beyond
-    that of the whole panel, which is positive.
-    """
+    """``exp(-tau)`` at each sample, by the polynomial through all of them."""
+    # Such a polynomial may dip below 0 where extinction rises steeply; tau is kept from falling, and from getting
+    # beyond that of the whole panel, which is positive.
     tau = np.einsum("kj,...j->...k", _cumulative(kappa.shape[-1]).astype(kappa.dtype), kappa) * h[..., None]
     return np.exp(-np.minimum(np.maximum.accumulate(np.maximum(tau, 0), axis=-1), np.maximum(tau[..., -1:], 0)))
 

@@ -54,11 +54,9 @@ def unpack(i: int, j: int, levels: int) -> Any:
 
 
 def worst_angle(levels: int) -> float:
-    """Return an angle, radians, that no direction is off by more than.
-
-    A cell's half-diagonal in the square is ``sqrt(2) / (levels - 1)``; on the octahedron's faces, which are tilted,
-    lengths grow by up to ``sqrt(3)``, and the faces are ``1 / sqrt(3)`` from the centre at least.
-    """
+    """Return an angle, radians, that no direction is off by more than."""
+    # A cell's half-diagonal in the square is `sqrt(2) / (levels - 1)`; on the octahedron's faces, which are tilted,
+    # lengths grow by up to `sqrt(3)`, and the faces are `1 / sqrt(3)` from the centre at least.
     return math.sqrt(2.0) / (levels - 1) * math.sqrt(3.0) * math.sqrt(3.0)
 
 
