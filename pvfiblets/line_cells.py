@@ -105,7 +105,7 @@ def parts_of_cells(
     field: Mapping[str, Array] | None = None,
     space_name: Space | None = None,
 ) -> dict[str, Any]:
-    """Return arguments of `Streamlines` of cells that refer to points by index; parameters as of `from_cells`."""
+    """Return arguments of `Streamlines` of cells that refer to points by index, as VTK stores lines."""
     dropped: dict[str, int] = {}
     if other_cells:
         dropped[NOT_LINES] = other_cells
