@@ -17,6 +17,13 @@ class Actions:
     def __init__(self, app: Any) -> None:
         self._app = app  # whose scene and page these act on
 
+    def refresh(self) -> None:
+        """Bring the page's data in step with the scene."""
+
+    def _show(self) -> None:
+        with self._app.state:
+            self.refresh()
+
 
 class LineActions(Actions):
     """Actions on the chosen layer of lines."""

@@ -183,8 +183,7 @@ class AtlasActions(Actions):
         app.slices.changed()
 
     def _show(self) -> None:
-        with self._app.state:
-            self.refresh()
+        super()._show()
         self._app.stream.request()
 
 

@@ -47,8 +47,7 @@ class FindingActions(LineActions):
         self._open = is_open is True
         if self._open:
             self._folders = model_folders(self._app.confined)
-        with self._app.state:
-            self.refresh()
+        self._show()
 
     # More like this
 

@@ -96,14 +96,12 @@ class MeasureActions(LineActions):
     def fold(self, is_open: bool) -> None:
         """Open or close the section."""
         self._open = is_open is True
-        with self._app.state:
-            self.refresh()
+        self._show()
 
     def set_value(self, value: str) -> None:
         """Choose what profiles are of."""
         self._value = str(value)
-        with self._app.state:
-            self.refresh()
+        self._show()
 
     # What is done
 
@@ -169,8 +167,7 @@ class MeasureActions(LineActions):
         if found is None:
             return
         self._results[kind] = found
-        with self._app.state:
-            self.refresh()
+        self._show()
 
     def fetch(self, kind: str, suffix: str) -> str | bytes:
         """Return a table in full, for the browser to save."""

@@ -62,14 +62,12 @@ class BundleActions(LineActions):
         self._checked = [one for one in self._checked if one != name]
         if on is True and name in known:
             self._checked.append(name)
-        with self._app.state:
-            self.refresh()
+        self._show()
 
     def seek(self, text: str) -> None:
         """List the bundles with a text in their names only."""
         self._sought = str(text or "").casefold()
-        with self._app.state:
-            self.refresh()
+        self._show()
 
     def add(self, what: str) -> None:
         """Make a bundle of the selection or of the visible streamlines."""

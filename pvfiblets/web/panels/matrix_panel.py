@@ -266,10 +266,6 @@ class MatrixActions(LineActions):
             safe.save(path)
             return path.read_bytes() if suffix == ".npy" else path.read_text(encoding="utf-8")
 
-    def _show(self) -> None:
-        with self._app.state:
-            self.refresh()
-
 
 def _cell(found: Connectome, row: Any, column: Any) -> tuple[int, int]:
     n = len(found.labels)

@@ -195,10 +195,6 @@ class PaintActions(Actions):
         axes = self._painting.matrix[:3, :3]
         return int(np.argmax(abs(pane.toward @ axes) / np.linalg.norm(axes, axis=0)))
 
-    def _show(self) -> None:
-        with self._app.state:
-            self.refresh()
-
     def move(self, name: str, by: int) -> None:
         """Move a region up or down in the list."""
         self._app.scene.painting.move_painted(name, 1 if by == 1 else -1)

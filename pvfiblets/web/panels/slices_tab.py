@@ -76,8 +76,7 @@ class SliceActions(Actions):
 
     def changed(self) -> None:
         """Show the changes, in the tab and in the frame."""
-        with self._app.state:
-            self.refresh()
+        self._show()
         self._app.stream.request()
 
     def set_layout(self, layout: str) -> None:

@@ -33,7 +33,6 @@ WRONG_TOKEN = 1.0  # seconds that a wrong token waits for its answer
 # Methods of requests for pages and files of the application, and for its downloads.
 PASSED_ON = frozenset({"GET", "HEAD"})
 UPLOAD, SESSION = "/upload", "/session"
-DOWNLOAD = "/download/"
 LOGS = ("pvfiblets.web", "aiohttp.server", "asyncio")
 
 

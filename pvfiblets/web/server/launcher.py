@@ -28,7 +28,6 @@ from pvfiblets.web.server.options import Options
 logger = logging.getLogger("pvfiblets.web")
 
 GRACE = 5.0  # seconds that a process has to end by itself
-START = 600.0  # seconds to open the files it was started with
 RESCUED = 3600.0  # seconds that the session of a dead process can be restored
 MOST_RESCUED = 32
 MOST_WAITING = 1 << 16  # bytes sent to a process and not read yet
