@@ -13,8 +13,6 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["MODES", "SHADERS", "ColourMode", "glsl_source"]
-
 
 @dataclass(frozen=True)
 class ColourMode:

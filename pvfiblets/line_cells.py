@@ -15,8 +15,6 @@ if TYPE_CHECKING:
 
     from pvfiblets.streamlines import Streamlines
 
-__all__ = ["NOT_LINES", "field_of", "parts_of_cells", "parts_of_polydata", "polydata_of"]
-
 NOT_LINES = "cells that are not lines"  # why cells were left out, of `dropped`
 _GROUP = "groups/"
 _PER_GROUP = "per_group/"

@@ -20,8 +20,6 @@ from pvfiblets.support.addresses import is_url
 from pvfiblets.support.nifti_space import MATRICES, UNITS
 from pvfiblets.support.whole_files import naming_target
 
-__all__ = ["Pipes", "add_format_option", "add_image_options", "add_space_option", "add_surface_option"]
-
 _IN, _OUT = "standard input", "standard output"
 
 

@@ -13,8 +13,6 @@ import numpy as np
 
 from pvfiblets.support.whole_files import replacing
 
-__all__ = ["Columns", "join_parts", "write_part"]
-
 Columns = Mapping[str, Any]  # by name: numbers and texts for every row, or one for all rows
 
 

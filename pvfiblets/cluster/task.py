@@ -31,8 +31,6 @@ from .operations import OPERATIONS
 from .record import Entry, Output, checksum, fingerprint
 from .tables import write_part
 
-__all__ = ["Job", "run"]
-
 logger = logging.getLogger(__name__)
 _TURN = threading.Lock()
 

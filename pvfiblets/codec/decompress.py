@@ -22,10 +22,6 @@ if TYPE_CHECKING:
     from .fibletset import FibletSet
     from .point_values import PointValues
 
-__all__ = [
-    "decode_fiblets", "decoding_arrays", "decompress", "fixed", "held_in_bounds", "iter_chunks", "select_streamlines",
-]  # fmt: skip
-
 
 def select_streamlines(n: int, ids: Any) -> npt.NDArray[np.int64]:
     """Normalise a selection of ``n`` streamlines to indices."""

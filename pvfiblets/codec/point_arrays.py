@@ -16,11 +16,6 @@ import numpy.typing as npt
 from .fibletset import FibletSet
 from .point_values import code_values
 
-__all__ = [
-    "colour_columns", "colours_of_points", "packed_colours", "unit_colours", "with_coded_values", "with_point_colours",
-    "with_point_values",
-]  # fmt: skip
-
 
 def with_point_values(fiblets: FibletSet, name: str, values: npt.ArrayLike, bits: int = 8) -> FibletSet:
     """Return a set that shares the arrays of another one and has one with a number per point more."""

@@ -12,8 +12,6 @@ from .capsules import capsule_ends
 from .layout import PAGE, PAGE_BITS, WORDS, pack, unpack_ends
 from .parameters import Parameters
 
-__all__ = ["FibletChunk", "RecordWriter", "join"]
-
 
 @dataclass
 class FibletChunk:

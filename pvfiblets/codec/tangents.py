@@ -18,8 +18,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-__all__ = ["LEAST_SUM", "ONE_POINT", "PIXELS", "pixel"]
-
 PIXELS = 2000.0  # pixels of a full-screen view along the diagonal of the bounds
 
 ONE_POINT = 1e-3  # pixels: points that are no farther apart are one, and no direction leads from one to the other

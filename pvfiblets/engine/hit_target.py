@@ -24,9 +24,6 @@ from .gl.shaders import Programs
 if TYPE_CHECKING:
     from .regions.region_cut import RegionCut
 
-__all__ = ["HitDrawable", "HitTarget"]
-
-
 
 class HitTarget:
     """Textures of one picture.

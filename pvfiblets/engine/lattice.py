@@ -15,8 +15,6 @@ import numpy.typing as npt
 from ..invalid_points import warn_of_far
 from .errors import EngineError
 
-__all__ = ["TOP", "lattice", "places"]
-
 TOP = 2**31 - 1  # the largest integer of a place
 
 _LARGEST = float(np.finfo(np.float32).max)

@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from ..query.regions.shapes import Region
     from .fiblets.data.sampled_volume import VolumeSource
 
-__all__ = ["MAX_CLIP_PLANES", "Style", "View", "check_at_least"]
-
 MAX_CLIP_PLANES = 8  # as many as OpenGL itself promises (GL_MAX_CLIP_DISTANCES); a box takes six
 
 

@@ -19,8 +19,6 @@ from pvfiblets.formats.vtk_xml import XmlFile
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.support.vtk_space import FIELD, OURS, Space, space_of_dataset, space_taken
 
-__all__ = ["info", "iter_chunks", "read", "read_dataset"]
-
 
 def read_dataset(path: str | PathLike[str]) -> Any:
     """Read whatever dataset a file holds."""

@@ -29,8 +29,6 @@ from pvfiblets.line_cells import parts_of_cells
 from pvfiblets.streamlines import Streamlines
 from pvfiblets.support.vtk_space import OURS, Space, space_in_header, space_named, space_taken
 
-__all__ = ["HOLDS", "info", "iter_chunks", "read", "write"]
-
 HOLDS = ("per_point", "per_streamline", "groups", "per_group")
 """Parts of Streamlines besides the points that the format can carry (groups as field data)."""
 

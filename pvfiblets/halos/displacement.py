@@ -10,8 +10,6 @@ import numpy.typing as npt
 
 from .style import DISPLACEMENTS, TABLE_SIZE
 
-__all__ = ["Displacement", "as_displacement", "displaced", "table_places"]
-
 Displacement: TypeAlias = str | Sequence[float] | npt.NDArray[Any] | Callable[[npt.NDArray[np.float64]], Any]
 """Types that :func:`as_displacement` takes: a name, a table, or a function."""
 

@@ -10,8 +10,6 @@ import numpy.typing as npt
 from .geometry import HaloLines, HaloPoints
 from .neighbours import Cloud, Frame, Paths, distances
 
-__all__ = ["default_widths", "line_spacing", "point_spacing"]
-
 _ALONE = 1.0 / 60.0  # spacing of data without neighbours, as a share of the bounds' diagonal
 
 

@@ -7,8 +7,6 @@ from pathlib import Path
 
 from .image import Image
 
-__all__ = ["SUFFIXES", "read_image", "stem_of"]
-
 _NIFTI = (".nii", ".nii.gz", ".mgh", ".mgz")
 _MIF = (".mif", ".mif.gz", ".mih")
 _NRRD = (".nrrd", ".nhdr")

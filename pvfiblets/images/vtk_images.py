@@ -16,8 +16,6 @@ from pvfiblets.support.memory import check_room
 
 from .image import Image
 
-__all__ = ["array_of", "of_vtk", "open_vti", "place_of", "read_vti"]
-
 
 def read_vti(path: Path) -> Image:
     """Read an image of VTK's."""

@@ -6,8 +6,6 @@ from typing import Any
 
 import moderngl
 
-__all__ = ["BlankArrays"]
-
 
 class BlankArrays:
     """Arrays of one texel, zero; no other kind of texture will do for such a sampler."""

@@ -17,8 +17,6 @@ from pvfiblets.mappers.shifted_cameras import draws_sample
 if TYPE_CHECKING:
     from pvfiblets.mappers.shader_effects import Draw
 
-__all__ = ["TONES", "Density"]
-
 TONES = ("log", "sqrt", "linear")  # functions from the number of lines to brightness
 
 

@@ -24,8 +24,6 @@ _BESIDE = {
 
 _EMPTY = {"depth": (1, "u4"), "ids": (2, "u4"), "position": (2, "f4"), "across": (1, "f2"), "normal": (1, "u4")}
 
-__all__ = ["Layers", "layers_of", "with_layers"]
-
 
 class _Held:
     """State of one window: the engine that has layers, or empty textures in their place."""

@@ -21,8 +21,6 @@ from pvfiblets.mappers.uniforms import colour_uniforms
 if TYPE_CHECKING:
     from pvfiblets.mappers.shader_effects import Draw
 
-__all__ = ["Sums", "paint_of"]
-
 _SHOULDER = np.array([-1.0, 1.0, 1.0]) / np.sqrt(3.0)
 """Direction of light in view coordinates (``shaders/resolve/line_light.glsl``)."""
 

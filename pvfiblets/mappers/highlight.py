@@ -13,8 +13,6 @@ import numpy.typing as npt
 from pvfiblets.mappers.shader_effects import ShaderEffect
 from pvfiblets.mappers.windows import MAX_ROW
 
-__all__ = ["Highlight"]
-
 
 class _Bits:
     """The texture of one window."""

@@ -15,8 +15,6 @@ from pvfiblets.mappers.antialias_windows import picture_of
 from pvfiblets.mappers.fiblets import FibletMapper
 from pvfiblets.mappers.scene import actors_in, items_of
 
-__all__ = ["draw_in_pieces"]
-
 
 def draw_in_pieces(window: Any, *, refining: bool = False) -> Iterator[None]:
     """Draw the fiblets of a window's next frame, and yield after each piece."""

@@ -17,8 +17,6 @@ from pvfiblets.mappers.scene import in_motion, items_of
 from pvfiblets.mappers.scene_state import scene_state
 from pvfiblets.mappers.windows import weak
 
-__all__ = ["KeptViews"]
-
 _LETTERS = ("GetTextProperty", "GetTitleTextProperty", "GetLabelTextProperty", "GetAnnotationTextProperty")
 _PARTS = (*_LETTERS, "GetLookupTable", "GetMapper", "GetInput", "GetProperty")
 

@@ -12,8 +12,6 @@ import numpy.typing as npt
 
 from pvfiblets.mappers.shader_effects import Draw, MapperEffect, ShaderEffect
 
-__all__ = ["SurfaceNormals", "TubeShading", "Tubes", "normals_to_view", "thickened", "thickness_of"]
-
 
 def thickness_of(effects: Iterable[MapperEffect]) -> float:
     """Return the radius (mm) of the tubes that effects want; 0 for lines."""

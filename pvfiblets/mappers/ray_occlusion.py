@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from pvfiblets.engine.volumes.ray_occlusion import RayOcclusionPass
     from pvfiblets.mappers.shader_effects import Draw
 
-__all__ = ["RayOcclusion"]
-
 _WHAT = "of ray occlusion"
 
 

@@ -10,8 +10,6 @@ from collections.abc import Hashable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-__all__ = ["scene_state", "without_multisamples"]
-
 _multisamples: dict[str, int] = {}  # settings of windows that render a frame without multisampling, by address
 
 _SETTINGS = (

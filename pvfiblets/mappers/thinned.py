@@ -13,8 +13,6 @@ from typing import Any
 from pvfiblets.engine.errors import GPUMemoryError
 from pvfiblets.mappers.scene import wanted_share
 
-__all__ = ["LEAST_FIBLETS", "thinned_engine"]
-
 LEAST_FIBLETS = 20_000  # smaller sets are never thinned: they are fast, and each of their lines may count
 
 

@@ -24,8 +24,6 @@ from pvfiblets.mappers.scene import Frame
 if TYPE_CHECKING:
     from pvfiblets.tubes.spline_tubes import SplineTubes
 
-__all__ = ["TubeMapper", "TubeOptions", "tube_renderer"]
-
 
 @dataclass(frozen=True)
 class TubeOptions(Options):

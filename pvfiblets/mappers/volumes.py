@@ -32,8 +32,6 @@ if TYPE_CHECKING:
     from pvfiblets.volumes.interactive_quality import InteractiveQuality
     from pvfiblets.volumes.raycast_options import RaycastOptions
 
-__all__ = ["RayHit", "VolumeMapper", "volume_renderer"]
-
 _LIGHT = "light"  # what the engine has in the place of a number at every point
 
 

@@ -15,8 +15,6 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from pvfiblets.mappers.windows import weak
 
-__all__ = ["VtkInput"]
-
 
 class VtkInput(VTKPythonAlgorithmBase):
     """The filter between what a user connects and a mapper."""

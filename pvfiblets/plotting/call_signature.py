@@ -21,8 +21,6 @@ if TYPE_CHECKING:
 
     from pvfiblets.plotting.settings import Argument
 
-__all__ = ["document", "plotter_method", "replace_method"]
-
 _WIDEST = 100
 
 

@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from pvfiblets.query.measures.measures import Values
     from pvfiblets.streamlines import Streamlines
 
-__all__ = ["LineSubject", "Parts"]
-
 
 @dataclass(frozen=True, eq=False)
 class Parts:

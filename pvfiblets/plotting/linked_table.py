@@ -16,8 +16,6 @@ import pyvista as pv
 
 from pvfiblets.plotting.linked_property import is_own_write, observe
 
-__all__ = ["LinkedTable"]
-
 
 @dataclass(frozen=True)
 class _Written:

@@ -11,8 +11,6 @@ from pathlib import Path
 import anywidget
 import traitlets
 
-__all__ = ["NotebookState"]
-
 _VECTORS = ("position", "focal_point", "up")
 _NUMBERS = ("view_angle", "parallel_scale")
 

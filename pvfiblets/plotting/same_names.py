@@ -8,8 +8,6 @@ from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
-__all__ = ["Preference", "with_preference"]
-
 Preference: TypeAlias = Literal["point", "cell"]
 
 _OTHER = {"point": "line", "cell": "point"}

@@ -9,8 +9,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 if TYPE_CHECKING:
     from pvfiblets.plotting.settings import Argument, Setting
 
-__all__ = ["COLOURS", "LATER", "MAPPER", "OPTIONS", "OWN", "PROPERTY", "Effect", "Own", "Place", "Switch", "Uniform"]
-
 
 class Place:
     """A place where an actor keeps a setting: it reads the setting, and applies its changes."""

@@ -8,8 +8,6 @@ from __future__ import annotations
 import warnings
 from typing import Any
 
-__all__ = ["SourceChanges"]
-
 
 class SourceChanges:
     """The state in which a data set was added."""

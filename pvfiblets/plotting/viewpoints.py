@@ -7,8 +7,6 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["DIRECTIONS", "point_camera", "visible_bounds"]
-
 DIRECTIONS = {
     "axial": ((0, 0, 1), (0, 1, 0)),
     "inferior": ((0, 0, -1), (0, 1, 0)),

@@ -12,8 +12,6 @@ import threading
 from collections.abc import Callable, Sequence
 from typing import IO, Any
 
-__all__ = ["CellProcess", "Row", "ended", "serve"]
-
 Row = dict[str, Any]
 
 

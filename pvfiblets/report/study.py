@@ -18,8 +18,6 @@ from typing import Protocol
 
 from .record import Axes, CaseResult, LeftOut, Record
 
-__all__ = ["LATE", "Budget", "Options", "Study", "Unavailable"]
-
 LATE = "the time given was used up"  # why something was left out
 
 

@@ -19,8 +19,6 @@ from functools import cache
 from os import PathLike
 from pathlib import Path
 
-__all__ = ["locked", "remove_unfinished", "scratch_beside", "unfinished"]
-
 _NAME = re.compile(r"\..+\.([0-9a-f]{8})-([0-9]+)\.(part|old|scratch)")
 _NUMBERS = itertools.count()
 _ID = Path("/etc/machine-id")

@@ -18,21 +18,6 @@ import numpy as np
 
 from pvfiblets.support.ragged import Array
 
-__all__ = [
-    "FIELD",
-    "OURS",
-    "Space",
-    "checked",
-    "space_in_header",
-    "space_named",
-    "space_of_dataset",
-    "space_taken",
-    "to_ras",
-    "unnamed",
-    "unnamed_as",
-    "unnamed_here",
-]
-
 Space: TypeAlias = Literal["RAS", "LPS"]
 
 FIELD = "SPACE"  # name of the field array of strings

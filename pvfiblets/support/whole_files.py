@@ -13,8 +13,6 @@ from typing import BinaryIO
 
 from .unfinished import locked, unfinished
 
-__all__ = ["made_folder", "naming_target", "replacing"]
-
 _FULL = (errno.ENOSPC, errno.EDQUOT) if hasattr(errno, "EDQUOT") else (errno.ENOSPC,)
 _CLOSED = (errno.EACCES, errno.EPERM, errno.EROFS)
 

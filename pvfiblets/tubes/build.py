@@ -12,8 +12,6 @@ from ..lines import Lines, flat, gather, joined, numbers_or_colours, refuse_word
 from .spline_tubes import Doubles, NodeValues, SplineTubes, chord_lengths
 from .tangents import METHODS, Steps, derivatives
 
-__all__ = ["RADIUS_NAMES", "RADIUS_SHARE", "as_spline_tubes"]
-
 RADIUS_NAMES = ("radius", "Radius", "MaximumInscribedSphereRadius")
 """Point data that is taken for the radius when none is given; the last is VMTK's."""
 

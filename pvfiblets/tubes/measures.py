@@ -9,8 +9,6 @@ import numpy as np
 from pvfiblets.tubes.curves import controls, derivative
 from pvfiblets.tubes.spline_tubes import NodeValues, SplineTubes
 
-__all__ = ["ARC_LENGTH", "RADIUS", "node_slopes", "segment_lengths", "tube_lengths", "with_arc_length", "with_radius"]
-
 RADIUS, ARC_LENGTH = "radius", "arc_length"
 
 _BLOCK = 1 << 15  # segments measured at a time

@@ -19,8 +19,6 @@ import numpy.typing as npt
 
 from .spline_tubes import Doubles, Ints, chord_lengths
 
-__all__ = ["METHODS", "Steps", "derivatives"]
-
 METHODS = ("finite", "catmull-rom", "natural")
 
 _STEEPEST = 3.0

@@ -8,8 +8,6 @@ from typing import Any
 from pvfiblets.web.scene.loading import Cancelled, Watch
 from pvfiblets.web.session.document import LINES
 
-__all__ = ["Actions", "LineActions"]
-
 
 class Actions:
     """Some of an application's actions."""

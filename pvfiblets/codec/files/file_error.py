@@ -18,8 +18,6 @@ from ..error import CodingError, ErrorTally
 from ..fibletset import FibletSet
 from ..progress import Progress, shown
 
-__all__ = ["compare_file", "measure_file_error"]
-
 
 def measure_file_error(
     fiblets: str | PathLike[str],

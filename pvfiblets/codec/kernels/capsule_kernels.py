@@ -12,8 +12,6 @@ from ..capsules import MARGIN
 from ..jit import kernel, parallel_kernel
 from ..layout import END_BITS, END_LEVELS
 
-__all__ = ["capsule", "capsule_radius", "end_part", "end_word", "leaving"]
-
 _MASK = (1 << END_BITS) - 1
 
 

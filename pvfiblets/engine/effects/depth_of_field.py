@@ -14,8 +14,6 @@ import numpy.typing as npt
 
 from .projection import Projection
 
-__all__ = ["STEPS", "TILE", "WIDEST", "Focus", "disc_areas", "distance_of"]
-
 WIDEST = 64.0  # pixels: the greatest radius of a disc, as a pixel reads all pixels whose discs may reach it
 
 STEPS = 16

@@ -14,8 +14,6 @@ from ..gl.bindings import FIRST_UNIT
 from ..gl.moderngl_extras import GLExtras
 from ..gl.shaders import Programs
 
-__all__ = ["Attachment", "PicturePasses", "bytes_of"]
-
 _BYTES = {"f1": 1, "f4": 4, "u4": 4}
 
 

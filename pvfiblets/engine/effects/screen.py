@@ -13,8 +13,6 @@ from ..gl.moderngl_extras import GLExtras
 from ..gl.queries import Timers
 from ..gl.shaders import Programs
 
-__all__ = ["ScreenEffect"]
-
 
 class ScreenEffect:
     """Base of the effects: keeps programs and textures, and what the last picture was made of."""

@@ -6,8 +6,6 @@ import math
 from dataclasses import dataclass
 from numbers import Real
 
-__all__ = ["OPERATORS", "Tone", "is_number"]
-
 OPERATORS = ("none", "reinhard", "exponential", "aces", "hable")
 """Operators of tone mapping; the formulas are in the shader."""
 

@@ -32,9 +32,6 @@ if TYPE_CHECKING:
     from .pipelines import Pipeline
     from .visibility import Visibility
 
-__all__ = ["Census", "count_fiblets", "no_counts"]
-
-
 
 class Census:
     """Counts fiblets on one context."""

@@ -46,8 +46,6 @@ if TYPE_CHECKING:
     from .region_query import RegionQuery
     from .sample_layers import Rectangle, SampledLines
 
-__all__ = ["FibletRenderer"]
-
 
 class FibletRenderer(LinesBehind):
     """Draws one fiblet set.

@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from ..view import View
     from .data.chunks import Chunk
 
-__all__ = ["Visibility"]
-
 
 class Visibility:
     """Filter and region of a renderer; nothing of either stays on the GPU while there is none."""

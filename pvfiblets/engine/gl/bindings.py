@@ -13,45 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-__all__ = [
-    "ANSWER_STORAGE",
-    "BETWEEN_ROUNDS",
-    "BLOCKS",
-    "CLUSTER_STORAGE",
-    "CONSTANTS",
-    "COUNT_STORAGE",
-    "CROSSINGS",
-    "CULLING",
-    "FIBLET_DATA",
-    "FIBLET_ROUNDS",
-    "FIRST_UNIT",
-    "GATHERING",
-    "HALOS",
-    "HIT_KEYS",
-    "IMAGES",
-    "ITEMS",
-    "ITEMS_SHOWN",
-    "ITEM_STORAGE",
-    "LAYER_COPY",
-    "MASKS",
-    "MEASURE_STORAGE",
-    "NEARER_PART",
-    "PEELING",
-    "REGIONS",
-    "SAMPLED",
-    "SAMPLE_LAYER",
-    "STORAGE",
-    "SUM_IMAGES",
-    "TUBES",
-    "TUBE_PROBE",
-    "VOLUMES",
-    "VOLUME_COARSE",
-    "VOLUME_OCCLUSION",
-    "BindingError",
-    "Scope",
-    "together",
-]  # fmt: skip
-
 FIRST_UNIT = 9
 
 

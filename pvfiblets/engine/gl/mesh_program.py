@@ -15,8 +15,6 @@ import moderngl
 from ..errors import EngineError
 from .moderngl_extras import GLExtras, Uniform
 
-__all__ = ["MeshProgram"]
-
 _STAGES = {"fragment_shader": 0x8B30, "mesh_shader": 0x9559, "task_shader": 0x955A}
 _COMPILE_STATUS, _LINK_STATUS, _LOG_LENGTH = 0x8B81, 0x8B82, 0x8B84
 _ACTIVE_UNIFORMS, _INVALID_INDEX = 0x8B86, 0xFFFFFFFF

@@ -10,8 +10,6 @@ from typing import Protocol, TypeAlias
 
 from .moderngl_extras import GLExtras
 
-__all__ = ["CallClock", "PictureClock", "TimestampClock", "Which"]
-
 Which: TypeAlias = tuple[int, bool]  # label of a frame, chosen by the caller
 
 _TIMESTAMP, _RESULT, _AVAILABLE = 0x8E28, 0x8866, 0x8867

@@ -10,8 +10,6 @@ import ctypes
 
 from .moderngl_extras import GLExtras
 
-__all__ = ["Query", "Timers"]
-
 _TARGETS = {"time": 0x88BF, "samples": 0x8914}
 _RESULT = 0x8866
 

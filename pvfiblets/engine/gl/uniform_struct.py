@@ -29,8 +29,6 @@ from .bindings import BLOCKS
 if TYPE_CHECKING:
     import moderngl
 
-__all__ = ["LARGEST", "MODULES", "Field", "UniformStruct", "UniformStructError", "find_struct"]
-
 MODULES = {
     "Chunk": "fiblets.data.chunks",
     "ClipPlanes": "clipping",

@@ -30,8 +30,6 @@ import moderngl
 
 from .passes import is_software
 
-__all__ = ["DISCRETE", "INTEGRATED", "SOFTWARE", "WorkLimits"]
-
 
 class WorkLimits(NamedTuple):
     """Greatest work of one call."""

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from ...halos.style import HaloStyle
     from ..culling.two_phase_items import Listing
 
-__all__ = ["HaloDrawStyle", "HaloRenderer"]
-
 
 @dataclass(frozen=True)
 class HaloDrawStyle(Style):

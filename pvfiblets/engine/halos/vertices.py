@@ -21,9 +21,6 @@ from ..gl.moderngl_extras import GLExtras
 from ..gl.texel_buffers import LARGEST, TexelBuffers, as_singles
 from ..lattice import lattice, places
 
-__all__ = ["LAST", "MOST", "Vertices", "mask_places"]
-
-
 LAST = 65535  # place on the mask of a line's last vertex, and of no other
 
 MOST = LARGEST / 2.0

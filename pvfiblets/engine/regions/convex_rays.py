@@ -21,8 +21,6 @@ from .clip_planes import SIDES
 if TYPE_CHECKING:
     from ...query.regions.shapes import Region, Shape
 
-__all__ = ["RAYS_BLOCK", "RegionSignature", "rays_block", "to_unit", "window_matrix"]
-
 _ROWS = 6
 _PLANES, _SPHERE, _SURFACE = range(3)
 

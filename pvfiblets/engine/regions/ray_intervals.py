@@ -41,9 +41,6 @@ if TYPE_CHECKING:
     from ...query.regions.shapes import Region
     from ...query.regions.surfaces import Surface
 
-__all__ = ["RegionIntervals"]
-
-
 _OVERFLOW = "regions/overflow.frag"
 _SCISSOR_TEST = 0x0C11
 

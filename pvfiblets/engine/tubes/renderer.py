@@ -23,8 +23,6 @@ from .uniform_blocks import TubeBlocks
 if TYPE_CHECKING:
     from ...tubes.spline_tubes import NodeValues, SplineTubes
 
-__all__ = ["TubeRenderer"]
-
 
 class TubeRenderer(HitDrawable[TubeStyle]):
     """Draws one set of spline tubes.

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
 
     from ...volumes.volume import RaycastVolume
 
-__all__ = ["WEAKEST", "Lamp", "Shading"]
-
 WEAKEST = 0.02
 """Part of the range of colours by which values must change from voxel to voxel to have a normal of full weight."""
 

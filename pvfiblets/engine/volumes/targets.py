@@ -7,8 +7,6 @@ import moderngl
 from ..errors import EngineError
 from ..gbuffer import GBuffer
 
-__all__ = ["RayTarget"]
-
 
 class RayTarget:
     """A G-buffer and its framebuffer."""

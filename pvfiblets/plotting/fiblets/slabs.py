@@ -13,8 +13,6 @@ from pvfiblets.plotting.region_sources import direction_of
 if TYPE_CHECKING:
     from pvfiblets.plotting.fiblets.actor import FibletActor
 
-__all__ = ["FibletSlab"]
-
 
 class FibletSlab:
     """A slab that actors are cut to; ``plotter.fiblets.add_slab`` makes it.

@@ -17,8 +17,6 @@ from vtkmodules.vtkImagingCore import vtkImageReslice
 
 from pvfiblets.slices.frames import PlaneGrid
 
-__all__ = ["INTERPOLATIONS", "Resampler"]
-
 INTERPOLATIONS = ("nearest", "linear", "cubic")
 
 _MODES = {"nearest": 0, "linear": 1, "cubic": 3}  # VTK_RESLICE_NEAREST, VTK_RESLICE_LINEAR, VTK_RESLICE_CUBIC

@@ -16,8 +16,6 @@ from pvfiblets.plotting.volumes.settings import LIGHT, SURFACE
 if TYPE_CHECKING:
     from pvfiblets.plotting.volumes.actor import VolumeActor
 
-__all__ = ["PropertyAttributes", "tell_given"]
-
 _PEAKS = "what peaks and projections show is the colour of a value, which no lamp shines on"
 _RAYS = "rays through a volume have neither lines nor points"
 

@@ -8,8 +8,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["as_colour", "distinct_colour", "distinct_colours", "hex_colour"]
-
 
 def distinct_colours(count: int) -> npt.NDArray[np.float64]:
     """Return n bright colours, (n, 3) from 0 to 1, with different neighbours."""

@@ -15,8 +15,6 @@ from typing import Any
 
 from ...codec.jit import kernel
 
-__all__ = ["clip", "end_voxels", "faces", "voxel_along", "walk", "within"]
-
 
 @kernel
 def within(u: Any, i: int, shape: Any) -> bool:

@@ -8,8 +8,6 @@ import numpy as np
 
 from ...codec.jit import kernel
 
-__all__ = ["connected"]
-
 
 @kernel
 def connected(open_: Any, shape: Any, seed: int) -> Any:

@@ -13,8 +13,6 @@ from ..density.voxel_walk_kernels import walk
 from .shape_kernels import unit
 from .surface_kernels import segment_crossings, winding_number
 
-__all__ = ["combine", "label_spans", "surface_spans"]
-
 _PLANE, _SLAB, _BOX, _SPHERE, _SURFACE, _LABELS = range(6)
 _AND, _NOT = -1, -3
 _BLOCK = 256

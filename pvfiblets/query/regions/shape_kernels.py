@@ -9,8 +9,6 @@ import numba
 
 from ...codec.jit import kernel, parallel_kernel
 
-__all__ = ["evaluate", "unit"]
-
 _PLANE, _SLAB, _BOX, _SPHERE = range(4)
 _AND, _OR, _NOT = -1, -2, -3
 _BLOCK = 4096

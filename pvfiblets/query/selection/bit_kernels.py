@@ -10,8 +10,6 @@ import numpy as np
 
 from ...codec.jit import parallel_kernel
 
-__all__ = ["keep_codes", "keep_values"]
-
 
 @parallel_kernel
 def keep_values(values: Any, lo: float, hi: float, keep_nan: bool, words: Any) -> None:

@@ -12,8 +12,6 @@ from ...codec.jit import kernel, parallel_kernel
 from ...codec.kernels.capsule_kernels import end_part
 from ...codec.layout import PAGE_BITS
 
-__all__ = ["candidates", "distances", "hits", "spans"]
-
 _RANK_MASK, _BEGIN, _END = (1 << 14) - 1, 30, 31
 
 

@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from pvfiblets.web.scene.loading import Cancel, Progress
     from pvfiblets.web.scene.originals import Original
 
-__all__ = ["EXPORTS", "write"]
-
 EXPORTS = (".trk", ".trx", ".tck", ".vtp", ".vtk", ".fiblets")
 """Suffixes of files that streamlines can be written to, everywhere on the page."""
 

@@ -8,8 +8,6 @@ from typing import Any
 
 from pvfiblets.web.session.document import Measurement
 
-__all__ = ["LABELS", "LINES", "NEAREST", "hidden_distances", "names_of", "show_distances"]
-
 _LINE, _TEXT = "measured-line", "measured-text"
 _COLOUR = "#ffcc00"
 NEAREST = (0.0, -66_000.0)  # offset of lines, of VTK's depth units: before everything

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from pvfiblets.web.scene.scene import Scene
     from pvfiblets.web.session.document import Layer
 
-__all__ = ["Original", "original_of"]
-
 
 @dataclass(frozen=True, eq=False)
 class Original:

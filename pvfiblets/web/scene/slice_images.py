@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from pvfiblets.web.scene.loading import Loaded
     from pvfiblets.web.scene.scene import Scene
 
-__all__ = ["SliceImages"]
-
 
 class SliceImages:
     """Images of a scene that are shown as slices: names of their labels, and how they are looked at."""

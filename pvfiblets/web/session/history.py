@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from pvfiblets.web.scene.scene import Change, Scene
     from pvfiblets.web.session.document import State
 
-__all__ = ["History"]
-
 
 @dataclass(frozen=True)
 class _Step:

@@ -16,11 +16,6 @@ from pvfiblets.query.painting.painter import Stroke
 from pvfiblets.web.session.runs import numbers_in, pack, runs_of, unpack
 from pvfiblets.web.values import colour, mapping, numbers, shown, text, truth, whole
 
-__all__ = [
-    "LONGEST", "MOST_REGIONS", "MOST_VOXELS", "USES", "Painted", "Painting", "Strokes", "as_json", "check_painting",
-    "path_between",
-]  # fmt: skip
-
 USES = {
     "": "not used",
     "passes": "pass through",

@@ -40,8 +40,6 @@ if TYPE_CHECKING:
     from pvfiblets.web.scene.scene import Scene
     from pvfiblets.web.session.store import Store
 
-__all__ = ["VERSION", "Prepared", "read_session"]
-
 VERSION = 1
 _ID = re.compile(r"[a-z]+[0-9]{1,9}")
 

@@ -9,8 +9,6 @@ import numpy as np
 
 from pvfiblets.web.values import shown
 
-__all__ = ["numbers_in", "pack", "runs_of", "unpack"]
-
 _STEPS = {"u1": 1, "u2": 2, "u4": 4, "u8": 8}  # types of steps, and their bytes; little-endian
 
 

@@ -17,8 +17,6 @@ from ...gl.bindings import FIBLET_DATA, PEELING, SAMPLED
 from ...gl.moderngl_extras import BufferTexture, GLExtras
 from .chunks import Chunk
 
-__all__ = ["SAMPLERS", "DataTextures", "set_data_samplers"]
-
 SAMPLERS = {
     "anchors": ("anchor_texels", "rg32ui"),
     "pages": ("page_texels", "rgba32ui"),

@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     from ..pipelines import DrawRequest, Pipeline
     from ..style import FibletStyle
 
-__all__ = ["MOST_LAYERS", "LayeredBuffer", "Layers", "Peel"]
-
 MOST_LAYERS = 64
 
 

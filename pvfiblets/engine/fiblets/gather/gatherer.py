@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from ...gl.shaders import Programs
     from ..pipelines import DrawRequest, Pipeline
 
-__all__ = ["Gatherer"]
-
 
 class Gatherer:
     """Adds up what all lines show, and keeps it until something changes."""

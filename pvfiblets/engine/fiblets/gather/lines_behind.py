@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from .gathering import Gathered, SliceDistances
     from .paint import Paint
 
-__all__ = ["LinesBehind"]
-
 
 class LinesBehind(FibletDrawable):
     """Layers and sums of lines behind the nearest. Textures and programs are made when first needed."""

@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from ..data.filter_textures import Filter
     from ..style import FibletStyle
 
-__all__ = ["NearestOnly"]
-
 _NO_LAYERS = (
     "a set that is drawn part by part has no layers of lines, which need all of it at once; let lines be added up "
     "(transparency='all'), draw a share of it by fit='sample', or fewer streamlines"

@@ -25,8 +25,6 @@ from pvfiblets.halos.style import HaloStyle
 from .camera_reference import Array, Camera, Fragments, Ints, box
 from .strips_reference import strips
 
-__all__ = ["HALO", "LINE", "NOTHING", "Picture", "picture"]
-
 NOTHING, LINE, HALO = range(3)
 
 

@@ -21,8 +21,6 @@ import numpy as np
 
 from pvfiblets.codec.jit import kernel
 
-__all__ = ["angle_between", "from_cap", "pack", "ratio_of", "to_cap", "unpack", "worst_angle"]
-
 
 @kernel
 def pack(x: float, y: float, z: float, levels: int) -> Any:
