@@ -86,7 +86,7 @@ class FibletRenderer(LinesBehind):
         if fit == "stream":
             raise ValueError("one renderer holds all that it draws; streamed_renderer() makes one that fetches parts")
         super().__init__(ctx, CONSTANTS, lender)
-        self.pipeline = pipeline  # the one in use
+        self.pipeline = pipeline
         self._alike = alike
         self._fiblets = fiblets
         self._chunks: list[Chunk] = []

@@ -79,7 +79,7 @@ class StreamedRenderer(NearestOnly):
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         super().__init__(ctx, CONSTANTS)
-        self.pipeline = choose(ctx, pipeline)  # the one in use
+        self.pipeline = choose(ctx, pipeline)
         self._parts = parts
         self._room = room
         self._needed = needed
