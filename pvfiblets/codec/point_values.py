@@ -346,17 +346,11 @@ def linear_table(lo: float, hi: float, bits: int) -> Array:
     return np.append(even, np.nan).astype(np.float32)
 
 
-def code_values(
-    values: npt.ArrayLike,
-    bits: int = 8,
-    max_error: float | None = None,
-    *,
-    exact: bool = False,
-) -> PointValues:
+def code_values(values: npt.ArrayLike, bits: int = 8, *, exact: bool = False) -> PointValues:
     """Code one value per point."""
     survey = ValueSurvey()
     survey.add(values)
-    return survey.coder(bits, max_error, exact=exact).code(values)
+    return survey.coder(bits, exact=exact).code(values)
 
 
 def as_codes(values: npt.ArrayLike, most_bits: int = 16) -> tuple[PointValues, Array]:

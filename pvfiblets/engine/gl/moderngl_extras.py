@@ -56,7 +56,7 @@ _TEXTURE_0, _TEXTURE_2D, _TEXTURE_BUFFER = 0x84C0, 0x0DE1, 0x8C2A
 _TEXTURE_2D_MULTISAMPLE = 0x9100
 _BASE_LEVEL, _MAX_LEVEL = 0x813C, 0x813D
 _READ_FRAMEBUFFER, _DRAW_FRAMEBUFFER, _FRAMEBUFFER = 0x8CA8, 0x8CA9, 0x8D40
-_COLOR_ATTACHMENT_0, _DEPTH_ATTACHMENT = 0x8CE0, 0x8D00
+_COLOR_ATTACHMENT_0 = 0x8CE0
 _COPY_WRITE_BUFFER = 0x8F37
 _COLOR, _DEPTH = 0x1800, 0x1801
 _COMMANDS_COMPLETE, _FLUSH = 0x9117, 0x1
@@ -237,15 +237,12 @@ class GLExtras:
         target = _TEXTURE_2D_MULTISAMPLE if samples else _TEXTURE_2D
         self.function("glFramebufferTexture2D")(_DRAW_FRAMEBUFFER, _COLOR_ATTACHMENT_0, target, name, 0)
 
-    def attach_level(
-        self, framebuffer: moderngl.Framebuffer, texture: moderngl.Texture, level: int, attachment: int | None = 0
-    ) -> None:
+    def attach_level(self, framebuffer: moderngl.Framebuffer, texture: moderngl.Texture, level: int) -> None:
         """Make a framebuffer draw into one level of a texture, and set its viewport to that level's size."""
         # One framebuffer per level, attached when the texture is made, spares the frame these calls.
-        point = _DEPTH_ATTACHMENT if attachment is None else _COLOR_ATTACHMENT_0 + attachment
         with self.framebuffers_kept():
             self.function("glBindFramebuffer")(_FRAMEBUFFER, framebuffer.glo)
-            self.function("glFramebufferTexture2D")(_FRAMEBUFFER, point, _TEXTURE_2D, texture.glo, level)
+            self.function("glFramebufferTexture2D")(_FRAMEBUFFER, _COLOR_ATTACHMENT_0, _TEXTURE_2D, texture.glo, level)
         width, height = (max(1, side >> level) for side in texture.size)
         framebuffer.viewport = (0, 0, width, height)
 
